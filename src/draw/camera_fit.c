@@ -1,4 +1,4 @@
-/* Finds the nearest camera that shows some places. */
+/* camera_fit.c - fits a camera to points, by the maxima that camera_fit.h derives. */
 #include "draw/camera_fit.h"
 
 #include "draw/matrix.h"
@@ -15,20 +15,21 @@ void cs_camera_fit_begin(struct cs_camera_fit *fit, const struct cs_camera *came
     fit->aspect = (double)size[0] / (double)size[1];
 }
 
+// coordinate of point i along an axis of the picture
 static double along(const struct cs_camera_fit *fit, int axis, size_t n, const double *x,
                     size_t i) {
     const double place[3] = {x[i], x[n + i], x[2 * n + i]};
     return cs_dot(fit->axes[axis], place);
 }
 
-// the way along which places are bounded: some of an axis and some of the way back
+// direction side * axis + back * (view's back): a left side of the inequalities
 static void bounding_direction(const struct cs_camera_fit *fit, int axis, double side,
                                double back, double way[3]) {
     for (int i = 0; i < 3; i++)
         way[i] = side * fit->axes[axis][i] + back * fit->axes[2][i];
 }
 
-/* how far places reach along a way, and which of them does; n: none is finite */
+/* maximum of way . x over the finite points, and its index; n if there is none */
 static double reach(const double way[3], size_t n, const double *x, size_t *found) {
     double most = -HUGE_VAL;
     *found = n;
@@ -42,11 +43,13 @@ static double reach(const double way[3], size_t n, const double *x, size_t *foun
     return most;
 }
 
+// a camera's coordinate along one axis (cx or cy), and its distance back (cz)
 struct stand {
     double middle, back;
 };
 
-// where a camera has all within -slope and slope along an axis
+/* The nearest camera that has all points within -slope and slope along an axis. Parallel rays
+ * have no cz; there `back` is half the extent over slope, so that the camera's height fits. */
 static struct stand camera_position(const struct cs_camera_fit *fit, int axis, double slope,
                                     size_t n, const double *x) {
     const bool leans = fit->camera.projection == CS_PROJECTION_PERSPECTIVE;

@@ -1,5 +1,6 @@
-/* Makes spheres as balls, shapes with a core as smooth lattices, and all others of their
- * triangles, each with its own normal: a mesh that is met as it is shows its edges. */
+/* Makes the drawn triangles of colliders: caps of spheres, smooth lattices of shapes with a
+ * core. All others keep their triangles with one normal each, which shows the edges of a mesh.
+ */
 #include "draw/collider_mesh.h"
 
 #include "draw/matrix.h"
@@ -7,13 +8,15 @@
 #include "draw/sphere_cap.h"
 #include "scene/shape_core.h"
 
-/* lines of a face's grid between its middle and its rim, less one */
+/* steps of angle from the middle of a cube's face to its border; lines of its grid, of which
+ * the middle one is double (shape_core.h) */
 enum { PARTS = 8, LINES = 2 * (PARTS + 1) };
 
 static bool is_ball(const struct cs_posed_collider *obstacle) {
     return obstacle->shape->bounds == CS_BOUNDS_SPHERE;
 }
 
+/* Counts the vertices of a collider, and makes its triangles if they are drawn. */
 static enum cs_status make(struct cs_solid *solid, struct cs_arena *arena,
                            struct cs_error *error) {
     const struct cs_posed_collider *at = &solid->at;
@@ -53,7 +56,7 @@ bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now) 
     return moved;
 }
 
-/* place and normal in the own frame */
+/* Writes a vertex whose position and normal are given in the own frame. */
 static void set_vertex(const struct cs_posed_collider *at, const double own[3],
                        const double normal[3], struct cs_vertex *out) {
     double place[3], turned[3];
@@ -66,12 +69,12 @@ static void set_vertex(const struct cs_posed_collider *at, const double own[3],
     out->value = 0;
 }
 
-/* a line of the grid: its place before directions are made unit vectors, and its side */
+/* a line of the grid: its coordinate on the cube before normalisation, and its sign */
 struct line {
     double at, side;
 };
 
-/* one side (-1 or 1) of the cube across an axis */
+/* Fills the face of the cube on one side (-1 or 1) of an axis; returns the next vertex. */
 static struct cs_vertex *fill_face(const struct cs_posed_collider *at,
                                    const struct line lines[LINES], int axis, int side,
                                    struct cs_vertex *out) {
@@ -93,6 +96,7 @@ static struct cs_vertex *fill_face(const struct cs_posed_collider *at,
     return out;
 }
 
+/* Fills the six faces; lines are evenly spaced by angle. */
 static void fill_core(const struct cs_posed_collider *at, struct cs_vertex *out) {
     struct line lines[LINES];
     for (int k = 0; k <= PARTS; k++) {
@@ -105,6 +109,7 @@ static void fill_core(const struct cs_posed_collider *at, struct cs_vertex *out)
             out = fill_face(at, lines, axis, side, out);
 }
 
+/* Fills a triangle with its own normal, moved back along it by `sink` m. */
 static void fill_triangle(const struct cs_solid *solid, uint32_t t, double sink,
                           struct cs_vertex out[3]) {
     const struct cs_trimesh *mesh = &solid->mesh;

@@ -1,4 +1,4 @@
-/* collider_mesh.h - the colliders of a scene as triangles, where they are. No OpenGL here. */
+/* collider_mesh.h - the colliders of a scene as triangles; independent of the renderer. */
 #ifndef CS_DRAW_COLLIDER_MESH_H
 #define CS_DRAW_COLLIDER_MESH_H
 
@@ -7,31 +7,31 @@
 
 /* One collider as it is drawn. */
 struct cs_solid {
-    struct cs_posed_collider at;
-    struct cs_trimesh mesh; /* of shapes that are drawn by their triangles */
-    uint32_t n;             /* vertices, three a triangle, none shared; 0: it is not visible */
+    struct cs_posed_collider at; /* pose of the last frame */
+    struct cs_trimesh mesh;      /* in its own frame; of shapes without a core */
+    uint32_t n;                  /* vertices, three per triangle, none shared; 0: not visible */
 };
 
+/* All colliders of a scene. */
 struct cs_collider_geometry {
     uint32_t n;                 /* colliders of the scene */
-    double cell;                /* m: how coarse the cloth is that lies on them */
-    struct cs_solid *of;        /* (n), the arena's */
-    struct cs_vertex *vertices; /* work: room for the largest of them */
+    double cell;                /* m: largest cell of the cloth that lies on them */
+    struct cs_solid *of;        /* (n), owned by the arena */
+    struct cs_vertex *vertices; /* output of cs_solids_fill, room for the largest of them */
 };
 
-/* obstacles (scene->colliders.n): at the start. CS_ERR_MEMORY. */
+/* Allocates for the colliders at the start (scene->colliders.n). CS_ERR_MEMORY. */
 enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *solids,
                                          const struct cs_system *system,
                                          const struct cs_posed_collider *colliders,
                                          struct cs_arena *arena, struct cs_error *error);
 
-/* Takes where a collider is now; true if it has moved. */
+/* Takes a collider's pose in this frame; returns true if it has moved or turned. */
 bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now);
 
-/* Fills the work with the vertices of a visible collider, in the world's coordinates,
- * counter-clockwise seen from outside. The square of a plane lies a little below its place, or
- * it would show through cloth on it. Of a sphere they cover what is seen from eye
- * (sphere_cap.h). */
+/* Fills `vertices` with a visible collider in world coordinates, counter-clockwise seen from
+ * outside. The square of a plane lies a little below its position, or it would show through
+ * cloth on it. A sphere is filled as far as it is visible from eye (sphere_cap.h). */
 void cs_solids_fill(const struct cs_collider_geometry *solids, uint32_t i, const float eye[4]);
 
 #endif

@@ -1,9 +1,10 @@
-/* Holds the colours of the ink, and converts sRGB to linear RGB. */
+/* Colour maps of looks, the ink of lines, and a conversion from sRGB to linear RGB. */
 #include "draw/colour.h"
 
 #include "draw/look.h"
 
-// a cubic within 0.002 of the sRGB curve: no libm, whose last bit depends on the machine
+// a cubic within 0.002 of the sRGB curve: + and * only, since libm's last bits differ by
+// machine
 void cs_colour_linear(uint32_t hex, float linear[3]) {
     for (int i = 0; i < 3; i++) {
         const double c = (double)(hex >> (16 - 8 * i) & 255) / 255;
@@ -19,6 +20,7 @@ void cs_colour_stops(int32_t look, float stops[6][4]) {
     }
 }
 
+// luminance of linear RGB in the primaries of sRGB (Y of IEC 61966-2-1), against a middle grey
 void cs_colour_ink(const double background[3], float ink[3]) {
     const double luminance =
         0.2126 * background[0] + 0.7152 * background[1] + 0.0722 * background[2];

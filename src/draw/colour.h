@@ -1,19 +1,19 @@
-/* colour.h - the colours of values, springs and marks. */
+/* colour.h - colour maps of values, and the colours of lines and marks. */
 #ifndef CS_DRAW_COLOUR_H
 #define CS_DRAW_COLOUR_H
 
 #include <stdint.h>
 
-/* Six evenly spaced stops in linear RGB for the look's values, lowest first. Force grows from
- * dark violet over green to bright yellow; strain, which has a sign, is blue where springs are
- * short, pale at 0 and red where they are long; marks are red at the end. Stops beside each
- * other are told apart by readers who see no green, and in grey by their lightness. */
+/* Sets six evenly spaced stops in linear RGB for the look's values, lowest first. Force runs
+ * from dark violet over green to bright yellow. Strain, which has a sign, is blue where springs
+ * are short, pale at 0 and red where they are long. Marks are red at the end. Neighbouring
+ * stops differ for readers who see no green, and by lightness in grey. */
 void cs_colour_stops(int32_t look, float stops[6][4]);
 
-/* From 0xRRGGBB in sRGB to linear RGB. */
+/* Converts 0xRRGGBB in sRGB to linear RGB, within 0.002 (colour.c). */
 void cs_colour_linear(uint32_t hex, float linear[3]);
 
-/* Dark or light ink in linear RGB, whichever reads better on a background. */
+/* Sets a dark or a light ink in linear RGB, the one with more contrast to a background. */
 void cs_colour_ink(const double background[3], float ink[3]);
 
 #endif

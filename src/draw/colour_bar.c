@@ -1,4 +1,4 @@
-/* Draws the colour bar beside a picture, with figures at round values. */
+/* Draws the colour bar beside a picture, with labels at round values. */
 #include "draw/colour_bar.h"
 
 #include "draw/colour.h"
@@ -7,7 +7,8 @@
 #include <math.h>
 #include <stdio.h>
 
-/* the box of the colours, and a unit that keeps figures legible on small pictures */
+/* Rectangle of the colours, and a unit that keeps labels legible on small pictures: 1/480 of
+ * the height, at least 0.75 pixel. */
 struct place {
     double box[4], unit;
 };
@@ -33,7 +34,7 @@ uint32_t cs_colour_bar_ticks(const double range[2], int steps,
     const double width = range[1] - range[0];
     uint32_t n = 0;
     ticks[0] = range[0];
-    // neither nothing nor more than figures can tell apart
+    // no width, or less than the labels' digits can show: a single value
     if (!(width > 1e-9 * fmax(fabs(range[0]), fabs(range[1])) && width < 1e300 &&
           width > 1e-300))
         return 1;
@@ -45,6 +46,7 @@ uint32_t cs_colour_bar_ticks(const double range[2], int steps,
     return n;
 }
 
+/* Adds a line between two points in pixels. */
 static void add_line(struct cs_lines *lines, double x, double y, double to_x, double to_y) {
     const double from[3] = {x, y, 0}, to[3] = {to_x, to_y, 0};
     cs_lines_add(lines, from, to);
@@ -58,12 +60,13 @@ static void add_frame(struct cs_lines *lines, const double box[4]) {
     add_line(lines, box[0], bottom, box[0], box[1]);
 }
 
+/* Height of a value in the bar, in pixels from the top: the highest value is on top. */
 static double height_of(const struct place *place, const double range[2], double value) {
     const double width = range[1] - range[0];
     return place->box[1] + place->box[3] * (width > 0 ? 1 - (value - range[0]) / width : 1);
 }
 
-/* ticks on the left; where values have both signs, 0 goes right across */
+/* Adds ticks on the left; the one at 0 crosses the bar if values have both signs. */
 static void add_ticks(const struct place *place, struct cs_lines *lines, const double range[2],
                       const double *ticks, uint32_t n) {
     for (uint32_t i = 0; i < n; i++) {
@@ -73,6 +76,7 @@ static void add_ticks(const struct place *place, struct cs_lines *lines, const d
     }
 }
 
+/* Adds the labels of the ticks, right-aligned. */
 static void add_figures(const struct place *place, struct cs_lines *lines,
                         const double range[2], const double *ticks, uint32_t n) {
     const double size = 9 * place->unit;
@@ -86,7 +90,7 @@ static void add_figures(const struct place *place, struct cs_lines *lines,
 
 void cs_colour_bar_draw(const struct cs_colour_bar *bar, struct cs_lines *lines,
                         const struct cs_frame *frame) {
-    // small pictures have fewer figures
+    // small pictures have fewer labels
     const double unit = fmax(bar->height / 480, 0.75), length = 0.39 * bar->height;
     const struct place place = {
         .box = {bar->width - 32 * unit, bar->height - 18 * unit - length, 14 * unit, length},

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-// the power of ten at or below length
+// the largest power of ten that is at most length
 static double power_of_ten(double length) {
     double power = 1;
     while (power > length)
@@ -26,6 +26,7 @@ static const struct cs_posed_collider *floor_of(const struct cs_scene *scene,
     return NULL;
 }
 
+/* Height in m: given by the scene, that of a floor, or a little below the lowest point. */
 static double height_of(const struct cs_system *system,
                         const struct cs_posed_collider *obstacles,
                         const struct cs_bounding_sphere *extent) {
@@ -60,6 +61,7 @@ void cs_ground_make(struct cs_ground *ground, const struct cs_system *system,
     ground->shadow = has_floor ? 0.0f : 0.4f;
 }
 
+/* Extends a rectangle by a point. */
 static void grow(float box[4], const double place[2]) {
     for (int c = 0; c < 2; c++) {
         box[c] = fminf(box[c], (float)place[c]);
@@ -67,8 +69,9 @@ static void grow(float box[4], const double place[2]) {
     }
 }
 
-/* Where light carries the corners of a box around `solid`; false where one is above a lamp, so
- * that there is no end to its shadow. */
+/* Extends the rectangle by the shadow of the box around `solid`: the ray from the light through
+ * a corner p goes on along d and meets the ground at p + d (height - p_y) / d_y. Returns false
+ * if a corner is not below the light, whose shadow has no end. */
 static bool cast(const struct cs_bounding_sphere *solid, const float light[4], double height,
                  float box[4]) {
     const bool is_lamp = light[3] > 0;

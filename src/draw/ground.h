@@ -6,26 +6,27 @@
 #include "model/contact/posed_collider.h"
 #include "model/system/system.h"
 
+/* The ground of a scene; zeroed: none. */
 struct cs_ground {
     bool present;
-    bool follows_lowest; /* it gives way where something is lower */
-    double height;       /* m, where nothing is */
-    float fade_disc[4];  /* centre x, height, centre z, half side in m, where it has melted */
-    float box[4]; /* m: least x and z, greatest x and z of what may show; greatest <= least:
-                     nothing in this frame */
+    bool follows_lowest; /* it moves below anything lower */
+    double height;       /* m, without anything lower */
+    float fade_disc[4];  /* centre x, height, centre z, radius in m where it has faded out */
+    float box[4]; /* m: min x and z, max x and z of the visible part; max <= min: nothing in
+                     this frame */
     float line_spacing;   /* m between lines; every tenth one is stronger; 0: none */
     float line_colour[3]; /* linear RGB */
-    float shadow;         /* 0..1: how dark a shadow is inked */
+    float shadow;         /* 0..1: opacity of a shadow */
 };
 
-/* As the scene asks for it: lines with a distance of 1 m times a power of ten, fit for its
- * extent, or shadows alone. obstacles (scene->colliders.n) at the start. */
+/* Makes the ground that the scene wants: lines spaced by a power of ten of 1 m that fits its
+ * extent, or shadows alone. colliders (scene->colliders.n) at the start. */
 void cs_ground_make(struct cs_ground *ground, const struct cs_system *system,
                     const struct cs_posed_collider *colliders,
                     const struct cs_bounding_sphere *extent);
 
-/* Puts it below all that a frame holds, and bounds what of it shows: lines, or where shadows
- * of `solid` can lie. */
+/* Places the ground below everything in a frame, and bounds its visible part: lines, or the
+ * shadows of `solid`. */
 void cs_ground_aim(struct cs_ground *ground, const struct cs_view_block *block,
                    const struct cs_bounding_sphere *solid);
 

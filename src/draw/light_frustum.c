@@ -1,17 +1,22 @@
-/* Aims a cone or a box of light at everything that casts a shadow. */
+/* light_frustum.c - fits a cone (lamp) or a box (sun) of light to everything that casts a
+ * shadow.
+ */
 #include "draw/light_frustum.h"
 
 #include "draw/matrix.h"
 
-/* A ball around `solid` whose size and place change by steps: edges of the shadow keep still
- * from frame to frame, and yet a frame does not depend on those before it. */
+/* A sphere around `solid` whose radius is a power of 1.25 and whose centre lies on a grid.
+ * Edges of the shadow keep still from frame to frame, and no frame depends on those before it.
+ *
+ * Containment: R >= 1.1 r, so r <= 0.909 R. Rounding to a grid of 0.1 R moves the centre by at
+ * most 0.05 sqrt(3) R = 0.087 R. The sum 0.996 R is within R. */
 static struct cs_bounding_sphere coarse(const struct cs_bounding_sphere *solid) {
     struct cs_bounding_sphere ball = {.radius = 1};
     while (ball.radius > 1.1 * solid->radius)
         ball.radius /= 1.25;
     while (ball.radius < 1.1 * solid->radius)
         ball.radius *= 1.25;
-    // at most 0.087 of the radius away from the middle: inside the margin of 1.1
+    // moves the centre by at most 0.087 of the radius: inside the margin of 1.1
     const double step = 0.1 * ball.radius;
     for (int i = 0; i < 3; i++)
         ball.centre[i] = step * floor(solid->centre[i] / step + 0.5);
@@ -33,7 +38,7 @@ bool cs_light_frustum_fit(const struct cs_bounding_sphere *solid, struct cs_view
     if (block->shadow_params[2] == 0)
         return false;
 
-    // the cone from a lamp that touches the ball
+    // tangent cone of the sphere: sin a = r / d, so tan a = r / sqrt(d^2 - r^2)
     const double slope = r / sqrt(distance * distance - r * r);
     cs_matrix_look(eye, lit->centre, up, look);
     if (is_lamp)

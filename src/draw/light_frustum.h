@@ -1,13 +1,15 @@
-/* light_frustum.h - where the light's picture of the scene is taken from. */
+/* light_frustum.h - the frustum of the shadow map: a cone or box of light around all casters.
+ */
 #ifndef CS_DRAW_LIGHT_FRUSTUM_H
 #define CS_DRAW_LIGHT_FRUSTUM_H
 
 #include "draw/view.h"
 
-enum { CS_SHADOW_SIDE = 512 }; /* pixels: coarse enough to blur the edges */
+enum { CS_SHADOW_SIDE = 512 }; /* texels: coarse enough to blur the edges */
 
-/* Aims the light at `solid`: writes its matrix and `shade` into the view block. false where the
- * lamp hangs so near that there is no shadow. */
+/* Fits the light's frustum to the sphere `solid` of all casters. Writes world_to_light and
+ * shadow_params (1 / side; texel size in m at the centre; 1 or 0: shadows on) into the view
+ * block. Returns false, with shadows off, if the lamp is within 1.05 radii of the centre. */
 bool cs_light_frustum_fit(const struct cs_bounding_sphere *solid, struct cs_view_block *block);
 
 #endif

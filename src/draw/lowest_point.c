@@ -1,4 +1,7 @@
-/* Bounds how low bodies can hang: a particle is at most as far below a pin as the way to it. */
+/* Bounds how low bodies can hang. Every pin holds a particle, which is therefore no lower than
+ *   max over pins of (height of the pin - 1.1 distance at rest).
+ * The bound of a body is that of its lowest particle. In a sheet at rest the straight line is
+ * the shortest way to a pin; 1.1 allows for springs that stretch. */
 #include "draw/lowest_point.h"
 
 #include "draw/scene_extent.h"
@@ -7,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST = 1024, MOST_PINS = 64 }; // of a body's particles and pins that are looked at
+enum { MOST = 1024, MOST_PINS = 64 }; // particles and pins per body that are tested
 
 static bool is_released(const struct cs_scene *scene) {
     bool released = false;
@@ -16,7 +19,7 @@ static bool is_released(const struct cs_scene *scene) {
     return released;
 }
 
-// where particle i of a body lies at rest, but for its placement
+// position of particle i of a body at rest, before its placement: only distances matter
 static void rest_position(const struct cs_body *body, const struct cs_body_range *range,
                           uint32_t i, double place[3]) {
     const double *size = body->cloth.size;
@@ -41,6 +44,7 @@ struct pins {
     uint32_t n;
 };
 
+/* Collects the pins of body b, evenly thinned out to MOST_PINS. */
 static void find_pins(const struct cs_system *system, uint32_t b, struct pins *pins) {
     const struct cs_body_range *range = system->bodies + b;
     uint32_t first = 0, n = 0;
@@ -59,6 +63,7 @@ static void find_pins(const struct cs_system *system, uint32_t b, struct pins *p
     }
 }
 
+/* Bound of body b; NaN if it has no pins. */
 static double lowest_of_body(const struct cs_system *system, uint32_t b) {
     const struct cs_body_range *range = system->bodies + b;
     struct pins pins;

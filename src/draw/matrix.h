@@ -1,10 +1,14 @@
-/* matrix.h - 3-vectors and 4x4 matrices (by columns) for cameras; + - * / and sqrt only. */
+/* matrix.h - 3-vectors and 4x4 matrices for cameras; + - * / and sqrt only, for equal bits.
+ *
+ * Matrices are stored by columns, as OpenGL takes them: element (row, column) is [4 column +
+ * row]. Clip space is OpenGL's: -w <= x, y, z <= w is visible, z = -w at the near plane. */
 #ifndef CS_DRAW_MATRIX_H
 #define CS_DRAW_MATRIX_H
 
 #include <math.h>
 #include <string.h>
 
+/* Vector algebra; the result of a cross product may be neither operand. */
 static inline double cs_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -24,14 +28,15 @@ static inline double cs_length(const double a[3]) {
     return sqrt(cs_dot(a, a));
 }
 
+/* Makes a unit vector in place; the zero vector stays. */
 static inline void cs_normalise(double a[3]) {
     const double length = cs_length(a);
     for (int i = 0; i < 3; i++)
         a[i] = length > 0 ? a[i] / length : 0;
 }
 
-/* A unit vector across `along`, and the third one that makes (across, third, along)
- * right-handed. */
+/* Sets a unit vector `across` at right angles to the unit vector `along`, and the third one
+ * that makes (across, third, along) right-handed. */
 static inline void cs_frame_from_direction(const double along[3], double across[3],
                                            double third[3]) {
     const double axis[3] = {fabs(along[0]) < 0.6, fabs(along[0]) >= 0.6, 0};
@@ -51,7 +56,8 @@ static inline void cs_matrix_multiply(const double a[16], const double b[16], do
         }
 }
 
-/* World to camera: x right, y up, z towards the camera. */
+/* World to camera: x right, y up, z towards the camera. Rows are the camera's axes a_k, and the
+ * translation is -a_k.eye. */
 static inline void cs_matrix_look(const double eye[3], const double target[3],
                                   const double up[3], double out[16]) {
     double axes[3][3], unused[3];
@@ -72,8 +78,9 @@ static inline void cs_matrix_look(const double eye[3], const double target[3],
     out[15] = 1;
 }
 
-/* Tangent of an angle of 0..1.5 from the series of sine and cosine: libm's last bit depends on
- * the machine. Terms shrink as 1.5^k / k!, below the last bit after 24 of them. */
+/* Tangent of an angle of 0..1.5 as the quotient of the series of sine and cosine: libm's last
+ * bit depends on the machine. Terms shrink as 1.5^k / k!, below the last bit after 24 of
+ * them. */
 static inline double cs_tangent(double angle) {
     double sine = 0, cosine = 0, term = 1;
     for (int k = 0; k < 28; k++) {
@@ -87,7 +94,8 @@ static inline double cs_tangent(double angle) {
     return sine / cosine;
 }
 
-/* slope: tangent of half the vertical angle. */
+/* Perspective: w is the distance along the view, z/w runs from -1 at near to 1 at far. slope:
+ * tangent of half the vertical angle; aspect: width over height. */
 static inline void cs_matrix_perspective(double slope, double aspect, double near, double far,
                                          double out[16]) {
     memset(out, 0, 16 * sizeof *out);
@@ -98,7 +106,8 @@ static inline void cs_matrix_perspective(double slope, double aspect, double nea
     out[14] = 2 * far * near / (near - far);
 }
 
-/* half: m from the middle of the picture to its upper edge. */
+/* Parallel projection: w is 1 and z linear. half: m from the middle of the picture to its upper
+ * edge. */
 static inline void cs_matrix_parallel(double half, double aspect, double near, double far,
                                       double out[16]) {
     memset(out, 0, 16 * sizeof *out);
@@ -109,6 +118,7 @@ static inline void cs_matrix_parallel(double half, double aspect, double near, d
     out[15] = 1;
 }
 
+/* Rounds a matrix to floats, for a view block. */
 static inline void cs_matrix_to_float(const double from[16], float to[16]) {
     for (int i = 0; i < 16; i++)
         to[i] = (float)from[i];

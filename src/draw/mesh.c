@@ -7,7 +7,7 @@
 #include "model/system/faces.h"
 #include "model/system/surfaces.h"
 
-// drawing a particle farther away than this only upsets the rasteriser
+// m: positions farther away are drawn at this bound, because they would upset the rasteriser
 static const double bound = 1e5;
 
 void cs_mesh_position(uint32_t n, const double *x, uint32_t i, double place[3]) {
@@ -18,7 +18,8 @@ void cs_mesh_position(uint32_t n, const double *x, uint32_t i, double place[3]) 
     }
 }
 
-/* A tenth of how large the body is at the start: folds are as deep in a finer grid. */
+/* A tenth of the body's diagonal at the start. It does not depend on the grid, so folds look
+ * equally deep on a finer one. */
 static double reach_of(const struct cs_system *system, const struct cs_body_range *range) {
     double square = 0;
     for (size_t c = 0; c < 3; c++) {
@@ -33,11 +34,12 @@ static double reach_of(const struct cs_system *system, const struct cs_body_rang
     return 0.1 * sqrt(square);
 }
 
+/* Only boxes have creases: other shapes are smooth. */
 static bool is_box(const struct cs_body *body) {
     return body->mesh.present && body->mesh.shape == CS_MESH_BOX;
 }
 
-// which of six sides of a box a triangle lies on
+// side 0..5 of a box that a triangle lies on: the axis of its normal, and its sign
 static uint8_t side_of(const struct cs_trimesh *box, uint32_t triangle) {
     double normal[3];
     int axis = 0;
@@ -90,6 +92,7 @@ enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system
                                                : init_creases(mesh, arena, error);
 }
 
+/* Normal of a triangle of particles, as long as twice its area. */
 static void triangle_normal(const struct cs_mesh *mesh, uint32_t n, const double *x,
                             const uint32_t *corner, double normal[3]) {
     double p[3][3], along[3], across[3];
@@ -100,6 +103,7 @@ static void triangle_normal(const struct cs_mesh *mesh, uint32_t n, const double
     cs_cross(along, across, normal);
 }
 
+/* Fills a vertex; the normal is made a unit vector. */
 static void set_vertex(struct cs_vertex *vertex, const double place[3], const double normal[3],
                        double value) {
     double unit[3] = {normal[0], normal[1], normal[2]};
@@ -114,7 +118,8 @@ static void set_vertex(struct cs_vertex *vertex, const double place[3], const do
     vertex->value = (float)value;
 }
 
-/* The ways from each particle to its neighbours, and their squares, summed over triangles. */
+/* Sums the vectors from each particle to its neighbours, and their squares, over triangles: an
+ * inner edge counts twice, which cancels in groove_slope. */
 static void sum_neighbour_offsets(const struct cs_mesh *mesh, uint32_t n, const double *x) {
     memset(mesh->neighbour_sums, 0, 4 * sizeof *mesh->neighbour_sums * mesh->range.count);
     for (uint32_t k = 0; k < mesh->n_indices; k += 3) {
@@ -136,8 +141,10 @@ static void sum_neighbour_offsets(const struct cs_mesh *mesh, uint32_t n, const 
     }
 }
 
-/* Of a groove z = k s^2 / 2 neighbours lie k L^2 / 4 above its bottom, in the mean over all
- * ways there; its slope at the reach is k reach / 2. */
+/* Slope of the groove that fits the neighbours of particle i. In a groove z = k s^2 / 2 a
+ * neighbour at distance L in a random direction lies k L^2 / 4 above the bottom on average. The
+ * sum of the vectors to neighbours along the normal over the sum of L^2 is thus k / 4. The
+ * chord of the groove out to the radius R rises by k R^2 / 2, a slope of k R / 2. */
 static double groove_slope(const struct cs_mesh *mesh, uint32_t i) {
     const double *normal = mesh->normals + 3 * (size_t)i,
                  *ways = mesh->neighbour_sums + 4 * (size_t)i;
@@ -145,6 +152,7 @@ static double groove_slope(const struct cs_mesh *mesh, uint32_t i) {
     return length > 0 ? 2 * mesh->curvature_radius * cs_dot(normal, ways) / length : 0;
 }
 
+/* A value as a fraction 0..1 of its range; 0 if there is none. */
 static double scaled(const double *values, uint32_t i, const double range[2]) {
     if (!values || !(range[1] > range[0]))
         return 0;
@@ -152,6 +160,7 @@ static double scaled(const double *values, uint32_t i, const double range[2]) {
     return t > 1 ? 1 : t > 0 ? t : 0;
 }
 
+/* Sums the normals of the triangles at each particle. */
 static void sum_normals(struct cs_mesh *mesh, uint32_t n, const double *x) {
     memset(mesh->normals, 0, 3 * sizeof *mesh->normals * mesh->range.count);
     for (uint32_t k = 0; k < mesh->n_indices; k += 3) {
@@ -163,6 +172,8 @@ static void sum_normals(struct cs_mesh *mesh, uint32_t n, const double *x) {
     }
 }
 
+/* Sums, for each corner, the normals of its particle's triangles on the same side of the box.
+ */
 static void sum_creased(struct cs_mesh *mesh, uint32_t n, const double *x) {
     const struct cs_trimesh *box = mesh->range.mesh;
     memset(mesh->normals, 0, 3 * sizeof *mesh->normals * mesh->n_indices);
@@ -204,13 +215,14 @@ void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const struct cs_frame *fra
     }
 }
 
+/* Texture coordinates of a grid: 0..1 along rows and columns. */
 static void grid_uv(const struct cs_mesh *mesh, uint32_t i, double uv[2]) {
     const uint32_t columns = mesh->range.columns, rows = mesh->range.rows;
     uv[0] = columns > 1 ? (double)(i % columns) / (columns - 1) : 0;
     uv[1] = rows > 1 ? (double)(i / columns) / (rows - 1) : 0;
 }
 
-// across and down the box of the mesh, seen from +z
+// texture coordinates 0..1 across and down the mesh's bounding box, seen from +z
 static void front_uv(const struct cs_trimesh *mesh, uint32_t i, const double low[2],
                      const double high[2], double uv[2]) {
     for (int c = 0; c < 2; c++) {

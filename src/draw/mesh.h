@@ -1,4 +1,4 @@
-/* mesh.h - a body's particles as vertices and triangles. No OpenGL here. */
+/* mesh.h - a body's particles as vertices and triangles; independent of the renderer. */
 #ifndef CS_DRAW_MESH_H
 #define CS_DRAW_MESH_H
 
@@ -7,49 +7,52 @@
 
 #include <stdbool.h>
 
+/* A vertex: position in m, unit normal, value of the look (0..1, or slope of a fold). */
 struct cs_vertex {
     float position[3], normal[3], value;
 };
 
-/* A grid has two triangles a cell, counter-clockwise seen from +z for a hanging cloth; a mesh
- * has its own. A vertex a particle, shared by its triangles; split: three vertices a triangle
- * of their own, for one normal a triangle (flat), normals that end at the edges of a box
- * (creased), texture coordinates of corners, or marks of triangles. */
+/* The drawn mesh of a body. A grid has two triangles per cell, counter-clockwise seen from +z
+ * for a hanging cloth; a mesh has its own. Normally there is one vertex per particle, shared by
+ * its triangles. Split: three vertices per triangle, for one normal per triangle (flat),
+ * normals that end at the edges of a box (creased), texture coordinates of corners, or marks of
+ * triangles. */
 struct cs_mesh {
-    struct cs_body_range range;
+    struct cs_body_range range; /* particles of the body, copied */
     bool flat_shading, has_creases, split_vertices;
     uint32_t first_triangle; /* of the body among the system's */
-    bool has_curvature;      /* values of vertices tell how deep in a fold they lie */
-    double curvature_radius; /* m: how far around a vertex folds take light away */
+    bool has_curvature;      /* values are slopes of folds (cs_mesh_update) */
+    double curvature_radius; /* m: radius around a vertex in which folds take light away */
     uint32_t n_vertices, n_indices;
     struct cs_vertex *vertices; /* (n_vertices), owned by the arena like the others */
-    uint32_t *indices;          /* (n_indices) particles of the body, three a triangle */
-    double *normals;            /* (count, 3) work; creased: (n_indices, 3) */
-    double *neighbour_sums;     /* (count, 4) work: ways to neighbours, and their squares */
-    double *face_normals;       /* (triangles, 3) normals, work; NULL unless creased */
-    uint8_t *box_faces;         /* (triangles) of the box; NULL likewise */
+    uint32_t *indices;          /* (n_indices) particles of the body, three per triangle */
+    double *normals;            /* (count, 3) sums; creased: (n_indices, 3) */
+    double *neighbour_sums; /* (count, 4) sums of vectors to neighbours and of their squares */
+    double *face_normals;   /* (triangles, 3) as long as twice the area; NULL unless creased */
+    uint8_t *box_faces;     /* (triangles) 0..5, side of the box; NULL likewise */
 };
 
-/* Of a body, as its material and the scene's look have it. textured: texture coordinates will
- * be asked for. */
+/* Makes the mesh of a body for its material and the scene's look; memory from the arena.
+ * textured: texture coordinates will be needed. CS_ERR_MEMORY. */
 enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system, uint32_t body,
                             bool textured, struct cs_arena *arena, struct cs_error *error);
 
-/* Fills the vertices from a frame of n particles; its values become 0..1 between the ends of
- * their range, or the marks of triangles 0 and 1. Where folds are wanted the value is the slope
- * of the walls of a groove as curved as the surface, at its reach: above 0 where the front is
- * the inside. Of the ambient light 1 / sqrt(1 + value^2) comes to the middle of such a groove,
- * its view factor to the sky between straight walls.
- * A smooth normal is the sum of the normals of its triangles, each as long as the triangle is
- * large; on a box of those on the same side of it. Positions that are not finite, or far off
- * after a blow-up, are drawn at a bound. */
+/* Fills the vertices from a frame of n particles. The value is one of:
+ *   - the frame's value, scaled to 0..1 over its range; marks of triangles: 0 or 1;
+ *   - with has_curvature, the slope of the walls of a groove as curved as the surface, at the
+ *     radius: above 0 if the front is the inside. Ambient light in such a groove's middle is
+ *     1 / sqrt(1 + value^2), its view factor to the sky between straight walls.
+ * A smooth normal is the sum of the normals of its triangles, weighted by area; on a box only
+ * of those on the same side. Positions that are not finite, or far off after a blow-up, are
+ * drawn at a bound. */
 void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const struct cs_frame *frame);
 
-/* Texture coordinates (n_vertices, 2): of a grid from 0 at the top left to `repeat`; of a mesh
- * its own times `repeat`, or where it has none, as if the picture lay on its front (+z). */
+/* Fills texture coordinates (n_vertices, 2). On a grid they run from 0 at the top left to
+ * `repeat`. A mesh has its own times `repeat`, or else those of a picture projected onto its
+ * front (+z). */
 void cs_mesh_uv(const struct cs_mesh *mesh, const double repeat[2], float *uv);
 
-/* Position i of x (3,n) as it is drawn. */
+/* Gives position i of x (3,n) as it is drawn: finite, and within 10^5 m. */
 void cs_mesh_position(uint32_t n, const double *x, uint32_t i, double place[3]);
 
 #endif

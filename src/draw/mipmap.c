@@ -1,15 +1,23 @@
-/* mipmap.c - trilinear filtering (Williams 1983): two copies, four texels of each. */
+/* mipmap.c - trilinear filtering (Williams 1983): two levels, four texels of each.
+ *
+ * A pixel that covers rho texels of level 0 in width takes the level log2(rho), where a texel
+ * is about a pixel wide. It interpolates linearly between the two nearest whole levels. The
+ * caller passes rho^2, which needs no root: log2(rho) = log2(rho^2) / 2.
+ */
 #include "draw/mipmap.h"
 
 #include <math.h>
 #include <string.h>
 
+// side of the next level, at least 1
 static int halved(int n) {
     return n > 1 ? n / 2 : 1;
 }
 
-/* What texel i of a row covers of one that is up to three times as long: the shares of the
- * texels from the returned one on. */
+/* Texel i of a row of `small` covers the interval from i large/small to (i + 1) large/small of
+ * a row of `large`, at most three times as many. Returns the first texel in it; shares:
+ * fraction of the interval in each of four texels from there on. An odd side thus loses no
+ * light. */
 static int cover(int i, int small, int large, double shares[4]) {
     const double from = (double)i * large / small, to = (double)(i + 1) * large / small;
     const int first = (int)from;
@@ -20,7 +28,7 @@ static int cover(int i, int small, int large, double shares[4]) {
     return first;
 }
 
-// the mean of the light that a texel covers
+// the mean of a channel over a rectangle of texels, weighted by area
 static uint16_t mean_of(const uint16_t *from, size_t stride, const double across[4],
                         const double down[4]) {
     double sum = 0;
@@ -31,6 +39,7 @@ static uint16_t mean_of(const uint16_t *from, size_t stride, const double across
     return (uint16_t)(sum + 0.5);
 }
 
+// makes one level from the one before
 static void shrink(const uint16_t *from, int width, int height, uint16_t *to) {
     const int w = halved(width), h = halved(height);
     const size_t stride = 3 * (size_t)width;
@@ -72,7 +81,8 @@ enum cs_status cs_mipmap_make(struct cs_mipmap *mips, const struct cs_image *ima
     return CS_OK;
 }
 
-// neighbours of a place in a row of n texels that repeats, and the share of the second
+/* The two texels of a row of n beside coordinate `at`, and the weight of the second. Texel i
+ * has its middle at (i + 1/2) / n; neighbours wrap around. */
 static void wrap_texel(float at, int n, int texels[2], float *share) {
     const float where = (at - floorf(at)) * (float)n - 0.5f;
     const float down = floorf(where);
@@ -82,6 +92,7 @@ static void wrap_texel(float at, int n, int texels[2], float *share) {
     texels[1] = first + 1 < n ? first + 1 : 0;
 }
 
+// bilinear interpolation in one level
 static void bilinear(const struct cs_mipmap *mips, int copy, float u, float v, float rgb[3]) {
     const int width = mips->levels[copy].width;
     int column[2], row[2];
@@ -100,8 +111,9 @@ static void bilinear(const struct cs_mipmap *mips, int copy, float u, float v, f
     }
 }
 
-/* Logarithm to base 2 of a positive number, straight between whole ones: at most 0.09 too low,
- * as renderers of OpenGL take it, too little to be seen. */
+/* log2 of a positive number 2^e (1 + m), taken as e + m. The error log2(1 + m) - m is largest
+ * at m = 1/ln 2 - 1, where it is 0.086: too little to be seen in a level. OpenGL renderers do
+ * the same. */
 static float log_2(float value) {
     uint32_t bits;
     float mantissa;
@@ -114,7 +126,7 @@ static float log_2(float value) {
 
 void cs_mipmap_sample(const struct cs_mipmap *mips, float u, float v, float square,
                       float rgb[3]) {
-    // below 1 texel a pixel the first copy is blown up; NAN and huge numbers come to an end too
+    // below 1 texel per pixel level 0 is magnified; NaN and huge numbers stay in range
     const float level = square > 1 ? 0.5f * log_2(square < 1e30f ? square : 1e30f) : 0;
     const int whole = (int)level;
     float then[3];

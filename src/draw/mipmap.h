@@ -1,4 +1,4 @@
-/* mipmap.h - a picture that repeats over a cloth, in ever smaller copies. */
+/* mipmap.h - a texture that repeats over a cloth, with its smaller copies (Williams 1983). */
 #ifndef CS_DRAW_MIPMAP_H
 #define CS_DRAW_MIPMAP_H
 
@@ -6,23 +6,24 @@
 #include "base/image.h"
 #include "draw/srgb.h"
 
-enum { CS_MIPMAP_LEVELS_MAX = 24 };
+enum { CS_MIPMAP_LEVELS_MAX = 24 }; /* enough for sides below 2^24 texels */
 
-/* Light, not bytes of sRGB: a mean of it is what is seen from afar. */
+/* Texels are linear light, not bytes of sRGB: their mean is the colour seen from afar. */
 struct cs_mipmap {
-    int n; /* copies, each half as wide and high as the one before, down to 1 x 1 */
+    int n; /* levels, each half as wide and high as the one before (rounded down), to 1 x 1 */
     struct {
         int width, height;
-        const uint16_t *light; /* (height, width, 3) of 65535, owned by the arena */
+        const uint16_t *light; /* (height, width, 3) in 1/65535, owned by the arena */
     } levels[CS_MIPMAP_LEVELS_MAX];
 };
 
+/* Makes all levels of an image; memory from the arena. Fails with CS_ERR_MEMORY. */
 enum cs_status cs_mipmap_make(struct cs_mipmap *mips, const struct cs_image *image,
                               const struct cs_srgb *tone, struct cs_arena *arena,
                               struct cs_error *error);
 
-/* The linear colour at (u, v) in 0..1 a repeat. square: texels of the first copy from one pixel
- * to the next, squared. */
+/* Linear colour at (u, v), which repeats with period 1. square: squared distance of
+ * neighbouring pixels in texels of level 0. */
 void cs_mipmap_sample(const struct cs_mipmap *mips, float u, float v, float square,
                       float rgb[3]);
 

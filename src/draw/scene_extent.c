@@ -5,6 +5,7 @@
 #include "draw/mesh.h"
 #include "mesh/trimesh.h"
 
+/* Extends a box by a point. */
 static void grow(double low[3], double high[3], const double place[3]) {
     for (int i = 0; i < 3; i++) {
         low[i] = fmin(low[i], place[i]);
@@ -12,7 +13,8 @@ static void grow(double low[3], double high[3], const double place[3]) {
     }
 }
 
-/* all that a sphere, a box or a capsule may reach */
+/* Extends a box by a shape with a core: the core's half sizes along its axes, and the radius.
+ */
 static void grow_by(double low[3], double high[3], const struct cs_posed_collider *obstacle) {
     for (int i = 0; i < 3; i++) {
         double reach = obstacle->radius;

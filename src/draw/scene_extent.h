@@ -1,4 +1,4 @@
-/* scene_extent.h - how large things are: the scene at its start, and a cell of its cloths. */
+/* scene_extent.h - size of a scene: a bounding sphere, and the largest cell of its bodies. */
 #ifndef CS_DRAW_SCENE_EXTENT_H
 #define CS_DRAW_SCENE_EXTENT_H
 
@@ -6,8 +6,9 @@
 #include "model/contact/posed_collider.h"
 #include "model/system/system.h"
 
-/* A ball around the particles at x (3,n) and the visible colliders but planes, which are
- * at obstacles (scene->colliders.n). */
+/* Returns a sphere around the particles at x (3,n) and the visible colliders
+ * (scene->colliders.n) but planes: around their bounding box, with a radius of 1 mm at least.
+ */
 struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, const double *x,
                                                 const struct cs_posed_collider *colliders);
 

@@ -1,14 +1,24 @@
-/* Makes the seen side of a sphere: rings about the line of sight, the last on its outline. */
+/* sphere_cap.c - makes the visible side of a sphere: rings about the line of sight, the last on
+ * the outline.
+ *
+ * From distance D the lines of sight touch a sphere of radius r at the angle a from the axis,
+ * with cos a = r / D; from far away cos a = 0. Rings are at a k / 16. All angles come from
+ * halving,
+ *   cos(t / 2) = sqrt((1 + cos t) / 2),   sin(t / 2) = sqrt((1 - cos t) / 2),
+ * and from the addition theorems, so the vertices have the same bits on every machine. A round
+ * outline matters more than a round inside: the outline has four times the corners. */
 #include "draw/sphere_cap.h"
 
 #include "draw/matrix.h"
 
-enum { STEP = CS_SPHERE_CAP_OUTLINE / CS_SPHERE_CAP_SECTORS };
+enum { STEP = CS_SPHERE_CAP_OUTLINE / CS_SPHERE_CAP_SECTORS }; // outline corners per sector
 
+// cosine and sine of an angle
 struct turn {
     double cosine, sine;
 };
 
+// a sphere and the directions that its vertices are made from
 struct ball {
     const double *centre;
     double radius, across[3], third[3], along[3]; // unit vectors, the last towards the eye
@@ -17,23 +27,25 @@ struct ball {
     struct cs_vertex *out; // the next vertex
 };
 
-// of an angle of 0..pi
+// half of an angle of 0..pi
 static struct turn halved(struct turn t) {
     return (struct turn){sqrt((1 + t.cosine) / 2), sqrt((1 - t.cosine) / 2)};
 }
 
+// the sum of two angles
 static struct turn sum(struct turn a, struct turn b) {
     return (struct turn){a.cosine * b.cosine - a.sine * b.sine,
                          a.sine * b.cosine + a.cosine * b.sine};
 }
 
-// all multiples of an angle, from 0 on
+// the first n multiples of an angle, from 0 on
 static void fill_turns(struct turn step, int n, struct turn *turns) {
     turns[0] = (struct turn){1, 0};
     for (int k = 1; k < n; k++)
         turns[k] = sum(turns[k - 1], step);
 }
 
+// sets the axis to the eye, and the angles of rings and spokes
 static void aim(struct ball *ball, const float eye[4]) {
     const double far = (double)eye[3];
     for (int i = 0; i < 3; i++)
@@ -53,6 +65,7 @@ static void aim(struct ball *ball, const float eye[4]) {
     fill_turns(spoke, CS_SPHERE_CAP_OUTLINE, ball->spokes);
 }
 
+// the vertex on a ring and a spoke
 static void add_vertex(struct ball *ball, int ring, int spoke) {
     const struct turn out = ball->rings[ring],
                       around = ball->spokes[spoke % CS_SPHERE_CAP_OUTLINE];
@@ -66,7 +79,7 @@ static void add_vertex(struct ball *ball, int ring, int spoke) {
     vertex->value = 0;
 }
 
-// between two spokes and two rings; the outer side in so many parts
+// triangles between two spokes and two rings, the outer side divided into `parts`
 static void add_cell(struct ball *ball, int ring, int spoke, int parts) {
     for (int k = 0; k < parts; k++) {
         add_vertex(ball, ring, spoke);

@@ -1,13 +1,15 @@
-/* srgb.c - the curve of sRGB by roots that Newton's method finds, and its thresholds. */
+/* srgb.c - tables of the sRGB curve by Newton's method, and colours with transparency. */
 #include "draw/srgb.h"
 
-// y^2.4 for y in 0..1: y^2 times the fifth root of y^2, by Newton's method
+/* y^2.4 = y^2 (y^2)^(1/5) for y in 0..1. Newton's iteration for r^5 = y^2 is
+ *   r' = (4 r + y^2 / r^4) / 5.
+ * From r = 1, above the root, it falls by at most a fifth per step until it is near. */
 static double power_2_4(double y) {
     const double square = y * y;
     double root = 1;
     if (y <= 0)
         return 0;
-    // from above it falls by a fifth until it is near, then doubles its digits
+    // then digits double; the smallest y in use is 0.09, so 80 steps are ample
     for (int k = 0; k < 80; k++)
         root = (4 * root + square / (root * root * root * root)) / 5;
     return square * root;
@@ -34,7 +36,7 @@ void cs_srgb_make(struct cs_srgb *tone) {
 }
 
 uint32_t cs_srgb_blend_rows(uint32_t under, uint32_t over, uint32_t share) {
-    // in 255 * 255: what of each is seen
+    // weights in units of 1 / (255 * 255): a = share / 255, b = 1 - transparency / 255
     const uint32_t above = 255 * share, below = (255 - (under >> 24)) * (255 - share);
     const uint32_t whole = above + below;
     uint32_t out = (255 - (whole + 127) / 255) << 24;

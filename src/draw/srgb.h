@@ -1,4 +1,13 @@
-/* srgb.h - linear light to the bytes of sRGB and back (IEC 61966-2-1), without libm. */
+/* srgb.h - linear light to the bytes of sRGB and back (IEC 61966-2-1), without libm.
+ *
+ * With c the byte / 255 and y linear light in 0..1:
+ *   y = c / 12.92 if c <= 0.04045, else ((c + 0.055) / 1.055)^2.4
+ * Encoding rounds to the nearest byte: byte b stands for y from decode((b - 1/2) / 255) to
+ * decode((b + 1/2) / 255). These thresholds are stored, so encoding needs no power and gives
+ * the same bytes on every machine.
+ *
+ * A packed colour is red | green << 8 | blue << 16 | transparency << 24; transparency 0
+ * covers. */
 #ifndef CS_DRAW_SRGB_H
 #define CS_DRAW_SRGB_H
 
@@ -7,21 +16,25 @@
 #include <clothsim/clones.h>
 #include <stddef.h>
 
-/* Zero: not made. */
+/* Tables of both directions, about 6 KiB. Zero: not made. */
 struct cs_srgb {
-    uint8_t segment_start[4098]; /* byte at each 1/4096 */
-    float threshold[258]; /* linear light from which on a byte holds; past the last one 2 */
-    float linear[256];    /* of each byte */
+    uint8_t segment_start[4098]; /* byte of y = i / 4096 */
+    float threshold[258]; /* smallest y that rounds to a byte; [256], [257]: 2, never reached */
+    float linear[256];    /* y of each byte */
 };
 
+/* Fills the tables. */
 void cs_srgb_make(struct cs_srgb *tone);
 
-/* The byte of c in 0..1, rounded exactly: no two thresholds lie within 1/4096. */
+/* The byte of c in 0..1, rounded exactly. Thresholds are at least 1 / (255 * 12.92) = 3.0e-4
+ * apart, the slope of the straight part. A segment of 1/4096 = 2.4e-4 thus contains one of them
+ * at most, and a single comparison decides. */
 CS_INLINE uint32_t cs_srgb_encode(const struct cs_srgb *tone, float c) {
     const uint32_t byte = tone->segment_start[(int)(c * 4096)];
     return byte + (c >= tone->threshold[byte + 1]);
 }
 
+/* Encodes three channels in 0..1 into a packed colour that covers. */
 CS_INLINE uint32_t cs_srgb_pack(const struct cs_srgb *tone, float red, float green,
                                 float blue) {
     return cs_srgb_encode(tone, red) | cs_srgb_encode(tone, green) << 8 |
@@ -34,13 +47,14 @@ CS_INLINE uint32_t cs_srgb_scale(uint32_t a, uint32_t b) {
     return (product + (product >> 8) + 128) >> 8;
 }
 
-/* cs_srgb_blend on what does not cover: the rule `over` (Porter and Duff 1984), for colours
- * that are not times how much they cover. */
+/* cs_srgb_blend for an `under` with transparency: the operator `over` (Porter and Duff 1984) on
+ * colours that are not premultiplied.
+ *   alpha = a + (1 - a) b,   colour = (a over + (1 - a) b under) / alpha
+ * with the opacity a of `over` (share / 255) and b of `under`. */
 uint32_t cs_srgb_blend_rows(uint32_t under, uint32_t over, uint32_t share);
 
-/* `over` laid on `under` with a share of 0..255; bytes of red, green, blue from the lowest on,
- * and in `under` how much it lets through. Both parts are rounded, as renderers of bytes do;
- * 255 gives `over`. */
+/* `over` laid on `under` with an opacity of 0..255. Both products are rounded, as renderers of
+ * bytes do, so the sum may be 256 and is limited; 255 gives `over`. */
 CS_INLINE uint32_t cs_srgb_blend(uint32_t under, uint32_t over, uint32_t share) {
     uint32_t out = 0;
     if (under >> 24)
@@ -53,12 +67,12 @@ CS_INLINE uint32_t cs_srgb_blend(uint32_t under, uint32_t over, uint32_t share) 
     return out;
 }
 
-/* cs_srgb_mean where samples let light through: each counts by what it covers. */
+/* cs_srgb_mean for samples with transparency: the mean weighted by opacity, and mean opacity.
+ */
 uint32_t cs_srgb_mean_clear(const struct cs_srgb *tone, const uint32_t samples[4]);
 
-/* The mean of four samples' light, not of their bytes: what covers half of a pixel gives half
- * of its light. Colours are packed, the highest byte how much they let through; four equal
- * ones stay what they are. */
+/* The mean of four samples' linear light, not of their bytes: a surface that covers half of a
+ * pixel gives half of its light. Four equal colours give the same colour. */
 CS_INLINE uint32_t cs_srgb_mean(const struct cs_srgb *tone, const uint32_t samples[4]) {
     float light[3] = {0, 0, 0};
     if ((samples[0] | samples[1] | samples[2] | samples[3]) >> 24)
@@ -69,10 +83,10 @@ CS_INLINE uint32_t cs_srgb_mean(const struct cs_srgb *tone, const uint32_t sampl
     return cs_srgb_pack(tone, light[0] * 0.25f, light[1] * 0.25f, light[2] * 0.25f);
 }
 
-/* A colour that lets light through, as it is on white paper. */
+/* Blends a colour with transparency over white, in linear light; the result covers. */
 uint32_t cs_srgb_blend_on_white(const struct cs_srgb *tone, uint32_t colour);
 
-/* A packed colour becomes pixel i of an image; where that has no alpha, on white paper. */
+/* Writes a packed colour to pixel i of an image; over white if the image has no alpha. */
 CS_INLINE void cs_srgb_store(const struct cs_srgb *tone, uint32_t colour,
                              const struct cs_image *image, size_t i) {
     if (image->alpha)

@@ -1,4 +1,4 @@
-/* Derives the looks of bodies and colliders from their tables in the scene. */
+/* Derives styles of bodies and colliders from their keys in the scene. */
 #include "draw/surface_style.h"
 
 #include "draw/look.h"
@@ -30,6 +30,8 @@ void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *ma
     }
 }
 
+/* Specular coefficients and shininess of colliders were chosen by trial: planes dull, others
+ * glossy. */
 void cs_style_solid(struct cs_surface_style *style, const struct cs_posed_collider *obstacle,
                     double cell) {
     const struct cs_collider *collider = obstacle->collider;

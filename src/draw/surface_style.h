@@ -1,4 +1,4 @@
-/* surface_style.h - how a surface looks, whatever draws it. */
+/* surface_style.h - appearance of a surface, independent of the renderer. */
 #ifndef CS_DRAW_SURFACE_STYLE_H
 #define CS_DRAW_SURFACE_STYLE_H
 
@@ -6,6 +6,7 @@
 #include "model/contact/posed_collider.h"
 #include "scene/scene.h"
 
+/* Source of a surface's colour. */
 enum cs_surface_mode {
     CS_SURFACE_PLAIN,
     CS_SURFACE_TEXTURED,
@@ -13,21 +14,23 @@ enum cs_surface_mode {
     CS_SURFACE_FAINT
 };
 
+/* Style of a body or a collider (formulas: cpu/shade.c). */
 struct cs_surface_style {
     enum cs_surface_mode mode;
-    unsigned texture;                       /* the renderer's name of it */
-    double front_colour[3], back_colour[3]; /* linear RGB */
-    double ambient, diffuse, specular, shininess;
-    double depth_bias;          /* m by which the depth is moved away */
-    bool has_ambient_occlusion; /* values darken ambient light (mesh.h) */
-    double fade_radius;         /* m about the origin where it has melted; 0: none */
+    unsigned texture;                             /* OpenGL name */
+    double front_colour[3], back_colour[3];       /* linear RGB */
+    double ambient, diffuse, specular, shininess; /* Blinn-Phong */
+    double depth_bias;                            /* m by which the depth is moved away */
+    bool has_ambient_occlusion;                   /* values darken ambient light (mesh.h) */
+    double fade_radius; /* m from the y axis where it has faded out; 0: never */
 };
 
-/* The style of a body, but for its texture. */
+/* Fills the style of a body for a look, but for its texture. */
 void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *material,
                     bool textured, int32_t look);
 
-/* The style of a collider under cloth as coarse as `cell` (m): what is curved is sunk. */
+/* Fills the style of a collider below cloth with cells of `cell` m: the depth of a curved one
+ * is biased by the depth of a chord. */
 void cs_style_solid(struct cs_surface_style *style, const struct cs_posed_collider *collider,
                     double cell);
 

@@ -11,7 +11,7 @@ static void copy3(const double from[3], double last, float to[4]) {
     to[3] = (float)last;
 }
 
-// at time t in s: that of its path, if there is one
+// the camera at time t in s: on its path between two keys, linear or smooth, else as it stands
 static struct cs_camera camera_at(const struct cs_camera *camera, double t) {
     const struct cs_camera_key *keys = camera->path.items;
     const uint32_t n = camera->path.n;
@@ -34,7 +34,8 @@ static struct cs_camera camera_at(const struct cs_camera *camera, double t) {
     return now;
 }
 
-/* bodies may fall or be blown away: four times as far as anything is now */
+/* Near and far plane. The far one is four times as far as anything is now, since bodies may
+ * fall or be blown away; the near one leaves enough steps of depth. */
 static void set_depth(struct cs_view_state *view, const struct cs_bounding_sphere *extent) {
     const struct cs_camera *camera = &view->camera;
     double to_target[3], to_centre[3];
@@ -47,6 +48,7 @@ static void set_depth(struct cs_view_state *view, const struct cs_bounding_spher
     view->depth[1] = far;
 }
 
+/* Fills matrix, eye and picture size from the camera. */
 static void set_camera(struct cs_view_state *view, const struct cs_render *render,
                        const struct cs_bounding_sphere *extent) {
     const struct cs_camera *camera = &view->camera;
@@ -85,6 +87,7 @@ void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
     set_camera(view, &scene->render, extent);
 }
 
+/* A lamp, a given direction, or by default light from above, in front and the right. */
 static void set_light(struct cs_view_block *block, const struct cs_light *light) {
     double place[3] = {0.35, 0.8, 0.5};
     double is_point = 0;
@@ -103,6 +106,8 @@ static void set_light(struct cs_view_block *block, const struct cs_light *light)
     copy3(light->specular, 1, block->specular);
 }
 
+/* Colours of the picture's upper and lower edge. A gradient without a second colour gets a
+ * slight one, brighter above. */
 static void set_background(struct cs_view_block *block,
                            const struct cs_background *background) {
     double above[3] = {0, 0, 0}, below[3] = {0, 0, 0};

@@ -1,4 +1,4 @@
-/* view.h - what every shader knows: camera, light, background, colour map. */
+/* view.h - inputs that all shaders share: camera, light, background, colour map. */
 #ifndef CS_DRAW_VIEW_H
 #define CS_DRAW_VIEW_H
 
@@ -10,12 +10,12 @@ enum { CS_VIEW_BINDING = 0, CS_VIEW_STOPS = 6 };
 
 /* The uniform block View of the shaders in std140 layout: mat4 and vec4 only. */
 struct cs_view_block {
-    float world_to_clip[16];
-    float world_to_light[16];
-    float eye[4];   /* w 1: where it stands; w 0: the direction to an orthographic one */
-    float light[4]; /* w 1: position of a lamp; w 0: direction to the sun */
-    float ambient[4], diffuse[4], specular[4];
-    float size[4];          /* width, height in pixels; near plane in m */
+    float world_to_clip[16];  /* by columns */
+    float world_to_light[16]; /* by columns, to the clip space of the shadow map */
+    float eye[4];             /* w 1: position; w 0: direction to an orthographic eye */
+    float light[4];           /* w 1: position of a lamp; w 0: direction to the sun */
+    float ambient[4], diffuse[4], specular[4]; /* linear RGB of the light */
+    float size[4];                             /* width, height in pixels; near plane in m */
     float shadow_params[4]; /* size of a shadow texel in 0..1 and in m; 1 where there is a
                                shadow */
     float sky[4];           /* what surfaces of some looks are tinted by */
@@ -24,35 +24,37 @@ struct cs_view_block {
     float colour_stops[CS_VIEW_STOPS][4]; /* the colour map, linear RGB, lowest first */
 };
 
+/* View of the current frame. */
 struct cs_view_state {
     struct cs_view_block block;
     unsigned buffer;         /* of OpenGL, made by the first upload */
     double pixels_per_m;     /* at the camera's target */
-    struct cs_camera camera; /* as it stands */
+    struct cs_camera camera; /* of this frame */
     double depth[2];         /* m along the view of the near and the far plane */
 };
 
-/* A ball around what is drawn. */
+/* A sphere around everything that is drawn. */
 struct cs_bounding_sphere {
     double centre[3], radius;
-    double low[3], high[3]; /* m: of the box that it was put around */
+    double low[3], high[3]; /* m: the box that it encloses */
 };
 
-/* Fills the block from the scene; everything in `extent` lies between near and far plane. */
+/* Fills the state from the scene at time 0; `extent` lies between near and far plane. */
 void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_bounding_sphere *extent);
 
-/* The camera moves, or frames what a picture shows: it may be another one in each frame. */
+/* Returns true if the camera may change from frame to frame: it follows a path, or fits itself
+ * to the bodies. */
 static inline bool cs_view_varies(const struct cs_scene *scene) {
     return scene->camera.path.n > 0 || scene->camera.frame == CS_FRAME_AUTO;
 }
 
-/* Moves a camera that varies to where it is at time t, or frames the places x (3,n) of the
- * bodies. */
+/* Moves a camera that varies to time t in s: along its path, or fitted to the positions x (3,n)
+ * of the bodies. */
 void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_bounding_sphere *extent, double t, size_t n, const double *x);
 
-/* Hands the block to the shaders. */
+/* Uploads the block as a uniform buffer; OpenGL only. */
 void cs_view_upload(struct cs_view_state *view);
 
 #endif

@@ -7,7 +7,7 @@
 #include "model/event/event_times.h"
 #include "model/event/viewpoint_forces.h"
 
-// what is of a time is seen on the picture that follows it
+// true if the force acted since the picture before: a picture shows the time that ends with it
 static bool was_active(const struct cs_system *system,
                        const struct cs_viewpoint_force_state *state, double t) {
     const struct cs_event_state *of = system->events->states + state->event;
@@ -15,6 +15,7 @@ static bool was_active(const struct cs_system *system,
     return of->begin < t && t <= (of->end > of->begin ? of->end : blow);
 }
 
+// adds a dot for each particle that was visible at the last test
 static void add_visible(const struct cs_wireframe *net, struct cs_lines *lines,
                         const struct cs_viewpoint_force_state *state, const double *x) {
     double place[3];
@@ -25,7 +26,9 @@ static void add_visible(const struct cs_wireframe *net, struct cs_lines *lines,
         }
 }
 
-// corners of the rectangle in the plane through the target
+/* Corners of the rectangle in the plane through the target at right angles to the view. low and
+ * high are slopes of its sides: eye + distance (right a_0 + up a_1 + a_2) with the view's
+ * axes. */
 static void find_corners(const struct cs_system *system,
                          const struct cs_viewpoint_force_state *state, double corners[4][3]) {
     const struct cs_visibility_query *visibility = &state->query;
@@ -45,6 +48,7 @@ static void find_corners(const struct cs_system *system,
                                    up[k] * visibility->axes[1][c] + visibility->axes[2][c]);
 }
 
+// dots, then lines from the eye, then the rectangle in front of all
 static void draw(const struct cs_wireframe *net, struct cs_lines *lines,
                  const struct cs_viewpoint_force_state *state, const double *x) {
     struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * net->depth_offset};

@@ -7,9 +7,9 @@
 #include "draw/render.h"
 #include "draw/wireframe.h"
 
-/* Of each viewpoint force that acted in the frame that ends now: dots on the particles that it
- * saw last, its rectangle at the distance of its target, in front of all, and the lines to its
- * corners from the eye. On a picture from the same viewpoint that is the rectangle alone. */
+/* Marks each viewpoint force that acted in the frame that ends now: dots on the particles that
+ * it saw last; its rectangle at the distance of its target, in front of all; and lines from the
+ * eye to its corners. Seen from the same viewpoint, that is the rectangle alone. */
 void cs_viewpoint_forces_draw(const struct cs_wireframe *net, struct cs_lines *lines,
                               const struct cs_frame *frame);
 

@@ -7,6 +7,7 @@
 
 #include <math.h>
 
+/* Edges of a body's surface: of its mesh, or between neighbours of its grid. */
 static uint32_t edges_of(const struct cs_body_range *body) {
     if (body->mesh)
         return body->mesh->n_edges;
@@ -22,6 +23,7 @@ uint32_t cs_wireframe_capacity(const struct cs_system *system) {
     return most;
 }
 
+/* Adds a line between particles a and b of the system; a dot if they are one. */
 static void add(const struct cs_wireframe *net, struct cs_lines *lines, const double *x,
                 uint32_t a, uint32_t b) {
     double from[3], to[3];
@@ -30,6 +32,7 @@ static void add(const struct cs_wireframe *net, struct cs_lines *lines, const do
     cs_lines_add(lines, from, to);
 }
 
+/* Adds the edges of a body, in the number that edges_of counts. */
 static void add_edges(const struct cs_wireframe *net, struct cs_lines *lines, const double *x,
                       const struct cs_body_range *body) {
     for (uint32_t e = 0; body->mesh && e < body->mesh->n_edges; e++) {
@@ -67,8 +70,9 @@ void cs_wireframe_draw_edges(const struct cs_wireframe *net, struct cs_lines *li
 
 void cs_wireframe_draw_springs(const struct cs_wireframe *net, struct cs_lines *lines,
                                const double *x) {
-    // bend springs run along two stretch springs: wide and pale below, they frame them; the
-    // surface springs of a network are pale, or they would hide what is inside
+    // Layers from back to front. Bend springs run along two stretch springs: wide and pale
+    // below them, they frame them. Surface springs of a network are pale, or they would hide
+    // its inside.
     enum { ALL, PLAIN, NETWORK };
     static const struct {
         uint32_t kind, of, colour;
@@ -101,7 +105,7 @@ void cs_wireframe_draw_springs(const struct cs_wireframe *net, struct cs_lines *
 
 void cs_wireframe_draw_pins(const struct cs_wireframe *net, struct cs_lines *lines,
                             const double *x, const double *inv_mass) {
-    // a light disc with a dark rim
+    // a light disc with a dark border
     static const uint32_t colours[2] = {0x1d2733, 0xffd34d};
     for (int pass = 0; pass < 2; pass++) {
         struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * net->depth_offset};
@@ -119,7 +123,7 @@ void cs_wireframe_draw_goals(const struct cs_wireframe *net, struct cs_lines *li
     static const uint32_t colours[2] = {0x2b5fa8, 0xc8321f};
     const struct cs_system *system = net->system;
     const uint32_t n = system->view.n;
-    /* two passes, so that the dots lie over the lines of every body */
+    /* two passes: the dots of every body lie over the lines of all */
     for (int dots = 0; dots < 2; dots++) {
         struct cs_line_style style = {.alpha = dots ? 0.95 : 0.75,
                                       .depth_offset = net->depth_offset};

@@ -5,33 +5,35 @@
 #include "draw/line.h"
 #include "model/system/system.h"
 
-/* Sizes of lines on a picture. */
+/* Sizes of lines on a picture; system is borrowed. */
 struct cs_wireframe {
     const struct cs_system *system;
-    double line_unit;    /* pixels of a line of width 1: a 480th of the height */
-    double cell;         /* pixels between neighbours where the camera looks */
-    double depth_offset; /* m */
+    double line_unit;    /* pixels of a line of width 1: 1/480 of the height */
+    double cell;         /* pixels between neighbours at the camera's target */
+    double depth_offset; /* m by which lines are moved towards the eye */
 };
 
-/* Half a line's width in pixels: a share of the cell, so that fine grids keep gaps, but within
- * these bounds in units. */
+/* Half a line's width in pixels: the fraction `share` of the cell, so that fine grids keep
+ * gaps, limited to least..most units. */
 double cs_wireframe_width(const struct cs_wireframe *net, double share, double least,
                           double most);
 
-/* Lines that the largest of these calls adds before it draws. */
+/* Lines that the largest of these calls adds between two draws. */
 uint32_t cs_wireframe_capacity(const struct cs_system *system);
 
+/* Each adds and draws the lines of one kind from positions x (3,n). */
 void cs_wireframe_draw_edges(const struct cs_wireframe *net, struct cs_lines *lines,
                              const double *x);
 void cs_wireframe_draw_springs(const struct cs_wireframe *net, struct cs_lines *lines,
                                const double *x);
 void cs_wireframe_draw_pins(const struct cs_wireframe *net, struct cs_lines *lines,
                             const double *x, const double *inv_mass);
-/* A line from each particle to its goal, and a dot there; goals (3,n). A particle at its goal
- * has the dot alone. */
+/* Draws a line from each particle to its goal, and a dot there; goals (3,n). A particle at its
+ * goal has the dot alone. */
 void cs_wireframe_draw_goals(const struct cs_wireframe *net, struct cs_lines *lines,
                              const double *x, const double *goals);
-/* Bodies that are one row or column of particles and have no surface: a thread with knots. */
+/* Draws bodies of one row or column of particles, which have no surface, as a thread with
+ * knots. */
 void cs_wireframe_draw_threads(const struct cs_wireframe *net, struct cs_lines *lines,
                                const double *x);
 

@@ -1,4 +1,5 @@
-/* Writes and reads checkpoints. */
+/* Writes and reads checkpoints. The file is built and checked in memory, as one
+ * cs_serialiser. */
 #include "io/checkpoint.h"
 
 #include "base/file.h"
@@ -9,14 +10,16 @@
 #include <string.h>
 
 #define FIRST_LINE "clothsim checkpoint 1\n"
-/* of a scene of the most particles, with any method, or what addresses reach */
+/* largest file: of a scene of the most particles with any method, or half the address space */
 #if SIZE_MAX > UINT32_MAX
 #define BYTES_MAX ((size_t)1 << 36)
 #else
 #define BYTES_MAX (SIZE_MAX / 2)
 #endif
+/* bytes of an item's first line; characters of a value that a message shows */
 enum { LINE = 128, SHOWN = 60 };
 
+/* Appends an item: name and length, the bytes, a newline. */
 static void add_item(struct cs_serialiser *file, const char *name, const void *bytes,
                      size_t length) {
     char line[LINE];
@@ -47,6 +50,7 @@ enum cs_status cs_checkpoint_write(const char *path, const struct cs_checkpoint_
     return error->status;
 }
 
+/* Checks first line and checksum before anything else is read from the file. */
 static enum cs_status check_whole(const char *path, const struct cs_serialiser *file,
                                   struct cs_error *error) {
     char digits[CS_HASH_DIGITS];
@@ -62,7 +66,8 @@ static enum cs_status check_whole(const char *path, const struct cs_serialiser *
     return CS_OK;
 }
 
-/* The next item, which must have this name: its bytes, or NULL. */
+/* Returns the bytes of the next item, which must have this name, and moves past it; NULL if it
+ * has another name or reaches beyond the checksum. */
 static const char *take_item(struct cs_serialiser *file, const char *name, size_t *length) {
     const char *line = file->bytes + file->position;
     const size_t left = file->length - CS_HASH_DIGITS - file->position;
@@ -80,7 +85,7 @@ static const char *take_item(struct cs_serialiser *file, const char *name, size_
     return line + begin;
 }
 
-/* a line without the blanks before it and the comma behind it */
+/* Trims the blanks before a line and the comma after it; returns the length to show. */
 static int trim(const char **line, const char *end) {
     while (*line < end && **line == ' ')
         ++*line;
@@ -92,12 +97,13 @@ static int trim(const char **line, const char *end) {
     return stop - *line < SHOWN ? (int)(stop - *line) : SHOWN;
 }
 
+/* The beginning of the next line, or end. */
 static const char *next_line(const char *line, const char *end) {
     const char *stop = memchr(line, '\n', (size_t)(end - line));
     return stop ? stop + 1 : end;
 }
 
-/* names the first line that differs */
+/* Refuses a fact that differs; the message shows the first lines that do. */
 static enum cs_status refuse(const char *path, const struct cs_checkpoint_key *fact,
                              const char *there, size_t length, struct cs_error *error) {
     const char *here = fact->value, *end = here + strlen(here), *stop = there + length;
@@ -113,6 +119,7 @@ static enum cs_status refuse(const char *path, const struct cs_checkpoint_key *f
                    path, fact->name, shown_there, there, shown_here, here);
 }
 
+/* Compares all facts with those of the file, and moves past them. */
 static enum cs_status check_facts(const char *path, const struct cs_checkpoint_key *facts,
                                   uint32_t n_facts, struct cs_serialiser *file,
                                   struct cs_error *error) {

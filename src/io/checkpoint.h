@@ -1,9 +1,16 @@
-/* checkpoint.h - a record in a file, with what it belongs to and a checksum over all of it.
+/* checkpoint.h - a record of a run in a file, with the facts that it belongs to and a checksum.
  *
  *   clothsim checkpoint 1
- *   NAME LENGTH, then the bytes of the value, for each fact
- *   record LENGTH, then the bytes of the record
- *   the hash of all that, in hexadecimal digits
+ *   NAME LENGTH, newline, LENGTH bytes of the value, newline: for each fact
+ *   record LENGTH, newline, LENGTH bytes of the record, newline
+ *   hash of all bytes before it, in 32 hexadecimal digits, newline
+ *
+ * Lengths are stated, so values may hold any bytes. The checksum covers everything, so a file
+ * that was cut off or changed in any byte is refused.
+ *
+ * Atomicity: a new checkpoint is written to a temporary file, flushed to the disk and renamed
+ * over the old one. After a crash or a loss of power at any moment the path holds the old
+ * checkpoint or the new one, whole. A continued run thus always has a state to start from.
  */
 #ifndef CS_CHECKPOINT_H
 #define CS_CHECKPOINT_H
@@ -13,20 +20,23 @@
 
 #include <stdint.h>
 
-/* Something that must be the same where a record is used again. */
+/* A fact that must be the same when the record is used again, such as the scene. Compared byte
+ * by byte; borrowed. */
 struct cs_checkpoint_key {
-    const char *name; /* as in "another NAME" */
+    const char *name; /* as in the message "another NAME"; no blanks */
     const char *value;
 };
 
-/* Replaces the file by a whole new one, and returns when the disk has it. */
+/* Replaces the file atomically and returns when the disk has it. Facts and record are only
+ * read. On failure CS_ERR_FILE or CS_ERR_MEMORY, and an older file stays as it was. */
 enum cs_status cs_checkpoint_write(const char *path, const struct cs_checkpoint_key *facts,
                                    uint32_t n_facts, const struct cs_serialiser *record,
                                    struct cs_error *error);
 
-/* Reads what was written, as a record to load. CS_ERR_FILE where the file cannot be read, is
- * damaged in any byte, or a fact differs: the message then says what it is there and here.
- * record is to be finished. */
+/* Reads a checkpoint, as a record positioned at its first byte. Facts must be those of the
+ * writer, in its order. Fails with CS_ERR_FILE if the file cannot be read, is damaged in any
+ * byte, or a fact differs: the message then shows both values. The caller finishes the record,
+ * also after a failure. */
 enum cs_status cs_checkpoint_read(const char *path, const struct cs_checkpoint_key *facts,
                                   uint32_t n_facts, struct cs_serialiser *record,
                                   struct cs_error *error);

@@ -1,11 +1,11 @@
-/* Tells files apart by device and number, and by folder and name. */
+/* Identifies files by device and inode, and by folder and name. */
 #include "io/file_conflicts.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
-/* the folder of a path; false where it is not there, or the path is too long */
+/* Reads device and inode of a path's folder; returns false if there is none. */
 static bool stat_folder(const char *path, struct stat *info) {
     char folder[4096];
     const char *end = strrchr(path, '/');
@@ -15,7 +15,7 @@ static bool stat_folder(const char *path, struct stat *info) {
     return !stat(*folder ? folder : "/", info);
 }
 
-/* false where there is neither such a file nor its folder */
+/* Fills a file's identity; returns false if neither it nor its folder exists. */
 static bool stat_file(const char *path, const char *what, bool output,
                       struct cs_file_use *claim) {
     struct stat file, folder;
@@ -34,6 +34,7 @@ static bool stat_file(const char *path, const char *what, bool output,
     return true;
 }
 
+/* Compares identities: the same inode, or the same name in the same folder. */
 static bool is_same(const struct cs_file_use *a, const struct cs_file_use *b) {
     if (a->exists && b->exists && a->device_id == b->device_id && a->inode == b->inode)
         return true;
@@ -48,6 +49,7 @@ void cs_file_conflicts_input(struct cs_file_conflicts *conflicts, const char *pa
         conflicts->n++;
 }
 
+/* Names the two uses that collide. */
 static enum cs_status refuse(const struct cs_file_use *claim, const char *path,
                              const char *what, struct cs_error *error) {
     return cs_fail(error, CS_ERR_FILE, "%s: \"%s\" is %s %s", what, path,

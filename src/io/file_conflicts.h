@@ -1,5 +1,5 @@
-/* file_conflicts.h - the files that one run reads and writes: no input is overwritten, and no
- * two outputs are one file, whatever their paths look like. */
+/* file_conflicts.h - checks that a run overwrites none of its inputs and writes no file twice,
+ * whatever the paths look like. */
 #ifndef CS_FILE_CONFLICTS_H
 #define CS_FILE_CONFLICTS_H
 
@@ -8,7 +8,8 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
-/* A file by what it is, and by where it lies, since an output may not be there yet. */
+/* A file of the run. An existing one is known by device and inode, so that links count; one
+ * that does not exist yet by the device and inode of its folder and its name. */
 struct cs_file_use {
     const char *role; /* borrowed, as in "is read as the scene" */
     dev_t device_id, folder_device_id;
@@ -17,24 +18,26 @@ struct cs_file_use {
     char name[256];
 };
 
+/* Inputs beyond so many are not tracked. */
 enum { CS_FILE_CONFLICTS_MAX = 256 };
 
-/* Zeroed: none. Inputs beyond the most are not looked after. */
+/* The files of a run; zeroed: none. */
 struct cs_file_conflicts {
     unsigned n;
     struct cs_file_use items[CS_FILE_CONFLICTS_MAX];
 };
 
-/* A file that is read; one that is not there is none. */
+/* Registers a file that the run reads, as `what`; ignores one that does not exist. */
 void cs_file_conflicts_input(struct cs_file_conflicts *conflicts, const char *path,
                              const char *what);
 
-/* A file that is to be written, by the option `what`. CS_ERR_FILE where it is claimed. */
+/* Registers a file that the run will write, by the option `what`. CS_ERR_FILE if an input or
+ * another output is the same file; it is then not registered. */
 enum cs_status cs_file_conflicts_output(struct cs_file_conflicts *conflicts, const char *path,
                                         const char *what, struct cs_error *error);
 
-/* A folder in which files of certain names are written, or removed: CS_ERR_FILE where one of
- * them is claimed. A folder that is not there holds none. */
+/* Checks a folder in which files of certain names will be written or removed: CS_ERR_FILE if
+ * one of them is registered. A folder that does not exist holds none. */
 enum cs_status cs_file_conflicts_folder(const struct cs_file_conflicts *conflicts,
                                         const char *folder, bool (*is_ours)(const char *name),
                                         const char *what, struct cs_error *error);

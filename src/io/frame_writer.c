@@ -1,4 +1,12 @@
-/* Writes numbered PNG frames on a worker thread, through a queue of two images. */
+/* Writes numbered PNG frames on a worker thread, through a queue of two images.
+ *
+ * The queue is a ring of slots. `given` counts frames that the caller submitted, `written`
+ * those that the worker finished; slot k % depth holds frame k. The caller draws into slot
+ * given % depth, the worker encodes slot written % depth. They never touch the same slot, since
+ * acquire waits until given - written < depth. The lock guards the counters, the first error
+ * and `closing`.
+ *
+ * Two images suffice: one is drawn while the other is encoded. More never gained time. */
 #include "io/frame_writer.h"
 
 #include "base/arena.h"
@@ -10,9 +18,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEPTH = 2 };
+enum { DEPTH = 2 }; /* slots of the ring */
 
-/* One image on its way from drawing to the file. */
+/* One image between drawing and its file. */
 struct slot {
     struct cs_image image; /* owned */
     uint32_t number, n_texts;
@@ -20,7 +28,7 @@ struct slot {
     struct cs_arena arena;
 };
 
-/* Slots are used in turn: given - written of them wait for the encoder or are in it. */
+/* Members after `lock` may be read and written only with the lock held. */
 struct cs_frame_writer {
     char *folder;               /* owned */
     struct cs_png_encoder work; /* of the encoder */
@@ -49,7 +57,8 @@ static void encode(struct cs_frame_writer *frames, struct slot *slot, struct cs_
     cs_arena_finish(&slot->arena);
 }
 
-/* Takes the oldest queued frame; called and left with the lock held. */
+/* Encodes the oldest queued frame; called and left with the lock held. After a failure it only
+ * releases the slot. */
 static void encode_next(struct cs_frame_writer *frames) {
     struct slot *slot = frames->slots + frames->written % frames->depth;
     struct cs_error error = {0};
@@ -68,6 +77,7 @@ static void encode_next(struct cs_frame_writer *frames) {
     pthread_cond_broadcast(&frames->changed);
 }
 
+/* The worker: encodes until the writer closes and the queue is empty. */
 static void *work(void *argument) {
     struct cs_frame_writer *frames = argument;
     pthread_mutex_lock(&frames->lock);
@@ -82,6 +92,7 @@ static void *work(void *argument) {
     return NULL;
 }
 
+/* Allocates zeroed pixels of one image. */
 static bool take_image(struct cs_image *image,
                        const struct cs_frame_writer_settings *settings) {
     const size_t n = (size_t)settings->width * settings->height;
@@ -127,6 +138,7 @@ struct cs_image *cs_frame_writer_acquire(struct cs_frame_writer *frames) {
     return image;
 }
 
+/* Copies texts into the slot's arena, since the caller's may change before they are written. */
 static enum cs_status copy_texts(struct slot *slot, const struct cs_png_text *texts,
                                  uint32_t n_texts, struct cs_error *error) {
     slot->n_texts = n_texts;
@@ -140,7 +152,7 @@ static enum cs_status copy_texts(struct slot *slot, const struct cs_png_text *te
     return error->status;
 }
 
-/* the first failure of a write, also to a caller that was told before */
+/* Returns the first failure of a write, also to a caller that already got it. */
 static enum cs_status report_first_failure(const struct cs_frame_writer *frames,
                                            struct cs_error *error) {
     return frames->error.status

@@ -1,4 +1,4 @@
-/* gnuplot.h - runs gnuplot on a script where the program is found. */
+/* gnuplot.h - runs gnuplot on a script if the program is installed. */
 #ifndef CS_GNUPLOT_H
 #define CS_GNUPLOT_H
 
@@ -6,8 +6,8 @@
 
 #include <stdbool.h>
 
-/* Runs FOLDER/SCRIPT with FOLDER as the working directory. *drawn: it ran and was content; it
- * may be absent or refuse, which is no failure. CS_ERR_MEMORY. */
+/* Runs FOLDER/SCRIPT in the working directory FOLDER. *drawn: gnuplot ran and succeeded; it may
+ * be missing or fail, which is no failure here. CS_ERR_MEMORY. */
 enum cs_status cs_gnuplot_run(const char *folder, const char *script, bool *drawn,
                               struct cs_error *error);
 

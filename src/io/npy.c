@@ -1,4 +1,12 @@
-/* Writes NumPy files, format 1.0. */
+/* Writes NumPy files, format 1.0.
+ *
+ *   offset  bytes  field
+ *   0       6      0x93 "NUMPY"
+ *   6       2      version 1, 0
+ *   8       2      length of the rest of the header, little-endian: 118
+ *   10      118    Python dictionary, padded with blanks, ended by a newline
+ *   128     ...    numbers
+ * The dictionary is {'descr': TYPE, 'fortran_order': False, 'shape': (N, ...), }. */
 #include "io/npy.h"
 
 #include "base/file.h"
@@ -7,9 +15,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { BLOCK = 512 };
+enum { BLOCK = 512 }; /* rows converted at a time */
 
-/* magic, version, length of the rest, then a Python dictionary padded to a multiple of 64 */
+/* A fixed length leaves blanks enough for three axes of any length. */
 void cs_npy_head(char head[CS_NPY_HEAD], const char *type, const uint64_t *shape,
                  unsigned n_axes) {
     const int rest = CS_NPY_HEAD - 10;

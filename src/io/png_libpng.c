@@ -1,4 +1,6 @@
-/* Writes images as PNG files through libpng, beside the target and then renamed. */
+/* Writes images as PNG files through libpng: the same pixels, filter and chunks as
+ * png_deflate.c. libpng reports errors by longjmp, so all memory hangs on a struct outside the
+ * left frame. */
 #include "io/png.h"
 #include "base/file.h"
 
@@ -8,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What one file needs, outside the frame that longjmp leaves. */
+/* State of one file, outside the frame that longjmp leaves. */
 struct writer {
     struct cs_file_out out;
     png_structp png;
@@ -18,6 +20,7 @@ struct writer {
     char message[128];
 };
 
+/* Stores the message, and errno if the file failed, then leaves to setjmp in encode. */
 static void on_error(png_structp png, png_const_charp message) {
     struct writer *writer = png_get_error_ptr(png);
     writer->reason = writer->out.file && ferror(writer->out.file) ? errno : 0;
@@ -44,6 +47,7 @@ static void add_texts(const struct writer *writer, const struct cs_png_text *tex
     }
 }
 
+/* Hands the rows to libpng; those with alpha are interleaved first. */
 static void encode_rows(const struct writer *writer, const struct cs_image *image) {
     for (size_t y = 0; y < image->height; y++) {
         if (image->alpha)
@@ -53,7 +57,7 @@ static void encode_rows(const struct writer *writer, const struct cs_image *imag
     }
 }
 
-/* the part that libpng may leave by longjmp; false if it did */
+/* Encodes the picture: the part that libpng may leave by longjmp. Returns false if it did. */
 static bool encode(struct writer *writer, const struct cs_image *image, int level,
                    const struct cs_png_text *texts, uint32_t n_texts) {
     if (setjmp(png_jmpbuf(writer->png)))

@@ -1,4 +1,8 @@
-/* Reads PNG files of any kind as 8-bit RGB through libpng, with limits on size and memory. */
+/* Reads PNG files of any kind as 8-bit RGB through libpng, with limits on size and memory.
+ *
+ * A file is untrusted. Its size, its sides and the memory of its chunks are limited before
+ * libpng allocates; stated sides must fit to the length of the file; and the size of converted
+ * rows is checked before the first is written. */
 #include "base/file.h"
 #include "io/png.h"
 
@@ -7,29 +11,31 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* limits: side in pixels, memory of a chunk, length of the file */
 enum {
     SIDE_MAX = 16384,
     CHUNK_BYTES_MAX = 8 * 1024 * 1024,
     FILE_BYTES_MAX = 512 * 1024 * 1024
 };
 
-/* deflate never packs more than about 1032 bytes into one */
+/* deflate compresses by a factor of about 1032 at most */
 enum { PACKING_MAX = 1100 };
 
-/* What one picture needs, outside the frame that longjmp leaves. */
+/* State of one picture, outside the frame that longjmp leaves. */
 struct reader {
     const unsigned char *bytes; /* borrowed */
     size_t length, at;
     png_structp png;
     png_infop info;
     struct cs_image image;
-    bool on_white; /* what has alpha; else that is dropped */
+    bool on_white; /* blend alpha over white; else drop it */
     char message[128];
     const char *const *keys; /* (n) of the texts that are wanted */
     char **values;           /* (n) of the caller */
     uint32_t n;
 };
 
+/* Stores libpng's message and leaves to setjmp in decode. */
 static void on_error(png_structp png, png_const_charp message) {
     struct reader *reader = png_get_error_ptr(png);
     snprintf(reader->message, sizeof reader->message, "%s", message);
@@ -41,6 +47,7 @@ static void on_warning(png_structp png, png_const_charp message) {
     (void)message;
 }
 
+/* Copies from the bytes in memory. */
 static void on_read(png_structp png, png_bytep out, size_t length) {
     struct reader *reader = png_get_io_ptr(png);
     if (length > reader->length - reader->at)
@@ -49,7 +56,7 @@ static void on_read(png_structp png, png_bytep out, size_t length) {
     reader->at += length;
 }
 
-/* whatever the file holds becomes 8-bit RGB */
+/* Sets the conversions that make 8-bit RGB of any kind of file. */
 static void ask_for_rgb(png_structp png, bool on_white) {
     const png_color_16 white = {.red = 255, .green = 255, .blue = 255, .gray = 255};
     png_set_palette_to_rgb(png);
@@ -65,7 +72,7 @@ static void ask_for_rgb(png_structp png, bool on_white) {
     }
 }
 
-/* zeroed memory for the pixels */
+/* Allocates zeroed pixels. */
 static void take_image(struct reader *reader) {
     struct cs_image *image = &reader->image;
     const uint32_t width = png_get_image_width(reader->png, reader->info);
@@ -80,7 +87,7 @@ static void take_image(struct reader *reader) {
     image->height = height;
 }
 
-/* those of before the pixels and of behind them */
+/* Copies the wanted texts, from before and after the pixels; the first of equal keys wins. */
 static void copy_texts(struct reader *reader) {
     png_textp texts;
     int n_texts = 0;
@@ -92,7 +99,7 @@ static void copy_texts(struct reader *reader) {
                 png_error(reader->png, "out of memory");
 }
 
-/* the part that libpng may leave by longjmp; false if it did */
+/* Decodes the picture: the part that libpng may leave by longjmp. Returns false if it did. */
 static bool decode(struct reader *reader) {
     const png_structp png = reader->png;
     if (setjmp(png_jmpbuf(png)))
@@ -123,6 +130,7 @@ static bool decode(struct reader *reader) {
     return true;
 }
 
+/* Frees all copied texts, after a failure. */
 static void forget_texts(const struct reader *reader) {
     for (uint32_t k = 0; k < reader->n; k++) {
         free(reader->values[k]);

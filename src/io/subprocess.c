@@ -26,7 +26,7 @@ enum cs_status cs_subprocess_run(const char *folder, const char *const *argument
         (!quiet || !posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", 1, 0)) &&
         !posix_spawnp(&child, arguments[0], &actions, NULL, (char *const *)arguments, environ))
         end->was_found = true;
-    /* a signal goes to both: the other program ends by itself */
+    /* a signal of the terminal reaches both: the other program ends by itself */
     pid_t ended = -1;
     while (end->was_found && (ended = waitpid(child, &status, 0)) < 0 && errno == EINTR)
         ;
@@ -36,7 +36,8 @@ enum cs_status cs_subprocess_run(const char *folder, const char *const *argument
     return CS_OK;
 }
 
-/* its standard output is the end of the pipe; both ends are closed in it by themselves */
+/* Starts the program with `end` of the pipe as its standard output. The pipe's own descriptors
+ * are closed in it by FD_CLOEXEC. Returns 0 or an errno. */
 static int spawn(struct cs_subprocess *program, const char *const *arguments, bool quiet,
                  int end) {
     posix_spawn_file_actions_t actions;

@@ -1,4 +1,4 @@
-/* subprocess.h - runs another program where it is installed. */
+/* subprocess.h - runs another program if it is installed. */
 #ifndef CS_SUBPROCESS_H
 #define CS_SUBPROCESS_H
 
@@ -14,22 +14,23 @@ struct cs_subprocess_result {
     bool exited_ok; /* and ended with exit code 0 */
 };
 
-/* Runs arguments[0], looked for on PATH, with `folder` as its working directory, and waits for
- * it; arguments are closed by NULL. quiet: what it says on standard error is thrown away. It
- * may be absent or refuse, which is no failure here. CS_ERR_MEMORY. */
+/* Runs arguments[0], searched on PATH, in the working directory `folder`, and waits for it;
+ * arguments end with NULL. quiet: its standard error is discarded. A program that is missing or
+ * fails is reported in *end, not as a failure. CS_ERR_MEMORY. */
 enum cs_status cs_subprocess_run(const char *folder, const char *const *arguments, bool quiet,
                                  struct cs_subprocess_result *end, struct cs_error *error);
 
-/* A program that runs on while what it writes on standard output is read. */
+/* A child process whose standard output is read through a pipe. */
 struct cs_subprocess {
-    pid_t pid; /* 0: none */
-    FILE *output;
+    pid_t pid;    /* 0: none */
+    FILE *output; /* its standard output, owned */
 };
-/* Starts arguments[0], looked for on PATH, closed by NULL. CS_ERR_FILE. */
+/* Starts arguments[0], searched on PATH; arguments end with NULL. CS_ERR_FILE, CS_ERR_MEMORY.
+ */
 enum cs_status cs_subprocess_open(struct cs_subprocess *program, const char *const *arguments,
                                   bool quiet, struct cs_error *error);
-/* Waits for its end, or ends it where what it writes was not read to the end; returns its exit
- * code, -1 where a signal ended it. Safe on a zeroed one. */
+/* Waits for its end; kills it first if its output was not read to the end. Returns its exit
+ * code, or -1 if a signal ended it. Safe on a zeroed one. */
 int cs_subprocess_close(struct cs_subprocess *program);
 
 #endif

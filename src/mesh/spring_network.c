@@ -1,5 +1,5 @@
-/* Draws the inner springs of a soft body: random partners, partners with opposed normals, or
- * the nearest of several (soft-body thesis, sec. 6.3). */
+/* Draws the inner springs of a soft body (soft-body thesis, sec. 6.3). Vertices are taken in
+ * order and all numbers come from one generator, so a seed always gives the same network. */
 #include "mesh/spring_network.h"
 
 #include <float.h>
@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The constants are those of SplitMix64: a Weyl sequence, then two rounds of mixing. */
 uint64_t cs_rng_next(struct cs_rng *draws) {
     uint64_t z = draws->state += 0x9e3779b97f4a7c15u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -14,12 +15,15 @@ uint64_t cs_rng_next(struct cs_rng *draws) {
     return z ^ (z >> 31);
 }
 
-/* pairs of vertices that are joined: open addressing, 0 is empty (a pair (0, 0) is none) */
+/* Set of joined pairs of vertices: a hash table with open addressing. A key is the lower vertex
+ * in the high 32 bits and the upper in the low; 0 is empty, since the pair (0, 0) cannot occur.
+ * The number of slots is a power of two above twice the number of pairs. */
 struct pairs {
     uint64_t *slots;
     uint64_t mask;
 };
 
+/* The slot of a pair, or the empty one where it belongs. Linear probing. */
 static uint64_t *find(const struct pairs *pairs, uint32_t a, uint32_t b) {
     const uint64_t key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
     struct cs_rng mix = {key};
@@ -29,10 +33,12 @@ static uint64_t *find(const struct pairs *pairs, uint32_t a, uint32_t b) {
     return pairs->slots + at;
 }
 
+/* Adds a pair to the set. */
 static void join(const struct pairs *pairs, uint32_t a, uint32_t b) {
     *find(pairs, a, b) = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
 }
 
+/* State of one cs_spring_network_make. */
 struct work {
     const struct cs_spring_network *network;
     struct cs_trimesh *mesh;
@@ -41,6 +47,7 @@ struct work {
     double *normals; /* (n, 3) unit */
 };
 
+/* Unit normals of vertices: the sum of their triangles' normals, weighted by area. */
 static void fill_normals(struct work *work) {
     const struct cs_trimesh *mesh = work->mesh;
     for (uint32_t t = 0; t < mesh->n_triangles; t++) {
@@ -58,6 +65,7 @@ static void fill_normals(struct work *work) {
     }
 }
 
+/* Returns true if vertex j may become a partner of i. */
 static bool is_candidate(const struct work *work, uint32_t i, uint32_t j) {
     const double *m = work->normals + 3 * (size_t)i, *o = work->normals + 3 * (size_t)j;
     if (i == j || *find(&work->pairs, i, j))
@@ -66,6 +74,7 @@ static bool is_candidate(const struct work *work, uint32_t i, uint32_t j) {
            m[0] * o[0] + m[1] * o[1] + m[2] * o[2] <= -0.5;
 }
 
+/* Squared distance of two vertices, in m2. */
 static double squared_distance(const struct cs_trimesh *mesh, uint32_t a, uint32_t b) {
     double sum = 0;
     for (size_t c = 0; c < 3; c++) {
@@ -75,7 +84,7 @@ static double squared_distance(const struct cs_trimesh *mesh, uint32_t a, uint32
     return sum;
 }
 
-/* a partner for vertex i; i itself where the draws bring none */
+/* A partner for vertex i, or i itself if no draw finds a candidate. */
 static uint32_t draw_partner(struct work *work, uint32_t i) {
     const struct cs_spring_network *network = work->network;
     const int64_t wanted = network->placement == CS_PLACEMENT_NEAREST ? network->candidates : 1;
@@ -98,6 +107,7 @@ static uint32_t draw_partner(struct work *work, uint32_t i) {
     return best;
 }
 
+/* Draws all springs; edges of the surface count as joined from the start. */
 static void place(struct work *work) {
     struct cs_trimesh *mesh = work->mesh;
     fill_normals(work);

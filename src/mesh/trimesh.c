@@ -1,5 +1,10 @@
-/* Checks a triangle mesh and derives edges, hinges, triangles at each vertex and shares of
- * area. */
+/* Checks a triangle mesh and derives its topology: edges, hinges, triangles at each vertex, and
+ * areas of vertices.
+ *
+ * The three sides of each triangle are sorted by their vertices. Sides of one edge are then
+ * neighbours in the list: one for an edge of the boundary, two inside, of opposite direction if
+ * the triangles are oriented alike. All derived lists come out sorted, so the result does not
+ * depend on the order of qsort. */
 #include "mesh/trimesh.h"
 
 #include <math.h>
@@ -18,25 +23,26 @@ enum cs_status cs_trimesh_init(struct cs_trimesh *mesh, uint32_t n, uint32_t n_t
     return error->status;
 }
 
-/* A side of a triangle; sides of one edge stand together once they are sorted. */
+/* A directed side of a triangle, stored by its ordered ends. */
 struct side {
-    uint32_t low, high, triangle, across; /* ends; where it is; the third corner */
-    bool falls;                           /* runs from high to low */
+    uint32_t low, high, triangle, across; /* ends; its triangle; the third corner */
+    bool falls;                           /* directed from high to low */
 };
 
-/* what a mesh is checked and made with */
+/* Arguments and temporary arrays of one cs_trimesh_finish. */
 struct work {
     struct cs_trimesh *mesh;
     const char *name;
     const uint32_t *lines;
-    struct side *sides; /* (3 n_triangles) */
-    uint32_t *hinges;   /* (n_hinges, 2), all of them */
+    struct side *sides; /* (3 n_triangles), owned */
+    uint32_t *hinges;   /* (n_hinges, 2) with repetitions, owned; NULL in the counting walk */
     uint32_t n_sides, n_hinges;
     struct cs_arena *arena;
     struct cs_error *error;
 };
 
-/* where triangle t stands: "x.obj:12" or "x.obj: triangle 3" */
+/* Writes the place of triangle t in the file: "x.obj:12", or "x.obj: triangle 3" without
+ * lines. */
 #define PLACE_MAX 320
 static void position_of(const struct work *work, uint32_t t, char place[PLACE_MAX]) {
     if (work->lines)
@@ -45,6 +51,8 @@ static void position_of(const struct work *work, uint32_t t, char place[PLACE_MA
         snprintf(place, PLACE_MAX, "%.256s: triangle %u", work->name, t);
 }
 
+/* Checks that the corners exist and the area is above 0. Twice the area is compared with 1e-9
+ * of the longest side squared: the limit is a ratio of height to length. */
 static enum cs_status check_triangle(const struct work *work, uint32_t t) {
     const struct cs_trimesh *mesh = work->mesh;
     const uint32_t *corner = mesh->triangles + 3 * (size_t)t;
@@ -75,6 +83,7 @@ static enum cs_status check_triangle(const struct work *work, uint32_t t) {
     return CS_OK;
 }
 
+/* Orders sides by edge, then by triangle: a total order, as qsort is not stable. */
 static int by_edge(const void *left, const void *right) {
     const struct side *a = left, *b = right;
     if (a->low != b->low)
@@ -84,6 +93,7 @@ static int by_edge(const void *left, const void *right) {
     return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
 }
 
+/* Lists the sides of all triangles and sorts them. */
 static void fill_sides(struct work *work) {
     for (uint32_t t = 0; t < work->mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++) {
@@ -98,7 +108,7 @@ static void fill_sides(struct work *work) {
     qsort(work->sides, work->n_sides, sizeof *work->sides, by_edge);
 }
 
-/* one edge of `count` sides */
+/* Checks one edge of `count` sides: two at most, in opposite directions. */
 static enum cs_status check_edge(const struct work *work, const struct side *side,
                                  uint32_t count) {
     char place[PLACE_MAX];
@@ -115,7 +125,7 @@ static enum cs_status check_edge(const struct work *work, const struct side *sid
     return CS_OK;
 }
 
-/* counts edges, or writes them */
+/* Counts edges, open edges and hinges; writes edges and hinges if their arrays exist. */
 static enum cs_status walk_edges(struct work *work) {
     struct cs_trimesh *mesh = work->mesh;
     mesh->n_edges = mesh->n_open = work->n_hinges = 0;
@@ -143,6 +153,7 @@ static enum cs_status walk_edges(struct work *work) {
     return CS_OK;
 }
 
+/* Orders pairs of vertices. */
 static int by_pair(const void *left, const void *right) {
     const uint32_t *a = left, *b = right;
     if (a[0] != b[0])
@@ -150,7 +161,8 @@ static int by_pair(const void *left, const void *right) {
     return a[1] < b[1] ? -1 : a[1] > b[1];
 }
 
-/* each pair once, and none that an edge joins already: a tetrahedron has none at all */
+/* Stores each hinge once. Leaves out pairs that an edge joins already: in a tetrahedron all of
+ * them are. */
 static enum cs_status store_hinges(struct work *work) {
     struct cs_trimesh *mesh = work->mesh;
     const size_t pair = 2 * sizeof *work->hinges;
@@ -166,7 +178,8 @@ static enum cs_status store_hinges(struct work *work) {
     return work->error->status;
 }
 
-/* triangles at vertices, areas; a vertex without triangles would float alone */
+/* Lists the triangles at each vertex by counting sort, and sums areas. Refuses a vertex without
+ * triangles, because its particle would have no mass and no spring. */
 static enum cs_status fill_vertices(struct work *work) {
     struct cs_trimesh *mesh = work->mesh;
     uint32_t *end = mesh->vertex_triangles_end;
@@ -195,6 +208,7 @@ static enum cs_status fill_vertices(struct work *work) {
     return CS_OK;
 }
 
+/* Mean length of the edges, in the order of the list. */
 static void measure_edges(struct cs_trimesh *mesh) {
     for (uint32_t e = 0; e < mesh->n_edges; e++) {
         double squared = 0;
@@ -207,6 +221,7 @@ static void measure_edges(struct cs_trimesh *mesh) {
     }
 }
 
+/* Allocates the temporary sides, and the arrays of vertices in the arena. */
 static enum cs_status take(struct work *work) {
     struct cs_trimesh *mesh = work->mesh;
     const size_t corners = 3 * (size_t)mesh->n_triangles;
@@ -223,6 +238,7 @@ static enum cs_status take(struct work *work) {
     return work->error->status;
 }
 
+/* All of cs_trimesh_finish but the release of temporary memory. */
 static enum cs_status build(struct work *work) {
     struct cs_trimesh *mesh = work->mesh;
     if (mesh->n == 0 || mesh->n_triangles == 0)

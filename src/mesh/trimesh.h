@@ -1,4 +1,4 @@
-/* trimesh.h - a triangle mesh as a body: its vertices become particles, its edges springs. */
+/* trimesh.h - triangle mesh of a body: its vertices become particles, its edges springs. */
 #ifndef CS_TRIMESH_H
 #define CS_TRIMESH_H
 
@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* generated meshes, each of about the size of a cube of side 1 about the origin */
+/* Generated meshes; each fits a cube of side 1 about the origin. */
 enum cs_mesh_shape {
     CS_MESH_BOX,
     CS_MESH_SPHERE,
@@ -16,7 +16,11 @@ enum cs_mesh_shape {
     CS_MESH_LIMBS, /* a rounded body with head, ears, arms and legs */
     CS_MESH_SHAPES
 };
+/* Largest `detail`: parts of an edge, of the tube's circle, or of the height. */
 enum { CS_MESH_DETAIL_MAX = 256 };
+
+/* An indexed mesh and its topology; the arrays belong to the arena of its maker. Positions,
+ * triangles and uv are set first; cs_trimesh_finish derives the rest from them. */
 
 struct cs_trimesh {
     uint32_t n, n_triangles, n_edges, n_hinges, n_network_springs;
@@ -25,42 +29,42 @@ struct cs_trimesh {
     float *uv;           /* (n_triangles, 3, 2) texture coordinates of corners; NULL: none */
 
     /* made by cs_trimesh_finish */
-    uint32_t *edges;  /* (n_edges, 2), first < second, ascending */
-    uint32_t *hinges; /* (n_hinges, 2) vertices across an edge, not joined by one */
-    uint32_t *vertex_triangles,
-        *vertex_triangles_end; /* triangles at vertex i: around[around_end[i - 1]..end[i]) */
-    double *area;              /* (n) m2, a third of every triangle at the vertex */
-    double edge;               /* m, mean length of an edge */
-    uint32_t n_open;           /* edges of one triangle only; 0: the mesh is closed */
+    uint32_t *edges;  /* (n_edges, 2), first < second, sorted */
+    uint32_t *hinges; /* (n_hinges, 2) vertices opposite an edge, sorted; no pair is an edge */
+    uint32_t *vertex_triangles, /* (3 n_triangles) triangles of vertex 0, of vertex 1, ... */
+        *vertex_triangles_end;  /* (n) end of each vertex's part of it */
+    double *area;               /* (n) m2, a third of each triangle at the vertex */
+    double edge;                /* m, mean length of an edge */
+    uint32_t n_open;            /* edges of one triangle only; 0: the mesh is closed */
 
-    uint32_t *network_springs;      /* (n_inner, 2) springs of a network (spring_network.h) */
+    uint32_t *network_springs; /* (n_network_springs, 2) inner springs (spring_network.h) */
     char file_hash[CS_HASH_DIGITS]; /* of the bytes of its file; empty: a shape */
     size_t bytes; /* of this struct and its arrays, set by the reader of the scene */
 };
 
-/* Takes the arrays that the maker of a mesh fills: positions, triangles and, if asked for, uv.
- */
+/* Allocates positions, triangles and, if asked for, uv, zeroed. Fails with CS_ERR_MEMORY. */
 enum cs_status cs_trimesh_init(struct cs_trimesh *mesh, uint32_t n, uint32_t n_triangles,
                                bool uv, struct cs_arena *arena, struct cs_error *error);
 
-/* Checks the mesh and makes the rest of it. Refused with CS_ERR_FILE: a corner that does not
+/* Checks the mesh and derives its topology. Fails with CS_ERR_FILE for: a corner that does not
  * exist, a triangle without area, a vertex in no triangle, an edge of three triangles or more,
- * neighbours of opposite orientation. lines (n_triangles), or NULL: where triangles stand in
- * the file, for messages; name stands before them. */
+ * neighbours of opposite orientation. Afterwards the mesh is an oriented manifold with boundary
+ * along its edges. name is the beginning of messages; lines (n_triangles), or NULL, holds the
+ * line of the file of each triangle. Also fails with CS_ERR_MEMORY. */
 enum cs_status cs_trimesh_finish(struct cs_trimesh *mesh, const char *name,
                                  const uint32_t *lines, struct cs_arena *arena,
                                  struct cs_error *error);
 
-/* Makes a shape; the caller finishes it. */
+/* Makes positions and triangles of a shape; the caller finishes the mesh. CS_ERR_MEMORY. */
 enum cs_status cs_trimesh_make(struct cs_trimesh *mesh, enum cs_mesh_shape shape,
                                uint32_t detail, struct cs_arena *arena, struct cs_error *error);
-/* One of them: the limbed body, as the surface of a field of blobs. */
+/* Makes CS_MESH_LIMBS: surface nets of a sum of blobs (trimesh_metaballs.c). */
 enum cs_status cs_trimesh_make_metaballs(struct cs_trimesh *mesh, uint32_t detail,
                                          struct cs_arena *arena, struct cs_error *error);
 
-/* Normal of triangle t of a mesh at positions x (of n particles, the mesh's from `first` on),
- * as long as twice the triangle's area. One number after the other: loops over the axes become
- * vectors that are put together and taken apart again, at several times the cost. */
+/* Normal of triangle t at positions x (3,n) of n particles, of which the mesh's begin at
+ * `first`. Its length is twice the area. Written component by component: as loops over the axes
+ * it is vectorised badly, at several times the cost. */
 static inline void cs_trimesh_normal(const struct cs_trimesh *mesh, uint32_t t, const double *x,
                                      size_t n, uint32_t first, double normal[3]) {
     const uint32_t *corner = mesh->triangles + 3 * (size_t)t;
@@ -73,7 +77,7 @@ static inline void cs_trimesh_normal(const struct cs_trimesh *mesh, uint32_t t, 
     normal[2] = ax * by - ay * bx;
 }
 
-/* The first triangle of vertex i in around. */
+/* Index in vertex_triangles of the first triangle of vertex i. */
 static inline uint32_t cs_trimesh_around_begin(const struct cs_trimesh *mesh, uint32_t i) {
     return i ? mesh->vertex_triangles_end[i - 1] : 0;
 }

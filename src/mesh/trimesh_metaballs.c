@@ -1,14 +1,26 @@
-/* A rounded body with limbs: the surface where a sum of blobs has one value, found on a
- * lattice.
+/* The mesh `limbs`: a rounded body with limbs, as a level set of metaballs (Blinn 1982) that is
+ * meshed by surface nets (Gibson 1998).
  *
- * Each lattice cell that the surface crosses has a vertex, the mean of the crossings of its
- * edges; each lattice edge that it crosses is surrounded by a quad (naive surface nets). */
+ * Field: each blob b is an ellipsoid with centre m and radii a. With
+ *   r_b^2 = sum_c ((p - m)_c / a_c)^2
+ *   F(p) = sum_b w(r_b^2) - 1/4,   w(r^2) = (1 - r^2 / 2)^2 for r^2 < 2, else 0.
+ * The surface is F = 0. A blob alone has w(1) = 1/4: its surface is its ellipsoid r = 1. Where
+ * blobs overlap their sum exceeds 1/4 earlier, which blends them smoothly. Value and slope of w
+ * are 0 at r^2 = 2, so a blob ends there. Blinn uses an exponential, which never ends; a
+ * polynomial also has the same bits on every machine.
+ *
+ * Mesh: F is sampled at the points of a cubic lattice. Each cell with both signs gets one
+ * vertex, the mean of the crossings of its edges (Gibson starts from the cell's middle and
+ * relaxes). Each lattice edge with a crossing gets a quad of the vertices of the four cells
+ * around it. The result is closed, because F < 0 on the border of the lattice. It is a manifold
+ * once parts that touch in a lattice edge or corner only are joined (join_touching).
+ */
 #include "mesh/trimesh.h"
 
 #include <stdlib.h>
 
-/* Centre, and radii of the surface of the blob alone; mirrored at x = 0 where its x is not 0.
- */
+/* Blobs: centre (3), then radii (3) of its ellipsoid, as fractions of the body's height of
+ * about 1. A blob whose x is not 0 stands for two, mirrored at x = 0. */
 static const double blobs[][6] = {
     {0, -0.13, 0, 0.19, 0.23, 0.16},          /* trunk */
     {0, 0.235, 0, 0.155, 0.145, 0.14},        /* head */
@@ -19,23 +31,26 @@ static const double blobs[][6] = {
     {0.12, -0.32, 0.02, 0.075, 0.10, 0.075},  /* legs */
     {0.13, -0.425, 0.07, 0.075, 0.055, 0.10}, /* feet */
 };
-/* half the lattice, at least */
+/* half extents of the lattice along x, y, z: at least those of the surface */
 static const double reach[3] = {0.42, 0.5, 0.24};
 
+/* Samples of F, and the numbering of the vertices. Point (i, j, k) has the index
+ *   (k n[1] + j) n[0] + i;
+ * its cell reaches to (i + 1, j + 1, k + 1). */
 struct lattice {
-    uint32_t n[3];    /* points */
-    double step;      /* m */
-    double *field;    /* (n) above 0 inside */
-    uint32_t *vertex; /* (n) of the cell with its lowest corner here */
-    uint32_t n_vertices, n_quads;
+    uint32_t n[3];    /* points along each axis; even, for symmetry about 0 */
+    double step;      /* spacing of the points: 1 / detail */
+    double *field;    /* (n) F, above 0 inside; owned */
+    uint32_t *vertex; /* (n) vertex of the cell whose lowest corner is here; owned */
+    uint32_t n_vertices, n_quads; /* counted by the last walk */
 };
 
+/* Index of a lattice point. */
 static size_t at(const struct lattice *lattice, uint32_t i, uint32_t j, uint32_t k) {
     return ((size_t)k * lattice->n[1] + j) * lattice->n[0] + i;
 }
 
-/* (1 - r^2 / 2)^2 inside r^2 = 2, where r = 1 is the blob's own surface; less its value there
- */
+/* F at a point: the sum of all blobs in the order of the table, less the level 1/4. */
 static double field_at(const double p[3]) {
     double sum = -0.25;
     for (size_t b = 0; b < sizeof blobs / sizeof *blobs; b++)
@@ -51,11 +66,13 @@ static double field_at(const double p[3]) {
     return sum;
 }
 
+/* Coordinate of point i of an axis; the lattice is centred on 0. */
 static double coordinate(const struct lattice *lattice, int axis, uint32_t i) {
     /* the same to both sides, so that the halves of the body are alike */
     return lattice->step * (i - 0.5 * (lattice->n[axis] - 1));
 }
 
+/* Samples F at all points. */
 static void fill_field(struct lattice *lattice) {
     for (uint32_t k = 0; k < lattice->n[2]; k++)
         for (uint32_t j = 0; j < lattice->n[1]; j++)
@@ -66,8 +83,14 @@ static void fill_field(struct lattice *lattice) {
             }
 }
 
-/* Two parts that touch at an edge or a corner of the lattice only are joined there, or the
- * surface would have edges of four triangles. One pass; false: nothing was left to join. */
+/* Removes the two patterns of signs for which surface nets give no manifold, by moving one
+ * outside point of each inside:
+ *   - a lattice face whose diagonals differ in sign, with four crossings: four quads would
+ *     share the edge between the two cells at the face;
+ *   - a cell in which two opposite corners alone differ from the six others: its one vertex
+ *     would join two sheets.
+ * One pass over all cells; returns true if it changed a point, since that may make a new
+ * pattern. Points only ever change to inside, so repeated passes end. */
 static bool join_touching(struct lattice *lattice) {
     static const double joined = 1e-3; /* just inside */
     const size_t row = lattice->n[0], layer = row * lattice->n[1];
@@ -101,14 +124,15 @@ static bool join_touching(struct lattice *lattice) {
     return found;
 }
 
-/* true if the surface crosses the edge from point p along an axis */
+/* Returns true if F changes sign on the edge from point p along an axis. */
 static bool crosses(const struct lattice *lattice, const uint32_t p[3], int axis) {
     const size_t stride[3] = {1, lattice->n[0], (size_t)lattice->n[0] * lattice->n[1]};
     const size_t here = at(lattice, p[0], p[1], p[2]);
     return (lattice->field[here] > 0) != (lattice->field[here + stride[axis]] > 0);
 }
 
-/* the mean of the crossings of the 12 edges of the cell at p; false: there are none */
+/* The mean of the crossings of the 12 edges of the cell at p; returns false if there are none.
+ * F is taken as linear along an edge: it is 0 at the fraction a / (a - b). */
 static bool cell_vertex(const struct lattice *lattice, const uint32_t p[3], double place[3]) {
     int n = 0;
     place[0] = place[1] = place[2] = 0;
@@ -134,7 +158,8 @@ static bool cell_vertex(const struct lattice *lattice, const uint32_t p[3], doub
     return n > 0;
 }
 
-/* numbers the cells with a vertex, and in the second pass, with places given, writes it */
+/* Numbers the cells with a vertex. The second walk, with positions (3,n) given, writes them
+ * too; n is the count of the first. */
 static void walk_cells(struct lattice *lattice, double *places) {
     const size_t n = lattice->n_vertices;
     double place[3];
@@ -150,6 +175,7 @@ static void walk_cells(struct lattice *lattice, double *places) {
             }
 }
 
+/* Squared distance of two vertices. */
 static double squared_distance(const struct cs_trimesh *mesh, uint32_t a, uint32_t b) {
     double sum = 0;
     for (size_t c = 0; c < 3; c++) {
@@ -159,7 +185,9 @@ static double squared_distance(const struct cs_trimesh *mesh, uint32_t a, uint32
     return sum;
 }
 
-/* the quad round the edge from p along an axis, cut along its shorter diagonal */
+/* Writes the two triangles of the quad around the edge from p along an axis, cut along the
+ * shorter diagonal. The four cells are taken counter-clockwise about the axis if p is inside,
+ * so that normals point from inside to outside; else the other way round. */
 static void add_quad(const struct lattice *lattice, struct cs_trimesh *mesh, uint32_t *out,
                      const uint32_t p[3], int axis) {
     static const uint32_t back[4][2] = {{1, 1}, {0, 1}, {0, 0}, {1, 0}};
@@ -180,7 +208,8 @@ static void add_quad(const struct lattice *lattice, struct cs_trimesh *mesh, uin
         out[c] = corners[c];
 }
 
-/* counts the quads, or writes them; the field is below 0 on the lattice's border */
+/* Counts the quads; with a mesh given, also writes their triangles. Starts at 1, where each
+ * point has all its cells; the border has no crossings. */
 static void walk_edges(struct lattice *lattice, struct cs_trimesh *mesh) {
     lattice->n_quads = 0;
     for (uint32_t k = 1; k + 1 < lattice->n[2]; k++)
@@ -197,10 +226,14 @@ static void walk_edges(struct lattice *lattice, struct cs_trimesh *mesh) {
                 }
 }
 
+/* Runs in time and memory proportional to the lattice, detail^3. Fails with CS_ERR_MEMORY; then
+ * only memory of the arena stays taken. */
+
 enum cs_status cs_trimesh_make_metaballs(struct cs_trimesh *mesh, uint32_t detail,
                                          struct cs_arena *arena, struct cs_error *error) {
     struct lattice lattice = {.step = 1.0 / detail};
     for (int c = 0; c < 3; c++)
+        /* half the extent rounded down, and 3 points beyond on each side */
         lattice.n[c] = 2 * (uint32_t)(reach[c] * detail) + 6;
     const size_t points = at(&lattice, 0, 0, lattice.n[2]);
     lattice.field = calloc(points, sizeof *lattice.field);

@@ -1,11 +1,12 @@
-/* Generated meshes: box, sphere and torus. Only + - * / and sqrt, so that the vertices have the
- * same bits on every machine. */
+/* Generated meshes: box, sphere and torus. They use only + - * / and sqrt, so the vertices have
+ * the same bits on every machine. */
 #include "base/portable_sine.h"
 #include "mesh/trimesh.h"
 
 #include <math.h>
 #include <string.h>
 
+/* Sets vertex i of (3,n). */
 static void set_position(struct cs_trimesh *mesh, uint32_t i, double x, double y, double z) {
     const size_t n = mesh->n;
     mesh->positions[i] = x;
@@ -13,20 +14,22 @@ static void set_position(struct cs_trimesh *mesh, uint32_t i, double x, double y
     mesh->positions[2 * n + i] = z;
 }
 
+/* Writes a triangle and returns the place of the next. */
 static uint32_t *add_triangle(uint32_t *out, uint32_t a, uint32_t b, uint32_t c) {
     *out++ = a, *out++ = b, *out++ = c;
     return out;
 }
 
-/* a quad counter-clockwise; `other` takes the other diagonal */
+/* Writes a quad, counter-clockwise, as two triangles; `other` takes the other diagonal. Callers
+ * alternate the diagonals, so that the mesh has no preferred direction. */
 static uint32_t *add_quad(uint32_t *out, const uint32_t q[4], bool other) {
     const int k = other;
     out = add_triangle(out, q[k], q[1 + k], q[2 + k]);
     return add_triangle(out, q[k], q[2 + k], q[(3 + k) % 4]);
 }
 
-/* Number of lattice point p of the box's surface: a full layer at each end of z, rings between.
- */
+/* Index of lattice point p, 0..d along each axis, on the surface of a box. The (d + 1)^2 points
+ * of the layer z = 0 come first, then d - 1 rings of 4 d points, then the layer z = d. */
 static uint32_t box_index(const uint32_t p[3], uint32_t d) {
     const uint32_t full = (d + 1) * (d + 1), i = p[0], j = p[1], k = p[2];
     if (k == 0 || k == d)
@@ -38,6 +41,8 @@ static uint32_t box_index(const uint32_t p[3], uint32_t d) {
     return full + (k - 1) * 4 * d + ring;
 }
 
+/* A cube of side 1 with d x d quads on each face: 6 d^2 + 2 vertices, 12 d^2 triangles. Points
+ * on edges and corners are written by each of their faces, with the same value. */
 static enum cs_status make_box(struct cs_trimesh *mesh, uint32_t d, struct cs_arena *arena,
                                struct cs_error *error) {
     if (cs_trimesh_init(mesh, 6 * d * d + 2, 12 * d * d, false, arena, error))
@@ -65,11 +70,12 @@ static enum cs_status make_box(struct cs_trimesh *mesh, uint32_t d, struct cs_ar
     return CS_OK;
 }
 
-/* a face of the icosahedron, its corners, and the numbers of its sides 0-1, 1-2, 2-0 */
+/* A face of the icosahedron: its corners, and the numbers of its sides 0-1, 1-2, 2-0. */
 struct face {
     uint32_t corner[3], side[3];
 };
 
+/* Numbers the 30 sides of the icosahedron in the order in which the faces name them. */
 static void number_sides(struct face faces[20]) {
     uint32_t ends[30][2], n = 0;
     for (int f = 0; f < 20; f++)
@@ -87,8 +93,9 @@ static void number_sides(struct face faces[20]) {
         }
 }
 
-/* number of the point with weights w (sum d) in a face: corners first, then sides, then faces
- */
+/* Index of the point with whole weights w, of sum d, at the corners of face f. The 12 corners
+ * come first, then d - 1 points per side, counted from its lower corner, then the inner points
+ * of each face. Faces that share a side thus find the same index. */
 static uint32_t sphere_index(const struct face *face, uint32_t f, const uint32_t w[3],
                              uint32_t d) {
     for (int k = 0; k < 3; k++)
@@ -104,6 +111,9 @@ static uint32_t sphere_index(const struct face *face, uint32_t f, const uint32_t
     return 12 + 30 * (d - 1) + f * ((d - 1) * (d - 2) / 2) + before + w[1] - 1;
 }
 
+/* A sphere of radius 1/2: each face of an icosahedron is divided into d^2 triangles, whose
+ * points are projected onto the sphere. It has 12 + 30 (d - 1) + 20 (d - 1) (d - 2) / 2 = 10
+ * d^2 + 2 vertices and 20 d^2 triangles. */
 static enum cs_status make_sphere(struct cs_trimesh *mesh, uint32_t d, struct cs_arena *arena,
                                   struct cs_error *error) {
     const double g = (1 + sqrt(5)) / 2; /* the icosahedron's corners: (0, +-1, +-g), turned */
@@ -147,7 +157,8 @@ static enum cs_status make_sphere(struct cs_trimesh *mesh, uint32_t d, struct cs
     return CS_OK;
 }
 
-/* cosine and sine of k m-ths of a turn */
+/* out: cosine and sine of k/m of a turn; the quadrant is found in whole numbers, so that points
+ * a quarter turn apart have exactly turned coordinates */
 static void cos_sin_turn(uint32_t k, uint32_t m, double out[2]) {
     const uint32_t quarter = 4 * k / m;
     const double r = (double)(4 * k % m) / m;
@@ -156,7 +167,9 @@ static void cos_sin_turn(uint32_t k, uint32_t m, double out[2]) {
     memcpy(out, turned[quarter % 4], sizeof turned[0]);
 }
 
-/* ring of radius 0.35 about the z axis, tube of radius 0.15 */
+/* A torus about the z axis: ring of radius 0.35, tube of radius 0.15 with d points. The ring
+ * has 7 d / 3 points, the ratio of the radii, which makes the quads about square in the
+ * middle. */
 static enum cs_status make_torus(struct cs_trimesh *mesh, uint32_t d, struct cs_arena *arena,
                                  struct cs_error *error) {
     const uint32_t m = 7 * d / 3;

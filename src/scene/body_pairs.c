@@ -1,5 +1,5 @@
-/* Which surfaces keep off each other, by the table of pairs, by each body's own key, and by the
- * colliders that are meshes. */
+/* Decides which surfaces are in contact: by the list of pairs, by each body's own key for
+ * itself, and by the colliders that are meshes. */
 #include "scene/body_pairs.h"
 
 uint32_t cs_scene_surfaces(const struct cs_scene *scene) {
@@ -14,7 +14,7 @@ const struct cs_collider *cs_scene_obstacle(const struct cs_scene *scene, uint32
                                      : cs_scene_colliders(scene) + (surface - scene->bodies.n);
 }
 
-/* a mesh that is a collider, and a body on the other side */
+/* Contact of a body with a collider that is a mesh, with the collider's friction. */
 static bool hits_obstacle(const struct cs_scene *scene, uint32_t a, uint32_t b,
                           double *friction) {
     const struct cs_collider *collider = cs_scene_obstacle(scene, a < b ? b : a);

@@ -1,4 +1,4 @@
-/* Messages of checks, and what is checked in several places: directions and rotations. */
+/* Messages of checks, and the checks of directions and rotations. */
 #include "scene/check.h"
 
 #include <math.h>
@@ -33,7 +33,7 @@ enum cs_status cs_check_unit(const struct cs_check *at, const char *path, double
     return CS_OK;
 }
 
-/* rows of unit length, at right angles, right-handed: to 1e-6, and said otherwise */
+/* Checks that M M^T = I to 1e-6 per element, and that the determinant is above 0. */
 static enum cs_status check_matrix(const struct cs_check *at, const char *path,
                                    const double *m) {
     const double determinant = m[0] * (m[4] * m[8] - m[5] * m[7]) -

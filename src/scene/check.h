@@ -1,26 +1,28 @@
-/* check.h - what a check of a scene says: which value is at fault, and why. */
+/* check.h - failures of a scene's checks, and checks of directions and rotations. */
 #ifndef CS_SCENE_CHECK_H
 #define CS_SCENE_CHECK_H
 
 #include "scene/scene.h"
 
-/* Where the check stands, for messages. */
+/* Destination of a failure: the JSON path of the faulty value, and the message. */
 struct cs_check {
     char *path; /* CS_TEXT_MAX bytes of the caller */
     struct cs_error *error;
 };
 
-/* CS_ERR_SCENE, with the path of the value at fault and what is wrong with it. */
+/* Fails with CS_ERR_SCENE: stores the path of the faulty value and the message. */
 enum cs_status cs_check_refuse(const struct cs_check *at, const char *path, const char *format,
                                ...) __attribute__((format(printf, 3, 4)));
 
+/* Euclidean length of v (n). */
 double cs_check_length(const double *v, int n);
 
-/* Makes v (n) a unit vector, or refuses the zero vector. One that is unit already keeps its
- * bits, so that the resolved scene runs to the same hash as the scene it came from. */
+/* Makes v (n) a unit vector; refuses the zero vector. A vector that is unit to 1e-14 keeps its
+ * bits, so that a resolved scene runs to the same hash as the scene that it came from. */
 enum cs_status cs_check_unit(const struct cs_check *at, const char *path, double *v, int n);
 
-/* The rotation of the place of BODY.SHAPE: a matrix is checked, a quaternion made unit. */
+/* Checks the rotation of BODY.SHAPE.place: a matrix must be a rotation, a quaternion is made
+ * unit. */
 enum cs_status cs_check_place(const struct cs_check *at, const char *body, const char *shape,
                               struct cs_pose *place);
 

@@ -1,12 +1,11 @@
-/* collider.h - the shapes of colliders: all that is asked of one, each shape in a file of its
- * own.
+/* collider.h - the interface of collider shapes; each shape has a file of its own.
  *
  * Every shape but planes and meshes is a core - a point, a segment or a box - and all points
  * within `radius` of it: sphere, capsule, box with rounded edges. A floor is a plane. A mesh
- * has no distance here: bodies meet its parts in pairs (model/pair), and where its vertices are
- * model/contact/surface_points.h says.
+ * has no distance here: bodies meet its features in pairs (model/pair), and
+ * model/contact/surface_points.h gives the positions of its vertices.
  *
- * A new shape: its keys and its line in CS_SHAPE_LIST (scene.h), shape_NAME.c with
+ * A new shape needs: its keys and its line in CS_SHAPE_LIST (scene.h), shape_NAME.c with
  * cs_NAME_keys and cs_shape_NAME, and that file in meson.build.
  */
 #ifndef CS_COLLIDER_H
@@ -16,7 +15,7 @@
 #include "mesh/trimesh.h"
 #include "scene/check.h"
 
-/* One collider as it is at one time. */
+/* One collider at one time: a shape with its pose and its motion. */
 struct cs_posed_collider {
     const struct cs_shape *shape;
     const struct cs_collider *collider; /* borrowed from the system's scene: friction, ... */
@@ -31,7 +30,7 @@ struct cs_posed_collider {
     double rotation_centre[3]; /* m, what it turns about: the centre */
 };
 
-/* What bounds a shape, which hot loops ask first. */
+/* Simple bound of a shape, which hot loops test first. */
 enum cs_shape_bounds {
     CS_BOUNDS_SPHERE,     /* it is the sphere of its radius */
     CS_BOUNDS_HALF_SPACE, /* it is all behind a plane */
@@ -39,7 +38,8 @@ enum cs_shape_bounds {
     CS_BOUNDS_MESH        /* triangles, felt in pairs alone */
 };
 
-/* Calls may be NULL where said. Those with an obstacle take one of this shape. */
+/* Calls of one shape. They may be NULL where said. Those with a posed collider take one of this
+ * shape; m are metres of the world. */
 struct cs_shape {
     enum cs_shape_bounds bounds;
     bool is_core; /* it is all within the radius of its core: pictures draw it smooth */
@@ -52,15 +52,18 @@ struct cs_shape {
     /* Sets centre, axes, core and radius where they are neither 0 nor the world's axes. */
     void (*pose)(const struct cs_collider *collider, struct cs_posed_collider *out);
 
-    /* cs_posed_collider_distance (model/contact/posed_collider.h) less `skin` in m. */
+    /* cs_posed_collider_distance (model/contact/posed_collider.h) less `skin` in m; n: unit
+     * normal. Exact: negative inside. */
     double (*distance)(const struct cs_posed_collider *obstacle, double skin, const double p[3],
                        double n[3]);
 
-    /* cs_posed_collider_smooth_distance. */
+    /* cs_posed_collider_smooth_distance, which says how smooth it is: gradient (3), Hessian
+     * (xx, xy, xz, yy, yz, zz) in 1/m. */
     double (*smooth)(const struct cs_posed_collider *obstacle, const double p[3],
                      double gradient[3], double hessian[6]);
 
-    /* cs_posed_collider_hits_segment. */
+    /* cs_posed_collider_hits_segment: true if the segment from..from + share way comes
+     * inside. */
     bool (*meets_line)(const struct cs_posed_collider *obstacle, const double from[3],
                        const double way[3], double share);
 
@@ -68,7 +71,8 @@ struct cs_shape {
      * NULL: 0. */
     double (*chord_depth)(const struct cs_posed_collider *obstacle, double cell);
 
-    /* Makes its surface in its own frame, counter-clockwise seen from outside. CS_ERR_MEMORY.
+    /* Makes its surface in its own frame, counter-clockwise seen from outside; memory from the
+     * arena. Fails with CS_ERR_MEMORY.
      */
     enum cs_status (*triangles)(const struct cs_posed_collider *obstacle,
                                 struct cs_trimesh *mesh, struct cs_arena *arena,
@@ -81,7 +85,7 @@ struct cs_shape {
 CS_SHAPE_LIST(X)
 #undef X
 
-/* The one that is present. */
+/* The shape of a collider: the one whose keys are present; NULL if none is. */
 static inline const struct cs_shape *cs_collider_shape(const struct cs_collider *collider) {
 #define X(name, keys, text)                                                                    \
     if (collider->name.present)                                                                \
@@ -91,18 +95,18 @@ static inline const struct cs_shape *cs_collider_shape(const struct cs_collider 
     return NULL;
 }
 
-/* It has no end: a plane or a floor. */
+/* Returns true if it has no end: a plane or a floor. */
 static inline bool cs_shape_is_endless(const struct cs_shape *shape) {
     return shape->bounds == CS_BOUNDS_HALF_SPACE;
 }
 
-/* It may come in between particles, so that edges and triangles need points of their own
- * (model/contact/contact_samples.h). */
+/* Returns true if it may come in between particles. Edges and triangles of bodies then need
+ * contact samples of their own (model/contact/contact_samples.h). */
 static inline bool cs_shape_needs_points(const struct cs_shape *shape) {
     return shape->bounds == CS_BOUNDS_SPHERE || shape->bounds == CS_BOUNDS_BOX;
 }
 
-/* x = p in the obstacle's own frame, in m. */
+/* Sets x = p in the collider's own frame, in m. */
 static inline void cs_obstacle_own(const struct cs_posed_collider *obstacle, const double p[3],
                                    double x[3]) {
     const double from[3] = {p[0] - obstacle->centre[0], p[1] - obstacle->centre[1],
@@ -111,7 +115,7 @@ static inline void cs_obstacle_own(const struct cs_posed_collider *obstacle, con
         x[k] = cs_vec3_dot(obstacle->axes[k], from);
 }
 
-/* A point of the obstacle's own frame in the world's, in m. */
+/* Sets out = a point of the collider's own frame in the world, in m. */
 static inline void cs_obstacle_place(const struct cs_posed_collider *obstacle,
                                      const double own[3], double out[3]) {
     for (int c = 0; c < 3; c++)
@@ -119,7 +123,7 @@ static inline void cs_obstacle_place(const struct cs_posed_collider *obstacle,
                  obstacle->axes[1][c] * own[1] + obstacle->axes[2][c] * own[2];
 }
 
-/* A vector of the own frame in the world's. */
+/* Sets out = a vector of the own frame in the world; no translation. */
 static inline void cs_obstacle_turned(const struct cs_posed_collider *obstacle,
                                       const double own[3], double out[3]) {
     for (int c = 0; c < 3; c++)

@@ -14,10 +14,10 @@
 #include <string.h>
 
 #define EVENTS_MAX 4096
-/* between two times of one event: far above the rounding of times, far below any frame */
+/* s, least distance of two times of one event: above the rounding of times, below any frame */
 #define APART 1e-6
 
-/* the event that is looked at, for messages */
+/* The event that is checked, for messages. */
 struct look {
     struct cs_scene *scene;
     uint32_t number;
@@ -25,7 +25,7 @@ struct look {
     struct cs_error *error;
 };
 
-/* part: ".impact.direction", or "" for the event itself */
+/* Fails at a part of the event: ".impact.direction", or "" for the event itself. */
 static enum cs_status refuse(const struct look *at, const char *part, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 static enum cs_status refuse(const struct look *at, const char *part, const char *format, ...) {
@@ -38,12 +38,14 @@ static enum cs_status refuse(const struct look *at, const char *part, const char
     return cs_fail(at->error, CS_ERR_SCENE, "%s", message);
 }
 
+/* Normalises a direction of the event. */
 static enum cs_status make_unit(const struct look *at, const char *part, double v[3]) {
     char path[CS_TEXT_MAX];
     snprintf(path, sizeof path, "events[%u]%s", at->number, part);
     return cs_check_unit(&(struct cs_check){at->path, at->error}, path, v, 3);
 }
 
+/* First and last time of an event, in s. */
 static double begin_of(const struct cs_event *event) {
     return isnan(event->at) ? event->from : event->at;
 }
@@ -51,6 +53,7 @@ static double end_of(const struct cs_event *event) {
     return isnan(event->at) ? event->to : event->at;
 }
 
+/* Checks that the event has `at`, or `from` before `to`. */
 static enum cs_status check_times(const struct look *at, const struct cs_event *event) {
     const bool once = !isnan(event->at), from = !isnan(event->from), to = !isnan(event->to);
     if (once ? from || to : !from || !to)
@@ -66,6 +69,7 @@ static enum cs_status check_times(const struct look *at, const struct cs_event *
     return CS_OK;
 }
 
+/* Checks that a body has the selected particles. */
 static enum cs_status check_particles(const struct look *at, const char *part,
                                       const struct cs_event_target *aim, uint32_t body) {
     const struct cs_pin *pins = aim->particles.items;
@@ -79,6 +83,7 @@ static enum cs_status check_particles(const struct look *at, const char *part,
     return CS_OK;
 }
 
+/* Checks that the target's body exists, and its particles in each body that it means. */
 static enum cs_status check_aim(const struct look *at, const char *part,
                                 const struct cs_event_target *aim) {
     const uint32_t n = at->scene->bodies.n;
@@ -93,7 +98,7 @@ static enum cs_status check_aim(const struct look *at, const char *part,
     return CS_OK;
 }
 
-/* the scene's wind, or that of an event before this one, has a direction */
+/* Returns true if the scene's wind, or that of an earlier event, has a direction. */
 static bool has_direction(const struct look *at) {
     const struct cs_event *events = cs_scene_events(at->scene);
     bool has = at->scene->forces.wind.present;
@@ -103,6 +108,7 @@ static bool has_direction(const struct look *at) {
     return has;
 }
 
+/* Checks that a change of wind changes something and leaves it with a direction. */
 static enum cs_status check_wind(const struct look *at, struct cs_wind_change *gust) {
     const bool turns = !isnan(gust->direction[0]);
     if (!turns && isnan(gust->strength))
@@ -112,7 +118,7 @@ static enum cs_status check_wind(const struct look *at, struct cs_wind_change *g
     return turns ? make_unit(at, ".wind.direction", gust->direction) : CS_OK;
 }
 
-/* what a viewpoint leaves out is the camera's and the picture's */
+/* Fills absent values of a viewpoint from the camera and the picture. */
 static void complete_viewpoint(const struct cs_scene *scene, struct cs_viewpoint *of) {
     const struct cs_camera *camera = &scene->camera;
     if (isnan(of->eye[0]))
@@ -127,7 +133,8 @@ static void complete_viewpoint(const struct cs_scene *scene, struct cs_viewpoint
         of->aspect = (double)scene->render.size[0] / (double)scene->render.size[1];
 }
 
-/* a blow has a duration, a wind looks anew */
+/* A force at one moment has a duration, 1/60 s if absent; one over an interval has a rate of
+ * visibility tests, 60 per s if absent. Neither may have both. */
 static enum cs_status check_lengths(const struct look *at, bool once,
                                     struct cs_viewpoint_force *viewpoint_force) {
     double *used = once ? &viewpoint_force->duration : &viewpoint_force->refresh;
@@ -141,6 +148,7 @@ static enum cs_status check_lengths(const struct look *at, bool once,
     return CS_OK;
 }
 
+/* Completes and checks a viewpoint force: view, rectangle, force, body, duration. */
 static enum cs_status check_viewpoint_force(const struct look *at, bool once,
                                             struct cs_viewpoint_force *viewpoint_force) {
     const struct cs_viewpoint *from = &viewpoint_force->viewpoint;
@@ -167,6 +175,7 @@ static enum cs_status check_viewpoint_force(const struct look *at, bool once,
     return check_lengths(at, once, viewpoint_force);
 }
 
+/* Checks the key of a ramp, the range of its value, and that masses change at once. */
 static enum cs_status check_ramp(const struct look *at, const struct cs_event *event) {
     const struct cs_ramp *ramp = &event->ramp;
     struct cs_event_key key;
@@ -184,7 +193,7 @@ static enum cs_status check_ramp(const struct look *at, const struct cs_event *e
     return CS_OK;
 }
 
-/* key: grab or move */
+/* Checks that the times of a path ascend within the event; key: grab or move. */
 static enum cs_status check_path(const struct look *at, const char *key,
                                  const struct cs_list *list) {
     const struct cs_event *event = cs_scene_events(at->scene) + at->number;
@@ -205,6 +214,7 @@ static enum cs_status check_path(const struct look *at, const char *key,
     return CS_OK;
 }
 
+/* Checks path and target of a grab. */
 static enum cs_status check_grab(const struct look *at, const struct cs_grab *grab) {
     if (grab->path.n == 0)
         return refuse(at, ".grab.path", "found no point, expected at least one");
@@ -212,6 +222,7 @@ static enum cs_status check_grab(const struct look *at, const struct cs_grab *gr
                                                : check_aim(at, ".grab", &grab->target);
 }
 
+/* Checks collider and path of a move, and that it moves or turns. */
 static enum cs_status check_move(const struct look *at, const struct cs_move *move) {
     const uint32_t n = at->scene->colliders.n;
     const double *spin = move->spin;
@@ -227,13 +238,14 @@ static enum cs_status check_move(const struct look *at, const struct cs_move *mo
     return check_path(at, "move", &move->path);
 }
 
-/* the key whose value an event moves, or NULL */
+/* Returns the key of the number that an event changes, or NULL. */
 static const char *moved_key(const struct cs_event *event) {
     return event->ramp.present   ? event->ramp.key
            : event->wind.present ? "forces.wind.strength"
                                  : NULL;
 }
 
+/* Refuses an event that changes a number while an earlier one in the list does. */
 static enum cs_status check_overlap(const struct look *at, const struct cs_event *event) {
     const struct cs_event *events = cs_scene_events(at->scene);
     const char *key = moved_key(event);
@@ -246,6 +258,7 @@ static enum cs_status check_overlap(const struct look *at, const struct cs_event
     return CS_OK;
 }
 
+/* Checks one event: times, then its action. */
 static enum cs_status check_event(const struct look *at, struct cs_event *event) {
     if (check_times(at, event) || check_overlap(at, event))
         return at->error->status;

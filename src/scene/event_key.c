@@ -1,5 +1,4 @@
-/* Finds the number that a ramp changes by its path, and refuses keys that cannot change in a
- * run. */
+/* Finds the number that a ramp changes, and refuses keys that cannot change in a run. */
 #include "scene/event_key.h"
 
 #include "base/options.h"
@@ -9,14 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* paths without their indices; every number of `forces` may change too, unless it is below */
+/* Paths without indices of numbers that may change. Numbers of `forces` may too, unless `fixed`
+ * names them. */
 static const char *const changeable[] = {
     "bodies.springs.stretch", "bodies.springs.shear", "bodies.springs.bend",
     "bodies.springs.damping", "bodies.strain_limit",  "bodies.mass.particle",
     "bodies.mass.total",      "bodies.mass.degree",   "bodies.mass.areal_density",
     "colliders.friction",     "colliders.absorption", NULL};
 
-/* why the others are not; the first that fits counts */
+/* Prefixes of keys that cannot change, and why; the first that fits counts. */
 static const struct {
     const char *start, *why;
 } fixed[] = {
@@ -39,15 +39,16 @@ static const struct {
     {"events", "events cannot change events"},
 };
 
-/* a place on the way along a path */
+/* State of the descent along a path through the tables and the structs. */
 struct walk {
-    const char *path, *rest;
-    const struct cs_table *table;
-    char *object;
-    char plain[CS_TEXT_MAX]; /* the path so far without indices */
+    const char *path, *rest;      /* the whole path; the part that is left */
+    const struct cs_table *table; /* rows of `object` */
+    char *object;                 /* the struct, in the end the number, in the scene */
+    char plain[CS_TEXT_MAX];      /* the path so far without indices */
     struct cs_error *error;
 };
 
+/* Refuses a name that the table does not have, and proposes the nearest. */
 static enum cs_status refuse_key(struct walk *walk, const char *name) {
     if (!*name)
         return cs_fail(walk->error, CS_ERR_SCENE, "\"%.120s\": expected a key", walk->path);
@@ -57,7 +58,7 @@ static enum cs_status refuse_key(struct walk *walk, const char *name) {
                    nearest ? "\"?" : "");
 }
 
-/* the row of the next name, which is cut off */
+/* Returns the row of the next name and moves past it; NULL, with an error, if there is none. */
 static const struct cs_option *next_row(struct walk *walk) {
     char name[64] = "";
     const size_t length = strcspn(walk->rest, ".[");
@@ -74,7 +75,7 @@ static const struct cs_option *next_row(struct walk *walk) {
     return row;
 }
 
-/* "[3]" below n; there is one way to write an index */
+/* Reads an index "[3]" below n. Leading zeros are refused: one spelling per number. */
 static bool next_index(struct walk *walk, uint32_t n, uint32_t *index) {
     char *end;
     const char *digits = walk->rest + 1;
@@ -94,7 +95,8 @@ static bool next_index(struct walk *walk, uint32_t n, uint32_t *index) {
     return true;
 }
 
-/* goes down to the row that is no table and no list, and into a vector */
+/* Descends to a row that is neither table nor list, and to one element of a vector. Returns the
+ * row, or NULL with an error. */
 static const struct cs_option *descend(struct walk *walk) {
     for (;;) {
         const struct cs_option *row = next_row(walk);
@@ -127,6 +129,7 @@ static const struct cs_option *descend(struct walk *walk) {
     }
 }
 
+/* Checks that the number may change during a run. */
 static enum cs_status check_changeable(const struct walk *walk, const struct cs_option *row) {
     for (uint32_t k = 0; changeable[k]; k++)
         if (!strcmp(walk->plain, changeable[k]))
@@ -141,12 +144,13 @@ static enum cs_status check_changeable(const struct walk *walk, const struct cs_
                    "%.120s cannot be ramped (see clothsim-scene(5), Events)", walk->path);
 }
 
-/* the body that a key of bodies belongs to */
+/* The body whose struct the number lies in. */
 static const struct cs_body *body_of(const struct walk *walk, const struct cs_scene *scene) {
     const char *first = scene->bodies.items;
     return cs_scene_bodies(scene) + (size_t)(walk->object - first) / sizeof(struct cs_body);
 }
 
+/* Checks that the springs exist: a stiffness of 0 at the start makes none. */
 static enum cs_status check_springs(const struct walk *walk, const struct cs_body *body,
                                     double value) {
     const bool shear = !strcmp(walk->plain, "bodies.springs.shear");
@@ -159,7 +163,7 @@ static enum cs_status check_springs(const struct walk *walk, const struct cs_bod
                : CS_OK;
 }
 
-/* what the scene left out cannot come in the middle of a run */
+/* Checks that the scene has the number: an absent one cannot appear during a run. */
 static enum cs_status check_there(const struct walk *walk, const struct cs_scene *scene) {
     const double value = *(const double *)(const void *)walk->object;
     if (isnan(value))

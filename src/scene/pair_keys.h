@@ -1,14 +1,15 @@
-/* pair_keys.h - what a scene says of bodies that keep off each other. */
+/* pair_keys.h - keys of a scene about contact between bodies. */
 #ifndef CS_PAIR_KEYS_H
 #define CS_PAIR_KEYS_H
 
 #include <clothsim/option.h>
 
-/* two bodies that keep off each other */
+/* Two bodies in contact. */
 struct cs_body_pair_keys {
     int64_t bodies[2];
     double friction; /* Coulomb coefficient */
 };
+/* Pairs in contact: those of the list, or all. */
 enum cs_pairs_among { CS_PAIRS_LISTED, CS_PAIRS_ALL };
 struct cs_body_pairs_keys {
     int32_t among;       /* enum cs_pairs_among */

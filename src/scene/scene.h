@@ -1,7 +1,11 @@
-/* scene.h - a scene as plain structs, every value present: what the JSON file says.
+/* scene.h - a scene as plain structs, every value present: the contents of the JSON file.
  *
- * The tables in scene_tables.c name, type, default and bound each field; the reader fills the
- * structs by them and nothing else knows the JSON. cs_scene_check adds what ranges cannot say.
+ * The tables in scene_tables.c name, type, default and bound each field. The reader fills the
+ * structs by them, and no other code knows the JSON. cs_scene_check adds conditions that ranges
+ * cannot express.
+ *
+ * Absent values: an optional table has `present` false, a number is NAN, a choice or an index
+ * is -1.
  */
 #ifndef CS_SCENE_H
 #define CS_SCENE_H
@@ -14,15 +18,17 @@
 
 #include <clothsim/option.h>
 
-/* where the cloth's plane lies before `place` is applied */
+/* Plane of the cloth before `place` is applied. */
 enum cs_start { CS_START_HANGING, CS_START_FLAT };
 
+/* A rigid placement x = R p + translate; R from the matrix, or from the quaternion. */
 struct cs_pose {
     double translate[3]; /* m */
     double rotate[4];    /* quaternion x, y, z, w; normalised by cs_scene_check */
-    double matrix[9];    /* rows of a rotation matrix, used where present */
+    double matrix[9];    /* rows of a rotation matrix; first element NAN: absent */
 };
 
+/* A rectangular grid of particles, joined by springs. */
 struct cs_cloth {
     bool present;
     int64_t grid[2];   /* particles: columns, rows */
@@ -35,46 +41,47 @@ struct cs_cloth {
     double spin[3];     /* rad/s, about place.translate */
 };
 
-/* of a body or a collider: either a file or a shape */
+/* Triangle mesh of a body or a collider: from a file or generated. */
 struct cs_mesh_source {
     bool present;
     char file[CS_TEXT_MAX]; /* OBJ, relative to the scene file; "" = none */
     int32_t shape;          /* enum cs_mesh_shape, -1: none */
-    int64_t detail;         /* how finely a shape is divided */
-    double scale[3];        /* times the coordinates of file or shape */
+    int64_t detail;         /* divisions of a generated shape (trimesh_shape.c) */
+    double scale[3];        /* factors of the coordinates of file or shape */
     struct cs_pose place;
     double velocity[3]; /* m/s, of every free particle at time 0 */
     double spin[3];     /* rad/s, about place.translate */
 
-    /* not in the tables: made by the reader, owned by the scene's arena */
+    /* not in the tables: made by the reader, owned by the scene's arena; shared and constant */
     const struct cs_trimesh *geometry;
 };
 
 struct cs_shape_clusters;
-/* a body that is drawn back to its shape (Mueller et al. 2005), not held by springs */
+/* A body that is drawn to its shape (Mueller et al. 2005) instead of held by springs. */
 struct cs_shape_matching {
     bool present;
-    double alpha;      /* share of the way to the goals in a step; 1: rigid */
-    double beta;       /* share of the linear deformation in the goals */
+    double alpha;      /* fraction of the way to the goals per step; 1: rigid */
+    double beta;       /* fraction of the linear deformation in the goals */
     double alpha_step; /* s, length of that step; 0: alpha holds for a step of any length */
-    int64_t clusters;  /* parts that keep their shapes, each on its own */
-    double overlap;    /* of parts: share of a part's longest side */
+    int64_t clusters;  /* parts that each keep their shape */
+    double overlap;    /* of neighbouring parts, as a fraction of a part's longest side */
     bool springs;      /* the body's springs act too */
 
     /* not in the tables: made by the reader, owned by the scene's arena */
     const struct cs_shape_clusters *parts;
 };
 
-/* exactly one is not NAN */
+/* Mass of a body's particles; exactly one is not NAN. */
 struct cs_mass {
     double particle;      /* kg each */
-    double areal_density; /* kg/m2, lumped by each particle's share of the area */
-    double total;         /* kg, shared equally */
-    double degree;        /* kg for each spring at the particle */
+    double areal_density; /* kg/m2, times each particle's area */
+    double total;         /* kg, divided equally */
+    double degree;        /* kg per spring at the particle */
 };
 enum cs_damping_model { CS_DAMPING_RELATIVE, CS_DAMPING_AXIAL };
 enum cs_stiffness_unit { CS_STIFFNESS_N_PER_M, CS_STIFFNESS_N };
 
+/* Springs of a body. A stiffness in N is divided by the rest length of the spring. */
 struct cs_spring_law {
     double stretch, shear,
         bend;               /* N/m, or N (divided by the rest length); 0: no such springs */
@@ -83,12 +90,13 @@ struct cs_spring_law {
     int32_t stiffness_unit; /* enum cs_stiffness_unit */
 };
 
+/* An axis-parallel box that selects the particles in it. */
 struct cs_box {
     bool present;
     double min[3], max[3]; /* m, at the start */
 };
 
-/* in the order of cs_pin_names: corners, then edges */
+/* Corners, then edges of a cloth, in the order of cs_pin_names. */
 enum cs_pin_name {
     CS_PIN_TOP_LEFT,
     CS_PIN_TOP_RIGHT,
@@ -101,7 +109,7 @@ enum cs_pin_name {
     CS_PIN_EDGES
 };
 
-/* one of: a named corner or edge, a particle index, a box that holds the pinned particles */
+/* Selects pinned particles; one of: a named corner or edge, a particle index, a box. */
 struct cs_pin {
     int32_t at;    /* enum cs_pin_name, -1: not given */
     int64_t index; /* particle within the body, -1: not given */
@@ -110,16 +118,17 @@ struct cs_pin {
 
 enum cs_shading { CS_SHADING_SMOOTH, CS_SHADING_FLAT };
 
-/* Blinn-Phong coefficients; colours are linear RGB in 0..1 */
+/* Blinn-Phong coefficients (shade.c); colours are linear RGB in 0..1. */
 struct cs_material {
     double colour[3];
     double back_colour[3]; /* of the other side; first component NAN: as the front */
     double ambient, diffuse, specular, shininess;
     int32_t shading;           /* enum cs_shading */
     char texture[CS_TEXT_MAX]; /* PNG beside the scene file; "" = none */
-    double texture_repeat[2];  /* times over the cloth */
+    double texture_repeat[2];  /* repetitions over the cloth */
 };
 
+/* A deformable body: its shape, masses, springs, pins, contact and look. */
 struct cs_body {
     struct cs_cloth cloth; /* either this or the mesh */
     struct cs_mesh_source mesh;
@@ -128,14 +137,15 @@ struct cs_body {
     struct cs_mass mass;
     struct cs_spring_law springs;
     struct cs_list pins; /* struct cs_pin */
-    bool self_contact;   /* it keeps off itself: contact.law force */
-    double thickness;    /* m, range of its contact with bodies; 0: a share of its edges */
-    double friction;     /* Coulomb coefficient on itself */
-    double strain_limit; /* longest length of a stretch spring / rest length; NAN: none */
-    int64_t strain_limit_sweeps;
+    bool self_contact;   /* contact with itself; needs contact.law force */
+    double thickness;    /* m, range of its contact with bodies; 0: a fraction of its edges */
+    double friction;     /* Coulomb coefficient of self-contact */
+    double strain_limit; /* max length of a stretch spring / rest length; NAN: none */
+    int64_t strain_limit_sweeps; /* passes over the springs per step */
     struct cs_material material;
 };
 
+/* Keys of the collider shapes; distances are in shape_NAME.c. */
 struct cs_sphere {
     bool present;
     double centre[3], radius; /* m */
@@ -150,7 +160,7 @@ struct cs_floor {
     double height; /* m: the plane y = height */
     double extent; /* m, as above */
 };
-/* a collider; the box that holds pins is struct cs_box */
+/* A collider; the box that selects pins is struct cs_box. */
 struct cs_cuboid {
     bool present;
     double centre[3], size[3]; /* m: whole sides, along its own axes */
@@ -162,7 +172,7 @@ struct cs_capsule {
     double from[3], to[3]; /* m, centres of the round ends */
     double radius;         /* m */
 };
-/* X(name, keys, text): the shapes of colliders. A shape has here its keys, and all else in its
+/* X(name, keys, text): the shapes of colliders. A shape has its keys here, and all else in its
  * own file: struct cs_table cs_NAME_keys and struct cs_shape cs_shape_NAME (collider.h). A mesh
  * has its keys with those of bodies. */
 #define CS_SHAPE_LIST(X)                                                                       \
@@ -174,30 +184,32 @@ struct cs_capsule {
     X(mesh, cs_mesh_source,                                                                    \
       "triangles, met by points, edges and triangles; for contact.law force")
 
+/* A rigid obstacle, at rest or moved by events. */
 struct cs_collider {
 #define X(name, keys, text) struct keys name; /* exactly one is present */
     CS_SHAPE_LIST(X)
 #undef X
     double friction;   /* Coulomb coefficient */
-    double absorption; /* share of the inward normal velocity taken away; < 0: restitution */
-    double thickness;  /* m, skin in front of the surface */
-    double colour[3];
+    double absorption; /* fraction of the inward normal velocity removed; < 0: restitution */
+    double thickness;  /* m, layer in front of the surface */
+    double colour[3];  /* linear RGB */
     bool visible;
 };
 
 enum cs_contact_law { CS_CONTACT_PROJECT, CS_CONTACT_FORCE };
 enum cs_contact_projection_start { CS_CONTACT_START_REFUSE, CS_CONTACT_START_MOVE_OUT };
-/* between particles and all colliders */
+/* Contact between particles and all colliders. */
 struct cs_contact_keys {
     int32_t law;   /* enum cs_contact_law */
-    int32_t start; /* enum cs_contact_start, of what starts inside a collider */
+    int32_t start; /* enum cs_contact_projection_start, of particles that start inside */
     /* of the law force: */
-    double stiffness;      /* N/m a particle; NAN: that of the softest body's stretch springs */
-    double damping;        /* s, times the stiffness of the contact: N s/m */
-    double friction_speed; /* m/s, at which friction has 0.7 of its limit */
+    double stiffness; /* N/m per particle; NAN: that of the softest body's stretch springs */
+    double damping;   /* s, times the stiffness of the contact: N s/m */
+    double friction_speed; /* m/s at which friction is 0.7 of its limit */
 };
 
 enum cs_wind_unit { CS_WIND_PA, CS_WIND_N };
+/* Uniform wind; strength in Pa (times each particle's area) or in N per particle. */
 struct cs_wind {
     bool present;
     double direction[3]; /* made a unit vector by cs_scene_check */
@@ -206,64 +218,71 @@ struct cs_wind {
 };
 enum cs_drag_unit { CS_DRAG_PARTICLE, CS_DRAG_AREA };
 
-/* Numbers of `forces` that each belong to one force of model/force/term_NAME.c, from 0 on, and
- * 0 where they are not given: X(key, unit, help). A row here is all that such a key takes. */
+/* X(key, unit, help): numbers of `forces` that each belong to one force of
+ * model/force/term_NAME.c; 0 if absent. Such a key needs nothing but its row. */
 #define CS_FORCE_NUMBERS(X) X(drag, "N s/m or Pa s/m", "force of still air: -drag * v")
 
+/* External forces of the whole scene. */
 struct cs_forces {
     double gravity[3]; /* m/s2 */
 #define X(key, unit, help) double key;
     CS_FORCE_NUMBERS(X)
 #undef X
     int32_t drag_unit;    /* enum cs_drag_unit */
-    double velocity_loss; /* share of the velocity removed after every internal step */
+    double velocity_loss; /* fraction of the velocity removed after every internal step */
     struct cs_wind wind;
 };
 
-/* what an event acts on */
+/* Particles that an event acts on. */
 struct cs_event_target {
     int64_t body;             /* -1: every body */
     struct cs_list particles; /* struct cs_pin; none: all of them */
 };
 
+/* An impulse at one moment. */
 struct cs_impact {
     bool present;
     struct cs_event_target target;
     double direction[3]; /* made a unit vector by cs_scene_check */
     double impulse;      /* N s, on all of them together */
 };
+/* A change of the wind, at once or linearly over the event's interval. */
 struct cs_wind_change {
     bool present;
     double direction[3]; /* first component NAN: as it was */
     double strength;     /* NAN: as it was */
 };
+/* A change of one number of the scene (event_key.h), at once or linearly. */
 struct cs_ramp {
     bool present;
     char key[CS_TEXT_MAX]; /* forces.gravity[1] */
     double value;          /* NAN: not given, refused */
 };
-/* of a picture that may be another than the camera's; values left out are the camera's and the
- * picture's, filled in by cs_scene_check */
+/* Viewpoint of a picture that may differ from the camera's. cs_scene_check fills absent values
+ * with those of the camera and of the picture. */
 struct cs_viewpoint {
     double eye[3], target[3], up[3]; /* m; first component NAN: absent */
     double fov;                      /* degrees, vertical; NAN: absent */
     double aspect;                   /* width over height; NAN: absent */
 };
+/* A force on the particles that are visible from a viewpoint in a rectangle of its picture. */
 struct cs_viewpoint_force {
     bool present;
     struct cs_viewpoint viewpoint;
-    double
-        rectangle[4]; /* left, top, right, bottom: shares of width and height, from top left */
-    double force;     /* N on each particle that is seen; NAN: not given, refused */
-    double duration;  /* s, of what happens at once; NAN: absent */
-    double refresh; /* looks a second over an interval, 0: only at its beginning; NAN: absent */
-    int64_t body;   /* -1: every body */
+    double rectangle[4]; /* left, top, right, bottom: fractions of the picture, from its top
+                            left */
+    double force;        /* N on each visible particle; NAN: not given, refused */
+    double duration;     /* s, of a force at one moment; NAN: absent */
+    double refresh;      /* 1/s, rate of visibility tests; 0: at the start only; NAN: absent */
+    int64_t body;        /* -1: every body */
 };
+/* A point of a path and its time. */
 struct cs_path_point {
     double at;       /* s; NAN: not given, refused */
     double point[3]; /* m */
 };
 enum cs_motion { CS_MOTION_LINEAR, CS_MOTION_SMOOTH };
+/* Holds particles and moves them along a path. */
 struct cs_grab {
     bool present;
     struct cs_event_target target;
@@ -271,11 +290,13 @@ struct cs_grab {
     int32_t motion;      /* enum cs_motion */
     bool relative;       /* points are shifts from where it was grabbed */
 };
+/* Pins particles, or releases them. */
 struct cs_pin_change {
     bool present;
     struct cs_event_target target;
 };
 
+/* Moves a collider along a path, or turns it. */
 struct cs_move {
     bool present;
     int64_t collider;    /* -1: not given, refused */
@@ -284,7 +305,7 @@ struct cs_move {
     double spin[3];      /* rad/s, about its centre */
 };
 
-/* exactly one of impact ... move; `at`, or `from` and `to` */
+/* An event: exactly one of impact ... move; with `at`, or with `from` and `to`. */
 struct cs_event {
     double at, from, to; /* s; NAN: absent */
     struct cs_impact impact;
@@ -300,11 +321,12 @@ struct cs_time {
     double fps; /* frame k shows t = k / fps */
 };
 
-/* one integrator option as text, checked when the integrator is known */
+/* An option of the integrator as text; checked when the integrator is known. */
 struct cs_setting {
     const char *name, *value; /* borrowed from the scene's arena */
 };
 
+/* A scene. cs_scene_finish releases it. */
 struct cs_scene {
     char about[CS_TEXT_MAX], source[CS_TEXT_MAX];
     struct cs_list bodies;    /* struct cs_body, at least one */
@@ -322,11 +344,11 @@ struct cs_scene {
     char integrator[64];                /* the "integrator" object is read apart */
     struct cs_list integrator_settings; /* struct cs_setting */
 
-    /* where it came from */
-    const char *path, *folder; /* as given; the folder that textures are relative to */
+    /* provenance */
+    const char *path, *folder; /* as given; base of relative paths */
     const char *text;          /* the file's text, for places in messages */
     size_t text_bytes;
-    struct cs_arena arena; /* owns all of the above */
+    struct cs_arena arena; /* owns everything that the scene points to */
 };
 
 /* The root of the scene's tables, and names of its choices. */
@@ -334,7 +356,7 @@ extern const struct cs_table cs_scene_table, cs_pin_table, cs_event_table;
 extern const char *const cs_pin_names[];
 extern const char *const cs_mesh_shape_names[];
 #define CS_INTEGRATOR_DEFAULT "implicit-linearised"
-/* Lists of a scene with their type. */
+/* Typed access to the lists of a scene. */
 static inline struct cs_body *cs_scene_bodies(const struct cs_scene *scene) {
     return scene->bodies.items;
 }
@@ -342,12 +364,12 @@ static inline struct cs_collider *cs_scene_colliders(const struct cs_scene *scen
     return scene->colliders.items;
 }
 
-/* The body is drawn to its shape instead of held by springs. */
+/* Returns true if the body is drawn to its shape and its springs do not act. */
 static inline bool cs_scene_springs_left_out(const struct cs_body *body) {
     return body->shape_matching.present && !body->shape_matching.springs;
 }
 
-/* Number of the first body that is drawn to its shape; bodies.n: there is none. */
+/* Returns the first body that is drawn to its shape; bodies.n if there is none. */
 static inline uint32_t cs_scene_first_matched(const struct cs_scene *scene) {
     uint32_t b = 0;
     while (b < scene->bodies.n && !cs_scene_bodies(scene)[b].shape_matching.present)
@@ -358,20 +380,21 @@ static inline uint32_t cs_scene_first_matched(const struct cs_scene *scene) {
 static inline const struct cs_event *cs_scene_events(const struct cs_scene *scene) {
     return scene->events.items;
 }
-/* 4096 x 4096 particles: about 10 GB with springs and solver */
+/* largest number of particles, 4096 x 4096: about 10 GB with springs and solver */
 #define CS_PARTICLES_MAX 16777216.0
 
-/* true if a file named in a scene lies in the scene's folder or below: a scene from elsewhere
- * must not open any file it names. */
+/* Returns true if a file named in a scene lies in the scene's folder or below. A scene from
+ * elsewhere must not open other files. */
 bool cs_scene_is_below(const char *file);
 
-/* Checks what single ranges cannot say (pins exist, one kind of mass, a size that fits in
- * memory, a camera that looks somewhere, ...) and normalises directions, quaternion and
- * normals. On failure: CS_ERR_SCENE, and *path_out (CS_TEXT_MAX bytes) holds the JSON path of
- * the value at fault, so that the caller can add its place in the file; *error's message starts
- * behind it. */
+/* Checks conditions that single ranges cannot express: pins exist, one kind of mass, a size
+ * that fits in memory, a camera that looks somewhere, and others. Normalises directions and
+ * quaternions. Fails with CS_ERR_SCENE; *path_out (CS_TEXT_MAX bytes) then holds the JSON path
+ * of the faulty value, from which the caller finds its place in the file. *error's message goes
+ * after it. */
 enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_error *error);
 
+/* Frees the arena; safe on a zeroed scene. */
 void cs_scene_finish(struct cs_scene *scene);
 
 #endif

@@ -1,4 +1,4 @@
-/* What single ranges cannot say about a scene. */
+/* Checks of a scene that ranges of single values cannot express. */
 #include "scene/body_pairs.h"
 #include "scene/collider.h"
 #include "scene/event_check.h"
@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Checks that the body has all pinned particles. */
 static enum cs_status check_pins(const struct cs_check *at, const char *body,
                                  const struct cs_body *of) {
     char path[128], fault[160];
@@ -21,6 +22,7 @@ static enum cs_status check_pins(const struct cs_check *at, const char *body,
     return CS_OK;
 }
 
+/* Refuses a mass per spring for a body without springs: its particles would have no mass. */
 static enum cs_status check_mass(const struct cs_check *at, const char *body,
                                  const struct cs_body *of) {
     char path[128];
@@ -59,7 +61,7 @@ static enum cs_status check_network(const struct cs_check *at, const char *body,
     return CS_OK;
 }
 
-/* what acts through springs cannot be asked of a body whose springs are left out */
+/* Refuses options of springs for a body whose springs do not act. */
 static enum cs_status check_matching(const struct cs_check *at, const char *body,
                                      const struct cs_body *of) {
     char path[128];
@@ -72,6 +74,7 @@ static enum cs_status check_matching(const struct cs_check *at, const char *body
         "shape_matching leaves the springs out, expected shape_matching.springs true");
 }
 
+/* Checks one body: a shape, then all that depends on it. */
 static enum cs_status check_body(const struct cs_check *at, uint32_t b, struct cs_body *body) {
     char path[64];
     snprintf(path, sizeof path, "bodies[%u]", b);
@@ -86,6 +89,7 @@ static enum cs_status check_body(const struct cs_check *at, uint32_t b, struct c
     return CS_OK;
 }
 
+/* Checks all bodies, and their particles together against CS_PARTICLES_MAX. */
 static enum cs_status check_bodies(const struct cs_check *at, struct cs_scene *scene) {
     struct cs_body *bodies = cs_scene_bodies(scene);
     double particles = 0;
@@ -102,6 +106,7 @@ static enum cs_status check_bodies(const struct cs_check *at, struct cs_scene *s
     return CS_OK;
 }
 
+/* Checks a collider by its shape's own check. */
 static enum cs_status check_collider(const struct cs_check *at, uint32_t c,
                                      struct cs_collider *collider) {
     const struct cs_shape *shape = cs_collider_shape(collider);
@@ -117,7 +122,7 @@ static enum cs_status check_colliders(const struct cs_check *at, struct cs_scene
     return CS_OK;
 }
 
-/* the first pair of the list with the bodies of pair p */
+/* Returns the first pair of the list with the bodies of pair p, in either order. */
 static uint32_t find_pair(const struct cs_body_pair_keys *pairs, uint32_t p) {
     const int64_t *of = pairs[p].bodies;
     uint32_t k = 0;
@@ -127,6 +132,7 @@ static uint32_t find_pair(const struct cs_body_pair_keys *pairs, uint32_t p) {
     return k;
 }
 
+/* Checks that listed pairs are two different bodies, each pair once. */
 static enum cs_status check_pairs(const struct cs_check *at, const struct cs_scene *scene) {
     const struct cs_body_pair_keys *pairs = scene->pairs.list.items;
     char path[64];
@@ -149,7 +155,8 @@ static enum cs_status check_pairs(const struct cs_check *at, const struct cs_sce
     return CS_OK;
 }
 
-/* surfaces of bodies meet by a force alone */
+/* Refuses contact between surfaces unless the contact law is a force: projection handles single
+ * particles against colliders with a distance. */
 static enum cs_status check_meetings(const struct cs_check *at, const struct cs_scene *scene) {
     char path[64] = "pairs";
     if (check_pairs(at, scene))
@@ -168,6 +175,7 @@ static enum cs_status check_meetings(const struct cs_check *at, const struct cs_
         "expected contact.law force");
 }
 
+/* Checks that the keys of a camera path ascend in time and that each is a view. */
 static enum cs_status check_camera_path(const struct cs_check *at,
                                         const struct cs_camera *camera) {
     const struct cs_camera_key *keys = camera->path.items;
@@ -207,6 +215,7 @@ static enum cs_status check_light(const struct cs_check *at, struct cs_light *li
     return direction ? cs_check_unit(at, "light.direction", light->direction, 3) : CS_OK;
 }
 
+/* Checks samples, range and background of the pictures. */
 static enum cs_status check_render(const struct cs_check *at, const struct cs_render *render) {
     if (render->samples != 1 && render->samples != 4)
         return cs_check_refuse(at, "render.samples", "found %lld, expected 1 or 4",

@@ -1,4 +1,4 @@
-/* Turns bodies into particles: positions, shares of area, pins. */
+/* Makes particles of bodies: positions, areas, pins. */
 #include "scene/shape.h"
 
 #include "base/portable_sine.h"
@@ -21,6 +21,7 @@ const double *cs_shape_velocity(const struct cs_body *body) {
     return body->mesh.present ? body->mesh.velocity : body->cloth.velocity;
 }
 
+/* R = I + 2 w [v]x + 2 [v]x^2 for the quaternion (v, w), multiplied out. */
 void cs_quaternion_matrix(const double q[4], double r[9]) {
     const double x = q[0], y = q[1], z = q[2], w = q[3];
     const double turned[9] = {
@@ -37,16 +38,17 @@ void cs_pose_rotation(const struct cs_pose *place, double r[9]) {
         memcpy(r, place->matrix, 9 * sizeof *r);
 }
 
-/* place of particle i between the edges, 0 to 1; 0.5 for a single one */
+/* Position of row or column i between the edges as a fraction 0..1; 0.5 for a single one. */
 static double fraction_of(uint32_t i, uint32_t count) {
     return count > 1 ? (double)i / (count - 1) : 0.5;
 }
 
-/* sin(pi a) for a in 0..1, 0 at both ends */
+/* sin(pi a) for a in 0..1: 0 at both ends, 1 in the middle. */
 static double half_sine(double a) {
     return cs_quarter_sine(2 * (a > 0.5 ? 1 - a : a));
 }
 
+/* Places the vertices of a mesh: x = R p + translate. */
 static void place_mesh(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
     const struct cs_trimesh *mesh = body->mesh.geometry;
     const double *p = mesh->positions, *shift = body->mesh.place.translate;
@@ -58,6 +60,7 @@ static void place_mesh(const struct cs_body *body, uint32_t n, uint32_t first, d
                                    r[3 * c + 2] * p[2 * (size_t)mesh->n + i] + shift[c];
 }
 
+/* Places a grid: row 0 on top, with the bump out of its plane, lying or hanging. */
 static void place_grid(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
     const struct cs_cloth *cloth = &body->cloth;
     const uint32_t columns = (uint32_t)cloth->grid[0], rows = (uint32_t)cloth->grid[1];
@@ -102,6 +105,7 @@ double cs_shape_area(const struct cs_body *body, uint32_t i) {
     return width * height;
 }
 
+/* Returns true if the particle in row i, column j belongs to a named corner or edge. */
 static bool is_named(enum cs_pin_name name, uint32_t i, uint32_t j, uint32_t rows,
                      uint32_t columns) {
     /* row 0 is on top, column 0 at the left */
@@ -129,6 +133,7 @@ static bool is_named(enum cs_pin_name name, uint32_t i, uint32_t j, uint32_t row
     return false;
 }
 
+/* Returns true if a particle lies in a box, borders included. */
 static bool is_inside(const struct cs_box *box, uint32_t n, size_t at, const double *x) {
     for (size_t c = 0; c < 3; c++)
         if (x[c * n + at] < box->min[c] || x[c * n + at] > box->max[c])

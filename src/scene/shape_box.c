@@ -1,4 +1,9 @@
-/* The box with rounded edges. */
+/* The box with rounded edges: all points within a radius of a smaller box, its core.
+ *
+ * With half sizes c of the core and o_i = |x_i| - c_i in the own frame
+ *   d = |max(o, 0)| + min(max_i o_i, 0) - r.
+ * The gradient is the unit vector from the nearest point of the core; inside the core it is the
+ * normal of the nearest face. shape_core.c has the smoothed distance and its derivatives. */
 #include "scene/shape.h"
 #include "scene/shape_core.h"
 #include "scene/table_rows.h"
@@ -19,6 +24,8 @@ static const struct cs_option cuboid_rows[] = {
 const struct cs_table cs_box_keys = {ROWS(cuboid_rows), .size = sizeof(struct cs_cuboid),
                                      .optional = true};
 
+/* Fills an absent radius, a twentieth of the shortest edge, and refuses one above half of it.
+ */
 static enum cs_status check(const struct cs_check *at, const char *path,
                             struct cs_collider *collider) {
     struct cs_cuboid *box = &collider->box;
@@ -34,6 +41,7 @@ static enum cs_status check(const struct cs_check *at, const char *path,
     return cs_check_unit(at, key, box->rotate, 4);
 }
 
+/* The core is the box shrunk by the radius; the outer faces are where `size` says. */
 static void pose(const struct cs_collider *collider, struct cs_posed_collider *out) {
     const struct cs_cuboid *box = &collider->box;
     double r[9];
@@ -47,7 +55,7 @@ static void pose(const struct cs_collider *collider, struct cs_posed_collider *o
     }
 }
 
-/* inside the core: out by the nearest face */
+/* Exact distance; inside the core the nearest face leads out. */
 static double distance(const struct cs_posed_collider *box, double skin, const double p[3],
                        double n[3]) {
     double x[3], out[3];
@@ -59,7 +67,8 @@ static double distance(const struct cs_posed_collider *box, double skin, const d
     return fabs(x[face]) - box->half_sizes[face] - box->radius - skin;
 }
 
-/* of one diagonal over a sharp edge */
+/* Height of a chord of one cell over a sharp right-angled edge, at most a quarter of the
+ * smallest half size. */
 static double chord_depth(const struct cs_posed_collider *box, double cell) {
     const double *core = box->half_sizes;
     const double least = fmin(core[0], fmin(core[1], core[2])) + box->radius;

@@ -1,4 +1,8 @@
-/* The capsule. */
+/* The capsule: all points within a radius of a segment.
+ *
+ * In the own frame the segment runs along axis 1 from -c to c, so the core's other half sizes
+ * are 0. The distance is d = |(x_0, sign(x_1) max(|x_1| - c, 0), x_2)| - r; its gradient is
+ * that vector divided by its length (shape_core.c). */
 #include "base/vec3.h"
 #include "scene/shape_core.h"
 #include "scene/table_rows.h"
@@ -13,6 +17,7 @@ static const struct cs_option capsule_rows[] = {
 const struct cs_table cs_capsule_keys = {ROWS(capsule_rows), .size = sizeof(struct cs_capsule),
                                          .optional = true};
 
+/* Refuses a segment shorter than 1e-9 m, which has no direction. */
 static enum cs_status check(const struct cs_check *at, const char *path,
                             struct cs_collider *collider) {
     const struct cs_capsule *capsule = &collider->capsule;
@@ -26,6 +31,7 @@ static enum cs_status check(const struct cs_check *at, const char *path,
                : cs_check_refuse(at, key, "from and to are the same, expected a sphere");
 }
 
+/* Centre and half length of the segment, and a frame along it. */
 static void pose(const struct cs_collider *collider, struct cs_posed_collider *out) {
     const struct cs_capsule *capsule = &collider->capsule;
     out->radius = capsule->radius;
@@ -38,7 +44,7 @@ static void pose(const struct cs_collider *collider, struct cs_posed_collider *o
     cs_core_complete_axes(out->axes);
 }
 
-/* on the axis it is up that leads out */
+/* Exact distance; on the segment itself, where any direction leads out, the normal is up. */
 static double distance(const struct cs_posed_collider *capsule, double skin, const double p[3],
                        double n[3]) {
     double x[3], out[3];

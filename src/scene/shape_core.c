@@ -1,11 +1,21 @@
-/* The distance from a core - a segment or a box - less a radius: exactly, and smoothly for the
+/* The distance from a core - a segment or a box - less a radius: exactly, and smoothed for the
  * force.
  *
- * In the obstacle's own frame, with the half sizes c of the core and the radius r:
- *   exact    |max(|x_i| - c_i, 0)| + min(max_i(|x_i| - c_i), 0) - r
- *   smooth   |q| - S(-max_i(|x_i| - c_i)) - r,   q_i = sign(x_i) S(|x_i| - c_i)
- * with S of cs_smooth_positive; where the core has no extent along an axis, q_i = x_i. The
- * middle term is there for boxes only. It is 0 everywhere outside.
+ * In the collider's own frame, with the half sizes c of the core, the radius r and o_i = |x_i|
+ * - c_i:
+ *   exact    d = |max(o, 0)| + min(max_i o_i, 0) - r
+ * Outside the core the gradient is max(o_i, 0) sign(x_i) / |max(o, 0)|; inside a box it is
+ * sign(x_i) along the axis of the largest o_i, the nearest face. The gradient jumps inside the
+ * core, and its derivative jumps between the regions of faces, edges and corners.
+ *
+ *   smooth   d = |q| - S(-max_i o_i) - r,   q_i = sign(x_i) S(o_i)
+ * with S of cs_smooth_positive; if the core has no extent along an axis, q_i = x_i. The middle
+ * term exists for boxes only, and is 0 outside the core but for its band. With s_i = S'(o_i)
+ * and b_i = sign(x_i) S''(o_i) the derivatives of |q| are
+ *   g_i  = q_i s_i / |q|
+ *   h_ij = ((s_i^2 + q_i b_i) [i = j] - g_i g_j) / |q|
+ * The gradient of the middle term is sign(x_f) S'(-o_f) along the nearest face's axis f, its
+ * second derivative -S''(-o_f).
  */
 #include "scene/shape_core.h"
 
@@ -14,9 +24,10 @@
 
 #include <string.h>
 
-/* share of the radius over which the core's features are blended, to both sides */
+/* fraction of the radius over which S blends faces, edges and corners, to both sides */
 #define BAND 0.5
 
+/* The coordinate axis less parallel to axes[1] keeps the cross product away from 0. */
 void cs_core_complete_axes(double axes[3][3]) {
     const double *along = axes[1];
     const double other[3] = {fabs(along[0]) < 0.6, fabs(along[0]) >= 0.6, 0};
@@ -50,7 +61,7 @@ double cs_core_beyond(const struct cs_posed_collider *collider, const double out
     return length - collider->radius;
 }
 
-/* The smooth distance in the own frame: gradient g (3) and Hessian h (3,3). */
+/* |q| - r in the own frame; g (3): gradient, h (3,3): Hessian. */
 static double smooth_own(const struct cs_posed_collider *collider, const double x[3],
                          double g[3], double h[3][3]) {
     double q[3], slope[3], bend[3], soft[3];
@@ -72,14 +83,14 @@ static double smooth_own(const struct cs_posed_collider *collider, const double 
     return length - collider->radius;
 }
 
-/* the core is a box with a volume */
+/* Returns true if the core is a box with a volume. */
 static bool has_inside(const struct cs_posed_collider *collider) {
     const double *core = collider->half_sizes;
     return core[0] > 0 && core[1] > 0 && core[2] > 0;
 }
 
-/* the face of a box that x lies in front of, further from its rim than what is blended; -1: it
- * lies in front of none */
+/* The face of a box that x lies in front of, away from the blended bands of its edges; -1:
+ * none. The distance is exact there and needs no square root. */
 static int face_below(const struct cs_posed_collider *collider, const double x[3]) {
     int face = -1, within = 0;
     for (int k = 0; k < 3; k++) {
@@ -92,6 +103,7 @@ static int face_below(const struct cs_posed_collider *collider, const double x[3
     return within == 2 && has_inside(collider) ? face : -1;
 }
 
+/* Distance in front of one face: linear, so the Hessian is 0. */
 static double smooth_face(const struct cs_posed_collider *collider, int face, double x,
                           double gradient[3], double hessian[6]) {
     memset(hessian, 0, 6 * sizeof *hessian);
@@ -100,7 +112,7 @@ static double smooth_face(const struct cs_posed_collider *collider, int face, do
     return fabs(x) - collider->half_sizes[face] - collider->radius;
 }
 
-/* what is to be added for the inside of the core */
+/* Adds the term of the inside of the core to gradient and Hessian; returns its value. */
 static double smooth_core(const struct cs_posed_collider *collider, const double x[3],
                           double g[3], double h[3][3]) {
     double soft[3];
@@ -112,6 +124,8 @@ static double smooth_core(const struct cs_posed_collider *collider, const double
     return -soft[0];
 }
 
+/* Rotates the derivatives to the world: gradient R^T g, Hessian R^T h R with the axes as
+ * rows. */
 double cs_core_smooth(const struct cs_posed_collider *collider, const double p[3],
                       double gradient[3], double hessian[6]) {
     double x[3], g[3], h[3][3], rows[3][3], out[3][3];

@@ -1,23 +1,25 @@
-/* The surface about a core: whether a line comes into it, and its triangles.
+/* The surface around a core: its line test and its triangles.
  *
- * The squared distance to the core, sum max(|x_i| - c_i, 0)^2, is convex along a line and
- * quadratic between the points where the line crosses |x_i| = c_i. Its slope is linear there,
- * so that the least distance is found exactly. */
+ * Along a line the squared distance to the core, sum_i max(|x_i| - c_i, 0)^2, is convex and
+ * piecewise quadratic: pieces end where the line crosses a plane |x_i| = c_i. Its slope is
+ * linear on each piece. The minimum is in the first piece at whose end the slope is not
+ * negative, and linear interpolation of the slope finds it exactly. */
 #include "scene/shape_core.h"
 
 #include "base/portable_sine.h"
 #include "base/vec3.h"
 
-/* parts of the triangles' lattice, and its lines along each axis less one */
+/* steps from the middle to the border of a face, and quads along an axis of the cube: PARTS
+ * steps to either side of the doubled middle line */
 enum { PARTS = 6, LINES = 2 * PARTS + 1 };
 
-/* a line in the obstacle's own frame */
+/* A line x = from + s way in the collider's own frame. */
 struct line {
     const double *core;
     double from[3], way[3];
 };
 
-/* squared distance to the core at s, and half its slope */
+/* Squared distance to the core at s in m2; *slope: half its derivative. */
 static double squared_at(const struct line *line, double s, double *slope) {
     double squared = 0;
     *slope = 0;
@@ -30,7 +32,9 @@ static double squared_at(const struct line *line, double s, double *slope) {
     return squared;
 }
 
-/* the ends and the crossings between them, ascending; returns their number */
+/* Writes the ends 0 and share and the crossings between them, ascending by insertion; returns
+ * their number, 8 at most. A line parallel to a plane gives an infinite or undefined s, which
+ * the comparison leaves out. */
 static int find_crossings(const struct line *line, double share, double at[8]) {
     int n = 2;
     at[0] = 0;
@@ -49,6 +53,7 @@ static int find_crossings(const struct line *line, double share, double at[8]) {
     return n;
 }
 
+/* Minimum of the squared distance for s from 0 to share, in m2. */
 static double least_squared(const struct line *line, double share) {
     double at[8], before, after;
     const int n = find_crossings(line, share, at);
@@ -76,13 +81,14 @@ bool cs_core_meets_line(const struct cs_posed_collider *collider, const double f
     return least_squared(&line, share) < collider->radius * collider->radius;
 }
 
-/* tan(step / PARTS * 45 degrees) */
+/* tan of a fraction of 45 degrees: equal steps of angle on a face of the cube */
 static double tangent(int step) {
     const double r = (step < 0 ? -step : step) / (2.0 * PARTS);
     const double t = cs_quarter_sine(r) / cs_quarter_sine(1 - r);
     return step < 0 ? -t : t;
 }
 
+/* Moves the points of a cube's lattice to the surface of the shape. */
 static void bend(const struct cs_posed_collider *collider, struct cs_trimesh *mesh) {
     const size_t n = mesh->n;
     for (size_t i = 0; i < n; i++) {
@@ -99,13 +105,15 @@ static void bend(const struct cs_posed_collider *collider, struct cs_trimesh *me
     }
 }
 
+/* Compares positions exactly: coinciding points were computed alike. */
 static bool is_same(const struct cs_trimesh *mesh, size_t i, size_t j) {
     const double *p = mesh->positions;
     const size_t n = mesh->n;
     return p[i] == p[j] && p[n + i] == p[n + j] && p[2 * n + i] == p[2 * n + j];
 }
 
-/* Points at one place become one, and triangles without area go. */
+/* Merges points of the same position and removes triangles that lose their area by it.
+ * Quadratic in the number of points, which is fixed and small. */
 static enum cs_status weld(struct cs_trimesh *mesh, struct cs_arena *arena,
                            struct cs_error *error) {
     uint32_t *to = cs_arena_alloc_array(arena, mesh->n, sizeof *to, error), kept = 0, left = 0;

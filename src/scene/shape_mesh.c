@@ -1,5 +1,11 @@
-/* The mesh as a collider. A line is held against it triangle by triangle (Moeller, Trumbore
- * 1997). Its keys are with those of bodies, scene_tables.c. */
+/* The mesh as a collider. It has no distance: its triangles meet bodies in pairs (model/pair).
+ *
+ * A line from + s way meets a triangle p0, p0 + u, p0 + v (Moeller, Trumbore 1997) if
+ *   from - p0 + s way = a u + b v,   a, b >= 0,   a + b <= 1,   0 <= s < share.
+ * Cramer's rule gives a, b and s over one determinant. The code compares the numerators with it
+ * instead of dividing, so a line in the plane of the triangle needs no special case.
+ *
+ * The keys of the mesh are with those of bodies, in scene_tables.c. */
 #include "base/vec3.h"
 #include "scene/collider.h"
 #include "scene/shape.h"
@@ -22,6 +28,7 @@ static void pose(const struct cs_collider *collider, struct cs_posed_collider *o
             out->axes[k][c] = r[3 * c + k];
 }
 
+/* Infinite: contact by distance never acts on a mesh. */
 static double distance(const struct cs_posed_collider *mesh, double skin, const double p[3],
                        double n[3]) {
     (void)skin, (void)p;
@@ -35,7 +42,7 @@ static double smooth(const struct cs_posed_collider *mesh, const double p[3], do
     return distance(mesh, 0, p, g);
 }
 
-/* a line in its own frame goes through its triangle t, rims included */
+/* Returns true if a line in the mesh's own frame goes through triangle t, edges included. */
 static bool meets_triangle(const struct cs_trimesh *mesh, uint32_t t, const double from[3],
                            const double way[3], double share) {
     const uint32_t *corners = mesh->triangles + 3 * (size_t)t;
@@ -54,6 +61,7 @@ static bool meets_triangle(const struct cs_trimesh *mesh, uint32_t t, const doub
     return a >= 0 && b >= 0 && a + b <= size && at >= 0 && at < share * size;
 }
 
+/* Tests the triangles one by one until one is met. */
 static bool meets_line(const struct cs_posed_collider *obstacle, const double from[3],
                        const double way[3], double share) {
     const struct cs_trimesh *mesh = obstacle->collider->mesh.geometry;
@@ -67,7 +75,7 @@ static bool meets_line(const struct cs_posed_collider *obstacle, const double fr
     return meets;
 }
 
-/* borrowed */
+/* Copies the struct; its arrays stay those of the scene. */
 static enum cs_status triangles(const struct cs_posed_collider *obstacle,
                                 struct cs_trimesh *mesh, struct cs_arena *arena,
                                 struct cs_error *error) {

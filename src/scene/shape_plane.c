@@ -1,4 +1,7 @@
-/* The plane, and the floor: a plane that is horizontal. */
+/* The plane, and the floor: a horizontal plane.
+ *
+ * With a point c and the unit normal n the signed distance is d(p) = n.(p - c), negative behind
+ * the plane. Its gradient is n and its Hessian 0: exact and smooth distance are the same. */
 #include "base/vec3.h"
 #include "scene/collider.h"
 #include "scene/shape_core.h"
@@ -26,6 +29,7 @@ static const struct cs_option floor_rows[] = {
 const struct cs_table cs_floor_keys = {ROWS(floor_rows), .size = sizeof(struct cs_floor),
                                        .optional = true};
 
+/* Makes the normal a unit vector; refuses the zero vector. */
 static enum cs_status check(const struct cs_check *at, const char *path,
                             struct cs_collider *collider) {
     char key[CS_TEXT_MAX];
@@ -33,6 +37,7 @@ static enum cs_status check(const struct cs_check *at, const char *path,
     return cs_check_unit(at, key, collider->plane.normal, 3);
 }
 
+/* The normal is axes[1]; the two others only orient the square that is drawn. */
 static void pose_plane(const struct cs_collider *collider, struct cs_posed_collider *out) {
     memcpy(out->centre, collider->plane.point, sizeof out->centre);
     memcpy(out->axes[1], collider->plane.normal, sizeof out->axes[1]);
@@ -59,7 +64,7 @@ static double smooth(const struct cs_posed_collider *plane, const double p[3], d
     return distance(plane, 0, p, g);
 }
 
-/* one end is behind the plane */
+/* Returns true if an end of the line is behind the plane: d is linear along it. */
 static bool meets_line(const struct cs_posed_collider *plane, const double from[3],
                        const double way[3], double share) {
     const double *normal = plane->axes[1];
@@ -69,7 +74,8 @@ static bool meets_line(const struct cs_posed_collider *plane, const double from[
     return distance < 0 || distance + share * cs_vec3_dot(normal, way) < 0;
 }
 
-/* the square that is drawn of it */
+/* Makes the square that is drawn, of half side `extent`, in the plane y = 0 of its own frame.
+ */
 static enum cs_status triangles(const struct cs_posed_collider *plane, struct cs_trimesh *mesh,
                                 struct cs_arena *arena, struct cs_error *error) {
     static const signed char signs[4][2] = {{-1, -1}, {-1, 1}, {1, 1}, {1, -1}};

@@ -1,10 +1,12 @@
-/* The sphere. */
+/* The sphere, with centre c and radius r. With l = |p - c|:
+ *   d = l - r,   gradient n = (p - c) / l,   Hessian (I - n n^T) / l
+ * In the centre the normal is up and the Hessian 0. */
 #include "scene/shape_core.h"
 #include "scene/table_rows.h"
 
 #include <string.h>
 
-/* parts of an edge of the icosahedron that its triangles are made from */
+/* parts of an edge of the icosahedron whose faces become triangles (trimesh_shape.c) */
 enum { DETAIL = 8 };
 
 static const struct cs_option sphere_rows[] = {
@@ -24,7 +26,7 @@ static double distance(const struct cs_posed_collider *sphere, double skin, cons
     return cs_core_from_point(p, sphere->centre, n) - sphere->radius - skin;
 }
 
-/* exact: there are no features to blend */
+/* The exact distance is smooth: there are no features to blend. */
 static double smooth(const struct cs_posed_collider *sphere, const double p[3], double g[3],
                      double h[6]) {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -35,7 +37,8 @@ static double smooth(const struct cs_posed_collider *sphere, const double p[3], 
     return length - sphere->radius;
 }
 
-/* the line comes nearer to the centre than the radius */
+/* Returns true if the line comes nearer to the centre than the radius. Its nearest point is at
+ * the fraction (c - from).way / way^2, limited to 0..share. */
 static bool meets_line(const struct cs_posed_collider *sphere, const double from[3],
                        const double way[3], double share) {
     const double to[3] = {sphere->centre[0] - from[0], sphere->centre[1] - from[1],

@@ -1,10 +1,15 @@
-/* table_rows.h - one line for each row of the scene's tables. */
+/* table_rows.h - macros for the rows of the scene's tables (struct cs_option), one line each.
+ *
+ * Arguments: s: struct; f: its field, also the key's name; unit_; def_ or defs_: default,
+ * ABSENT or NULL if there is none; min_, max_: range, ends included; help_: text of schema and
+ * manual. */
 #ifndef CS_TABLE_ROWS_H
 #define CS_TABLE_ROWS_H
 
 #include <clothsim/option.h>
 #include <math.h>
 
+/* largest magnitude of a coordinate or stiffness; absent default; rows of a table */
 #define BIG         1e9
 #define ABSENT      ((double)NAN)
 #define ROWS(array) .rows = array, .n = sizeof array / sizeof *array

@@ -1,4 +1,4 @@
-/* Views that have no direction, or no way up. */
+/* Finds views without a direction, or without a way up. */
 #include "scene/viewpoint.h"
 
 #include <math.h>

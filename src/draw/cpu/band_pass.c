@@ -1,5 +1,9 @@
-/* band_pass.c - a band of the picture: what each sample shows, its colour, what lies over it.
- */
+/* band_pass.c - draws a band of the picture: visibility, fragments, blending, lines, resolve.
+ *
+ * Visibility first, shading second: all triangles of the band are filled with depth and index
+ * alone. Then each pixel is shaded once per visible triangle, not once per sample and never for
+ * hidden surfaces. Fragments are collected by surface and side, since a full slot of them is
+ * shaded in vector loops with one material. */
 #include "draw/cpu/band_pass.h"
 
 void cs_band_pass_bin(struct cs_band_pass *drawing) {
@@ -12,12 +16,14 @@ void cs_band_pass_bin(struct cs_band_pass *drawing) {
         cs_bins_put(&drawing->bins, (uint32_t)i, all->items[i].top, all->items[i].bottom);
 }
 
+// the value of a plane at (x, y) pixels from its origin
 static float value_at(const struct cs_plane_equation *slope, float x, float y) {
     return slope->value + slope->d_dx * x + slope->d_dy * y;
 }
 
-/* Texels from one pixel to the next, squared: the longer way of that along a row and that along
- * a column, in blocks of 2 x 2 pixels from the bottom left. */
+/* Squared texels per pixel: the longer of the steps along a row and along a column (rho^2 of
+ * mipmap.c). Differences are taken in blocks of 2 x 2 pixels from the bottom left, as OpenGL
+ * does. */
 static float texels_of(const struct cs_band_pass *drawing, const struct cs_triangle *t,
                        const struct cs_mipmap *mips, int x, int y) {
     const int last = drawing->shading.height - 1;
@@ -37,7 +43,7 @@ static float texels_of(const struct cs_band_pass *drawing, const struct cs_trian
     return squares[0] > squares[1] ? squares[0] : squares[1];
 }
 
-// the open fragments of one side of a surface
+// the slot of one side of a surface; its fragments are shaded first if it is full or another's
 static struct cs_fragments *slot_of(const struct cs_band_pass *drawing,
                                     const struct cs_triangle *t, struct cs_tile_buffer *tiles) {
     const uint32_t key = 2u * t->surface + t->is_back_facing;
@@ -50,7 +56,7 @@ static struct cs_fragments *slot_of(const struct cs_band_pass *drawing,
     return slot;
 }
 
-// m along the view, as the depth of a pixel's middle has it, but not sunk
+// m along the view from the depth at a pixel's middle, without the depth bias
 static float along_of(const struct cs_band_pass *drawing, const struct cs_triangle *t,
                       const struct cs_shading_material *coat, int x, int y) {
     const float *depth = drawing->shading.rays.depth;
@@ -59,7 +65,7 @@ static float along_of(const struct cs_band_pass *drawing, const struct cs_triang
     return depth[0] + z * (depth[1] - depth[0]) - coat->depth_bias;
 }
 
-// what a triangle shows at a pixel: its colour comes later
+// adds the fragment of a triangle at a pixel; shading writes its colour to colours[out] later
 static void add_fragment(const struct cs_band_pass *drawing, const struct cs_triangle *t, int x,
                          int y, uint32_t out, struct cs_tile_buffer *tiles) {
     struct cs_fragments *f = slot_of(drawing, t, tiles);
@@ -80,7 +86,7 @@ static void add_fragment(const struct cs_band_pass *drawing, const struct cs_tri
 }
 
 /* The square behind square `id` at a sample: the last one drawn before it that was nearest
- * then. CS_NOTHING: the sky. */
+ * then; CS_NOTHING: the sky. */
 static int32_t find_behind(const struct cs_band_pass *drawing, int32_t id, int x, int y,
                            int sample) {
     const uint16_t surface = drawing->triangles.items[id].surface;
@@ -100,13 +106,15 @@ static int32_t find_behind(const struct cs_band_pass *drawing, int32_t id, int x
     return behind;
 }
 
-// a pixel of the picture
+// position of a pixel
 struct spot {
     int x, y;
-    size_t pixel; // its number on the board
-    uint32_t sky; // which of the board's colours the sky has in its row
+    size_t pixel; // its index in the tile buffer
+    uint32_t sky; // index of the colour of the sky in its row
 };
 
+/* Adds the fragment of triangle `id`. A fading one also needs the colour behind it: another
+ * fragment, found recursively, or the sky. Pairs are listed from back to front. */
 static void add_shown(const struct cs_band_pass *drawing, int32_t id, const struct spot *spot,
                       int sample, uint32_t out, struct cs_tile_buffer *tiles) {
     const struct cs_triangle *t = drawing->triangles.items + id;
@@ -124,7 +132,7 @@ static void add_shown(const struct cs_band_pass *drawing, int32_t id, const stru
     add_fragment(drawing, t, spot->x, spot->y, out, tiles);
 }
 
-// a pixel whose samples show several things: one fragment of each, their colours in a row
+// a pixel whose samples show several triangles: one fragment of each, colours in a row
 static void add_mixed(const struct cs_band_pass *drawing, cs_i4 shown, const struct spot *spot,
                       struct cs_tile_buffer *tiles) {
     int samples[4]; // the first that shows each thing
@@ -148,6 +156,7 @@ static void add_mixed(const struct cs_band_pass *drawing, cs_i4 shown, const str
             add_shown(drawing, shown[samples[k]], spot, samples[k], first + k, tiles);
 }
 
+// a pixel of one triangle in all samples, the usual case, has one colour
 static void add_pixel(const struct cs_band_pass *drawing, cs_i4 shown, const struct spot *spot,
                       struct cs_tile_buffer *tiles) {
     const int32_t id = shown[0];
@@ -161,7 +170,7 @@ static void add_pixel(const struct cs_band_pass *drawing, cs_i4 shown, const str
         add_shown(drawing, id, spot, 0, tiles->first_colour[spot->pixel], tiles);
 }
 
-// of a row
+// colour of the sky in a row: linear from top to bottom, or transparent without background
 static uint32_t sky_colour(const struct cs_band_pass *drawing, int y) {
     const struct cs_view_block *view = drawing->shading.view;
     const float down = ((float)y + 0.5f) / (float)drawing->shading.height;
@@ -174,6 +183,7 @@ static uint32_t sky_colour(const struct cs_band_pass *drawing, int y) {
     return cs_srgb_pack(drawing->shading.srgb, c[0], c[1], c[2]);
 }
 
+// visibility, fragments and shading of a band
 static void show(const struct cs_band_pass *drawing, uint32_t band,
                  struct cs_tile_buffer *tiles) {
     const struct cs_samples *on = &tiles->samples;
@@ -193,7 +203,7 @@ static void show(const struct cs_band_pass *drawing, uint32_t band,
     }
     for (int i = 0; i < CS_FRAGMENT_SLOTS; i++)
         cs_shade(&drawing->shading, tiles->slots + i, tiles->colours);
-    // what is behind came first
+    // pairs from back to front: the colour behind is final when it is used
     for (uint32_t i = 0; i < tiles->n_blend_pairs; i++) {
         uint32_t *over = tiles->colours + tiles->blend_pairs[i].front;
         *over = cs_srgb_blend(tiles->colours[tiles->blend_pairs[i].behind], *over,

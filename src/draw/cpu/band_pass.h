@@ -1,17 +1,18 @@
-/* band_pass.h - a picture under way: all that the bands of it are drawn from. */
+/* band_pass.h - everything that the bands of a picture are drawn from. */
 #ifndef CS_CPU_BAND_PASS_H
 #define CS_CPU_BAND_PASS_H
 
 #include "draw/cpu/grid.h"
 #include "draw/cpu/thick_lines.h"
 
+/* Inputs of all bands; constant while bands are drawn. */
 struct cs_band_pass {
     struct cs_shading_context shading;
     const struct cs_sample_pattern *sample_pattern;
     struct cs_shading_material *materials; /* (surfaces), owned by an arena */
 
-    struct cs_triangles triangles;    /* first those that never move, squares before all else */
-    size_t n_ground_squares, n_fixed; /* of them */
+    struct cs_triangles triangles;    /* squares of planes, other colliders, bodies */
+    size_t n_ground_squares, n_fixed; /* of squares; of all colliders */
     struct cs_bins bins;
 
     struct cs_grid grid;
@@ -19,10 +20,11 @@ struct cs_band_pass {
     struct cs_image *image; /* borrowed */
 };
 
-/* Once all triangles are there: finds out which bands they touch. */
+/* Sorts the triangles into bands, after the last was added. */
 void cs_band_pass_bin(struct cs_band_pass *drawing);
 
-/* Draws one band into the image. Any number of bands at the same time, on a board each. */
+/* Draws one band into the image. Threads may draw bands at the same time, each in its own tile
+ * buffer. */
 void cs_band_pass_draw(const struct cs_band_pass *drawing, uint32_t band,
                        struct cs_tile_buffer *tiles);
 

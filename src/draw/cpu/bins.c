@@ -15,7 +15,8 @@ void cs_bins_clear(struct cs_bins *bins) {
     memset(bins->band_ends, 0, (bins->bands + 1) * sizeof *bins->band_ends);
 }
 
-// counts of bands, one place up, become the beginnings of their lists
+/* band_ends[b + 1] holds the count of band b. A running sum makes band_ends[b] the start of its
+ * list; putting moves it to the end. */
 void cs_bins_begin_put(struct cs_bins *bins) {
     for (uint32_t band = 0; band < bins->bands; band++)
         bins->band_ends[band + 1] += bins->band_ends[band];

@@ -1,10 +1,11 @@
-/* body_geometry.c - vertices of bodies become corners, and their faces triangles. */
+/* body_geometry.c - projects the vertices of bodies, and adds their faces as triangles. */
 #include "draw/cpu/body_geometry.h"
 
 #include "draw/overlay.h"
 
 #include <string.h>
 
+/* Makes mipmaps and texture coordinates. */
 static enum cs_status init_texture(struct cs_body_geometry *body, const struct cs_image *image,
                                    const double repeat[2], struct cs_arena *arena,
                                    struct cs_error *error) {
@@ -43,6 +44,8 @@ void cs_body_geometry_update(struct cs_body_geometry *body, uint32_t n,
     cs_mesh_update(&body->mesh, n, frame);
 }
 
+/* Attributes of a corner: normal, value, texture coordinates, in the order that shading
+ * reads. */
 static void set_attributes(const struct cs_body_geometry *body, uint32_t i,
                            struct cs_clip_vertex *corner) {
     const struct cs_vertex *vertex = body->mesh.vertices + i;

@@ -1,8 +1,12 @@
-/* canvas.c - a scene made ready to draw without OpenGL, and the table that the module exports.
+/* canvas.c - draws a scene without OpenGL, and exports the module's table of calls.
  *
- * Colliders are made ready anew only where one has moved. Of a frame, the cloths become
- * triangles on one thread; then stripes of the light's picture and bands of the picture are
- * shared out. */
+ * The passes of a picture, in order:
+ *   1. vertices and normals of bodies; triangles of colliders, if one or the camera has moved;
+ *   2. the light frustum, its triangles, and the shadow map in stripes;
+ *   3. triangles of bodies for the camera, and bins of all triangles and lines by band of rows;
+ *   4. bands: visibility, shading, ground, lines, resolve.
+ * Passes 2 (stripes) and 4 (bands) run on all threads. Each stripe or band writes its own rows
+ * only, so the picture does not depend on their number or order. */
 #include "draw/cpu/band_pass.h"
 #include "draw/cpu/body_geometry.h"
 #include "draw/cpu/collider_geometry.h"
@@ -13,22 +17,25 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
+/* A renderer's state for one scene. */
 struct cs_canvas {
     struct cs_canvas_settings settings;
-    struct cs_arena arena; /* owns all memory but that of lists which grow */
+    struct cs_arena arena; /* owns all memory but that of growing lists */
     struct cs_view_state view;
-    struct cs_clip_transform lens;
+    struct cs_clip_transform lens; /* of the camera */
     struct cs_srgb tone;
     struct cs_shadow_map lightmap;
-    struct cs_triangles light_fixed, light_moving;
+    struct cs_triangles light_fixed, light_moving; /* casters: colliders; bodies */
     struct cs_collider_geometry solids;
     struct cs_body_geometry *bodies; /* (scene->bodies.n) */
     struct cs_band_pass drawing;
     struct cs_overlay overlay;
-    struct cs_tile_buffer *boards; /* (threads) */
-    atomic_uint next_band;
+    struct cs_tile_buffer *boards; /* (threads) one per thread */
+    atomic_uint next_band;         /* first band that no thread has taken */
 };
 
+/* Sets the rays of a camera. Parallel rays have slopes in m: the tangent times the distance of
+ * the target, so that both projections show the target alike. */
 static void aim_rays(struct cs_rays *rays, const struct cs_view_state *view,
                      const struct cs_render *render) {
     const struct cs_camera *camera = &view->camera;
@@ -50,7 +57,7 @@ static void aim_rays(struct cs_rays *rays, const struct cs_view_state *view,
     rays->slope_y = (float)slope;
 }
 
-/* What follows from where the camera stands. */
+/* Sets what depends on the camera: projection and rays. */
 static void aim_camera(struct cs_canvas *canvas) {
     const struct cs_render *render = &canvas->settings.scene->render;
     cs_clip_transform_make(&canvas->lens, canvas->view.block.world_to_clip,
@@ -59,6 +66,7 @@ static void aim_camera(struct cs_canvas *canvas) {
     aim_rays(&canvas->drawing.shading.rays, &canvas->view, render);
 }
 
+/* Places the ground at the start, and packs the colour of its lines. */
 static void init_ground(struct cs_canvas *canvas, const struct cs_bounding_sphere *extent) {
     struct cs_grid *grid = &canvas->drawing.grid;
     cs_ground_make(&grid->ground, canvas->settings.system, canvas->settings.colliders, extent);
@@ -67,6 +75,7 @@ static void init_ground(struct cs_canvas *canvas, const struct cs_bounding_spher
     grid->ink = cs_srgb_pack(&canvas->tone, ink[0], ink[1], ink[2]);
 }
 
+/* Sets view, tables and the constant inputs of shading. */
 static void init_view(struct cs_canvas *canvas) {
     const struct cs_scene *scene = canvas->settings.scene;
     const struct cs_system *system = canvas->settings.system;
@@ -87,6 +96,8 @@ static void init_view(struct cs_canvas *canvas) {
     init_ground(canvas, &extent);
 }
 
+/* Makes the triangles of all colliders again; they come first in the list, squares of planes
+ * before all others. */
 static void add_solids(struct cs_canvas *canvas) {
     struct cs_band_pass *drawing = &canvas->drawing;
     drawing->triangles.n = 0;
@@ -96,6 +107,8 @@ static void add_solids(struct cs_canvas *canvas) {
     drawing->n_fixed = drawing->triangles.n;
 }
 
+/* Makes materials and geometry of colliders, then of bodies: surface number = collider, or
+ * number of colliders + body. */
 static enum cs_status init_surfaces(struct cs_canvas *canvas, struct cs_error *error) {
     const struct cs_canvas_settings *settings = &canvas->settings;
     const uint32_t n = settings->scene->bodies.n, solids = settings->scene->colliders.n;
@@ -126,6 +139,7 @@ static bool has_fading_surface(const struct cs_canvas *canvas) {
     return false;
 }
 
+/* Allocates a tile buffer per thread. */
 static enum cs_status init_boards(struct cs_canvas *canvas, struct cs_error *error) {
     const uint32_t n = canvas->settings.threads;
     canvas->boards = cs_arena_alloc_array(&canvas->arena, n, sizeof *canvas->boards, error);
@@ -177,6 +191,7 @@ static enum cs_status create(const struct cs_canvas_settings *settings,
     return error->status;
 }
 
+/* Runs a task for each block, on the pool's threads if there are several. */
 static void share(struct cs_canvas *canvas, uint32_t blocks,
                   void (*task)(void *arg, uint32_t block)) {
     if (canvas->settings.threads > 1)
@@ -191,6 +206,7 @@ static void draw_stripe(void *arg, uint32_t stripe) {
     cs_shadow_map_draw(&canvas->lightmap, stripe, &canvas->light_fixed, &canvas->light_moving);
 }
 
+/* Places the ground below this frame and makes its triangles. */
 static void blend_ground(struct cs_canvas *canvas, const struct cs_bounding_sphere *solid) {
     struct cs_grid *grid = &canvas->drawing.grid;
     grid->square.n = 0;
@@ -200,6 +216,7 @@ static void blend_ground(struct cs_canvas *canvas, const struct cs_bounding_sphe
     cs_ground_add(&grid->ground, &canvas->lens, &grid->square);
 }
 
+/* Moves a camera that follows a path or fits the bodies. */
 static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
                         const struct cs_bounding_sphere *solid) {
     const struct cs_system *system = canvas->settings.system;
@@ -209,6 +226,8 @@ static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
     aim_camera(canvas);
 }
 
+/* Draws the shadow map. Triangles of colliders are kept from frame to frame as long as neither
+ * they nor the light frustum move. */
 static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_sphere *solid,
                         bool moved) {
     const struct cs_triangle_kind kind = {.attributes = 0};
@@ -229,6 +248,7 @@ static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_spher
     cs_shadow_map_bound(&canvas->lightmap);
 }
 
+/* Appends the triangles of bodies after those of colliders, and bins all by band. */
 static void add_bodies(struct cs_canvas *canvas) {
     struct cs_band_pass *drawing = &canvas->drawing;
     drawing->triangles.n = drawing->n_fixed;
@@ -243,7 +263,7 @@ static void add_bodies(struct cs_canvas *canvas) {
     cs_band_pass_bin(drawing);
 }
 
-// one board draws bands as long as there are any
+// one thread: draws bands in its tile buffer as long as there are any
 static void draw_bands(void *arg, uint32_t tiles) {
     struct cs_canvas *canvas = arg;
     for (;;) {
@@ -254,6 +274,7 @@ static void draw_bands(void *arg, uint32_t tiles) {
     }
 }
 
+// growing lists record a failure instead of reporting it: asked once per picture
 static bool out_of_memory(const struct cs_canvas *canvas) {
     const struct cs_band_pass *drawing = &canvas->drawing;
     return canvas->light_fixed.failed || canvas->light_moving.failed ||

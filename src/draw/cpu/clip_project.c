@@ -1,10 +1,16 @@
-/* clip_project.c - projection, and clipping after Sutherland and Hodgman (1974) in clip
- * coordinates. */
+/* clip_project.c - projection, and clipping (Sutherland, Hodgman 1974) in clip coordinates.
+ *
+ * A point is inside the near plane if w >= near, and inside the side planes if |x|, |y| are at
+ * most 16 w. Before the division by w these are linear, so an edge from a to b with signed
+ * distances d_a >= 0 > d_b meets a plane at t = d_a / (d_a - d_b). Attributes are linear in
+ * space and take the same t. There is no far plane: reversed depth may fall below 0.
+ */
 #include "draw/cpu/clip_project.h"
 
 #include <string.h>
 
-/* Half pictures beyond which triangles are cut, so that edges fit into whole numbers. */
+/* Half pictures beyond which triangles are cut: a guard band. Triangles that leave the picture
+ * by less are not clipped, and edge functions still fit into 64 bits. */
 static const float guard = 16;
 
 enum { NEAR = 1, LEFT = 2, RIGHT = 4, BELOW = 8, ABOVE = 16, PLANES = 5 };
@@ -26,7 +32,7 @@ static float row(const float r[4], const float p[3]) {
     return r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + r[3];
 }
 
-// how far inside a plane; w alone decides about the near one
+// signed distance to a plane, in units of w; w alone decides about the near one
 static float inside(const struct cs_clip_transform *lens, const struct cs_clip_vertex *c,
                     int plane) {
     const float reach = guard * c->clip[3];
@@ -44,6 +50,7 @@ static float inside(const struct cs_clip_transform *lens, const struct cs_clip_v
     }
 }
 
+// viewport: clip coordinates -w..w to pixels, and depth to 0..1
 static void set_pixel(const struct cs_clip_transform *lens, struct cs_clip_vertex *c) {
     const float half[2] = {0.5f * (float)lens->width, 0.5f * (float)lens->height};
     c->inverse = 1 / c->clip[3];
@@ -79,6 +86,7 @@ void cs_clip_transform_move_depth(const struct cs_clip_transform *lens, const fl
     cs_clip_transform_project(lens, corner);
 }
 
+// the point at fraction t from a to b; its pixel is not set yet
 static struct cs_clip_vertex between(const struct cs_clip_vertex *a,
                                      const struct cs_clip_vertex *b, float t) {
     struct cs_clip_vertex c = {.clip_mask = 0};
@@ -89,6 +97,8 @@ static struct cs_clip_vertex between(const struct cs_clip_vertex *a,
     return c;
 }
 
+/* Clips a polygon of n corners by one plane; returns the number of corners left. A corner
+ * inside is copied, an edge that crosses the plane adds the crossing. */
 static int cut(const struct cs_clip_transform *lens, int plane, const struct cs_clip_vertex *in,
                int n, struct cs_clip_vertex *out) {
     int kept = 0;

@@ -1,11 +1,11 @@
-/* collider_geometry.c - colliders and the ground's rectangle become triangles. */
+/* collider_geometry.c - colliders and the ground's rectangle become triangles of a picture. */
 #include "draw/cpu/collider_geometry.h"
 
 #include <math.h>
 #include <string.h>
 
-/* `sink` moves only the depth away from the eye: between its particles a cloth is a chord that
- * cuts into the ball it lies on, and would show specks of it */
+/* Moves only the depth away from the eye, by `by` m. Between its particles a cloth is a chord
+ * that cuts into a sphere below it; without the bias specks of the sphere would show. */
 static void add_depth_bias(const struct cs_clip_transform *clip, const float place[3],
                            const float eye[4], float by, struct cs_clip_vertex *corner) {
     float d[3], square = 0, moved[3];
@@ -19,15 +19,15 @@ static void add_depth_bias(const struct cs_clip_transform *clip, const float pla
     cs_clip_transform_move_depth(clip, moved, corner);
 }
 
-// who sees the triangles, and where they go
+// viewer and destination of triangles
 struct projection {
     const struct cs_clip_transform *lens;
-    const float *eye; // a place and 1, or a direction and 0
-    bool sinks;       // not for a light
+    const float *eye; // position and 1, or direction and 0
+    bool sinks;       // apply the depth bias; not for a light
     struct cs_triangles *triangles;
 };
 
-// triangles of three vertices each
+// triangles of three vertices each, none shared
 static void add_vertices(const struct cs_vertex *vertices, uint32_t n,
                          const struct cs_surface_style *style,
                          const struct cs_triangle_kind *kind,

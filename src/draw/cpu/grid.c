@@ -1,13 +1,20 @@
-/* grid.c - the grid on the ground with what lies in shadow, on a board.
+/* grid.c - blends the lines of the ground and the shadows on it over a band.
  *
- * Lines are as wide as a pixel wherever they are: how far places of neighbours are apart is
- * measured in blocks of 2 x 2 pixels from the bottom, as OpenGL does. */
+ * The ground is a plane y = height. A pixel's ray eye + t d meets it at t = (height - eye_y) /
+ * d_y; no triangle's planes are needed. The opacity of its ink is
+ *   near^2 (dark + (1 - dark) 0.55 lines)
+ * near falls from 1 in the centre to 0 at the radius of the fade disc; dark is the shadow's
+ * strength times the fraction of hidden light; lines is the coverage by the grid.
+ *
+ * Lines are a pixel wide at any distance: the ground's extent per pixel is measured as in
+ * OpenGL, by differences in blocks of 2 x 2 pixels from the bottom. */
 #include "draw/cpu/grid.h"
 
 #include <math.h>
 
 enum { N = CS_FRAGMENTS };
 
+/* Pixels to be blended together. */
 struct cells {
     int n;
     uint32_t pixels[N];
@@ -15,7 +22,7 @@ struct cells {
     float x[N], y[N];
 };
 
-// where on the ground a pixel looks; false above the horizon
+// the point of the ground that a pixel shows; false above the horizon
 static bool find_position(const struct cs_grid *grid, float x, float y, float place[3]) {
     const struct cs_rays *rays = &grid->shading->rays;
     const float height = grid->ground.fade_disc[1], above = height - rays->eye[1];
@@ -33,7 +40,8 @@ static float away(float a) {
     return a < 0 ? -a : a;
 }
 
-// how much of a pixel lines in steps of `step` cover: at, and the ways to the next pixels
+/* Coverage of a pixel by lines in steps of `step`. at: position across each axis of the ground;
+ * wide: extent of a pixel along it. A line fades linearly over the pixel at its border. */
 static float cover(const float at[2], const float wide[2], float step, float half_width) {
     float most = 0;
     for (int i = 0; i < 2; i++) {
@@ -48,6 +56,7 @@ static float cover(const float at[2], const float wide[2], float step, float hal
     return most;
 }
 
+// coverage by fine lines and by every tenth, stronger one
 static float lines_at(const struct cs_grid *grid, float x, float y, const float p[3]) {
     const int size = grid->shading->height;
     const float beside_x = (float)((int)x ^ 1);
@@ -63,7 +72,8 @@ static float lines_at(const struct cs_grid *grid, float x, float y, const float 
     return fine > coarse ? fine : coarse;
 }
 
-/* A pixel that shows one thing keeps one colour: a new one, since the sky's is its row's. */
+/* Blends over the samples of the mask. If all samples share a colour they keep sharing one: a
+ * new colour, since other pixels may share the old one. */
 static void blend_pixel(struct cs_tile_buffer *tiles, size_t pixel, unsigned mask, uint32_t ink,
                         uint32_t share) {
     if (mask != 15 || tiles->sample_codes[pixel] != 0) {
@@ -76,6 +86,7 @@ static void blend_pixel(struct cs_tile_buffer *tiles, size_t pixel, unsigned mas
     tiles->first_colour[pixel] = laid;
 }
 
+/* Blends the collected pixels: positions, one shadow query for all, opacities. */
 static void blend_grid(const struct cs_grid *grid, struct cells *cells,
                        struct cs_tile_buffer *tiles) {
     static const float up[N] = {0}; // x and z of the normals
@@ -112,7 +123,7 @@ static void blend_grid(const struct cs_grid *grid, struct cells *cells,
     cells->n = 0;
 }
 
-// samples of a pixel where the ground shows: before the sky or what never moves
+// samples of a pixel that show the ground: in front of the sky or of what never moves
 static unsigned mask_of(const struct cs_tile_buffer *tiles, size_t at, int32_t moving) {
     const struct cs_samples *on = &tiles->samples, *ground = &tiles->ground;
     const cs_i4 lies = (ground->triangle_ids[at] >= 0) & (on->triangle_ids[at] < moving) &
@@ -121,11 +132,12 @@ static unsigned mask_of(const struct cs_tile_buffer *tiles, size_t at, int32_t m
            (unsigned)(lies[3] & 8);
 }
 
-// the part of a band that holds the rectangle
+// the part of a band that the rectangle may touch
 struct window {
     int left, right, top, bottom;
 };
 
+// fills the rectangle into the samples of the ground; returns the part of the band
 static struct window fill(const struct cs_grid *grid, const struct cs_sample_pattern *pattern,
                           struct cs_tile_buffer *tiles) {
     const int last = tiles->samples.top + tiles->samples.rows - 1;

@@ -9,15 +9,17 @@
 #include <clothsim/clones.h>
 #include <stdint.h>
 
+/* four floats; four integers, or a mask of all ones and zeros; four floats at any address */
 typedef float cs_f4 __attribute__((vector_size(16)));
 typedef int32_t cs_i4 __attribute__((vector_size(16)));
 typedef float cs_f4_unaligned __attribute__((vector_size(16), aligned(4)));
 
-/* a where mask is all ones, b where it is 0 */
+/* Selects per lane: a if mask is all ones, b if it is 0. */
 CS_INLINE cs_i4 cs_select(cs_i4 mask, cs_i4 a, cs_i4 b) {
     return (mask & a) | (~mask & b);
 }
 
+/* Limits each lane to least..most. */
 CS_INLINE cs_f4 cs_clamp4(cs_f4 v, float least, float most) {
     const cs_f4 low = {least, least, least, least}, high = {most, most, most, most};
     v = (cs_f4)cs_select(v < low, (cs_i4)low, (cs_i4)v);
@@ -30,6 +32,7 @@ CS_INLINE int cs_min(int a, int b) {
 CS_INLINE int cs_max(int a, int b) {
     return a > b ? a : b;
 }
+/* Limits v to least..most; NaN becomes least. */
 CS_INLINE float cs_clamp(float v, float least, float most) {
     const float raised = v > least ? v : least;
     return raised < most ? raised : most;

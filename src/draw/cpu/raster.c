@@ -1,17 +1,28 @@
-/* raster.c - filling by edge functions (Pineda 1988), a pixel of four samples at a time. */
+/* raster.c - filling by edge functions (Pineda 1988), a pixel of four samples at a time.
+ *
+ * The edge functions E_k of triangle.c are linear: one pixel to the right changes E_k by
+ * -256 dy_k. A small triangle walks all pixels of its box with three additions each. A large
+ * one would overflow 32 bits: E_k >= 0 is solved for the first and the last pixel of a row in
+ * 64 bits, once per sample and row.
+ *
+ * Depth is written as in OpenGL, then reversed to whole steps (clip_project.h). Interpolation
+ * may leave the range of the corners at the border of a triangle; the clamp to that range
+ * removes the overshoot. */
 #include "draw/cpu/raster.h"
 
-// rows of the picture count from the top, those of OpenGL from the bottom
+// OpenGL's standard pattern of four, (x, y) = (6, 2), (14, 6), (2, 10), (10, 14) / 16 from the
+// bottom left; rows of the picture count from the top, so y is turned
 const struct cs_sample_pattern cs_sample_pattern_four = {{96, 224, 32, 160},
                                                          {224, 160, 96, 32}};
 const struct cs_sample_pattern cs_sample_pattern_one = {{128, 128, 128, 128},
                                                         {128, 128, 128, 128}};
 
+// the three edge vectors in 1/256 pixel, and the bias of the top-left rule
 struct edges {
     int32_t dx[3], dy[3], bias[3];
 };
 
-// what is the same for all samples of a triangle
+// constants of the fill of one triangle
 struct fill {
     const struct cs_triangle *triangle;
     struct edges edges;
@@ -19,11 +30,13 @@ struct fill {
     int32_t id;
 };
 
-// pixels of a row
+// pixels of a row, both ends included; empty if left > right
 struct run {
     int64_t left, right;
 };
 
+/* Clockwise as seen with y down, a left edge goes up (dy < 0) and a top edge goes right. E is
+ * an integer: E - 1 >= 0 is E > 0, which excludes samples on the other edges. */
 CS_INLINE struct edges edges_of(const struct cs_triangle *t) {
     struct edges e;
     for (int k = 0; k < 3; k++) {
@@ -57,6 +70,7 @@ CS_INLINE cs_f4 nearness_at(const struct cs_triangle *t, cs_f4 across, cs_f4 ris
     return cs_clamp4(CS_DEPTH_STEPS - z * CS_DEPTH_STEPS, t->depth_min, t->depth_max);
 }
 
+// depth test of a pixel's samples: a later triangle at equal depth replaces an earlier one
 CS_INLINE void put(cs_f4 *depth, cs_i4 *shown, cs_i4 mask, cs_f4 z, int32_t id) {
     const cs_f4 old = *depth;
     const cs_i4 ids = {id, id, id, id};
@@ -65,6 +79,8 @@ CS_INLINE void put(cs_f4 *depth, cs_i4 *shown, cs_i4 mask, cs_f4 z, int32_t id) 
     *shown = cs_select(mask, ids, *shown);
 }
 
+/* Fills a row of a small triangle: E of the first pixel, then steps of -256 dy. depth and shown
+ * point at its first pixel. The sign bit of (E_0 | E_1 | E_2) is set if any E is negative. */
 CS_INLINE void fill_small_row(const struct fill *fill, int y, cs_f4 *depth, cs_i4 *shown) {
     const struct cs_triangle *t = fill->triangle;
     const struct edges *e = &fill->edges;
@@ -82,12 +98,15 @@ CS_INLINE void fill_small_row(const struct fill *fill, int y, cs_f4 *depth, cs_i
     }
 }
 
+// a / b rounded towards minus infinity, b > 0
 CS_INLINE int64_t divide_down(int64_t a, int64_t b) {
     const int64_t q = a / b;
     return q - (a % b != 0 && (a < 0) != (b < 0));
 }
 
-// first and last pixel of a row whose sample at (sx, sy) lies inside
+/* First and last pixel of row y whose sample at (sx, sy), in 1/256 pixel, lies inside. Each
+ * edge gives c - step x >= 0: an upper bound of x if step > 0, a lower bound if step < 0, and a
+ * test of the whole row if the edge is horizontal. */
 CS_INLINE struct run span(const struct cs_triangle *t, const struct edges *e, int sx, int sy,
                           int y) {
     struct run run = {t->left, t->right};
@@ -109,6 +128,7 @@ CS_INLINE struct run span(const struct cs_triangle *t, const struct edges *e, in
     return run;
 }
 
+// fills a row of a large triangle between the outermost bounds of the four samples
 CS_INLINE void fill_large_row(const struct fill *fill, int y, cs_f4 *depth, cs_i4 *shown) {
     const struct cs_triangle *t = fill->triangle;
     const struct cs_sample_pattern *pattern = fill->pattern;
@@ -165,6 +185,7 @@ unsigned cs_raster_covers(const struct cs_triangle *t, const struct cs_sample_pa
     return mask;
 }
 
+// maximum of four neighbours of a map and z, in the lanes of the mask
 CS_INLINE void raise_four(float *map, cs_i4 mask, cs_f4 z) {
     cs_f4_unaligned *at = (cs_f4_unaligned *)map;
     const cs_f4 old = *at;

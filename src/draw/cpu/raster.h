@@ -1,8 +1,8 @@
-/* raster.h - which triangle each sample shows: four samples a pixel, the lanes of a vector.
+/* raster.h - visibility: the triangle that each sample shows, four samples per pixel as lanes.
  *
- * A sample belongs to a triangle if it lies inside all edges, or on one that is a top or left
- * one (as OpenGL fills). Edges are whole numbers, so that this is exact. Of two triangles as
- * near the later one shows. */
+ * A sample belongs to a triangle if it lies inside all edges, or on a top or left edge
+ * (OpenGL's rule). Edge functions are integers, so the test is exact (triangle.c). Of two
+ * triangles at the same depth the later one shows. */
 #ifndef CS_DRAW_RASTER_H
 #define CS_DRAW_RASTER_H
 
@@ -11,32 +11,34 @@
 
 enum { CS_ROWS = 16, CS_NOTHING = -1 };
 
-/* Samples of some rows of the picture. */
+/* Depth and triangle of the samples of some rows of the picture; memory of the tile buffer. */
 struct cs_samples {
-    cs_f4 *depth;        /* (rows, width) nearness */
-    cs_i4 *triangle_ids; /* (rows, width) triangles, or CS_NOTHING */
-    int width, top;      /* first row */
-    int rows;
+    cs_f4 *depth;        /* (rows, width) reversed depth, 0 at the far plane; lanes: samples */
+    cs_i4 *triangle_ids; /* (rows, width) index of the visible triangle, or CS_NOTHING */
+    int width, top;      /* pixels per row; row of the picture that is row 0 here */
+    int rows;            /* at most CS_ROWS */
 };
 
-/* Where samples lie in a pixel, in 1/256 from its top left: of four as in OpenGL's pattern, or
- * one in the middle four times. */
+/* Positions of the samples in a pixel, in 1/256 from its top left corner: OpenGL's pattern of
+ * four, or one in the middle, repeated in all lanes. */
 struct cs_sample_pattern {
     cs_i4 x, y;
 };
 extern const struct cs_sample_pattern cs_sample_pattern_four, cs_sample_pattern_one;
 
-/* Fills a triangle into the rows, as number `id`. */
+/* Fills a triangle into the rows, as index `id`. */
 void cs_raster_fill(const struct cs_triangle *triangle, int32_t id,
                     const struct cs_sample_pattern *pattern, const struct cs_samples *samples);
 
-/* The samples of a pixel that lie inside, as bits; and its nearness there. */
+/* Returns the samples of pixel (x, y) inside the triangle as bits 0..3. *depth is their
+ * reversed depth; it is not written if the pixel is outside the triangle's box. */
 unsigned cs_raster_covers(const struct cs_triangle *triangle,
                           const struct cs_sample_pattern *pattern, int x, int y, cs_f4 *depth);
 
-/* Raises a map of one sample a pixel, in the middle, to the nearness of a triangle. Rows top to
- * top + rows - 1 are touched; `stride` floats a row, and map points at pixel (0, 0). A row may
- * be written, unchanged, up to 3 pixels beyond the picture's right edge. */
+/* Raises a map of one sample per pixel, in the middle, to the reversed depth of a triangle: the
+ * map becomes the maximum of both. Touches rows top to top + rows - 1; `stride` floats per row;
+ * map points at pixel (0, 0). Up to 3 floats beyond the picture's right edge are rewritten with
+ * their old value, so each row needs that much space. */
 void cs_raster_raise(const struct cs_triangle *triangle, float *map, size_t stride, int top,
                      int rows);
 

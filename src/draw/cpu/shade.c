@@ -1,8 +1,17 @@
-/* shade.c - Blinn-Phong (cloth thesis, eq. 4.15) with a soft shadow, and the looks that colour
- * by a value: the same formulas as in the shaders of OpenGL, over arrays.
+/* shade.c - Blinn-Phong (cloth thesis, eq. 4.15; Blinn 1977) with a soft shadow, and the looks
+ * that colour by a value: the formulas of the OpenGL shaders, over arrays.
  *
- * Each loop does one thing to all fragments, which compilers turn into vectors. A root of a
- * choice is not vectorised, so choices are stored before. */
+ * With unit vectors n (normal), l (to the light), v (to the eye) and h = (l + v) / |l + v|:
+ *   colour = a(n, v) fold k_a A b + V (k_d max(n.l, 0) D b + k_s max(n.h, 0)^s S)
+ * b is the base colour, A, D, S the ambient, diffuse and specular light, V the visibility of
+ * the light (shadow_map.h). All of them are linear; sRGB is encoded last.
+ *
+ * Interpolation: planes hold 1/w and attribute/w (triangle.c). The view depth of a fragment is
+ * t = 1/(1/w), its position is eye + t d with the ray d of its pixel, and an attribute is
+ * (attribute/w) t. The normal needs no t, because it is normalised.
+ *
+ * Each loop does one thing to all fragments, which compilers turn into vectors. A square root
+ * of a choice is not vectorised, so choices are stored before. */
 #include "draw/cpu/shade.h"
 
 #include "draw/cpu/lanes.h"
@@ -11,10 +20,15 @@
 
 enum { N = CS_FRAGMENTS };
 
+/* Intermediate results of one call, 22 KiB. Some arrays serve twice: facing holds |n|^2 before
+ * n.l, share holds the visibility or |n.v|, cover the roots of the highlight before the
+ * opacity. */
 struct work {
     float place[3][N], view[3][N], normal[3][N], light[3][N];
     float facing[N], share[N], shine[N], base[3][N], colour[3][N], cover[N];
 };
+
+// shininess is rounded to 1/256; attributes are computed only as far as the mode reads them
 
 void cs_shading_material_make(struct cs_shading_material *coat,
                               const struct cs_surface_style *style) {
@@ -37,6 +51,7 @@ void cs_shading_material_make(struct cs_shading_material *coat,
     coat->depth_bias = (float)style->depth_bias;
 }
 
+// positions and view directions of parallel rays, whose view depth is stored
 static void find_parallel_places(const struct cs_shading_context *shading,
                                  const struct cs_fragments *f, struct work *w) {
     for (int i = 0; i < N; i++) {
@@ -49,6 +64,7 @@ static void find_parallel_places(const struct cs_shading_context *shading,
     }
 }
 
+// positions and view directions of a perspective, from 1/w
 CS_INLINE void find_positions(const struct cs_shading_context *shading,
                               const struct cs_fragments *f, struct work *w) {
     for (int i = 0; i < N; i++) {
@@ -63,6 +79,7 @@ CS_INLINE void find_positions(const struct cs_shading_context *shading,
     }
 }
 
+// unit normals; a normal of length 0 stays 0 instead of becoming NaN
 CS_INLINE void find_normals(const struct cs_fragments *f, struct work *w) {
     for (int i = 0; i < N; i++) {
         const float x = f->attributes[0][i], y = f->attributes[1][i], z = f->attributes[2][i];
@@ -76,6 +93,7 @@ CS_INLINE void find_normals(const struct cs_fragments *f, struct work *w) {
     }
 }
 
+// directions to the light and n.l; light[3] is 1 for a lamp at a place, 0 for one at infinity
 CS_INLINE void find_light(const struct cs_shading_context *shading, struct work *w) {
     const float *lamp = shading->view->light;
     const float x = lamp[0], y = lamp[1], z = lamp[2], near = lamp[3];
@@ -91,9 +109,10 @@ CS_INLINE void find_light(const struct cs_shading_context *shading, struct work 
     }
 }
 
-/* The highlight: a whole power by squaring again and again, the rest by roots: x^(1/2),
- * x^(1/4).. to 1/256, an error of the exponent of 1/512. Small numbers become 0, as those
- * beyond the smallest normal one are slow. */
+/* max(n.h, 0)^s. The whole part of s is a power by repeated squaring. The fraction is a product
+ * of the roots x^(1/2), x^(1/4), ... x^(1/256) of its bits; rounding to 1/256 is an error of
+ * the exponent of at most 1/512. Powers below 1e-18 become 0 before their squares are denormal,
+ * because arithmetic on denormals is slow. */
 CS_INLINE void find_shine(const struct cs_shading_material *coat, struct work *w) {
     float power[N];
     for (int i = 0; i < N; i++) {
@@ -131,7 +150,7 @@ CS_INLINE void find_shine(const struct cs_shading_material *coat, struct work *w
     }
 }
 
-// what a texture makes of the base
+// multiplies the base colour by the texture
 static void paint_base(const struct cs_fragments *f, struct work *w) {
     for (int i = 0; i < f->n; i++) {
         const float t = 1 / f->inverse[i];
@@ -143,7 +162,8 @@ static void paint_base(const struct cs_fragments *f, struct work *w) {
     }
 }
 
-// the share of ambient light that comes into folds (mesh.h)
+/* Ambient fraction in folds, 1 / sqrt(1 + depth^2) for a fold of positive depth (mesh.h). Seen
+ * from behind, a fold is a ridge and the other way round. */
 CS_INLINE void find_folds(const struct cs_fragments *f, float folds[N]) {
     const float side = f->side ? -1 : 1;
     if (!f->material->has_ambient_occlusion) {
@@ -195,7 +215,7 @@ CS_INLINE void shade_lit(const struct cs_shading_context *shading, const struct 
     }
 }
 
-// how much a surface is seen straight on
+// |n.v|: 1 seen straight on, 0 at the outline
 CS_INLINE void n_dot_view(struct work *w) {
     for (int i = 0; i < N; i++) {
         const float across = w->normal[0][i] * w->view[0][i] + w->normal[1][i] * w->view[1][i] +
@@ -204,6 +224,8 @@ CS_INLINE void n_dot_view(struct work *w) {
     }
 }
 
+// colour of a value 0..1: linear between six stops, darker towards the outline to show the
+// shape
 static void shade_value(const struct cs_shading_context *shading, const struct cs_fragments *f,
                         struct work *w) {
     n_dot_view(w);
@@ -218,6 +240,7 @@ static void shade_value(const struct cs_shading_context *shading, const struct c
     }
 }
 
+// a pale colour between the sky's and white, without light or shadow
 CS_INLINE void shade_faint(const struct cs_shading_context *shading, struct work *w) {
     n_dot_view(w);
     for (int k = 0; k < 3; k++) {
@@ -227,7 +250,8 @@ CS_INLINE void shade_faint(const struct cs_shading_context *shading, struct work
     }
 }
 
-// a floor has no end: its square melts into the background
+/* Opacity 1 - t^2 (3 - 2t), smooth at both ends, with t from 0 at 0.35 of the fade radius to 1
+ * at the radius: a floor has no end, so its square fades into the background. */
 CS_INLINE void find_cover(const struct cs_shading_material *coat, struct work *w) {
     if (!(coat->fade_radius > 0)) {
         for (int i = 0; i < N; i++)
@@ -244,7 +268,7 @@ CS_INLINE void find_cover(const struct cs_shading_material *coat, struct work *w
 
 CS_CLONES static void shade(const struct cs_shading_context *shading, struct cs_fragments *f,
                             struct work *w) {
-    // the places behind the last fragment are shaded too, for whole vectors
+    // unused fragments up to N are shaded too, with harmless values, for whole vectors
     for (int i = f->n; i < N; i++) {
         f->x[i] = f->y[i] = 0;
         f->inverse[i] = 1;

@@ -1,4 +1,4 @@
-/* shade.h - the colour of fragments: what a pixel shows of one triangle. */
+/* shade.h - shading: the colour of fragments, one per pixel and visible triangle. */
 #ifndef CS_DRAW_SHADE_H
 #define CS_DRAW_SHADE_H
 
@@ -9,24 +9,25 @@
 
 enum { CS_FRAGMENTS = 256 };
 
-/* The style of a surface in the numbers that shading needs. */
+/* A surface style (surface_style.h) in the form and precision that shading needs. */
 struct cs_shading_material {
     enum cs_surface_mode mode;
-    int attributes;             /* that shading wants: see clip_project.h */
-    bool has_ambient_occlusion; /* the value is that of a fold */
-    float base[2][3];           /* front, back */
-    float ambient, diffuse, specular;
-    int shininess_int;      /* whole part of the exponent of highlights */
-    int shininess_fraction; /* the rest of it in 1/256 */
-    float fade_radius;      /* m about the origin where it has melted; 0: none */
+    int attributes;                   /* that shading wants: see clip_project.h */
+    bool has_ambient_occlusion;       /* attribute 3 is the depth of a fold (mesh.h) */
+    float base[2][3];                 /* linear colour of front, back */
+    float ambient, diffuse, specular; /* reflection coefficients */
+    int shininess_int;                /* exponent of highlights: whole part */
+    int shininess_fraction;           /* and the rest in 1/256 */
+    float fade_radius;      /* m from the world's y axis where it has faded out; 0: never */
     float depth_bias;       /* m by which the depth is moved away */
-    struct cs_mipmap *mips;
+    struct cs_mipmap *mips; /* borrowed; NULL without a texture */
 };
 
+/* Fills all but mips from a style. */
 void cs_shading_material_make(struct cs_shading_material *coat,
                               const struct cs_surface_style *style);
 
-/* What shading looks at: all the same for a picture. */
+/* Inputs of shading that are the same for a whole picture; all pointers are borrowed. */
 struct cs_shading_context {
     struct cs_rays rays;
     int width, height;
@@ -35,26 +36,27 @@ struct cs_shading_context {
     const struct cs_srgb *srgb;
 };
 
-/* Fragments of one side of one surface, shaded together. */
+/* Fragments of one side of one surface, collected to be shaded together (structure of
+ * arrays). */
 struct cs_fragments {
     const struct cs_shading_material *material;
-    uint32_t key;
-    int n, side;
+    uint32_t key;                           /* of the surface and side, to find the slot */
+    int n, side;                            /* fragments; 0: front, 1: back */
     float x[CS_FRAGMENTS], y[CS_FRAGMENTS]; /* pixels from the top left */
     float inverse[CS_FRAGMENTS];            /* 1/w */
     float view_depth[CS_FRAGMENTS]; /* m along the view, of parallel rays: they have no w */
-    float attributes[CS_ATTRIBUTES][CS_FRAGMENTS]; /* over w */
-    float texels[CS_FRAGMENTS];                    /* a pixel, squared, of textured ones */
-    uint32_t colour_index[CS_FRAGMENTS];           /* where their colour goes */
+    float attributes[CS_ATTRIBUTES][CS_FRAGMENTS]; /* divided by w */
+    float texels[CS_FRAGMENTS];          /* squared texels per pixel, of textured surfaces */
+    uint32_t colour_index[CS_FRAGMENTS]; /* index in `colours` of the result */
 };
 
-/* Colours: bytes of sRGB from red on; the highest is how much they let through. Forgets the
- * fragments. */
+/* Shades the fragments into colours[colour_index[i]], then sets n to 0. Colours are packed:
+ * red, green, blue as sRGB bytes from the lowest on, and 255 - opacity in the highest. */
 void cs_shade(const struct cs_shading_context *shading, struct cs_fragments *fragments,
               uint32_t *colours);
 
-/* The ray through the middle of a pixel: 1 m along it is 1 m along the view. Of parallel rays
- * where it starts, from the eye on. */
+/* Direction of the ray through the middle of pixel (x, y): 1 m along it is 1 m along the view.
+ * For parallel rays this is the offset of the origin from the eye. */
 CS_INLINE void cs_ray_direction(const struct cs_shading_context *shading, float x, float y,
                                 float d[3]) {
     const struct cs_rays *r = &shading->rays;
@@ -64,7 +66,7 @@ CS_INLINE void cs_ray_direction(const struct cs_shading_context *shading, float 
         d[i] = right * r->right[i] + up * r->up[i] - (r->parallel ? 0 : r->back[i]);
 }
 
-/* The place t m along the ray through the middle of a pixel. */
+/* The point t m along the view on the ray through the middle of a pixel. */
 CS_INLINE void cs_ray_point(const struct cs_shading_context *shading, float x, float y, float t,
                             float place[3]) {
     const struct cs_rays *r = &shading->rays;

@@ -1,8 +1,20 @@
 /* shadow_map.c - shadow map (Williams 1978) with 3 x 3 taps 1.4 texels apart, each blended from
  * four comparisons (percentage closer filtering, Reeves 1987).
  *
- * The taps touch 5 x 5 texels, and their weights are products of one along a row and one along
- * a column. Bounds of blocks tell most places to be lit or dark without a look at the texels.
+ * A tap at t weights the texels of a row by max(0, 1 - |k - t|). The weights of three taps
+ * along a row sum to 3; those of all nine are products of a row's and a column's, with sum 9:
+ *   V = (1/9) sum_kl a_k b_l [depth_kl <= nearness]
+ * The taps reach from x - 1.4 to x + 1.4. They touch the texels floor(x - 1.4) to at most
+ * floor(x - 1.4) + 4, so a window of 5 x 5 suffices.
+ *
+ * Min/max bounds decide most queries: if the window's maximum is no nearer than the position, V
+ * is 1; if its minimum is nearer, V is 0. A 5 x 5 window starts at an even or an odd texel;
+ * blocks of 6 x 6 texels from each even one contain both, at a quarter of the memory.
+ *
+ * Self-shadowing: a plane whose normal makes the angle a with the light rises by d tan a over d
+ * texels. A position moved by o along the normal is o / cos a above its plane, as measured
+ * along the light. It clears texels up to d = o / sin a; project() moves by (0.4 + 2.6 sin a)
+ * texels, and a window reaches d = 1.4 + 1 along a row.
  */
 #include "draw/cpu/shadow_map.h"
 
@@ -14,7 +26,7 @@
 
 enum { HALF = CS_SHADOW_MAP_STRIDE / 2, BLOCK = 64 };
 
-static const float reach = 1.4f; // texels between taps
+static const float reach = 1.4f; // texels from one tap to the next
 
 enum cs_status cs_shadow_map_init(struct cs_shadow_map *map, struct cs_arena *arena,
                                   struct cs_error *error) {
@@ -37,7 +49,7 @@ bool cs_shadow_map_set_frustum(struct cs_shadow_map *map, const struct cs_view_b
     map->enabled = block->shadow_params[2] > 0;
     if (!map->enabled)
         return false;
-    // a lamp's picture begins at a distance: half of it still keeps w above 0
+    // the frustum of a lamp starts at a positive distance: half of it still keeps w above 0
     const bool is_lamp = block->light[3] > 0;
     cs_clip_transform_make(&map->transform, block->world_to_light, is_lamp ? 1e-6f : 0,
                            CS_SHADOW_SIDE, CS_SHADOW_SIDE);
@@ -62,6 +74,8 @@ void cs_shadow_map_draw(struct cs_shadow_map *map, uint32_t stripe,
         }
 }
 
+/* Minimum and maximum of each 2 x 2 block: the first level that the 6 x 6 bounds are made of.
+ */
 CS_CLONES static void bound_pairs(struct cs_shadow_map *map) {
     for (size_t y = 0; y < HALF; y++) {
         const float *row = map->depth + 2 * y * CS_SHADOW_MAP_STRIDE;
@@ -78,6 +92,7 @@ CS_CLONES static void bound_pairs(struct cs_shadow_map *map) {
     }
 }
 
+// a 6 x 6 block is 3 x 3 blocks of 2 x 2; the last two of each row and column have none
 CS_CLONES void cs_shadow_map_bound(struct cs_shadow_map *map) {
     bound_pairs(map);
     for (size_t y = 0; y + 2 < HALF; y++)
@@ -96,7 +111,7 @@ CS_CLONES void cs_shadow_map_bound(struct cs_shadow_map *map) {
         }
 }
 
-// weight of texels k, k + 1.. of a row, if the middle tap lies at `at`
+// summed weights of texels k (four of them) of a row whose middle tap lies at `at`
 CS_INLINE cs_f4 weights(cs_f4 k, float at) {
     const cs_i4 no_sign = {0x7fffffff, 0x7fffffff, 0x7fffffff, 0x7fffffff};
     cs_f4 sum = {0};
@@ -108,7 +123,8 @@ CS_INLINE cs_f4 weights(cs_f4 k, float at) {
     return sum;
 }
 
-// x, y: texels of the map from the middle of the first; from (bx, by) on 5 x 5 are touched
+/* The weighted fraction of lit texels. x, y: texels from the middle of the map's first; (bx,
+ * by): first texel of the window. Four columns are lanes, the fifth is a scalar. */
 CS_INLINE float window(const struct cs_shadow_map *map, float x, float y, float nearness,
                        int bx, int by) {
     const cs_f4 first = {0, 1, 2, 3}, then = {4, 5, 6, 7};
@@ -128,6 +144,7 @@ CS_INLINE float window(const struct cs_shadow_map *map, float x, float y, float 
     return (((sum[0] + sum[1]) + (sum[2] + sum[3])) + last) / 9;
 }
 
+/* The lit fraction at a texel position; beyond the map all is lit. */
 CS_INLINE float sample_block(const struct cs_shadow_map *map, float x, float y,
                              float nearness) {
     const float side = CS_SHADOW_SIDE;
@@ -144,7 +161,9 @@ CS_INLINE float sample_block(const struct cs_shadow_map *map, float x, float y,
     return window(map, x, y, nearness, bx, by);
 }
 
-// to texels and nearness: out[0], out[1], out[2]
+/* Moves the positions from..from + n off their surfaces and projects them: out[0], out[1] in
+ * texels from the middle of the first, out[2] reversed depth. The slant is stored first because
+ * a square root of a choice would not be vectorised. */
 CS_INLINE void project(const struct cs_shadow_map *map, const struct cs_shadow_query *lit,
                        int from, int n, float out[3][BLOCK]) {
     const struct cs_clip_transform clip = map->transform;
@@ -174,6 +193,7 @@ CS_INLINE void project(const struct cs_shadow_map *map, const struct cs_shadow_q
     }
 }
 
+// visibility of up to BLOCK positions
 CS_CLONES static void sample_block_bounds(const struct cs_shadow_map *map,
                                           const struct cs_shadow_query *lit, int from, int n) {
     float at[3][BLOCK];

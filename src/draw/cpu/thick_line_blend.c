@@ -1,11 +1,16 @@
-/* thick_line_blend.c - lines by the distance of a pixel's middle: what is a pixel away from the
- * edge is not touched. Each sample decides whether it lies in the line's rectangle and is near
- * enough. */
+/* thick_line_blend.c - blends thick lines over a band.
+ *
+ * The coverage of a pixel is taken from the distance d of its middle to the line, a segment:
+ *   clamp(half_width + 1/2 - d, 0, 1)
+ * It falls from 1 to 0 over the pixel at the border, and d to a segment makes the ends round.
+ * Each sample then decides whether it lies in the line's quad, and in front of the surface. */
 #include "draw/cpu/thick_lines.h"
 
 #include <math.h>
 
-// pixels of a row that the strip about a line touches
+/* Pixels of row y that the strip around a line touches. In a row the strip has
+ *   middle x + (y - y_0) u_x / u_y,   half width (extent + 1) / |u_y|.
+ * A line nearly along the row (|u_y| < 0.05) gains nothing by it. */
 static void row_of(const struct cs_thick_line *s, int y, int *left, int *right) {
     const float down = (float)y + 0.5f - s->y, ux = s->direction[0], uy = s->direction[1];
     const float slant = uy < 0 ? -uy : uy, capacity = (s->extent + 1) / (slant > 0 ? slant : 1);
@@ -18,15 +23,16 @@ static void row_of(const struct cs_thick_line *s, int y, int *left, int *right) 
     *right = cs_min(*right, (int)cs_clamp(middle + capacity, -1, (float)s->right));
 }
 
+// the mask's lanes as bits 0..3
 CS_INLINE unsigned bits(cs_i4 mask) {
     return (unsigned)(mask[0] & 1) | (unsigned)(mask[1] & 2) | (unsigned)(mask[2] & 4) |
            (unsigned)(mask[3] & 8);
 }
 
-// corners so that edges have the inside to one side
+// order of the quad's corners in which each edge has the inside to one side
 static const int around[4] = {0, 2, 3, 1};
 
-// samples of a pixel inside the rectangle, edges and all as those of triangles
+// samples of a pixel inside the quad, by the edge functions and top-left rule of triangles
 CS_INLINE cs_i4 inside_small(const struct cs_thick_line *s,
                              const struct cs_sample_pattern *pattern, int x, int y) {
     cs_i4 mask = {-1, -1, -1, -1};
@@ -42,6 +48,7 @@ CS_INLINE cs_i4 inside_small(const struct cs_thick_line *s,
     return mask;
 }
 
+// the same in 64 bits, for quads whose edge functions overflow 32
 static cs_i4 inside_large(const struct cs_thick_line *s,
                           const struct cs_sample_pattern *pattern, int x, int y) {
     cs_i4 mask = {-1, -1, -1, -1};
@@ -58,7 +65,7 @@ static cs_i4 inside_large(const struct cs_thick_line *s,
     return mask;
 }
 
-// 0..1: how much of a pixel at (x, y) from the first end lies on a line
+// coverage 0..1 of a pixel whose middle is at (x, y) from the first end
 CS_INLINE float pixel_coverage(const struct cs_thick_line *s, float x, float y) {
     const float along = cs_clamp(x * s->direction[0] + y * s->direction[1], 0, s->length);
     const float dx = x - along * s->direction[0], dy = y - along * s->direction[1];
@@ -69,6 +76,7 @@ CS_INLINE float pixel_coverage(const struct cs_thick_line *s, float x, float y) 
     return cover < 1 ? cover : 1;
 }
 
+// blends a row of a line
 static void blend_line(const struct cs_thick_line *s, int y, int height,
                        const struct cs_sample_pattern *pattern, struct cs_tile_buffer *tiles) {
     const cs_f4 across = __builtin_convertvector(pattern->x, cs_f4) * (1.0f / 256);
@@ -94,6 +102,7 @@ static void blend_line(const struct cs_thick_line *s, int y, int height,
     }
 }
 
+// packed colour of a value 0..1: linear between the six stops of the colour map
 static uint32_t ramp_colour(const struct cs_shading_context *easel, float value) {
     const float at = cs_clamp(value, 0, 1) * 5;
     const int low = cs_min((int)at, 4);
@@ -104,6 +113,7 @@ static uint32_t ramp_colour(const struct cs_shading_context *easel, float value)
     return cs_srgb_pack(easel->srgb, c[0], c[1], c[2]);
 }
 
+// blends a row of the colour bar: one colour, over the samples inside the rectangle
 static void blend_ramp(const struct cs_thick_lines *strokes, const struct cs_thick_line *s,
                        int y, const struct cs_sample_pattern *pattern,
                        struct cs_tile_buffer *tiles) {

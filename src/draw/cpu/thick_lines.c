@@ -1,10 +1,16 @@
-/* thick_lines.c - lines of the scene become rectangles on the picture. */
+/* thick_lines.c - set-up of thick lines: projection, clipping, a quad around each line.
+ *
+ * A line is given by its ends in m. It is cut at the near plane, projected, and widened on the
+ * picture, so its width in pixels does not depend on the distance. Its quad reaches one pixel
+ * beyond the line on all sides; depth is a plane over the quad through the depths of both
+ * ends. */
 #include "draw/cpu/thick_lines.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* An unused item behind the last one, or NULL if out of memory. */
 static struct cs_thick_line *next(struct cs_thick_lines *strokes) {
     if (strokes->n == strokes->capacity) {
         const size_t capacity = strokes->capacity ? 2 * strokes->capacity : 1024;
@@ -26,6 +32,7 @@ static bool bound(float least, float most, float by, int size, int *from, int *t
     return *from <= *to && most + by >= 0;
 }
 
+/* Pixels within `reach` of the line, inside the picture; false if there are none. */
 static bool set_box(const struct cs_shading_context *easel, const float ends[4], float reach,
                     struct cs_thick_line *s) {
     const float left = ends[0] < ends[2] ? ends[0] : ends[2];
@@ -36,7 +43,7 @@ static bool set_box(const struct cs_shading_context *easel, const float ends[4],
            bound(top, bottom, reach, easel->height, &s->top, &s->bottom);
 }
 
-// a corner takes the depth of its place moved towards the eye
+// gives a corner the depth of its point moved towards the eye by `lift` m
 static void add_depth_offset(const struct cs_thick_lines *strokes, const float place[3],
                              float lift, struct cs_clip_vertex *corner) {
     const float *eye = strokes->shading->view->eye;
@@ -50,8 +57,8 @@ static void add_depth_offset(const struct cs_thick_lines *strokes, const float p
     cs_clip_transform_move_depth(strokes->transform, moved, corner);
 }
 
-/* Cuts a line at the near plane and puts it on the picture: ends in pixels from the bottom
- * left. false where nothing is left. */
+/* Cuts a line at the near plane and projects it: ends in pixels from the bottom left. Returns
+ * false if nothing is left. A cut at w = near is at t = (near - w_e) / (w_other - w_e). */
 static bool project(const struct cs_thick_lines *strokes, float p[2][3], float lift,
                     float ends[4], struct cs_clip_vertex corners[2]) {
     const struct cs_clip_transform *lens = strokes->transform;
@@ -79,7 +86,7 @@ static bool project(const struct cs_thick_lines *strokes, float p[2][3], float l
     return true;
 }
 
-// ends so far out that pixels there are no whole numbers come nearer along the line
+// moves ends beyond 10^6 pixels along the line to that bound: nearer ones fit into integers
 static bool clip_far_ends(float ends[4]) {
     const float most = 1e6f;
     for (int e = 0; e < 2; e++)
@@ -97,6 +104,8 @@ static bool clip_far_ends(float ends[4]) {
     return true;
 }
 
+/* Position, direction and widths from the ends. A line thinner than a pixel keeps half a pixel
+ * of half width and gets paler in proportion. */
 static void set_line(const float ends[4], const struct cs_line_style *style,
                      struct cs_thick_line *s) {
     const float dx = ends[2] - ends[0], dy = ends[3] - ends[1];
@@ -114,8 +123,8 @@ static void set_line(const float ends[4], const struct cs_line_style *style,
     s->fits_32_bits = s->length + 2 * s->extent < 40;
 }
 
-/* The rectangle about a line, which reaches one pixel farther: corners behind the first end to
- * the left and right, then those of the other end; w and z are the ends'. */
+/* Corners of the quad around a line: behind the first end to the left and right, then beyond
+ * the other end; w and z are those of the ends. */
 static void set_rectangle(const struct cs_thick_lines *strokes, const float ends[4],
                           const struct cs_clip_vertex of[2], struct cs_thick_line *s,
                           struct cs_clip_vertex corners[4]) {
@@ -138,7 +147,7 @@ static void set_rectangle(const struct cs_thick_lines *strokes, const float ends
     }
 }
 
-// a line whose ends are pixels has no depth
+// a line whose ends are pixels from the top left: depth 0, w 1
 static void make_flat(const float *from, int height, float ends[4],
                       struct cs_clip_vertex corners[2]) {
     for (int e = 0; e < 2; e++) {
@@ -148,6 +157,7 @@ static void make_flat(const float *from, int height, float ends[4],
     }
 }
 
+/* Adds a line from `from` (two ends of three numbers), unless nothing of it is visible. */
 static void add_line(struct cs_thick_lines *strokes, const float *from,
                      const struct cs_line_style *style, uint32_t colour) {
     const int height = strokes->shading->height;
@@ -182,6 +192,7 @@ static void draw_lines(struct cs_lines *lines, const struct cs_line_style *style
         add_line(strokes, lines->ends[i], style, colour);
 }
 
+/* Adds the colour bar's rectangle of left, top, width, height in pixels. */
 static void add_ramp(struct cs_lines *lines, const double box[4]) {
     struct cs_thick_lines *strokes = (struct cs_thick_lines *)lines;
     const float ends[4] = {(float)box[0], (float)box[1], (float)(box[0] + box[2]),

@@ -1,4 +1,4 @@
-/* tile_buffer.c - memory of a band, and the mean of its samples. */
+/* tile_buffer.c - memory of a band, and the resolve: the mean of its samples. */
 #include "draw/cpu/tile_buffer.h"
 
 static enum cs_status take_samples(struct cs_samples *samples, int width,
@@ -31,6 +31,7 @@ enum cs_status cs_tile_buffer_init(struct cs_tile_buffer *tiles, int width, bool
     return error->status;
 }
 
+// no triangle in rows top..top + rows - 1, with the depth of the far plane
 static void clear(struct cs_samples *samples, int top, int rows) {
     const size_t n = (size_t)samples->width * (size_t)rows;
     const cs_f4 far = {0}; // the far plane
@@ -59,6 +60,8 @@ void cs_tile_buffer_resolve(const struct cs_tile_buffer *tiles, const struct cs_
     for (size_t i = 0; i < n; i++) {
         const uint32_t *colours = tiles->colours + tiles->first_colour[i],
                        code = tiles->sample_codes[i];
+        // one colour for all samples needs no mean: decoding and encoding it would not change
+        // it
         uint32_t c = *colours;
         if (code) {
             const uint32_t samples[4] = {colours[code & 3], colours[code >> 2 & 3],

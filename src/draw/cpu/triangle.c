@@ -1,4 +1,19 @@
-/* triangle.c - set-up: corners on a grid of 1/256 pixel, planes of depth and attributes. */
+/* triangle.c - triangle set-up: corners on a grid of 1/256 pixel, planes of depth, attributes.
+ *
+ * Coverage (Pineda 1988). Edge k goes from corner k to corner k + 1; its edge function
+ *   E_k(x, y) = dx_k (y - y_k) - dy_k (x - x_k)
+ * is twice the signed area of the triangle (corner k, corner k + 1, sample). With y down and
+ * the corners clockwise as seen, a sample is inside if no E_k is negative.
+ *
+ * Why whole numbers: corners and samples lie on the grid of 1/256 pixel, so E_k is exact. Two
+ * triangles with a common edge compute E and -E of the same integers. Each sample on either
+ * side of the edge, or on it (raster.c, top-left rule), therefore belongs to exactly one of
+ * them. In floating point the two would round differently, which leaves gaps and double hits.
+ *
+ * Why planes: perspective division maps x, y, z, w to x/w, y/w, z/w. Over a triangle's plane
+ *   a attribute + b x + c y + d w = 0   =>   attribute/w is linear in x/w and y/w.
+ * The attribute 1 gives 1/w. The planes hold those two; shading divides one by the other.
+ */
 #include "draw/cpu/triangle.h"
 
 #include "draw/cpu/lanes.h"
@@ -6,17 +21,23 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { SMALL = 16000 }; // 1/256 pixel: products of two stay below 2^28
+/* Side in 1/256 pixel up to which edge functions are computed in 32 bits. Both factors of a
+ * product are below 16000 + 256, thus |product| < 2^28 and |E_k| < 2^29 in the box. */
+enum { SMALL = 16000 };
 
-// planes of a triangle: two sides in pixels over twice the area, and the way to the first pixel
+/* Common part of all planes of a triangle: two sides (pixels, y down) divided by twice the area
+ * (pixel^2), and the vector (across, down) from corner 0 to the middle of the first pixel. */
 struct frame {
     double dx[2], dy[2], across, down;
 };
 
+// nearest point of the grid; floor instead of a cast keeps ties alike on both sides of 0
 static int32_t snap(double pixel) {
     return (int32_t)floor(pixel * 256 + 0.5);
 }
 
+/* The plane through the values a, b, c of the three corners. Cramer's rule for
+ *   b - a = sx dx0 + sy dy0,   c - a = sx dx1 + sy dy1. */
 static struct cs_plane_equation slope(const struct frame *f, double a, double b, double c) {
     const double x = (b - a) * f->dy[1] - (c - a) * f->dy[0];
     const double y = (c - a) * f->dx[0] - (b - a) * f->dx[1];
@@ -24,8 +45,8 @@ static struct cs_plane_equation slope(const struct frame *f, double a, double b,
                                       (float)y};
 }
 
-/* From the places before they were put on the grid. A sliver has no slopes to speak of: its
- * planes are flat. */
+/* From the corners before rounding to the grid. If twice the area is below 1/512 pixel^2, the
+ * slopes would be noise: the planes of such a sliver are flat. */
 static struct frame make_frame(const struct cs_triangle *t,
                                const struct cs_clip_vertex *const p[3]) {
     const double from_top = t->bottom_row + 1 - (double)p[0]->y;
@@ -56,6 +77,8 @@ struct cs_plane_equation cs_depth_of(const struct cs_clip_vertex *a,
     return (struct cs_plane_equation){a->z - (x * a->x + y * a->y), x, y};
 }
 
+/* Depth plane from the corners in the caller's order, and the range of reversed depth that
+ * bounds extrapolated samples. */
 static void set_depth(struct cs_triangle *t, const struct cs_clip_vertex *const corners[3]) {
     const struct cs_clip_vertex *a = corners[t->is_back_facing ? 0 : 1],
                                 *b = corners[t->is_back_facing ? 1 : 0];
@@ -68,6 +91,8 @@ static void set_depth(struct cs_triangle *t, const struct cs_clip_vertex *const 
     }
 }
 
+/* Planes of 1/w and of the first n attributes over w. Attributes 0..2 are the normal: it points
+ * to the viewer, so a back-facing triangle negates it. */
 static void set_planes(struct cs_triangle *t, const struct cs_clip_vertex *const p[3], int n) {
     const struct frame f = make_frame(t, p);
     const float side = t->is_back_facing ? -1 : 1;
@@ -80,7 +105,8 @@ static void set_planes(struct cs_triangle *t, const struct cs_clip_vertex *const
     }
 }
 
-// the corners on the grid, turned so that the inside is on one side; false where none is left
+/* Puts the corners on the grid and orders them clockwise as seen; p is reordered likewise. The
+ * sign of twice the area tells the facing. Returns false if the rounded area is 0. */
 static bool set_corners(struct cs_triangle *t, int height, const struct cs_clip_vertex *p[3]) {
     int64_t x[3], y[3];
     for (int i = 0; i < 3; i++) {
@@ -102,6 +128,7 @@ static bool set_corners(struct cs_triangle *t, int height, const struct cs_clip_
     return area != 0;
 }
 
+/* Pixels that the triangle may touch, cut to the picture. Returns false if there are none. */
 static bool set_box(struct cs_triangle *t, int width, int height) {
     int left = t->x[0], right = left, top = t->y[0], bottom = top;
     for (int i = 1; i < 3; i++) {
@@ -118,6 +145,7 @@ static bool set_box(struct cs_triangle *t, int width, int height) {
     return t->left <= t->right && t->top <= t->bottom;
 }
 
+// an unused item behind the last one, or NULL if out of memory; doubling keeps growth linear
 static struct cs_triangle *next(struct cs_triangles *triangles) {
     if (triangles->n == triangles->capacity) {
         const size_t capacity = triangles->capacity ? 2 * triangles->capacity : 1024;
@@ -132,6 +160,7 @@ static struct cs_triangle *next(struct cs_triangles *triangles) {
     return triangles->items + triangles->n;
 }
 
+/* Adds one triangle that lies inside the clip volume; n grows only if it covers any pixel. */
 static void add(struct cs_triangles *triangles, const struct cs_clip_transform *clip,
                 const struct cs_clip_vertex *a, const struct cs_clip_vertex *b,
                 const struct cs_clip_vertex *c, const struct cs_triangle_kind *kind) {
@@ -156,8 +185,10 @@ void cs_triangles_add(struct cs_triangles *triangles, const struct cs_clip_trans
         add(triangles, clip, corners[0], corners[1], corners[2], kind);
         return;
     }
+    // all corners outside the same plane: nothing is visible
     if (corners[0]->clip_mask & corners[1]->clip_mask & corners[2]->clip_mask)
         return;
+    // the clipped polygon is convex: a fan about its first corner
     const int n = cs_clip_transform_clip(clip, corners, polygon);
     for (int i = 2; i < n; i++)
         add(triangles, clip, polygon, polygon + i - 1, polygon + i, kind);

@@ -1,4 +1,9 @@
-/* Prepares a scene for drawing through OpenGL, and exports the renderer's table of calls. */
+/* Draws a scene through OpenGL, and exports the renderer's table of calls.
+ *
+ * The passes of a picture: upload vertices of bodies and of moved colliders; draw the shadow
+ * map; then sky, colliders, ground, bodies and lines; read the samples back. OpenGL stays the
+ * second opinion on the software renderer (cpu/canvas.c), whose formulas and order are the
+ * same. */
 #include "draw/gl/collider.h"
 #include "draw/gl/context.h"
 #include "draw/gl/driver.h"
@@ -17,16 +22,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* A body: its mesh, its buffers, its style. */
 struct cs_cloth_picture {
     struct cs_mesh mesh;
     struct cs_surface surface;
     struct cs_surface_style style;
 };
 
+/* A renderer's state for one scene. */
 struct cs_canvas {
     const struct cs_scene *scene; /* borrowed, as the system */
     const struct cs_system *system;
-    struct cs_context *context; /* owns all that GL holds */
+    struct cs_context *context; /* owns all OpenGL objects */
     struct cs_arena arena;      /* owns all other memory */
     struct cs_framebuffer target;
     struct cs_view_state view;
@@ -40,6 +47,7 @@ struct cs_canvas {
     char description[256];
 };
 
+/* Uploads a texture with all its levels. */
 static enum cs_status init_texture(struct cs_canvas *canvas, const struct cs_image *image,
                                    unsigned *texture, struct cs_error *error) {
     struct cs_arena arena = {0}; // OpenGL has its own copy
@@ -50,6 +58,7 @@ static enum cs_status init_texture(struct cs_canvas *canvas, const struct cs_ima
     return error->status;
 }
 
+/* Makes mesh, buffers and style of body b, and its texture if it has one. */
 static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
                                  const struct cs_image *texture, struct cs_error *error) {
     struct cs_cloth_picture *cloth = canvas->cloths + b;
@@ -84,6 +93,7 @@ static enum cs_status init_cloths(struct cs_canvas *canvas, const struct cs_imag
     return error->status;
 }
 
+/* Makes the context, then everything in it; the order matters, since all need its calls. */
 static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_settings *settings,
                            struct cs_error *error) {
     const struct cs_render *render = &canvas->scene->render;
@@ -146,6 +156,7 @@ static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
     cs_overlay_aim(&canvas->overlay, canvas->view.pixels_per_m);
 }
 
+/* Places ground and light for the frame, uploads the view, and draws the shadow map. */
 static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_sphere *solid) {
     if (canvas->backdrop.ground.present)
         cs_ground_aim(&canvas->backdrop.ground, &canvas->view.block, solid);
@@ -159,6 +170,7 @@ static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_spher
         cs_surface_draw(&canvas->cloths[b].surface);
 }
 
+/* Draws everything from back to front of what blends: ground over colliders, lines over all. */
 static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
     cs_shadow_bind(&canvas->shadow);
     cs_framebuffer_begin(&canvas->target);

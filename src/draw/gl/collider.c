@@ -1,8 +1,10 @@
-/* Draws colliders through OpenGL: as the camera sees them, and as the light does. */
+/* Draws colliders through OpenGL. A sphere's cap depends on its viewer, so each collider has
+ * buffers for the camera and for the light. */
 #include "draw/gl/collider.h"
 
 #include "draw/gl/gl.h"
 
+/* Fills and uploads a collider for the camera, and for the light unless it is a plane. */
 static void upload(struct cs_gl_colliders *colliders, uint32_t i) {
     const struct cs_collider_geometry *solids = &colliders->solids;
     const struct cs_solid *solid = solids->of + i;

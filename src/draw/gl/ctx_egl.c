@@ -1,4 +1,4 @@
-/* Makes an OpenGL context through EGL on Mesa's surfaceless platform: no display, no window. */
+/* An OpenGL context through EGL on Mesa's surfaceless platform: no display, no window. */
 #include "draw/gl/context.h"
 
 #include <EGL/egl.h>
@@ -19,6 +19,7 @@ static enum cs_status fail(struct cs_error *error, const char *what) {
                    what, (unsigned)eglGetError());
 }
 
+/* Opens the display and makes a core context of version 3.3 or later. */
 static enum cs_status open(struct cs_context *context, struct cs_error *error) {
     static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
                                         3,

@@ -1,12 +1,14 @@
-/* Makes an OpenGL context through OSMesa, whose own buffer is never drawn into. */
+/* An OpenGL context through OSMesa. Its own buffer is never drawn into: frames go to
+ * framebuffer objects, as with EGL. */
 #include "draw/gl/context.h"
 
 #include <GL/osmesa.h>
 #include <stdlib.h>
 
+/* The context, and the buffer that OSMesa requires. */
 struct cs_context {
     OSMesaContext handle;
-    unsigned char pixels[16 * 16 * 4]; // OSMesa insists on one
+    unsigned char pixels[16 * 16 * 4]; // never drawn into
 };
 
 const char cs_context_name[] = "osmesa";

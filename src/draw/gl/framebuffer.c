@@ -1,4 +1,4 @@
-/* Holds the frame buffer that is drawn into, and reads its pixels back. */
+/* Draws into a multisampled texture, and reads it back sample by sample. */
 #include "draw/gl/framebuffer.h"
 
 #include "draw/gl/gl.h"
@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 
+/* Attaches a renderbuffer to the bound frame buffer. */
 static void attach_buffer(GLenum attachment, GLenum format, const struct cs_framebuffer *target,
                           int samples) {
     GLuint buffer;
@@ -16,6 +17,8 @@ static void attach_buffer(GLenum attachment, GLenum format, const struct cs_fram
     gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer);
 }
 
+/* Attaches a multisampled texture for the colour: unlike a renderbuffer, a shader can read
+ * it. */
 static void attach_samples(struct cs_framebuffer *target) {
     gl.GenTextures(1, &target->samples);
     gl.ActiveTexture(GL_TEXTURE0);
@@ -34,7 +37,7 @@ static enum cs_status check_frame(const struct cs_framebuffer *target, struct cs
     return CS_OK;
 }
 
-// what is drawn into: colour and depth
+// the buffer that is drawn into: colour and depth
 static enum cs_status make_drawn(struct cs_framebuffer *target, struct cs_error *error) {
     const bool many = target->n_samples > 1;
     gl.GenFramebuffers(1, &target->draw_framebuffer);
@@ -60,6 +63,7 @@ static enum cs_status make_read(struct cs_framebuffer *target, struct cs_error *
     return check_frame(target, error);
 }
 
+/* Allocates the copies of the samples and the sRGB tables. */
 static enum cs_status take(struct cs_framebuffer *target, struct cs_arena *arena,
                            struct cs_error *error) {
     const size_t n = (size_t)target->width * (size_t)target->height;
@@ -110,8 +114,8 @@ static void copy_sample(const struct cs_framebuffer *target, uint32_t sample) {
     gl.Enable(GL_DEPTH_TEST);
 }
 
-/* Blending on nothing leaves colours times how much they cover; they come back apart, the
- * highest byte what is let through. */
+/* Converts a premultiplied colour, the result of blending on nothing, to a packed one: divides
+ * by the opacity, and stores 255 - opacity in the highest byte. */
 static uint32_t apart(uint32_t rgba) {
     const uint32_t cover = rgba >> 24;
     uint32_t out = (255 - cover) << 24;
@@ -127,7 +131,7 @@ static uint32_t sample_of(const struct cs_framebuffer *target, uint32_t s, size_
     return target->clear ? apart(rgba) : rgba & 0xffffff;
 }
 
-// of pixel i of the rows from the bottom
+// packed colour of pixel i, rows from the bottom
 static uint32_t colour_of(const struct cs_framebuffer *target, size_t i) {
     uint32_t samples[4] = {sample_of(target, 0, i)}, differ = 0;
     for (uint32_t s = 1; s < target->n_samples; s++) {

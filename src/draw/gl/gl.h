@@ -45,10 +45,10 @@ struct cs_gl_calls {
 };
 extern struct cs_gl_calls gl;
 
-/* Fills gl from the current context. CS_ERR_MODULE where that offers less than OpenGL 3.3. */
+/* Loads all calls from the current context. CS_ERR_MODULE if it offers less than OpenGL 3.3. */
 enum cs_status cs_gl_load(struct cs_error *error);
 
-/* CS_ERR_MODULE if a call has failed since the last look; `during` says what was under way. */
+/* CS_ERR_MODULE if a call has failed since the last check; `during` names the task. */
 enum cs_status cs_gl_check(const char *during, struct cs_error *error);
 
 #endif

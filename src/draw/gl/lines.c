@@ -4,6 +4,7 @@
 #include "draw/gl/gl.h"
 #include "draw/gl/shader.h"
 
+/* Draws the collected lines; the shader widens each into a quad. */
 static void draw(struct cs_lines *base, const struct cs_line_style *style) {
     const struct cs_gl_lines *lines = (const struct cs_gl_lines *)base;
     gl.UseProgram(lines->program);

@@ -5,6 +5,8 @@
 #include "draw/gl/shader.h"
 #include "draw/light_frustum.h"
 
+/* The texture compares: a sample returns the lit fraction of four texels, blended (Reeves
+ * 1987). */
 static void make_texture(struct cs_shadow *shadow) {
     gl.GenTextures(1, &shadow->texture);
     gl.ActiveTexture(GL_TEXTURE1);

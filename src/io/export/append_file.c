@@ -1,4 +1,4 @@
-/* Files that grow in place, by writes at a place that is known. */
+/* Files that grow in place, by pwrite at known offsets; interrupted calls go on. */
 #include "io/export/append_file.h"
 
 #include "base/file.h"

@@ -1,5 +1,5 @@
-/* append_file.h - a file that grows sample by sample and is whole after each: its path is its
- * own from the start, and its reader never looks behind what it says it holds. */
+/* append_file.h - a file that grows sample by sample and is valid after each. It has its final
+ * path from the start; its header or its list tells readers how much of it counts. */
 #ifndef CS_EXPORT_APPEND_FILE_H
 #define CS_EXPORT_APPEND_FILE_H
 
@@ -7,29 +7,32 @@
 
 #include <stddef.h>
 
-/* Zeroed: closed. */
+/* An open file; zeroed: closed. */
 struct cs_append_file {
-    int file;        /* descriptor + 1; 0: closed */
-    uint64_t length; /* bytes */
+    int file;        /* descriptor + 1, so that 0 means closed */
+    uint64_t length; /* bytes written completely */
     char path[CS_EXPORT_PATH];
 };
 
-/* A new file; or, kept above 0, the first bytes of one that is there. CS_ERR_FILE, as in all
- * below: also where that one is shorter. */
+/* Opens a new file; or, if kept > 0, an existing one, cut off after `kept` bytes: samples after
+ * the checkpoint of a continued run are dropped. All calls fail with CS_ERR_FILE; this one also
+ * if the existing file is shorter. Does not follow a symbolic link. */
 enum cs_status cs_append_file_open(struct cs_append_file *grown, const char *path,
                                    uint64_t kept, struct cs_error *error);
 
-/* Writes n bytes from `at` on, which is not behind the end. Where that fails the file is no
- * longer than before. */
+/* Writes n bytes at offset `at`, at most the length. On failure the file is as long as
+ * before. */
 enum cs_status cs_append_file_write(struct cs_append_file *grown, uint64_t at,
                                     const void *bytes, size_t n, struct cs_error *error);
 
+/* Reads n bytes at offset `at`; fewer are a failure. */
 enum cs_status cs_append_file_read(const struct cs_append_file *grown, uint64_t at, void *bytes,
                                    size_t n, struct cs_error *error);
 
-/* Returns when the disk has what was written. Closed: nothing. */
+/* Returns when the disk has what was written. Does nothing if closed. */
 enum cs_status cs_append_file_sync(const struct cs_append_file *grown, struct cs_error *error);
 
+/* Closes the file; safe on a closed one. */
 void cs_append_file_close(struct cs_append_file *grown);
 
 #endif

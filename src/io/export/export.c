@@ -1,4 +1,4 @@
-/* Hands every sample of a run to the writers of all formats that are asked for. */
+/* Hands every sample of a run to the writers of all requested formats. */
 #include "io/export/export.h"
 
 #include "model/force/diagnostics.h"
@@ -18,6 +18,8 @@ uint32_t cs_export_with_values(void) {
     return formats;
 }
 
+/* Adds the fields besides positions, if a format can hold them: their order is that of
+ * measure. */
 static enum cs_status add_fields(struct cs_export *export, struct cs_error *error) {
     static const char *const names[][2] = {
         {"velocity", "velocities"}, {"force", "forces"}, {"strain", "strains"}};
@@ -63,12 +65,13 @@ enum cs_status cs_export_open(struct cs_export *export,
         if (export->states[k])
             writer->open(export->states[k], &export->source, &export->arena, error);
     }
-    /* those at rest stay where they are put now */
+    /* colliders at rest keep the positions that they get now */
     if (!error->status && export->colliders.n > 0)
         cs_export_mesh_pose_colliders(&export->colliders, system, 0);
     return error->status;
 }
 
+/* Sets all fields from the state at time t, in the order of add_fields. */
 static void measure(struct cs_export *export, double t, const double *x, const double *v) {
     const struct cs_export_mesh *bodies = &export->bodies;
     const struct cs_export_field *field = bodies->fields + 1;

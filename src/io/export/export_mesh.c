@@ -1,5 +1,5 @@
-/* Joins the particles of all bodies to triangles and lines, and makes colliders of triangles:
- * each in its own frame once, then placed at every sample. */
+/* Joins the particles of all bodies to triangles and lines, and makes triangles of colliders. A
+ * collider's triangles are made once in its own frame, then posed at every sample. */
 #include "io/export/export_mesh.h"
 
 #include "base/little_endian.h"
@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+/* Allocates topology, uv if asked for, and the field of positions. */
 static enum cs_status take(struct cs_export_mesh *skin, bool uv, struct cs_arena *arena,
                            struct cs_error *error) {
     static const char *const positions[2] = {"position", "positions"};
@@ -48,7 +49,7 @@ void cs_export_mesh_set(const struct cs_export_mesh *skin, const struct cs_expor
             field->words[i * components + c] = cs_double_to_le64(values[c * n + i]);
 }
 
-/* a row or column of particles has no triangles */
+/* Lines of a body: only a single row or column of particles, which has no triangles. */
 static uint32_t count_lines(const struct cs_body_range *body) {
     return body->mesh || cs_faces_count(body) ? 0 : body->count - 1;
 }
@@ -57,7 +58,8 @@ static bool has_uv(const struct cs_body_range *body) {
     return body->mesh ? body->mesh->uv != NULL : cs_faces_count(body) > 0;
 }
 
-/* of a grid from 0 to 1 across and upwards; of a mesh those of its file */
+/* Texture coordinates of a triangle, v upwards: of a grid 0..1 across and up; of a mesh those
+ * of its file, whose v points down here; NaN if it has none. */
 static void set_uv(const struct cs_body_range *body, uint32_t t, const uint32_t corners[3],
                    float uv[6]) {
     const struct cs_trimesh *mesh = body->mesh;
@@ -84,6 +86,7 @@ void cs_export_mesh_point_uv(const struct cs_export_mesh *skin, float (*uv)[2]) 
             memcpy(uv[skin->triangles[corner]], skin->uv + 2 * corner, sizeof *uv);
 }
 
+/* Writes triangles, texture coordinates and lines of body b with the particles' numbers. */
 static void fill_body(struct cs_export_mesh *skin, const struct cs_body_range *body,
                       uint32_t b) {
     for (uint32_t t = 0; t < cs_faces_count(body); t++) {
@@ -128,6 +131,7 @@ enum cs_status cs_export_mesh_of_bodies(struct cs_export_mesh *skin,
     return CS_OK;
 }
 
+/* Copies the points of a collider in its own frame, and its triangles with shifted numbers. */
 static void fill_collider(struct cs_export_mesh *skin, uint32_t item,
                           const struct cs_trimesh *mesh) {
     const uint32_t first = skin->first_point[item];
@@ -139,7 +143,7 @@ static void fill_collider(struct cs_export_mesh *skin, uint32_t item,
         corner[k] = first + mesh->triangles[k];
 }
 
-/* meshes (colliders.n), in their own frames, of those that are visible */
+/* Joins the visible ones of meshes (colliders.n), each in its own frame, to one mesh. */
 static enum cs_status join(struct cs_export_mesh *skin,
                            const struct cs_posed_collider *obstacles,
                            const struct cs_trimesh *meshes, struct cs_arena *arena,

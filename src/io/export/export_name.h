@@ -1,4 +1,4 @@
-/* export_name.h - names of exported files. */
+/* export_name.h - paths of exported files. */
 #ifndef CS_EXPORT_EXPORT_NAME_H
 #define CS_EXPORT_EXPORT_NAME_H
 
@@ -7,8 +7,9 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { CS_EXPORT_PATH = 4096 };
+enum { CS_EXPORT_PATH = 4096 }; /* bytes of a path with its end */
 
+/* Refuses a path that snprintf has cut off; length: its result. CS_ERR_FILE. */
 static inline enum cs_status cs_export_check(int length, const char *folder,
                                              struct cs_error *error) {
     return length >= CS_EXPORT_PATH
@@ -17,14 +18,14 @@ static inline enum cs_status cs_export_check(int length, const char *folder,
                : CS_OK;
 }
 
-/* FOLDER/NAME */
+/* Writes the path FOLDER/NAME. */
 static inline enum cs_status cs_export_name(char path[CS_EXPORT_PATH], const char *folder,
                                             const char *name, struct cs_error *error) {
     return cs_export_check(snprintf(path, CS_EXPORT_PATH, "%s/%s", folder, name), folder,
                            error);
 }
 
-/* FOLDER/NAME_00012.ENDING */
+/* Writes the path FOLDER/NAME_00012.ENDING of a sample. */
 static inline enum cs_status cs_export_number(char path[CS_EXPORT_PATH], const char *folder,
                                               const char *name, uint32_t number,
                                               const char *ending, struct cs_error *error) {

@@ -1,6 +1,13 @@
-/* Writes one NumPy archive of a whole run: meshes, times and the values of all samples. How
- * long its arrays are is known at the end only: until then samples lie one behind the other in
- * a file of their own. */
+/* Writes one NumPy archive of a whole run: meshes, times and the values of all samples.
+ *
+ * A header of NPY states the length of its array, which is known only at the end. Until then
+ * samples are appended to run.npz.part: time, then the fields of bodies and of moving
+ * colliders, all little-endian doubles. Each sample has the same size, so field f of sample k
+ * is found by its offset. finish() copies the part into the archive, transposed from samples of
+ * fields to fields of samples. A continued run goes on from the part.
+ *
+ * Arrays with N samples: times (N), frames (N), positions and other fields (N, n, components),
+ * faces, lines, offsets of bodies, uv; the same of colliders with the prefix "collider_". */
 #include "base/little_endian.h"
 #include "io/export/append_file.h"
 #include "io/export/writer.h"
@@ -10,26 +17,28 @@
 #include <string.h>
 #include <unistd.h>
 
+/* State of an open archive. */
 struct archive {
     struct cs_append_file part;
     const char *folder;        /* borrowed */
     uint32_t every, n_samples; /* frames from one sample to the next, samples there are */
-    uint64_t sample_bytes;
+    uint64_t sample_bytes;     /* of a sample in the part */
 };
 
-enum { WHOLE, PART }; /* of the names of files */
+enum { WHOLE, PART }; /* index of a file's name in cs_export_npz.files */
 
+/* Numbers of field f at one sample. */
 static size_t word_size(const struct cs_export_mesh *skin, uint32_t f) {
     return (size_t)skin->n * skin->fields[f].components;
 }
 
-/* colliders at rest are in the archive alone */
+/* Colliders at rest are not sampled: the archive has their one position. */
 static bool is_sampled(const struct cs_export_mesh *skin) {
     return skin->is_moving && skin->n > 0;
 }
 
-/* Calls use for each field of a sample, in their order: what is written and what is read cannot
- * differ. */
+/* Calls `use` for each field of a sample in the order of the part. Size, writer and reader
+ * share this order by sharing the function. */
 static enum cs_status each_field(const struct cs_export_mesh *const skins[2],
                                  enum cs_status (*use)(void *ctx,
                                                        const struct cs_export_mesh *skin,
@@ -42,6 +51,7 @@ static enum cs_status each_field(const struct cs_export_mesh *const skins[2],
     return CS_OK;
 }
 
+/* Adds the size of a field to *ctx. */
 static enum cs_status count_field(void *ctx, const struct cs_export_mesh *skin, uint32_t f,
                                   struct cs_error *error) {
     uint64_t *bytes = ctx;
@@ -67,7 +77,7 @@ static enum cs_status open_part(void *state, const struct cs_export_source *sour
                                      npz->sample_bytes * settings->n_samples_before, error);
 }
 
-/* where the next field of a sample goes, or comes from */
+/* A position in the part, which moves from field to field. */
 struct place {
     struct archive *npz;
     uint64_t at;
@@ -95,13 +105,14 @@ static enum cs_status add(void *state, const struct cs_export_source *source,
     return error->status;
 }
 
-/* An array under way. */
+/* Name, element type and shape of an array that is being written. */
 struct array {
     const char *name, *type;
     uint64_t shape[3];
     unsigned n_axes, item_bytes;
 };
 
+/* Begins the member NAME.npy, whose size follows from the shape, and writes its header. */
 static void begin_array(struct cs_zip *zip, const struct array *array) {
     char head[CS_NPY_HEAD], name[40];
     uint64_t bytes = array->item_bytes;
@@ -113,7 +124,7 @@ static void begin_array(struct cs_zip *zip, const struct array *array) {
     cs_zip_put(zip, head, sizeof head);
 }
 
-/* An array of numbers of 32 bits, whole or not. */
+/* Writes an array of integers or floats of 32 bits, converted block by block. */
 static void put_array(struct cs_zip *zip, const struct array *array, const void *numbers) {
     enum { BLOCK = 1024 };
     uint32_t block[BLOCK];
@@ -131,13 +142,13 @@ static void put_array(struct cs_zip *zip, const struct array *array, const void 
     cs_zip_end(zip);
 }
 
-/* (n, columns) whole numbers; columns 0: (n) */
+/* Writes integers (n, columns); columns 0: (n). */
 static void put_integer(struct cs_zip *zip, const char *name, const uint32_t *values,
                         uint64_t n, uint64_t columns) {
     put_array(zip, &(struct array){name, "<i4", {n, columns}, columns ? 2 : 1, 4}, values);
 }
 
-/* what does not change, of bodies and of colliders */
+/* Writes what does not change: faces, lines, offsets, texture coordinates. */
 static void put_meshes(struct cs_zip *zip, const struct cs_export_mesh *const skins[2]) {
     const struct cs_export_mesh *bodies = skins[0], *colliders = skins[1];
     put_integer(zip, "faces", bodies->triangles, bodies->n_triangles, 3);
@@ -156,6 +167,7 @@ static void put_meshes(struct cs_zip *zip, const struct cs_export_mesh *const sk
                 0);
 }
 
+/* Writes the frame of each sample. */
 static void put_frames(const struct archive *npz, struct cs_zip *zip) {
     begin_array(zip, &(struct array){"frames", "<i4", {npz->n_samples}, 1, 4});
     for (uint32_t k = 0; k < npz->n_samples; k++) {
@@ -165,6 +177,7 @@ static void put_frames(const struct archive *npz, struct cs_zip *zip) {
     cs_zip_end(zip);
 }
 
+/* Writes the time of each sample in s, gathered from the part. */
 static enum cs_status put_times(const struct archive *npz, struct cs_zip *zip,
                                 struct cs_error *error) {
     begin_array(zip, &(struct array){"times", "<f8", {npz->n_samples}, 1, 8});
@@ -178,6 +191,7 @@ static enum cs_status put_times(const struct archive *npz, struct cs_zip *zip,
     return CS_OK;
 }
 
+/* Begins the array of a field over all samples. */
 static void begin_field(struct cs_zip *zip, const struct cs_export_mesh *skin, uint32_t f,
                         uint32_t n_samples) {
     char name[40];
@@ -191,12 +205,13 @@ static void begin_field(struct cs_zip *zip, const struct cs_export_mesh *skin, u
                                      8});
 }
 
-/* the archive, and where in the first sample the next field is */
+/* The archive, and the position of the next field in the first sample. */
 struct series {
     struct place place;
     struct cs_zip *zip;
 };
 
+/* Writes a field over all samples, gathered from the part through the field's own array. */
 static enum cs_status put_field(void *ctx, const struct cs_export_mesh *skin, uint32_t f,
                                 struct cs_error *error) {
     struct series *series = ctx;
@@ -236,7 +251,8 @@ static enum cs_status sync_part(const void *state, struct cs_error *error) {
     return cs_append_file_sync(&npz->part, error);
 }
 
-/* The fields of the skins are overwritten. The part goes unless the run may go on. */
+/* Writes the archive; overwrites the fields of the meshes. Removes the part unless the run may
+ * be continued. */
 static enum cs_status finish(void *state, const struct cs_export_source *source, bool goes_on,
                              struct cs_error *error) {
     struct archive *npz = state;

@@ -1,5 +1,6 @@
-/* Writes Wavefront OBJ: one text file a sample, with the same faces in each, positions to nine
- * digits.
+/* Writes Wavefront OBJ: one text file per sample, with the same faces in each, positions to
+ * nine significant digits. Only the lines of positions change; all that follows them is printed
+ * once.
  */
 #include "base/file.h"
 #include "base/little_endian.h"
@@ -11,13 +12,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Texture coordinates under way: each point's last one, since most points have one alone. */
+/* Texture coordinates being numbered: the last of each point, since most points have one
+ * alone. */
 struct uv_list {
-    uint32_t n;
-    uint32_t *last;     /* (skin->n) number from 1; 0: none */
-    float (*values)[2]; /* (skin->n) of it */
+    uint32_t n;         /* coordinates written */
+    uint32_t *last;     /* (skin->n) number of the point's last one, from 1; 0: none */
+    float (*values)[2]; /* (skin->n) its value */
 };
 
+/* Prints a texture coordinate and makes it the last of its point. */
 static void add_uv(struct uv_list *list, uint32_t point, const float uv[2],
                    struct cs_text *out) {
     cs_text_add(out, "vt %.9g %.9g\n", (double)uv[0], (double)uv[1]);
@@ -25,9 +28,9 @@ static void add_uv(struct uv_list *list, uint32_t point, const float uv[2],
     list->last[point] = ++list->n;
 }
 
-/* One for each point, in their order, even if a body has none: where no point has two, the
- * numbers of a corner's place and of its coordinates are then the same, which some readers ask
- * for and others need if they are not to part the corners. */
+/* Prints one coordinate per point, in their order, even if a body has none. If no point has
+ * two, position and coordinate of a corner then have the same number. Some readers require
+ * this, and others would split the corners without it. */
 static void list_points(const struct cs_export_mesh *skin, struct uv_list *list,
                         struct cs_text *out) {
     cs_export_mesh_point_uv(skin, list->values);
@@ -35,7 +38,7 @@ static void list_points(const struct cs_export_mesh *skin, struct uv_list *list,
         add_uv(list, i, list->values[i], out);
 }
 
-/* Number of a corner's coordinates, which are added where the point has others. */
+/* Returns the number of a corner's coordinate; adds it if the point's last one differs. */
 static uint32_t number_uv(struct uv_list *list, uint32_t point, const float uv[2],
                           struct cs_text *out) {
     if (memcmp(list->values[point], uv, sizeof *list->values) != 0)
@@ -43,6 +46,7 @@ static uint32_t number_uv(struct uv_list *list, uint32_t point, const float uv[2
     return list->last[point];
 }
 
+/* Prints a face with numbers from 1; corners without a coordinate have the position alone. */
 static void add_face(const struct cs_export_mesh *skin, uint32_t t, struct uv_list *list,
                      struct cs_text *uvs, struct cs_text *faces) {
     const float *uv = skin->uv ? skin->uv + 6 * (size_t)t : NULL;
@@ -57,8 +61,8 @@ static void add_face(const struct cs_export_mesh *skin, uint32_t t, struct uv_li
     cs_text_add(faces, "\n");
 }
 
-/* Groups and no objects: readers make one object of the file, whose points stay in their order,
- * as a point cache needs it. */
+/* Prints groups and no objects: readers then make one object of the file and keep the order of
+ * its points, which a point cache needs. */
 static void add_items(const struct cs_export_mesh *skin, struct uv_list *list,
                       struct cs_text *uvs, struct cs_text *faces) {
     for (uint32_t b = 0; b < skin->n_items; b++) {
@@ -71,7 +75,8 @@ static void add_items(const struct cs_export_mesh *skin, struct uv_list *list,
     }
 }
 
-/* All that follows the points: texture coordinates, a group for each body, faces and lines. */
+/* Prints all that follows the positions: texture coordinates, a group per body, faces, lines.
+ */
 static enum cs_status print_tail(const struct cs_export_mesh *skin, struct cs_text *tail,
                                  struct cs_error *error) {
     struct cs_text faces = {0};

@@ -1,16 +1,28 @@
-/* Writes PC2 point caches: the points of all samples in one file, in the order of the OBJ. A
- * header of 32 bytes, then places as floats, sample by sample. */
+/* Writes PC2 point caches: the points of all samples in one file, in the order of the OBJ.
+ *
+ *   offset  bytes  field, little-endian
+ *   0       12     "POINTCACHE2", 0
+ *   12      4      version 1
+ *   16      4      number n of points
+ *   20      4      first frame, a float: 0
+ *   24      4      frames from one sample to the next, a float
+ *   28      4      number of samples
+ *   32      12 n   positions of the first sample, floats x y z per point; then the next
+ *
+ * The number of samples is written after their positions. A file that a crash cut off therefore
+ * never promises a sample that it does not hold. */
 #include "base/little_endian.h"
 #include "io/export/append_file.h"
 #include "io/export/writer.h"
 
+/* The cache of bodies or of colliders; closed if they have none. */
 struct cache {
     struct cs_append_file file;
     uint32_t n_samples;
     uint32_t *floats; /* (n, 3) of one sample, the arena's */
 };
 
-enum { HEADER = 32, AT_COUNT = 28 };
+enum { HEADER = 32, AT_COUNT = 28 }; /* bytes of the header; offset of the number of samples */
 
 static void make_header(uint8_t header[HEADER], uint32_t n, uint32_t every, uint32_t samples) {
     const uint32_t words[] = {htole32(1), /* the version */
@@ -20,6 +32,7 @@ static void make_header(uint8_t header[HEADER], uint32_t n, uint32_t every, uint
     memcpy(header + 12, words, sizeof words);
 }
 
+/* Opens a cache: a new file, or the first `kept` samples of that of a continued run. */
 static enum cs_status open_cache(struct cache *cache, const struct cs_export_mesh *skin,
                                  const struct cs_export_settings *settings,
                                  struct cs_arena *arena, struct cs_error *error) {
@@ -37,7 +50,7 @@ static enum cs_status open_cache(struct cache *cache, const struct cs_export_mes
     return cs_append_file_write(&cache->file, 0, header, sizeof header, error);
 }
 
-/* Adds a sample; then the file says that it has it. */
+/* Adds a sample: positions first, then the count that includes it. */
 static enum cs_status add_to(struct cache *cache, const struct cs_export_mesh *skin,
                              struct cs_error *error) {
     const uint64_t *words = skin->fields[0].words;

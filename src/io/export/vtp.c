@@ -1,5 +1,11 @@
-/* Writes VTK's XML PolyData, one file a sample, with raw appended data, each array behind its
- * length; and the PVD file that says when each was. */
+/* Writes VTK's XML PolyData, one file per sample, and a PVD file with the time of each.
+ *
+ * A VTP file is an XML head, then "_" and raw appended data, then the closing tags. Each array
+ * of the data is its length in bytes (UInt64), then its numbers, all little-endian. The head
+ * states its offset from the "_". Arrays come in two parts:
+ *   per sample  time, positions and other fields (Float64)
+ *   constant    body of each point, texture coordinates, connectivity and ends of lines, faces
+ * Head and constant part are made once; a sample writes only what changes between them. */
 #include "base/file.h"
 #include "base/little_endian.h"
 #include "base/text.h"
@@ -7,17 +13,17 @@
 #include "io/export/export_name.h"
 #include "io/export/writer.h"
 
-/* What the files of all samples have in common. */
+/* Parts that the files of all samples have in common. */
 struct common {
     struct cs_text head; /* XML up to the appended data, owned */
-    uint8_t *fixed;      /* appended data that stay, which the arena owns */
+    uint8_t *fixed;      /* constant appended data, owned by the arena */
     size_t fixed_bytes;
 };
 
-/* The PVD file, whole after each sample. */
+/* The PVD file, a valid document after each sample. */
 struct list {
     struct cs_append_file file;
-    uint64_t end; /* of its entries */
+    uint64_t end; /* offset of the closing tags, which the next entry overwrites */
 };
 
 struct files {
@@ -25,13 +31,14 @@ struct files {
     struct list list;
 };
 
-/* An array in the head, whose data follow those before. */
+/* An array that the head declares. */
 struct array {
     const char *type, *name;
     uint32_t components;
     size_t bytes;
 };
 
+/* Declares an array at *offset, and moves the offset past its length and its data. */
 static void add_array(struct cs_text *head, const struct array *array, size_t *offset) {
     cs_text_add(head,
                 "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%u\" "
@@ -47,6 +54,7 @@ static void add_field(struct cs_text *head, const struct cs_export_mesh *skin, u
     add_array(head, &(struct array){"Float64", field->name, field->components, bytes}, offset);
 }
 
+/* Declares the cells of one kind: points of each, and where its list of points ends. */
 static void add_cells(struct cs_text *head, const char *kind, uint32_t n, uint32_t corners,
                       size_t *offset) {
     const size_t bytes = n * sizeof(int32_t);
@@ -56,7 +64,7 @@ static void add_cells(struct cs_text *head, const char *kind, uint32_t n, uint32
     cs_text_add(head, "</%s>\n", kind);
 }
 
-/* In the order of the data: time, fields, then what stays. */
+/* Prints the head; declares arrays in the order of the data: time, fields, constant part. */
 static void print_head(const struct cs_export_mesh *skin, struct cs_text *head) {
     size_t offset = 0;
     cs_text_add(head, "<?xml version=\"1.0\"?>\n"
@@ -84,7 +92,8 @@ static void print_head(const struct cs_export_mesh *skin, struct cs_text *head) 
     cs_text_add(head, "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_");
 }
 
-/* the beginning of an array of n numbers; returns where they go */
+/* Writes the length of an array of n numbers of 4 bytes; returns where they go, moves *at
+ * past. */
 static uint32_t *begin_array(uint8_t **at, size_t n) {
     const uint64_t length = htole64(n * sizeof(uint32_t));
     memcpy(*at, &length, sizeof length);
@@ -93,7 +102,8 @@ static uint32_t *begin_array(uint8_t **at, size_t n) {
     return numbers;
 }
 
-/* Lengths are of 8 bytes and numbers of 4, so that every number has its place in memory. */
+/* Writes the cells of one kind. Lengths have 8 bytes and numbers 4, so all numbers are
+ * aligned. */
 static void fill_cells(uint8_t **at, const uint32_t *points, uint32_t n, uint32_t corners) {
     uint32_t *connectivity = begin_array(at, (size_t)corners * n);
     for (size_t k = 0; k < (size_t)corners * n; k++)
@@ -103,6 +113,7 @@ static void fill_cells(uint8_t **at, const uint32_t *points, uint32_t n, uint32_
         ends[k] = htole32((k + 1) * corners);
 }
 
+/* Writes a texture coordinate per point: that of its first corner. */
 static void fill_uv(const struct cs_export_mesh *skin, uint8_t **at) {
     float(*uv)[2] = (float(*)[2])(void *)begin_array(at, 2 * (size_t)skin->n);
     cs_export_mesh_point_uv(skin, uv);
@@ -113,6 +124,7 @@ static void fill_uv(const struct cs_export_mesh *skin, uint8_t **at) {
         }
 }
 
+/* Writes the constant part, in the order of print_head. */
 static void fill_fixed(const struct cs_export_mesh *skin, uint8_t *at) {
     uint32_t *item = begin_array(&at, skin->n);
     for (uint32_t b = 0; b < skin->n_items; b++)
@@ -124,6 +136,7 @@ static void fill_fixed(const struct cs_export_mesh *skin, uint8_t *at) {
     fill_cells(&at, skin->triangles, skin->n_triangles, 3);
 }
 
+/* Makes head and constant part: five arrays with their lengths, and uv if there is one. */
 static enum cs_status make(struct common *vtp, const struct cs_export_mesh *skin,
                            struct cs_arena *arena, struct cs_error *error) {
     vtp->fixed_bytes =
@@ -140,7 +153,7 @@ static enum cs_status make(struct common *vtp, const struct cs_export_mesh *skin
     return error->status;
 }
 
-/* failures are seen when the file is finished */
+/* Writes an array of doubles; failures are found when the file is finished. */
 static void write_array(FILE *file, const uint64_t *words, size_t n) {
     const uint64_t length = htole64(n * sizeof *words);
     fwrite(&length, sizeof length, 1, file);
@@ -172,7 +185,7 @@ static const char list_head[] = "<?xml version=\"1.0\"?>\n"
                                 "byte_order=\"LittleEndian\">\n<Collection>\n";
 static const char list_tail[] = "</Collection>\n</VTKFile>\n";
 
-/* Entries take the place of the file's end, which follows them again. */
+/* Writes entries over the closing tags, and the tags again after them. */
 static enum cs_status put(struct list *pvd, struct cs_text *entries, struct cs_error *error) {
     const size_t length = entries->length;
     cs_text_add(entries, "%s", list_tail);
@@ -195,8 +208,8 @@ static enum cs_status begin_list(struct list *pvd, const char *folder, struct cs
     return put(pvd, &entries, error);
 }
 
-/* Adds a sample of both skins, if they have points; one that never moves has one file, of
- * number 0. */
+/* Adds a sample of bodies and colliders, if they have points. Those that never move have one
+ * file, of number 0. */
 static enum cs_status list_sample(struct list *pvd, const struct cs_export_mesh *const skins[2],
                                   uint32_t number, double t, struct cs_error *error) {
     struct cs_text entries = {0};
@@ -212,7 +225,7 @@ static enum cs_status list_sample(struct list *pvd, const struct cs_export_mesh 
     return put(pvd, &entries, error);
 }
 
-/* The list of samples is written anew. */
+/* Writes the list again from the start, with the samples of a continued run. */
 static enum cs_status open_list(struct list *list, const struct cs_export_source *source,
                                 struct cs_error *error) {
     const struct cs_export_settings *settings = &source->settings;

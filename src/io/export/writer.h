@@ -1,7 +1,6 @@
-/* writer.h - what a format of exported files is: a table of calls, each format in a file of its
- * own.
+/* writer.h - interface of export formats: a table of calls, each format in a file of its own.
  *
- * A new format: its line in CS_EXPORT_LIST and its declaration below, NAME.c with
+ * A new format needs: its line in CS_EXPORT_LIST and its declaration below, NAME.c with
  * cs_export_NAME, and that file in meson.build.
  */
 #ifndef CS_EXPORT_WRITER_H
@@ -12,6 +11,7 @@
 /* X(BIT, name): the formats. */
 #define CS_EXPORT_LIST(X) X(OBJ, obj) X(PC2, pc2) X(VTP, vtp) X(NPZ, npz)
 
+/* Number of a format in tables. */
 enum cs_export_index {
 #define X(BIT, name) CS_EXPORT_INDEX_##BIT,
     CS_EXPORT_LIST(X)
@@ -19,35 +19,37 @@ enum cs_export_index {
         CS_N_EXPORT_FORMATS
 };
 
+/* Bit of a format in sets. */
 enum cs_export_format {
 #define X(BIT, name) CS_EXPORT_##BIT = 1u << CS_EXPORT_INDEX_##BIT,
     CS_EXPORT_LIST(X)
 #undef X
 };
 
-/* What is exported of a run. */
+/* Selection of what a run exports, and where. */
 struct cs_export_settings {
     const char *folder;        /* exists; borrowed */
-    uint32_t formats, values;  /* sets of bits; no format: nothing is taken */
+    uint32_t formats, values;  /* sets of bits; no format: nothing is exported */
     uint32_t frame_interval;   /* frames from one sample to the next */
-    uint32_t n_samples_before; /* samples that are there, of a run that goes on */
+    uint32_t n_samples_before; /* samples that the files of a continued run already have */
 };
 
-/* How its moments are numbered. */
+/* Number and time of a sample. */
 struct cs_export_sample {
     uint32_t number; /* from 0, the start, without gaps */
     uint32_t frame;  /* of the run */
     double t;        /* s */
 };
 
-/* What all formats are made from; it stays where it is while they are open. */
+/* Data that all formats read; it must stay at its address while they are open. */
 struct cs_export_source {
     const struct cs_export_mesh *skins[2]; /* bodies, colliders */
     struct cs_export_settings settings;
     double fps;
 };
 
-/* Calls may be NULL where there is nothing to do. CS_ERR_FILE, CS_ERR_MEMORY. */
+/* A format. Calls may be NULL if there is nothing to do; they fail with CS_ERR_FILE or
+ * CS_ERR_MEMORY. */
 struct cs_export_writer {
     bool holds_values;        /* beside positions */
     const char *ending;       /* of the files BODIES_00012.ENDING of samples; NULL: none */
@@ -55,16 +57,16 @@ struct cs_export_writer {
     const char *files[2];     /* others; NULL: none */
     size_t size;              /* bytes of its state, which begins zeroed and closed */
 
-    /* Takes what it needs, and opens what grows. */
+    /* Allocates what it needs, and opens files that grow. */
     enum cs_status (*open)(void *state, const struct cs_export_source *source,
                            struct cs_arena *arena, struct cs_error *error);
     /* Adds a sample. On failure the files hold those before. */
     enum cs_status (*add)(void *state, const struct cs_export_source *source,
                           const struct cs_export_sample *sample, struct cs_error *error);
-    /* Before a checkpoint: the disk has what a run that goes on takes up again. Numbered files
-     * and lists of samples can be missed, or are written anew. */
+    /* Flushes to the disk, before a checkpoint, what a continued run takes up again. Numbered
+     * files and lists of samples are left out, because they are written again. */
     enum cs_status (*sync)(const void *state, struct cs_error *error);
-    /* At the end of a run, which may go on later. */
+    /* Completes files at the end of a run; goes_on: it may be continued. */
     enum cs_status (*finish)(void *state, const struct cs_export_source *source, bool goes_on,
                              struct cs_error *error);
     void (*close)(void *state);
@@ -73,7 +75,7 @@ struct cs_export_writer {
 /* declared one by one: a line in the list alone does not compile */
 extern const struct cs_export_writer cs_export_obj, cs_export_pc2, cs_export_vtp, cs_export_npz;
 
-/* What never moves has a first sample alone. */
+/* Returns true if a mesh has a value at a sample: one that never moves has the first alone. */
 static inline bool cs_skin_has_sample(const struct cs_export_mesh *skin,
                                       const struct cs_export_sample *sample) {
     return skin->n > 0 && (skin->is_moving || sample->number == 0);

@@ -1,4 +1,4 @@
-/* Parses strict JSON with cJSON and records where each value stands in the text. */
+/* Parses strict JSON with cJSON, and records the position of each value in the text. */
 #include "scene/file/json.h"
 
 #include "scene/file/utf8.h"
@@ -8,11 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Places are kept in cJSON's valueint, a rounded copy of the number that is never read here:
- * the offset of a member's key, or of a value without key; NO_PLACE for what is not from the
- * text. */
+/* Positions are stored in cJSON's valueint, a rounded copy of the number that is never read
+ * here: the offset of a member's key, or of a value without key; NO_PLACE for values that are
+ * not from the text. */
 enum { NO_PLACE = -1 };
 
+/* struct cs_json is cJSON under another name: these convert pointers. */
 static cJSON *node_of(struct cs_json *value) {
     return (cJSON *)(void *)value;
 }
@@ -23,8 +24,8 @@ static struct cs_json *value_of(cJSON *node) {
     return (struct cs_json *)(void *)node;
 }
 
-/* Walks text and tree together, which have the same shape; returns the offset behind the value.
- */
+/* Records positions: walks text and tree together, which have the same shape. Returns the
+ * offset after the value. */
 static size_t place_value(cJSON *node, const char *text, size_t at) {
     if (text[at] == '"')
         return cs_json_skip_text(text, at);
@@ -44,6 +45,7 @@ static size_t place_value(cJSON *node, const char *text, size_t at) {
     return at + 1;
 }
 
+/* Orders members by key, then by position. */
 static int compare_keys(const void *a, const void *b) {
     const cJSON *first = *(cJSON *const *)a, *second = *(cJSON *const *)b;
     const int order = strcmp(first->string, second->string);
@@ -51,7 +53,7 @@ static int compare_keys(const void *a, const void *b) {
                  : (first->valueint > second->valueint) - (first->valueint < second->valueint);
 }
 
-/* sorts the keys of one object, so that equal ones meet */
+/* Finds a repeated key of one object by sorting: comparing all pairs takes n^2. */
 static enum cs_status check_keys(const cJSON *object, struct cs_json_fault *fault) {
     size_t n = 0;
     for (const cJSON *child = object->child; child; child = child->next)
@@ -83,6 +85,7 @@ static enum cs_status check_keys(const cJSON *object, struct cs_json_fault *faul
     return status;
 }
 
+/* Checks the keys of all objects, depth first; the depth is limited by cs_json_check. */
 static enum cs_status check_all_keys(const cJSON *node, struct cs_json_fault *fault) {
     enum cs_status status = cJSON_IsObject(node) ? check_keys(node, fault) : CS_OK;
     for (const cJSON *child = node->child; child && !status; child = child->next)
@@ -210,6 +213,7 @@ void cs_json_describe(const struct cs_json *value, struct cs_text *out) {
     }
 }
 
+/* Marks a new value as not from the text; NULL stays NULL. */
 static struct cs_json *without_place(cJSON *node) {
     if (node)
         node->valueint = NO_PLACE;

@@ -1,4 +1,7 @@
-/* Checks that a text is strict JSON (RFC 8259) within stated limits, and finds where it is not.
+/* Checks that a text is strict JSON (RFC 8259) within stated limits, and finds the first fault.
+ *
+ * A recursive descent with one function per rule of the grammar. Depth and number of values are
+ * limited here, before a tree is built, so a hostile file can exhaust neither stack nor memory.
  */
 #include "scene/file/json_check.h"
 
@@ -10,13 +13,15 @@
 #include <stdio.h>
 #include <string.h>
 
+/* State of a check: everything before `at` is valid. */
 struct check {
-    const char *text; /* its closing zero ends every loop below */
+    const char *text; /* ends with a zero, which no rule accepts: it stops every loop */
     size_t length, at;
     uint32_t depth, values;
     struct cs_json_fault *fault;
 };
 
+/* Sets the fault; returns false. */
 __attribute__((format(printf, 3, 4))) static bool fail_at(struct check *check, size_t offset,
                                                           const char *format, ...) {
     va_list args;
@@ -27,7 +32,7 @@ __attribute__((format(printf, 3, 4))) static bool fail_at(struct check *check, s
     return false;
 }
 
-/* what stands at the place of the check is not what was expected */
+/* Sets the fault "found ..., expected ..." at the current position. */
 static bool fail_expected(struct check *check, const char *expected) {
     const unsigned char found = (unsigned char)check->text[check->at];
     if (check->at >= check->length)
@@ -52,7 +57,7 @@ static void skip_blank(struct check *check) {
     check->at = cs_json_skip_blank(check->text, check->at);
 }
 
-/* reads the four digits of \uXXXX behind the place of the check; -1 if they are not there */
+/* Reads \uXXXX at the current position and moves past it; -1 if it is not there. */
 static long take_unit(struct check *check) {
     const char *s = check->text + check->at;
     if (s[0] != '\\' || s[1] != 'u')
@@ -68,6 +73,7 @@ static long take_unit(struct check *check) {
     return unit;
 }
 
+/* Checks an escape in a string; surrogates must come in pairs. */
 static bool check_escape(struct check *check) {
     const size_t start = check->at;
     /* one-letter escapes are final; only \u needs more work */
@@ -95,6 +101,7 @@ static bool check_escape(struct check *check) {
     return true;
 }
 
+/* Checks a string from its opening quote. */
 static bool check_text(struct check *check) {
     const size_t start = check->at++;
     for (;;) {
@@ -119,13 +126,14 @@ static bool check_text(struct check *check) {
     return true;
 }
 
-/* skips digits; false if there is none */
+/* Skips digits; returns false if there is none. */
 static bool skip_digits(struct check *check) {
     const size_t n = strspn(check->text + check->at, "0123456789");
     check->at += n;
     return n > 0;
 }
 
+/* Checks a number: [-] digits [. digits] [e [+-] digits], and that it is a finite double. */
 static bool check_number(struct check *check) {
     const size_t start = check->at;
     const char *text = check->text;
@@ -160,6 +168,7 @@ static bool check_number(struct check *check) {
     return true;
 }
 
+/* Checks a literal: true, false or null. */
 static bool check_word(struct check *check, const char *word) {
     if (strncmp(check->text + check->at, word, strlen(word)) != 0)
         return fail_expected(check, "a value");
@@ -169,6 +178,7 @@ static bool check_word(struct check *check, const char *word) {
 
 static bool check_value(struct check *check);
 
+/* Checks a key and its colon. */
 static bool check_key(struct check *check) {
     skip_blank(check);
     if (check->text[check->at] != '"')
@@ -182,7 +192,7 @@ static bool check_key(struct check *check) {
     return true;
 }
 
-/* an object or a list, by its closing bracket */
+/* Checks an object or a list from its opening bracket; close: the closing one. */
 static bool check_members(struct check *check, char close) {
     if (++check->depth > CS_JSON_DEPTH_MAX)
         return fail_at(check, check->at, "nested deeper than %d levels", CS_JSON_DEPTH_MAX);
@@ -203,6 +213,7 @@ static bool check_members(struct check *check, char close) {
     return true;
 }
 
+/* Checks any value. */
 static bool check_value(struct check *check) {
     skip_blank(check);
     /* counted before the tree is built, so that its memory is bounded */

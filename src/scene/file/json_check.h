@@ -1,4 +1,4 @@
-/* json_check.h - is a text strict JSON, and where not. */
+/* json_check.h - checks that a text is strict JSON, and finds the first fault. */
 #ifndef CS_JSON_CHECK_H
 #define CS_JSON_CHECK_H
 
@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Limits of a scene file, against hostile ones. */
 enum {
     CS_JSON_BYTES_MAX = 16 * 1024 * 1024,
     CS_JSON_DEPTH_MAX = 64,
@@ -13,20 +14,21 @@ enum {
     CS_JSON_NUMBER_MAX = 63      /* characters: what the parser behind this check can hold */
 };
 
+/* The first fault of a text. */
 struct cs_json_fault {
     size_t offset; /* bytes from the start of the text */
     char message[200];
 };
 
-/* true if text (length bytes, a zero behind them) is one JSON value by RFC 8259 and also: valid
- * UTF-8 without byte-order mark, no zero in any string, surrogates in pairs, finite numbers,
- * and within the limits above. Else *fault is filled. */
+/* Returns true if text (length bytes, a zero after them) is one JSON value by RFC 8259, and
+ * also: valid UTF-8 without byte-order mark, no zero in any string, surrogates in pairs, finite
+ * numbers, within the limits above. Else fills *fault. */
 bool cs_json_check(const char *text, size_t length, struct cs_json_fault *fault);
 
-/* Line and column of an offset, both from 1; the column counts bytes. */
+/* Converts an offset to line and column, both from 1; the column counts bytes. */
 void cs_json_locate(const char *text, size_t offset, uint32_t *line, uint32_t *column);
 
-/* On text that was checked: the first offset that is not blank, and the one behind a string. */
+/* On checked text: the first offset from `at` that is not blank; the one after a string. */
 size_t cs_json_skip_blank(const char *text, size_t at);
 size_t cs_json_skip_text(const char *text, size_t at);
 

@@ -4,13 +4,13 @@
 
 #include <string.h>
 
-/* one step of a path: a key of an object or an index of a list */
+/* One step of a path: a key of an object or an index of a list. */
 struct step {
     char key[128]; /* "": an index */
     uint32_t index;
 };
 
-/* Reads the step at *at and moves behind it; false if there is none that can be read. */
+/* Reads the step at *at and moves past it; returns false if there is none. */
 static bool take_step(const char **at, bool first, struct step *step) {
     const char *s = *at;
     *step = (struct step){0};
@@ -35,6 +35,7 @@ static bool take_step(const char **at, bool first, struct step *step) {
     return true;
 }
 
+/* The member that a step selects, or NULL. */
 static struct cs_json *member_at(const struct cs_json *value, const struct step *step) {
     return step->key[0] ? cs_json_find(value, step->key) : cs_json_at(value, step->index);
 }
@@ -51,7 +52,7 @@ const struct cs_json *cs_json_nearest(const struct cs_json *root, const char *pa
     return value;
 }
 
-/* the step must fit what it stands on */
+/* Checks that a step fits its parent: a key an object, an index a list. */
 static enum cs_status check_step(const struct cs_json *parent, const struct step *step,
                                  const char *path, struct cs_error *error) {
     const bool is_key = step->key[0] != 0;
@@ -75,6 +76,7 @@ static enum cs_status check_step(const struct cs_json *parent, const struct step
     return CS_OK;
 }
 
+/* Puts a value at a step of its parent, which owns it from then on. */
 static enum cs_status put(struct cs_json *parent, const struct step *step,
                           struct cs_json *value, struct cs_error *error) {
     const bool done = step->key[0] ? cs_json_put(parent, step->key, value)
@@ -82,11 +84,12 @@ static enum cs_status put(struct cs_json *parent, const struct step *step,
     return done ? CS_OK : cs_fail(error, CS_ERR_MEMORY, "out of memory for --set");
 }
 
-/* text that can only be meant as JSON is not a bare word */
+/* Returns false for a text that can only be meant as JSON. */
 static bool is_bare_word(const char *value) {
     return !strchr("{[\"+-.0123456789", value[strspn(value, " \t\r\n")]) || !*value;
 }
 
+/* Parses the value of an override: JSON, or else a bare word. */
 static enum cs_status make_value(const char *path, const char *value, struct cs_json **made,
                                  struct cs_error *error) {
     struct cs_json_fault fault = {0};
@@ -114,7 +117,7 @@ static enum cs_status make_value(const char *path, const char *value, struct cs_
     return CS_OK;
 }
 
-/* Goes down to the parent of the path's last step, making what is missing. */
+/* Descends to the parent of the path's last step, and makes missing objects and lists. */
 static enum cs_status make_parents(struct cs_json **parent, const char *path, struct step *step,
                                    struct cs_error *error) {
     const char *at = path;

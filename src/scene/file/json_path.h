@@ -4,12 +4,12 @@
 
 #include "scene/file/json.h"
 
-/* The value at the path, or the deepest one on the way to it. */
+/* Returns the value at the path, or the deepest one that exists on the way to it. */
 const struct cs_json *cs_json_nearest(const struct cs_json *root, const char *path);
 
-/* Puts value - JSON, or a bare word, which is taken as a text - at the path. Objects and lists
- * on the way that are missing are made; an index is at most the length of its list (that adds
- * one). What is put has no place. On failure CS_ERR_USAGE (message: "--set path: ...") or
+/* Puts value - JSON, or a bare word, which is taken as a text - at the path. Makes missing
+ * objects and lists on the way; an index is at most the length of its list (which appends). The
+ * new value has no position. On failure CS_ERR_USAGE (message: "--set path: ...") or
  * CS_ERR_MEMORY; objects that were made on the way stay. */
 enum cs_status cs_json_override(struct cs_json *root, const char *path, const char *value,
                                 struct cs_error *error);

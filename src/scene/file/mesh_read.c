@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Limits against hostile files. */
 enum {
     MESH_BYTES_MAX = 1 << 30,
     VERTICES_MAX = 1 << 24,
@@ -16,14 +17,16 @@ enum {
     WORD_MAX = 64 /* the longest number */
 };
 
+/* Numbers of the elements of a file. */
 struct counts {
     uint32_t places, uv, triangles;
 };
 
+/* State of the two passes over a file. */
 struct obj {
     const char *name, *cursor, *end; /* end of the text */
     uint32_t line;
-    struct counts total, done; /* of the whole file; in this pass so far */
+    struct counts total, done; /* of the whole file; of this pass until now */
     bool textured;             /* faces name texture coordinates */
     const double *scale;
     double *uv;              /* (total.uv, 2) */
@@ -32,12 +35,13 @@ struct obj {
     struct cs_error *error;
 };
 
-/* one corner of a face: 0-based */
+/* One corner of a face: indices from 0. */
 struct corner {
     uint32_t place, uv;
     bool textured;
 };
 
+/* Fails at the current line. */
 static enum cs_status fail(const struct obj *obj, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 static enum cs_status fail(const struct obj *obj, const char *format, ...) {
@@ -53,7 +57,8 @@ static bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\r';
 }
 
-/* the next word of the line; empty at its end; one too long is cut so that no number is left */
+/* Reads the next word of the line; empty at its end. A word that is too long gets a '?', which
+ * no number has. */
 static void next_word(struct obj *obj, char word[WORD_MAX]) {
     size_t n = 0;
     while (obj->cursor < obj->end && is_blank(*obj->cursor))
@@ -69,7 +74,7 @@ static void next_word(struct obj *obj, char word[WORD_MAX]) {
     word[n] = 0;
 }
 
-/* `least` to `most` numbers, and nothing behind them */
+/* Reads `least` to `most` numbers up to the end of the line. */
 static enum cs_status read_numbers(struct obj *obj, const char *what, int least, int most,
                                    double *values) {
     char word[WORD_MAX];
@@ -85,6 +90,7 @@ static enum cs_status read_numbers(struct obj *obj, const char *what, int least,
     return n < least ? fail(obj, "%s has %d numbers, expected %d", what, n, least) : CS_OK;
 }
 
+/* Reads a vertex; stores it, scaled, in the second pass. */
 static enum cs_status read_position(struct obj *obj) {
     double place[3];
     if (read_numbers(obj, "a vertex", 3, 3, place))
@@ -98,6 +104,7 @@ static enum cs_status read_position(struct obj *obj) {
     return CS_OK;
 }
 
+/* Reads a texture coordinate; a missing v is 0, a third number is ignored. */
 static enum cs_status read_uv(struct obj *obj) {
     double uv[3] = {0};
     if (read_numbers(obj, "a texture coordinate", 1, 3, uv))
@@ -110,8 +117,8 @@ static enum cs_status read_uv(struct obj *obj) {
     return CS_OK;
 }
 
-/* A number of a corner: 1-based, or negative from the last one back. The total is known in the
- * second pass only. */
+/* Converts a number of a corner to an index: from 1, or negative from the last element back.
+ * Its range is checked in the second pass, which knows the total. */
 static enum cs_status read_index(const struct obj *obj, const char *text, const char *what,
                                  uint32_t done, uint32_t total, uint32_t *index) {
     char *behind;
@@ -124,7 +131,7 @@ static enum cs_status read_index(const struct obj *obj, const char *text, const 
     return CS_OK;
 }
 
-/* v, v/vt, v//vn or v/vt/vn; the number of a normal is not looked at */
+/* Reads v, v/vt, v//vn or v/vt/vn; ignores the number of the normal. */
 static enum cs_status read_corner(const struct obj *obj, char *word, struct corner *corner) {
     char *uv = strchr(word, '/');
     corner->textured = false;
@@ -142,6 +149,7 @@ static enum cs_status read_corner(const struct obj *obj, char *word, struct corn
                             : CS_OK;
 }
 
+/* Stores a triangle with its line and texture coordinates. */
 static void set_triangle(struct obj *obj, const struct corner corners[3]) {
     const size_t t = obj->done.triangles;
     obj->lines[t] = obj->line;
@@ -156,6 +164,7 @@ static void set_triangle(struct obj *obj, const struct corner corners[3]) {
     }
 }
 
+/* Reads a face of three or more corners as a fan. */
 static enum cs_status read_face(struct obj *obj) {
     char word[WORD_MAX];
     struct corner fan[3];
@@ -184,6 +193,7 @@ static enum cs_status read_face(struct obj *obj) {
     return n < 3 ? fail(obj, "a face has %u corners, expected 3 or more", n) : CS_OK;
 }
 
+/* Reads a line by its first word. */
 static enum cs_status read_line(struct obj *obj) {
     static const char *const passed_over[] = {"vn", "o", "g", "s", "usemtl", "mtllib"};
     char word[WORD_MAX];
@@ -202,6 +212,7 @@ static enum cs_status read_line(struct obj *obj) {
     return fail(obj, "found \"%.20s\", expected v, vt, vn, f, o, g, s, usemtl or mtllib", word);
 }
 
+/* Reads all lines once. */
 static enum cs_status parse_pass(struct obj *obj, const char *text) {
     obj->done = (struct counts){0};
     obj->line = 1;

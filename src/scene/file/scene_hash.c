@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Adds a value in the form that is hashed. */
 static void add_value(const struct cs_option *row, const void *object, struct cs_text *out) {
     const double *values = (const double *)(const void *)((const char *)object + row->offset);
     if (row->type != CS_REAL && row->type != CS_VECTOR) {
@@ -20,6 +21,7 @@ static void add_value(const struct cs_option *row, const void *object, struct cs
     }
 }
 
+/* Adds the lines of one row: of a table, of a list, or of a value that is not the default. */
 static void add_row(const struct cs_option *row, const void *object, const char *path,
                     struct cs_text *out) {
     const void *field = (const char *)object + row->offset;
@@ -59,6 +61,7 @@ void cs_scene_add_canonical(const struct cs_table *table, const void *object, co
             add_row(table->rows + r, object, path, out);
 }
 
+/* Adds the hash of a mesh's file, since its contents count. */
 static void add_file(const struct cs_mesh_source *mesh, const char *list, uint32_t number,
                      struct cs_text *out) {
     if (mesh->present && *mesh->file)
@@ -72,11 +75,12 @@ static void add_files(const struct cs_scene *scene, struct cs_text *out) {
         add_file(&cs_scene_colliders(scene)[c].mesh, "colliders", c, out);
 }
 
+/* Orders lines by their bytes, independent of the locale. */
 static int by_bytes(const void *left, const void *right) {
     return strcmp(*(const char *const *)left, *(const char *const *)right);
 }
 
-/* Adds the lines of the text in their order; the text is cut up. */
+/* Adds the lines of the text, sorted; the text is cut up. */
 static void add_sorted(char *text, struct cs_text *out) {
     size_t n = 0;
     for (const char *c = text; *c; c++)

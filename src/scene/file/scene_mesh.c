@@ -1,5 +1,5 @@
-/* Gives each body and collider of a scene its mesh, and bodies their networks of springs and
- * their shape-matching clusters. */
+/* Makes the mesh of each body and collider of a scene, and bodies' spring networks and clusters
+ * of shape matching. */
 #include "scene/file/scene_mesh.h"
 
 #include "mesh/spring_network.h"
@@ -15,7 +15,7 @@ enum {
     NETWORK_MAX = 1 << 26, /* springs of a body: about 5 GB with the solver */
 };
 
-/* One element of `bodies` or `colliders`. */
+/* One element of `bodies` or `colliders`, for messages. */
 struct item {
     struct cs_json_context *reader;
     const struct cs_json *root;
@@ -23,7 +23,7 @@ struct item {
     uint32_t number;
 };
 
-/* what went wrong, behind the place of a key of the item */
+/* Fails with a message at the position of a key of the item, with the status of the cause. */
 static enum cs_status refuse(const struct item *item, const char *key, enum cs_status status,
                              const char *message) {
     struct cs_json_context *context = item->reader;
@@ -37,6 +37,7 @@ static enum cs_status refuse(const struct item *item, const char *key, enum cs_s
     return status;
 }
 
+/* Reads a mesh file, which must lie in the scene's folder or below. */
 static enum cs_status read_file(const struct cs_scene *scene,
                                 const struct cs_mesh_source *source, struct cs_trimesh *mesh,
                                 struct cs_arena *arena, struct cs_error *error) {
@@ -54,6 +55,7 @@ static enum cs_status read_file(const struct cs_scene *scene,
     return error->status;
 }
 
+/* Makes and scales a generated shape. */
 static enum cs_status make_shape(const struct cs_mesh_source *source, struct cs_trimesh *mesh,
                                  struct cs_arena *arena, struct cs_error *error) {
     if (cs_trimesh_make(mesh, (enum cs_mesh_shape)source->shape, (uint32_t)source->detail,
@@ -69,6 +71,7 @@ static enum cs_status make_shape(const struct cs_mesh_source *source, struct cs_
     return error->status;
 }
 
+/* Makes the mesh of an item from its file or shape. */
 static enum cs_status make_mesh(const struct item *item, const struct cs_scene *scene,
                                 const struct cs_mesh_source *source, struct cs_trimesh *mesh) {
     struct cs_arena *arena = item->reader->arena;
@@ -87,7 +90,7 @@ static enum cs_status make_mesh(const struct item *item, const struct cs_scene *
     return CS_OK;
 }
 
-/* springs through the inside, which an open mesh does not have */
+/* Makes the inner springs; an open mesh has no inside. */
 static enum cs_status make_network(const struct item *item,
                                    const struct cs_spring_network *network,
                                    struct cs_trimesh *mesh) {
@@ -105,7 +108,7 @@ static enum cs_status make_network(const struct item *item,
     return cs_spring_network_make(network, mesh, item->reader->arena, item->reader->error);
 }
 
-/* the parts of a body that shape matching keeps */
+/* Divides a body into the clusters of shape matching. */
 static enum cs_status split_body(const struct item *item, struct cs_body *body) {
     struct cs_json_context *context = item->reader;
     struct cs_shape_matching *matching = &body->shape_matching;
@@ -129,7 +132,8 @@ static enum cs_status split_body(const struct item *item, struct cs_body *body) 
     return cs_shape_clusters_make(body, parts, context->arena, context->error);
 }
 
-/* network: NULL, or what the mesh gets inside */
+/* Makes the mesh of an item, and its spring network unless that is NULL or absent; records the
+ * memory of both. */
 static enum cs_status read_mesh(const struct item *item, const struct cs_scene *scene,
                                 struct cs_mesh_source *source,
                                 const struct cs_spring_network *network) {
@@ -146,6 +150,8 @@ static enum cs_status read_mesh(const struct item *item, const struct cs_scene *
     return status;
 }
 
+/* Makes mesh and clusters of a body; *particles: of the meshes so far, to refuse too many
+ * before memory runs out. */
 static enum cs_status read_body(const struct item *item, const struct cs_scene *scene,
                                 struct cs_body *body, double *particles) {
     /* a body of two shapes or none is refused by the check */

@@ -1,4 +1,7 @@
-/* Reads a scene file: JSON text, overrides, tables, integrator, meshes, then the checks. */
+/* Reads a scene file: JSON text, overrides, tables, integrator, meshes, then the checks.
+ *
+ * Overrides change the tree, not the structs, so their values pass the same checks as the
+ * file's. Meshes are read before the checks, which need their numbers of particles. */
 #include "scene/file/scene_read.h"
 
 #include "base/file.h"
@@ -14,7 +17,7 @@
 
 #define INTEGRATOR "integrator"
 
-/* Copies the text with a zero behind it, and the names. */
+/* Copies text and path into the scene; the folder is the path's, or "." without one. */
 static enum cs_status store_source(struct cs_scene *scene, const char *path, const char *text,
                                    size_t bytes, struct cs_error *error) {
     char *copy = cs_arena_alloc(&scene->arena, bytes + 1, error);
@@ -33,6 +36,7 @@ static enum cs_status store_source(struct cs_scene *scene, const char *path, con
     return CS_OK;
 }
 
+/* Parses the stored text; a failure gets file, line and column. */
 static enum cs_status parse(const struct cs_scene *scene, struct cs_json **root,
                             struct cs_error *error) {
     struct cs_json_fault fault = {0};
@@ -48,7 +52,7 @@ static enum cs_status parse(const struct cs_scene *scene, struct cs_json **root,
     return CS_OK;
 }
 
-/* Puts the overrides into the tree. */
+/* Applies the overrides to the tree, in their order. */
 static enum cs_status apply_overrides(struct cs_json *root, const struct cs_override *overrides,
                                       uint32_t n, struct cs_error *error) {
     for (uint32_t i = 0; i < n; i++) {
@@ -63,7 +67,7 @@ static enum cs_status apply_overrides(struct cs_json *root, const struct cs_over
     return CS_OK;
 }
 
-/* path must stand at the name */
+/* Reads the integrator's name; the path of the context is at the name. */
 static enum cs_status read_name(struct cs_json_context *context, const struct cs_json *value,
                                 struct cs_scene *scene) {
     if (cs_json_kind_of(value) != CS_JSON_TEXT)
@@ -77,7 +81,7 @@ static enum cs_status read_name(struct cs_json_context *context, const struct cs
     return CS_OK;
 }
 
-/* keeps an option as text: only the integrator knows what it takes */
+/* Stores an option as text: only the integrator knows its type. */
 static enum cs_status read_setting(struct cs_json_context *context, const struct cs_json *value,
                                    struct cs_setting *setting) {
     struct cs_text text = {0};
@@ -103,6 +107,7 @@ static enum cs_status read_setting(struct cs_json_context *context, const struct
     return context->error->status;
 }
 
+/* Reads the members of the "integrator" object: its name, and options as text. */
 static enum cs_status read_settings(struct cs_json_context *context,
                                     const struct cs_json *object, struct cs_scene *scene) {
     struct cs_list *list = &scene->integrator_settings;
@@ -124,6 +129,7 @@ static enum cs_status read_settings(struct cs_json_context *context,
     return CS_OK;
 }
 
+/* Reads "integrator": a name, or an object; absent: the default. */
 static enum cs_status read_integrator(struct cs_json_context *context,
                                       const struct cs_json *root, struct cs_scene *scene) {
     snprintf(scene->integrator, sizeof scene->integrator, "%s", CS_INTEGRATOR_DEFAULT);
@@ -141,7 +147,7 @@ static enum cs_status read_integrator(struct cs_json_context *context,
     return context->error->status;
 }
 
-/* cs_scene_check, with the place of the value at fault before its message */
+/* Runs cs_scene_check; a failure gets the position of the faulty value. */
 static enum cs_status check(struct cs_json_context *context, const struct cs_json *root,
                             struct cs_scene *scene) {
     char path[CS_TEXT_MAX] = "";
@@ -186,6 +192,7 @@ done:
     return status;
 }
 
+/* Reads the scene from standard input. */
 static enum cs_status read_input(struct cs_scene *scene, const struct cs_override *overrides,
                                  uint32_t n_overrides, struct cs_error *error) {
     const char *text;

@@ -1,4 +1,4 @@
-/* scene_write.h - a scene with every value, and the schema, from the same tables. */
+/* scene_write.h - prints a complete scene, the schema and the manual from the same tables. */
 #ifndef CS_SCENE_WRITE_H
 #define CS_SCENE_WRITE_H
 

@@ -7,13 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* a process has one standard input, which can be read once */
+/* the contents, read once per process */
 static struct {
     char *text;
     size_t bytes;
     bool read;
 } input;
 
+/* Reads pieces to the end, and only then marks the input as read. */
 static enum cs_status read_all(size_t max, struct cs_error *error) {
     enum { PIECE = 1 << 16 };
     while (!feof(stdin)) {

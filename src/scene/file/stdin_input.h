@@ -6,13 +6,13 @@
 
 #include <stddef.h>
 
-/* What stands for standard input where a scene file is asked for, and what messages call it. */
+/* Name of standard input in place of a scene file, and its title in messages. */
 #define CS_STDIN_INPUT_NAME  "-"
 #define CS_STDIN_INPUT_TITLE "standard input"
 
-/* All of standard input, at most max bytes. It is read once and kept until the program ends, as
- * studies open their scene more than once; *text stays the input's. CS_ERR_FILE, CS_ERR_MEMORY.
- */
+/* Reads all of standard input, at most max bytes. It is read once and stored until the program
+ * ends, because studies open their scene more than once; *text is borrowed. CS_ERR_FILE,
+ * CS_ERR_MEMORY. */
 enum cs_status cs_stdin_input_read(size_t max, const char **text, size_t *bytes,
                                    struct cs_error *error);
 

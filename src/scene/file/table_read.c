@@ -1,4 +1,4 @@
-/* Fills structs from JSON values as their option tables say. */
+/* Fills structs from JSON values by their option tables: one reader per form of value. */
 #include "scene/file/table_read.h"
 
 #include "base/options.h"
@@ -6,10 +6,12 @@
 
 #include <string.h>
 
+/* The field of a row in a struct. */
 static void *field_of(const struct cs_option *row, void *object) {
     return (char *)object + row->offset;
 }
 
+/* Fails with "found ..., expected ..." for a row. */
 static enum cs_status fail_row(struct cs_json_context *context, const struct cs_json *value,
                                const struct cs_option *row) {
     struct cs_text expected = {0};
@@ -20,14 +22,15 @@ static enum cs_status fail_row(struct cs_json_context *context, const struct cs_
     return status;
 }
 
-/* passes on what an option function said, without the ": " that follows an empty position */
+/* Passes on an option function's message, without the ": " that follows an empty position. */
 static enum cs_status pass_on(struct cs_json_context *context, const struct cs_json *value,
                               const struct cs_error *said) {
     return said->status ? cs_json_context_fail(context, value, false, "%s", said->message + 2)
                         : CS_OK;
 }
 
-/* a number as component i; index -1 below: the reader's path names the component already */
+/* Stores a number in range as component i. The range check gets index -1, because the context's
+ * path names the component already. */
 static enum cs_status read_component(struct cs_json_context *context,
                                      const struct cs_json *value, const struct cs_option *row,
                                      uint32_t i, void *object) {
@@ -38,6 +41,7 @@ static enum cs_status read_component(struct cs_json_context *context,
     return pass_on(context, value, &said);
 }
 
+/* Reads a number, or a list of exactly as many as the row has. */
 static enum cs_status read_number(struct cs_json_context *context, const struct cs_json *value,
                                   const struct cs_option *row, void *object) {
     if (!cs_value_kind_of(row)->several)
@@ -75,6 +79,7 @@ static enum cs_status read_bool(struct cs_json_context *context, const struct cs
     return CS_OK;
 }
 
+/* Reads a text that fits into CS_TEXT_MAX bytes with its end. */
 static enum cs_status read_text(struct cs_json_context *context, const struct cs_json *value,
                                 const struct cs_option *row, void *object) {
     if (cs_json_kind_of(value) != CS_JSON_TEXT)
@@ -88,6 +93,7 @@ static enum cs_status read_text(struct cs_json_context *context, const struct cs
     return CS_OK;
 }
 
+/* Reads a list into an array of the arena. */
 static enum cs_status read_list(struct cs_json_context *context, const struct cs_json *value,
                                 const struct cs_option *row, void *object) {
     if (cs_json_kind_of(value) != CS_JSON_LIST)
@@ -120,6 +126,7 @@ static enum cs_status read_table(struct cs_json_context *context, const struct c
     return cs_table_read(context, value, row->table, field_of(row, object));
 }
 
+/* Reads a value in the form of its row. */
 static enum cs_status read_row(struct cs_json_context *context, const struct cs_json *value,
                                const struct cs_option *row, void *object) {
     static enum cs_status (*const readers[CS_VALUE_FORMS])(
@@ -130,7 +137,7 @@ static enum cs_status read_row(struct cs_json_context *context, const struct cs_
     return readers[cs_value_kind_of(row)->form](context, value, row, object);
 }
 
-/* the row that a plain text, number or list stands for, or NULL */
+/* The row that a plain text, number or list sets in place of the whole table, or NULL. */
 static const struct cs_option *shorthand_of(const struct cs_table *table,
                                             const struct cs_json *value) {
     const enum cs_json_kind kind = cs_json_kind_of(value);
@@ -143,7 +150,7 @@ static const struct cs_option *shorthand_of(const struct cs_table *table,
     return NULL;
 }
 
-/* the key that was meant, or NULL */
+/* The most similar key, or NULL. */
 static const char *nearest_key(const struct cs_table *table, const char *apart,
                                const char *key) {
     const char *names[66];
@@ -155,7 +162,7 @@ static const char *nearest_key(const struct cs_table *table, const char *apart,
     return cs_nearest_word(key, names);
 }
 
-/* the new name, if the table has it, of a key that had another one; or NULL */
+/* The present name of a renamed key, if the table has it; or NULL. */
 static const char *new_name(const struct cs_table *table, const char *key) {
     static const char *const names[][2] = {{"prod", "viewpoint_force"},
                                            {"prods", "viewpoint_forces"}};
@@ -165,6 +172,8 @@ static const char *new_name(const struct cs_table *table, const char *key) {
     return NULL;
 }
 
+/* Reads a member of an object by its key; passes over the user's own keys. On failure the path
+ * of the context stays at the member. */
 static enum cs_status read_member(struct cs_json_context *context, const struct cs_json *member,
                                   const struct cs_table *table, void *object) {
     const char *key = cs_json_key(member);
@@ -189,7 +198,7 @@ static enum cs_status read_member(struct cs_json_context *context, const struct 
     return status;
 }
 
-/* exactly one of the optional rows */
+/* Checks that exactly one of the optional rows is present. */
 static enum cs_status check_one_of(struct cs_json_context *context, const struct cs_json *value,
                                    const struct cs_table *table, const void *object) {
     struct cs_text given = {0}, choices = {0};
@@ -210,8 +219,8 @@ static enum cs_status check_one_of(struct cs_json_context *context, const struct
     return n == 1 ? CS_OK : context->error->status;
 }
 
-/* What must be given, was: in a table that is absent too, unless it may be (value is then the
- * nearest value that is there). */
+/* Checks that values without a default are present, also in a table that is absent itself,
+ * unless it is optional; value is then the nearest one that is present. */
 static enum cs_status check_complete(struct cs_json_context *context,
                                      const struct cs_json *value, bool absent,
                                      const struct cs_table *table, const void *object) {

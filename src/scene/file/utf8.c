@@ -1,4 +1,9 @@
-/* Checks UTF-8 (the Unicode standard, table 3-7) and cuts long texts between characters. */
+/* Checks UTF-8 and cuts long texts between characters.
+ *
+ * Well-formed sequences (the Unicode Standard, table 3-7); second bytes are 80..bf unless
+ * given:
+ *   00..7f    c2..df    e0 a0..bf    e1..ec, ee..ef    ed 80..9f    f0 90..bf    f1..f3    f4
+ * 80..8f */
 #include "scene/file/utf8.h"
 
 #include <string.h>
