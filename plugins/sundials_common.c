@@ -36,7 +36,7 @@ static void store_message(int line, const char *function, const char *file, cons
 static bool open_context(struct sundials *self) {
     return !SUNContext_Create(SUN_COMM_NULL, &self->context) &&
            !SUNContext_ClearErrHandlers(self->context) &&
-           !SUNContext_PushErrHandler(self->context, keep_message, self);
+           !SUNContext_PushErrHandler(self->context, store_message, self);
 }
 #else
 void sundials_keep_message(int code, const char *module, const char *function, char *message,

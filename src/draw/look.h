@@ -27,6 +27,6 @@ struct cs_look_kind {
 };
 
 /* Returns the row of a look (enum of CS_LOOK_LIST); constant. */
-const struct cs_look_kind *cs_look_kind(int32_t look);
+const struct cs_look_kind *cs_look_of(int32_t look);
 
 #endif

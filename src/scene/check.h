@@ -23,7 +23,7 @@ enum cs_status cs_check_unit(const struct cs_check *at, const char *path, double
 
 /* Checks the rotation of BODY.SHAPE.place: a matrix must be a rotation, a quaternion is made
  * unit. */
-enum cs_status cs_check_place(const struct cs_check *at, const char *body, const char *shape,
-                              struct cs_pose *place);
+enum cs_status cs_check_pose(const struct cs_check *at, const char *body, const char *shape,
+                             struct cs_pose *place);
 
 #endif

@@ -70,9 +70,9 @@ enum cs_ledger_work {
 /* Capacities: the lists above and one own column per force. Row k of the forces has its own
  * column at CS_HOLDINGS + k or CS_WORKS + k; columns that no force uses stay 0. */
 enum {
-    CS_HOLDINGS_MOST = CS_HOLDINGS + CS_TERMS_MAX,
-    CS_WORKS_MOST = CS_WORKS + CS_TERMS_MAX,
-    CS_NO_COLUMN = CS_WORKS_MOST
+    CS_HOLDINGS_MAX = CS_HOLDINGS + CS_TERMS_MAX,
+    CS_WORKS_MAX = CS_WORKS + CS_TERMS_MAX,
+    CS_NO_COLUMN = CS_WORKS_MAX
 };
 
 /* The ledger of one run. Zeroed: none. */
@@ -88,9 +88,9 @@ struct cs_energy_ledger {
     double *b;           /* (3,n) in m/s2: acceleration at the end of the step */
     /* Columns of each force in the list of terms.h; CS_NO_COLUMN: none, or it does not act. */
     uint32_t holding_of[CS_TERMS_MAX], work_of[CS_TERMS_MAX];
-    double energies[CS_HOLDINGS_MOST]; /* J, of the state that was booked last */
-    double work[CS_WORKS_MOST];        /* J since the start */
-    struct cs_arena arena;             /* owns the arrays */
+    double energies[CS_HOLDINGS_MAX]; /* J, of the state that was booked last */
+    double work[CS_WORKS_MAX];        /* J since the start */
+    struct cs_arena arena;            /* owns the arrays */
 };
 
 /* Allocates the arrays and stores the state of the system at t; all works are 0. On failure

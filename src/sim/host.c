@@ -221,7 +221,7 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
 }
 
 /* y = A p with the last A, counted as a Jacobian product. */
-static void host_apply(void *ctx, const double *p, double *y) {
+static void host_matrix_product(void *ctx, const double *p, double *y) {
     struct cs_run_host *host = ctx;
     const double begin = cs_stage_begin(host);
     cs_linear_mul(&host->linear, p, y);
@@ -230,8 +230,8 @@ static void host_apply(void *ctx, const double *p, double *y) {
 }
 
 /* Bounds on frequency and half damping rate at a state, contact included. */
-static void host_rate(void *ctx, double t, const double *x, const double *v, double *omega,
-                      double *delta) {
+static void host_bounds_at(void *ctx, double t, const double *x, const double *v, double *omega,
+                           double *delta) {
     struct cs_run_host *host = ctx;
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
     cs_move_values(host, t);
@@ -242,8 +242,8 @@ static void host_rate(void *ctx, double t, const double *x, const double *v, dou
 
 /* The admissible fraction of a displacement; below 1 counts as a subdivided step. Remembers
  * the blocking pair for the message of host_fail. */
-static double host_max_share(void *ctx, double t0, const double *x0, double t1,
-                             const double *x1) {
+static double host_max_step_fraction(void *ctx, double t0, const double *x0, double t1,
+                                     const double *x1) {
     struct cs_run_host *host = ctx;
     const double begin = cs_stage_begin(host);
     const double share = cs_step_limit_fraction(host->run->system, t0, x0, t1, x1);
@@ -257,8 +257,8 @@ static double host_max_share(void *ctx, double t0, const double *x0, double t1,
 }
 
 /* -h df/dv - h^2 df/dx of contact at each particle, clamped and with the bound of friction. */
-static void host_blocks(void *ctx, double t, const double *x, const double *v, double h,
-                        double *blocks) {
+static void host_contact_blocks(void *ctx, double t, const double *x, const double *v, double h,
+                                double *blocks) {
     struct cs_run_host *host = ctx;
     const struct cs_matrix matrix = {
         .t = t, .x = x, .v = v, .cd = -h, .ck = -h * h, .psd = true, .bound = true};
@@ -283,7 +283,7 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
     const struct cs_system *system = host->run->system;
     const bool judged = cs_step_limit_applies(system);
     if (judged)
-        host->table.max_step_fraction = host_max_share;
+        host->table.max_step_fraction = host_max_step_fraction;
     begin(host, CS_FEATURE_CROSSINGS);
     if (cs_blocked_step_init(&host->blocked_step, system, &host->arena, error))
         return error->status;
@@ -293,9 +293,9 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
         return CS_OK;
     host->bounds_work =
         cs_arena_alloc_array(&host->arena, 2 * (size_t)system->view.n, sizeof(double), error);
-    host->table.bounds_at = host_rate;
+    host->table.bounds_at = host_bounds_at;
     if (system->collider_params || system->pairs)
-        host->table.contact_blocks = host_blocks;
+        host->table.contact_blocks = host_contact_blocks;
     return error->status;
 }
 
@@ -363,7 +363,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .force_diagonal = host_force_diagonal,
         .solve_setup = host_solve_setup,
         .solve = host_solve,
-        .matrix_product = host_apply,
+        .matrix_product = host_matrix_product,
         .commit = cs_host_commit,
         .may_overstep = may_pass(system),
     };

@@ -11,7 +11,7 @@
 /* Order of the calls per frame: the report's row must exist before a picture enters its range.
  */
 static const struct cs_run_output *const outputs[] = {
-    &cs_run_output_trail,  &cs_run_output_json,   &cs_run_output_watch,
+    &cs_run_output_trace,  &cs_run_output_json,   &cs_run_output_watch,
     &cs_run_output_ledger, &cs_run_output_states, &cs_run_output_pictures,
     &cs_run_output_export, &cs_run_output_hash,
 };

@@ -72,13 +72,13 @@ struct row_stencil {
 
 /* Adds a kernel's results for a row's springs to the particles of a block. Only the block is
  * written, although a row of springs at its border is computed for both neighbours. */
-void cs_grid_stencil_add(const struct job *job, const struct cs_block *block,
+void cs_grid_stencil_add(const struct spring_job *job, const struct cs_block *block,
                          const struct row_stencil *stencil,
                          const struct stencil_kernel *kernel);
 
 /* Collects the runs of a row, from its first on, and adds a kernel's results for those that
  * `asks` accepts. Returns the number of runs in the row. */
-CS_INLINE uint32_t add_row_stencil(const struct job *job, const struct cs_block *block,
+CS_INLINE uint32_t add_row_stencil(const struct spring_job *job, const struct cs_block *block,
                                    const struct cs_spring_run *first, run_test *asks,
                                    const struct stencil_kernel *kernel) {
     const struct cs_spring_run *run = first, *end = job->springs->runs + job->springs->n_runs;
@@ -95,14 +95,14 @@ CS_INLINE uint32_t add_row_stencil(const struct job *job, const struct cs_block 
 }
 
 /* Chooses the kernel for a row's law and the results wanted. */
-typedef const struct stencil_kernel *stencil_choice(const struct job *job,
+typedef const struct stencil_kernel *stencil_choice(const struct spring_job *job,
                                                     const struct cs_spring_run *first);
 
 /* Adds the results of all runs to the particles of a block, in the order of the runs. Grids go
  * row by row. Meshes go by their slots if several threads share them, else directly. Without
  * job->to only blocks are wanted, which meshes add elsewhere (cs_springs_finish_diagonal). */
-CS_INLINE void add_runs(const struct job *job, const struct cs_block *block, run_test *asks,
-                        stencil_choice *choose, piece_kernel *kernel) {
+CS_INLINE void add_runs(const struct spring_job *job, const struct cs_block *block,
+                        run_test *asks, stencil_choice *choose, piece_kernel *kernel) {
     const struct cs_springs *springs = job->springs;
     uint32_t n_runs = 1;
     for (uint32_t r = block->first_run; r < block->end_run; r += n_runs) {

@@ -20,7 +20,7 @@ enum { RUNS = 32 };
 _Static_assert(CS_SPRING_CHUNK_MAX % PIECE == 0, "a lot is of whole pieces");
 
 /* Arguments of a kernel: springs, state and destination. */
-struct job {
+struct spring_job {
     const struct cs_springs *springs;
     size_t n;
     struct cs_eval at;     /* state; for products with the matrix only x, the vector */
@@ -42,13 +42,13 @@ CS_INLINE struct active_constants active_constants_of(const struct cs_spring_run
 }
 
 /* Tells whether a run has a force of the chosen parts. */
-CS_INLINE bool has_force(const struct job *job, const struct cs_spring_run *run) {
+CS_INLINE bool has_force(const struct spring_job *job, const struct cs_spring_run *run) {
     const struct active_constants asked = active_constants_of(run, job->at.parts);
     return asked.k != 0 || asked.c != 0;
 }
 
 /* For the matrix, which has all springs. */
-CS_INLINE bool has_anything(const struct job *job, const struct cs_spring_run *run) {
+CS_INLINE bool has_anything(const struct spring_job *job, const struct cs_spring_run *run) {
     (void)job, (void)run;
     return true;
 }
@@ -72,11 +72,11 @@ struct piece {
 };
 
 /* Returns true if the run contributes. */
-typedef bool run_test(const struct job *job, const struct cs_spring_run *run);
+typedef bool run_test(const struct spring_job *job, const struct cs_spring_run *run);
 
 /* Computes the forces of a mesh's piece into rows. */
-typedef void piece_kernel(const struct job *job, const struct piece *piece, double *restrict fx,
-                          double *restrict fy, double *restrict fz);
+typedef void piece_kernel(const struct spring_job *job, const struct piece *piece,
+                          double *restrict fx, double *restrict fy, double *restrict fz);
 
 /* The piece from spring `start` on. */
 CS_INLINE struct piece piece_of(const struct cs_spring_run *run, uint32_t start) {
@@ -182,7 +182,7 @@ CS_INLINE bool is_in(const struct cs_block *block, uint32_t particle) {
 
 /* Computes a mesh's run and adds it; its whole body must be in the block, which holds with one
  * thread. */
-CS_INLINE void add_run(const struct job *job, const struct cs_spring_run *run,
+CS_INLINE void add_run(const struct spring_job *job, const struct cs_spring_run *run,
                        piece_kernel *kernel) {
     double fx[PIECE], fy[PIECE], fz[PIECE];
     for (uint32_t start = 0; start < run->count; start += PIECE) {
@@ -194,7 +194,7 @@ CS_INLINE void add_run(const struct job *job, const struct cs_spring_run *run,
 
 /* Computes the forces of one chunk into the run's slots. A run that contributes nothing is
  * skipped. */
-CS_INLINE void compute_chunk_to_slots(const struct job *job,
+CS_INLINE void compute_chunk_to_slots(const struct spring_job *job,
                                       const struct cs_spring_chunk *chunk, run_test *asks,
                                       piece_kernel *kernel) {
     const struct cs_spring_run *run = job->springs->runs + chunk->run;

@@ -54,7 +54,7 @@ KERNEL(axial_both, FORCE | AXIAL | STIFF | DAMPED, 3, SYM, SYM);
 KERNEL(relative_both, FORCE | RELATIVE | STIFF | STEADY, 3, SYM, 1);
 
 /* The kernel for a row's damper and for the results that the evaluation wants. */
-static const struct stencil_kernel *choose(const struct job *job,
+static const struct stencil_kernel *choose(const struct spring_job *job,
                                            const struct cs_spring_run *first) {
     static const struct stencil_kernel *const kernels[3][3] = {
         {&undamped_force, &axial_force, &relative_force},
@@ -66,8 +66,9 @@ static const struct stencil_kernel *choose(const struct job *job,
 }
 
 /* Forces of a piece of a mesh, whose lengths and stiffnesses are the springs' own. */
-CS_INLINE void force_rows(const struct job *job, const struct piece *piece, const unsigned how,
-                          double *restrict fx, double *restrict fy, double *restrict fz) {
+CS_INLINE void force_rows(const struct spring_job *job, const struct piece *piece,
+                          const unsigned how, double *restrict fx, double *restrict fy,
+                          double *restrict fz) {
     struct gather_buffer places, speeds;
     const struct active_constants asked = active_constants_of(piece->run, job->at.parts);
     const struct ends x = ends_of(piece, job->at.x, job->n, false, &places);
@@ -85,7 +86,7 @@ CS_INLINE void force_rows(const struct job *job, const struct piece *piece, cons
 
 /* Dispatches to a copy for the run's damper. A run without damping does not gather velocities.
  */
-CS_INLINE void force_piece(const struct job *job, const struct piece *piece,
+CS_INLINE void force_piece(const struct spring_job *job, const struct piece *piece,
                            double *restrict fx, double *restrict fy, double *restrict fz) {
     if (active_constants_of(piece->run, job->at.parts).c == 0)
         force_rows(job, piece, 0, fx, fy, fz);
@@ -98,19 +99,19 @@ CS_INLINE void force_piece(const struct job *job, const struct piece *piece,
 /* Adds runs in their order; see add_runs. */
 CS_CLONES void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
                                     const struct cs_eval *at, double *f) {
-    const struct job job = {.springs = springs, .n = n, .at = *at, .to = f};
+    const struct spring_job job = {.springs = springs, .n = n, .at = *at, .to = f};
     add_runs(&job, at->block, has_force, choose, force_piece);
 }
 
 /* Forces of one chunk of a mesh into its slots. */
 CS_CLONES static void wait_force_chunk(void *job, uint32_t chunk) {
-    compute_chunk_to_slots(job, ((const struct job *)job)->springs->chunks + chunk, has_force,
-                           force_piece);
+    compute_chunk_to_slots(job, ((const struct spring_job *)job)->springs->chunks + chunk,
+                           has_force, force_piece);
 }
 
 void cs_springs_force_to_slots(const struct cs_springs *springs, uint32_t n,
                                const struct cs_eval *at) {
-    struct job job = {.springs = springs, .n = n, .at = *at};
+    struct spring_job job = {.springs = springs, .n = n, .at = *at};
     cs_pool_run(springs->n_chunks, wait_force_chunk, &job);
 }
 
