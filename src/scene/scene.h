@@ -172,7 +172,7 @@ struct cs_capsule {
     X(box, cs_cuboid, "a box with rounded edges")                                              \
     X(capsule, cs_capsule, "a rod with round ends")                                            \
     X(mesh, cs_mesh_source,                                                                    \
-      "triangles, met by points, edges and triangles; for contact.law force")
+      "triangles, in contact with points, edges and triangles; for contact.law force")
 
 struct cs_collider {
 #define X(name, keys, text) struct keys name; /* exactly one is present */

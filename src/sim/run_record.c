@@ -49,7 +49,7 @@ static void record_counts(struct cs_run *run, struct cs_serialiser *record) {
 }
 
 static enum cs_status restart_silent(struct cs_run *run, struct cs_error *error) {
-    cs_run_note(run, "the method starts anew at each checkpoint");
+    cs_run_note(run, "the method restarts at each checkpoint");
     return cs_run_restart(run, run->t, error);
 }
 

@@ -14,7 +14,7 @@
 
 enum { PIECE = 256 }; /* springs whose forces a buffer on the stack holds */
 enum { RUNS = 32 }; /* runs that one thread takes at a time where their order does not matter */
-_Static_assert(CS_SPRING_CHUNK_MAX % PIECE == 0, "a lot is of whole pieces");
+_Static_assert(CS_SPRING_CHUNK_MAX % PIECE == 0, "a chunk contains whole pieces");
 
 /* What a kernel works on. */
 struct job {

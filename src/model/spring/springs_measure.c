@@ -9,7 +9,7 @@
 #include <math.h>
 
 enum { LANES = 8 };
-_Static_assert(PIECE % LANES == 0, "a piece is of whole lanes");
+_Static_assert(PIECE % LANES == 0, "a piece contains whole lanes");
 
 /* twice the energy of each spring of a piece, over the run's stiffness if it has one */
 CS_INLINE void square_stretches(const struct piece *piece, const struct ends e,
