@@ -126,7 +126,7 @@ TEST(messages_name_the_place) {
          "s.json:2:22: found '}', expected a key in quotes"},
         {"[1, 2]", "s.json:1:1: found a list of 2, expected an object"},
         {"{\"bodies\": [" BODY "],\n \"time\": {\"fps\": \"60\"}}",
-         "s.json:2:18: time.fps: found text \"60\", expected a number (0.001..1000000 1/s)"},
+         "s.json:2:18: time.fps: found string \"60\", expected a number (0.001..1000000 1/s)"},
         {"{\"bodies\": [\n" BODY ",\n{\"cloth\": {\"grid\": [2, 2]}}]}",
          "s.json:3:1: bodies[1].mass: found none, expected exactly one of particle, "
          "areal_density, total, degree"},
@@ -309,7 +309,7 @@ TEST(bad_overrides_are_refused) {
          "--set bodies[0].springs.stretch: -1 is out of range (0..1e+12 N/m)"},
         {{"bodies[0].springs", "{\"bend\": \"b\"}"},
          CS_ERR_SCENE,
-         "--set bodies[0].springs.bend: found text \"b\", expected a number (0..1e+12 N/m)"},
+         "--set bodies[0].springs.bend: found string \"b\", expected a number (0..1e+12 N/m)"},
         {{"bodies[0].sprngs.stretch", "1"},
          CS_ERR_SCENE,
          "--set bodies[0].sprngs: unknown key; did you mean \"springs\"?"},
