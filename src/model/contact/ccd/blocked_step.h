@@ -20,8 +20,8 @@ enum cs_status cs_blocked_step_init(struct cs_blocked_step *blocked,
 void cs_blocked_step_store(struct cs_blocked_step *blocked, const struct cs_system *system,
                            const double t[2], const double *const x[2], double share);
 
-/* Adds "; ... would cross ..." of the two parts that meet first in the move; nothing where there
- * is none, or the system is so large that looking through all pairs takes minutes. */
+/* Adds "; ... would cross ..." of the two parts that meet first in the move; nothing where
+ * there is none, or the system is so large that looking through all pairs takes minutes. */
 void cs_blocked_step_print(const struct cs_blocked_step *blocked,
                            const struct cs_system *system, struct cs_text *out);
 
