@@ -37,11 +37,11 @@ struct ark_options {
         CS_OPTION(struct ark_options, atol, "", 0, 0, 1,                                       \
                   "absolute local error in m and m/s; 0: rtol of 1 m and 1 m/s"),              \
         CS_OPTION(struct ark_options, dt, "s", 0, 0, 10,                                       \
-                  "longest step of equal steps without error control; 0: with it"),            \
+                  "maximum step without error control; 0: with error control"),                \
         CS_OPTION(struct ark_options, order, "", order_, least, most,                          \
                   "order, which selects the table"),                                           \
         CS_OPTION(struct ark_options, max_steps, "", 1000000, 1, 1e9,                          \
-                  "most steps in a frame before the run is given up")
+                  "maximum steps per frame before the run fails")
 #define LINEAR_ROW                                                                             \
     CS_OPTION(struct ark_options, linear_rtol, "", 1e-4, 1e-14, 0.5,                           \
               "relative residual of the linear solves")
@@ -167,7 +167,8 @@ static enum cs_step create(const struct cs_host *host, const void *options,
     self->base.equal_steps = self->asked.dt > 0;
     const struct ark_table *table = tables + self->asked.order;
     if (!table->stages)
-        return host->fail(host->ctx, "SUNDIALS %s has no table of order %d: take another order",
+        return host->fail(host->ctx,
+                          "SUNDIALS %s has no table of order %d: choose another order",
                           SUNDIALS_VERSION, (int)self->asked.order);
     /* each stage keeps a slope, of an additive pair two */
     const int slopes =

@@ -108,7 +108,7 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
 const struct cs_integrator bdf2 = {
     STEP_HALVING_METHOD(struct bdf2_options, rows, archive),
     .name = "bdf2",
-    .summary = "two-step backward differentiation, by Newton or by one linear solve a step",
+    .summary = "two-step backward differentiation, by Newton or by one linear solve per step",
     .source = "Gear 1971; Choi, Ko 2002",
     .order = 2,
     .order_damped = 2,

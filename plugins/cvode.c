@@ -45,22 +45,21 @@ struct cvode_options {
         CS_OPTION(struct cvode_options, atol, "", 0, 0, 1,                                     \
                   "absolute local error in m and m/s; 0: rtol of 1 m and 1 m/s"),              \
         CS_OPTION(struct cvode_options, max_steps, "", 1000000, 1, 1e9,                        \
-                  "most steps in a frame before the run is given up")
+                  "maximum steps per frame before the run fails")
 
 static const struct cs_option bdf_rows[] = {
     COMMON_ROWS(1e-14),
-    CS_OPTION(
-        struct cvode_options, max_order, "", 0, 0, 5,
-        "highest order; 0: 5 where damping is strong and rtol below 1e-3, else 2, and 5 "
-        "while steps are well below 1/omega; an order above 2 that is asked for, and strong "
-        "damping's, come with detection of the stability limit"),
+    CS_OPTION(struct cvode_options, max_order, "", 0, 0, 5,
+              "maximum order; 0: 5 if damping is strong and rtol below 1e-3, else 2, and 5 "
+              "while steps are well below 1/omega; orders above 2 by request or for strong "
+              "damping use stability limit detection"),
     CS_OPTION(struct cvode_options, linear_rtol, "", 1e-4, 1e-14, 0.5,
               "relative residual of the linear solves"),
 };
 
 static const struct cs_option adams_rows[] = {
     COMMON_ROWS(1e-14),
-    CS_OPTION(struct cvode_options, max_order, "", 12, 1, 12, "highest order"),
+    CS_OPTION(struct cvode_options, max_order, "", 12, 1, 12, "maximum order"),
 };
 
 struct cvode {

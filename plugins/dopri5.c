@@ -41,9 +41,9 @@ static const struct cs_option rows[] = {
               "local error of a step, relative to the value"),
     CS_OPTION(struct dopri5_options, atol, "", 0, 0, 1,
               "absolute local error in m and m/s; 0: rtol of 1 m and 1 m/s"),
-    CS_OPTION(struct dopri5_options, dt_max, "s", 0, 0, 10, "longest step; 0: a frame"),
+    CS_OPTION(struct dopri5_options, dt_max, "s", 0, 0, 10, "maximum step; 0: one frame"),
     CS_OPTION(struct dopri5_options, max_steps, "", 1000000, 1, 1e9,
-              "most steps in a frame, thrown away ones too, before the run is given up"),
+              "maximum steps per frame, rejected ones included, before the run fails"),
 };
 
 struct dopri5 {

@@ -27,7 +27,7 @@ struct lossy_options {
     double dt, loss;
 };
 
-#define DT_HELP "longest step; 0: 0.9 of the stability limit, estimated at rest"
+#define DT_HELP "maximum step; 0: 0.9 of the stability limit, estimated at rest"
 #define DT_MAX  10
 
 static const struct cs_option explicit_rows[] = {
@@ -36,10 +36,9 @@ static const struct cs_option explicit_rows[] = {
 
 static const struct cs_option lossy_rows[] = {
     CS_OPTION(struct lossy_options, dt, "s", 0, 0, DT_MAX, DT_HELP),
-    CS_OPTION(
-        struct lossy_options, loss, "", 0, 0, 0.999,
-        "share of the motion lost in every step; the flag thesis takes 0.01, and any value "
-        "above 0 is a drag that grows as dt shrinks"),
+    CS_OPTION(struct lossy_options, loss, "", 0, 0, 0.999,
+              "fraction of the motion lost in every step; 0.01 in the flag thesis; any value "
+              "above 0 is a drag that grows as dt shrinks"),
 };
 
 /* The largest stable step in s of each method, with bounds omega on the frequency and delta on
@@ -97,11 +96,12 @@ static void choose_dt(struct fixed_step *loop, double limit) {
     loop->dt = 0.9 * limit;
     if (view->omega <= 0 && view->delta <= 0) {
         loop->dt = HUGE_VAL;
-        host->note(host->ctx, "dt automatic: one step a frame, nothing swings or is damped");
+        host->note(host->ctx,
+                   "dt automatic: one step per frame (no springs or dampers limit it)");
     } else if (limit <= 0) {
         loop->dt = 0.9 * symplectic_euler_limit(loop, view->omega, view->delta);
         host->note(host->ctx,
-                   "dt automatic: no step is stable without damping; %.6g s is that of "
+                   "dt automatic: no step is stable without damping; %.6g s is the limit of "
                    "symplectic-euler",
                    loop->dt);
     } else
@@ -201,7 +201,7 @@ static const char *const late_velocity[] = {"angular-momentum", "reversible", NU
 static const struct cs_integrator explicit_euler = {
     EXPLICIT(struct explicit_options, explicit_rows, fixed_step_archive),
     .name = "explicit-euler",
-    .summary = "forward Euler: explodes unless damping is strong against dt",
+    .summary = "forward Euler: unstable unless damping is strong relative to dt",
     .source = "Euler 1768; cloth thesis, eq. 5.15",
     .order = 1,
     .order_damped = 1,
@@ -262,7 +262,7 @@ static const struct cs_integrator position_verlet = {
 static const struct cs_integrator rk4 = {
     EXPLICIT(struct explicit_options, explicit_rows, fixed_step_archive),
     .name = "rk4",
-    .summary = "the classical Runge-Kutta method: four evaluations a step",
+    .summary = "the classical Runge-Kutta method: four evaluations per step",
     .source = "Kutta 1901; Hairer, Norsett, Wanner 1993, sec. II.1",
     .order = 4,
     .order_damped = 4,

@@ -32,9 +32,9 @@ struct local_global_options {
 
 static const struct cs_option rows[] = {
     CS_OPTION(struct local_global_options, dt, "s", 0, 0, 10,
-              "longest step; 0: one step a frame"),
+              "maximum step; 0: one step per frame"),
     CS_OPTION(struct local_global_options, iterations, "", 10, 1, 1e6,
-              "local and global halves in a step"),
+              "iterations per step, each with a local and a global solve"),
 };
 
 struct local_global {

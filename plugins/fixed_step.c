@@ -46,11 +46,10 @@ static enum cs_step take(struct fixed_step *self, double t, double h, double *x,
 
 /* The failure of a step that was refused at the shortest length. */
 static enum cs_step fail_at_shortest_part(struct fixed_step *self, double t, double h) {
-    return self->host->fail(
-        self->host->ctx,
-        "a step of %.3g s at t = %.9g s, halved %d times, still passes over "
-        "contact or through a surface",
-        h, t, MOST_CUTS);
+    return self->host->fail(self->host->ctx,
+                            "a step of %.3g s at t = %.9g s, after %d halvings, still misses "
+                            "contact or crosses a surface",
+                            h, t, MOST_CUTS);
 }
 
 struct fixed_step fixed_step_of(const struct cs_host *host, double dt,
@@ -107,8 +106,8 @@ enum cs_step fixed_step_count(struct fixed_step *self, double span, double *n) {
         *n = 1;
     const double h = span / *n;
     if (!self->noted && !self->dt_automatic && h < self->dt * (1 - 1e-9)) {
-        self->host->note(self->host->ctx, "dt shortened from %.6g to %.6g s to meet the frame",
-                         self->dt, h);
+        self->host->note(self->host->ctx,
+                         "dt reduced from %.6g to %.6g s to end steps on frames", self->dt, h);
         self->noted = true;
     }
     return CS_STEP_OK;

@@ -17,7 +17,7 @@
 #include <clothsim/small.h>
 #include <string.h>
 
-#define DT_HELP "longest step; 0: one step a frame"
+#define DT_HELP "maximum step; 0: one step per frame"
 #define DT_MAX  10
 
 enum { PIECE = 64 }; /* particles whose blocks are solved together */
@@ -273,7 +273,7 @@ static enum cs_step archive_linearised(void *object, const struct cs_archive *ar
 static const struct cs_integrator implicit_linearised = {
     .size = sizeof(struct cs_integrator),
     .name = "implicit-linearised",
-    .summary = "one linear solve of the whole system a step; stable at large steps, damps",
+    .summary = "one linear solve of the whole system per step; stable at large steps, damps",
     .source = "Baraff, Witkin 1998; cloth thesis, eq. 5.20",
     .order = 1,
     .order_damped = 1,
@@ -297,8 +297,8 @@ static const char *const false_drag[] = {"free-fall", "translation", "momentum",
 static const struct cs_integrator implicit_block = {
     .size = sizeof(struct cs_integrator),
     .name = "implicit-block",
-    .summary =
-        "the cloth thesis's shortcut, a 3x3 block a particle: spurious drag, falls too slowly",
+    .summary = "the cloth thesis's shortcut, one 3x3 block per particle: spurious drag, falls "
+               "too slowly",
     .source = "cloth thesis, sec. 5.3",
     .order = 1,
     .order_damped = 1,

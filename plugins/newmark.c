@@ -31,11 +31,11 @@ static const struct cs_option rows[] = {
     CS_OPTION_CHOICE(struct newmark_options, set, sets, SET_NEWMARK,
                      "parameters: by their names, or own: the four below"),
     CS_OPTION(struct newmark_options, rho_inf, "", 0.8, 0, 1,
-              "of hht (at least 0.5) and generalised-alpha: share of its amplitude that the "
-              "fastest mode keeps in a step"),
+              "for hht (at least 0.5) and generalised-alpha: fraction of its amplitude that "
+              "the fastest mode keeps per step"),
     CS_OPTION(struct newmark_options, beta, "", 0.25, 1e-3, 1, "with set=own"),
     CS_OPTION(struct newmark_options, gamma, "", 0.5, 0.1, 2,
-              "with set=own; order 2 wants 1/2 - alpha_m + alpha_f"),
+              "with set=own; order 2 needs 1/2 - alpha_m + alpha_f"),
     CS_OPTION(struct newmark_options, alpha_m, "", 0, -1, 0.9, "with set=own"),
     CS_OPTION(struct newmark_options, alpha_f, "", 0, 0, 0.9, "with set=own"),
 };
@@ -111,7 +111,7 @@ static enum cs_step set_parameters(struct method *self, const struct newmark_opt
         self->am = asked->alpha_m, self->af = asked->alpha_f;
         self->gamma = asked->gamma, self->beta = asked->beta;
         if (fabs(self->gamma - (0.5 - self->am + self->af)) > 1e-12)
-            host->note(host->ctx, "order 1: gamma is %g, order 2 wants %g", self->gamma,
+            host->note(host->ctx, "order 1: gamma is %g, order 2 needs %g", self->gamma,
                        0.5 - self->am + self->af);
         return CS_STEP_OK;
     case SET_HHT:

@@ -30,11 +30,11 @@
     double dt, rtol;                                                                           \
     int64_t iterations
 #define NEWTON_ROWS(struct_)                                                                   \
-    CS_OPTION(struct_, dt, "s", 0, 0, 10, "longest step; 0: one step a frame"),                \
+    CS_OPTION(struct_, dt, "s", 0, 0, 10, "maximum step; 0: one step per frame"),              \
         CS_OPTION(struct_, rtol, "", 1e-6, 1e-14, 0.1,                                         \
                   "residual of Newton's iteration, relative to the impulse of the step"),      \
         CS_OPTION(struct_, iterations, "", 30, 1, 1000,                                        \
-                  "most Newton iterations; then the step is halved, up to 8 times")
+                  "maximum Newton iterations; then the step is halved, up to 8 times")
 
 /* The equation of one stage, in the symbols above; the vectors are borrowed. */
 struct newton_stage {

@@ -29,7 +29,7 @@ struct ros2_options {
 };
 
 static const struct cs_option rows[] = {
-    CS_OPTION(struct ros2_options, dt, "s", 0, 0, 10, "longest step; 0: one step a frame"),
+    CS_OPTION(struct ros2_options, dt, "s", 0, 0, 10, "maximum step; 0: one step per frame"),
     CS_OPTION(struct ros2_options, rtol, "", 1e-6, 1e-15, 0.5,
               "relative residual of the linear solves"),
 };

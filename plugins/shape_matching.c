@@ -40,14 +40,13 @@ struct shape_options {
 
 static const struct cs_option rows[] = {
     CS_OPTION(struct shape_options, dt, "s", 0, 0, 10,
-              "longest step; 0: 0.9 of the stability limit of springs and drag, estimated at "
-              "rest, or one step a frame where there are none"),
+              "maximum step; 0: 0.9 of the stability limit of springs and drag, estimated at "
+              "rest, or one step per frame without them"),
     CS_OPTION_CHOICE(
         struct shape_options, rotation, rotations, POLAR,
-        "polar: the rotation nearest to A_pq; the others leave out the square root of the "
-        "polar "
-        "decomposition, as the soft-body thesis, sec. 2.1, holds possible, B (B^T B)^-1 with B "
-        "= A_pq or the linear transformation A: to show what that does, no use otherwise"),
+        "polar: the rotation nearest to A_pq; the others omit the square root of the polar "
+        "decomposition, as the soft-body thesis, sec. 2.1, considers possible: B (B^T B)^-1 "
+        "with B = A_pq or the linear transformation A; only to show the effect"),
 };
 
 /* The constants of a cluster, from the positions at time 0 and the pins, and its last
@@ -308,8 +307,9 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
 static const struct cs_integrator shape_matching = {
     .size = sizeof(struct cs_integrator),
     .name = "shape-matching",
-    .summary = "bodies drawn back to their shape, other particles by symplectic Euler; another "
-               "model, which cannot blow up by its stiffness",
+    .summary =
+        "bodies pulled back to their shape, other particles by symplectic Euler; another "
+        "model, which cannot blow up by its stiffness",
     .source = "Mueller, Heidelberger, Teschner, Gross 2005; rotation: Horn 1987",
     .order = 1,
     .order_damped = 1,

@@ -23,17 +23,17 @@ static enum cs_step fail_at_shortest_part(struct fixed_step *loop, double t, dou
     const struct cs_host *host = loop->host;
     if (self->refused_by_contact || (self->newton && self->newton->line_search_blocked))
         return host->fail(host->ctx,
-                          "a step of %.3g s at t = %.9g s, halved %u times, still passes over "
-                          "contact or through a surface",
+                          "a step of %.3g s at t = %.9g s, after %u halvings, still misses "
+                          "contact or crosses a surface",
                           h, t, loop->max_depth);
     if (self->refused_by_rotation)
         return host->fail(host->ctx,
-                          "a step of %.3g s at t = %.9g s, halved %u times, still turns a "
-                          "spring by more than half its length",
+                          "a step of %.3g s at t = %.9g s, after %u halvings, still moves a "
+                          "spring's ends by more than half its length",
                           h, t, loop->max_depth);
     return host->fail(host->ctx,
-                      "Newton's iteration fails in a step of %.3g s at t = %.9g s, halved %u "
-                      "times: the residual is %.3g of the impulse, asked %.3g",
+                      "Newton's iteration fails in a step of %.3g s at t = %.9g s, after %u "
+                      "halvings: the residual is %.3g of the impulse, expected %.3g",
                       h, t, loop->max_depth, self->newton->norm / self->newton->impulse,
                       self->newton->rtol);
 }

@@ -22,7 +22,7 @@ struct options {
 };
 
 static const struct cs_option rows[] = {
-    CS_OPTION(struct options, dt, "s", 0.0005, 1e-9, 1, "longest step"),
+    CS_OPTION(struct options, dt, "s", 0.0005, 1e-9, 1, "maximum step"),
 };
 
 /* The method's object: everything it remembers. */

@@ -43,13 +43,12 @@ struct xpbd_options {
 };
 
 static const struct cs_option rows[] = {
-    CS_OPTION(struct xpbd_options, dt, "s", 0, 0, 10, "longest step; 0: one step a frame"),
+    CS_OPTION(struct xpbd_options, dt, "s", 0, 0, 10, "maximum step; 0: one step per frame"),
     CS_OPTION(struct xpbd_options, iterations, "", 10, 1, 1e6,
               "passes over the springs in a step"),
     CS_OPTION(struct xpbd_options, substeps, "", 1, 1, 1e6,
-              "equal parts that each step of dt is cut into, each a step of its own with all "
-              "its iterations: many parts with one iteration beat one part with many (Macklin "
-              "et al. 2019)"),
+              "equal substeps of each step of dt, each with all its iterations: many substeps "
+              "with one iteration beat one substep with many (Macklin et al. 2019)"),
     CS_OPTION_CHOICE(struct xpbd_options, mode, modes, XPBD,
                      "xpbd keeps the multipliers over the iterations of a step; pbd forgets "
                      "them, so that stiffness grows with the iterations"),

@@ -41,7 +41,7 @@ void *cs_arena_alloc(struct cs_arena *arena, size_t bytes, struct cs_error *erro
     if (!block || block->capacity - block->used < size) {
         block = block_create(size > BLOCK_BYTES ? size : BLOCK_BYTES);
         if (!block) {
-            cs_fail(error, CS_ERR_MEMORY, "out of memory (%zu bytes more were asked for)",
+            cs_fail(error, CS_ERR_MEMORY, "out of memory (%zu more bytes were requested)",
                     bytes);
             return NULL;
         }

@@ -68,15 +68,15 @@ const char *cs_ieee_check(void) {
     if (is_fused())
         return "products and sums are fused (-ffp-contract=off is missing)";
     if (multiplies_by_reciprocals())
-        return "divisions are products with reciprocals (-freciprocal-math)";
+        return "divisions are replaced by products with reciprocals (-freciprocal-math)";
     if (changes_order())
-        return "sums are in another order than written (-fassociative-math)";
+        return "sums are reordered (-fassociative-math)";
     if (flushes_to_zero())
-        return "numbers below 2^-1022 become 0 (linked with -ffast-math)";
+        return "numbers below 2^-1022 are flushed to 0 (linked with -ffast-math)";
     if (is_wider())
         return "doubles are computed with a wider range (x87: use -msse2 -mfpmath=sse)";
     if (takes_nan_for_a_number())
-        return "what is not a number is taken for one (-ffinite-math-only)";
+        return "NaN is not recognised (-ffinite-math-only)";
     return NULL;
 }
 

@@ -118,7 +118,7 @@ enum cs_status cs_option_check_range(const struct cs_option *row, double value, 
         cs_fail(error, status, "%s%s: %.12g is out of range (%s)", where, place, value,
                 cs_text_get(&range));
     else if (cs_value_kind_of(row)->whole && value != trunc(value))
-        cs_fail(error, status, "%s%s: %.12g is not a whole number (%s)", where, place, value,
+        cs_fail(error, status, "%s%s: %.12g is not an integer (%s)", where, place, value,
                 cs_text_get(&range));
     cs_text_finish(&range);
     return error->status;

@@ -13,7 +13,7 @@
     X(CS_ERR_INTERNAL, 6, "an error in clothsim itself")                                       \
     X(CS_ERR_MEMORY, 7, "out of memory")                                                       \
     X(CS_ERR_UNSTABLE, 8, "with --strict: a run blew up, or a cell of a study failed")         \
-    X(CS_ERR_INTERRUPT, 130, "interrupted; whole frames were kept")
+    X(CS_ERR_INTERRUPT, 130, "interrupted; finished frames are saved")
 
 enum cs_status {
 #define X(name, code, sentence) name,

@@ -33,7 +33,8 @@ void cs_trace_stream_write(FILE *file, const struct cs_trace_record *point) {
 
 /* Reports that the file is no such stream. */
 static bool refuse(struct cs_error *error) {
-    cs_fail(error, CS_ERR_FILE, "expected a trail of clothsim, found something else");
+    cs_fail(error, CS_ERR_FILE,
+            "expected the output of clothsim run --trace, found something else");
     return false;
 }
 

@@ -28,25 +28,26 @@ static const struct options defaults = {.tolerance = 0};
 
 static const struct cs_arg rows[] = {
     {"a", 'a', "KEY=VALUE",
-     "what is A's own: program=FILE, or an option of run with a value, as threads=4; may be "
+     "setting of run A only: program=FILE or an option of run, such as threads=4; may be "
      "repeated",
      CS_ARG_LIST(struct options, own[0].items, own[0].n)},
-    {"b", 'b', "KEY=VALUE", "what is B's own; may be repeated",
+    {"b", 'b', "KEY=VALUE", "setting of run B only; may be repeated",
      CS_ARG_LIST(struct options, own[1].items, own[1].n)},
-    {"frames", 'n', "N", "compare frames 1 to N (default: one second of them)",
+    {"frames", 'n', "N", "compare frames 1 to N (default: one second of frames)",
      CS_ARG_INTO(struct options, frames)},
     {"integrator", 'i', "NAME[:KEY=VALUE,...]",
-     "method of both and its options, instead of the scene's",
+     "method and options of both runs, instead of the scene's",
      CS_ARG_INTO(struct options, integrator)},
-    {"set", 's', "PATH=VALUE", "another value for a key of the scene, of both; may be repeated",
+    {"set", 's', "PATH=VALUE",
+     "another value for a key of the scene, in both runs; may be repeated",
      CS_ARG_LIST(struct options, sets, n_sets)},
-    {"plugin", 'p', "FILE", "load an integrator module in both; may be repeated",
+    {"plugin", 'p', "FILE", "load an integrator module in both runs; may be repeated",
      CS_ARG_LIST(struct options, plugins, n_plugins)},
-    {"threads", 0, "N", "threads of both, 1 to 64", CS_ARG_INTO(struct options, threads)},
+    {"threads", 0, "N", "threads of both runs, 1 to 64", CS_ARG_INTO(struct options, threads)},
     {"tolerance", 't', "NUMBER",
-     "what numbers may differ by, in their own unit (default: no bit)",
+     "maximum difference of two numbers, in their own unit (default: 0, equal bits)",
      CS_ARG_INTO(struct options, tolerance)},
-    {"quiet", 'q', NULL, "print nothing where both are equal",
+    {"quiet", 'q', NULL, "print nothing if both runs are equal",
      CS_ARG_INTO(struct options, quiet)},
 };
 
@@ -157,10 +158,10 @@ static void print(const struct cs_bisect *bisect, struct cs_text *out) {
     if (!states->frame)
         return;
     if (!within->exists) {
-        cs_print_hanging("again",
-                         "both came to the same when this frame was made again: one of "
-                         "them does not repeat itself",
-                         VALUE_COLUMN, out);
+        cs_print_hanging(
+            "again",
+            "both runs agreed when this frame was repeated: one of them is not reproducible",
+            VALUE_COLUMN, out);
         return;
     }
     cs_text_add(out, "%-*s%s, in step %llu, t = %.9g s\n", VALUE_COLUMN, "first in",
@@ -188,7 +189,8 @@ static enum cs_status bisect(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
     struct cs_bisect found;
     if (!strcmp(args->operands[0], "-"))
-        return cs_fail(error, CS_ERR_USAGE, "the scene is read several times: not from -");
+        return cs_fail(error, CS_ERR_USAGE,
+                       "SCENE is read several times and cannot be standard input (-)");
     if (make_line(&lines[0], &options->own[0], error) ||
         make_line(&lines[1], &options->own[1], error))
         return error->status;
@@ -203,8 +205,8 @@ static enum cs_status bisect(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_bisect = {
     .name = "bisect",
     .operands = "SCENE",
-    .summary = "find the first number that two runs of a scene compute otherwise",
-    .notes = "A and B are this program on SCENE, but for what --a and --b say.\n\n"
+    .summary = "find the first number that differs between two runs of a scene",
+    .notes = "A and B run this program on SCENE, with the settings of --a and --b.\n\n"
              "Example: clothsim bisect scenes/hang.json --b program=../old/build/clothsim\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,

@@ -51,24 +51,25 @@ static const struct cs_arg rows[] = {
      "folder of compare.csv, compare.json, compare.md and the diagrams (default: compare)",
      CS_ARG_INTO(struct options, compare.folder)},
     {"runs", 0, "N",
-     "rounds in which the cells of the verdict are timed, at most; fewer are enough where "
-     "factors are known to 2 % (default: 40)",
+     "maximum number of rounds that time the cells of the verdict; fewer if the factors are "
+     "known to 2 % (default: 40)",
      CS_ARG_INTO(struct options, compare.runs), .min = 1, .max = CS_ROUNDS_MAX},
     {"rank", 0, "NAME",
-     "what the verdict goes by: error, path, largest, velocity or energy (default: error)",
+     "error norm used for the ranking: error, path, largest, velocity or energy (default: "
+     "error)",
      CS_ARG_INTO(struct options, compare.ranking_norm), .names = cs_norm_names},
     {"budget", 0, "SECONDS",
-     "processor time that one run may take; a series ends at its first row over it (default: "
-     "25 s shared by the cells, at most 4 s each)",
+     "maximum processor time of one run; a series ends at its first row above it (default: 25 "
+     "s divided among the cells, at most 4 s each)",
      CS_ARG_INTO(struct options, compare.budget)},
-    {"accuracy", 0, "METRES", "error that must still mean something (default: 1e-6)",
+    {"accuracy", 0, "METRES", "smallest error that the comparison must resolve (default: 1e-6)",
      CS_ARG_INTO(struct options, compare.accuracy)},
     {"reference", 0, "NAME:KEY=VALUE,...",
      "method of the reference; give two of different families",
      CS_ARG_LIST(struct options, references, n_references)},
-    {"cache", 0, "DIR", "where references are kept (default: DIR of -o)",
+    {"cache", 0, "DIR", "folder of stored references (default: DIR of -o)",
      CS_ARG_INTO(struct options, compare.cache)},
-    {"fresh", 0, NULL, "write over the compare.csv that is there",
+    {"fresh", 0, NULL, "replace an existing compare.csv",
      CS_ARG_INTO(struct options, compare.overwrite)},
     {"pictures", 0, NULL,
      "draw the last frame of the methods at equal step and at equal cost, coloured by their "
@@ -76,17 +77,17 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, pictures)},
     {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)",
      CS_ARG_INTO(struct options, renderer), .names = cs_renderer_names},
-    {"shard", 0, "K/N", "run the K-th of N shares of the cells; see: clothsim merge",
+    {"shard", 0, "K/N", "run shard K of N of the cells; see: clothsim merge",
      CS_ARG_INTO(struct options, compare.shard)},
     {"report", 0, NULL,
      "write compare.html as well: one file with diagrams, tables, verdict, machine and the "
      "command",
      CS_ARG_INTO(struct options, compare.html)},
     {"ledger", 0, NULL,
-     "run each cell once more, to say where its energy went: what the method made or lost, and "
-     "the work of each force",
+     "run each cell once more for its energy balance: the energy that the method gained or "
+     "lost, and the work of each force",
      CS_ARG_INTO(struct options, compare.ledger)},
-    {"strict", 0, NULL, "exit with 8 where a cell blew up or failed",
+    {"strict", 0, NULL, "exit with 8 if a cell blew up or failed",
      CS_ARG_INTO(struct options, strict)},
     {"quiet", 'q', NULL, "no progress and no rows, only the verdict",
      CS_ARG_INTO(struct options, quiet)},
@@ -278,10 +279,12 @@ const struct cs_command cs_command_compare = {
     .name = "compare",
     .operands = "SCENE",
     .summary = "error against run time of integrators on a scene",
-    .notes = "Rows are kept in compare.csv as they finish: an interrupted comparison goes on\n"
-             "when it is run again, and other methods are added to it. Contact by force and\n"
-             "events stay; contact by projection, strain limit and velocity loss are off.\n\n"
-             "Example: clothsim compare scenes/drum.json -i rk4,tr-bdf2:dt=1e-3..2e-2 -o cmp\n",
+    .notes =
+        "Each row is written to compare.csv as it finishes: the same command continues an\n"
+        "interrupted comparison, and other methods are added to it. Contact by force and\n"
+        "events stay; contact by projection, strain limit and velocity loss are off.\n"
+        "\n"
+        "Example: clothsim compare scenes/drum.json -i rk4,tr-bdf2:dt=1e-3..2e-2 -o cmp\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
     .operands_max = 1,

@@ -30,7 +30,7 @@ static const struct cs_arg rows[] = {
     {"json", 0, "FILE", "write the card as JSON too; -: instead of the text",
      CS_ARG_INTO(struct options, json)},
     {"list", 0, NULL, "list the checks", CS_ARG_INTO(struct options, list)},
-    {"only", 0, "CHECK", "one check", CS_ARG_INTO(struct options, only)},
+    {"only", 0, "CHECK", "run only this check", CS_ARG_INTO(struct options, only)},
     {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
      CS_ARG_LIST(struct options, plugins, n_plugins)},
     {"quiet", 'q', NULL, "print only claims that failed, and the count",
@@ -66,8 +66,7 @@ static void print_row(const struct cs_conform_row *row, struct cs_error *error) 
              row->check, figure, bound);
     // one line a check, however long: it is read by programs as well
     cs_text_add(&out, "%-*s%s%s\n", NOTE_COLUMN, left, row->note,
-                row->verdict == CS_VERDICT_STALE ? " (it is named in fails, and does not fail)"
-                                                 : "");
+                row->verdict == CS_VERDICT_STALE ? " (named in fails, but it passes)" : "");
     cs_print_out(stdout, &out, error);
 }
 
@@ -244,9 +243,8 @@ static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_conform = {
     .name = "conform",
     .operands = "NAME[:OPTIONS]|FILE.so ...",
-    .summary = "measure what an integrator claims: its conformance card",
-    .notes =
-        "A claim that fails is expected where the integrator's descriptor names the check.\n",
+    .summary = "test an integrator against the properties it claims",
+    .notes = "A failed claim is expected if the integrator's descriptor names the check.\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 0,
     .operands_max = 64,

@@ -20,11 +20,11 @@ struct options {
 static const struct options defaults = {.check = {.threads = 1}};
 
 static const struct cs_arg rows[] = {
-    {"accept", 0, NULL, "write what was found into the golden files: look at it first",
+    {"accept", 0, NULL, "replace the golden files with the new results: look at them first",
      CS_ARG_INTO(struct options, check.accept_all)},
     {"hashes", 0, NULL, "state hashes only", CS_ARG_INTO(struct options, check.hashes)},
     {"images", 0, NULL, "images only", CS_ARG_INTO(struct options, check.images)},
-    {"only", 0, "TEXT", "rows whose scene or integrator holds TEXT",
+    {"only", 0, "TEXT", "only rows whose scene or integrator contains TEXT",
      CS_ARG_INTO(struct options, check.only_rows)},
     {"folder", 0, "DIR", "the golden folder (default: golden here, else the installed one)",
      CS_ARG_INTO(struct options, check.folder)},
@@ -120,10 +120,11 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     if (check->passed + check->failed + check->accepted + check->skipped == 0)
         return cs_fail(error, CS_ERR_USAGE, "no golden row matches");
     if (check->failed > 0)
-        return cs_fail(
-            error, CS_ERR_CHECK,
-            "%u golden row%s differ%s; if the change is meant, look and then --accept",
-            check->failed, check->failed == 1 ? "" : "s", check->failed == 1 ? "s" : "");
+        return cs_fail(error, CS_ERR_CHECK,
+                       "%u golden row%s differ%s; if the change is intended, look at it, then "
+                       "use --accept",
+                       check->failed, check->failed == 1 ? "" : "s",
+                       check->failed == 1 ? "s" : "");
     return CS_OK;
 }
 
@@ -131,9 +132,9 @@ const struct cs_command cs_command_golden = {
     .name = "golden",
     .operands = "",
     .summary = "recompute golden state hashes and images, and compare",
-    .notes = "Images are compared pixel for pixel where the renderer is the one that made the\n"
-             "golden image, else within a tolerance that defects do not pass. A picture that\n"
-             "differs is written beside its golden image as *.actual.png, with 16 times the\n"
+    .notes = "Images must match pixel for pixel if the same renderer made the golden image,\n"
+             "else within a tolerance that is tight enough to reveal defects. A picture that\n"
+             "differs is written next to its golden image as *.actual.png, with 16 times the\n"
              "difference as *.difference.png.\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 0,

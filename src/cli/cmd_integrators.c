@@ -41,7 +41,7 @@ static const char *fidelity_text(uint32_t fidelity) {
     case CS_FIDELITY_IMPLICIT_EULER:
         return "implicit Euler as its iterations grow";
     case CS_FIDELITY_CONSISTENT:
-        return "meets the equation of motion only as the step goes to 0";
+        return "consistent with the equation of motion only as the step goes to 0";
     case CS_FIDELITY_OTHER:
         return "another model: no error against the equation of motion";
     }
@@ -186,8 +186,8 @@ static enum cs_status list(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_integrators = {
     .name = "integrators",
     .operands = "[NAME]",
-    .summary = "list the integrators, or say all about one and its options",
-    .notes = "Modules are looked for beside the program and in the folders of\n"
+    .summary = "list the integrators, or describe one and its options",
+    .notes = "Modules are loaded from the program's module folder and the folders of\n"
              "CLOTHSIM_PLUGIN_PATH (absolute, separated by colons).\n",
     CS_COMMAND_OPTIONS(rows, initial),
     .operands_min = 0,

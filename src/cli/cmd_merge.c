@@ -23,7 +23,7 @@ struct options {
 static const struct options defaults = {.out = "merged"};
 
 static const struct cs_arg rows[] = {
-    {"out", 'o', "DIR", "folder of the whole (default: merged)",
+    {"out", 'o', "DIR", "folder of the result (default: merged)",
      CS_ARG_INTO(struct options, out)},
     {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
@@ -49,7 +49,9 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
     uint32_t cells = 0, rows_of_sweep = 0, maps = 0;
     for (uint32_t k = 0; k < n; k++)
         if (!strcmp(folders[k], out))
-            return cs_fail(error, CS_ERR_USAGE, "%s is both a part and the whole", out);
+            return cs_fail(error, CS_ERR_USAGE,
+                           "%s is both a part and the result: give another folder with --out",
+                           out);
     if (cs_compare_results_merge(folders, n, out, &cells, error) ||
         cs_parameter_sweep_merge(folders, n, out, &rows_of_sweep, error))
         return error->status;
@@ -59,8 +61,9 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
     if (error->status || cs_journal_merge(folders, n, out, &maps, error))
         return error->status;
     if (cells + maps == 0)
-        return cs_fail(error, CS_ERR_FILE,
-                       "no folder holds a compare.csv, a sweep.csv or the .partial of a map");
+        return cs_fail(
+            error, CS_ERR_FILE,
+            "no folder contains a compare.csv, a sweep.csv or the .partial of a map");
     if (!options->quiet)
         printf("%u cells and %u parts of maps from %u folders in %s\n", cells, maps, n, out);
     return CS_OK;
@@ -69,10 +72,11 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_merge = {
     .name = "merge",
     .operands = "DIR...",
-    .summary = "join what shards of a comparison, a sweep or a map have found",
+    .summary = "merge the shards of a comparison, a sweep or a map",
     .notes =
-        "The command of the study, without --shard and with -o DIR, then makes the report\n"
-        "or map of the whole.\n\n"
+        "Afterwards the command of the study, without --shard and with -o DIR, writes the\n"
+        "report or map of all shards.\n"
+        "\n"
         "Example: clothsim merge part1 part2 -o whole\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,

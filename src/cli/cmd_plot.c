@@ -21,12 +21,12 @@ static const struct cs_arg rows[] = {
     {"y", 'y', "COLUMN", "column of the y axis (default: error)",
      CS_ARG_INTO(struct options, y)},
     {"family", 'f', "FAMILY",
-     "all series of one family, such as \"adaptive implicit\" (default: the twelve that come "
-     "nearest to the front)",
+     "all series of one family, such as \"adaptive implicit\" (default: the twelve nearest to "
+     "the front)",
      CS_ARG_INTO(struct options, family)},
     {"out", 'o', "NAME",
-     "writes NAME.gp, and NAME.png, .svg and .pdf where gnuplot is found (default: Y_X beside "
-     "FILE)",
+     "write NAME.gp, and NAME.png, .svg and .pdf if gnuplot is installed (default: Y_X in the "
+     "folder of FILE)",
      CS_ARG_INTO(struct options, out)},
     {"title", 0, "TEXT", "title above the diagram (default: FILE)",
      CS_ARG_INTO(struct options, title)},
@@ -96,7 +96,7 @@ static enum cs_status draw(struct cs_args *args, struct cs_plot_settings *settin
     if (check_name("title", settings->title, error) || check_name("out", path, error))
         return error->status;
     if (!*settings->name)
-        return cs_fail(error, CS_ERR_USAGE, "--out: expected a name without its ending");
+        return cs_fail(error, CS_ERR_USAGE, "--out: expected a file name without extension");
     if (cs_plot_write(settings, folder, &drawn, error))
         return error->status;
     return options->quiet ? CS_OK : print_files(path, drawn, error);

@@ -23,10 +23,10 @@ static const struct options defaults = {.again = {.session = {.threads = CS_THRE
 
 static const struct cs_arg rows[] = {
     {"folder", 'f', "DIR",
-     "where the meshes and textures of the scene are (default: where they were)",
+     "folder of the scene's meshes and textures (default: the folder they were in)",
      CS_ARG_INTO(struct options, again.folder)},
     {"plugin", 'p', "FILE",
-     "the module file that the method came from, if it came from one; may be repeated",
+     "module file with the method, if a module provided it; may be repeated",
      CS_ARG_LIST(struct options, again.session.plugins, again.session.n_plugins)},
     {"threads", 0, "N", "threads that step the scene, 1 to 64 (default: as run)",
      CS_ARG_INTO(struct options, again.session.threads), .min = 1, .max = CS_POOL_THREADS_MAX},
@@ -119,10 +119,10 @@ static enum cs_status reproduce(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_reproduce = {
     .name = "reproduce",
     .operands = "FILE",
-    .summary = "make a result again from what it carries, and say what differs",
+    .summary = "reproduce a result and report what differs",
     .notes =
         "FILE is the run.json or a picture of a run, the folder of one, or compare.csv:ROW of\n"
-        "a comparison, where row 1 is the first behind the names.\n\n"
+        "a comparison, where row 1 is the first after the names.\n\n"
         "Example: clothsim reproduce out/frame_00060.png\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,

@@ -26,7 +26,7 @@ static const struct cs_arg rows[] = {
      "method and its options, instead of the scene's",
      CS_ARG_INTO(struct options, session.integrator)},
     CS_ARG_PLUGIN(struct options, session),
-    {"plan", 0, NULL, "print what is built, with bytes, and what is left out and why",
+    {"plan", 0, NULL, "print what is built, with its size, and what is left out and why",
      CS_ARG_INTO(struct options, plan)},
     {"no-render", 0, NULL, "plan a run that draws nothing",
      CS_ARG_INTO(struct options, session.render)},
@@ -70,7 +70,7 @@ static void add_plan(const struct cs_session *session, struct cs_text *out) {
     cs_plan_print(&session->run.plan, out);
     cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", "method", "built",
                 session->run.method_bytes, session->method.integrator->name);
-    cs_text_add(out, "%-14s %-9s %10zu bytes   %.1f a particle\n", "in all", "", bytes,
+    cs_text_add(out, "%-14s %-9s %10zu bytes   %.1f per particle\n", "in all", "", bytes,
                 (double)bytes / session->plan.n);
 }
 
@@ -136,8 +136,7 @@ const struct cs_command cs_command_scene = {
     .name = "scene",
     .operands = "FILE",
     .summary = "check a scene, or print its plan, every value, or the schema",
-    .notes =
-        "Without an option: one line that says that the scene is fine and what is in it.\n",
+    .notes = "Without an option: one line that confirms the scene and counts its parts.\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 0,
     .operands_max = 1,

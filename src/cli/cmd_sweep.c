@@ -22,14 +22,14 @@ static const struct cs_arg rows[] = {
      "methods, NAME:KEY=VALUE,...,NAME...; may be repeated (default: the scene's own)",
      CS_ARG_LIST(struct options, product.methods, product.n_methods), .methods = true},
     {"set", 's', "PATH=VALUE,VALUE,...",
-     "the values of a key of the scene, each with each of the others; may be repeated",
+     "values of a key of the scene; repeated: every combination is run",
      CS_ARG_LIST(struct options, keys, n_keys)},
     {"frames", 'n', "N", "simulate frames 1 to N (default: 60)",
      CS_ARG_INTO(struct options, product.frames), .min = 1, .max = 10000000},
     CS_ARG_PLUGIN(struct options, product.session),
     {"out", 'o', "DIR", "folder of sweep.csv (default: sweep)",
      CS_ARG_INTO(struct options, product.folder)},
-    {"shard", 0, "K/N", "run the K-th of N shares of the cells; see: clothsim merge",
+    {"shard", 0, "K/N", "run shard K of N of the cells; see: clothsim merge",
      CS_ARG_INTO(struct options, product.shard)},
     {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
@@ -79,7 +79,7 @@ static enum cs_status read_keys(struct cs_args *args, const struct options *opti
             read_key(args, copy, product->keys + k, error);
         for (uint32_t other = 0; other < k && !error->status; other++)
             if (!strcmp(product->keys[other].path, product->keys[k].path))
-                cs_fail(error, CS_ERR_USAGE, "--set: %.60s is there twice",
+                cs_fail(error, CS_ERR_USAGE, "--set: %.60s is given twice",
                         product->keys[k].path);
     }
     return error->status;
@@ -100,11 +100,11 @@ static enum cs_status sweep(struct cs_args *args, struct cs_error *error) {
     cs_progress_end(&progress);
     if (error->status || options->quiet)
         return error->status;
-    printf("%u of %u cells are in %s/sweep.csv, %u of them from before\n", product->n_done,
-           product->cells, product->folder, product->n_reused);
+    printf("%u of %u cells are in %s/sweep.csv, %u of them from earlier runs\n",
+           product->n_done, product->cells, product->folder, product->n_reused);
     if (product->n_refused)
-        printf("warning: %u of them refused or failed, the first by: %s\n", product->n_refused,
-               product->first_refusal.message);
+        printf("warning: %u of them were refused or failed; the first message: %s\n",
+               product->n_refused, product->first_refusal.message);
     return CS_OK;
 }
 
@@ -112,8 +112,9 @@ const struct cs_command cs_command_sweep = {
     .name = "sweep",
     .operands = "SCENE",
     .summary = "run a scene with every combination of values and methods",
-    .notes = "Rows are kept as they finish: a sweep that was stopped goes on when it is run\n"
-             "again, and several processes can fill one folder.\n\n"
+    .notes = "Each row is written as it finishes: the same command continues an interrupted\n"
+             "sweep, and several processes can fill one folder.\n"
+             "\n"
              "Example: clothsim sweep scenes/hang.json -s bodies[0].springs.stretch=50,100,200 "
              "\\\n             -i rk4 -i newmark:dt=0.005 -n 30 -o sweep\n",
     CS_COMMAND_OPTIONS(rows, defaults),

@@ -42,7 +42,7 @@ static enum cs_status verify(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_verify = {
     .name = "verify",
     .operands = "DIR...",
-    .summary = "check that the files of a run are as it left them",
+    .summary = "check that the files of a run are unchanged",
     .notes = "Example: clothsim verify out\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,

@@ -147,7 +147,7 @@ static enum cs_status read_list(const char *folder, struct list *list, struct cs
     free(text);
     return good ? error->status
                 : cs_fail(error, CS_ERR_FILE,
-                          "\"%s\": it is damaged, or no manifest of this form", path);
+                          "\"%s\": it is damaged, or not a manifest of this format", path);
 }
 
 static void print_difference(struct cs_text *out, const char *name, const char *what,
@@ -178,7 +178,7 @@ static void check_lists(const char *folder, const struct list *written,
             check_file(folder, written->entries + w, out, differing);
         else
             print_difference(out, (order < 0 ? written->entries + w : there->entries + t)->name,
-                             order < 0 ? "is not there" : "is not in the manifest", differing);
+                             order < 0 ? "is missing" : "is not in the manifest", differing);
         w += order <= 0;
         t += order >= 0;
     }

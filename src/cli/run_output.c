@@ -78,7 +78,7 @@ static enum cs_status join(const char *folder, const char *name, char path[PATH_
 }
 
 static enum cs_status refuse(const char *path, struct cs_error *error) {
-    return cs_fail(error, CS_ERR_FILE, "\"%s\" is there already; -y overwrites it", path);
+    return cs_fail(error, CS_ERR_FILE, "\"%s\" already exists; -y overwrites it", path);
 }
 
 enum cs_status cs_output_check_file(const char *path, struct cs_error *error) {

@@ -75,7 +75,7 @@ static enum cs_status write_files(const struct cs_stability_options *options,
 /* Reports a shard: some of the columns are no map yet. */
 static void print_shard(const struct cs_stability *map, bool quiet) {
     if (!quiet)
-        printf("%s: share %u of %u is in %s (see: clothsim merge)\n", map->series,
+        printf("%s: shard %u of %u is in %s (see: clothsim merge)\n", map->series,
                map->settings->shard.index, map->settings->shard.count, map->journal.table.path);
 }
 
@@ -105,9 +105,10 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
     cs_progress_end(&progress);
     if (error->status == CS_ERR_INTERRUPT) {
         *error = (struct cs_error){0};
-        cs_fail(error, CS_ERR_INTERRUPT,
-                "interrupted; what was found is in %s, and the same command goes on from it",
-                map.journal.table.path);
+        cs_fail(
+            error, CS_ERR_INTERRUPT,
+            "interrupted; finished cells are in %s, and the same command continues from there",
+            map.journal.table.path);
     }
     if (!error->status && !map.is_complete)
         print_shard(&map, quiet);
@@ -120,7 +121,8 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
         cs_stability_print_table(&map, &out);
         /* gnuplot may be missing: the line then says that there is no picture */
         cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json, .gp%s\n\n", map.wall,
-                    options->map.folder, name, drawn ? ", .png" : "; no gnuplot: no picture");
+                    options->map.folder, name,
+                    drawn ? ", .png" : "; gnuplot not found: no picture");
         cs_print_out(stdout, &out, error);
     }
     if (!error->status && options->strict)
@@ -147,7 +149,7 @@ enum cs_status cs_stability_map_all(struct cs_stability_options *options,
             cs_stability_map_one(options, error);
         } else if (!options->quiet)
             printf("%s: not applicable, it %s\n\n", integrator->name,
-                   other                              ? "is of another model"
+                   other                              ? "solves another model"
                    : integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
                                                       : "has no option dt");
     }

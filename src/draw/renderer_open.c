@@ -40,7 +40,7 @@ static enum cs_status open_path(const char *path, enum cs_renderer_kind kind,
                        packages[kind].run ? packages[kind].run : "");
     const struct cs_renderer *found = dlsym(module, "clothsim_renderer");
     if (!found)
-        return cs_fail(error, CS_ERR_MODULE, "renderer %s: %s is no renderer module", name,
+        return cs_fail(error, CS_ERR_MODULE, "renderer %s: %s is not a renderer module", name,
                        path);
     if (found->abi != CS_RENDERER_ABI)
         return cs_fail(

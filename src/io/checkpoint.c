@@ -56,7 +56,8 @@ static enum cs_status check_whole(const char *path, const struct cs_serialiser *
     char digits[CS_HASH_DIGITS];
     if (file->length < sizeof FIRST_LINE - 1 + CS_HASH_DIGITS ||
         memcmp(file->bytes, FIRST_LINE, sizeof FIRST_LINE - 1) != 0)
-        return cs_fail(error, CS_ERR_FILE, "\"%s\": it is no checkpoint of this form", path);
+        return cs_fail(error, CS_ERR_FILE, "\"%s\": it is not a checkpoint of this format",
+                       path);
     const size_t length = file->length - CS_HASH_DIGITS;
     cs_hash_bytes(file->bytes, length, digits);
     digits[CS_HASH_DIGITS - 1] = '\n';
@@ -115,8 +116,9 @@ static enum cs_status refuse(const char *path, const struct cs_checkpoint_key *f
         here = next;
     }
     const int shown_there = trim(&there, stop), shown_here = trim(&here, end);
-    return cs_fail(error, CS_ERR_FILE, "\"%s\": it is of another %s: there %.*s, here %.*s",
-                   path, fact->name, shown_there, there, shown_here, here);
+    return cs_fail(error, CS_ERR_FILE,
+                   "\"%s\" was written for a different %s: found %.*s, expected %.*s", path,
+                   fact->name, shown_there, there, shown_here, here);
 }
 
 /* Compares all facts with those of the file, and moves past them. */
@@ -127,7 +129,7 @@ static enum cs_status check_facts(const char *path, const struct cs_checkpoint_k
         size_t length;
         const char *value = take_item(file, facts[k].name, &length);
         if (!value)
-            return cs_fail(error, CS_ERR_FILE, "\"%s\": it says nothing of the %s", path,
+            return cs_fail(error, CS_ERR_FILE, "\"%s\": it does not state the %s", path,
                            facts[k].name);
         if (length != strlen(facts[k].value) || memcmp(value, facts[k].value, length) != 0)
             return refuse(path, facts + k, value, length, error);
@@ -150,7 +152,7 @@ enum cs_status cs_checkpoint_read(const char *path, const struct cs_checkpoint_k
         return error->status;
     const char *bytes = take_item(record, "record", &length);
     if (!bytes)
-        return cs_fail(error, CS_ERR_FILE, "\"%s\": it holds no record", path);
+        return cs_fail(error, CS_ERR_FILE, "\"%s\": it contains no record", path);
     record->position = (size_t)(bytes - record->bytes);
     record->length = record->position + length;
     return CS_OK;

@@ -121,7 +121,7 @@ static bool decode(struct reader *reader) {
     /* rows of another size would be written past the image */
     const size_t row_bytes = 3 * (size_t)reader->image.width;
     if (png_get_rowbytes(png, reader->info) != row_bytes)
-        png_error(png, "a kind of pixel that cannot be made RGB");
+        png_error(png, "its pixel format cannot be converted to RGB");
     for (int pass = 0; pass < passes; pass++)
         for (size_t y = 0; y < reader->image.height; y++)
             png_read_row(png, reader->image.rgb + y * row_bytes, NULL);

@@ -90,8 +90,8 @@ static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
            "springs.damping is above 0", "springs.damping is 0");
     for (uint32_t k = 0; k < cs_n_terms; k++)
         plan->forces[k] = cs_terms[k]->plan(scene);
-    decide(plan, CS_FEATURE_AREA, cs_terms_use(scene, plan) & CS_USE_AREA, "a force is by area",
-           "nothing is by area");
+    decide(plan, CS_FEATURE_AREA, cs_terms_use(scene, plan) & CS_USE_AREA,
+           "a force is per area", "no force is per area");
     decide(plan, CS_FEATURE_VELOCITY_LOSS,
            forces->velocity_loss > 0 || cs_event_key_changes(scene, "forces.velocity_loss"),
            "forces.velocity_loss is above 0", "forces.velocity_loss is 0");
@@ -99,7 +99,7 @@ static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
            "a body has strain_limit", "no strain_limit");
     decide(plan, CS_FEATURE_EVENTS, scene->events.n > 0, "the scene has events", "no events");
     decide(plan, CS_FEATURE_VIEWPOINT_FORCES, cs_viewpoint_forces_any(scene),
-           "an event is a viewpoint_force; it needs a test of what is seen",
+           "an event is a viewpoint_force; it needs a visibility test",
            "no event is a viewpoint_force");
 }
 
@@ -113,9 +113,10 @@ static void plan_contact(struct cs_plan *plan, const struct cs_scene *scene, boo
     const bool shown = render && scene->render.look == CS_LOOK_CROSSINGS;
     const bool wanted = cs_scene_crossings(scene) != CS_CROSSINGS_IGNORE;
     decide(plan, CS_FEATURE_CROSSINGS, wanted || shown,
-           cs_scene_crossings_by_pairs(scene) ? "bodies keep off each other or themselves"
-           : wanted                           ? "crossings is not ignore"
-                                              : "they are drawn",
+           cs_scene_crossings_by_pairs(scene)
+               ? "bodies have contact with each other or themselves"
+           : wanted ? "crossings is not ignore"
+                    : "they are drawn",
            "crossings is ignore");
 }
 
@@ -167,11 +168,10 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
     if (scene->contact.law == CS_CONTACT_FORCE &&
         (scene->colliders.n > 0 || cs_scene_has_body_contact(scene)) &&
         method->traits & CS_EXPLICIT_OUTER)
-        return cs_fail(
-            error, CS_ERR_SCENE,
-            "contact.law: integrator \"%s\" takes contact as it is where a step "
-            "begins and cannot follow a force as stiff; expected %sanother integrator",
-            method->name, cs_scene_has_body_contact(scene) ? "" : "project, or ");
+        return cs_fail(error, CS_ERR_SCENE,
+                       "contact.law: force is too stiff for integrator \"%s\", which treats "
+                       "contact explicitly; use %sanother integrator",
+                       method->name, cs_scene_has_body_contact(scene) ? "" : "project, or ");
     return CS_OK;
 }
 

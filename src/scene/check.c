@@ -45,8 +45,8 @@ static enum cs_status check_matrix(const struct cs_check *at, const char *path,
                 m[3 * i] * m[3 * j] + m[3 * i + 1] * m[3 * j + 1] + m[3 * i + 2] * m[3 * j + 2];
             if (!(fabs(product - (i == j)) <= 1e-6))
                 return cs_check_refuse(
-                    at, path, "rows %d and %d have the product %.9g: not a rotation matrix", j,
-                    i, product);
+                    at, path, "rows %d and %d have the dot product %.9g: not a rotation matrix",
+                    j, i, product);
         }
     if (!(determinant > 0))
         return cs_check_refuse(

@@ -58,14 +58,14 @@ static enum cs_status check_times(const struct look *at, const struct cs_event *
     const bool once = !isnan(event->at), from = !isnan(event->from), to = !isnan(event->to);
     if (once ? from || to : !from || !to)
         return refuse(at, "", "found %s, expected at, or from and to",
-                      once   ? "at beside from or to"
+                      once   ? "at with from or to"
                       : from ? "from alone"
                       : to   ? "to alone"
                              : "no time");
     if (!once && !(event->to >= event->from + APART))
         return refuse(at, ".to", "%.9g s is not after from = %.9g s", event->to, event->from);
     if (event->release.present && !once)
-        return refuse(at, ".release", "happens at once, expected at");
+        return refuse(at, ".release", "is instantaneous, expected at");
     return CS_OK;
 }
 
@@ -141,7 +141,7 @@ static enum cs_status check_lengths(const struct look *at, bool once,
     const double other = once ? viewpoint_force->refresh : viewpoint_force->duration;
     if (!isnan(other))
         return once ? refuse(at, ".viewpoint_force.refresh",
-                             "a blow is seen once, expected from and to")
+                             "an impulse tests visibility once, expected from and to")
                     : refuse(at, ".viewpoint_force.duration", "it lasts until to, expected at");
     if (isnan(*used))
         *used = once ? 1.0 / 60 : 60;
@@ -168,7 +168,7 @@ static enum cs_status check_viewpoint_force(const struct look *at, bool once,
         return refuse(at, ".viewpoint_force.rectangle", "top = %.9g is not below bottom = %.9g",
                       rectangle[1], rectangle[3]);
     if (isnan(viewpoint_force->force))
-        return refuse(at, ".viewpoint_force", "found no force");
+        return refuse(at, ".viewpoint_force", "missing key \"force\"");
     if (viewpoint_force->body >= at->scene->bodies.n)
         return refuse(at, ".viewpoint_force.body", "body %lld does not exist (0..%u)",
                       (long long)viewpoint_force->body, at->scene->bodies.n - 1);
@@ -189,7 +189,7 @@ static enum cs_status check_ramp(const struct look *at, const struct cs_event *e
         return refuse(at, ".ramp.value", "%s", said.message + 2);
     /* methods take a mass for constant within an advance */
     if (cs_event_changes_mass(event) && isnan(event->at))
-        return refuse(at, "", "found from and to, expected at: masses change at once");
+        return refuse(at, "", "found from and to, expected at: masses change instantly");
     return CS_OK;
 }
 
@@ -203,7 +203,7 @@ static enum cs_status check_path(const struct look *at, const char *key,
         char place[64];
         snprintf(place, sizeof place, ".%s.path[%u]", key, p);
         if (isnan(path[p].at))
-            return refuse(at, place, "found no time, expected at");
+            return refuse(at, place, "missing key \"at\"");
         if (!(path[p].at >= before + APART))
             return refuse(at, place, "at = %.9g s is not after %.9g s", path[p].at, before);
         before = path[p].at;
@@ -227,7 +227,7 @@ static enum cs_status check_move(const struct look *at, const struct cs_move *mo
     const uint32_t n = at->scene->colliders.n;
     const double *spin = move->spin;
     if (move->collider < 0)
-        return refuse(at, ".move", "found no collider, expected its number");
+        return refuse(at, ".move", "missing key \"collider\", expected its number");
     if (n == 0)
         return refuse(at, ".move.collider", "the scene has no colliders");
     if (move->collider >= n)

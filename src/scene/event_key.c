@@ -20,22 +20,22 @@ static const char *const changeable[] = {
 static const struct {
     const char *start, *why;
 } fixed[] = {
-    {"forces.wind.direction", "the wind is turned by an event of its own: wind"},
-    {"bodies.cloth", "it says how the body starts"},
-    {"bodies.mesh", "it says how the body starts"},
-    {"bodies.network", "springs are made at the start"},
+    {"forces.wind.direction", "use the event wind"},
+    {"bodies.cloth", "it defines the start of the body"},
+    {"bodies.mesh", "it defines the start of the body"},
+    {"bodies.network", "springs are created at the start"},
     {"bodies.shape_matching", "shape matching is fixed during a run"},
-    {"bodies.pins", "particles are held and let go by the events pin and release"},
-    {"bodies.material", "it is of the pictures, not of the motion"},
-    {"camera", "it is of the pictures, not of the motion"},
-    {"light", "it is of the pictures, not of the motion"},
-    {"render", "it is of the pictures, not of the motion"},
+    {"bodies.pins", "use the events pin and release"},
+    {"bodies.material", "it affects the pictures, not the motion"},
+    {"camera", "it affects the pictures, not the motion"},
+    {"light", "it affects the pictures, not the motion"},
+    {"render", "it affects the pictures, not the motion"},
     {"time", "frames are evenly spaced"},
-    {"colliders.colour", "it is of the pictures, not of the motion"},
-    {"colliders.visible", "it is of the pictures, not of the motion"},
-    {"colliders.thickness", "it is part of the obstacle's shape"},
-    {"colliders", "obstacles are moved by an event of their own: move"},
-    {"contact", "a run keeps its law of contact"},
+    {"colliders.colour", "it affects the pictures, not the motion"},
+    {"colliders.visible", "it affects the pictures, not the motion"},
+    {"colliders.thickness", "it is part of the collider's shape"},
+    {"colliders", "use the event move"},
+    {"contact", "the contact law is fixed during a run"},
     {"events", "events cannot change events"},
 };
 
@@ -83,7 +83,7 @@ static bool next_index(struct walk *walk, uint32_t n, uint32_t *index) {
     if (*walk->rest != '[' || *digits < '0' || *digits > '9' ||
         (*digits == '0' && end != digits + 1) || *end != ']' || value >= n) {
         if (n)
-            cs_fail(walk->error, CS_ERR_SCENE, "\"%.120s\": expected an index 0..%u behind %s",
+            cs_fail(walk->error, CS_ERR_SCENE, "\"%.120s\": expected an index 0..%u after %s",
                     walk->path, n - 1, walk->plain);
         else
             cs_fail(walk->error, CS_ERR_SCENE, "\"%.120s\": the scene has no %s", walk->path,
@@ -155,10 +155,10 @@ static enum cs_status check_springs(const struct walk *walk, const struct cs_bod
                                     double value) {
     const bool shear = !strcmp(walk->plain, "bodies.springs.shear");
     const bool damping = !strcmp(walk->plain, "bodies.springs.damping");
-    const char *why = cs_scene_springs_left_out(body) ? "shape_matching leaves the springs out"
+    const char *why = cs_scene_springs_left_out(body) ? "shape_matching disables the springs"
                       : shear && body->mesh.present   ? "a mesh has none"
-                      : !damping && value <= 0 ? "it is 0, so that there are no such springs"
-                                               : NULL;
+                      : !damping && value <= 0        ? "it is 0: there are no such springs"
+                                                      : NULL;
     return why ? cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: %s", walk->path, why)
                : CS_OK;
 }

@@ -23,48 +23,48 @@ static const double absent3[3] = {ABSENT, ABSENT, ABSENT};
 
 static const struct cs_option impact_rows[] = {
     AIM_ROWS(struct cs_impact),
-    VECTOR(struct cs_impact, direction, 3, "", NULL, -BIG, BIG, "of any length but 0"),
+    VECTOR(struct cs_impact, direction, 3, "", NULL, -BIG, BIG, "of any non-zero length"),
     REAL(struct cs_impact, impulse, "N s", 0, 0, BIG,
-         "change of the momentum of all free ones together, shared by mass: each changes its "
-         "velocity by the same; over an interval a steady force"),
+         "total change of momentum of the free particles, distributed by mass: each gets the "
+         "same change of velocity; over an interval a steady force"),
 };
 static const struct cs_table impact_table = {
     ROWS(impact_rows), .size = sizeof(struct cs_impact), .optional = true};
 
 static const struct cs_option gust_rows[] = {
     VECTOR(struct cs_wind_change, direction, 3, "", absent3, -BIG, BIG,
-           "to which the wind then blows; absent: as before"),
+           "direction in which the wind then blows; absent: unchanged"),
     REAL(struct cs_wind_change, strength, "Pa or N", ABSENT, 0, BIG,
-         "in the unit of forces.wind; 0 turns it off; absent: as before"),
+         "in the unit of forces.wind; 0 turns it off; absent: unchanged"),
 };
 static const struct cs_table gust_table = {
     ROWS(gust_rows), .size = sizeof(struct cs_wind_change), .optional = true};
 
 static const struct cs_option viewpoint_rows[] = {
     VECTOR(struct cs_viewpoint, eye, 3, "m", absent3, -BIG, BIG,
-           "where it is; absent here and below: as the camera's"),
-    VECTOR(struct cs_viewpoint, target, 3, "m", absent3, -BIG, BIG, "what lies in the middle"),
+           "position of the viewpoint; absent here and below: the camera's value"),
+    VECTOR(struct cs_viewpoint, target, 3, "m", absent3, -BIG, BIG,
+           "point in the middle of the view"),
     VECTOR(struct cs_viewpoint, up, 3, "", absent3, -BIG, BIG, "direction that is up"),
     REAL(struct cs_viewpoint, fov, "degrees", ABSENT, 1, 170, "vertical field of view"),
     REAL(struct cs_viewpoint, aspect, "", ABSENT, 0.01, 100,
-         "width over height; absent: as the picture's"),
+         "width over height; absent: the picture's value"),
 };
 static const struct cs_table viewpoint_table = {ROWS(viewpoint_rows),
                                                 .size = sizeof(struct cs_viewpoint)};
 static const double whole[4] = {0, 0, 1, 1};
 static const struct cs_option viewpoint_force_rows[] = {
     TABLE(struct cs_viewpoint_force, viewpoint, viewpoint_table,
-          "from where; the force is along its view"),
+          "position and view; the force acts along the view"),
     VECTOR(struct cs_viewpoint_force, rectangle, 4, "", whole, 0, 1,
-           "left, top, right, bottom: shares of what is seen, from its top left corner"),
-    REAL(
-        struct cs_viewpoint_force, force, "N", ABSENT, -BIG, BIG,
-        "on each particle that is seen in it, along the view; below 0 towards the eye; must be "
-        "given"),
+           "left, top, right, bottom: fractions of the view, from its top left corner"),
+    REAL(struct cs_viewpoint_force, force, "N", ABSENT, -BIG, BIG,
+         "on each particle visible in the rectangle, along the view; below 0 towards the eye; "
+         "must be given"),
     REAL(struct cs_viewpoint_force, duration, "s", ABSENT, 1e-9, BIG,
-         "with at: the blow is force times this on each particle; absent: 1/60"),
+         "with at: the impulse on each particle is force times this; absent: 1/60"),
     REAL(struct cs_viewpoint_force, refresh, "1/s", ABSENT, 0, 1e5,
-         "with from and to: how often it is seen anew; 0: at from alone; absent: 60"),
+         "with from and to: rate of visibility tests; 0: only at from; absent: 60"),
     INT(struct cs_viewpoint_force, body, "", -1, 0, 4294967295.0,
         "number of the body from 0 that it acts on; absent: every body"),
 };
@@ -76,7 +76,7 @@ static const struct cs_option ramp_rows[] = {
          "path of a number of forces, springs, strain limit, friction or absorption, such as "
          "bodies[0].springs.stretch or forces.gravity[1]"),
     REAL(struct cs_ramp, value, "", ABSENT, -1e12, 1e12,
-         "what it then is, within the key's own range; must be given"),
+         "new value, within the key's range; must be given"),
 };
 static const struct cs_table ramp_table = {ROWS(ramp_rows), .size = sizeof(struct cs_ramp),
                                            .optional = true};
@@ -86,20 +86,20 @@ static const struct cs_option path_rows[] = {
     REAL(struct cs_path_point, at, "s", ABSENT, 0, BIG,
          "when the point is reached; must be given"),
     VECTOR(struct cs_path_point, point, 3, "m", NULL, -BIG, BIG,
-           "where the first of the particles then is; the others keep their distances from it"),
+           "position of the first particle then; the others keep their offsets from it"),
 };
 static const struct cs_table path_table = {ROWS(path_rows),
                                            .size = sizeof(struct cs_path_point)};
 static const struct cs_option grab_rows[] = {
     AIM_ROWS(struct cs_grab),
-    LIST(
-        struct cs_grab, path, path_table,
-        "points behind the place where it is grabbed, in the order of their times; at the last "
-        "it stays"),
+    LIST(struct cs_grab, path, path_table,
+         "points after the position where it is grabbed, in order of time; it stays at the "
+         "last"),
     CHOICE(struct cs_grab, motion, motion_names, CS_MOTION_LINEAR,
            "from point to point at constant velocity, or by a cubic that rests at each point, "
            "followed in 16 chords"),
-    BOOL(struct cs_grab, relative, 0, "points are shifts from where each particle was grabbed"),
+    BOOL(struct cs_grab, relative, 0,
+         "points are displacements from the position where each particle was grabbed"),
 };
 static const struct cs_table grab_table = {ROWS(grab_rows), .size = sizeof(struct cs_grab),
                                            .optional = true};
@@ -113,7 +113,7 @@ static const struct cs_option shift_rows[] = {
     REAL(struct cs_path_point, at, "s", ABSENT, 0, BIG,
          "when the point is reached; must be given"),
     VECTOR(struct cs_path_point, point, 3, "m", NULL, -BIG, BIG,
-           "how far it is then from where it was when the event began"),
+           "displacement then, from the position at the start of the event"),
 };
 static const struct cs_table shift_table = {ROWS(shift_rows),
                                             .size = sizeof(struct cs_path_point)};
@@ -121,7 +121,7 @@ static const struct cs_option move_rows[] = {
     INT(struct cs_move, collider, "", -1, 0, 4294967295.0,
         "number of the collider from 0; must be given"),
     LIST(struct cs_move, path, shift_table,
-         "shifts in the order of their times; at the last it stays"),
+         "displacements in order of time; it stays at the last"),
     CHOICE(struct cs_move, motion, motion_names, CS_MOTION_LINEAR, "as in grab"),
     VECTOR(struct cs_move, spin, 3, "rad/s", zero3, -BIG, BIG,
            "angular velocity about its centre, a plane's point or a floor's x = z = 0"),
@@ -130,22 +130,22 @@ static const struct cs_table move_table = {ROWS(move_rows), .size = sizeof(struc
                                            .optional = true};
 
 static const struct cs_option event_rows[] = {
-    REAL(struct cs_event, at, "s", ABSENT, 0, BIG, "when it happens, at once"),
-    REAL(struct cs_event, from, "s", ABSENT, 0, BIG, "when it begins, instead of at"),
-    REAL(struct cs_event, to, "s", ABSENT, 0, BIG, "when it ends, with from"),
-    TABLE(struct cs_event, impact, impact_table, "a blow to particles or bodies"),
+    REAL(struct cs_event, at, "s", ABSENT, 0, BIG, "time of an instantaneous event"),
+    REAL(struct cs_event, from, "s", ABSENT, 0, BIG, "start time, instead of at"),
+    REAL(struct cs_event, to, "s", ABSENT, 0, BIG, "end time, with from"),
+    TABLE(struct cs_event, impact, impact_table, "an impulse on particles or bodies"),
     TABLE(struct cs_event, wind, gust_table,
           "another wind; over an interval its vector changes linearly"),
     TABLE(struct cs_event, viewpoint_force, viewpoint_force_table,
-          "a blow, or over an interval a wind, to the particles that are seen in a rectangle "
+          "an impulse, or over an interval a wind, on the particles visible in a rectangle "
           "from a viewpoint"),
     TABLE(struct cs_event, ramp, ramp_table,
           "another value for a key; over an interval it changes linearly"),
     TABLE(struct cs_event, grab, grab_table, "particles follow a path, until to or a release"),
     TABLE(struct cs_event, pin, hold_table,
-          "particles keep their place, until to or a release"),
+          "particles keep their position, until to or a release"),
     TABLE(struct cs_event, release, hold_table,
-          "particles are free, with the velocity that they have"),
+          "particles become free and keep their velocity"),
     TABLE(struct cs_event, move, move_table,
           "a collider moves along a path and turns, until to or another move"),
 };

@@ -11,25 +11,27 @@ static const char *const frame_names[] = {"given", "auto", NULL};
 static const char *const projection_names[] = {"perspective", "orthographic", NULL};
 static const char *const camera_motions[] = {"linear", "smooth", NULL};
 static const struct cs_option key_rows[] = {
-    REAL(struct cs_camera_key, at, "s", ABSENT, 0, BIG, "later than the key before"),
-    VECTOR(struct cs_camera_key, eye, 3, "m", NULL, -BIG, BIG, "where it stands then"),
-    VECTOR(struct cs_camera_key, target, 3, "m", NULL, -BIG, BIG, "what it looks at then"),
+    REAL(struct cs_camera_key, at, "s", ABSENT, 0, BIG, "later than the previous key"),
+    VECTOR(struct cs_camera_key, eye, 3, "m", NULL, -BIG, BIG, "position of the camera then"),
+    VECTOR(struct cs_camera_key, target, 3, "m", NULL, -BIG, BIG,
+           "point that the camera looks at then"),
 };
 static const struct cs_table key_table = {ROWS(key_rows), .size = sizeof(struct cs_camera_key)};
 static const struct cs_option camera_rows[] = {
     CHOICE(struct cs_camera, frame, frame_names, CS_FRAME_GIVEN,
-           "given: it stands where eye says; auto: it looks as from there, from where the "
-           "bodies fill the picture"),
-    VECTOR(struct cs_camera, eye, 3, "m", eye, -BIG, BIG, "where it stands"),
-    VECTOR(struct cs_camera, target, 3, "m", zero3, -BIG, BIG, "what it looks at"),
+           "given: the camera stands at eye; auto: it keeps that direction, from a position "
+           "where the bodies fill the picture"),
+    VECTOR(struct cs_camera, eye, 3, "m", eye, -BIG, BIG, "position of the camera"),
+    VECTOR(struct cs_camera, target, 3, "m", zero3, -BIG, BIG,
+           "point that the camera looks at"),
     VECTOR(struct cs_camera, up, 3, "", up3, -BIG, BIG, "direction that is up in the picture"),
     REAL(struct cs_camera, fov, "degrees", 40, 1, 170, "vertical field of view"),
     CHOICE(struct cs_camera, projection, projection_names, CS_PROJECTION_PERSPECTIVE,
-           "orthographic: things are as large as a perspective shows them at the target"),
+           "orthographic: the scale equals the perspective scale at the target"),
     LIST(struct cs_camera, path, key_table,
-         "where it stands and looks at times, instead of eye and target"),
+         "eye and target at given times, instead of fixed ones"),
     CHOICE(struct cs_camera, motion, camera_motions, CS_MOTION_LINEAR,
-           "linear: from key to key at one speed; smooth: it comes to rest at each"),
+           "linear: at constant velocity from key to key; smooth: at rest at each key"),
 };
 const struct cs_table cs_camera_table = {ROWS(camera_rows), .size = sizeof(struct cs_camera),
                                          .shorthand_text = "frame"};
@@ -37,9 +39,9 @@ const struct cs_table cs_camera_table = {ROWS(camera_rows), .size = sizeof(struc
 static const double dim[3] = {0.16, 0.17, 0.19};
 static const double bright[3] = {1, 0.97, 0.92};
 static const struct cs_option light_rows[] = {
-    VECTOR(struct cs_light, point, 3, "m", absent3, -BIG, BIG, "where a lamp hangs"),
+    VECTOR(struct cs_light, point, 3, "m", absent3, -BIG, BIG, "position of a lamp"),
     VECTOR(struct cs_light, direction, 3, "", absent3, -BIG, BIG,
-           "in which sunlight travels, instead of point"),
+           "direction in which sunlight travels, instead of point"),
     VECTOR(struct cs_light, ambient, 3, "", dim, 0, 10, "intensity ia, linear RGB"),
     VECTOR(struct cs_light, diffuse, 3, "", bright, 0, 10, "intensity id, linear RGB"),
     VECTOR(struct cs_light, specular, 3, "", bright, 0, 10, "intensity is, linear RGB"),
@@ -55,11 +57,12 @@ static const char *const background_names[] = {"gradient", "flat", "none", NULL}
 static const struct cs_option background_rows[] = {
     CHOICE(struct cs_background, kind, background_names, CS_BACKGROUND_GRADIENT,
            "gradient: brighter above; flat: one colour; none: nothing, in pictures with alpha"),
-    VECTOR(struct cs_background, colour, 3, "", paper, 0, 1,
-           "linear RGB; of none that of a paper for which lines and figures are inked"),
+    VECTOR(
+        struct cs_background, colour, 3, "", paper, 0, 1,
+        "linear RGB; with none, colour of the paper that lines and figures must contrast with"),
     VECTOR(struct cs_background, below, 3, "", absent3, 0, 1,
-           "of a gradient at the lower edge, where colour is at the upper one; absent: colour "
-           "is in the middle of a slight one"),
+           "of a gradient at the lower edge, with colour at the upper edge; absent: a slight "
+           "gradient with colour in the middle"),
 };
 static const struct cs_table background_table = {
     ROWS(background_rows), .size = sizeof(struct cs_background), .shorthand_text = "kind",
@@ -68,18 +71,19 @@ static const char *const ground_names[] = {"auto", "none", "shadow", "grid", NUL
 static const struct cs_option render_rows[] = {
     COUNTS(struct cs_render, size, 2, "pixels", vga, 16, 8192, "width and height"),
     INT(struct cs_render, samples, "", 4, 1, 4, "of multisampling, 1 or 4"),
-    CHOICE(struct cs_render, look, cs_look_names, CS_LOOK_LIT, "what the picture shows"),
+    CHOICE(struct cs_render, look, cs_look_names, CS_LOOK_LIT, "content of the picture"),
     VECTOR(struct cs_render, range, 2, "N or 1", absent3, -BIG, BIG,
-           "force or strain at the ends of the colours; absent: of each frame, from 0 or about "
-           "it, "
-           "but for the hundredth of the particles that is farthest from 0"),
-    TABLE(struct cs_render, background, background_table, "what is behind everything"),
+           "force or strain at the ends of the colours; absent: the range of each frame, from "
+           "0 or symmetric about 0, without the hundredth of the particles farthest from 0"),
+    TABLE(struct cs_render, background, background_table, "background behind everything"),
     BOOL(struct cs_render, viewpoint_forces, 0,
-         "draw what the viewpoint forces under way see, and their rectangles from their eyes"),
-    CHOICE(struct cs_render, ground, ground_names, CS_GROUND_AUTO,
-           "shadow: shadows lie on a ground; grid: with lines on it; auto: shadow where the "
-           "scene has no visible floor and nothing can fall without end, else none"),
+         "draw the particles that active viewpoint forces see, and their rectangles from their "
+         "eyes"),
+    CHOICE(
+        struct cs_render, ground, ground_names, CS_GROUND_AUTO,
+        "shadow: a ground that receives shadows; grid: the same with grid lines; auto: shadow "
+        "if the scene has no visible floor and nothing can fall without end, else none"),
     REAL(struct cs_render, ground_height, "m", ABSENT, -BIG, BIG,
-         "the ground is at y = this; absent: the floor's, or below all that moves"),
+         "y of the ground; absent: the floor's y, or below everything that moves"),
 };
 const struct cs_table cs_render_table = {ROWS(render_rows), .size = sizeof(struct cs_render)};

@@ -182,7 +182,7 @@ struct cs_capsule {
     X(box, cs_cuboid, "a box with rounded edges")                                              \
     X(capsule, cs_capsule, "a rod with round ends")                                            \
     X(mesh, cs_mesh_source,                                                                    \
-      "triangles, met by points, edges and triangles; for contact.law force")
+      "triangles, in contact with points, edges and triangles; for contact.law force")
 
 /* A rigid obstacle, at rest or moved by events. */
 struct cs_collider {

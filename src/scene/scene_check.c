@@ -70,8 +70,7 @@ static enum cs_status check_matching(const struct cs_check *at, const char *body
         return CS_OK;
     snprintf(path, sizeof path, "%s.%s", body, network ? "network" : "strain_limit");
     return cs_check_refuse(
-        at, path,
-        "shape_matching leaves the springs out, expected shape_matching.springs true");
+        at, path, "shape_matching disables the springs, expected shape_matching.springs true");
 }
 
 /* Checks one body: a shape, then all that depends on it. */
@@ -101,7 +100,7 @@ static enum cs_status check_bodies(const struct cs_check *at, struct cs_scene *s
         particles += (double)cs_shape_count(bodies + b);
     }
     if (particles > CS_PARTICLES_MAX)
-        return cs_check_refuse(at, "bodies", "%.0f particles in all, expected at most %.0f",
+        return cs_check_refuse(at, "bodies", "%.0f particles in total, expected at most %.0f",
                                particles, CS_PARTICLES_MAX);
     return CS_OK;
 }
@@ -186,7 +185,7 @@ static enum cs_status check_camera_path(const struct cs_check *at,
         const bool is_up = fault && !strcmp(key, "up");
         snprintf(path, sizeof path, "camera.path[%u]%s", k, fault && !is_up ? ".target" : "");
         if (isnan(keys[k].at))
-            return cs_check_refuse(at, path, "found no time, expected at");
+            return cs_check_refuse(at, path, "missing key \"at\"");
         if (k > 0 && !(keys[k].at > keys[k - 1].at))
             return cs_check_refuse(at, path, "at = %.9g s is not after %.9g s", keys[k].at,
                                    keys[k - 1].at);
@@ -204,7 +203,7 @@ static enum cs_status check_camera(const struct cs_check *at, const struct cs_ca
         return cs_check_refuse(at, path, "%s", fault);
     if (camera->path.n && camera->frame == CS_FRAME_AUTO)
         return cs_check_refuse(at, "camera.path",
-                               "frame auto finds the way itself, expected no path");
+                               "frame auto computes the camera itself, expected no path");
     return check_camera_path(at, camera);
 }
 

@@ -12,7 +12,8 @@ static const double absent9[9] = {ABSENT, ABSENT, ABSENT, ABSENT, ABSENT,
 
 static const char *const start_names[] = {"hanging", "flat", NULL};
 static const struct cs_option place_rows[] = {
-    VECTOR(struct cs_pose, translate, 3, "m", zero3, -BIG, BIG, "shift, after the rotation"),
+    VECTOR(struct cs_pose, translate, 3, "m", zero3, -BIG, BIG,
+           "translation, after the rotation"),
     VECTOR(struct cs_pose, rotate, 4, "", no_turn, -BIG, BIG,
            "rotation as a quaternion x, y, z, w of any length"),
     VECTOR(struct cs_pose, matrix, 9, "", absent9, -1, 1,
@@ -28,7 +29,7 @@ static const struct cs_option cloth_rows[] = {
            "hanging: in the xy plane, row 0 on top; flat: turned back into the xz plane, row 0 "
            "at -z"),
     VECTOR(struct cs_cloth, stretch, 2, "", one2, 1e-3, 1e3,
-           "width and height at time 0 over those of size, which stays the rest size"),
+           "width and height at time 0 relative to size, which stays the rest size"),
     REAL(struct cs_cloth, bump, "m", 0, -BIG, BIG,
          "height at time 0 of a bump sin(pi a) sin(pi b) along the normal, a and b from 0 to 1 "
          "over the cloth"),
@@ -51,10 +52,10 @@ static const struct cs_option mesh_rows[] = {
         "generated: fits a cube of side 1 about the origin; limbs: a rounded body with head, "
         "ears, arms and legs"),
     INT(struct cs_mesh_source, detail, "", 12, 3, CS_MESH_DETAIL_MAX,
-        "parts of a shape: of an edge of the box, of an edge of the icosahedron that becomes "
-        "the sphere, round the torus's tube, or of the height of limbs"),
+        "subdivisions of a shape: of an edge of the box, of an edge of the icosahedron that "
+        "becomes the sphere, round the torus's tube, or of the height of limbs"),
     VECTOR(struct cs_mesh_source, scale, 3, "", one3, 1e-6, 1e6,
-           "times the coordinates of file or shape, before the placement"),
+           "factor on the coordinates of file or shape, before the placement"),
     TABLE(struct cs_mesh_source, place, place_table, "rigid placement, about the origin"),
     VECTOR(struct cs_mesh_source, velocity, 3, "m/s", zero3, -BIG, BIG,
            "of every particle that is not pinned, at time 0"),
@@ -80,7 +81,7 @@ static const struct cs_option network_rows[] = {
     INT(struct cs_spring_network, candidates, "", 4, 1, 1000,
         "of placement nearest, from which the nearest is taken"),
     INT(struct cs_spring_network, tries, "", 64, 1, 100000,
-        "draws for one spring; where none of them suits, there is none"),
+        "random draws for one spring; if none is suitable, the spring is left out"),
     INT(struct cs_spring_network, seed, "", 1, 0, 4294967295.0, "of the draws"),
     REAL(struct cs_spring_network, surface, "", 4, 1e-6, 1e6,
          "stiffness of the springs on the surface over that of the inner ones, which is "
@@ -91,22 +92,20 @@ static const struct cs_table network_table = {
 
 static const struct cs_option matching_rows[] = {
     REAL(struct cs_shape_matching, alpha, "", 0.5, 0, 1,
-         "share of the way to its goal that a particle goes in a step: 0 leaves it free, 1 "
-         "makes "
-         "the body rigid"),
-    REAL(
-        struct cs_shape_matching, beta, "", 0, 0, 1,
-        "share of the best linear transformation, at its old volume, in the goals; the rest is "
-        "the rotation"),
+         "fraction of the distance to its goal that a particle moves in a step: 0 leaves it "
+         "free, 1 makes the body rigid"),
+    REAL(struct cs_shape_matching, beta, "", 0, 0, 1,
+         "fraction of the best linear transformation, scaled to the original volume, in the "
+         "goals; the rest is the rotation"),
     REAL(struct cs_shape_matching, alpha_step, "s", 1.0 / 60, 0, 10,
-         "step that alpha is meant for; others get the share of the same stiffness. 0: alpha "
-         "holds for a step of any length, so that shorter ones are stiffer"),
+         "step that alpha is meant for; other steps get the fraction of the same stiffness. 0: "
+         "alpha holds for a step of any length, so shorter steps are stiffer"),
     INT(struct cs_shape_matching, clusters, "", 1, 1, 1024,
-        "parts that keep their shapes, each its own"),
+        "clusters, each of which keeps its own shape"),
     REAL(struct cs_shape_matching, overlap, "", 0.25, 0, 10,
-         "of parts: each takes in what its box holds when it is grown by that share of its "
-         "longest side; the more, the less they bend against each other"),
-    BOOL(struct cs_shape_matching, springs, 0, "the body's springs act as well"),
+         "of clusters: each contains the particles in its box, enlarged by this fraction of "
+         "the longest side; more overlap makes the body harder to bend"),
+    BOOL(struct cs_shape_matching, springs, 0, "the body's springs act too"),
 };
 static const struct cs_table matching_table = {
     ROWS(matching_rows), .size = sizeof(struct cs_shape_matching), .optional = true};
@@ -114,10 +113,9 @@ static const struct cs_table matching_table = {
 static const struct cs_option mass_rows[] = {
     REAL(struct cs_mass, particle, "kg", ABSENT, 1e-12, BIG, "of each particle"),
     REAL(struct cs_mass, areal_density, "kg/m2", ABSENT, 1e-12, BIG,
-         "each particle gets its share of the area: a quarter of every cell, or a third of "
-         "every "
-         "triangle, that it touches"),
-    REAL(struct cs_mass, total, "kg", ABSENT, 1e-12, BIG, "of the body, shared equally"),
+         "each particle gets a quarter of every cell, or a third of every triangle, that it "
+         "belongs to"),
+    REAL(struct cs_mass, total, "kg", ABSENT, 1e-12, BIG, "of the body, divided equally"),
     REAL(struct cs_mass, degree, "kg", ABSENT, 1e-12, BIG, "for each spring at the particle"),
 };
 static const struct cs_table mass_table = {ROWS(mass_rows), .size = sizeof(struct cs_mass),
@@ -133,7 +131,7 @@ static const struct cs_option spring_rows[] = {
          "stiffness between diagonal neighbours of a grid"),
     REAL(struct cs_spring_law, bend, "N/m", 8, 0, 1e12,
          "stiffness between second neighbours, or across the edges of a mesh"),
-    REAL(struct cs_spring_law, damping, "N s/m", 0, 0, 1e12, "damper beside every spring"),
+    REAL(struct cs_spring_law, damping, "N s/m", 0, 0, 1e12, "damper parallel to every spring"),
     CHOICE(struct cs_spring_law, damping_model, damping_names, CS_DAMPING_AXIAL,
            "relative: on the whole relative velocity; axial: on its part along the spring"),
     CHOICE(struct cs_spring_law, stiffness_unit, stiffness_names, CS_STIFFNESS_N_PER_M,
@@ -151,11 +149,12 @@ static const struct cs_option material_rows[] = {
     REAL(struct cs_material, diffuse, "", 1, 0, 10, "coefficient kd of the diffuse light"),
     REAL(struct cs_material, specular, "", 0.2, 0, 10, "coefficient ks of the highlight"),
     REAL(struct cs_material, shininess, "", 24, 1, 1000, "exponent of the highlight"),
-    CHOICE(struct cs_material, shading, shading_names, CS_SHADING_SMOOTH,
-           "normals: interpolated, but not over the edges of the shape box; or one a triangle"),
+    CHOICE(
+        struct cs_material, shading, shading_names, CS_SHADING_SMOOTH,
+        "normals: interpolated, but not over the edges of the shape box; or one per triangle"),
     TEXT(struct cs_material, texture, "PNG file, relative to the scene file; times the colour"),
     VECTOR(struct cs_material, texture_repeat, 2, "", one2, 1e-3, 1e4,
-           "how often the texture fits along a row and a column, or a mesh's width and height"),
+           "repetitions of the texture along a row and a column, or a mesh's width and height"),
 };
 static const struct cs_table material_table = {ROWS(material_rows),
                                                .size = sizeof(struct cs_material)};
@@ -166,14 +165,14 @@ static const struct cs_option body_rows[] = {
     TABLE(struct cs_body, network, network_table,
           "springs through the inside of a closed mesh"),
     TABLE(struct cs_body, shape_matching, matching_table,
-          "drawn back to its shape at time 0, for integrator shape-matching"),
+          "pulled back to its shape at time 0, for integrator shape-matching"),
     TABLE(struct cs_body, mass, mass_table, "exactly one of its keys"),
     TABLE(struct cs_body, springs, spring_table, "spring law"),
-    LIST(struct cs_body, pins, cs_pin_table, "particles that keep their place"),
+    LIST(struct cs_body, pins, cs_pin_table, "particles that keep their position"),
     BOOL(struct cs_body, self_contact, 0,
          "it does not pass through itself; for contact.law force"),
     REAL(struct cs_body, thickness, "m", 0, 0, BIG,
-         "of its surface: how near another layer of it may come before they push apart; of two "
+         "of its surface: distance at which two layers begin to repel each other; for two "
          "bodies the mean. 0: 0.4 of its shortest edge at the start"),
     REAL(struct cs_body, friction, "", 0, 0, 1000, "Coulomb coefficient on itself"),
     REAL(struct cs_body, strain_limit, "", ABSENT, 1, 1000,
@@ -191,11 +190,11 @@ static const struct cs_option collider_rows[] = {
 #undef X
         REAL(struct cs_collider, friction, "", 0, 0, 1000, "Coulomb coefficient"),
     REAL(struct cs_collider, absorption, "", 1, -1, 1,
-         "share of the inward normal velocity that is taken away; -e: it is turned round and "
-         "multiplied by e (restitution)"),
+         "fraction of the inward normal velocity that is removed; -e: reversed and multiplied "
+         "by e (restitution)"),
     REAL(struct cs_collider, thickness, "m", 0, 0, BIG,
-         "skin in front of the surface; of contact by force the range, 0: 0.4 of the shortest "
-         "spring, or before a mesh the thickness of the body"),
+         "offset from the surface; for contact by force its range, 0: 0.4 of the shortest "
+         "spring, or for a mesh collider the thickness of the body"),
     VECTOR(struct cs_collider, colour, 3, "", grey, 0, 1, "linear RGB"),
     BOOL(struct cs_collider, visible, 1, "draw it"),
 };
@@ -206,18 +205,18 @@ static const char *const contact_names[] = {"project", "force", NULL};
 static const char *const inside_names[] = {"refuse", "move-out", NULL};
 static const struct cs_option contact_rows[] = {
     CHOICE(struct cs_contact_keys, law, contact_names, CS_CONTACT_PROJECT,
-           "project: after each step what is inside a collider is put on its surface; force: "
-           "a force between surfaces that come near, part of the equation of motion"),
+           "project: after each step particles inside a collider are moved to its surface; "
+           "force: a force between surfaces in contact range, part of the equation of motion"),
     CHOICE(struct cs_contact_keys, start, inside_names, CS_CONTACT_START_REFUSE,
            "a particle that starts inside a collider: refuse the scene, or move it out first, "
-           "which the report then says"),
+           "as the report then states"),
     REAL(struct cs_contact_keys, stiffness, "N/m", ABSENT, 1e-9, 1e12,
-         "of force, for each particle; absent: springs.stretch of the softest body that has "
-         "such springs"),
+         "for force, per particle; absent: springs.stretch of the softest body that has such "
+         "springs"),
     REAL(struct cs_contact_keys, damping, "s", 0, 0, BIG,
-         "of force: normal damping over the stiffness of the contact"),
+         "for force: normal damping over contact stiffness"),
     REAL(struct cs_contact_keys, friction_speed, "m/s", 1e-3, 1e-9, BIG,
-         "of force: sliding speed at which friction reaches 0.7 of its limit"),
+         "for force: sliding speed at which friction reaches 0.7 of its limit"),
 };
 static const struct cs_table contact_table = {
     ROWS(contact_rows), .size = sizeof(struct cs_contact_keys), .shorthand_text = "law"};
@@ -233,9 +232,9 @@ static const struct cs_table pair_table = {ROWS(pair_rows),
 static const char *const among_names[] = {"listed", "all", NULL};
 static const struct cs_option pairs_rows[] = {
     CHOICE(struct cs_body_pairs_keys, among, among_names, CS_PAIRS_LISTED,
-           "listed: those of the list; all: every two bodies"),
+           "listed: the pairs of list; all: every two bodies"),
     REAL(struct cs_body_pairs_keys, friction, "", 0, 0, 1000,
-         "of all: Coulomb coefficient between two bodies that are not in the list"),
+         "for all: Coulomb coefficient between two bodies that are not in the list"),
     LIST(struct cs_body_pairs_keys, list, pair_table,
          "pairs of bodies, each with its own friction"),
 };
@@ -245,12 +244,11 @@ static const struct cs_table pairs_table = {
 static const char *const wind_units[] = {"Pa", "N", NULL};
 static const struct cs_option wind_rows[] = {
     VECTOR(struct cs_wind, direction, 3, "", NULL, -BIG, BIG,
-           "to which it blows; of any length but 0"),
+           "direction in which the wind blows, of any non-zero length"),
     REAL(struct cs_wind, strength, "Pa or N", 0, 0, BIG,
          "pressure or force where the cloth faces it; times |direction . normal| elsewhere"),
-    CHOICE(
-        struct cs_wind, strength_unit, wind_units, CS_WIND_PA,
-        "Pa: times the particle's share of the area, whatever the grid; N: on each particle"),
+    CHOICE(struct cs_wind, strength_unit, wind_units, CS_WIND_PA,
+           "Pa: times the area of the particle, independent of the grid; N: on each particle"),
 };
 static const struct cs_table wind_table = {ROWS(wind_rows), .size = sizeof(struct cs_wind),
                                            .optional = true};
@@ -262,35 +260,36 @@ static const struct cs_option force_rows[] = {
     CS_FORCE_NUMBERS(X)
 #undef X
         CHOICE(struct cs_forces, drag_unit, drag_units, CS_DRAG_PARTICLE,
-               "N s/m: on each particle; Pa s/m: times the particle's share of the area"),
-    REAL(
-        struct cs_forces, velocity_loss, "", 0, 0, 1,
-        "share of the velocity removed after every internal step: a factor that depends on the "
-        "step, no force"),
+               "N s/m: on each particle; Pa s/m: times the area of the particle"),
+    REAL(struct cs_forces, velocity_loss, "", 0, 0, 1,
+         "fraction of the velocity removed after every internal step: it depends on the step "
+         "and is not a force"),
     TABLE(struct cs_forces, wind, wind_table, "steady wind, by the particle normals"),
 };
 static const struct cs_table force_table = {ROWS(force_rows), .size = sizeof(struct cs_forces)};
 
 static const struct cs_option time_rows[] = {
     REAL(struct cs_time, fps, "1/s", 60, 1e-3, 1e6,
-         "frames a second; frame k shows t = k / fps"),
+         "frames per second; frame k shows t = k / fps"),
 };
 static const struct cs_table time_table = {ROWS(time_rows), .size = sizeof(struct cs_time)};
 
 static const struct cs_option scene_rows[] = {
-    TEXT(struct cs_scene, about, "what the scene shows"),
-    TEXT(struct cs_scene, source, "where it comes from"),
-    LIST(struct cs_scene, bodies, body_table, "what moves; at least one"),
-    LIST(struct cs_scene, colliders, collider_table, "what bodies rest on and slide off"),
-    TABLE(struct cs_scene, contact, contact_table, "how bodies meet colliders"),
-    CHOICE(struct cs_scene, crossings, crossings_names, -1,
-           "edges of bodies that go through triangles: ignore, as where it is absent; count: "
-           "after each frame; limit: "
-           "steps that would make one are cut too; stop: the first one ends the run"),
+    TEXT(struct cs_scene, about, "description of the scene"),
+    TEXT(struct cs_scene, source, "source of the scene"),
+    LIST(struct cs_scene, bodies, body_table, "moving bodies; at least one"),
+    LIST(struct cs_scene, colliders, collider_table,
+         "shapes that bodies rest on and slide off"),
+    TABLE(struct cs_scene, contact, contact_table, "contact of bodies with colliders"),
+    CHOICE(
+        struct cs_scene, crossings, crossings_names, -1,
+        "edges of bodies that cross triangles: ignore: the same as absent; count: after each "
+        "frame; limit: also shorten steps that would make a crossing; stop: the first one "
+        "ends the run"),
     TABLE(struct cs_scene, pairs, pairs_table,
           "bodies that do not pass through each other; for contact.law force"),
     TABLE(struct cs_scene, forces, force_table, "from outside, on every particle"),
-    LIST(struct cs_scene, events, cs_event_table, "what happens at a time or over an interval"),
+    LIST(struct cs_scene, events, cs_event_table, "changes at a time or over an interval"),
     TABLE(struct cs_scene, time, time_table, "frames"),
     TABLE(struct cs_scene, camera, cs_camera_table, "look-at camera"),
     TABLE(struct cs_scene, light, cs_light_table, "one light, at a point or from a direction"),

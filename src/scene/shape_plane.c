@@ -15,7 +15,7 @@ static const double up3[3] = {0, 1, 0};
 static const struct cs_option plane_rows[] = {
     VECTOR(struct cs_plane, point, 3, "m", zero3, -BIG, BIG, "a point of the plane"),
     VECTOR(struct cs_plane, normal, 3, "", up3, -BIG, BIG,
-           "points to the free side; of any length but 0"),
+           "points to the free side; of any non-zero length"),
     REAL(struct cs_plane, extent, "m", 1, 1e-6, 1e6,
          "half the side of the square that is drawn"),
 };

@@ -58,13 +58,14 @@ bool cs_advance_check_passes(const struct cs_advance_check *left, double t,
                              struct cs_text *why) {
     const struct cs_system *system = left->system;
     if (!(fabs(left->last_commit - t) <= ROUNDING * (1 + fabs(t)))) {
-        cs_text_add(why, "it was to reach t = %.9g s, and its last commit was at %.9g s", t,
-                    left->last_commit);
+        cs_text_add(
+            why, "advance should have ended at t = %.9g s, but the last commit was at %.9g s",
+            t, left->last_commit);
         return false;
     }
     const uint32_t particle = find_not_finite(system);
     if (particle < system->view.n) {
-        cs_text_add(why, "after its last commit it left what is not finite in ");
+        cs_text_add(why, "after its last commit it left non-finite values in ");
         cs_system_print_particle(system, particle, why);
     } else if (sum_pins(system) != left->pins_hash)
         cs_text_add(why, "it moved a pinned particle");

@@ -164,7 +164,7 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
         cs_energy_ledger_book_step(settings->ledger, t, x, v);
     correct(host, t, dt, x, v, changed);
     if (cs_step_limit_failed(host->run->system))
-        return host->table.fail(ctx, "out of memory for the pairs of contact");
+        return host->table.fail(ctx, "out of memory for the contact pairs");
     enum cs_step step = judge(host, t, x, v);
     if (step == CS_STEP_OK && rows[CS_FEATURE_CROSSINGS].built)
         step = stop_crossings(host, t, x);

@@ -17,10 +17,10 @@
 static const struct {
     int number;
     const char *what;
-} signals[] = {{SIGSEGV, ": it used memory that is not there"},
-               {SIGBUS, ": it used memory that is not there"},
+} signals[] = {{SIGSEGV, ": it accessed invalid memory"},
+               {SIGBUS, ": it accessed invalid memory"},
                {SIGFPE, ": it divided by zero"},
-               {SIGILL, ": it ran into what is no code"},
+               {SIGILL, ": it executed an illegal instruction"},
                {SIGABRT, ": it aborted"}};
 enum { SIGNALS = sizeof signals / sizeof *signals, STACK = 65536, TEXT = 1024 };
 

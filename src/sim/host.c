@@ -24,7 +24,7 @@
 static void *host_alloc(void *ctx, size_t bytes) {
     struct cs_run_host *host = ctx;
     if (!host->creating) {
-        cs_fail(&host->error, CS_ERR_MODULE, "the method asked for memory outside create");
+        cs_fail(&host->error, CS_ERR_MODULE, "the method allocated memory outside create");
         return NULL;
     }
     return cs_arena_alloc(&host->arena, bytes, &host->error);
@@ -167,7 +167,7 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
     if (!host->linear.system)
         return host_fail(ctx, "solve was used without CS_NEED_SOLVE");
     if (!(cm > 0) || !(cd <= 0) || !(ck <= 0))
-        return host_fail(ctx, "solve wants cm > 0, cd <= 0 and ck <= 0, found %g, %g, %g", cm,
+        return host_fail(ctx, "solve needs cm > 0, cd <= 0 and ck <= 0, found %g, %g, %g", cm,
                          cd, ck);
     cs_trace_state(host, "solve set-up", t, x, v);
     const double begin = cs_stage_begin(host);

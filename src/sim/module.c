@@ -33,9 +33,9 @@ static enum cs_status check_option(const struct cs_integrator *integrator,
     const size_t size =
         (unsigned)option->type <= CS_CHOICE ? cs_value_kind_of(option)->size : 0;
     if (!is_name(option->name, "abcdefghijklmnopqrstuvwxyz0123456789_"))
-        return refuse_option(integrator, option, "its name is not of [a-z0-9_]", error);
+        return refuse_option(integrator, option, "its name may contain only [a-z0-9_]", error);
     if (size == 0)
-        return refuse_option(integrator, option, "its type is not for modules", error);
+        return refuse_option(integrator, option, "its type is not allowed in modules", error);
     /* in this order the subtraction cannot wrap round */
     if (option->offset > integrator->options_size ||
         size > integrator->options_size - option->offset)
@@ -74,9 +74,10 @@ static enum cs_status check_uses(const struct cs_integrator *integrator,
         const struct cs_option_use *use = integrator->uses ? integrator->uses + k : NULL;
         const struct cs_option *choice = use ? find_option(integrator, use->choice) : NULL;
         if (!choice || choice->type != CS_CHOICE || !find_option(integrator, use->option))
-            return cs_fail(error, CS_ERR_MODULE,
-                           "integrator \"%s\": use %u names no option and choice of its own",
-                           integrator->name, k);
+            return cs_fail(
+                error, CS_ERR_MODULE,
+                "integrator \"%s\": use %u names no option and choice of the integrator",
+                integrator->name, k);
     }
     return CS_OK;
 }
@@ -89,7 +90,7 @@ static enum cs_status check_integrator(const struct cs_integrator *integrator,
                                        struct cs_error *error) {
     /* the name first: every message needs it */
     if (!integrator || !is_name(integrator->name, "abcdefghijklmnopqrstuvwxyz0123456789-"))
-        return cs_fail(error, CS_ERR_MODULE, "an integrator's name is not of [a-z0-9-]");
+        return cs_fail(error, CS_ERR_MODULE, "an integrator's name may contain only [a-z0-9-]");
     if (integrator->size < least_size)
         return cs_fail(error, CS_ERR_MODULE, "integrator \"%s\": size %u, expected at least %u",
                        integrator->name, integrator->size, least_size);
@@ -118,7 +119,7 @@ static enum cs_status check_module(const struct cs_module *module, struct cs_err
         return cs_fail(error, CS_ERR_MODULE, "integrator structs of %u bytes, expected %u",
                        module->size, least_size);
     if (module->n == 0 || !module->integrators)
-        return cs_fail(error, CS_ERR_MODULE, "holds no integrator");
+        return cs_fail(error, CS_ERR_MODULE, "contains no integrator");
     for (uint32_t k = 0; k < module->n; k++)
         if (check_integrator(module->integrators[k], error))
             return error->status;
@@ -134,14 +135,14 @@ static enum cs_status check_file(const char *file, struct cs_error *error) {
     const char *end = strrchr(file, '/');
     snprintf(path, sizeof path, "%.*s", end ? (int)(end - file) : 1, end ? file : ".");
     if (stat(file, &info) || stat(*path ? path : "/", &folder))
-        return cs_fail(error, CS_ERR_MODULE, "cannot be looked at: %s", strerror(errno));
+        return cs_fail(error, CS_ERR_MODULE, "cannot be examined: %s", strerror(errno));
     if (!S_ISREG(info.st_mode))
-        return cs_fail(error, CS_ERR_MODULE, "is no regular file");
+        return cs_fail(error, CS_ERR_MODULE, "is not a regular file");
     if (info.st_mode & S_IWOTH)
-        return cs_fail(error, CS_ERR_MODULE, "may be written by anyone: chmod o-w it first");
+        return cs_fail(error, CS_ERR_MODULE, "is world-writable; run chmod o-w on it first");
     if ((folder.st_mode & S_IWOTH) && !(folder.st_mode & S_ISVTX))
         return cs_fail(error, CS_ERR_MODULE,
-                       "is in a folder that anyone may write into: chmod o-w that first");
+                       "is in a world-writable folder; run chmod o-w on the folder first");
     return CS_OK;
 }
 

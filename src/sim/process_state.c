@@ -118,10 +118,10 @@ const char *cs_process_state_restore(const struct cs_process_state *guard) {
     const bool mode = restore_mode(guard), signals = restore_signals(guard),
                locale = restore_locale();
     return mode                                  ? cs_process_state_mode
-           : signals                             ? "what signals do"
+           : signals                             ? "a signal handler"
            : locale                              ? "the locale"
            : has_moved(guard)                    ? "the working folder"
-           : open_streams() != guard->streams    ? "which standard streams are open"
-           : is_parent() && !guard->has_children ? "which processes there are"
+           : open_streams() != guard->streams    ? "the open standard streams"
+           : is_parent() && !guard->has_children ? "the set of processes"
                                                  : NULL;
 }

@@ -90,7 +90,7 @@ enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *fi
                                     struct cs_error *error) {
     char absolute[PATH_MAX];
     if (!realpath(file, absolute))
-        return cs_fail(error, CS_ERR_MODULE, "%s: there is no such module file", file);
+        return cs_fail(error, CS_ERR_MODULE, "%s: no such module file", file);
     const uint32_t before = registry->n;
     if (open_module(registry, absolute, error))
         return error->status;
@@ -296,7 +296,7 @@ enum cs_status cs_registry_find_in(struct cs_registry *registry, const char *fil
             *found = registry->entries + k;
             return CS_OK;
         }
-    return cs_fail(error, CS_ERR_MODULE, "%s: there is no integrator in it", file);
+    return cs_fail(error, CS_ERR_MODULE, "%s: it contains no integrator", file);
 }
 
 void cs_registry_finish(struct cs_registry *registry) {

@@ -58,7 +58,7 @@ static void record_counts(struct cs_run *run, struct cs_serialiser *record) {
 
 /* Restarts a method that cannot save its history, and remarks it. */
 static enum cs_status restart_silent(struct cs_run *run, struct cs_error *error) {
-    cs_run_note(run, "the method starts anew at each checkpoint");
+    cs_run_note(run, "the method restarts at each checkpoint");
     return cs_run_restart(run, run->t, error);
 }
 

@@ -121,12 +121,12 @@ static void end(struct side *side, struct cs_bisect_difference *found, int k,
         return;
     const int code = cs_subprocess_close(&side->program);
     if (!wrote && !error->status)
-        cs_fail(error, CS_ERR_FILE, "%s: %s wrote no trail, exit code %d", side->asked->name,
+        cs_fail(error, CS_ERR_FILE, "%s: %s wrote no trace, exit code %d", side->asked->name,
                 side->asked->arguments[0], code);
     else if (ended && code != 0 && !found->exists)
         cs_fail(error, CS_ERR_MODULE,
-                "%s ended with exit code %d behind frame %" PRIu32
-                ": up to there both are equal",
+                "%s ended with exit code %d after frame %" PRIu32
+                ": both are equal up to there",
                 side->asked->name, code, side->trail.point.frame);
     else if (found->exists && !found->values_differ && ended)
         snprintf(found->value_b[k], sizeof found->value_b[k], "its end, with exit code %d",
@@ -201,7 +201,7 @@ static void print_position(const struct cs_bisect_difference *d, struct cs_text 
 
 void cs_bisect_print(const struct cs_bisect_difference *d, struct cs_text *out) {
     if (!d->values_differ) {
-        cs_text_add(out, "A comes to %s\nB comes to %s\n", d->value_b[0], d->value_b[1]);
+        cs_text_add(out, "A reaches %s\nB reaches %s\n", d->value_b[0], d->value_b[1]);
         return;
     }
     print_position(d, out);

@@ -67,8 +67,8 @@ void cs_containment_warning_print(const struct cs_system *system, struct cs_text
             name(system, a, out);
             cs_text_add(out, " starts inside ");
             name(system, b, out);
-            cs_text_add(out, ", which is closed: contact keeps it there");
+            cs_text_add(out, ", which is a closed surface: contact will keep it inside");
         }
     if (found > 1)
-        cs_text_add(out, "; so do %u more", found - 1);
+        cs_text_add(out, "; %u more do too", found - 1);
 }

@@ -27,7 +27,7 @@ void cs_crossing_stats_print(const struct cs_crossing_stats *stats,
         cs_text_add(out, "no edge goes through a triangle in any frame");
         return;
     }
-    cs_text_add(out, "%llu at the end, %llu at most, at t = %.6g s; from t = %.6g s on: ",
+    cs_text_add(out, "%llu at the end, maximum %llu at t = %.6g s; from t = %.6g s on: ",
                 (unsigned long long)stats->last_count, (unsigned long long)stats->max_count,
                 stats->max_time, stats->first_time);
     cs_crossings_print(system, &stats->first, out);

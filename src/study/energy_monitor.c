@@ -172,14 +172,15 @@ void cs_energy_monitor_print(const struct cs_energy_monitor *monitor,
         return;
     cs_text_add(out, "%s from t = %.6g s on: ", cs_stability_word(first->verdict), first->t);
     if (first->verdict == CS_STABILITY_GLOBAL)
-        cs_text_add(out, "%.3g J in motion and springs, where %.3g J can be",
+        cs_text_add(out, "kinetic + elastic energy %.3g J exceeds the possible %.3g J",
                     cs_energy_without_gravity(&first->energy),
                     first->energy_limit / ENERGY_FACTOR);
     else {
         cs_text_add(out, "%u particle%s, the fastest ", first->particles,
                     first->particles == 1 ? "" : "s");
         cs_system_print_particle(system, first->particle, out);
-        cs_text_add(out, " at %.3g m/s beyond %.3g m/s", first->speed, first->speed_limit);
+        cs_text_add(out, " at %.3g m/s, above the limit of %.3g m/s", first->speed,
+                    first->speed_limit);
     }
     if (monitor->worst_verdict > first->verdict)
         cs_text_add(out, "; later %s", cs_stability_word(monitor->worst_verdict));

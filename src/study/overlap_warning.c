@@ -149,8 +149,10 @@ enum cs_status cs_overlap_warning_print(const struct cs_scene *scene, double sec
     if (pairs > 1)
         cs_text_add(out, "(and %u more pair%s) ", pairs - 1, pairs > 2 ? "s" : "");
     if (pairs)
-        cs_text_add(out, "%s, and nothing keeps them apart: they pass through each other",
-                    now ? "overlap at the start" : "could meet");
+        cs_text_add(
+            out,
+            "%s, but no contact is defined between them: they will pass through each other",
+            now ? "overlap at the start" : "could collide");
     free(bodies);
     return error->status;
 }

@@ -60,8 +60,8 @@ static enum cs_status store_line(struct sweep_rows *rows, const char *line, cons
         return error->status;
     char **stored = rows->lines + cell;
     if (*stored && strcmp(key_of(*stored), key_of(line)) != 0)
-        return cs_fail(error, CS_ERR_USAGE, "%s is of another sweep: cell %lu differs", path,
-                       cell);
+        return cs_fail(error, CS_ERR_USAGE, "%s belongs to a different sweep: cell %lu differs",
+                       path, cell);
     if (!*stored && !(*stored = strdup(line)))
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the rows of %s", path);
     return error->status;
@@ -81,7 +81,8 @@ static enum cs_status read_rows(struct sweep_rows *rows, const char *folder,
     if (rows->names.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the columns");
     else if (line && strcmp(cs_text_get(&rows->names), line) != 0)
-        cs_fail(error, CS_ERR_USAGE, "%s is of another sweep: its columns differ", path);
+        cs_fail(error, CS_ERR_USAGE, "%s belongs to a different sweep: its columns differ",
+                path);
     while (!error->status && (line = cs_rows_next(&found)))
         store_line(rows, line, path, error);
     cs_rows_close(&found);
@@ -118,7 +119,8 @@ static enum cs_status do_cell(struct cs_parameter_sweep *product, const struct s
         return error->status;
     product->n_reused += taken != NULL;
     if (taken && strcmp(key_of(taken), cell.key) != 0)
-        cs_fail(error, CS_ERR_USAGE, "%s is of another sweep: give another folder with --out",
+        cs_fail(error, CS_ERR_USAGE,
+                "%s belongs to a different sweep; choose another folder with --out",
                 rows->table.path);
     else if (!taken && !cs_parameter_sweep_cell_run(&cell, product, &line, error))
         cs_row_table_append(&rows->table, line.bytes, line.length, error);
@@ -139,7 +141,8 @@ static enum cs_status begin(struct cs_parameter_sweep *product, struct sweep_row
         read_rows(rows, product->folder, error);
     cs_row_table_unlock(&rows->table);
     if (!error->status && rows->n > product->cells)
-        cs_fail(error, CS_ERR_USAGE, "%s is of another sweep: give another folder with --out",
+        cs_fail(error, CS_ERR_USAGE,
+                "%s belongs to a different sweep; choose another folder with --out",
                 rows->table.path);
     return error->status;
 }
@@ -163,7 +166,7 @@ static enum cs_status count(struct cs_parameter_sweep *product, struct cs_error 
     for (uint32_t k = 0; k < product->n_keys; k++)
         cells *= product->keys[k].n;
     if (cells > CS_PARAMETER_SWEEP_CELLS_MAX)
-        return cs_fail(error, CS_ERR_USAGE, "%.0f cells are more than %d", cells,
+        return cs_fail(error, CS_ERR_USAGE, "%.0f cells, expected at most %d", cells,
                        CS_PARAMETER_SWEEP_CELLS_MAX);
     product->cells = (uint32_t)cells;
     return CS_OK;

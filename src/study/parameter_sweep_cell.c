@@ -147,7 +147,7 @@ enum cs_status cs_parameter_sweep_cell_run(struct cs_parameter_sweep_cell *cell,
         cs_csv_add_text(out, cell->overrides[k].value);
     const double cpu = run_frames(cell, product->frames);
     cs_csv_add_text(out, cell->method ? cell->method : integrator ? integrator->name : "");
-    cs_follow_check(&session->run, "; finished rows were kept", error);
+    cs_follow_check(&session->run, "; finished rows are saved", error);
     if (!error->status && cell->refusal.status)
         add_failure(product, &cell->refusal, out, error);
     else if (!error->status)

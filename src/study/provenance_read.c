@@ -127,7 +127,7 @@ enum cs_status cs_provenance_to_session(struct cs_provenance *provenance, const 
     /* a module file is code: it is run where the user names it, and never by a result */
     if (!settings->n_plugins && strchr(provenance->module, '/'))
         return cs_fail(error, CS_ERR_USAGE,
-                       "%s: its method came from the module %.300s: give that with --plugin",
+                       "%s: its method is in the module %.300s; pass that with --plugin",
                        provenance->name, provenance->module);
     return CS_OK;
 }
@@ -147,7 +147,7 @@ static void print_module(const struct cs_provenance *provenance, struct cs_sessi
     cs_provenance_out_find_module(session, &module);
     cs_provenance_add_change("the library", provenance->library, module.library, out);
     if (strcmp(provenance->module_hash, module.hash) != 0)
-        cs_text_add(out, "the module %s is another build\n", provenance->module);
+        cs_text_add(out, "the module %s is a different build\n", provenance->module);
 }
 
 /* Returns how a file has changed, or NULL. Files of the scene's folder are looked for in its
@@ -165,7 +165,7 @@ static const char *change_of(const struct cs_provenance *provenance, const char 
              provenance->folder && beside ? provenance->folder : "",
              provenance->folder && beside ? path + length : path);
     if (cs_hash_file(moved, &bytes, now, &unread))
-        return "is not there";
+        return "is missing";
     return strcmp(then, now) != 0 ? "has changed" : NULL;
 }
 
@@ -180,7 +180,7 @@ void cs_provenance_add_changed_files(const struct cs_provenance *provenance,
         const bool scene = !strcmp(path, provenance->scene_file);
         if (change)
             cs_text_add(out, "%s %s%s\n", path, change,
-                        scene ? "; the scene that the result carries was run" : "");
+                        scene ? "; the scene stored in the result was run" : "");
     }
 }
 
@@ -198,9 +198,9 @@ enum cs_status cs_provenance_add_changes(const struct cs_provenance *provenance,
     print_module(provenance, session, out);
     cs_provenance_add_changed_files(provenance, out);
     if (*provenance->scene_hash && strcmp(hash, provenance->scene_hash) != 0)
-        cs_text_add(out, "the scene means something else (its hash was %s, is %s)\n",
+        cs_text_add(out, "the scene has changed (hash was %s, is now %s)\n",
                     provenance->scene_hash, hash);
     if (*fault)
-        cs_text_add(out, "it was made where arithmetic is another: %s\n", fault);
+        cs_text_add(out, "it was made with different arithmetic: %s\n", fault);
     return out->failed ? cs_fail(error, CS_ERR_MEMORY, "out of memory for notes") : CS_OK;
 }

@@ -90,7 +90,7 @@ enum cs_status cs_provenance_out_print_scene(const struct cs_scene *scene, struc
     cs_scene_each_file(scene, add_file, &list);
     cs_text_add(out, "%s]", list.any ? "\n  " : "");
     if (!error->status && out->failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for what a result hangs on");
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the provenance of a result");
     return error->status;
 }
 
@@ -105,7 +105,7 @@ enum cs_status cs_provenance_out_print(struct cs_session *session, const char *h
     cs_json_write(out, "  'module': {'file': %s, 'hash': %s, 'library': %s}", module.file,
                   module.hash, module.library);
     return out->failed
-               ? cs_fail(error, CS_ERR_MEMORY, "out of memory for what a result hangs on")
+               ? cs_fail(error, CS_ERR_MEMORY, "out of memory for the provenance of a result")
                : CS_OK;
 }
 

@@ -122,7 +122,7 @@ enum cs_status cs_recorded_run_execute(struct cs_recorded_run *recording, double
         store_notes(end, &session->run);
         cs_hash_doubles(session->run.x, 6 * (size_t)session->system.view.n, end->hash);
     }
-    cs_follow_result(&session->run, "; finished rows were kept", &end->result, error);
+    cs_follow_result(&session->run, "; finished rows are saved", &end->result, error);
     if (end->result.outcome == CS_FAILED)
         snprintf(end->note, sizeof end->note, "%.239s", end->result.message);
     cs_run_finish(&session->run);

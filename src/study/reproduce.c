@@ -194,8 +194,9 @@ static void compare_pixels(struct work *work, const struct cs_image *then,
                     (unsigned long long)d.pixels,
                     (unsigned long long)then->width * then->height, d.largest);
     else
-        cs_text_add(&again->equal_items,
-                    d.pixels ? ", pixels within what renderers differ by" : " and all pixels");
+        cs_text_add(&again->equal_items, d.pixels
+                                             ? ", pixels within the tolerance between renderers"
+                                             : " and all pixels");
 }
 
 /* Draws the state and compares it with the pixels of the file. */
@@ -207,7 +208,7 @@ static enum cs_status draw(struct work *work, const struct cs_image *then, const
     cs_hash_bytes(then->rgb, cs_image_bytes(then), hash);
     if (strcmp(hash, pixels) != 0)
         cs_text_add(&work->again->notes,
-                    "the pixels in the file are not those that were written\n");
+                    "the pixels in the file have changed since it was written\n");
     const struct cs_render *render = &work->session.scene.render;
     /* as the run had it: colours are not laid on white then */
     if (render->background.kind == CS_BACKGROUND_NONE &&

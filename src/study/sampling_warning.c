@@ -23,12 +23,12 @@ void cs_sampling_warning_print(const struct cs_system *system, struct cs_text *o
         if (edge <= CS_CONTACT_SAMPLE_PARTS_MAX * cs_contact_sample_spacing(&at, range) ||
             fine++ > 0)
             continue;
-        cs_text_add(out,
-                    "colliders[%u]: an edge of %.3g m feels it at %d points at most, and "
-                    "between them it can come in: expected a finer mesh, or a thickness of "
-                    "%.2g m, found %.2g m",
-                    c, edge, CS_CONTACT_SAMPLE_PARTS_MAX + 1, needed(edge, at.radius), range);
+        cs_text_add(
+            out,
+            "colliders[%u]: an edge of %.3g m has at most %d contact samples, too few for this "
+            "collider: use a finer mesh, or a thickness of at least %.2g m (now %.2g m)",
+            c, edge, CS_CONTACT_SAMPLE_PARTS_MAX + 1, needed(edge, at.radius), range);
     }
     if (fine > 1)
-        cs_text_add(out, "; so it is with %u more", fine - 1);
+        cs_text_add(out, "; the same holds for %u more", fine - 1);
 }

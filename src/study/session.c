@@ -104,7 +104,7 @@ static enum cs_status check_method(const struct cs_session *session, struct cs_e
         return cs_fail(error, said.status, "%s: %s", session->scene.path, said.message);
     if (render && session->scene.render.look == CS_LOOK_GOALS && !cs_run_has_goals(method))
         return cs_fail(error, CS_ERR_SCENE,
-                       "%s: render.look: integrator \"%s\" has no goals that could be drawn",
+                       "%s: render.look: integrator \"%s\" has no goals to draw",
                        session->scene.path, method->name);
     return CS_OK;
 }

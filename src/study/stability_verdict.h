@@ -21,9 +21,9 @@
     X(CS_STABILITY_GLOBAL, "global instability", 'G',                                          \
       "energy beyond twice the reference's, or half of it gained, and growing or tenfold")     \
     X(CS_STABILITY_NOT_FINITE, "not finite", 'X', "a number of the state is not finite")       \
-    X(CS_STABILITY_FAILED, "solver failed", 'F', "the method gave up and said why")            \
+    X(CS_STABILITY_FAILED, "solver failed", 'F', "the method failed and reported a reason")    \
     X(CS_STABILITY_OVER_BUDGET, "over budget", 'b', "the time allowed for a cell ran out")     \
-    X(CS_STABILITY_UNJUDGED, "not judged", '?', "there is no reference run to judge by")
+    X(CS_STABILITY_UNJUDGED, "not judged", '?', "there is no reference run to compare with")
 enum cs_stability_verdict {
 #define X(name, word, letter, help) name,
     CS_STABILITY_LIST(X)

@@ -101,7 +101,8 @@ static void check_factor(const char *rest, const struct cs_cell *best,
     *next = NULL;
     if (!strncmp(rest, "; no other series", 17))
         return;
-    if (sscanf(rest, "; not told apart from %*s") == 0 && strstr(rest, "not told apart from "))
+    if (sscanf(rest, "; no significant difference from %*s") == 0 &&
+        strstr(rest, "no significant "))
         *next = named(strstr(rest, "from ") + 5);
     else if (sscanf(rest, "; about %lf times", &factor) == 1) {
         *next = named(name + 6);
@@ -158,9 +159,9 @@ static void check_frame(const char *line) {
     const char *rest = strchr(line, ':') + 2;
     if (!strcmp(rest, "no row has that step"))
         ck_assert_uint_eq(tried, 0);
-    else if (sscanf(rest, "of %u row", said) == 1)
+    else if (sscanf(rest, "none of the %u row", said) == 1)
         ck_assert(said[0] == tried && through == 0);
-    else if (sscanf(rest, "%u of %u rows got through", said, said + 1) == 2) {
+    else if (sscanf(rest, "%u of %u rows finished", said, said + 1) == 2) {
         ck_assert(said[0] == through && said[1] == tried && least > 0.1);
         ck_assert_double_eq(named(strstr(line, ", of ") + 5)->energy_error, least);
     } else {
@@ -189,7 +190,7 @@ static void check_lines(char *text) {
         } else if (!strncmp(line, "  no worse", 10))
             check_other(line, best);
         else {
-            ck_assert(!strncmp(line, "one step a frame", 16) && !frame);
+            ck_assert(!strncmp(line, "one step per frame", 18) && !frame);
             check_frame(line);
             frame = true;
         }

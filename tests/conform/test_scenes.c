@@ -149,7 +149,7 @@ TEST(impacts_are_the_closed_form) {
         const double s = steady ? 0.35 : 0.25;
         double start[2 * CS_FORCE_VALUES];
         struct cs_probe probe;
-        run_scene(&probe, steady ? "a steady impact" : "an impact at once", start);
+        run_scene(&probe, steady ? "a steady impact" : "an instantaneous impact", start);
         for (size_t i = 0; i < 3 * probe.n; i++) {
             const bool hit = (i % probe.n >= 4) == steady;
             const double v0 = start[3 * probe.n + i];
@@ -170,7 +170,8 @@ TEST(viewpoint_forces_are_the_closed_form) {
         const double moved = gain * (steady ? T - 0.35 / 2 : T - 0.25);
         double start[2 * CS_FORCE_VALUES];
         struct cs_probe probe;
-        run_scene(&probe, steady ? "a steady viewpoint force" : "a viewpoint force at once",
+        run_scene(&probe,
+                  steady ? "a steady viewpoint force" : "an instantaneous viewpoint force",
                   start);
         for (size_t i = 0; i < 3 * probe.n; i++) {
             const double v0 = start[3 * probe.n + i];

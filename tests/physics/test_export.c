@@ -100,8 +100,7 @@ TEST(what_is_short_is_refused) {
         char path[64], part[128];
         snprintf(path, sizeof path, "short/%s", files[k]);
         ck_assert(!truncate(path, 40));
-        snprintf(part, sizeof part, "cannot go on with \"%s\": it has 40 bytes, expected ",
-                 path);
+        snprintf(part, sizeof part, "cannot continue \"%s\": it has 40 bytes, expected ", path);
         cs_export_open(&export, &settings, bodies.system, &error);
         UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, part);
         cs_export_close(&export);

@@ -194,7 +194,7 @@ TEST(failure_is_told) {
         cs_run_frame(&chain.session.run, &error);
         ck_assert_msg(error.status == CS_ERR_MODULE, "%s: found %d", methods[i], error.status);
         ck_assert_msg(strstr(error.message, "Newton's iteration fails") &&
-                          strstr(error.message, "halved 8 times: the residual is"),
+                          strstr(error.message, "after 8 halvings: the residual is"),
                       "%s: %s", methods[i], error.message);
         ck_assert_uint_eq(chain.session.run.counts.method.rejected, 9);
         ck_assert_uint_eq(chain.session.run.counts.steps, 0);

@@ -349,7 +349,8 @@ TEST(too_thick_is_refused) {
     ck_assert_msg(!error.status, "%s", error.message);
     cs_plan_make(&plan, &scene, 0, false);
     ck_assert_int_eq(cs_system_build(&system, &scene, &plan, &error), CS_ERR_SCENE);
-    ck_assert_msg(strstr(error.message, "bodies[0].self_contact: parts of it start 0.177 m"),
-                  "%s", error.message);
+    ck_assert_msg(
+        strstr(error.message, "bodies[0].self_contact: layers are only 0.177 m apart"), "%s",
+        error.message);
     cs_scene_finish(&scene);
 }

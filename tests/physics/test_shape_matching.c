@@ -258,7 +258,7 @@ TEST(a_limit_holds_off_what_goals_draw) {
         ck_assert_uint_gt(counts.subdivided_steps, 0);
         ck_assert_uint_eq(throw_boxes(steps[s], "listed", &counts, &end, &error), 0);
         ck_assert_msg(error.status == CS_ERR_MODULE &&
-                          strstr(error.message, "through a surface"),
+                          strstr(error.message, "crosses a surface"),
                       "%s", error.message);
     }
     ck_assert_double_eq_tol(y[0], y[1], 1e-8);

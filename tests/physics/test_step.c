@@ -73,7 +73,7 @@ TEST(steps_fill_the_frame) {
         fixture_start(&cloth);
         fixture_frames(&cloth, 2);
         ck_assert_uint_eq(cloth.session.run.counts.steps, 2 * rows[i].steps);
-        ck_assert(was_told(&cloth, "dt shortened") == rows[i].told);
+        ck_assert(was_told(&cloth, "dt reduced") == rows[i].told);
         fixture_close(&cloth);
     }
 }

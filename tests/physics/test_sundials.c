@@ -156,7 +156,7 @@ TEST(codes_are_named) {
         cloth.x[7] = (double)NAN;
         fixture_start(&cloth);
         ck_assert_int_eq(cs_run_frame(&cloth.session.run, &error), CS_ERR_MODULE);
-        ck_assert_msg(strstr(error.message, "gave up at t = 0 s: "), "%s", error.message);
+        ck_assert_msg(strstr(error.message, "ODE failed at t = 0 s: "), "%s", error.message);
         ck_assert_msg(strstr(error.message, "_FAIL") || strstr(error.message, "_ERR"), "%s",
                       error.message);
         fixture_close(&cloth);

@@ -104,12 +104,13 @@ TEST(column_without_a_reference_is_not_judged) {
     }
     ck_assert(isnan(map.columns[0].boundary) && !isnan(map.columns[1].boundary));
     cs_stability_print_table(&map, &table);
-    ck_assert_ptr_nonnull(strstr(cs_text_get(&table), "stiffness = 0.02: no run to judge by"));
+    ck_assert_ptr_nonnull(
+        strstr(cs_text_get(&table), "stiffness = 0.02: the reference run failed"));
     cs_text_finish(&table);
     cs_stability_finish(&map);
     // none has one
     map_over_a_box(&map, &settings, 0.02, 0.03, &error);
     ck_assert_int_eq(error.status, CS_ERR_USAGE);
-    ck_assert_ptr_nonnull(strstr(error.message, "no run to judge by"));
+    ck_assert_ptr_nonnull(strstr(error.message, "the reference run failed"));
     cs_stability_finish(&map);
 }

@@ -102,9 +102,9 @@ TEST(lists_keep_their_order) {
 
 TEST(other_values_are_refused) {
     static const char *const lines[][2] = {
-        {"--whole 2", "--whole: expected a whole number from 3 to 4294967295, found \"2\""},
-        {"-w 4294967296", "expected a whole number"},
-        {"--whole 3.5", "expected a whole number"},
+        {"--whole 2", "--whole: expected an integer from 3 to 4294967295, found \"2\""},
+        {"-w 4294967296", "expected an integer"},
+        {"--whole 3.5", "expected an integer"},
         {"--choice three", "--choice: expected one of none, one, two, found \"three\""},
         {"--set=one --kind one", "--set: expected PATH=VALUE, found \"one\""},
         {"--kinds one --kinds 1", "--kinds: expected one of none, one, two, found \"1\""},

@@ -59,14 +59,16 @@ TEST(what_differs_is_told) {
     struct cs_checkpoint_key others[FACTS] = {facts[0], facts[1]};
     write_one();
     others[0].value = "{\n  \"dt\": 0.002,\n  \"n\": 3\n}";
-    expect_refusal(others, FACTS,
-                   "\"c\": it is of another scene: there \"dt\": 0.001, here \"dt\": 0.002");
+    expect_refusal(
+        others, FACTS,
+        "\"c\" was written for a different scene: found \"dt\": 0.001, expected \"dt\": 0.002");
     others[0].value = facts[0].value;
     others[1].value = "rk4:dt=0.001,more";
-    expect_refusal(others, FACTS, "another method: there rk4:dt=0.001, here rk4:dt=0.001,more");
+    expect_refusal(others, FACTS,
+                   "different method: found rk4:dt=0.001, expected rk4:dt=0.001,more");
     others[1] = (struct cs_checkpoint_key){"plugin", ""};
-    expect_refusal(others, FACTS, "says nothing of the plugin");
-    expect_refusal(facts, 1, "it holds no record");
+    expect_refusal(others, FACTS, "does not state the plugin");
+    expect_refusal(facts, 1, "it contains no record");
 }
 
 /* every byte turned, in each of its bits, and every length but the whole */

@@ -158,7 +158,7 @@ TEST(wrong_values_are_refused) {
     check_set(&all, "real", "-1e-9", "out of range");
     check_set(&all, "real", "fast", "expected a number, found \"fast\"");
     check_set(&all, "real", "nan", "expected a number");
-    check_set(&all, "whole", "2.5", "2.5 is not a whole number (1..9)");
+    check_set(&all, "whole", "2.5", "2.5 is not an integer (1..9)");
     check_set(&all, "whole", "10", "10 is out of range (1..9)");
     check_set(&all, "fact", "maybe", "expected true or false, found \"maybe\"");
     check_set(&all, "mode", "exakt",
@@ -179,7 +179,7 @@ TEST(components_are_named) {
     error = (struct cs_error){0};
     row = cs_option_find(&table, "counts");
     cs_option_check_range(row, 0.5, 0, "a.c", CS_ERR_SCENE, &error);
-    UNIT_ASSERT_FAILED(&error, CS_ERR_SCENE, "a.c[0]: 0.5 is not a whole number");
+    UNIT_ASSERT_FAILED(&error, CS_ERR_SCENE, "a.c[0]: 0.5 is not an integer");
     error = (struct cs_error){0};
     cs_option_check_range(row, HUGE_VAL, 0, "a.c", CS_ERR_SCENE, &error);
     UNIT_ASSERT_FAILED(&error, CS_ERR_SCENE, "out of range");
@@ -237,12 +237,12 @@ TEST(defaults_and_words_are_printed) {
 TEST(what_is_expected_is_named) {
     static const char *const expected[] = {"a number (0..1 s)",
                                            "a number (0..1 m)",
-                                           "a whole number (1..9)",
+                                           "an integer (1..9)",
                                            "true or false",
                                            "one of fast, exact",
                                            "a list of 2 numbers (-5..5 m)",
-                                           "a list of 2 whole numbers (0..5)",
-                                           "a text",
+                                           "a list of 2 integers (0..5)",
+                                           "a string",
                                            "an object",
                                            "a list"};
     for (uint32_t r = 0; r < table.n; r++) {

@@ -126,7 +126,7 @@ TEST(messages_name_the_place) {
          "s.json:2:22: found '}', expected a key in quotes"},
         {"[1, 2]", "s.json:1:1: found a list of 2, expected an object"},
         {"{\"bodies\": [" BODY "],\n \"time\": {\"fps\": \"60\"}}",
-         "s.json:2:18: time.fps: found text \"60\", expected a number (0.001..1000000 1/s)"},
+         "s.json:2:18: time.fps: found string \"60\", expected a number (0.001..1000000 1/s)"},
         {"{\"bodies\": [\n" BODY ",\n{\"cloth\": {\"grid\": [2, 2]}}]}",
          "s.json:3:1: bodies[1].mass: found none, expected exactly one of particle, "
          "areal_density, total, degree"},
@@ -137,7 +137,7 @@ TEST(messages_name_the_place) {
          "areal_density, total, degree"},
         {"{\"bodies\": [{\"cloth\": {}}]}",
          "s.json:1:23: bodies[0].cloth.grid: missing, expected "
-         "a list of 2 whole numbers (1..65535 particles)"},
+         "a list of 2 integers (1..65535 particles)"},
         {"{\"bodies\": [{\n\"springs\": {\"sheer\": 1}}]}",
          "s.json:2:13: bodies[0].springs.sheer: unknown key; did you mean \"shear\"?"},
         {"{\"integratr\": 1}",
@@ -149,10 +149,10 @@ TEST(messages_name_the_place) {
         {"{\"render\": {\"size\": [640, 12.5]}}",
          "s.json:1:27: render.size[1]: 12.5 is out of range (16..8192 pixels)"},
         {"{\"render\": {\"size\": [640, 99.5]}}",
-         "s.json:1:27: render.size[1]: 99.5 is not a whole number (16..8192 pixels)"},
+         "s.json:1:27: render.size[1]: 99.5 is not an integer (16..8192 pixels)"},
         {"{\"render\": {\"size\": [640]}}",
          "s.json:1:21: render.size: found a list of 1, expected "
-         "a list of 2 whole numbers (16..8192 pixels)"},
+         "a list of 2 integers (16..8192 pixels)"},
         {"{\"camera\": {\"eye\": [0, null, 1]}}",
          "s.json:1:24: camera.eye[1]: found null, expected a number"},
         {"{\"render\": {\"look\": \"strian\"}}",
@@ -166,10 +166,10 @@ TEST(messages_name_the_place) {
         {"{\"render\": {\"viewpoint_forces\": 1}}",
          "s.json:1:33: render.viewpoint_forces: found 1, expected true or false"},
         {"{\"bodies\": {}}", "s.json:1:12: bodies: found an object, expected a list"},
-        {"{\"about\": true}", "s.json:1:11: about: found true, expected a text"},
+        {"{\"about\": true}", "s.json:1:11: about: found true, expected a string"},
         {"{\"bodies\": [{\"pins\": [[1]]}]}",
          "s.json:1:23: bodies[0].pins[0]: found a list of 1, "
-         "expected an object, a text or a number"},
+         "expected an object, a string or a number"},
         {"{\"bodies\": [{\"pins\": [-1]}]}",
          "s.json:1:23: bodies[0].pins[0]: -1 is out of range (0..4294967295)"},
         {"{\"bodies\": [{\"pins\": [{}]}]}",
@@ -179,11 +179,11 @@ TEST(messages_name_the_place) {
          "s.json:1:27: colliders[0].sphere.centre: missing, expected a list of 3 numbers "
          "(-1e+09..1e+09 m)"},
         {"{\"bodies\": [" BODY "], \"integrator\": [1]}",
-         "s.json:1:79: integrator: found a list of 1, expected an object or a text"},
+         "s.json:1:79: integrator: found a list of 1, expected an object or a string"},
         {"{\"bodies\": [" BODY "], \"integrator\": {\"name\": 1}}",
-         "s.json:1:88: integrator.name: found 1, expected a text"},
+         "s.json:1:88: integrator.name: found 1, expected a string"},
         {"{\"bodies\": [" BODY "], \"integrator\": {\"dt\": null}}",
-         "s.json:1:86: integrator.dt: found null, expected a number, true, false or a text"},
+         "s.json:1:86: integrator.dt: found null, expected a number, true, false or a string"},
         {"{\"bodies\": [" BODY "], \"integrator\": \"\"}",
          "s.json:1:79: integrator: found 0 characters, expected 1..63"}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
@@ -226,7 +226,7 @@ TEST(long_texts_are_refused) {
         cs_scene_finish(&scene);
     }
     UNIT_ASSERT_FAILED(&error, CS_ERR_SCENE,
-                       "about: found a text of 256 bytes, expected at most 255");
+                       "about: found a string of 256 bytes, expected at most 255");
 }
 
 TEST(overrides_are_put_in) {
@@ -309,7 +309,7 @@ TEST(bad_overrides_are_refused) {
          "--set bodies[0].springs.stretch: -1 is out of range (0..1e+12 N/m)"},
         {{"bodies[0].springs", "{\"bend\": \"b\"}"},
          CS_ERR_SCENE,
-         "--set bodies[0].springs.bend: found text \"b\", expected a number (0..1e+12 N/m)"},
+         "--set bodies[0].springs.bend: found string \"b\", expected a number (0..1e+12 N/m)"},
         {{"bodies[0].sprngs.stretch", "1"},
          CS_ERR_SCENE,
          "--set bodies[0].sprngs: unknown key; did you mean \"springs\"?"},
@@ -323,7 +323,7 @@ TEST(bad_overrides_are_refused) {
          "particle, areal_density, total, degree"},
         {{"integrator.dt", "{}"},
          CS_ERR_SCENE,
-         "--set integrator.dt: found an object, expected a number, true, false or a text"},
+         "--set integrator.dt: found an object, expected a number, true, false or a string"},
         {{"", "1"},
          CS_ERR_USAGE,
          "--set : not a path, expected one like bodies[0].springs.stretch"},

@@ -224,7 +224,7 @@ TEST(manual_has_every_key) {
     assert_in_manual(&cs_scene_table, cs_text_get(&text));
     static const char *const parts[] = {
         "\n## bodies[].cloth.place\n", "must be given\n\tcolumns and rows.\n",
-        "A plain text stands for an object with *at* alone.",
+        "A plain string stands for an object with *at* alone.",
         "A plain list stands for an object with *colour* alone.",
         "Exactly one must be given of: *particle*, *areal_density*, *total*, *degree*.",
         /* a star of the text is no markup */

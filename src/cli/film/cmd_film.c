@@ -32,14 +32,14 @@ static const struct cs_arg rows[] = {
     {"out", 'o', "FILE",
      "an .mp4 or .webm (default: film.mp4 in DIR); a .png of a sheet (sheet.png)",
      CS_ARG_INTO(struct options, out)},
-    {"fps", 0, "RATE", "pictures a second (default: as fast as the scene moved)",
+    {"fps", 0, "RATE", "pictures per second (default: the speed of the scene)",
      CS_ARG_INTO(struct options, rate)},
     {"sheet", 0, "COLUMNSxROWS",
-     "instead of a film one picture of so many at most, such as 5x4",
+     "make one picture with at most so many columns and rows instead of a film, such as 5x4",
      CS_ARG_INTO(struct options, grid)},
-    {"tile", 0, "PIXELS", "width of each on a sheet at most (default: 320)",
+    {"tile", 0, "PIXELS", "maximum width of a picture on a sheet (default: 320)",
      CS_ARG_INTO(struct options, tile), .min = 16, .max = 4096},
-    {"overwrite", 'y', NULL, "replace a film or sheet that is there",
+    {"overwrite", 'y', NULL, "replace an existing film or sheet",
      CS_ARG_INTO(struct options, overwrite)},
     {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
@@ -67,7 +67,7 @@ static enum cs_status set_output_path(const struct options *options, struct film
                        "--out: expected a name that ends in .mp4 or .webm, found \"%.60s\"",
                        out);
     if (*out != '/' && !getcwd(here, sizeof here))
-        return cs_fail(error, CS_ERR_FILE, "cannot tell the current folder");
+        return cs_fail(error, CS_ERR_FILE, "cannot determine the current folder");
     if (snprintf(film->out, sizeof film->out, "%s%s%s", here, *here ? "/" : "", out) >=
         PATH_BYTES)
         return cs_fail(error, CS_ERR_FILE, "\"%.60s...\": the path is too long", out);
@@ -135,7 +135,7 @@ static enum cs_status refuse(const struct film *film, const char *const *argumen
     cs_text_add(&line, " &&");
     for (const char *const *a = arguments; *a; a++)
         add_word(&line, *a);
-    cs_fail(error, CS_ERR_FILE, "ffmpeg is not installed; once it is, type: cd%s",
+    cs_fail(error, CS_ERR_FILE, "ffmpeg is not installed; install it, then type: cd%s",
             cs_text_get(&line));
     cs_text_finish(&line);
     return error->status;
@@ -157,7 +157,7 @@ static enum cs_status make(const struct film *film, struct cs_error *error) {
     if (end.exited_ok && !rename(film->part, film->out))
         return CS_OK;
     remove(film->part);
-    return *stop ? cs_fail(error, CS_ERR_INTERRUPT, "interrupted; there is no film")
+    return *stop ? cs_fail(error, CS_ERR_INTERRUPT, "interrupted; no film was written")
                  : cs_fail(error, CS_ERR_FILE, "%s: ffmpeg could not make it", film->out);
 }
 
@@ -182,11 +182,11 @@ static enum cs_status make_film(const struct cs_args *args, const struct cs_film
                         .rate = options->rate > 0 ? options->rate : cs_film_rate(report),
                         .clear = report->clear};
     if (cs_args_is_given(args, "tile"))
-        return cs_fail(error, CS_ERR_USAGE, "--tile is of a sheet: give --sheet too");
+        return cs_fail(error, CS_ERR_USAGE, "--tile needs --sheet");
     if (set_output_path(options, &film, error) || check_pictures(&film, report, error) ||
         make(&film, error))
         return error->status;
-    cs_text_add(told, "%s: %g pictures a second\n", film.out, film.rate);
+    cs_text_add(told, "%s: %g pictures per second\n", film.out, film.rate);
     return CS_OK;
 }
 
@@ -198,7 +198,7 @@ static enum cs_status read_sheet(const struct options *options, struct cs_contac
     char rest;
     *sheet = (struct cs_contact_sheet){.tile = options->tile};
     if (options->rate > 0)
-        return cs_fail(error, CS_ERR_USAGE, "--fps is of a film: a sheet has none");
+        return cs_fail(error, CS_ERR_USAGE, "--fps applies to a film, not to --sheet");
     if (strspn(found, "0123456789x") != strlen(found) || strlen(found) > 9 ||
         sscanf(found, "%ux%u%c", &sheet->columns, &sheet->rows, &rest) != 2 ||
         !sheet->columns || sheet->columns > MOST_TILES || !sheet->rows ||
@@ -240,7 +240,7 @@ static enum cs_status make_sheet(const struct cs_args *args,
     cs_text_add(told, "%s: %u x %u pictures%s\n", out, sheet.columns, sheet.rows,
                 sheet.colour_bar || report->pictures->range[0] == report->pictures->range[1]
                     ? ""
-                    : ", whose colours differ in range: see --range of clothsim run");
+                    : ", with different colour ranges: see --range of clothsim run");
     return error->status;
 }
 

@@ -14,8 +14,8 @@ static enum cs_status read_whole(const struct cs_arg *row, const char *text, uin
     const unsigned long read = digits <= 10 ? strtoul(text, NULL, 10) : row->max + 1ul;
     if (!digits || text[digits] || read < row->min || read > row->max)
         return cs_fail(error, CS_ERR_USAGE,
-                       "--%s: expected a whole number from %u to %u, found \"%.60s\"",
-                       row->name, row->min, row->max, text);
+                       "--%s: expected an integer from %u to %u, found \"%.60s\"", row->name,
+                       row->min, row->max, text);
     *value = (uint32_t)read;
     return CS_OK;
 }

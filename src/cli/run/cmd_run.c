@@ -35,7 +35,7 @@ static const struct options defaults = {
             .level = 1}};
 
 static const struct cs_arg rows[] = {
-    {"frames", 'n', "N", "simulate frames 1 to N (default: one second of them)",
+    {"frames", 'n', "N", "simulate frames 1 to N (default: one second of frames)",
      CS_ARG_INTO(struct options, job.frames), .min = 1, .max = MOST_FRAMES},
     {"integrator", 'i', "NAME[:KEY=VALUE,...]",
      "method and its options, instead of the scene's (see: clothsim integrators)",
@@ -56,11 +56,11 @@ static const struct cs_arg rows[] = {
     {"checkpoint", 0, "EVERY",
      "write DIR/run.checkpoint every so many frames, or seconds as in 30s",
      CS_ARG_INTO(struct options, checkpoint)},
-    {"resume", 0, "DIR", "go on from the checkpoint in DIR, with the same scene and options",
+    {"resume", 0, "DIR", "continue from the checkpoint in DIR, with the same scene and options",
      CS_ARG_INTO(struct options, resume)},
     {"isolate", 0, "SECONDS",
-     "run in a process of its own, and end it where one call into the method or the renderer "
-     "takes longer",
+     "run in a separate process, and end it if one call of the method or the renderer takes "
+     "longer",
      CS_ARG_INTO(struct options, isolate)},
     {"states", 0, "DIR",
      "write x_00000.npy, v_00000.npy ...: positions and velocities of the start (0) and of "
@@ -73,7 +73,7 @@ static const struct cs_arg rows[] = {
     {"export-values", 0, "VALUE[,...]",
      "force, strain: of each particle, in files of vtp and npz",
      CS_ARG_INTO(struct options, values)},
-    {"hash", 0, NULL, "print number and state hash of each frame, one a line",
+    {"hash", 0, NULL, "print number and state hash of each frame, one per line",
      CS_ARG_INTO(struct options, job.hash)},
     {"json", 0, "FILE", "write the report as JSON too; -: to standard output",
      CS_ARG_INTO(struct options, job.json)},
@@ -82,30 +82,30 @@ static const struct cs_arg rows[] = {
      "output",
      CS_ARG_INTO(struct options, job.monitor_file)},
     {"ledger", 0, "FILE",
-     "write where the energy of each frame is and went to as CSV; -: to standard output",
+     "write the energy balance of each frame as CSV; -: to standard output",
      CS_ARG_INTO(struct options, job.ledger)},
     {"trace", 0, "FRAME",
      "write every array that this frame computes to standard output, or with \"frames\" the "
      "state of each frame: for clothsim bisect",
      CS_ARG_INTO(struct options, trace)},
-    {"timing", 0, NULL, "time the stages of a run, and tell its peak memory",
+    {"timing", 0, NULL, "print the time of each stage of a run and its peak memory",
      CS_ARG_INTO(struct options, job.session.run.timed)},
     {"threads", 0, "N",
-     "threads that step the scene, 1 to 64 (default: one a processor, up to 16; 1 below 16384 "
-     "particles, or 1024 that meet by force: too little work to share)",
+     "threads that step the scene, 1 to 64 (default: one per processor, up to 16; 1 below "
+     "16384 particles, or below 1024 with contact by force)",
      CS_ARG_INTO(struct options, job.session.threads), .min = 1, .max = CS_POOL_THREADS_MAX},
     {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)",
      CS_ARG_INTO(struct options, job.renderer), .names = cs_renderer_names},
     {"range", 0, "RANGE",
-     "of the colours of looks force and strain in all pictures: LEAST,MOST, or auto, which "
-     "runs the scene once before (default: of each frame)",
+     "range of the colours of looks force and strain in all pictures: MIN,MAX, or auto, which "
+     "runs the scene twice (default: the range of each frame)",
      CS_ARG_INTO(struct options, range)},
-    {"fast-render", 0, NULL, "use all of the processor; pixels then depend on the machine",
+    {"fast-render", 0, NULL,
+     "use all instructions of the processor; pixels then depend on the machine",
      CS_ARG_INTO(struct options, job.fast_render)},
     {"png-level", 0, "LEVEL", "compression, 0 to 9 (default: 1)",
      CS_ARG_INTO(struct options, job.level), .min = 0, .max = 9},
-    {"strict", 0, NULL, "exit with 8 where the run blew up",
-     CS_ARG_INTO(struct options, strict)},
+    {"strict", 0, NULL, "exit with 8 if the run blew up", CS_ARG_INTO(struct options, strict)},
     {"quiet", 'q', NULL, "no progress and no table", CS_ARG_INTO(struct options, job.quiet)},
 };
 
@@ -116,7 +116,8 @@ static enum cs_status read_checkpoints(const struct cs_args *args, struct option
     static const char *const others[] = {"checkpoint", "out", "overwrite"};
     for (size_t k = 0; options->resume && k < sizeof others / sizeof *others; k++)
         if (cs_args_is_given(args, others[k]))
-            return cs_fail(error, CS_ERR_USAGE, "--resume goes on as the run began: no --%s",
+            return cs_fail(error, CS_ERR_USAGE,
+                           "--resume continues with the options of the run: remove --%s",
                            others[k]);
     options->job.resume = options->resume;
     options->job.folder = options->resume ? options->resume : options->job.folder;
@@ -139,7 +140,8 @@ static enum cs_status check_stream(const struct cs_job_settings *settings,
     const char *first = NULL;
     for (size_t k = 0; k < sizeof outputs / sizeof *outputs; k++) {
         if (outputs[k].asks && first)
-            return cs_fail(error, CS_ERR_USAGE, "%s and %s both ask for standard output", first,
+            return cs_fail(error, CS_ERR_USAGE,
+                           "%s and %s cannot both write to standard output", first,
                            outputs[k].name);
         first = outputs[k].asks ? outputs[k].name : first;
     }
@@ -203,7 +205,7 @@ static void print_watch(const struct cs_job *job) {
     if (found.length) {
         const struct cs_energy energy =
             cs_diagnostics_energy(run->system, run->t, run->x, run->v);
-        cs_text_add(&found, "; %.3g J at the end (clothsim advise tells which steps hold)",
+        cs_text_add(&found, "; %.3g J at the end (clothsim advise finds stable steps)",
                     cs_energy_without_gravity(&energy));
         cs_print_message(cs_text_get(&found));
     }
@@ -267,8 +269,9 @@ const struct cs_command cs_command_run = {
     .name = "run",
     .operands = "SCENE",
     .summary = "simulate a scene and write its frames as PNG pictures",
-    .notes = "Frame k shows the time k / fps. A run that blows up is a result: it says when\n"
-             "and where, keeps the frames before, and exits with 0.\n\n"
+    .notes = "Frame k shows the time k / fps. A run that blows up is a result: it reports\n"
+             "the time and the particle, keeps earlier frames, and exits with 0.\n"
+             "\n"
              "Example: clothsim run scenes/hang.json --frames 60 -i velocity-verlet:dt=0.001\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,

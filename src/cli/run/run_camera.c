@@ -39,7 +39,7 @@ static enum cs_status record(struct cs_session *session, uint32_t frames, uint32
                                motion->places +
                                    (size_t)3 * CS_CAMERA_FIT_EXTREMES * motion->n++);
     }
-    return cs_follow_check(run, " while the run was framed", error);
+    return cs_follow_check(run, " in the run that finds the camera", error);
 }
 
 static bool frames_all(const struct motion *motion, const struct cs_camera *camera,
@@ -121,7 +121,7 @@ static enum cs_status find_camera_path(struct motion *motion, struct cs_scene *s
             scene->camera.path = (struct cs_list){keys, motion->n};
         }
     } else if (!all || !each) {
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the way of a camera");
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the camera path");
     }
     // where nothing was drawn there is nothing to frame
     scene->camera.frame = CS_FRAME_GIVEN;
@@ -136,7 +136,7 @@ static enum cs_status take(struct motion *motion, uint32_t frames, struct cs_err
     motion->keys = calloc((size_t)frames + 1, sizeof *motion->keys);
     return motion->places && motion->keys
                ? CS_OK
-               : cs_fail(error, CS_ERR_MEMORY, "out of memory for the way of a camera");
+               : cs_fail(error, CS_ERR_MEMORY, "out of memory for the camera path");
 }
 
 void cs_run_camera_find(struct cs_scene *scene, void *camera) {
@@ -150,7 +150,7 @@ void cs_run_camera_find(struct cs_scene *scene, void *camera) {
         return;
     if (!strcmp(once.scene, "-")) {
         cs_fail(&of->error, CS_ERR_USAGE,
-                "camera.frame auto runs the scene twice: it must be a file, not -");
+                "camera.frame auto runs the scene twice: SCENE must be a file, not -");
         return;
     }
     // those of the session that asks

@@ -70,10 +70,11 @@ enum cs_status cs_checkpointer_check_interval(const struct cs_session *session,
                                               struct cs_error *error) {
     const struct cs_integrator *integrator = session->method.integrator;
     if (pace->seconds > 0 && !cs_run_method_has_history(integrator))
-        return cs_fail(error, CS_ERR_USAGE,
-                       "--checkpoint: integrator \"%s\" starts anew at each checkpoint, so its "
-                       "result would hang on the clock; give a number of frames",
-                       integrator->name);
+        return cs_fail(
+            error, CS_ERR_USAGE,
+            "--checkpoint: integrator \"%s\" restarts at each checkpoint, so the result would "
+            "depend on the speed of the machine; give a number of frames",
+            integrator->name);
     return CS_OK;
 }
 
@@ -113,11 +114,12 @@ enum cs_status cs_checkpointer_load(struct cs_checkpointer *resume, uint32_t fra
     if (cs_run_load(run, record, &said))
         return cs_fail(error, said.status, "\"%s\": %s", resume->path, said.message);
     if (!cs_serialiser_is_done(record))
-        return cs_fail(error, CS_ERR_FILE, "\"%s\": it holds more or less than a run",
+        return cs_fail(error, CS_ERR_FILE, "\"%s\": it has the wrong size for this run",
                        resume->path);
     if (run->frame > frames)
-        return cs_fail(error, CS_ERR_USAGE, "--frames: found %u, but \"%s\" is of frame %u",
-                       frames, resume->path, run->frame);
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--frames: found %u, but \"%s\" is already at frame %u", frames,
+                       resume->path, run->frame);
     resume->captured_frame = resume->written_frame = run->frame;
     return CS_OK;
 }

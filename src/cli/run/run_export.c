@@ -17,8 +17,8 @@ static enum cs_status refuse(const char *option, const char *list, const char *c
     for (size_t k = 0, at = 0; names[k] && at < sizeof known; k++)
         at += (size_t)snprintf(known + at, sizeof known - at, k ? ", %s" : "%s", names[k]);
     return cs_fail(error, CS_ERR_USAGE,
-                   "%s: found \"%.60s\", expected some of %s, with commas between", option,
-                   list, known);
+                   "%s: found \"%.60s\", expected one or more of %s, separated by commas",
+                   option, list, known);
 }
 
 /* Reads a list with commas as a set of bits. */
@@ -41,9 +41,9 @@ enum cs_status cs_run_export_read(const char *formats, const char *values,
         read_set("--export-values", values, cs_export_value_names, &settings->values, error))
         return error->status;
     if (values && !(settings->formats & cs_export_with_values()))
-        return cs_fail(error, CS_ERR_USAGE,
-                       "--export-values: only files of VTP and NPZ hold values; expected one "
-                       "of them in --export");
+        return cs_fail(
+            error, CS_ERR_USAGE,
+            "--export-values: only VTP and NPZ files hold values; add vtp or npz to --export");
     return CS_OK;
 }
 

@@ -16,8 +16,7 @@ static const struct cs_run_output *const outputs[] = {
     &cs_run_output_export, &cs_run_output_hash,
 };
 enum { OUTPUTS = sizeof outputs / sizeof *outputs };
-_Static_assert((int)OUTPUTS <= (int)CS_RUN_OUTPUTS_MAX,
-               "a run has no room for so many outputs");
+_Static_assert((int)OUTPUTS <= (int)CS_RUN_OUTPUTS_MAX, "too many outputs for one run");
 
 /* File or folder of an output; NULL: none. */
 static const char *path_of(const struct cs_job *job, const struct cs_run_output *output) {

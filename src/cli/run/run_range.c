@@ -37,7 +37,7 @@ static enum cs_status sample_frame(struct search *search, uint32_t frames, uint3
         search->most[search->n++] =
             cs_diagnostics_magnitude(search->scalar, search->session.system.view.n);
     }
-    return cs_follow_check(run, " while the range of colours was found", error);
+    return cs_follow_check(run, " in the run that finds the range of colours", error);
 }
 
 /* Refuses --range for a look whose colours show no value. */
@@ -58,7 +58,7 @@ static enum cs_status search_range(const struct cs_job_settings *settings, char 
     struct cs_session *session = &search.session;
     if (!strcmp(settings->session.scene, "-"))
         return cs_fail(error, CS_ERR_USAGE,
-                       "--range auto runs the scene twice: it must be a file, not -");
+                       "--range auto runs the scene twice: SCENE must be a file, not -");
     if (cs_session_open(session, &settings->session, error))
         return error->status;
     const uint32_t frames = cs_job_frames(settings, &session->scene);
@@ -88,9 +88,7 @@ static enum cs_status read_range(const char *text, char value[80], struct cs_err
             return CS_OK;
         }
     }
-    return cs_fail(error, CS_ERR_USAGE,
-                   "--range: found \"%s\", expected \"auto\", or the smaller and the larger "
-                   "value with a comma between",
+    return cs_fail(error, CS_ERR_USAGE, "--range: found \"%s\", expected \"auto\", or MIN,MAX",
                    text);
 }
 

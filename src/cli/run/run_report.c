@@ -35,7 +35,7 @@ void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out) {
     cs_text_add(out, ", ");
     cs_system_print_particle(&job->session.system, run->blow_up.particle, out);
     if (run->outcome == CS_UNBOUNDED)
-        cs_text_add(out, ", kinetic energy %.3g J beyond %.3g J", run->blow_up.energy,
+        cs_text_add(out, ", kinetic energy %.3g J exceeds %.3g J", run->blow_up.energy,
                     run->blow_up.bound);
 }
 
@@ -99,7 +99,7 @@ static void add_measures(const struct cs_job *job, struct cs_text *out) {
     if (energy.other != 0)
         add_row(out, "other energy", "%.6g J", energy.other);
     add_row(out, "largest strain", "%.4g %%", 100 * cs_diagnostics_strain(run->system, run->x));
-    add_row(out, "memory", "%zu bytes in arrays, %.1f a particle", cs_run_bytes(run),
+    add_row(out, "memory", "%zu bytes in arrays, %.1f per particle", cs_run_bytes(run),
             (double)cs_run_bytes(run) / run->system->view.n);
     add_row(out, "wall time", "%.3g s, %.3g s of it in the integrator", job->wall_seconds,
             run->advance_seconds);
@@ -120,7 +120,7 @@ static size_t peak_memory(void) {
 
 /* Times of the stages in total and per frame; stages of the model are a part of "simulate". */
 static void add_stages(const struct cs_job *job, struct cs_text *out) {
-    cs_text_add(out, "%-*s%10s%14s\n", VALUE_COLUMN, "stage", "total [s]", "a frame [ms]");
+    cs_text_add(out, "%-*s%10s%14s\n", VALUE_COLUMN, "stage", "total [s]", "frame [ms]");
     add_stage(job, "simulate", job->session.run.advance_seconds, out);
     for (uint32_t s = 0; s < CS_STAGES; s++)
         add_stage(job, cs_stage_names[s], job->session.run.stage_seconds[s], out);

@@ -31,7 +31,7 @@ static enum cs_status open(struct cs_context *context, struct cs_error *error) {
     context->display =
         eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
     if (context->display == EGL_NO_DISPLAY || !eglInitialize(context->display, NULL, NULL))
-        return fail(error, "no display without a surface");
+        return fail(error, "the surfaceless platform is not available");
     if (!eglBindAPI(EGL_OPENGL_API))
         return fail(error, "no OpenGL");
     /* no config, since there is no surface to match: frames go to framebuffer objects */

@@ -23,7 +23,7 @@ static enum cs_status truncate_to(struct cs_append_file *grown, uint64_t kept,
         return fail(grown, "read", error);
     if (!S_ISREG(info.st_mode) || (uint64_t)info.st_size < kept)
         return cs_fail(error, CS_ERR_FILE,
-                       "cannot go on with \"%s\": it has %lld bytes, expected %llu at least",
+                       "cannot continue \"%s\": it has %lld bytes, expected at least %llu",
                        grown->path, (long long)info.st_size, (unsigned long long)kept);
     grown->length = kept;
     return ftruncate(grown->file - 1, (off_t)kept) ? fail(grown, "write", error) : CS_OK;
@@ -37,7 +37,7 @@ enum cs_status cs_append_file_open(struct cs_append_file *grown, const char *pat
         return error->status;
     const int file = open(path, flags, 0666);
     if (file < 0)
-        return fail(grown, kept ? "go on with" : "write", error);
+        return fail(grown, kept ? "continue" : "write", error);
     grown->file = file + 1;
     return kept ? truncate_to(grown, kept, error) : CS_OK;
 }

@@ -32,7 +32,8 @@ static double thickness_of(const struct cs_system *system, uint32_t body,
         given > 0 ? given : CS_THICKNESS_SHARE * shortest_edge(system, body);
     if (!(thickness > 0 && isfinite(thickness)))
         cs_fail(error, CS_ERR_SCENE,
-                "bodies[%u].thickness: 0, and no edge to take it from; expected a length in m",
+                "bodies[%u].thickness: 0, but the body has no edge to derive it from; expected "
+                "a length in m",
                 body);
     return thickness;
 }

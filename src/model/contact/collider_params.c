@@ -20,7 +20,7 @@ enum cs_status cs_collider_params_stiffness(const struct cs_system *system, doub
     *k = isnan(given) ? softest(&system->springs) : given;
     if (!isfinite(*k))
         return cs_fail(error, CS_ERR_SCENE,
-                       "contact.stiffness: no stretch spring to take it from, expected a "
+                       "contact.stiffness: no stretch spring to derive it from, expected a "
                        "number in N/m");
     return CS_OK;
 }
@@ -40,8 +40,8 @@ enum cs_status cs_collider_params_table_build(struct cs_system *system,
         pairings[c].range = thickness > 0 ? thickness : CS_RANGE_SHARE * shortest;
         if (!(pairings[c].range > 0))
             return cs_fail(error, CS_ERR_SCENE,
-                           "colliders[%u].thickness: 0, and no spring to take the range of "
-                           "contact from; expected a length in m",
+                           "colliders[%u].thickness: 0, but there is no spring to derive the "
+                           "contact range from; expected a length in m",
                            c);
     }
     system->collider_params = pairings;

@@ -50,8 +50,8 @@ static enum cs_status refuse(const struct cs_system *system, uint32_t i, uint32_
     cs_system_print_particle(system, i, &text);
     cs_fail(error, CS_ERR_SCENE, "%s: %s starts %.3g m inside colliders[%u]%s",
             system->scene->path, cs_text_get(&text), depth, collider,
-            asked ? ", and another leaves it no way out"
-                  : ": place it in front, or set contact.start to \"move-out\"");
+            asked ? ", and another collider blocks its way out"
+                  : ": move it outside, or set contact.start to \"move-out\"");
     cs_text_finish(&text);
     return error->status;
 }
@@ -96,8 +96,8 @@ static enum cs_status check_between_particles(const struct cs_system *system,
         cs_system_print_particle(system, point.particles[0], &first);
         cs_system_print_particle(system, point.particles[1], &second);
         cs_fail(error, CS_ERR_SCENE,
-                "%s: between %s and %s the surface starts %.3g m inside colliders[%u]: place "
-                "it in front",
+                "%s: between %s and %s the surface starts %.3g m inside colliders[%u]: move it "
+                "outside",
                 system->scene->path, cs_text_get(&first), cs_text_get(&second), depth,
                 chunk->collider);
         cs_text_finish(&first);
@@ -127,8 +127,7 @@ static enum cs_status check_crossings(const struct cs_system *system, struct cs_
     if (found.n) {
         cs_crossings_print(system, &found, &text);
         cs_fail(error, CS_ERR_SCENE,
-                "%s: at the start %s: place apart what is to stay apart, or set crossings to "
-                "\"ignore\"",
+                "%s: at the start %s: separate the bodies, or set crossings to \"ignore\"",
                 system->scene->path, cs_text_get(&text));
     }
     cs_text_finish(&text);

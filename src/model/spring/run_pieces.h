@@ -17,7 +17,7 @@
 enum { PIECE = 256 };
 /* Runs per task of loops over runs, where their order does not matter. */
 enum { RUNS = 32 };
-_Static_assert(CS_SPRING_CHUNK_MAX % PIECE == 0, "a lot is of whole pieces");
+_Static_assert(CS_SPRING_CHUNK_MAX % PIECE == 0, "a chunk contains whole pieces");
 
 /* Arguments of a kernel: springs, state and destination. */
 struct spring_job {

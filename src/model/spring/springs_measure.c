@@ -12,7 +12,7 @@
 
 /* Lanes of every sum; as in base/vector.c. */
 enum { LANES = 8 };
-_Static_assert(PIECE % LANES == 0, "a piece is of whole lanes");
+_Static_assert(PIECE % LANES == 0, "a piece contains whole lanes");
 
 /* Twice the energy of each spring of a piece, k (l - L)^2. For a grid's run k is a common
  * factor and is left to run_energy. */

@@ -201,7 +201,7 @@ void cs_json_describe(const struct cs_json *value, struct cs_text *out) {
         break;
     case CS_JSON_TEXT:
         /* user text can be long: only its start goes into the message */
-        cs_text_add(out, "text ");
+        cs_text_add(out, "string ");
         cs_utf8_add_short(out, cs_json_text(value));
         break;
     case CS_JSON_LIST:

@@ -178,7 +178,7 @@ static enum cs_status read_face(struct obj *obj) {
         if (obj->done.triangles == 0 && n == 0)
             obj->textured = corner->textured;
         if (corner->textured != obj->textured)
-            return fail(obj, "a corner %s texture coordinate, unlike those before",
+            return fail(obj, "a corner %s texture coordinate, unlike earlier corners",
                         corner->textured ? "has a" : "has no");
         if (n < 2)
             continue;

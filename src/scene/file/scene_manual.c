@@ -45,7 +45,7 @@ static void add_rules(const struct cs_table *table, struct cs_text *out) {
                         n++ ? ", " : "Exactly one must be given of: ", table->rows[r].name);
     cs_text_add(out, n ? ".\n\n" : "");
     if (table->shorthand_text)
-        cs_text_add(out, "A plain text stands for an object with *%s* alone.\n\n",
+        cs_text_add(out, "A plain string stands for an object with *%s* alone.\n\n",
                     table->shorthand_text);
     if (table->shorthand_number)
         cs_text_add(out, "A plain number stands for an object with *%s* alone.\n\n",

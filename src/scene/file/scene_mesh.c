@@ -104,7 +104,7 @@ static enum cs_status make_network(const struct item *item,
     }
     if (mesh->n * network->springs > NETWORK_MAX)
         return refuse(item, "network.springs", CS_ERR_SCENE,
-                      "more than 67108864 springs in all");
+                      "more than 67108864 springs in total");
     return cs_spring_network_make(network, mesh, item->reader->arena, item->reader->error);
 }
 
@@ -119,7 +119,7 @@ static enum cs_status split_body(const struct item *item, struct cs_body *body) 
     if (matching->clusters > 1 && matching->clusters > most) {
         char message[160];
         snprintf(message, sizeof message,
-                 "found %lld, expected at most %lld: a part has %d particles or more",
+                 "found %lld, expected at most %lld: a cluster has %d particles or more",
                  (long long)matching->clusters, (long long)(most > 1 ? most : 1),
                  CS_SHAPE_CLUSTER_SIZE_MIN);
         return refuse(item, "shape_matching.clusters", CS_ERR_SCENE, message);

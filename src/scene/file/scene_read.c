@@ -71,7 +71,7 @@ static enum cs_status apply_overrides(struct cs_json *root, const struct cs_over
 static enum cs_status read_name(struct cs_json_context *context, const struct cs_json *value,
                                 struct cs_scene *scene) {
     if (cs_json_kind_of(value) != CS_JSON_TEXT)
-        return cs_json_context_fail_type(context, value, "a text");
+        return cs_json_context_fail_type(context, value, "a string");
     const size_t length = strlen(cs_json_text(value));
     if (length < 1 || length >= sizeof scene->integrator)
         return cs_json_context_fail(context, value, false,
@@ -97,7 +97,7 @@ static enum cs_status read_setting(struct cs_json_context *context, const struct
         cs_text_add(&text, "%s", cs_json_text(value));
         break;
     default:
-        return cs_json_context_fail_type(context, value, "a number, true, false or a text");
+        return cs_json_context_fail_type(context, value, "a number, true, false or a string");
     }
     setting->name = cs_arena_copy_text(context->arena, cs_json_key(value), context->error);
     setting->value = cs_arena_copy_text(context->arena, cs_text_get(&text), context->error);
@@ -142,7 +142,7 @@ static enum cs_status read_integrator(struct cs_json_context *context,
     else if (cs_json_kind_of(value) == CS_JSON_OBJECT)
         read_settings(context, value, scene);
     else
-        cs_json_context_fail_type(context, value, "an object or a text");
+        cs_json_context_fail_type(context, value, "an object or a string");
     cs_json_context_leave(context, outside);
     return context->error->status;
 }

@@ -112,7 +112,7 @@ static void add_integrator(struct cs_text *out) {
     const size_t longest = sizeof((struct cs_scene *)0)->integrator - 1;
     cs_json_write(out,
                   ",\n    'integrator': {\n"
-                  "      'description': 'name of the method, alone or beside its options',\n"
+                  "      'description': 'name of the method, alone or with its options',\n"
                   "      'default': %s,\n",
                   CS_INTEGRATOR_DEFAULT);
     /* a plain name, or an object whose other keys the integrator itself checks */

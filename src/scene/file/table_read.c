@@ -87,7 +87,7 @@ static enum cs_status read_text(struct cs_json_context *context, const struct cs
     const size_t length = strlen(cs_json_text(value));
     if (length >= CS_TEXT_MAX)
         return cs_json_context_fail(context, value, false,
-                                    "found a text of %zu bytes, expected at most %d", length,
+                                    "found a string of %zu bytes, expected at most %d", length,
                                     CS_TEXT_MAX - 1);
     memcpy(field_of(row, object), cs_json_text(value), length + 1);
     return CS_OK;
@@ -256,12 +256,12 @@ enum cs_status cs_table_read(struct cs_json_context *context, const struct cs_js
     if (shorthand)
         return read_row(context, value, shorthand, object);
     if (cs_json_kind_of(value) != CS_JSON_OBJECT)
-        return cs_json_context_fail_type(context, value,
-                                         table->shorthand_number
-                                             ? "an object, a text or a number"
-                                         : table->shorthand_list ? "an object, a text or a list"
-                                         : table->shorthand_text ? "an object or a text"
-                                                                 : "an object");
+        return cs_json_context_fail_type(
+            context, value,
+            table->shorthand_number ? "an object, a string or a number"
+            : table->shorthand_list ? "an object, a string or a list"
+            : table->shorthand_text ? "an object or a string"
+                                    : "an object");
     for (const struct cs_json *m = cs_json_first(value); m; m = cs_json_next(m))
         if (read_member(context, m, table, object))
             return context->error->status;

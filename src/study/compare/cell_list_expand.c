@@ -82,8 +82,9 @@ enum cs_status cs_cell_list_expand(struct cs_cell_list *sweep,
     if (entry->method.integrator->fidelity == CS_FIDELITY_OTHER) {
         struct cs_cell cell;
         init_cell(&cell, entry);
-        cs_cell_refuse(&cell, "another model than the equation of motion: an error against it "
-                              "has no meaning");
+        cs_cell_refuse(
+            &cell,
+            "its model is not the equation of motion: an error against it has no meaning");
         return cs_cell_list_add(sweep, &cell, error);
     }
     if (!*entry->control)

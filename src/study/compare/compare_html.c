@@ -72,7 +72,7 @@ static void add_table(const struct cs_compare *compare, const struct cs_ranking 
                       struct cs_text *out) {
     cs_text_add(out, "<h2>All rows</h2>\n<p>Bold: nothing is both cheaper and more accurate. "
                      "Errors at the end in m (RMS; path: over all frames; largest: of a "
-                     "particle) and m/s; energy as a share of the largest kinetic energy; "
+                     "particle) and m/s; energy as a fraction of the largest kinetic energy; "
                      "times in ms, median and quartiles.</p>\n<table><tr>");
     static const char *const names[] = {"series",   "options", "error",  "path", "largest",
                                         "velocity", "energy",  "order",  "work", "time",
@@ -112,10 +112,10 @@ void cs_html_print(const struct cs_compare *compare, const struct cs_ranking *ra
         add_preformatted("Command", &command, out);
     add_preformatted("Reference", &reference, out);
     add_preformatted("Verdict", &verdict, out);
-    add_preformatted("To mind", &warnings, out);
+    add_preformatted("Notes", &warnings, out);
     cs_text_add(out, "<h2>Diagrams</h2>\n<p>Yellow: the front, where nothing is both cheaper "
-                     "and more accurate. Bars: quartiles of the rounds. Crosses: "
-                     "what did not get through. Grey: below the "
+                     "and more accurate. Bars: quartiles of the rounds. Crosses: runs that "
+                     "failed or exceeded the budget. Grey: below the "
                      "reference's own error.</p>\n");
     if (compare->reference.families_agree) {
         add_diagram(compare, ranking, "cpu", out);
@@ -123,7 +123,7 @@ void cs_html_print(const struct cs_compare *compare, const struct cs_ranking *ra
     }
     add_preformatted("Series", &series, out);
     if (ledger.length)
-        add_preformatted("Where energy went", &ledger, out);
+        add_preformatted("Energy balance", &ledger, out);
     add_table(compare, ranking, out);
     add_machine(out);
     cs_text_add(out, "</body></html>\n");

@@ -163,7 +163,7 @@ static void add_table(const struct cs_compare *compare, const struct cs_ranking 
                       struct cs_text *out) {
     cs_text_add(out,
                 "## All cells\n\nBold: nothing is both cheaper and more accurate. Errors in m "
-                "at the end (RMS; largest of a\nparticle) and m/s; energy as a share of the "
+                "at the end (RMS; largest of a\nparticle) and m/s; energy as a fraction of the "
                 "largest kinetic energy; time in s.\n\n"
                 "| series | options | error | largest | velocity | energy | order | error / "
                 "(rtol x motion) | force evaluations | solves | iterations | time | |\n"
@@ -192,8 +192,14 @@ static void print_markdown(const struct cs_compare *compare, const struct cs_ran
     cs_table_add_ledger(compare, &ledger);
     if (ledger.length)
         cs_text_add(out,
-                    "## Where energy went\n\nBy the end, what came in above 0; `integrator` is "
-                    "what the method itself made or lost.\n\n```\n%s```\n\n",
+                    "## Energy balance\n"
+                    "\n"
+                    "Energy gained by the end; `integrator` is the energy that the method "
+                    "itself gained or lost.\n"
+                    "\n"
+                    "```\n"
+                    "%s```\n"
+                    "\n",
                     cs_text_get(&ledger));
     cs_text_finish(&ledger);
     add_table(compare, ranking, out);

@@ -15,11 +15,11 @@ enum { PATH_BYTES = 4096 };
 static enum cs_status check_row(const struct cs_cell *cell, const char *file, uint32_t row,
                                 struct cs_error *error) {
     const char *why = !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET))
-                          ? "it was over its budget, which hangs on the clock"
+                          ? "it exceeded its budget, which depends on the clock"
                       : !strcmp(cell->outcome, "refused") ? cell->note
-                      : !*cell->state_hash ? "an earlier version made it, and kept no state"
+                      : !*cell->state_hash ? "an earlier version wrote it without a state"
                                            : NULL;
-    return why ? cs_fail(error, CS_ERR_USAGE, "%s: row %u cannot be made again: %s", file, row,
+    return why ? cs_fail(error, CS_ERR_USAGE, "%s: row %u cannot be reproduced: %s", file, row,
                          why)
                : CS_OK;
 }
@@ -61,7 +61,7 @@ static void describe_row(const struct cs_provenance *provenance, struct cs_sessi
     cs_provenance_out_find_module(session, &module);
     cs_provenance_add_change("the version of clothsim", cell->version, CS_VERSION, out);
     if (strcmp(cell->module, module.hash) != 0)
-        cs_text_add(out, "the module %s is another build\n", module.file);
+        cs_text_add(out, "the module %s is a different build\n", module.file);
     cs_provenance_add_changed_files(provenance, out);
 }
 

@@ -67,8 +67,8 @@ static enum cs_status read_old(struct cs_compare_results *ledger,
         if (strncmp(ledger->old_rows[i].key, compare->cells.cells[0].key, CS_COMPARE_DIGITS) !=
             0)
             return cs_fail(error, CS_ERR_USAGE,
-                           "%s is of another scene, time or reference: give another folder "
-                           "with --out, or --fresh to write over it",
+                           "%s belongs to another scene, time or reference; choose another "
+                           "folder with --out, or --fresh to overwrite it",
                            ledger->table.path);
     return CS_OK;
 }
@@ -168,7 +168,8 @@ static enum cs_status add_file(struct cs_compare *compare, const char *folder,
     for (uint32_t k = 0; k < n && !error->status; k++)
         if (strncmp(cells[k].key, sweep->n ? sweep->cells[0].key : cells[k].key,
                     CS_COMPARE_DIGITS) != 0)
-            cs_fail(error, CS_ERR_USAGE, "%s is of another scene, time or reference", path);
+            cs_fail(error, CS_ERR_USAGE, "%s belongs to another scene, time or reference",
+                    path);
         else
             cs_cell_list_add(sweep, cells + k, error);
     free(cells);

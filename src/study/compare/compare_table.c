@@ -118,7 +118,7 @@ static void add_series(const struct cs_cell *cells, uint32_t n, int width,
     if (high > 0)
         cs_text_add(out, high - low > 0.1 ? "  order %.2f to %.2f" : "  order %.2f", low, high);
     if (finished > 0 && !cells->adaptive)
-        cs_text_add(out, "  largest step that held %.3g ms", 1e3 * step);
+        cs_text_add(out, "  largest stable step %.3g ms", 1e3 * step);
     if (most > 0)
         cs_text_add(out, "  error / (tolerance x motion) from %.1e to %.1e", least, most);
     if (!strcmp(cells->outcome, "refused"))

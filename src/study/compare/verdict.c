@@ -25,7 +25,7 @@ static void add_factor(const struct cs_rank *rank, const char *none, struct cs_t
         return;
     }
     if (!rank->is_significant)
-        cs_text_add(out, "; not told apart from ");
+        cs_text_add(out, "; no significant difference from ");
     else if (ratio->pairs > 0)
         cs_text_add(out, "; %.2f times (%.2f to %.2f) cheaper than ", ratio->median, ratio->low,
                     ratio->high);
@@ -64,7 +64,7 @@ static void add_rank(const struct cs_ranking *ranking, const struct cs_rank *ran
     cs_text_add(out, "%s%s: ", *unit ? " " : "", unit);
     add_cell(rank->best, out);
     cs_text_add(out, ", %.3g ms", 1e3 * rank->best->cpu);
-    add_factor(rank, "no other series was run to that error", out);
+    add_factor(rank, "no other series covers that error", out);
     add_others(rank, bullet, out);
 }
 
@@ -73,16 +73,16 @@ static void add_rank(const struct cs_ranking *ranking, const struct cs_rank *ran
 static void add_frame(const struct cs_ranking *ranking, const char *bullet,
                       const struct cs_compare *compare, struct cs_text *out) {
     const struct cs_cell *best = ranking->frame.best, *nearest = ranking->frame_nearest;
-    cs_text_add(out, "%sone step a frame (%.3g ms): ", bullet, 1e3 / compare->fps);
+    cs_text_add(out, "%sone step per frame (%.3g ms): ", bullet, 1e3 / compare->fps);
     if (ranking->frame_tried == 0)
         cs_text_add(out, "no row has that step\n");
     else if (ranking->frame_finished == 0)
-        cs_text_add(out, "of %u row%s with that step none got through with it\n",
-                    ranking->frame_tried, ranking->frame_tried == 1 ? "" : "s");
+        cs_text_add(out, "none of the %u row%s with that step finished\n", ranking->frame_tried,
+                    ranking->frame_tried == 1 ? "" : "s");
     else if (!best) {
         cs_text_add(out,
-                    "%u of %u rows got through, none with an energy error of %.0f %% or "
-                    "less; the least is %.0f %%, of ",
+                    "%u of %u rows finished, none with an energy error of %.0f %% or less; the "
+                    "smallest is %.0f %%, of ",
                     ranking->frame_finished, ranking->frame_tried, 100 * CS_FRAME_ENERGY,
                     100 * nearest->energy_error);
         add_cell(nearest, out);
@@ -96,7 +96,7 @@ static void add_frame(const struct cs_ranking *ranking, const char *bullet,
             cs_text_add(out, ", energy error %.2g %%", 100 * best->energy_error);
         else
             cs_text_add(out, ", energy error not known");
-        add_factor(&ranking->frame, "no other series was seen to do as well", out);
+        add_factor(&ranking->frame, "no other series is known to do as well", out);
     }
 }
 
@@ -141,17 +141,18 @@ void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct 
     const struct cs_cell *nearest = most_accurate(compare);
     if (rank.best) {
         cs_cell_integrator(rank.best, integrator, sizeof integrator);
-        cs_text_add(out, "%s of at most %.3g %s after %.4g s: -i %s, %.3g ms a frame",
+        cs_text_add(out, "%s of at most %.3g %s after %.4g s: -i %s, %.3g ms per frame",
                     cs_norm_words(norm), bound, cs_norm_unit(norm), compare->time, integrator,
                     1e3 * rank.best->cpu / compare->settings->run.frames);
-        add_factor(&rank, "no other series was run to that error", out);
+        add_factor(&rank, "no other series covers that error", out);
     } else if (nearest) {
         cs_cell_integrator(nearest, integrator, sizeof integrator);
-        cs_text_add(out, "no row has an %s of at most %.3g %s; the least is %.2g, of -i %s\n",
+        cs_text_add(out,
+                    "no row has an %s of at most %.3g %s; the smallest is %.2g, of -i %s\n",
                     cs_norm_words(norm), bound, cs_norm_unit(norm),
                     cs_norm_of(norm, nearest, &compare->reference), integrator);
     } else
-        cs_text_add(out, "no row got through\n");
+        cs_text_add(out, "no row finished\n");
 }
 
 /* Number of cells per kind of warning. */
@@ -195,7 +196,7 @@ void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
                         ? " (a shorter --time, or a larger --accuracy)"
                         : "");
     if (cs_text_get(&compare->switched_off)[0])
-        cs_text_add(out, "%s%s switched off: no part of the equation of motion\n", bullet,
+        cs_text_add(out, "%s%s switched off: not part of the equation of motion\n", bullet,
                     cs_text_get(&compare->switched_off));
     /* one line for all cells of a kind, however many there are */
     add(out, bullet, stats.below, "below the reference's own error",
@@ -215,7 +216,7 @@ void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
         ": something else used the processor now and then");
     if (getloadavg(&load, 1) == 1 && load > 0.75 * (double)processors)
         cs_text_add(out,
-                    "%sthe machine is busy (load %.1f on %ld processors): factors near 1 "
-                    "mean nothing\n",
+                    "%sthe machine is busy (load %.1f on %ld processors): factors near 1 are "
+                    "not significant\n",
                     bullet, load, processors);
 }

@@ -29,8 +29,8 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     X("translation", translation, ANY, "a uniform velocity changes nothing else")              \
     X("rotation", rotation, SPRINGS, "a stretched pair turns on its circle")                   \
     X("commit", commit, ANY, "every step is committed, and they fill the time")                \
-    X("momentum", momentum, ANY, "no momentum without outer forces")                           \
-    X("angular-momentum", angular_momentum, ANY, "no angular momentum either")                 \
+    X("momentum", momentum, ANY, "momentum is conserved without external forces")              \
+    X("angular-momentum", angular_momentum, ANY, "angular momentum is conserved too")          \
     X("oscillator-axial", oscillator_axial, SPRINGS,                                           \
       "axially damped pair against its closed form")                                           \
     X("oscillator-relative", oscillator_relative, SPRINGS, "the same with relative damping")   \
@@ -40,30 +40,31 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     X("force-drag", force_drag, ANY, "under drag of each particle, and by area")               \
     X("force-wind", force_wind, ANY, "under wind on each particle, and by area")               \
     X("force-push", force_push, ANY, "under impacts and viewpoint forces")                     \
-    X("force-contact", force_contact, ANY, "near an obstacle, by contact.law force")           \
+    X("force-contact", force_contact, ANY, "near a collider, by contact.law force")            \
     X("unequal-masses", unequal_masses, ANY, "under all forces, with unequal masses")          \
     X("time-dependence", time_dependence, ANY, "forces that change with time are followed")    \
     X("stage-times", stage_times, ANY, "at the method's own order")                            \
     X("order", order, SPRINGS, "order on the drum without damping")                            \
     X("order-damped", order_damped, SPRINGS, "order on the damped drum")                       \
     X("solution", solution, SPRINGS, "the limit is the solution of the equation of motion")    \
-    X("tolerance", tolerance, SPRINGS, "achieved error against the asked tolerance")           \
+    X("tolerance", tolerance, SPRINGS, "achieved error against the requested tolerance")       \
     X("event", event, SPRINGS, "order through a change of the state at a known time")          \
-    X("reversible", reversible, ANY, "forwards, turned round, and back to the start")          \
+    X("reversible", reversible, ANY, "forwards, reversed, and back to the start")              \
     X("energy", energy, SPRINGS, "no energy is gained; bounded where symplectic")              \
     X("contact-order", contact_order, SPRINGS,                                                 \
       "order, or tolerance, in contact with friction")                                         \
-    X("contact-incline", contact_incline, ANY, "a block slides and creeps as the law says")    \
+    X("contact-incline", contact_incline, ANY,                                                 \
+      "a block slides and creeps as the law predicts")                                         \
     X("contact-rest", contact_rest, SPRINGS, "a sheet comes to rest on a floor")               \
     X("contact-energy", contact_energy, SPRINGS, "no energy is gained in a bounce")            \
     X("pins", pins, ANY, "pinned particles keep their bits")                                   \
-    X("not-finite", not_finite, ANY, "numbers that are none are reported")                     \
+    X("not-finite", not_finite, ANY, "non-finite numbers are reported")                        \
     X("failed-solve", failed_solve, ANY, "a linear solve that fails ends the run")             \
-    X("allocation", allocation, ANY, "no memory is taken in a step")                           \
+    X("allocation", allocation, ANY, "no memory is allocated in a step")                       \
     X("same-bits", same_bits, ANY, "two runs, one result")                                     \
     X("fidelity", fidelity, ANY, "the limit of the iterations is the stated one")              \
-    X("threads", threads, ANY, "the same bits over thread counts")                             \
-    X("resume", resume, ANY, "a resumed run is the unbroken one")
+    X("threads", threads, ANY, "the same bits for all thread counts")                          \
+    X("resume", resume, ANY, "a resumed run equals the uninterrupted one")
 
 #define X(name, function, of, what)                                                            \
     void cs_check_##function(const struct cs_conform *card, struct cs_conform_row *row);

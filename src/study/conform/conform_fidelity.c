@@ -73,7 +73,7 @@ void cs_check_fidelity(const struct cs_conform *card, struct cs_conform_row *row
         return;
     }
     if (!card->implicit_euler) {
-        cs_row_skip(row, "there is no integrator backward-euler to hold it against");
+        cs_row_skip(row, "there is no integrator backward-euler to compare with");
         return;
     }
     /* the start gives the scale: distances are fractions of the motion */

@@ -166,7 +166,7 @@ void cs_check_time_dependence(const struct cs_conform *card, struct cs_conform_r
 void cs_check_stage_times(const struct cs_conform *card, struct cs_conform_row *row) {
     if (!cs_method_has(card->method, "dt")) {
         cs_row_skip(row, card->method->traits & CS_ADAPTIVE
-                             ? "its step is its own: see time-dependence"
+                             ? "it chooses its own steps: see time-dependence"
                              : "it has no option dt");
         return;
     }

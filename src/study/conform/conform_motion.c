@@ -180,7 +180,7 @@ static double drift(const struct cs_conform *card, struct cs_conform_row *row, i
 void cs_check_momentum(const struct cs_conform *card, struct cs_conform_row *row) {
     double change[2];
     if (!isnan(drift(card, row, 0, change)))
-        cs_row_state(row, change[0], SMALL, "of the momentum lost or made in 0.5 s");
+        cs_row_state(row, change[0], SMALL, "of the momentum lost or gained in 0.5 s");
 }
 
 /* Symplectic methods conserve the quadratic invariant exactly; other methods to their order. */
@@ -193,7 +193,7 @@ void cs_check_angular_momentum(const struct cs_conform *card, struct cs_conform_
         const double share = drift(card, row, level, change);
         if (!isnan(share))
             cs_row_state(row, change[1], exact ? SMALL : fmax(share, 1e-11),
-                         "of the angular momentum lost or made in 0.5 s%s",
+                         "of the angular momentum lost or gained in 0.5 s%s",
                          exact   ? ""
                          : level ? ", fine"
                                  : ", coarse");

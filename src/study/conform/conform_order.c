@@ -139,7 +139,7 @@ static void order_on(const struct cs_conform *card, struct cs_conform_row *row,
         measure_order(card, row, cs_probe_order(card, damping > 0), &drum);
     else
         cs_row_skip(row, card->method->traits & CS_ADAPTIVE
-                             ? "its step is its own: see tolerance"
+                             ? "it chooses its own steps: see tolerance"
                              : "it has no option dt");
 }
 
@@ -209,7 +209,7 @@ void cs_check_solution(const struct cs_conform *card, struct cs_conform_row *row
     const double rtol = cs_probe_order(card, true) > 2 ? 1e-11 : 1e-10;
     double reference[2 * CS_DRUM_VALUES], states[LEVELS][2 * CS_DRUM_VALUES], scale[2];
     if (method->fidelity != CS_FIDELITY_ODE) {
-        cs_row_skip(row, "its fidelity is another");
+        cs_row_skip(row, "it claims another fidelity");
         return;
     }
     if (!cs_probe_can_be_set(card, row) ||

@@ -48,7 +48,7 @@ void cs_check_resume(const struct cs_conform *card, struct cs_conform_row *row) 
         record.is_reading = true;
         pass_break(&resumed, &record);
         if (!resumed.has_ended && !cs_serialiser_is_done(&record))
-            cs_row_fail(row, "load asks for less than save gave");
+            cs_row_fail(row, "load reads less than save wrote");
     }
     for (int k = BROKEN; k < FRAMES && cs_probe_run(&whole, 1) && cs_probe_run(&resumed, 1);
          k++)

@@ -46,11 +46,11 @@ void cs_check_abi(const struct cs_conform *card, struct cs_conform_row *row) {
     for (const char *const *name = method->fails; name && *name; name++) {
         falls_off |= !strcmp(*name, "translation");
         if (!is_check(*name))
-            cs_row_fail(row, "\"%.60s\" in fails is no check", *name);
+            cs_row_fail(row, "\"%.60s\" in fails is not a check", *name);
     }
     if (falls_off != !!(method->traits & CS_NOT_GALILEAN))
-        cs_row_fail(row, "CS_NOT_GALILEAN and \"translation\" in fails say the same: one of "
-                         "them is missing");
+        cs_row_fail(row, "CS_NOT_GALILEAN and \"translation\" in fails must appear together: "
+                         "one of them is missing");
     if (row->verdict == CS_VERDICT_PASS)
         cs_row_state(row, CS_ABI, CS_ABI, "interface of the module");
 }
@@ -63,8 +63,7 @@ static void try_option(const struct cs_conform *card, struct cs_conform_row *row
     cs_probe_open(&probe, card, card->method, HANGING, "axial");
     cs_probe_set(&probe, option->name, value);
     if (!cs_probe_run(&probe, 0) && strstr(probe.error.message, "it gave no reason"))
-        cs_row_fail(row, "%s = %g: it cannot be made, and gives no reason", option->name,
-                    value);
+        cs_row_fail(row, "%s = %g: create fails without a reason", option->name, value);
     cs_probe_close(&probe);
 }
 
@@ -150,8 +149,8 @@ static bool hides(struct cs_probe *probe) {
 }
 
 void cs_check_not_finite(const struct cs_conform *card, struct cs_conform_row *row) {
-    static const char *const cases[] = {"a position that is no number", "a speed of 1e200 m/s",
-                                        "a step far too large"};
+    static const char *const cases[] = {"a position that is not a number",
+                                        "a speed of 1e200 m/s", "a step far too large"};
     uint32_t hidden = 0;
     const char *which = "none";
     /* a state that is not finite from the start, by overflow, or by an unstable step */

@@ -107,19 +107,19 @@ const struct cs_force_scene cs_force_scenes[] = {
     {"force-push", "a steady impact",
      SHEETS_WITH(NO_GRAVITY, "\"from\": 0, \"to\": 0.35, \"impact\": {\"body\": 1,"
                  " \"direction\": [1, -2, 1], \"impulse\": 1}"), 4, false, false},
-    {"force-push", "an impact at once",
+    {"force-push", "an instantaneous impact",
      SHEETS_WITH(NO_GRAVITY, "\"at\": 0.25, \"impact\": {\"body\": 0,"
                  " \"direction\": [1, -2, 1], \"impulse\": 1}"), 4, false, false},
     {"force-push", "a steady viewpoint force",
      SHEETS_WITH(NO_GRAVITY, VIEWPOINT_FORCE("\"from\": 0, \"to\": 0.35", "\"refresh\": 0")),
      4, false, false},
-    {"force-push", "a viewpoint force at once",
+    {"force-push", "an instantaneous viewpoint force",
      SHEETS_WITH(NO_GRAVITY, VIEWPOINT_FORCE("\"at\": 0.25", "\"duration\": 0.2")), 4, false, false},
 
     {"force-contact", "contact by force, without friction", CONTACT("0", ""), 9, true, false},
     {"force-contact", "contact by force, with friction", CONTACT("0.5", ""), 9, true, false},
     {"force-contact", "edges on a pole", POLE, 9, true, true},
-    {"force-contact", "two sheets that meet by force", PAIRS("0.3"), 12, true, true},
+    {"force-contact", "two sheets in contact by force", PAIRS("0.3"), 12, true, true},
 
     {"unequal-masses", "two sheets in gravity, wind and drag",
      "{" SHEETS_OF("0.1", "0.3") ", \"forces\": {\"gravity\": [1, -3, 2], \"drag\": 0.4, "
@@ -141,7 +141,7 @@ const struct cs_force_scene cs_force_scenes[] = {
     {"time-dependence", "a gust",
      SHEETS_WITH(NO_GRAVITY ", " WIND("0.3", "N"), "\"from\": 0.05, \"to\": 0.45, \"wind\":"
                  " {\"direction\": [3, -1, 1], \"strength\": 1}"), 4, false, false},
-    {"time-dependence", "a ramp of an obstacle's friction",
+    {"time-dependence", "a ramp of a collider's friction",
      CONTACT("0.1", "{" RAMP("colliders[0].friction", "0.9") "}"), 9, true, false},
     {"time-dependence", "ramps of springs and dampers",
      "{\"bodies\": [{" CLOTH ", \"springs\": {\"stretch\": 0.2, \"shear\": 0.5, \"bend\": 0.1,"

@@ -93,7 +93,7 @@ static bool is_for_this_build(struct cs_golden_row *row, const struct cs_integra
         snprintf(row->library, sizeof row->library, "%s", method->library);
     row->skipped = strcmp(row->note, "any") != 0 && strcmp(row->note, row->library) != 0;
     if (row->skipped)
-        cs_text_add(&row->message, "golden for %s, and this build has %s", row->note,
+        cs_text_add(&row->message, "golden for %s, but this build has %s", row->note,
                     *row->library ? row->library : "no such library");
     return !row->skipped;
 }

@@ -117,11 +117,11 @@ static void judge_horizon(struct cs_compare_reference *reference) {
     if (!(horizon->time > time))
         snprintf(reference->reason, sizeof reference->reason,
                  "a displacement of %.0g m in one particle grows %.2g times and reaches %.0g m "
-                 "at %.3g s: no error of a single particle means anything beyond it",
+                 "at %.3g s: errors of single particles have no meaning after that time",
                  CS_HORIZON_START, horizon->growth, reference->accuracy, horizon->time);
     else if (reference->error_bar > reference->accuracy)
         snprintf(reference->reason, sizeof reference->reason,
-                 "the reference itself is only known to %.2g m, and %.2g m were asked for",
+                 "the reference is accurate only to %.2g m, but %.2g m was requested",
                  reference->error_bar, reference->accuracy);
     else
         reference->pointwise = true;

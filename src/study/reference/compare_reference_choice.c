@@ -96,8 +96,9 @@ enum cs_status cs_compare_reference_choose(const struct cs_compare_reference_set
         *chosen[family] = 0;
         take_first(settings, family, omega, next + family, chosen);
         if (!*chosen[family])
-            return cs_fail(error, CS_ERR_MODULE,
-                           "no two families of methods are there for a reference");
+            return cs_fail(
+                error, CS_ERR_MODULE,
+                "a reference needs methods of two families, but fewer are available");
     }
     char others[2][256];
     memcpy(others, chosen, sizeof others);

@@ -9,7 +9,7 @@ static const char *const titles[CS_SOFT_SERIES] = {
     [CS_SOFT_LARGE] = "Spring network, larger body, more and more inner springs",
     [CS_SOFT_SURFACE] = "Springs on the surface only, more and more vertices",
     [CS_SOFT_NETWORK] = "Spring network of the scene, more and more vertices",
-    [CS_SOFT_IMPLICIT] = "The same by implicit-linearised, one step a frame",
+    [CS_SOFT_IMPLICIT] = "The same by implicit-linearised, one step per frame",
     [CS_SOFT_MATCHED] = "Shape matching, more and more vertices",
 };
 
@@ -52,7 +52,7 @@ static void add_growth(const struct cs_soft *soft, struct cs_text *out) {
     for (int s = 0; s < CS_SOFT_SERIES; s++) {
         const double growth = cs_soft_growth(soft, (enum cs_soft_series)s);
         if (isfinite(growth))
-            cs_text_add(out, "%-14s one step takes a time like %s^%.2f\n", cs_soft_names[s],
+            cs_text_add(out, "%-14s time per step grows like %s^%.2f\n", cs_soft_names[s],
                         s == CS_SOFT_MATCHED ? "vertices" : "springs", growth);
     }
 }
@@ -85,8 +85,9 @@ static void add_ratios(const struct cs_soft *soft, struct cs_text *out) {
                 matched->vertices, matched->step_seconds / surface->step_seconds,
                 matched->step_seconds / network->step_seconds);
     cs_text_add(out,
-                "A frame of the network takes %.0f explicit steps, %.0f times a frame of shape "
-                "matching, or\none implicit step, %.0f times that.\n",
+                "A frame of the network takes %.0f explicit steps, %.0f times the time of "
+                "shape matching, or\n"
+                "one implicit step, %.0f times the time of shape matching.\n",
                 network->steps, network->step_seconds * network->steps / frame,
                 implicit->step_seconds * implicit->steps / frame);
 }
@@ -149,18 +150,18 @@ static void add_curves(const struct curve *curves, uint32_t n, int x, struct cs_
 void cs_soft_print_plot(const struct cs_soft *soft, struct cs_text *out) {
     /* the thesis's two graphs: over the number of springs, and over that of vertices */
     static const struct curve springs[] = {
-        {CS_SOFT_SMALL, 8, "#2171b5", "smaller body, one step a picture", 7},
-        {CS_SOFT_LARGE, 8, "#d7301f", "larger body, one step a picture", 5},
+        {CS_SOFT_SMALL, 8, "#2171b5", "smaller body, one step per picture", 7},
+        {CS_SOFT_LARGE, 8, "#d7301f", "larger body, one step per picture", 5},
         {CS_SOFT_SMALL, 9, "#2171b5", "smaller body, stable frames", 6},
         {CS_SOFT_LARGE, 9, "#d7301f", "larger body, stable frames", 4},
     };
     static const struct curve vertices[] = {
         {CS_SOFT_MATCHED, 8, "#238b45", "shape matching", 9},
-        {CS_SOFT_SURFACE, 8, "#e08214", "surface springs, one step a picture", 7},
-        {CS_SOFT_NETWORK, 8, "#6a51a3", "network, one step a picture", 5},
+        {CS_SOFT_SURFACE, 8, "#e08214", "surface springs, one step per picture", 7},
+        {CS_SOFT_NETWORK, 8, "#6a51a3", "network, one step per picture", 5},
         {CS_SOFT_SURFACE, 9, "#e08214", "surface springs, stable frames", 6},
         {CS_SOFT_NETWORK, 9, "#6a51a3", "network, stable frames", 4},
-        {CS_SOFT_IMPLICIT, 9, "#1b1b1b", "network, one implicit step a frame", 13},
+        {CS_SOFT_IMPLICIT, 9, "#1b1b1b", "network, one implicit step per frame", 13},
     };
     cs_text_add(
         out,
@@ -168,8 +169,8 @@ void cs_soft_print_plot(const struct cs_soft *soft, struct cs_text *out) {
         "set terminal pngcairo size 1500,720 font 'sans,13' background '#ffffff'\n"
         "set output 'soft.png'\nset datafile separator ','\n"
         "set multiplot layout 1,2 title \"Soft bodies: %s\" font 'sans,16' noenhanced\n",
-        soft->draw ? "pictures a second, simulated and drawn"
-                   : "pictures a second, simulated only");
+        soft->draw ? "pictures per second, simulated and drawn"
+                   : "pictures per second, simulated only");
     cs_text_add(out, "set logscale xy\nset format xy '10^{%%T}'\nset mxtics 10\nset mytics 10\n"
                      "set grid xtics ytics lc rgb '#dddddd'\nset tics out nomirror\n"
                      "set border 3 lc rgb '#555555'\n"

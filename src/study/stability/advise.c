@@ -77,7 +77,8 @@ static enum cs_status try_frame(struct cs_advice *row,
     if (isnan(row->limit)) {
         row->kind = CS_ADVICE_REFUSED;
         snprintf(row->message, sizeof row->message,
-                 "one step a frame does not live, and the budget ends the search for less");
+                 "one step per frame is unstable, and the budget ended the search for a "
+                 "smaller one");
         return CS_OK;
     }
     if (!(row->limit > 0)) {
@@ -130,7 +131,7 @@ static enum cs_status advise_fixed(struct cs_advice *row,
         return error->status;
     if (!reference.exists) {
         row->kind = CS_ADVICE_REFUSED;
-        snprintf(row->message, sizeof row->message, "no run to judge by: %.280s",
+        snprintf(row->message, sizeof row->message, "the reference run failed: %.280s",
                  reference.message);
         return CS_OK;
     }

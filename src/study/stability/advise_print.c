@@ -40,7 +40,7 @@ static void add_binding(const struct cs_system *system, const struct cs_mode *mo
     if (damped)
         cs_text_add(out, " is damped at %.4g /s", mode->damping_rate);
     else
-        cs_text_add(out, " swings at %.4g /s, damped at %.3g /s",
+        cs_text_add(out, " oscillates at %.4g /s, damped at %.3g /s",
                     sqrt(fmax(mode->omega_squared, 0)), mode->damping_rate);
     // the bounds of the view do not hold contact
     if (mode->damping_rate > 2 * system->view.delta ||
@@ -66,12 +66,13 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
         cs_text_add(out, "no limit in linear theory; bisected, large motions set it");
         break;
     case CS_ADVICE_FRAME:
-        cs_text_add(out, "no limit found: one step a frame");
+        cs_text_add(out, "no limit found: one step per frame");
         break;
     case CS_ADVICE_NONE:
         if (!*row->message)
-            cs_text_add(out, "no step is stable for %.4g s: the damping is too weak",
-                        advise->seconds);
+            cs_text_add(
+                out, "no stable step for a run of %.4g s: damping is too weak for this method",
+                advise->seconds);
         break;
     case CS_ADVICE_ADAPTIVE:
         cs_text_add(out, cs_advice_is_unstable(row) ? "not advised" : "chooses its own steps");
@@ -89,7 +90,7 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
     else if (row->verdict != CS_STABILITY_BOUNDED && row->kind != CS_ADVICE_NONE)
         cs_text_add(out, "; %s", cs_stability_word(row->verdict));
     if (row->verdict == CS_STABILITY_OVER_BUDGET)
-        cs_text_add(out, " after %.3g s: not watched longer", row->checked_seconds);
+        cs_text_add(out, " after %.3g s: not tested longer", row->checked_seconds);
 }
 
 /* A number, or "-" for none: 0, NAN or no limit. */
@@ -115,9 +116,10 @@ static void add_contact(const struct cs_advise *advise, struct cs_text *out) {
 
 void cs_advise_print(const struct cs_advise *advise, struct cs_text *out) {
     add_contact(advise, out);
-    cs_text_add(out, "steps for runs of %.4g s, and watched for so long\n", advise->seconds);
+    cs_text_add(out, "advice for runs of %.4g s; each step was tested for that long\n",
+                advise->seconds);
     cs_text_add(out, "%-22s%12s%12s%s%12s%14s\n", "method", "limit [s]", "advised [s]",
-                advise->bisect_too ? "   found [s]" : "", "steps/frame", "ms a frame");
+                advise->bisect_too ? "   found [s]" : "", "steps/frame", "ms/frame");
     for (uint32_t k = 0; k < advise->n; k++) {
         const struct cs_advice *row = advise->rows + k;
         const bool fixed = row->kind != CS_ADVICE_ADAPTIVE && row->kind != CS_ADVICE_NONE &&

@@ -42,7 +42,7 @@ void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
     for (uint32_t i = 0; i < system->view.n; i++)
         if (system->inv_mass[i] > 0)
             heaviest = fmax(heaviest, system->mass[i]);
-    cs_text_add(out, "a particle needs %.3g J to cross an obstacle", least);
+    cs_text_add(out, "a particle needs %.3g J to cross a collider", least);
     if (speed > 0)
         cs_text_add(out, ", and has at most %.3g J: %.3g kg at %.3g m/s",
                     0.5 * heaviest * speed * speed, heaviest, speed);

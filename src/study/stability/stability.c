@@ -221,8 +221,8 @@ static enum cs_status check_references(const struct cs_stability *map, struct cs
             without = column;
     }
     return without ? cs_fail(error, CS_ERR_USAGE,
-                             "%s = %g: no run to judge by (%.400s), nor elsewhere; a shorter "
-                             "--time or a longer --budget may help",
+                             "%s = %g: the reference run failed (%.400s), in all other columns "
+                             "too; try a shorter --time or a larger --budget",
                              cs_axis_names[map->settings->axis], without->value,
                              without->reference.message)
                    : CS_OK;

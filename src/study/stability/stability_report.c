@@ -137,8 +137,8 @@ static void add_unjudged(const struct cs_stability *map, struct cs_text *out) {
     for (uint32_t c = 0; c < map->n_columns; c++)
         if (!map->columns[c].reference.exists)
             cs_text_add(out,
-                        "  %s = %.4g: no run to judge by (%s); a shorter --time or a longer "
-                        "--budget may help\n",
+                        "  %s = %.4g: the reference run failed (%s); try a shorter --time or a "
+                        "larger --budget\n",
                         cs_axis_names[map->settings->axis], map->columns[c].value,
                         map->columns[c].reference.message);
 }
@@ -153,7 +153,7 @@ static void add_watch(const struct cs_stability *map, struct cs_text *out) {
 
 void cs_stability_print_table(const struct cs_stability *map, struct cs_text *out) {
     const struct cs_stability_settings *settings = map->settings;
-    cs_text_add(out, "%s on %s: %.6g s a cell, dt [s] against %s [%s]", map->series,
+    cs_text_add(out, "%s on %s: %.6g s per cell, dt [s] against %s [%s]", map->series,
                 map->session.scene.path, settings->seconds, cs_axis_names[settings->axis],
                 cs_axis_unit(settings->axis));
     cs_contact_note_add(&map->session.scene, "; ", out);
@@ -304,7 +304,7 @@ static void add_head(const struct cs_stability *map, const char *name, struct cs
                 "set output '%s.png'\nset datafile separator ','\n",
                 name, name);
     cs_text_add(out,
-                "set title \"%s: which steps survive, %s\\n%g s of motion a cell\" "
+                "set title \"%s: stable time steps, %s\\n%g s of motion per cell\" "
                 "font 'sans,16' noenhanced\n",
                 map->series, map->session.scene.path, map->settings->seconds);
     cs_text_add(out, "set xlabel '%s  [%s]'\nset ylabel 'dt  [s]' offset 1,0\n",

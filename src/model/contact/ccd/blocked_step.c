@@ -107,6 +107,6 @@ void cs_blocked_step_print(const struct cs_blocked_step *blocked,
     const bool edges = search.kind == CS_PRIMITIVE_EDGE_EDGE;
     cs_text_add(out, edges ? "; there the edge at " : "; there ");
     cs_surfaces_print_point(system, search.at[0], out);
-    cs_text_add(out, edges ? " would meet the edge at " : " would meet the triangle at ");
+    cs_text_add(out, edges ? " would cross the edge at " : " would cross the triangle at ");
     cs_surfaces_print_point(system, search.at[edges ? 2 : 1], out);
 }

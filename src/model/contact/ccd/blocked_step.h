@@ -24,7 +24,7 @@ enum cs_status cs_blocked_step_init(struct cs_blocked_step *blocked,
 void cs_blocked_step_store(struct cs_blocked_step *blocked, const struct cs_system *system,
                            const double t[2], const double *const x[2], double share);
 
-/* Appends "; ... would meet ..." with the two primitives that meet first in the stored step.
+/* Appends "; ... would cross ..." with the two primitives that meet first in the stored step.
  * Appends nothing if there is none, or the system is too large for a test of all pairs. */
 void cs_blocked_step_print(const struct cs_blocked_step *blocked,
                            const struct cs_system *system, struct cs_text *out);

@@ -28,9 +28,9 @@ static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error 
             const uint32_t first = pairs->system->bodies[body].first;
             if (s.d < range)
                 return cs_fail(error, CS_ERR_SCENE,
-                               "bodies[%u].self_contact: parts of it start %.3g m from each "
-                               "other (its particles %u and %u), expected at least its "
-                               "thickness, %.3g m; give a smaller bodies[%u].thickness",
+                               "bodies[%u].self_contact: layers are only %.3g m apart at the "
+                               "start (particles %u and %u), expected at least the thickness, "
+                               "%.3g m; reduce bodies[%u].thickness",
                                body, s.d, at[0] - first, at[2] - first, range, body);
         }
     return CS_OK;
@@ -71,7 +71,7 @@ enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error) 
     if (!cs_candidates_update(
             &pairs->candidates,
             cs_surface_points_positions(system, CS_POINTS_BEGIN, 0, system->start)))
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the pairs of contact");
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the contact pairs");
     system->pairs = pairs;
     return check_start(pairs, error);
 }
