@@ -38,7 +38,7 @@ static const struct cs_arg rows[] = {
     {"integrator", 'i', "NAME[:KEY=VALUE,...]",
      "method of both and its options, instead of the scene's",
      CS_ARG_INTO(struct options, integrator)},
-    {"set", 's', "PATH=VALUE", "another value for a key of the scene, of both; may be repeated",
+    {"set", 's', "PATH=VALUE", "override a scene value, of both; may be repeated",
      CS_ARG_LIST(struct options, sets, n_sets)},
     {"plugin", 'p', "FILE", "load an integrator module in both; may be repeated",
      CS_ARG_LIST(struct options, plugins, n_plugins)},

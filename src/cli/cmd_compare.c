@@ -49,9 +49,11 @@ static const struct cs_arg rows[] = {
      "rounds in which the cells of the verdict are timed, at most; fewer are enough where "
      "factors are known to 2 % (default: 40)",
      CS_ARG_INTO(struct options, compare.runs), .min = 1, .max = CS_ROUNDS_MAX},
-    {"rank", 0, "NAME",
-     "what the verdict goes by: error, path, largest, velocity or energy (default: error)",
-     CS_ARG_INTO(struct options, compare.ranking_norm), .names = cs_norm_names},
+    {"error-norm", 0, "NAME",
+     "error that methods are ranked by: error, path, largest, velocity or energy (default: "
+     "error)",
+     CS_ARG_INTO(struct options, compare.ranking_norm), .names = cs_norm_names,
+     .old_name = "rank"},
     {"budget", 0, "SECONDS",
      "processor time that one run may take; a series ends at its first row over it (default: "
      "25 s shared by the cells, at most 4 s each)",
@@ -63,8 +65,8 @@ static const struct cs_arg rows[] = {
      CS_ARG_LIST(struct options, references, n_references)},
     {"cache", 0, "DIR", "where references are kept (default: DIR of -o)",
      CS_ARG_INTO(struct options, compare.cache)},
-    {"fresh", 0, NULL, "write over the compare.csv that is there",
-     CS_ARG_INTO(struct options, compare.overwrite)},
+    {"overwrite", 'y', NULL, "replace the compare.csv of an earlier comparison",
+     CS_ARG_INTO(struct options, compare.overwrite), .old_name = "fresh"},
     {"pictures", 0, NULL,
      "draw the last frame of the methods at equal step and at equal cost, coloured by their "
      "error",

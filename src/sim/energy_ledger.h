@@ -25,11 +25,12 @@
     X(DRAG, "drag")                                                                            \
     X(WIND, "wind")                                                                            \
     X(FRICTION, "friction")                                                                    \
-    X(PUSH, "push")                                                                            \
+    X(PUSH, "events_force")                                                                    \
     X(PINS, "pins")                                                                            \
-    X(VALUES, "values")                                                                        \
-    X(INTEGRATOR, "integrator") X(LIMIT, "strain_limit") X(PROJECTION, "projection")           \
-        X(ABSORPTION, "absorption") X(LOSS, "velocity_loss") X(EVENTS, "events")
+    X(VALUES, "parameters")                                                                    \
+    X(INTEGRATOR, "integrator")                                                                \
+    X(LIMIT, "strain_limit") X(PROJECTION, "projection") X(ABSORPTION, "absorption")           \
+        X(LOSS, "velocity_loss") X(EVENTS, "events")
 
 enum cs_ledger_energy {
 #define X(name, column) CS_HOLDING_##name,

@@ -6,6 +6,8 @@
 #include "sim/run_state.h"
 
 const char *cs_outcome_text(enum cs_outcome outcome);
+/* The present text of an outcome read from a file, which the last release may have written. */
+const char *cs_outcome_current(const char *text);
 extern const char *const cs_stage_names[]; /* closed by NULL */
 
 /* Makes the method over the system with filled options (integrator->options_size bytes), and

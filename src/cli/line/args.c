@@ -1,6 +1,8 @@
 /* Parses a command's options and operands by its table of options. */
 #include "cli/line/args.h"
 
+#include "base/old_name.h"
+
 #include <string.h>
 
 enum { LONGEST_TABLE = 31 };
@@ -25,6 +27,11 @@ static enum cs_status unknown_option(const struct cs_command *command, const cha
                    word, command->name);
 }
 
+static bool is_old_name(const struct cs_arg *row, const char *word, size_t length) {
+    return row->old_name && strlen(row->old_name) == length &&
+           !strncmp(row->old_name, word, length);
+}
+
 /* The long name; an option that may be repeated answers to its singular too (--integrator). */
 static bool is_called(const struct cs_arg *row, const char *word, size_t length) {
     const size_t whole = strlen(row->name);
@@ -40,8 +47,11 @@ static const struct cs_arg *find_row(const struct cs_command *command, const cha
         const struct cs_arg *row = command->rows + r;
         if (word[1] == '-') {
             const size_t length = strcspn(word + 2, "=");
-            if (!is_called(row, word + 2, length))
+            const bool old = is_old_name(row, word + 2, length);
+            if (!old && !is_called(row, word + 2, length))
                 continue;
+            if (old)
+                cs_old_name_report("--", row->old_name, row->name);
             *attached = word[2 + length] ? word + 3 + length : NULL;
             return row;
         }

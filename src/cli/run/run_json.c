@@ -75,7 +75,7 @@ static void add_counts(const struct cs_counts *c, struct cs_text *out) {
         {"clamped", c->clamped_setups},
         {"contacts", c->projected_particles},
         {"contact_tests", c->contact_tests},
-        {"contact_cut_steps", c->subdivided_steps},
+        {"contact_subdivided_steps", c->subdivided_steps},
         {"limit_moves", c->strain_limit_moves},
         {"normals", c->normals},
     };

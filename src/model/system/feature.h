@@ -14,7 +14,7 @@
     X(DAMPING, "spring damping")                                                               \
     X(AREA, "area shares")                                                                     \
     X(VELOCITY_LOSS, "velocity loss")                                                          \
-    X(CONTACT, "contact")                                                                      \
+    X(CONTACT, "contact projection")                                                           \
     X(CROSSINGS, "crossings")                                                                  \
     X(STRAIN_LIMIT, "strain limit")                                                            \
     X(EVENTS, "events")                                                                        \
@@ -35,7 +35,7 @@ enum cs_feature {
 struct cs_plan_row {
     bool built;
     size_t bytes;       /* taken when it was built; 0 before */
-    const char *reason; /* why it is built, or why it is left out */
+    const char *reason; /* why it is built, or why not */
 };
 
 enum { CS_TERMS_MAX = 16 };

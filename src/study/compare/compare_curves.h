@@ -26,7 +26,7 @@ struct cs_plot_settings {
 /* The cells of one series, which stand together. */
 struct cs_curve {
     uint32_t first, n, is_drawn, on_front;
-    uint32_t bars, failed_marks; /* cells with quartiles; that did not get through */
+    uint32_t bars, failed_marks; /* cells with quartiles; that did not finish */
     double log_cost_excess; /* least cost over that of the front at its error, as a logarithm */
     uint32_t
         crossing_marks; /* cells that are drawn and in which edges went through triangles */
@@ -67,7 +67,7 @@ bool cs_curves_point(const struct cs_plot_settings *settings, const struct cs_ce
                      double *x, double *y);
 /* Whether it has quartiles of the processor time on the x axis. */
 bool cs_curves_quartiles(const struct cs_plot_settings *settings, const struct cs_cell *cell);
-/* Where the cross of a cell that did not get through stands; false: it has none. */
+/* Where the cross of a cell that did not finish stands; false: it has none. */
 bool cs_curves_cross(const struct cs_curves *curves, const struct cs_cell *cell, double *x);
 
 /* The next cell of the front after *k, from the cheapest to the most accurate; *k is UINT32_MAX

@@ -14,7 +14,7 @@ enum cs_norm {
     CS_NORMS
 };
 
-/* What --rank takes, closed by NULL. */
+/* What --error-norm takes, closed by NULL. */
 extern const char *const cs_norm_names[];
 /* "position error", "m" (or ""), and the column that holds it. */
 const char *cs_norm_words(enum cs_norm norm);

@@ -5,7 +5,7 @@
 #include "study/compare/compare_curves.h"
 
 /* Adds the script: curves, the front behind them, quartiles of processor time as bars. Where y
- * is an error of position, nothing below the reference's bar is drawn. What did not get through
+ * is an error of position, nothing below the reference's bar is drawn. What did not finish
  * stands as a cross at the upper edge, and a ring is about a cell in which edges went through
  * triangles. */
 void cs_plot_print(const struct cs_plot_settings *settings, struct cs_text *out);

@@ -64,7 +64,7 @@ static enum cs_status read_old(struct cs_compare_results *ledger,
             0)
             return cs_fail(error, CS_ERR_USAGE,
                            "%s is of another scene, time or reference: give another folder "
-                           "with --out, or --fresh to write over it",
+                           "with --out, or --overwrite to replace it",
                            ledger->table.path);
     return CS_OK;
 }

@@ -5,7 +5,7 @@
 #include "study/compare/compare_curves.h"
 
 /* Adds an <svg> element: the front as a staircase behind the curves, quartiles of processor
- * time as bars, crosses for what did not get through. A line below names the series that there
+ * time as bars, crosses for what did not finish. A line below names the series that there
  * was no room for. */
 void cs_svg_print(const struct cs_plot_settings *settings, struct cs_text *out);
 
