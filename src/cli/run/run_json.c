@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SCHEMA_VERSION = 1 };
+enum { SCHEMA_VERSION = 2 };
 
 static void add_versions(const struct cs_job *job, struct cs_text *out) {
     cs_json_write(out, "  'versions': {'clothsim': %s, 'cjson': %s", CS_VERSION,
