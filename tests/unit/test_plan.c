@@ -180,6 +180,6 @@ TEST(plan_is_printed_a_line_a_feature) {
         lines += *c == '\n';
     ck_assert_uint_eq(lines, 4 + CS_FEATURES + 3); // gravity, drag, wind
     ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ncontact projection not built "));
-    ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ngravity        built "));
+    ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ngravity            built "));
     cs_text_finish(&text);
 }
