@@ -57,8 +57,8 @@ bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now) 
 static void set_vertex(const struct cs_posed_collider *at, const double own[3],
                        const double normal[3], struct cs_vertex *out) {
     double place[3], turned[3];
-    cs_obstacle_place(at, own, place);
-    cs_obstacle_turned(at, normal, turned);
+    cs_collider_to_world(at, own, place);
+    cs_collider_rotate(at, normal, turned);
     for (int i = 0; i < 3; i++) {
         out->position[i] = (float)place[i];
         out->normal[i] = (float)turned[i];

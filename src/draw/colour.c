@@ -12,7 +12,7 @@ void cs_colour_linear(uint32_t hex, float linear[3]) {
 }
 
 void cs_colour_stops(int32_t look, float stops[6][4]) {
-    const uint32_t *table = cs_look_kind(look)->stops;
+    const uint32_t *table = cs_look_of(look)->stops;
     for (int i = 0; i < 6; i++) {
         cs_colour_linear(table ? table[i] : 0, stops[i]);
         stops[i][3] = 1;

@@ -30,7 +30,7 @@ static const struct cs_look_kind goals = {.colours = CS_COLOURS_FAINT, .goals = 
 static const struct cs_look_kind crossings = {.colours = CS_COLOURS_CROSSINGS,
                                               .stops = mark_stops};
 
-const struct cs_look_kind *cs_look_kind(int32_t look) {
+const struct cs_look_kind *cs_look_of(int32_t look) {
 #define X(NAME, name) [CS_LOOK_##NAME] = &name,
     static const struct cs_look_kind *const kinds[] = {CS_LOOK_LIST(X)};
 #undef X

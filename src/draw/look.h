@@ -25,6 +25,6 @@ struct cs_look_kind {
     bool edges, springs, goals; /* lines that lie over the surfaces */
 };
 
-const struct cs_look_kind *cs_look_kind(int32_t look);
+const struct cs_look_kind *cs_look_of(int32_t look);
 
 #endif

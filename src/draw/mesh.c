@@ -61,7 +61,7 @@ static enum cs_status init_creases(struct cs_mesh *mesh, struct cs_arena *arena,
 enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system, uint32_t body,
                             bool textured, struct cs_arena *arena, struct cs_error *error) {
     const struct cs_body_range *range = system->bodies + body;
-    const enum cs_look_colours colours = cs_look_kind(system->scene->render.look)->colours;
+    const enum cs_look_colours colours = cs_look_of(system->scene->render.look)->colours;
     const bool marked = colours == CS_COLOURS_CROSSINGS;
     mesh->range = *range;
     mesh->flat_shading =

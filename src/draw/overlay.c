@@ -30,13 +30,13 @@ void cs_overlay_aim(struct cs_overlay *overlay, double pixels_per_m) {
 }
 
 bool cs_overlay_hides(const struct cs_scene *scene, uint32_t body) {
-    return cs_look_kind(scene->render.look)->springs &&
+    return cs_look_of(scene->render.look)->springs &&
            cs_scene_bodies(scene)[body].network.present;
 }
 
 void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *frame) {
     const struct cs_render *render = &overlay->wireframe.system->scene->render;
-    const struct cs_look_kind *look = cs_look_kind(render->look);
+    const struct cs_look_kind *look = cs_look_of(render->look);
     const struct cs_wireframe *net = &overlay->wireframe;
     struct cs_lines *lines = overlay->lines;
     cs_wireframe_draw_threads(net, lines, frame->x);

@@ -29,8 +29,8 @@ static void grow_by_mesh(double low[3], double high[3],
     for (size_t v = 0; v < mesh->n; v++) {
         const double *own = mesh->positions + v;
         double place[3];
-        cs_obstacle_place(obstacle, (double[3]){own[0], own[mesh->n], own[2 * (size_t)mesh->n]},
-                          place);
+        cs_collider_to_world(
+            obstacle, (double[3]){own[0], own[mesh->n], own[2 * (size_t)mesh->n]}, place);
         grow(low, high, place);
     }
 }

@@ -6,7 +6,7 @@
 
 void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *material,
                     bool textured, int32_t look) {
-    const enum cs_look_colours colours = cs_look_kind(look)->colours;
+    const enum cs_look_colours colours = cs_look_of(look)->colours;
     const bool has_back = !isnan(material->back_colour[0]);
     *style = (struct cs_surface_style){.ambient = material->ambient,
                                        .diffuse = material->diffuse,

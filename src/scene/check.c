@@ -54,8 +54,8 @@ static enum cs_status check_matrix(const struct cs_check *at, const char *path,
     return CS_OK;
 }
 
-enum cs_status cs_check_place(const struct cs_check *at, const char *body, const char *shape,
-                              struct cs_pose *place) {
+enum cs_status cs_check_pose(const struct cs_check *at, const char *body, const char *shape,
+                             struct cs_pose *place) {
     char path[128];
     if (!isnan(place->matrix[0])) {
         snprintf(path, sizeof path, "%s.%s.place.matrix", body, shape);

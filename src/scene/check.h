@@ -21,7 +21,7 @@ double cs_check_length(const double *v, int n);
 enum cs_status cs_check_unit(const struct cs_check *at, const char *path, double *v, int n);
 
 /* The rotation of the place of BODY.SHAPE: a matrix is checked, a quaternion made unit. */
-enum cs_status cs_check_place(const struct cs_check *at, const char *body, const char *shape,
-                              struct cs_pose *place);
+enum cs_status cs_check_pose(const struct cs_check *at, const char *body, const char *shape,
+                             struct cs_pose *place);
 
 #endif

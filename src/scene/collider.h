@@ -103,8 +103,8 @@ static inline bool cs_shape_needs_points(const struct cs_shape *shape) {
 }
 
 /* x = p in the obstacle's own frame, in m. */
-static inline void cs_obstacle_own(const struct cs_posed_collider *obstacle, const double p[3],
-                                   double x[3]) {
+static inline void cs_collider_to_local(const struct cs_posed_collider *obstacle,
+                                        const double p[3], double x[3]) {
     const double from[3] = {p[0] - obstacle->centre[0], p[1] - obstacle->centre[1],
                             p[2] - obstacle->centre[2]};
     for (int k = 0; k < 3; k++)
@@ -112,15 +112,15 @@ static inline void cs_obstacle_own(const struct cs_posed_collider *obstacle, con
 }
 
 /* A point of the obstacle's own frame in the world's, in m. */
-static inline void cs_obstacle_place(const struct cs_posed_collider *obstacle,
-                                     const double own[3], double out[3]) {
+static inline void cs_collider_to_world(const struct cs_posed_collider *obstacle,
+                                        const double own[3], double out[3]) {
     for (int c = 0; c < 3; c++)
         out[c] = obstacle->centre[c] + obstacle->axes[0][c] * own[0] +
                  obstacle->axes[1][c] * own[1] + obstacle->axes[2][c] * own[2];
 }
 
 /* A vector of the own frame in the world's. */
-static inline void cs_obstacle_turned(const struct cs_posed_collider *obstacle,
+static inline void cs_collider_rotate(const struct cs_posed_collider *obstacle,
                                       const double own[3], double out[3]) {
     for (int c = 0; c < 3; c++)
         out[c] = own[0] * obstacle->axes[0][c] + own[1] * obstacle->axes[1][c] +

@@ -79,8 +79,8 @@ static enum cs_status check_body(const struct cs_check *at, uint32_t b, struct c
         return cs_check_refuse(at, path, "found %s, expected cloth or mesh",
                                body->cloth.present ? "cloth and mesh" : "no shape");
     if (check_network(at, path, body) || check_matching(at, path, body) ||
-        cs_check_place(at, path, "cloth", &body->cloth.place) ||
-        cs_check_place(at, path, "mesh", &body->mesh.place) || check_mass(at, path, body) ||
+        cs_check_pose(at, path, "cloth", &body->cloth.place) ||
+        cs_check_pose(at, path, "mesh", &body->mesh.place) || check_mass(at, path, body) ||
         check_pins(at, path, body) || check_texture(at, path, body->material.texture))
         return at->error->status;
     return CS_OK;

@@ -35,7 +35,7 @@ int cs_core_nearest_face(const struct cs_posed_collider *collider, const double 
 
 bool cs_core_holds(const struct cs_posed_collider *collider, const double p[3], double x[3],
                    double out[3]) {
-    cs_obstacle_own(collider, p, x);
+    cs_collider_to_local(collider, p, x);
     for (int k = 0; k < 3; k++)
         out[k] = copysign(fmax(fabs(x[k]) - collider->half_sizes[k], 0), x[k]);
     return out[0] == 0 && out[1] == 0 && out[2] == 0;
@@ -46,7 +46,7 @@ double cs_core_beyond(const struct cs_posed_collider *collider, const double out
     static const double middle[3] = {0, 0, 0};
     double own[3];
     const double length = cs_core_from_point(out, middle, own);
-    cs_obstacle_turned(collider, own, n);
+    cs_collider_rotate(collider, own, n);
     return length - collider->radius;
 }
 
@@ -115,7 +115,7 @@ static double smooth_core(const struct cs_posed_collider *collider, const double
 double cs_core_smooth(const struct cs_posed_collider *collider, const double p[3],
                       double gradient[3], double hessian[6]) {
     double x[3], g[3], h[3][3], rows[3][3], out[3][3];
-    cs_obstacle_own(collider, p, x);
+    cs_collider_to_local(collider, p, x);
     const int face = face_below(collider, x);
     if (face >= 0)
         return smooth_face(collider, face, x[face], gradient, hessian);
@@ -124,14 +124,14 @@ double cs_core_smooth(const struct cs_posed_collider *collider, const double p[3
         distance += smooth_core(collider, x, g, h);
 
     // the very axis of a capsule has no direction: up, as in the centre of a sphere
-    cs_obstacle_turned(collider, g, gradient);
+    cs_collider_rotate(collider, g, gradient);
     if (g[0] == 0 && g[1] == 0 && g[2] == 0)
         gradient[1] = 1;
     for (int k = 0; k < 3; k++)
-        cs_obstacle_turned(collider, h[k], rows[k]);
+        cs_collider_rotate(collider, h[k], rows[k]);
     for (int c = 0; c < 3; c++) {
         const double column[3] = {rows[0][c], rows[1][c], rows[2][c]};
-        cs_obstacle_turned(collider, column, out[c]);
+        cs_collider_rotate(collider, column, out[c]);
     }
     const double packed[6] = {out[0][0], out[0][1], out[0][2], out[1][1], out[1][2], out[2][2]};
     memcpy(hessian, packed, sizeof packed);

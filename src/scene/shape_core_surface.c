@@ -70,7 +70,7 @@ static double least_squared(const struct line *line, double share) {
 bool cs_core_meets_line(const struct cs_posed_collider *collider, const double from[3],
                         const double way[3], double share) {
     struct line line = {.core = collider->half_sizes};
-    cs_obstacle_own(collider, from, line.from);
+    cs_collider_to_local(collider, from, line.from);
     for (int k = 0; k < 3; k++)
         line.way[k] = cs_vec3_dot(collider->axes[k], way);
     return least_squared(&line, share) < collider->radius * collider->radius;

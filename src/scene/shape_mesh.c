@@ -9,7 +9,7 @@
 
 static enum cs_status check(const struct cs_check *at, const char *path,
                             struct cs_collider *collider) {
-    return cs_check_place(at, path, "mesh", &collider->mesh.place);
+    return cs_check_pose(at, path, "mesh", &collider->mesh.place);
 }
 
 static void pose(const struct cs_collider *collider, struct cs_posed_collider *out) {
@@ -59,7 +59,7 @@ static bool meets_line(const struct cs_posed_collider *obstacle, const double fr
     const struct cs_trimesh *mesh = obstacle->collider->mesh.geometry;
     double own[3], own_way[3];
     bool meets = false;
-    cs_obstacle_own(obstacle, from, own);
+    cs_collider_to_local(obstacle, from, own);
     for (int k = 0; k < 3; k++)
         own_way[k] = cs_vec3_dot(obstacle->axes[k], way);
     for (uint32_t t = 0; t < mesh->n_triangles && !meets; t++)

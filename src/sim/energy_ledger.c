@@ -61,11 +61,11 @@ static void move_values(const struct cs_energy_ledger *ledger, double t) {
 }
 
 static void measure(const struct cs_energy_ledger *ledger, double t, const double *x,
-                    const double *v, double holds[CS_HOLDINGS_MOST]) {
+                    const double *v, double holds[CS_HOLDINGS_MAX]) {
     const struct cs_system *system = ledger->system;
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
     const uint32_t n = system->view.n;
-    memset(holds, 0, CS_HOLDINGS_MOST * sizeof *holds);
+    memset(holds, 0, CS_HOLDINGS_MAX * sizeof *holds);
     holds[CS_HOLDING_KINETIC] = cs_measure_kinetic(system, v);
     holds[CS_HOLDING_STRETCH] = cs_springs_energy(&system->springs, n, x, CS_PART_STRETCH);
     holds[CS_HOLDING_SHEAR] = cs_springs_energy(&system->springs, n, x, CS_PART_SHEAR);
@@ -75,9 +75,9 @@ static void measure(const struct cs_energy_ledger *ledger, double t, const doubl
             holds[ledger->holding_of[k]] += cs_terms[k]->energy(system, &at);
 }
 
-static double sum_of(const double holds[CS_HOLDINGS_MOST]) {
+static double sum_of(const double holds[CS_HOLDINGS_MAX]) {
     double sum = 0;
-    for (int k = 0; k < CS_HOLDINGS_MOST; k++)
+    for (int k = 0; k < CS_HOLDINGS_MAX; k++)
         sum += holds[k];
     return sum;
 }
@@ -128,7 +128,7 @@ enum cs_status cs_energy_ledger_open(struct cs_energy_ledger *ledger, struct cs_
 
 void cs_energy_ledger_resume(struct cs_energy_ledger *ledger, double t) {
     const double *x = ledger->system->state;
-    double work[CS_WORKS_MOST];
+    double work[CS_WORKS_MAX];
     memcpy(work, ledger->work, sizeof work);
     cs_energy_ledger_store_state(ledger, t, x, x + length_of(ledger));
     memcpy(ledger->work, work, sizeof work);
@@ -187,7 +187,7 @@ static double find_drift(const struct cs_energy_ledger *ledger, double t, double
     const double away = h / 100, *x = ledger->trial_state, *v = x + n3;
     double ends[2];
     for (int k = 0; k < 2; k++) {
-        double holds[CS_HOLDINGS_MOST];
+        double holds[CS_HOLDINGS_MAX];
         const double at = k ? t + away : t - away;
         move_values(ledger, at);
         measure(ledger, at, x, v, holds);
@@ -225,7 +225,7 @@ static void add_forces(struct cs_energy_ledger *ledger, double t, double time) {
     struct cs_system some = *ledger->system;
     const size_t n3 = length_of(ledger);
     const double *v = ledger->trial_state + n3;
-    for (uint32_t c = 0; c < CS_WORKS_MOST; c++) {
+    for (uint32_t c = 0; c < CS_WORKS_MAX; c++) {
         choose_forces(ledger, c, &some);
         if (!some.n_terms)
             continue;
@@ -246,7 +246,7 @@ static void add_works(struct cs_energy_ledger *ledger, double t, double time, do
 
 static double sum_forces(const struct cs_energy_ledger *ledger) {
     double sum = 0;
-    for (int k = 0; k < CS_WORKS_MOST; k++)
+    for (int k = 0; k < CS_WORKS_MAX; k++)
         sum += k < CS_WORK_INTEGRATOR || k >= CS_WORKS ? ledger->work[k] : 0;
     return sum;
 }

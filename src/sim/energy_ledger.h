@@ -46,9 +46,9 @@ enum cs_ledger_work {
 };
 
 enum {
-    CS_HOLDINGS_MOST = CS_HOLDINGS + CS_TERMS_MAX,
-    CS_WORKS_MOST = CS_WORKS + CS_TERMS_MAX,
-    CS_NO_COLUMN = CS_WORKS_MOST
+    CS_HOLDINGS_MAX = CS_HOLDINGS + CS_TERMS_MAX,
+    CS_WORKS_MAX = CS_WORKS + CS_TERMS_MAX,
+    CS_NO_COLUMN = CS_WORKS_MAX
 };
 
 /* Zeroed: none. */
@@ -59,7 +59,7 @@ struct cs_energy_ledger {
     double *trial_state, *force, *b; /* (6,n), (3,n), (3,n) work */
     /* columns of each force in the list of terms.h; CS_NO_COLUMN: none, or it does not act */
     uint32_t holding_of[CS_TERMS_MAX], work_of[CS_TERMS_MAX];
-    double energies[CS_HOLDINGS_MOST], work[CS_WORKS_MOST];
+    double energies[CS_HOLDINGS_MAX], work[CS_WORKS_MAX];
     struct cs_arena arena;
 };
 

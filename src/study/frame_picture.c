@@ -12,7 +12,7 @@
 #include <string.h>
 
 bool cs_picture_is_coloured(const struct cs_scene *scene) {
-    return cs_look_kind(scene->render.look)->title;
+    return cs_look_of(scene->render.look)->title;
 }
 
 static enum cs_status read_texture(const struct cs_scene *scene, const char *name,
@@ -42,7 +42,7 @@ static enum cs_status read_textures(struct cs_picture *picture, struct cs_error 
 
 /* false: out of memory */
 static bool take_marks(struct cs_picture *picture) {
-    if (cs_look_kind(picture->scene->render.look)->colours != CS_COLOURS_CROSSINGS)
+    if (cs_look_of(picture->scene->render.look)->colours != CS_COLOURS_CROSSINGS)
         return true;
     picture->triangle_marks = calloc((size_t)picture->system->surfaces->n_triangles + 1, 1);
     return picture->triangle_marks;
@@ -51,7 +51,7 @@ static bool take_marks(struct cs_picture *picture) {
 static enum cs_status alloc_arrays(struct cs_picture *picture, struct cs_error *error) {
     const size_t n = picture->system->view.n;
     const bool coloured = cs_picture_is_coloured(picture->scene);
-    const bool drawn_to = cs_look_kind(picture->scene->render.look)->goals;
+    const bool drawn_to = cs_look_of(picture->scene->render.look)->goals;
     picture->x = calloc(n, 3 * sizeof(double));
     picture->colliders = calloc(picture->scene->colliders.n + 1, sizeof *picture->colliders);
     picture->inv_mass = calloc(n, sizeof(double));
@@ -138,14 +138,14 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
 
 void cs_picture_values(const struct cs_system *system, const struct cs_run *run, double *scalar,
                        double *work) {
-    if (cs_look_kind(system->scene->render.look)->colours == CS_COLOURS_FORCE)
+    if (cs_look_of(system->scene->render.look)->colours == CS_COLOURS_FORCE)
         cs_diagnostics_particle_force(system, run->t, run->x, run->v, scalar, work);
     else
         cs_diagnostics_particle_strain(system, run->x, scalar);
 }
 
 void cs_picture_range(const struct cs_scene *scene, double most, double range[2]) {
-    range[0] = cs_look_kind(scene->render.look)->has_sign ? -most : 0;
+    range[0] = cs_look_of(scene->render.look)->has_sign ? -most : 0;
     range[1] = most;
 }
 
@@ -162,7 +162,7 @@ static void measure(struct cs_picture *picture, const struct cs_run *run) {
 
 static void paint(void *object) {
     struct cs_picture *picture = object;
-    const struct cs_look_kind *look = cs_look_kind(picture->scene->render.look);
+    const struct cs_look_kind *look = cs_look_of(picture->scene->render.look);
     const double start = cs_clock_wall();
     const struct cs_frame frame = {.t = picture->t,
                                    .x = picture->x,

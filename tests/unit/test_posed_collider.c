@@ -406,7 +406,7 @@ TEST(triangles_lie_on_the_surface) {
             const double own[3] = {mesh.positions[i], mesh.positions[mesh.n + i],
                                    mesh.positions[2 * (size_t)mesh.n + i]};
             double p[3], n[3];
-            cs_obstacle_place(&of, own, p);
+            cs_collider_to_world(&of, own, p);
             ck_assert_double_eq_tol(cs_posed_collider_distance(&of, p, n), 0, 1e-14);
         }
         cs_arena_finish(&arena);

@@ -165,8 +165,8 @@ static void put_bar(struct layout *layout) {
     const struct cs_render paper = {.size = {BAR_WIDTH, (int64_t)height},
                                     .background = {.colour = {1, 1, 1}}};
     const struct cs_frame frame = {.range = {range[0], range[1]},
-                                   .title = cs_look_kind(look)->title,
-                                   .factor = cs_look_kind(look)->factor};
+                                   .title = cs_look_of(look)->title,
+                                   .factor = cs_look_of(look)->factor};
     struct cs_colour_bar bar;
     cs_colour_bar_init(&bar, &paper);
     layout->pen.look = look;

@@ -101,7 +101,7 @@ struct cs_run_output {
 };
 
 extern const struct cs_run_output cs_run_output_export, cs_run_output_hash, cs_run_output_json,
-    cs_run_output_ledger, cs_run_output_pictures, cs_run_output_states, cs_run_output_trail,
+    cs_run_output_ledger, cs_run_output_pictures, cs_run_output_states, cs_run_output_trace,
     cs_run_output_watch;
 
 /* Frames between two checkpoints at which the method is started anew; 0: it goes on. */

@@ -11,7 +11,7 @@
 /* In the order in which a frame is handed to them: the report's row is there before a picture
  * notes in it what it shows. */
 static const struct cs_run_output *const outputs[] = {
-    &cs_run_output_trail,  &cs_run_output_json,   &cs_run_output_watch,
+    &cs_run_output_trace,  &cs_run_output_json,   &cs_run_output_watch,
     &cs_run_output_ledger, &cs_run_output_states, &cs_run_output_pictures,
     &cs_run_output_export, &cs_run_output_hash,
 };

@@ -54,7 +54,7 @@ static void print_range(const struct cs_job_picture *picture, const struct cs_sc
     cs_text_add_real(range, picture->range[0]);
     cs_text_add(range, "..");
     cs_text_add_real(range, picture->range[1]);
-    cs_text_add(range, " %s", cs_look_kind(scene->render.look)->unit);
+    cs_text_add(range, " %s", cs_look_of(scene->render.look)->unit);
 }
 
 /* Hands the image taken last over, as frame_NUMBER.png. */

@@ -82,5 +82,5 @@ static enum cs_status end(struct cs_job *job, struct cs_error *error) {
     return error->status;
 }
 
-const struct cs_run_output cs_run_output_trail = {
+const struct cs_run_output cs_run_output_trace = {
     .at = {[CS_RUN_BEGIN] = begin, [CS_RUN_FRAME] = frame, [CS_RUN_END] = end}};

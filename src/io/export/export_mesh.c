@@ -193,7 +193,7 @@ void cs_export_mesh_pose_colliders(struct cs_export_mesh *skin, const struct cs_
         cs_posed_collider_at(system, skin->items[item], t, &at);
         for (size_t i = skin->first_point[item]; i < skin->first_point[item + 1]; i++) {
             double place[3];
-            cs_obstacle_place(&at, skin->local_positions + 3 * i, place);
+            cs_collider_to_world(&at, skin->local_positions + 3 * i, place);
             for (size_t c = 0; c < 3; c++)
                 out[3 * i + c] = cs_double_to_le64(place[c]);
         }

@@ -236,7 +236,7 @@ static enum cs_status add(void *state, const struct cs_export_source *source,
                           const struct cs_export_sample *sample, struct cs_error *error) {
     struct files *files = state;
     for (int k = 0; k < 2; k++)
-        if (cs_skin_has_sample(source->skins[k], sample) &&
+        if (cs_export_mesh_has_sample(source->skins[k], sample) &&
             write_sample(files->of + k, source->skins[k], source->settings.folder, sample,
                          error))
             return error->status;

@@ -74,8 +74,8 @@ struct cs_export_writer {
 extern const struct cs_export_writer cs_export_obj, cs_export_pc2, cs_export_vtp, cs_export_npz;
 
 /* What never moves has a first sample alone. */
-static inline bool cs_skin_has_sample(const struct cs_export_mesh *skin,
-                                      const struct cs_export_sample *sample) {
+static inline bool cs_export_mesh_has_sample(const struct cs_export_mesh *skin,
+                                             const struct cs_export_sample *sample) {
     return skin->n > 0 && (skin->is_moving || sample->number == 0);
 }
 

@@ -22,7 +22,7 @@ typedef float unaligned_lanes __attribute__((vector_size(4 * CS_LANES), aligned(
 struct vectors {
     lanes x, y, z;
 };
-struct blocks {
+struct lane_blocks {
     lanes xx, xy, xz, yy, yz, zz;
 };
 
@@ -42,11 +42,11 @@ CS_INLINE void put3(float *to, size_t n, struct vectors v) {
     put(to + n, v.y);
     put(to + 2 * n, v.z);
 }
-CS_INLINE struct blocks get6(const float *from, size_t n) {
-    return (struct blocks){get(from),         get(from + n),     get(from + 2 * n),
-                           get(from + 3 * n), get(from + 4 * n), get(from + 5 * n)};
+CS_INLINE struct lane_blocks get6(const float *from, size_t n) {
+    return (struct lane_blocks){get(from),         get(from + n),     get(from + 2 * n),
+                                get(from + 3 * n), get(from + 4 * n), get(from + 5 * n)};
 }
-CS_INLINE void put6(float *to, size_t n, struct blocks b) {
+CS_INLINE void put6(float *to, size_t n, struct lane_blocks b) {
     const lanes rows[6] = {b.xx, b.xy, b.xz, b.yy, b.yz, b.zz};
     for (size_t c = 0; c < 6; c++)
         put(to + c * n, rows[c]);
@@ -70,11 +70,11 @@ CS_INLINE struct vectors minus(struct vectors a, struct vectors b) {
 CS_INLINE struct vectors scaled(float a, struct vectors b) {
     return (struct vectors){a * b.x, a * b.y, a * b.z};
 }
-CS_INLINE struct blocks plus6(struct blocks a, struct blocks b) {
-    return (struct blocks){a.xx + b.xx, a.xy + b.xy, a.xz + b.xz,
-                           a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
+CS_INLINE struct lane_blocks plus6(struct lane_blocks a, struct lane_blocks b) {
+    return (struct lane_blocks){a.xx + b.xx, a.xy + b.xy, a.xz + b.xz,
+                                a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
 }
-CS_INLINE struct vectors times(struct blocks b, struct vectors p) {
+CS_INLINE struct vectors times(struct lane_blocks b, struct vectors p) {
     return (struct vectors){b.xx * p.x + b.xy * p.y + b.xz * p.z,
                             b.xy * p.x + b.yy * p.y + b.yz * p.z,
                             b.xz * p.x + b.yz * p.y + b.zz * p.z};

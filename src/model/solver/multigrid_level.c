@@ -107,7 +107,7 @@ CS_INLINE struct vectors add_lists(const struct cs_level *level, size_t i, const
     const uint32_t *starts = level->starts + i / CS_LANES;
     for (size_t k = starts[0]; k < starts[1]; k++) {
         const struct vectors there = gather3(p, level->n, level->neighbours + k * CS_LANES);
-        const struct blocks b = get6(level->springs + k * 6 * CS_LANES, CS_LANES);
+        const struct lane_blocks b = get6(level->springs + k * 6 * CS_LANES, CS_LANES);
         y = plus(y, times(b, minus(here, there)));
     }
     return y;
@@ -192,7 +192,7 @@ CS_INLINE void alloc_links(const struct loop *loop, size_t begin, size_t end) {
         struct vectors r = get3(level->residual + i, n);
         for (size_t k = 0; k < slots.n; k++) {
             const struct vectors there = gather3(loop->d, n, slots.cells + k * CS_LANES);
-            const struct blocks b = get6(slots.springs + k * 6 * CS_LANES, CS_LANES);
+            const struct lane_blocks b = get6(slots.springs + k * 6 * CS_LANES, CS_LANES);
             r = minus(r, times(b, minus(here, there)));
         }
         put3(level->residual + i, n, r);
@@ -260,17 +260,17 @@ void cs_level_solve_diagonal(struct cs_level *level) {
     run_one((struct loop){.level = level, .task = start, .e = level->correction, .b = 1});
 }
 
-CS_INLINE struct blocks expanded(const float *spring, size_t n) {
+CS_INLINE struct lane_blocks expanded(const float *spring, size_t n) {
     const lanes s = get(spring);
     const struct vectors w = get3(spring + n, n);
-    return (struct blocks){s + w.x * w.x, w.x * w.y, w.x * w.z,
-                           s + w.y * w.y, w.y * w.z, s + w.z * w.z};
+    return (struct lane_blocks){s + w.x * w.x, w.x * w.y, w.x * w.z,
+                                s + w.y * w.y, w.y * w.z, s + w.z * w.z};
 }
 
 /* the springs' blocks of the 16 cells from i on, added up */
-CS_INLINE struct blocks sum_springs(const struct cs_level *level, size_t i) {
+CS_INLINE struct lane_blocks sum_springs(const struct cs_level *level, size_t i) {
     const size_t n = level->n;
-    struct blocks sum = {0};
+    struct lane_blocks sum = {0};
     if (level->form == CS_LEVEL_MESH) {
         const uint32_t *starts = level->starts + i / CS_LANES;
         for (size_t k = starts[0]; k < starts[1]; k++)
@@ -307,7 +307,7 @@ CS_CLONES static void invert(const struct loop *loop, size_t begin, size_t end) 
     struct cs_level *level = loop->level;
     const size_t n = level->n;
     for (size_t i = begin; i < end; i += CS_LANES) {
-        struct blocks sum = sum_springs(level, i);
+        struct lane_blocks sum = sum_springs(level, i);
         if (level->extra_springs && level->extra_springs->is_nonempty)
             sum = plus6(sum, get6(level->extra_springs->diagonal_share + i, n));
         if (level->form == CS_LEVEL_FACTORED) {

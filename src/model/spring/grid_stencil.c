@@ -5,7 +5,7 @@
 
 /* one tile of a fan: particles [start, start + count) of the row */
 struct tile {
-    const struct job *job;
+    const struct spring_job *job;
     const struct row_stencil *fan;
     const struct stencil_kernel *kernel;
     size_t start, count;
@@ -33,7 +33,7 @@ CS_INLINE size_t end_of(unsigned way, size_t columns) {
 
 CS_INLINE struct stencil_direction direction_of(struct tile *tile, unsigned way) {
     const struct cs_spring_run *run = tile->fan->directions[way];
-    const struct job *job = tile->job;
+    const struct spring_job *job = tile->job;
     const ptrdiff_t before = (ptrdiff_t)(tile->start + run->row) - (ptrdiff_t)run->first_a;
     return (struct stencil_direction){
         .k = active_constants_of(run, job->at.parts).k,
@@ -202,7 +202,7 @@ CS_INLINE void add_part(struct tile *tile, const bool at[3], size_t k, const dou
 
 CS_INLINE void add_tile(struct tile *tile, const bool at[3]) {
     const struct stencil_kernel *kernel = tile->kernel;
-    const struct job *job = tile->job;
+    const struct spring_job *job = tile->job;
     const size_t blocks = kernel->n_dfdx + kernel->n_dfdv;
     for (size_t k = 0; k < kernel->n_force; k++)
         add_part(tile, at, k, -1, job->to + k * job->n);
@@ -212,7 +212,7 @@ CS_INLINE void add_tile(struct tile *tile, const bool at[3]) {
                                     : job->at.dfdv_blocks + (k - kernel->n_dfdx) * job->n);
 }
 
-CS_CLONES void cs_grid_stencil_add(const struct job *job, const struct cs_block *block,
+CS_CLONES void cs_grid_stencil_add(const struct spring_job *job, const struct cs_block *block,
                                    const struct row_stencil *stencil,
                                    const struct stencil_kernel *kernel) {
     const struct cs_spring_run *first = stencil->first;

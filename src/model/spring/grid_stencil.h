@@ -64,13 +64,13 @@ struct row_stencil {
 };
 
 /* Adds what a kernel makes of a fan's springs at the particles of a block. */
-void cs_grid_stencil_add(const struct job *job, const struct cs_block *block,
+void cs_grid_stencil_add(const struct spring_job *job, const struct cs_block *block,
                          const struct row_stencil *stencil,
                          const struct stencil_kernel *kernel);
 
 /* Finds the runs of a row, from its first on, and adds what a kernel makes of those that are
  * asked for. Returns how many there are. */
-CS_INLINE uint32_t add_row_stencil(const struct job *job, const struct cs_block *block,
+CS_INLINE uint32_t add_row_stencil(const struct spring_job *job, const struct cs_block *block,
                                    const struct cs_spring_run *first, run_test *asks,
                                    const struct stencil_kernel *kernel) {
     const struct cs_spring_run *run = first, *end = job->springs->runs + job->springs->n_runs;
@@ -87,13 +87,13 @@ CS_INLINE uint32_t add_row_stencil(const struct job *job, const struct cs_block 
 }
 
 /* the kernel for a row's law, and what is asked of it */
-typedef const struct stencil_kernel *stencil_choice(const struct job *job,
+typedef const struct stencil_kernel *stencil_choice(const struct spring_job *job,
                                                     const struct cs_spring_run *first);
 
 /* Adds what kernels make of all runs to the particles of a block, in the order of the runs: of
  * fans, and, unless there is no job->to, of pieces of meshes. */
-CS_INLINE void add_runs(const struct job *job, const struct cs_block *block, run_test *asks,
-                        stencil_choice *choose, piece_kernel *kernel) {
+CS_INLINE void add_runs(const struct spring_job *job, const struct cs_block *block,
+                        run_test *asks, stencil_choice *choose, piece_kernel *kernel) {
     const struct cs_springs *springs = job->springs;
     uint32_t n_runs = 1;
     for (uint32_t r = block->first_run; r < block->end_run; r += n_runs) {

@@ -17,7 +17,7 @@ enum { RUNS = 32 }; /* runs that one thread takes at a time where their order do
 _Static_assert(CS_SPRING_CHUNK_MAX % PIECE == 0, "a lot is of whole pieces");
 
 /* What a kernel works on. */
-struct job {
+struct spring_job {
     const struct cs_springs *springs;
     size_t n;
     struct cs_eval at;     /* of a product with the matrix: x alone, what it is taken of */
@@ -37,12 +37,12 @@ CS_INLINE struct active_constants active_constants_of(const struct cs_spring_run
         parts & CS_PART_DAMPING ? run->damping : 0};
 }
 
-CS_INLINE bool has_force(const struct job *job, const struct cs_spring_run *run) {
+CS_INLINE bool has_force(const struct spring_job *job, const struct cs_spring_run *run) {
     const struct active_constants asked = active_constants_of(run, job->at.parts);
     return asked.k != 0 || asked.c != 0;
 }
 
-CS_INLINE bool has_anything(const struct job *job, const struct cs_spring_run *run) {
+CS_INLINE bool has_anything(const struct spring_job *job, const struct cs_spring_run *run) {
     (void)job, (void)run;
     return true;
 }
@@ -66,11 +66,11 @@ struct piece {
 };
 
 /* true where the run has something to add */
-typedef bool run_test(const struct job *job, const struct cs_spring_run *run);
+typedef bool run_test(const struct spring_job *job, const struct cs_spring_run *run);
 
 /* forces of one piece, in rows */
-typedef void piece_kernel(const struct job *job, const struct piece *piece, double *restrict fx,
-                          double *restrict fy, double *restrict fz);
+typedef void piece_kernel(const struct spring_job *job, const struct piece *piece,
+                          double *restrict fx, double *restrict fy, double *restrict fz);
 
 CS_INLINE struct piece piece_of(const struct cs_spring_run *run, uint32_t start) {
     const uint32_t left = run->count - start;
@@ -170,7 +170,7 @@ CS_INLINE bool is_in(const struct cs_block *block, uint32_t particle) {
 }
 
 /* Adds what kernel makes of a mesh's run, whose body is all in the block. */
-CS_INLINE void add_run(const struct job *job, const struct cs_spring_run *run,
+CS_INLINE void add_run(const struct spring_job *job, const struct cs_spring_run *run,
                        piece_kernel *kernel) {
     double fx[PIECE], fy[PIECE], fz[PIECE];
     for (uint32_t start = 0; start < run->count; start += PIECE) {
@@ -181,7 +181,7 @@ CS_INLINE void add_run(const struct job *job, const struct cs_spring_run *run,
 }
 
 /* Buffers what kernel makes of the springs of one chunk. */
-CS_INLINE void compute_chunk_to_slots(const struct job *job,
+CS_INLINE void compute_chunk_to_slots(const struct spring_job *job,
                                       const struct cs_spring_chunk *chunk, run_test *asks,
                                       piece_kernel *kernel) {
     const struct cs_spring_run *run = job->springs->runs + chunk->run;

@@ -49,7 +49,7 @@ KERNEL(undamped_both, FORCE | STIFF, 3, SYM, 0);
 KERNEL(axial_both, FORCE | AXIAL | STIFF | DAMPED, 3, SYM, SYM);
 KERNEL(relative_both, FORCE | RELATIVE | STIFF | STEADY, 3, SYM, 1);
 
-static const struct stencil_kernel *choose(const struct job *job,
+static const struct stencil_kernel *choose(const struct spring_job *job,
                                            const struct cs_spring_run *first) {
     static const struct stencil_kernel *const kernels[3][3] = {
         {&undamped_force, &axial_force, &relative_force},
@@ -61,8 +61,9 @@ static const struct stencil_kernel *choose(const struct job *job,
 }
 
 /* forces of a piece of a mesh, whose lengths and stiffnesses are the springs' own */
-CS_INLINE void force_rows(const struct job *job, const struct piece *piece, const unsigned how,
-                          double *restrict fx, double *restrict fy, double *restrict fz) {
+CS_INLINE void force_rows(const struct spring_job *job, const struct piece *piece,
+                          const unsigned how, double *restrict fx, double *restrict fy,
+                          double *restrict fz) {
     struct gather_buffer places, speeds;
     const struct active_constants asked = active_constants_of(piece->run, job->at.parts);
     const struct ends x = ends_of(piece, job->at.x, job->n, false, &places);
@@ -78,7 +79,7 @@ CS_INLINE void force_rows(const struct job *job, const struct piece *piece, cons
     }
 }
 
-CS_INLINE void force_piece(const struct job *job, const struct piece *piece,
+CS_INLINE void force_piece(const struct spring_job *job, const struct piece *piece,
                            double *restrict fx, double *restrict fy, double *restrict fz) {
     if (active_constants_of(piece->run, job->at.parts).c == 0)
         force_rows(job, piece, 0, fx, fy, fz);
@@ -90,18 +91,18 @@ CS_INLINE void force_piece(const struct job *job, const struct piece *piece,
 
 CS_CLONES void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
                                     const struct cs_eval *at, double *f) {
-    const struct job job = {.springs = springs, .n = n, .at = *at, .to = f};
+    const struct spring_job job = {.springs = springs, .n = n, .at = *at, .to = f};
     add_runs(&job, at->block, has_force, choose, force_piece);
 }
 
 CS_CLONES static void wait_force_chunk(void *job, uint32_t chunk) {
-    compute_chunk_to_slots(job, ((const struct job *)job)->springs->chunks + chunk, has_force,
-                           force_piece);
+    compute_chunk_to_slots(job, ((const struct spring_job *)job)->springs->chunks + chunk,
+                           has_force, force_piece);
 }
 
 void cs_springs_force_to_slots(const struct cs_springs *springs, uint32_t n,
                                const struct cs_eval *at) {
-    struct job job = {.springs = springs, .n = n, .at = *at};
+    struct spring_job job = {.springs = springs, .n = n, .at = *at};
     cs_pool_run(springs->n_chunks, wait_force_chunk, &job);
 }
 

@@ -105,7 +105,7 @@ CS_STENCIL_KERNEL(own_blocks, diagonal_block, 0, SYM, 0);
 
 CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
                                           const double *factors, double *sums) {
-    const struct job job = {
+    const struct spring_job job = {
         .springs = springs, .n = n, .at = {.dfdx_blocks = sums}, .factors = factors};
     const struct cs_block all = {0, n, 0, springs->n_runs};
     struct blocks blocks;

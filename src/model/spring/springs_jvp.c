@@ -8,7 +8,7 @@
 #include <math.h>
 
 /* Copies of the loops. MOVED: dx is given; TURNED: dv is given. */
-enum damper_form { MOVED = 1, TURNED = 2 };
+enum damper_tangent { MOVED = 1, TURNED = 2 };
 
 /* a spring's law */
 struct law {
@@ -87,7 +87,7 @@ CS_STENCIL_KERNEL(moved_jvp, moved, 3, 0, 0);
 CS_STENCIL_KERNEL(turned_jvp, rotated, 3, 0, 0);
 CS_STENCIL_KERNEL(both_jvp, elastic_and_damping, 3, 0, 0);
 
-static const struct stencil_kernel *choose_jvp(const struct job *job,
+static const struct stencil_kernel *choose_jvp(const struct spring_job *job,
                                                const struct cs_spring_run *first) {
     (void)first;
     if (job->at.dx && job->at.dv)
@@ -96,8 +96,9 @@ static const struct stencil_kernel *choose_jvp(const struct job *job,
 }
 
 /* of a piece of a mesh, whose lengths and stiffnesses are the springs' own */
-CS_INLINE void jvp_rows(const struct job *job, const struct piece *piece, const unsigned how,
-                        double *restrict fx, double *restrict fy, double *restrict fz) {
+CS_INLINE void jvp_rows(const struct spring_job *job, const struct piece *piece,
+                        const unsigned how, double *restrict fx, double *restrict fy,
+                        double *restrict fz) {
     struct gather_buffer places, speeds, moves, turns;
     const struct cs_eval *at = &job->at;
     const struct active_constants asked = active_constants_of(piece->run, at->parts);
@@ -121,8 +122,8 @@ CS_INLINE void jvp_rows(const struct job *job, const struct piece *piece, const 
     }
 }
 
-CS_INLINE void jvp_piece(const struct job *job, const struct piece *piece, double *restrict fx,
-                         double *restrict fy, double *restrict fz) {
+CS_INLINE void jvp_piece(const struct spring_job *job, const struct piece *piece,
+                         double *restrict fx, double *restrict fy, double *restrict fz) {
     if (job->at.dx && job->at.dv)
         jvp_rows(job, piece, MOVED | TURNED, fx, fy, fz);
     else if (job->at.dx)
@@ -131,24 +132,24 @@ CS_INLINE void jvp_piece(const struct job *job, const struct piece *piece, doubl
         jvp_rows(job, piece, TURNED, fx, fy, fz);
 }
 
-CS_INLINE bool asks_jvp(const struct job *job, const struct cs_spring_run *run) {
+CS_INLINE bool asks_jvp(const struct spring_job *job, const struct cs_spring_run *run) {
     return job->at.dx ? has_force(job, run)
                       : job->at.dv && active_constants_of(run, job->at.parts).c != 0;
 }
 
 CS_CLONES void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n,
                                   const struct cs_eval *at, double *df) {
-    const struct job job = {.springs = springs, .n = n, .at = *at, .to = df};
+    const struct spring_job job = {.springs = springs, .n = n, .at = *at, .to = df};
     add_runs(&job, at->block, asks_jvp, choose_jvp, jvp_piece);
 }
 
 CS_CLONES static void wait_jvp_chunk(void *job, uint32_t chunk) {
-    compute_chunk_to_slots(job, ((const struct job *)job)->springs->chunks + chunk, asks_jvp,
-                           jvp_piece);
+    compute_chunk_to_slots(job, ((const struct spring_job *)job)->springs->chunks + chunk,
+                           asks_jvp, jvp_piece);
 }
 
 void cs_springs_jvp_to_slots(const struct cs_springs *springs, uint32_t n,
                              const struct cs_eval *at) {
-    struct job job = {.springs = springs, .n = n, .at = *at};
+    struct spring_job job = {.springs = springs, .n = n, .at = *at};
     cs_pool_run(springs->n_chunks, wait_jvp_chunk, &job);
 }

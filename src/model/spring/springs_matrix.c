@@ -101,14 +101,14 @@ CS_INLINE void mul(const struct stencil_input *in, const struct stencil_directio
 
 CS_STENCIL_KERNEL(product, mul, 3, 0, 0);
 
-static const struct stencil_kernel *choose_mul(const struct job *job,
+static const struct stencil_kernel *choose_mul(const struct spring_job *job,
                                                const struct cs_spring_run *first) {
     (void)job, (void)first;
     return &product;
 }
 
-CS_INLINE void mul_piece(const struct job *job, const struct piece *piece, double *restrict fx,
-                         double *restrict fy, double *restrict fz) {
+CS_INLINE void mul_piece(const struct spring_job *job, const struct piece *piece,
+                         double *restrict fx, double *restrict fy, double *restrict fz) {
     struct gather_buffer places;
     const struct cs_spring_run *run = piece->run;
     const double *s = job->factors + 4 * (size_t)run->first + piece->start;
@@ -124,19 +124,20 @@ CS_INLINE void mul_piece(const struct job *job, const struct piece *piece, doubl
 }
 
 CS_CLONES static void wait_mul_chunk(void *job, uint32_t chunk) {
-    compute_chunk_to_slots(job, ((const struct job *)job)->springs->chunks + chunk,
+    compute_chunk_to_slots(job, ((const struct spring_job *)job)->springs->chunks + chunk,
                            has_anything, mul_piece);
 }
 
 CS_CLONES static void mul_add_block(void *arg, uint32_t number) {
-    const struct job *job = arg;
+    const struct spring_job *job = arg;
     const struct cs_block block = cs_springs_block(job->springs, (uint32_t)job->n, number);
     add_runs(job, &block, has_anything, choose_mul, mul_piece);
 }
 
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
                         const double *p, double *y) {
-    struct job job = {.springs = springs, .n = n, .at = {.x = p}, .factors = factors, .to = y};
+    struct spring_job job = {
+        .springs = springs, .n = n, .at = {.x = p}, .factors = factors, .to = y};
     cs_pool_run(springs->n_chunks, wait_mul_chunk, &job);
     cs_pool_run(springs->n_blocks, mul_add_block, &job);
 }

@@ -100,7 +100,7 @@ static bool has_energy(const struct cs_spring_run *run, uint32_t parts) {
 }
 
 static void energy_of_runs(void *arg, uint32_t block) {
-    const struct job *job = arg;
+    const struct spring_job *job = arg;
     const struct cs_springs *springs = job->springs;
     for (uint32_t r = RUNS * block; r < springs->n_runs && r < RUNS * (block + 1); r++)
         if (has_energy(springs->runs + r, job->at.parts))
@@ -109,7 +109,7 @@ static void energy_of_runs(void *arg, uint32_t block) {
 
 double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const double *x,
                          uint32_t parts) {
-    struct job job = {.springs = springs, .n = n, .at = {.x = x, .parts = parts}};
+    struct spring_job job = {.springs = springs, .n = n, .at = {.x = x, .parts = parts}};
     double energy = 0;
     if (springs->energies)
         cs_pool_run((springs->n_runs + RUNS - 1) / RUNS, energy_of_runs, &job);
