@@ -23,7 +23,7 @@ for method in explicit-euler:dt=0.016666666666666666 explicit-euler:dt=0.0016666
     velocity-verlet:dt=0.0016666666666666668; do
     echo "$method"
     "$program" run scenes/explosion.json -n 1200 --no-render -i $method \
-        --watch "$out/$(echo $method | tr ':=' '__' | cut -c 1-30).csv" -y 2>/dev/null |
+        --monitor "$out/$(echo $method | tr ':=' '__' | cut -c 1-30).csv" -y 2>/dev/null |
         grep -A1 -E '^(outcome|watch|energy)' | grep -vE '^(steps|evaluations|largest|--)' || true
 done >$out/story.txt
 

@@ -17,37 +17,39 @@
 #include <math.h>
 #include <string.h>
 
-enum { SET_NEWMARK, SET_HHT, SET_ALPHA, SET_OWN };
-static const char *const sets[] = {"newmark", "hht", "generalised-alpha", "own", NULL};
+enum { VARIANT_NEWMARK, VARIANT_HHT, VARIANT_ALPHA, VARIANT_OWN };
+static const char *const variants[] = {"newmark", "hht", "generalised-alpha", "own", NULL};
 
 struct newmark_options {
     NEWTON_FIELDS;
-    int32_t set;
+    int32_t variant;
     double rho_inf, beta, gamma, alpha_m, alpha_f;
 };
 
 static const struct cs_option rows[] = {
     NEWTON_ROWS(struct newmark_options),
-    CS_OPTION_CHOICE(struct newmark_options, set, sets, SET_NEWMARK,
+    CS_OPTION_CHOICE(struct newmark_options, variant, variants, VARIANT_NEWMARK,
                      "parameters: by their names, or own: the four below"),
     CS_OPTION(struct newmark_options, rho_inf, "", 0.8, 0, 1,
               "for hht (at least 0.5) and generalised-alpha: fraction of its amplitude that "
               "the fastest mode keeps per step"),
-    CS_OPTION(struct newmark_options, beta, "", 0.25, 1e-3, 1, "with set=own"),
+    CS_OPTION(struct newmark_options, beta, "", 0.25, 1e-3, 1, "with variant=own"),
     CS_OPTION(struct newmark_options, gamma, "", 0.5, 0.1, 2,
-              "with set=own; order 2 needs 1/2 - alpha_m + alpha_f"),
-    CS_OPTION(struct newmark_options, alpha_m, "", 0, -1, 0.9, "with set=own"),
-    CS_OPTION(struct newmark_options, alpha_f, "", 0, 0, 0.9, "with set=own"),
+              "with variant=own; order 2 needs 1/2 - alpha_m + alpha_f"),
+    CS_OPTION(struct newmark_options, alpha_m, "", 0, -1, 0.9, "with variant=own"),
+    CS_OPTION(struct newmark_options, alpha_f, "", 0, 0, 0.9, "with variant=own"),
 };
 
-enum { OWN = 1u << SET_OWN };
+enum { OWN = 1u << VARIANT_OWN };
 static const struct cs_option_use uses[] = {
-    {"rho_inf", "set", 1u << SET_HHT | 1u << SET_ALPHA},
-    {"beta", "set", OWN},
-    {"gamma", "set", OWN},
-    {"alpha_m", "set", OWN},
-    {"alpha_f", "set", OWN},
+    {"rho_inf", "variant", 1u << VARIANT_HHT | 1u << VARIANT_ALPHA},
+    {"beta", "variant", OWN},
+    {"gamma", "variant", OWN},
+    {"alpha_m", "variant", OWN},
+    {"alpha_f", "variant", OWN},
 };
+
+static const struct cs_option_rename renames[] = {{"set", "variant"}};
 
 struct method {
     struct newton_method base;
@@ -104,20 +106,20 @@ static enum cs_step step(struct step_halving *object, double t, double h, double
 static enum cs_step set_parameters(struct method *self, const struct newmark_options *asked) {
     const double r = asked->rho_inf;
     const struct cs_host *host = self->base.base.fixed.host;
-    if (asked->set == SET_HHT && r < 0.5)
-        return host->fail(host->ctx, "rho_inf = %g, expected at least 0.5 with set=hht", r);
-    switch (asked->set) {
-    case SET_OWN:
+    if (asked->variant == VARIANT_HHT && r < 0.5)
+        return host->fail(host->ctx, "rho_inf = %g, expected at least 0.5 with variant=hht", r);
+    switch (asked->variant) {
+    case VARIANT_OWN:
         self->am = asked->alpha_m, self->af = asked->alpha_f;
         self->gamma = asked->gamma, self->beta = asked->beta;
         if (fabs(self->gamma - (0.5 - self->am + self->af)) > 1e-12)
             host->note(host->ctx, "order 1: gamma is %g, order 2 needs %g", self->gamma,
                        0.5 - self->am + self->af);
         return CS_STEP_OK;
-    case SET_HHT:
+    case VARIANT_HHT:
         self->am = 0, self->af = (1 - r) / (1 + r);
         break;
-    case SET_ALPHA:
+    case VARIANT_ALPHA:
         self->am = (2 * r - 1) / (r + 1), self->af = r / (r + 1);
         break;
     default: // am = af = 0
@@ -151,6 +153,8 @@ const struct cs_integrator newmark = {
     STEP_HALVING_METHOD(struct newmark_options, rows, archive),
     .uses = uses,
     .n_uses = sizeof uses / sizeof *uses,
+    .renames = renames,
+    .n_renames = sizeof renames / sizeof *renames,
     .name = "newmark",
     .summary = "Newmark's average acceleration, HHT or generalised-alpha, by Newton",
     .source = "Newmark 1959; Hilber et al. 1977; Chung, Hulbert 1993",

@@ -284,6 +284,12 @@ struct cs_option_use {
     uint32_t values;
 };
 
+/* Says that an option had another name in the last release. The host takes both, and reports
+ * the old one on standard error. */
+struct cs_option_rename {
+    const char *old_name, *option;
+};
+
 /* The passage of a method's history into a checkpoint, or back. save and load make the same
  * calls with the same counts in the same order, so that one function may be both. */
 struct cs_archive {
@@ -371,6 +377,11 @@ struct cs_integrator {
      * are kept for; else NULL. Later than the first release: the host asks
      * CS_HAS(integrator, library). */
     const char *library;
+
+    /* Options that were renamed, and how many; or NULL and 0. Later than the first release: the
+     * host asks CS_HAS(integrator, n_renames). */
+    const struct cs_option_rename *renames;
+    uint32_t n_renames;
 };
 
 /* The symbol that a module exports: CS_EXPORT const struct cs_module clothsim_module. */

@@ -54,10 +54,11 @@ static const struct cs_arg rows[] = {
      "maximum number of rounds that time the cells of the verdict; fewer if the factors are "
      "known to 2 % (default: 40)",
      CS_ARG_INTO(struct options, compare.runs), .min = 1, .max = CS_ROUNDS_MAX},
-    {"rank", 0, "NAME",
+    {"error-norm", 0, "NAME",
      "error norm used for the ranking: error, path, largest, velocity or energy (default: "
      "error)",
-     CS_ARG_INTO(struct options, compare.ranking_norm), .names = cs_norm_names},
+     CS_ARG_INTO(struct options, compare.ranking_norm), .names = cs_norm_names,
+     .old_name = "rank"},
     {"budget", 0, "SECONDS",
      "maximum processor time of one run; a series ends at its first row above it (default: 25 "
      "s divided among the cells, at most 4 s each)",
@@ -69,8 +70,8 @@ static const struct cs_arg rows[] = {
      CS_ARG_LIST(struct options, references, n_references)},
     {"cache", 0, "DIR", "folder of stored references (default: DIR of -o)",
      CS_ARG_INTO(struct options, compare.cache)},
-    {"fresh", 0, NULL, "replace an existing compare.csv",
-     CS_ARG_INTO(struct options, compare.overwrite)},
+    {"overwrite", 'y', NULL, "replace an existing compare.csv",
+     CS_ARG_INTO(struct options, compare.overwrite), .old_name = "fresh"},
     {"pictures", 0, NULL,
      "draw the last frame of the methods at equal step and at equal cost, coloured by their "
      "error",

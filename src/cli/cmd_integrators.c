@@ -28,7 +28,7 @@ static const struct {
     {CS_ADAPTIVE, "adaptive"},
     {CS_MULTISTEP, "multistep"},
     {CS_SYMPLECTIC, "symplectic"},
-    {CS_LIBRARY_BITS, "bits by a library"},
+    {CS_LIBRARY_BITS, "bit pattern depends on a library"},
     {CS_NOT_GALILEAN, "not Galilean"},
     {CS_EXPLICIT_OUTER, "forces other than springs explicit"},
 };
@@ -41,7 +41,7 @@ static const char *fidelity_text(uint32_t fidelity) {
     case CS_FIDELITY_IMPLICIT_EULER:
         return "implicit Euler as its iterations grow";
     case CS_FIDELITY_CONSISTENT:
-        return "consistent with the equation of motion only as the step goes to 0";
+        return "consistent (converges only as dt -> 0)";
     case CS_FIDELITY_OTHER:
         return "another model: no error against the equation of motion";
     }

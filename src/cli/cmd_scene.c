@@ -26,7 +26,7 @@ static const struct cs_arg rows[] = {
      "method and its options, instead of the scene's",
      CS_ARG_INTO(struct options, session.integrator)},
     CS_ARG_PLUGIN(struct options, session),
-    {"plan", 0, NULL, "print what is built, with its size, and what is left out and why",
+    {"plan", 0, NULL, "print what is built, with its size, and what is not built and why",
      CS_ARG_INTO(struct options, plan)},
     {"no-render", 0, NULL, "plan a run that draws nothing",
      CS_ARG_INTO(struct options, session.render)},
@@ -68,9 +68,9 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
 static void add_plan(const struct cs_session *session, struct cs_text *out) {
     const size_t bytes = cs_run_bytes(&session->run);
     cs_plan_print(&session->run.plan, out);
-    cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", "method", "built",
+    cs_text_add(out, "%-18s %-9s %10zu bytes   %s\n", "method", "built",
                 session->run.method_bytes, session->method.integrator->name);
-    cs_text_add(out, "%-14s %-9s %10zu bytes   %.1f per particle\n", "in all", "", bytes,
+    cs_text_add(out, "%-18s %-9s %10zu bytes   %.1f per particle\n", "total", "", bytes,
                 (double)bytes / session->plan.n);
 }
 

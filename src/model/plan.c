@@ -177,19 +177,19 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
 
 /* One line of the plan. */
 static void print_row(const char *name, const struct cs_plan_row *row, struct cs_text *out) {
-    cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", name, row->built ? "built" : "left out",
+    cs_text_add(out, "%-18s %-9s %10zu bytes   %s\n", name, row->built ? "built" : "not built",
                 row->bytes, row->reason);
 }
 
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {
-    cs_text_add(
-        out,
-        "particles      %u\nbodies         %u\nsprings        %u\nstate          %zu bytes\n",
-        plan->n, plan->n_bodies, plan->n_springs, plan->state_bytes);
+    cs_text_add(out,
+                "particles          %u\nbodies             %u\nsprings            %u\n"
+                "state              %zu bytes\n",
+                plan->n, plan->n_bodies, plan->n_springs, plan->state_bytes);
     if (plan->n_surface_springs)
-        cs_text_add(out, "on surfaces    %u springs\n", plan->n_surface_springs);
+        cs_text_add(out, "on surfaces        %u springs\n", plan->n_surface_springs);
     if (plan->n_network_springs)
-        cs_text_add(out, "inside         %u springs\n", plan->n_network_springs);
+        cs_text_add(out, "inside             %u springs\n", plan->n_network_springs);
     for (uint32_t f = 0; f < CS_FEATURES; f++) {
         /* the forces come before the row AREA */
         for (uint32_t k = 0; f == CS_FEATURE_AREA && k < cs_n_terms; k++)

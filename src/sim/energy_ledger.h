@@ -44,9 +44,9 @@
     X(DRAG, "drag")                                                                            \
     X(WIND, "wind")                                                                            \
     X(FRICTION, "friction")                                                                    \
-    X(PUSH, "push")                                                                            \
+    X(PUSH, "events_force")                                                                    \
     X(PINS, "pins")                                                                            \
-    X(VALUES, "values")                                                                        \
+    X(VALUES, "parameters")                                                                    \
     X(INTEGRATOR, "integrator")                                                                \
     X(LIMIT, "strain_limit")                                                                   \
     X(PROJECTION, "projection")                                                                \

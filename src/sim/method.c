@@ -10,9 +10,11 @@
  * therefore needs a method with options. */
 #include "sim/method.h"
 
+#include "base/old_name.h"
 #include "base/options.h"
 #include "base/text.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -109,9 +111,25 @@ static void add_place(const struct cs_method *method, const char *place, const c
         cs_text_add(out, "integrator \"%s\": %.60s", method->integrator->name, key);
 }
 
+/* The row of a name, or of the name that the last release had for it. */
+static const struct cs_option *find_row(const struct cs_method *method, const char *key) {
+    const struct cs_integrator *integrator = method->integrator;
+    const uint32_t n = CS_HAS(integrator, n_renames) ? integrator->n_renames : 0;
+    for (uint32_t k = 0; k < n; k++) {
+        const struct cs_option_rename *rename = integrator->renames + k;
+        if (strcmp(rename->old_name, key))
+            continue;
+        char place[80];
+        snprintf(place, sizeof place, "%.60s:", integrator->name);
+        cs_old_name_report(place, rename->old_name, rename->option);
+        return cs_option_find(&method->table, rename->option);
+    }
+    return cs_option_find(&method->table, key);
+}
+
 enum cs_status cs_method_set(struct cs_method *method, const char *key, const char *value,
                              const char *place, enum cs_status status, struct cs_error *error) {
-    const struct cs_option *row = cs_option_find(&method->table, key);
+    const struct cs_option *row = find_row(method, key);
     struct cs_text where = {0};
     add_place(method, place, key, &where);
     if (!row)

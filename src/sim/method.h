@@ -38,8 +38,9 @@ enum cs_status cs_method_find(struct cs_method *method, struct cs_registry *regi
 enum cs_status cs_method_set_pairs(struct cs_method *method, const char *pairs,
                                    struct cs_error *error);
 
-/* Sets one option, and marks it as given. place stands before its name in a message
- * ("scene.json: integrator."); NULL: the integrator's name. status is the one of a failure. */
+/* Sets one option, by its name or its old one, which is reported, and marks it as given. place
+ * stands before its name in a message ("scene.json: integrator."); NULL: the integrator's name.
+ * status is the one of a failure. */
 enum cs_status cs_method_set(struct cs_method *method, const char *key, const char *value,
                              const char *place, enum cs_status status, struct cs_error *error);
 

@@ -82,6 +82,21 @@ static enum cs_status check_uses(const struct cs_integrator *integrator,
     return CS_OK;
 }
 
+static enum cs_status check_renames(const struct cs_integrator *integrator,
+                                    struct cs_error *error) {
+    const uint32_t n = CS_HAS(integrator, n_renames) ? integrator->n_renames : 0;
+    for (uint32_t k = 0; k < n; k++) {
+        const struct cs_option_rename *rename =
+            integrator->renames ? integrator->renames + k : NULL;
+        if (!rename || !rename->old_name || find_option(integrator, rename->old_name) ||
+            !find_option(integrator, rename->option))
+            return cs_fail(error, CS_ERR_MODULE,
+                           "integrator \"%s\": rename %u names no option of its own",
+                           integrator->name, k);
+    }
+    return CS_OK;
+}
+
 /* Size of the struct in the first release of this interface. Fields after it are read only if
  * CS_HAS finds them. */
 static const uint32_t least_size = offsetof(struct cs_integrator, goals);
@@ -107,7 +122,7 @@ static enum cs_status check_integrator(const struct cs_integrator *integrator,
     for (uint32_t k = 0; k < integrator->n_options; k++)
         if (check_option(integrator, integrator->options + k, error))
             return error->status;
-    return check_uses(integrator, error);
+    return check_uses(integrator, error) ? error->status : check_renames(integrator, error);
 }
 
 /* Checks version, sizes, and each integrator of a module. */

@@ -13,7 +13,7 @@
 #define CS_OUTCOME_LIST(X)                                                                     \
     X(CS_RUNNING, "finished")                                                                  \
     X(CS_NOT_FINITE, "blew up: not finite")                                                    \
-    X(CS_UNBOUNDED, "blew up: energy beyond all bound")                                        \
+    X(CS_UNBOUNDED, "blew up: unbounded energy")                                        \
     X(CS_INTERRUPTED, "interrupted")                                                           \
     X(CS_OVER_BUDGET, "over budget")                                                           \
     X(CS_FAILED, "failed")

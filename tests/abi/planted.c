@@ -16,6 +16,7 @@ enum plant {
     NO_ADVANCE,
     DEFAULT_OUTSIDE,
     OPTION_OUTSIDE,
+    RENAMES_NOTHING,
     BAD_NAME,
     NO_SYMBOL,
     CRASHES,
@@ -265,6 +266,9 @@ static enum cs_step saves_nothing(void *self, const struct cs_archive *archive) 
 #define SAVES (PLANT == OLDER || PLANT == FORGETS_STEPS)
 #define SIZE  (PLANT == OLDER ? offsetof(struct cs_integrator, goals) : sizeof planted)
 
+static const struct cs_option_rename renames[] = {
+    {"step", PLANT == RENAMES_NOTHING ? "h" : "dt"}};
+
 static const struct cs_integrator planted = {
     .size = SIZE,
     .name = PLANT == BAD_NAME ? "Planted!" : "planted",
@@ -285,6 +289,8 @@ static const struct cs_integrator planted = {
     .goals = PLANT == OLDER ? not_there : NULL,
     .save = SAVES ? saves_nothing : NULL,
     .load = SAVES ? saves_nothing : NULL,
+    .renames = renames,
+    .n_renames = 1,
 };
 
 static const struct cs_integrator *const all[] = {&planted};

@@ -32,7 +32,7 @@ FRAMES, EVERY = 24, 5
 
 def command(program, method, name, rest):
     return [program, "run", "s.json", "-n", str(FRAMES), "-i", method, "-q", "--renderer", "cpu",
-            "--states", name + "-states", "--watch", name + ".csv", "--export",
+            "--states", name + "-states", "--monitor", name + ".csv", "--export",
             "pc2,npz", *rest]
 
 

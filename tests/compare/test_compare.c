@@ -160,11 +160,12 @@ TEST(series_are_named_apart) {
     // the same method and options are one series, however they are written
     ck_assert_str_eq(cells_of("rk4:dt=1e-3..2e-3,rk4:dt=5e-4..1e-3", out, sizeof out),
                      "rk4 dt=0.002; rk4 dt=0.001; rk4 dt=0.0005");
-    ck_assert_str_eq(cells_of("newmark:beta=0.3,set=own,dt=1e-3,"
-                              "newmark:set=own,dt=2e-3,beta=0.300,newmark:set=newmark,dt=1e-3",
-                              out, sizeof out),
-                     "newmark:set=own,beta=0.3 set=own,beta=0.3,dt=0.002; "
-                     "newmark:set=own,beta=0.3 set=own,beta=0.3,dt=0.001; newmark dt=0.001");
+    ck_assert_str_eq(
+        cells_of("newmark:beta=0.3,variant=own,dt=1e-3,"
+                 "newmark:variant=own,dt=2e-3,beta=0.300,newmark:variant=newmark,dt=1e-3",
+                 out, sizeof out),
+        "newmark:variant=own,beta=0.3 variant=own,beta=0.3,dt=0.002; "
+        "newmark:variant=own,beta=0.3 variant=own,beta=0.3,dt=0.001; newmark dt=0.001");
     ck_assert_str_eq(cells_of("a=rk4:dt=1e-3,b=rk4:dt=1e-3", out, sizeof out),
                      "a dt=0.001; b dt=0.001");
     // an atol of one's own, even the default one, is not the one that follows rtol

@@ -101,8 +101,8 @@ static void check_factor(const char *rest, const struct cs_cell *best,
     *next = NULL;
     if (!strncmp(rest, "; no other series", 17))
         return;
-    if (sscanf(rest, "; no significant difference from %*s") == 0 &&
-        strstr(rest, "no significant "))
+    if (sscanf(rest, "; not significantly different from %*s") == 0 &&
+        strstr(rest, "not significantly different from "))
         *next = named(strstr(rest, "from ") + 5);
     else if (sscanf(rest, "; about %lf times", &factor) == 1) {
         *next = named(name + 6);

@@ -25,7 +25,7 @@ LINES = {
     "help": ["run", "--help"],
     "scene": ["scene", "s.json", "--plan"],
     "integrators": ["integrators"],
-    "files": [*RUN, "velocity-verlet", "--states", "st", "--watch", "w.csv", "--json", "r.json",
+    "files": [*RUN, "velocity-verlet", "--states", "st", "--monitor", "w.csv", "--json", "r.json",
               "--ledger", "l.csv", "-o", "out", "--checkpoint", "1", "-y"],
     "exports": [*RUN, "velocity-verlet", "--export", "obj,pc2,vtp,npz", "--export-values",
                 "force,strain", "-o", "ex", "--checkpoint", "1", "-y"],

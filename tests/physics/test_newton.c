@@ -152,7 +152,7 @@ TEST(newmark_keeps_rho_inf_of_the_fastest_mode) {
     for (size_t i = 0; i < 3; i++) {
         char integrator[96];
         snprintf(integrator, sizeof integrator,
-                 "newmark:rtol=1e-13,set=generalised-alpha,rho_inf=%g", shares[i]);
+                 "newmark:rtol=1e-13,variant=generalised-alpha,rho_inf=%g", shares[i]);
         struct fixture pair;
         struct cs_error error = {0};
         double size[2];
@@ -253,7 +253,7 @@ TEST(a_step_may_be_a_frame) {
                                           "bdf2",
                                           "sdirk2",
                                           "ros2",
-                                          "newmark:set=generalised-alpha,rho_inf=0",
+                                          "newmark:variant=generalised-alpha,rho_inf=0",
                                           "tr-bdf2",
                                           "implicit-midpoint",
                                           "newmark"};

@@ -54,9 +54,9 @@ static double step_of(const struct method_asked *method) {
 
 static void check_orders(double damping) {
     static const char *const more[] = {
-        "bdf2:rtol=1e-8,solve=linear", "newmark:rtol=1e-8,set=hht",
-        "newmark:rtol=1e-8,set=generalised-alpha",
-        "newmark:rtol=1e-8,set=generalised-alpha,rho_inf=0", NULL};
+        "bdf2:rtol=1e-8,solve=linear", "newmark:rtol=1e-8,variant=hht",
+        "newmark:rtol=1e-8,variant=generalised-alpha",
+        "newmark:rtol=1e-8,variant=generalised-alpha,rho_inf=0", NULL};
     const struct methods methods =
         methods_find(&(struct methods_query){.test = "drum",
                                              .with = CS_IMPLICIT,

@@ -264,7 +264,7 @@ TEST(energy_ledger_has_a_column_for_each) {
     run_account(&cloth, &account);
     ck_assert_double_eq_tol(entry(&account, "planted_swing"),
                             entry(&account, "kinetic") - kinetic, 1e-9);
-    ck_assert_double_eq(entry(&account, "push"), 0);
+    ck_assert_double_eq(entry(&account, "events_force"), 0);
     close_account(&cloth, &account);
     planted = (struct planted){0};
 }

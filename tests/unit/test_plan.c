@@ -179,7 +179,7 @@ TEST(plan_is_printed_a_line_a_feature) {
     for (const char *c = cs_text_get(&text); *c; c++)
         lines += *c == '\n';
     ck_assert_uint_eq(lines, 4 + CS_FEATURES + 3); // gravity, drag, wind
-    ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ncontact        left out "));
-    ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ngravity        built "));
+    ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ncontact projection not built "));
+    ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ngravity            built "));
     cs_text_finish(&text);
 }

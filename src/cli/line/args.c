@@ -1,6 +1,8 @@
 /* Parses a command's options and operands by its table of options. */
 #include "cli/line/args.h"
 
+#include "base/old_name.h"
+
 #include <string.h>
 
 /* Rows that a command may have; asserted. */
@@ -27,6 +29,11 @@ static enum cs_status unknown_option(const struct cs_command *command, const cha
                    word, command->name);
 }
 
+static bool is_old_name(const struct cs_arg *row, const char *word, size_t length) {
+    return row->old_name && strlen(row->old_name) == length &&
+           !strncmp(row->old_name, word, length);
+}
+
 /* Compares with the long name. An option that may be repeated can also be given in the singular
  * (--integrator for --integrators). */
 static bool is_called(const struct cs_arg *row, const char *word, size_t length) {
@@ -43,8 +50,11 @@ static const struct cs_arg *find_row(const struct cs_command *command, const cha
         const struct cs_arg *row = command->rows + r;
         if (word[1] == '-') {
             const size_t length = strcspn(word + 2, "=");
-            if (!is_called(row, word + 2, length))
+            const bool old = is_old_name(row, word + 2, length);
+            if (!old && !is_called(row, word + 2, length))
                 continue;
+            if (old)
+                cs_old_name_report("--", row->old_name, row->name);
             *attached = word[2 + length] ? word + 3 + length : NULL;
             return row;
         }

@@ -37,6 +37,7 @@ struct cs_arg {
     bool methods;             /* each value is a list of methods NAME:key=value,...,NAME,... */
     uint32_t min, max;        /* of a whole number */
     const char *const *names; /* closed by NULL */
+    const char *old_name;     /* long name of the release before, still taken; or NULL */
 };
 
 /* The part of a row that binds the option to a field, of a type named above. */
@@ -61,7 +62,7 @@ struct cs_arg {
 /* Rows that most commands have, of a struct with a member `session`. */
 #define CS_ARG_SET(struct_, session)                                                           \
     {                                                                                          \
-        "set", 's', "PATH=VALUE", "another value for a key of the scene; may be repeated",     \
+        "set", 's', "PATH=VALUE", "override a scene value; may be repeated",                   \
             CS_ARG_LIST(struct_, session.overrides, session.n_overrides)                       \
     }
 #define CS_ARG_PLUGIN(struct_, session)                                                        \

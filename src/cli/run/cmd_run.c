@@ -41,8 +41,7 @@ static const struct cs_arg rows[] = {
      "method and its options, instead of the scene's (see: clothsim integrators)",
      CS_ARG_INTO(struct options, job.session.integrator)},
     {"set", 's', "PATH=VALUE",
-     "another value for a key of the scene, such as bodies[0].springs.stretch=200; may be "
-     "repeated",
+     "override a scene value, such as bodies[0].springs.stretch=200; may be repeated",
      CS_ARG_LIST(struct options, job.session.overrides, job.session.n_overrides)},
     CS_ARG_PLUGIN(struct options, job.session),
     {"out", 'o', "DIR", "folder for frame_00001.png ... and run.json (default: out)",
@@ -77,10 +76,10 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, job.hash)},
     {"json", 0, "FILE", "write the report as JSON too; -: to standard output",
      CS_ARG_INTO(struct options, job.json)},
-    {"watch", 0, "FILE",
+    {"monitor", 0, "FILE",
      "write energy, largest strain and largest velocity of each frame as CSV; -: to standard "
      "output",
-     CS_ARG_INTO(struct options, job.monitor_file)},
+     CS_ARG_INTO(struct options, job.monitor_file), .old_name = "watch"},
     {"ledger", 0, "FILE",
      "write the energy balance of each frame as CSV; -: to standard output",
      CS_ARG_INTO(struct options, job.ledger)},
@@ -134,7 +133,7 @@ static enum cs_status check_stream(const struct cs_job_settings *settings,
         bool asks;
     } outputs[] = {{"--hash", settings->hash},
                    {"--json -", cs_print_is_stdout(settings->json)},
-                   {"--watch -", cs_print_is_stdout(settings->monitor_file)},
+                   {"--monitor -", cs_print_is_stdout(settings->monitor_file)},
                    {"--ledger -", cs_print_is_stdout(settings->ledger)},
                    {"--trace", settings->trace.is_requested}};
     const char *first = NULL;

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SCHEMA_VERSION = 1 };
+enum { SCHEMA_VERSION = 2 };
 
 static void add_versions(const struct cs_job *job, struct cs_text *out) {
     cs_json_write(out, "  'versions': {'clothsim': %s, 'cjson': %s", CS_VERSION,
@@ -75,7 +75,7 @@ static void add_counts(const struct cs_counts *c, struct cs_text *out) {
         {"clamped", c->clamped_setups},
         {"contacts", c->projected_particles},
         {"contact_tests", c->contact_tests},
-        {"contact_cut_steps", c->subdivided_steps},
+        {"contact_subdivided_steps", c->subdivided_steps},
         {"limit_moves", c->strain_limit_moves},
         {"normals", c->normals},
     };

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
-enum { VALUE_COLUMN = 16 };
+enum { VALUE_COLUMN = 16, STAGE_COLUMN = 24 };
 
 static void add_row(struct cs_text *out, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -54,7 +54,7 @@ static void add_watch(const struct cs_job *job, struct cs_text *out) {
     struct cs_text found = {0};
     cs_energy_monitor_print(&job->monitor, &job->session.system, &found);
     if (found.length)
-        cs_print_hanging("watch", cs_text_get(&found), VALUE_COLUMN, out);
+        cs_print_hanging("monitor", cs_text_get(&found), VALUE_COLUMN, out);
     cs_text_finish(&found);
 }
 
@@ -75,7 +75,7 @@ static void add_counts(const struct cs_job *job, struct cs_text *out) {
             (unsigned long long)c->method.rejected);
     add_row(out, "evaluations", "%llu of the force, %llu of its derivatives",
             (unsigned long long)c->forces, (unsigned long long)(c->jvps + c->diagonals));
-    add_row(out, "iterations", "%llu linear in %llu solves, %llu nonlinear",
+    add_row(out, "iterations", "%llu linear (%llu solves), %llu Newton",
             (unsigned long long)c->solve_iterations, (unsigned long long)c->solves,
             (unsigned long long)c->method.newton);
     if (c->clamped_setups)
@@ -108,7 +108,7 @@ static void add_measures(const struct cs_job *job, struct cs_text *out) {
 static void add_stage(const struct cs_job *job, const char *name, double seconds,
                       struct cs_text *out) {
     const uint32_t frames = job->session.run.frame;
-    cs_text_add(out, "  %-*s%10.4f%14.4f\n", VALUE_COLUMN - 2, name, seconds,
+    cs_text_add(out, "  %-*s%10.4f%14.4f\n", STAGE_COLUMN - 2, name, seconds,
                 1e3 * seconds / (frames ? frames : 1));
 }
 
@@ -120,13 +120,13 @@ static size_t peak_memory(void) {
 
 /* Times of the stages in total and per frame; stages of the model are a part of "simulate". */
 static void add_stages(const struct cs_job *job, struct cs_text *out) {
-    cs_text_add(out, "%-*s%10s%14s\n", VALUE_COLUMN, "stage", "total [s]", "frame [ms]");
+    cs_text_add(out, "%-*s%10s%14s\n", STAGE_COLUMN, "stage", "total [s]", "frame [ms]");
     add_stage(job, "simulate", job->session.run.advance_seconds, out);
     for (uint32_t s = 0; s < CS_STAGES; s++)
         add_stage(job, cs_stage_names[s], job->session.run.stage_seconds[s], out);
     add_stage(job, "draw", job->picture.seconds, out);
     add_stage(job, "encode", job->encode_seconds, out);
-    add_stage(job, "wait", job->wait_seconds, out);
+    add_stage(job, "waiting for pictures", job->wait_seconds, out);
     add_row(out, "peak memory", "%.1f MiB of the whole process",
             (double)peak_memory() / (1 << 20));
 }

@@ -41,7 +41,7 @@ static enum cs_status watch_end(struct cs_job *job, struct cs_error *error) {
 }
 
 const struct cs_run_output cs_run_output_watch = {
-    .option = "--watch",
+    .option = "--monitor",
     .path = offsetof(struct cs_job_settings, monitor_file),
     .at =
         {[CS_RUN_BEGIN] = watch_begin, [CS_RUN_FRAME] = watch_frame, [CS_RUN_END] = watch_end},

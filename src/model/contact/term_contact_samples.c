@@ -62,7 +62,7 @@ static void add_bound_at(const struct cs_system *system, const struct cs_eval *a
 static const char *const ramps[] = {"colliders.friction", NULL};
 
 const struct cs_term cs_term_cover = {
-    .name = "contact edges",
+    .name = "contact samples",
     .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
     .plan = plan,
     .build = cs_contact_samples_build,

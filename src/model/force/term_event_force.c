@@ -36,6 +36,6 @@ const struct cs_term cs_term_push = {
     .part_bits = CS_PART_EXTERNAL,
     .plan = plan,
     .add_force = add_force,
-    .work_column = "push",
+    .work_column = "events_force",
     .max_acceleration = max_acceleration,
 };

@@ -15,7 +15,7 @@
     X(DAMPING, "spring damping")                                                               \
     X(AREA, "area shares")                                                                     \
     X(VELOCITY_LOSS, "velocity loss")                                                          \
-    X(CONTACT, "contact")                                                                      \
+    X(CONTACT, "contact projection")                                                           \
     X(CROSSINGS, "crossings")                                                                  \
     X(STRAIN_LIMIT, "strain limit")                                                            \
     X(EVENTS, "events")                                                                        \
@@ -37,7 +37,7 @@ enum cs_feature {
 struct cs_plan_row {
     bool built;
     size_t bytes;       /* memory taken when it was built; 0 before */
-    const char *reason; /* why it is built or left out; a constant text */
+    const char *reason; /* why it is built or not built; a constant text */
 };
 
 /* Most forces that a plan has rows for. */

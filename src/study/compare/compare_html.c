@@ -115,7 +115,7 @@ void cs_html_print(const struct cs_compare *compare, const struct cs_ranking *ra
     add_preformatted("Notes", &warnings, out);
     cs_text_add(out, "<h2>Diagrams</h2>\n<p>Yellow: the front, where nothing is both cheaper "
                      "and more accurate. Bars: quartiles of the rounds. Crosses: runs that "
-                     "failed or exceeded the budget. Grey: below the "
+                     "did not finish. Grey: below the "
                      "reference's own error.</p>\n");
     if (compare->reference.families_agree) {
         add_diagram(compare, ranking, "cpu", out);

@@ -15,7 +15,7 @@ enum cs_norm {
     CS_NORMS
 };
 
-/* Values of --rank, closed by NULL, in the order of enum cs_norm. */
+/* Values of --error-norm, closed by NULL, in the order of enum cs_norm. */
 extern const char *const cs_norm_names[];
 /* Its name in text, its unit ("" for none), and its column in compare.csv. */
 const char *cs_norm_words(enum cs_norm norm);

@@ -174,7 +174,7 @@ static void print_plot(const struct cs_curves *curves, struct cs_text *out) {
                          "title \"below the reference's own error\", \\\n");
     if (crosses > 0)
         cs_text_add(out, " NaN with points pointtype 2 linecolor rgb \"#404040\" title "
-                         "\"failed or over budget\", \\\n");
+                         "\"did not finish\", \\\n");
     if (rings > 0)
         cs_text_add(out,
                     " NaN with points pointtype 6 linecolor rgb \"%s\" title \"edges through "

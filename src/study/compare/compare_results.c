@@ -68,7 +68,7 @@ static enum cs_status read_old(struct cs_compare_results *ledger,
             0)
             return cs_fail(error, CS_ERR_USAGE,
                            "%s belongs to another scene, time or reference; choose another "
-                           "folder with --out, or --fresh to overwrite it",
+                           "folder with --out, or --overwrite to replace it",
                            ledger->table.path);
     return CS_OK;
 }

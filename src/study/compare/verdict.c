@@ -25,7 +25,7 @@ static void add_factor(const struct cs_rank *rank, const char *none, struct cs_t
         return;
     }
     if (!rank->is_significant)
-        cs_text_add(out, "; no significant difference from ");
+        cs_text_add(out, "; not significantly different from ");
     else if (ratio->pairs > 0)
         cs_text_add(out, "; %.2f times (%.2f to %.2f) cheaper than ", ratio->median, ratio->low,
                     ratio->high);
