@@ -11,7 +11,6 @@
 #include "model/force/normals.h"
 #include "model/force/terms.h"
 #include "model/post_step/contact_projection.h"
-#include "model/post_step/strain_limit.h"
 #include "model/solver/linear.h"
 
 #include <stdio.h>

@@ -11,7 +11,7 @@
 #include "timing.h"
 
 #include "model/contact/ccd/crossings.h"
-#include "model/contact/narrow_phase/candidates_in_range.h"
+#include "model/contact/narrow_phase/exact_distance.h"
 #include "model/contact/narrow_phase/pair_step_check.h"
 #include "model/force/terms.h"
 #include "study/perturb.h"

@@ -249,11 +249,10 @@ struct cs_host {
                            double *contact_blocks);
 
     /* [restart, advance] force with CS_PART_ALL and diagonal in one call, to the same bits and
-     * in less time, which counts as one of each; not in hosts whose size ends before it: ask
-     * CS_HAS(host, force_diagonal) first. The last array (12,n) is kxx, then dvv. Needs
-     * CS_NEED_DIAGONAL. */
+     * in less time, which counts as one of each; ask CS_HAS(host, force_diagonal) first. blocks
+     * (12,n) is kxx, then dvv. Needs CS_NEED_DIAGONAL. */
     void (*force_diagonal)(void *ctx, double t, const double *x, const double *v, double *f,
-                           double *contact_blocks);
+                           double *blocks);
 
     /* For the whole run: nothing acts between steps, and no event comes (no contact, strain
      * limit, velocity loss or crossings). Then a step may end after t1: the method gives the

@@ -6,7 +6,7 @@
  * late finds the loop closed and waits for the next one. */
 #include "base/pool.h"
 
-#include "base/thread.h"
+#include "base/worker_thread.h"
 
 #include <pthread.h>
 #include <sched.h>

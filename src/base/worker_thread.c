@@ -1,9 +1,8 @@
 /* A worker thread that runs one task at a time, handed over by a condition variable. */
 #include "base/worker_thread.h"
 
-#include "base/thread.h"
-
 #include <pthread.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -89,4 +88,19 @@ void cs_worker_thread_destroy(struct cs_worker_thread *worker) {
     pthread_cond_destroy(&worker->changed);
     pthread_mutex_destroy(&worker->lock);
     free(worker);
+}
+
+/* Starts threads that have all signals blocked except those of their own faults. */
+
+int cs_thread_start(pthread_t *thread, void *(*work)(void *argument), void *argument) {
+    static const int own[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+    sigset_t others, before;
+    sigfillset(&others);
+    for (size_t k = 0; k < sizeof own / sizeof *own; k++)
+        sigdelset(&others, own[k]);
+    /* a thread starts with the mask of the one that makes it */
+    pthread_sigmask(SIG_SETMASK, &others, &before);
+    const int failed = pthread_create(thread, NULL, work, argument);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return failed;
 }

@@ -4,14 +4,150 @@
  *   options with --error -> cs_compare_run -> the cheapest method and step for that error */
 #include "base/pool.h"
 #include "cli/commands.h"
-#include "cli/line/interrupt.h"
 #include "cli/line/print.h"
-#include "cli/line/progress.h"
+#include "scene/body_pairs.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
-#include "study/compare/verdict.h"
+#include "study/compare/ranking.h"
 #include "study/process_pool.h"
-#include "study/stability/advise_print.h"
+#include "study/stability/advise.h"
+#include "study/stability/stability_state.h"
+
+#include <math.h>
+
+/* Advice as aligned text. */
+
+/* The stiffest spring at a particle. */
+struct spring {
+    double stiffness; /* N/m; 0: none */
+    uint32_t kind;
+};
+
+/* Finds the spring that most likely causes a mode which is localised at the particle. */
+static struct spring stiffest_at(const struct cs_system *system, uint32_t particle) {
+    struct spring found = {0};
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *run = system->springs.runs + r;
+        for (uint32_t i = 0; i < run->count; i++) {
+            const double stiffness = cs_spring_stiffness(run, i);
+            if ((cs_spring_a(run, i) == particle || cs_spring_b(run, i) == particle) &&
+                stiffness > found.stiffness)
+                found = (struct spring){stiffness, run->kind};
+        }
+    }
+    return found;
+}
+
+/* "particle 12 (body 0, column 4, row 1) swings at 4158 /s on stretch springs of 1000 N/m".
+ *
+ * s'' + r s' + q s = 0 is over-damped if r^2 > 4 q: then only the rate is printed. A mode
+ * beyond the bounds of the springs must be due to contact. */
+static void add_binding(const struct cs_system *system, const struct cs_mode *mode,
+                        struct cs_text *out) {
+    static const char *const kinds[CS_SPRING_KINDS] = {"stretch", "shear", "bend"};
+    const struct spring spring = stiffest_at(system, mode->particle);
+    const bool damped = mode->damping_rate * mode->damping_rate > 4 * mode->omega_squared;
+    cs_system_print_particle(system, mode->particle, out);
+    if (damped)
+        cs_text_add(out, " is damped at %.4g /s", mode->damping_rate);
+    else
+        cs_text_add(out, " oscillates at %.4g /s, damped at %.3g /s",
+                    sqrt(fmax(mode->omega_squared, 0)), mode->damping_rate);
+    // the bounds of the view do not hold contact
+    if (mode->damping_rate > 2 * system->view.delta ||
+        mode->omega_squared > system->view.omega * system->view.omega)
+        cs_text_add(out, " by contact");
+    if (spring.stiffness > 0)
+        cs_text_add(out, ": %.3g kg on %s springs of %.4g N/m", system->mass[mode->particle],
+                    kinds[spring.kind], spring.stiffness);
+}
+
+/* The reason of an advised step, and remarks on its probe run. */
+static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
+                    struct cs_text *out) {
+    switch (row->kind) {
+    case CS_ADVICE_THEORY:
+        add_binding(&advise->was_opened.system, &row->mode, out);
+        break;
+    case CS_ADVICE_LOWERED:
+        add_binding(&advise->was_opened.system, &row->mode, out);
+        cs_text_add(out, "; bisected, linear theory allows %.4g s", row->theory);
+        break;
+    case CS_ADVICE_MEASURED:
+        cs_text_add(out, "no limit in linear theory; bisected, large motions set it");
+        break;
+    case CS_ADVICE_FRAME:
+        cs_text_add(out, "no limit found: one step per frame");
+        break;
+    case CS_ADVICE_NONE:
+        if (!*row->message)
+            cs_text_add(
+                out, "no stable step for a run of %.4g s: damping is too weak for this method",
+                advise->seconds);
+        break;
+    case CS_ADVICE_ADAPTIVE:
+        cs_text_add(out, cs_advice_is_unstable(row) ? "not advised" : "chooses its own steps");
+        break;
+    case CS_ADVICE_REFUSED:
+        break;
+    }
+    if (row->mode_growth > 0)
+        cs_text_add(out, "; its worst mode grows at %.2g /s", row->mode_growth);
+    /* a message says more than the verdict; a sound run needs neither */
+    if (*row->message)
+        cs_text_add(out, "%s%s",
+                    row->kind == CS_ADVICE_REFUSED || row->kind == CS_ADVICE_NONE ? "" : "; ",
+                    row->message);
+    else if (row->verdict != CS_STABILITY_BOUNDED && row->kind != CS_ADVICE_NONE)
+        cs_text_add(out, "; %s", cs_stability_word(row->verdict));
+    if (row->verdict == CS_STABILITY_OVER_BUDGET)
+        cs_text_add(out, " after %.3g s: not tested longer", row->checked_seconds);
+}
+
+/* A number, or "-" for none: 0, NAN or no limit. */
+static void add_number(struct cs_text *out, double value, int width) {
+    if (value > 0 && value < 1e100)
+        cs_text_add(out, "%*.4g", width, value);
+    else
+        cs_text_add(out, "%*s", width, "-");
+}
+
+/* Notes on contact, with the fastest speed of all reference runs. */
+static void add_contact(const struct cs_advise *advise, struct cs_text *out) {
+    const struct cs_system *system = &advise->was_opened.system;
+    double speed = 0;
+    for (uint32_t k = 0; k < advise->n; k++)
+        speed = fmax(speed, advise->rows[k].speed);
+    if (!system->scene->colliders.n && !cs_scene_has_body_contact(system->scene))
+        return;
+    cs_contact_note_add(system->scene, "", out);
+    cs_text_add(out, "\n");
+    cs_contact_note_add_crossing(system, speed, out);
+}
+
+/* Adds a line per method and below it what limits the step; notes on contact come first. */
+static void advise_print(const struct cs_advise *advise, struct cs_text *out) {
+    add_contact(advise, out);
+    cs_text_add(out, "advice for runs of %.4g s; each step was tested for that long\n",
+                advise->seconds);
+    cs_text_add(out, "%-22s%12s%12s%s%12s%14s\n", "method", "limit [s]", "advised [s]",
+                advise->bisect_too ? "   found [s]" : "", "steps/frame", "ms/frame");
+    for (uint32_t k = 0; k < advise->n; k++) {
+        const struct cs_advice *row = advise->rows + k;
+        const bool fixed = row->kind != CS_ADVICE_ADAPTIVE && row->kind != CS_ADVICE_NONE &&
+                           row->kind != CS_ADVICE_REFUSED;
+        cs_text_add(out, "%-22s", row->method);
+        add_number(out, row->limit, 12);
+        add_number(out, fixed ? row->safe : 0, 12);
+        if (advise->bisect_too)
+            add_number(out, row->measured, 12);
+        add_number(out, row->steps, 12);
+        add_number(out, 1e3 * row->frame_cost, 14);
+        cs_text_add(out, "\n    ");
+        add_why(advise, row, out);
+        cs_text_add(out, "\n");
+    }
+}
 
 struct options {
     struct cs_advise study;
@@ -19,6 +155,7 @@ struct options {
     const char *folder;
     bool quiet;
 };
+
 static const struct options defaults = {.study = {.seconds = 10, .budget = 20},
                                         .folder = "advise"};
 
@@ -113,7 +250,7 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
     /* the line goes before anything is printed below it */
     cs_progress_end(&progress);
     if (!error->status) {
-        cs_advise_print(study, &out);
+        advise_print(study, &out);
         cs_print_out(stdout, &out, error);
     }
     cs_advise_finish(study);

@@ -1,6 +1,5 @@
 /* clothsim bisect: finds the first difference of two runs of a scene. */
 #include "cli/commands.h"
-#include "cli/line/interrupt.h"
 #include "cli/line/print.h"
 #include "sim/install_paths.h"
 #include "study/bisect.h"

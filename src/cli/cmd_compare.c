@@ -5,18 +5,12 @@
  * Modules from outside run in a child process with a time limit per call. Files are written
  * before the verdict is printed, so a closed output loses no result. */
 #include "cli/commands.h"
-#include "cli/external_modules.h"
-#include "cli/line/interrupt.h"
 #include "cli/line/print.h"
-#include "cli/line/progress.h"
-#include "cli/study_file_conflicts.h"
+#include "cli/run_output.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
-#include "study/compare/compare_report.h"
-#include "study/compare/compare_sheet.h"
-#include "study/compare/compare_table.h"
-#include "study/compare/verdict.h"
-#include "study/isolate.h"
+#include "study/compare/ranking.h"
+#include "study/process_pool.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -5,12 +5,11 @@
  * Expected failures pass; failed claims and stale declarations make the command fail. */
 #include "base/json_writer.h"
 #include "cli/commands.h"
-#include "cli/external_modules.h"
 #include "cli/line/print.h"
 #include "sim/method.h"
 #include "study/conform/conform.h"
-#include "study/conform/conform_cache.h"
-#include "study/isolate.h"
+#include "study/conform/conform_checks.h"
+#include "study/process_pool.h"
 
 #include <math.h>
 #include <stdio.h>

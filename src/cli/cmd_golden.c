@@ -4,7 +4,6 @@
 #include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/commands.h"
-#include "cli/line/interrupt.h"
 #include "cli/line/print.h"
 #include "sim/install_paths.h"
 #include "study/golden/golden.h"

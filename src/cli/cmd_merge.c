@@ -7,7 +7,7 @@
 #include "cli/commands.h"
 #include "study/compare/compare_results.h"
 #include "study/parameter_sweep.h"
-#include "study/stability/stability_journal.h"
+#include "study/stability/stability_state.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "study/compare/compare_cell.h"
-#include "study/compare/compare_plot.h"
+#include "study/compare/compare_curves.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,11 +1,9 @@
 /* clothsim reproduce: reproduces a result from its provenance, and reports the differences. */
 #include "base/pool.h"
 #include "cli/commands.h"
-#include "cli/line/interrupt.h"
 #include "cli/line/print.h"
-#include "cli/line/progress.h"
 #include "cli/manifest.h"
-#include "study/compare/compare_reproduce.h"
+#include "study/compare/compare.h"
 #include "study/reproduce.h"
 
 #include <stdio.h>

@@ -6,10 +6,8 @@
 #include "cli/line/print.h"
 #include "model/plan.h"
 #include "scene/body_pairs.h"
-#include "scene/file/scene_write.h"
-#include "study/containment_warning.h"
+#include "scene/file/scene_read.h"
 #include "study/overlap_warning.h"
-#include "study/sampling_warning.h"
 #include "study/session.h"
 
 #include <string.h>

@@ -4,12 +4,10 @@
  * Rows measured before an interruption are written. */
 #include "base/file.h"
 #include "cli/commands.h"
-#include "cli/line/interrupt.h"
 #include "cli/line/print.h"
-#include "cli/line/progress.h"
 #include "cli/run_output.h"
-#include "io/gnuplot.h"
-#include "study/soft/soft_report.h"
+#include "io/subprocess.h"
+#include "study/soft/soft.h"
 
 #include <stdio.h>
 

@@ -2,8 +2,7 @@
  *
  *   -s PATH=V1,V2,... and -i METHOD -> axes -> cs_parameter_sweep_run: a row per cell */
 #include "cli/commands.h"
-#include "cli/line/interrupt.h"
-#include "cli/line/progress.h"
+#include "cli/line/print.h"
 #include "study/parameter_sweep.h"
 
 #include <stdio.h>

@@ -2,13 +2,28 @@
 #ifndef CS_COMMANDS_H
 #define CS_COMMANDS_H
 
+#include "cli/command_list.h"
 #include "cli/line/args.h"
 
-/* CS_COMMAND_LIST(X): X(name) of each, made by the build from its list in meson.build. */
-#include "cli/command_list.h"
-
 #define X(name) extern const struct cs_command cs_command_##name;
+
 CS_COMMAND_LIST(X)
 #undef X
+
+/* Shell scripts that complete commands and options, made from their tables. */
+
+/* Adds the script for "bash", "zsh" or "fish"; CS_ERR_USAGE for any other shell. commands is
+ * closed by NULL. */
+enum cs_status cs_completion_print(const struct cs_command *const *commands, const char *shell,
+                                   struct cs_text *out, struct cs_error *error);
+
+/* Modules that were not installed with the program, which studies run in a
+ * process of their own. */
+
+/* True if a command may load a module from outside: --plugin is given, one of the texts (n)
+ * names a file in place of a method, or folders of modules are set up. Such code runs in a
+ * child process (study/process_pool.h). */
+bool cs_external_modules_requested(const struct cs_args *args, const char *const *texts,
+                                   uint32_t n);
 
 #endif

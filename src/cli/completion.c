@@ -1,5 +1,5 @@
 /* Prints completion scripts for bash, zsh and fish from the tables of options. */
-#include "cli/completion.h"
+#include "cli/commands.h"
 
 #include <string.h>
 

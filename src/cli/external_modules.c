@@ -1,5 +1,5 @@
 /* Looks for what may name a module from outside, before any is loaded. */
-#include "cli/external_modules.h"
+#include "cli/commands.h"
 
 #include <stdlib.h>
 #include <string.h>

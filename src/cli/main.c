@@ -4,7 +4,6 @@
  * All errors of commands come back here as one struct cs_error; nothing exits on its own. */
 #include "base/ieee_check.h"
 #include "cli/commands.h"
-#include "cli/completion.h"
 #include "cli/line/print.h"
 
 #include <signal.h>

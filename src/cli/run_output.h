@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 #include "base/text.h"
+#include "study/session.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -12,6 +13,7 @@
  * and exports; or numbered x_*.npy and v_*.npy; and manifest.txt. */
 bool cs_output_is_result(const char *name);
 bool cs_output_is_state(const char *name);
+
 typedef bool cs_output_kind(const char *name);
 
 /* Looks for files of an earlier run in a folder (NULL or absent: fine). CS_ERR_FILE names the
@@ -37,11 +39,20 @@ struct cs_output {
 enum cs_status cs_output_lock_folders(struct cs_output *output, const struct cs_output *other,
                                       const char *folder, cs_output_kind *is_ours,
                                       enum cs_output_earlier earlier, struct cs_error *error);
+
 /* Releases the lock, if there is one. */
 void cs_output_unlock_folders(struct cs_output *output);
 
 /* Writes x_NUMBER.npy and v_NUMBER.npy of n particles. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_output_state(const char *folder, uint32_t number, const double *x,
                                const double *v, uint32_t n, struct cs_error *error);
+
+/* Refuses output paths that would overwrite an input of the study. */
+
+/* CS_ERR_FILE if one of the files (names closed by NULL) to be written into the folder is the
+ * session's scene or one of its modules. Files are compared as such, not by their paths. */
+enum cs_status cs_study_files_check(const struct cs_session_settings *session,
+                                    const char *folder, const char *const *names,
+                                    struct cs_error *error);
 
 #endif

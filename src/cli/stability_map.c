@@ -3,10 +3,8 @@
 
 #include "base/file.h"
 #include "cli/line/print.h"
-#include "cli/line/progress.h"
 #include "cli/run_output.h"
-#include "cli/study_file_conflicts.h"
-#include "io/gnuplot.h"
+#include "io/subprocess.h"
 #include "study/stability/stability_report.h"
 
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* Draws the colour bar beside a picture, with labels at round values. */
 #include "draw/colour_bar.h"
 
-#include "draw/colour.h"
 #include "draw/glyph.h"
+#include "draw/srgb.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #ifndef CS_DRAW_COLOUR_BAR_H
 #define CS_DRAW_COLOUR_BAR_H
 
-#include "draw/line.h"
+#include "draw/glyph.h"
 #include "draw/render.h"
 
 /* Colour and place of the bar. */

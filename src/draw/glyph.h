@@ -2,7 +2,44 @@
 #ifndef CS_DRAW_GLYPH_H
 #define CS_DRAW_GLYPH_H
 
-#include "draw/line.h"
+#include "base/arena.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Anti-aliased lines and dots of any width, collected and drawn in one call. */
+
+/* Style of all lines of a call. */
+struct cs_line_style {
+    float colour[3];     /* linear RGB */
+    double alpha;        /* opacity, 0..1 */
+    double half_width;   /* pixels */
+    double depth_offset; /* m by which the lines show through surfaces in front of them */
+    bool flat;           /* ends are pixels from the top left, not m */
+    bool on_top;         /* in front of everything, as flat ones are */
+};
+
+/* Lines being collected; the first member of a renderer's own struct. */
+struct cs_lines {
+    uint32_t n, capacity;
+    float (*ends)[6]; /* (capacity) from, to; owned by the arena */
+    /* set by the renderer: draws the n lines, later ones over earlier ones */
+    void (*draw)(struct cs_lines *lines, const struct cs_line_style *style);
+    /* set by the renderer: draws a rectangle of left, top, width, height in pixels in the
+     * colour map, lowest value at the bottom */
+    void (*ramp)(struct cs_lines *lines, const double box[4]);
+};
+
+/* Allocates room for `capacity` lines from the arena. CS_ERR_MEMORY. */
+enum cs_status cs_lines_init(struct cs_lines *lines, uint32_t capacity, struct cs_arena *arena,
+                             struct cs_error *error);
+
+/* Adds a line in m (flat: in pixels); equal ends make a dot. At most `capacity` between two
+ * draws. */
+void cs_lines_add(struct cs_lines *lines, const double from[3], const double to[3]);
+
+/* Draws the added lines and removes them. */
+void cs_lines_draw(struct cs_lines *lines, const struct cs_line_style *style);
 
 enum { CS_GLYPH_LINES = 16 }; /* no glyph has more strokes' lines */
 

@@ -4,7 +4,7 @@
 
 #include "draw/view.h"
 #include "model/contact/posed_collider.h"
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 
 /* The ground of a scene; zeroed: none. */
 struct cs_ground {

@@ -4,7 +4,6 @@
 #include "draw/look.h"
 #include "draw/matrix.h"
 #include "mesh/trimesh.h"
-#include "model/system/faces.h"
 #include "model/system/surfaces.h"
 
 // m: positions farther away are drawn at this bound, because they would upset the rasteriser

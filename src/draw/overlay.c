@@ -2,11 +2,94 @@
 #include "draw/overlay.h"
 
 #include "draw/look.h"
+#include "draw/matrix.h"
+#include "draw/mesh.h"
+#include "draw/render.h"
 #include "draw/scene_extent.h"
+#include "draw/srgb.h"
 #include "draw/surface_style.h"
-#include "draw/viewpoint_forces.h"
+#include "mesh/trimesh.h"
+#include "model/event/event_state.h"
 
 #include <math.h>
+
+/* Viewpoint forces drawn over a picture: viewpoint, rectangle, particles
+ * affected.
+ */
+
+// true if the force acted since the picture before: a picture shows the time that ends with it
+static bool was_active(const struct cs_system *system,
+                       const struct cs_viewpoint_force_state *state, double t) {
+    const struct cs_event_state *of = system->events->states + state->event;
+    const double blow = of->begin + 1 / system->scene->time.fps + CS_EVENT_SAME;
+    return of->begin < t && t <= (of->end > of->begin ? of->end : blow);
+}
+
+// adds a dot for each particle that was visible at the last test
+static void add_visible(const struct cs_wireframe *net, struct cs_lines *lines,
+                        const struct cs_viewpoint_force_state *state, const double *x) {
+    double place[3];
+    for (uint32_t i = 0; i < net->system->view.n; i++)
+        if (state->is_visible[i]) {
+            cs_mesh_position(net->system->view.n, x, i, place);
+            cs_lines_add(lines, place, place);
+        }
+}
+
+/* Corners of the rectangle in the plane through the target at right angles to the view. low and
+ * high are slopes of its sides: eye + distance (right a_0 + up a_1 + a_2) with the view's
+ * axes. */
+static void find_corners(const struct cs_system *system,
+                         const struct cs_viewpoint_force_state *state, double corners[4][3]) {
+    const struct cs_visibility_query *visibility = &state->query;
+    const struct cs_viewpoint_force *viewpoint_force =
+        &cs_scene_events(system->scene)[state->event].viewpoint_force;
+    const double right[4] = {visibility->low[0], visibility->high[0], visibility->high[0],
+                             visibility->low[0]};
+    const double up[4] = {visibility->low[1], visibility->low[1], visibility->high[1],
+                          visibility->high[1]};
+    double view[3];
+    cs_subtract(viewpoint_force->viewpoint.target, visibility->eye, view);
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < 3; c++)
+            corners[k][c] =
+                visibility->eye[c] +
+                cs_length(view) * (right[k] * visibility->axes[0][c] +
+                                   up[k] * visibility->axes[1][c] + visibility->axes[2][c]);
+}
+
+// dots, then lines from the eye, then the rectangle in front of all
+static void draw(const struct cs_wireframe *net, struct cs_lines *lines,
+                 const struct cs_viewpoint_force_state *state, const double *x) {
+    struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * net->depth_offset};
+    double corners[4][3];
+    cs_colour_linear(0xff5a00, style.colour);
+    style.half_width = cs_wireframe_width(net, 0.16, 0.9, 3);
+    add_visible(net, lines, state, x);
+    cs_lines_draw(lines, &style);
+
+    style.half_width = 0.6 * net->line_unit;
+    find_corners(net->system, state, corners);
+    for (int k = 0; k < 4; k++)
+        cs_lines_add(lines, state->query.eye, corners[k]);
+    cs_lines_draw(lines, &style);
+    for (int k = 0; k < 4; k++)
+        cs_lines_add(lines, corners[k], corners[(k + 1) % 4]);
+    style.on_top = true;
+    cs_lines_draw(lines, &style);
+}
+
+/* Marks each viewpoint force that acted in the frame that ends now: dots on the particles that
+ * it saw last; its rectangle at the distance of its target, in front of all; and lines from the
+ * eye to its corners. Seen from the same viewpoint, that is the rectangle alone. */
+static void viewpoint_forces_draw(const struct cs_wireframe *net, struct cs_lines *lines,
+                                  const struct cs_frame *frame) {
+    const struct cs_events *events = net->system->events;
+    for (uint32_t k = 0; events && events->viewpoint_forces && k < events->viewpoint_forces->n;
+         k++)
+        if (was_active(net->system, events->viewpoint_forces->states + k, frame->t))
+            draw(net, lines, events->viewpoint_forces->states + k, frame->x);
+}
 
 enum cs_status cs_overlay_init(struct cs_overlay *overlay, const struct cs_system *system,
                                double pixels_per_m, struct cs_lines *lines,
@@ -49,7 +132,166 @@ void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *fr
     if (look->goals && frame->goals)
         cs_wireframe_draw_goals(net, lines, frame->x, frame->goals);
     if (render->viewpoint_forces)
-        cs_viewpoint_forces_draw(net, lines, frame);
+        viewpoint_forces_draw(net, lines, frame);
     if (frame->title)
         cs_colour_bar_draw(&overlay->colour_bar, lines, frame);
+}
+
+/* Draws bodies as lines: edges, springs by kind, pins, goals and threads. */
+
+/* Edges of a body's surface: of its mesh, or between neighbours of its grid. */
+static uint32_t edges_of(const struct cs_body_range *body) {
+    if (body->mesh)
+        return body->mesh->n_edges;
+    return (body->columns - 1) * body->rows + body->columns * (body->rows - 1);
+}
+
+uint32_t cs_wireframe_capacity(const struct cs_system *system) {
+    uint32_t most = system->springs.n > system->view.n ? system->springs.n : system->view.n;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const uint32_t edges = edges_of(system->bodies + b);
+        most = edges > most ? edges : most;
+    }
+    return most;
+}
+
+/* Adds a line between particles a and b of the system; a dot if they are one. */
+static void add(const struct cs_wireframe *net, struct cs_lines *lines, const double *x,
+                uint32_t a, uint32_t b) {
+    double from[3], to[3];
+    cs_mesh_position(net->system->view.n, x, a, from);
+    cs_mesh_position(net->system->view.n, x, b, to);
+    cs_lines_add(lines, from, to);
+}
+
+/* Adds the edges of a body, in the number that edges_of counts. */
+static void add_edges(const struct cs_wireframe *net, struct cs_lines *lines, const double *x,
+                      const struct cs_body_range *body) {
+    for (uint32_t e = 0; body->mesh && e < body->mesh->n_edges; e++) {
+        const uint32_t *ends = body->mesh->edges + 2 * (size_t)e;
+        add(net, lines, x, body->first + ends[0], body->first + ends[1]);
+    }
+    for (uint32_t row = 0; row < body->rows; row++)
+        for (uint32_t column = 0; column < body->columns; column++) {
+            const uint32_t i = body->first + row * body->columns + column;
+            if (column + 1 < body->columns)
+                add(net, lines, x, i, i + 1);
+            if (row + 1 < body->rows)
+                add(net, lines, x, i, i + body->columns);
+        }
+}
+
+double cs_wireframe_width(const struct cs_wireframe *net, double share, double least,
+                          double most) {
+    return fmin(fmax(share * net->cell, least * net->line_unit), most * net->line_unit);
+}
+
+void cs_wireframe_draw_edges(const struct cs_wireframe *net, struct cs_lines *lines,
+                             const double *x) {
+    for (uint32_t b = 0; b < net->system->scene->bodies.n; b++) {
+        // darkened to ink that still tells bodies apart
+        const double *colour = cs_scene_bodies(net->system->scene)[b].material.colour;
+        struct cs_line_style style = {.alpha = 0.9, .depth_offset = net->depth_offset};
+        for (int i = 0; i < 3; i++)
+            style.colour[i] = (float)(0.012 + 0.45 * colour[i]);
+        style.half_width = cs_wireframe_width(net, 0.07, 0.35, 0.8);
+        add_edges(net, lines, x, net->system->bodies + b);
+        cs_lines_draw(lines, &style);
+    }
+}
+
+void cs_wireframe_draw_springs(const struct cs_wireframe *net, struct cs_lines *lines,
+                               const double *x) {
+    // Layers from back to front. Bend springs run along two stretch springs: wide and pale
+    // below them, they frame them. Surface springs of a network are pale, or they would hide
+    // its inside.
+    enum { ALL, PLAIN, NETWORK };
+    static const struct {
+        uint32_t kind, of, colour;
+        double alpha, share, least, most;
+    } layers[] = {{CS_SPRING_STRETCH, NETWORK, 0xc8321f, 0.25, 0.05, 0.3, 0.6},
+                  {CS_SPRING_BEND, ALL, 0x6fb3e8, 0.55, 0.17, 0.8, 2.4},
+                  {CS_SPRING_SHEAR, NETWORK, 0x1f7f4d, 0.3, 0.05, 0.25, 0.5},
+                  {CS_SPRING_SHEAR, PLAIN, 0x2f9e62, 0.85, 0.05, 0.3, 0.7},
+                  {CS_SPRING_STRETCH, PLAIN, 0xc8321f, 0.95, 0.07, 0.4, 0.9}};
+    const struct cs_springs *springs = &net->system->springs;
+    const struct cs_body *bodies = cs_scene_bodies(net->system->scene);
+    for (size_t layer = 0; layer < sizeof layers / sizeof *layers; layer++) {
+        struct cs_line_style style = {.alpha = layers[layer].alpha,
+                                      .depth_offset = net->depth_offset};
+        cs_colour_linear(layers[layer].colour, style.colour);
+        style.half_width = cs_wireframe_width(net, layers[layer].share, layers[layer].least,
+                                              layers[layer].most);
+        for (uint32_t r = 0; r < springs->n_runs; r++) {
+            const struct cs_spring_run *run = springs->runs + r;
+            const uint32_t of = bodies[run->body].network.present ? NETWORK : PLAIN;
+            if (run->kind != layers[layer].kind ||
+                (layers[layer].of != ALL && layers[layer].of != of))
+                continue;
+            for (uint32_t i = 0; i < run->count; i++)
+                add(net, lines, x, cs_spring_a(run, i), cs_spring_b(run, i));
+        }
+        cs_lines_draw(lines, &style);
+    }
+}
+
+void cs_wireframe_draw_pins(const struct cs_wireframe *net, struct cs_lines *lines,
+                            const double *x, const double *inv_mass) {
+    // a light disc with a dark border
+    static const uint32_t colours[2] = {0x1d2733, 0xffd34d};
+    for (int pass = 0; pass < 2; pass++) {
+        struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * net->depth_offset};
+        cs_colour_linear(colours[pass], style.colour);
+        style.half_width = cs_wireframe_width(net, 0.4, 2.2, 5) - pass * 1.1 * net->line_unit;
+        for (uint32_t i = 0; i < net->system->view.n; i++)
+            if (inv_mass[i] == 0)
+                add(net, lines, x, i, i);
+        cs_lines_draw(lines, &style);
+    }
+}
+
+void cs_wireframe_draw_goals(const struct cs_wireframe *net, struct cs_lines *lines,
+                             const double *x, const double *goals) {
+    static const uint32_t colours[2] = {0x2b5fa8, 0xc8321f};
+    const struct cs_system *system = net->system;
+    const uint32_t n = system->view.n;
+    /* two passes: the dots of every body lie over the lines of all */
+    for (int dots = 0; dots < 2; dots++) {
+        struct cs_line_style style = {.alpha = dots ? 0.95 : 0.75,
+                                      .depth_offset = net->depth_offset};
+        cs_colour_linear(colours[dots], style.colour);
+        style.half_width = dots ? cs_wireframe_width(net, 0.11, 0.5, 1.8)
+                                : cs_wireframe_width(net, 0.06, 0.35, 0.8);
+        for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+            const struct cs_body_range *body = system->bodies + b;
+            if (!cs_scene_bodies(system->scene)[b].shape_matching.present)
+                continue;
+            for (uint32_t i = body->first; i < body->first + body->count; i++) {
+                double at[3], goal[3];
+                cs_mesh_position(n, x, i, at);
+                cs_mesh_position(n, goals, i, goal);
+                cs_lines_add(lines, dots ? goal : at, goal);
+            }
+        }
+        cs_lines_draw(lines, &style);
+    }
+}
+
+void cs_wireframe_draw_threads(const struct cs_wireframe *net, struct cs_lines *lines,
+                               const double *x) {
+    for (uint32_t b = 0; b < net->system->scene->bodies.n; b++) {
+        const struct cs_body_range *body = net->system->bodies + b;
+        const double *colour = cs_scene_bodies(net->system->scene)[b].material.colour;
+        struct cs_line_style style = {.alpha = 1, .half_width = net->line_unit};
+        if (body->mesh || (body->columns > 1 && body->rows > 1))
+            continue;
+        for (int i = 0; i < 3; i++)
+            style.colour[i] = (float)colour[i];
+        add_edges(net, lines, x, body);
+        cs_lines_draw(lines, &style);
+        for (uint32_t i = 0; i < body->count; i++)
+            add(net, lines, x, body->first + i, body->first + i);
+        style.half_width = cs_wireframe_width(net, 0.3, 1.5, 5);
+        cs_lines_draw(lines, &style);
+    }
 }

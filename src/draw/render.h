@@ -13,7 +13,7 @@
 #include "base/image.h"
 #include "base/status.h"
 #include "model/contact/posed_collider.h"
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 
 #include <stdbool.h>
 

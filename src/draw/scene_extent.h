@@ -4,7 +4,7 @@
 
 #include "draw/view.h"
 #include "model/contact/posed_collider.h"
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 
 /* Returns a sphere around the particles at x (3,n) and the visible colliders
  * (scene->colliders.n) but planes: around their bounding box, with a radius of 1 mm at least.

@@ -1,6 +1,8 @@
 /* srgb.c - tables of the sRGB curve by Newton's method, and colours with transparency. */
 #include "draw/srgb.h"
 
+#include "draw/look.h"
+
 /* y^2.4 = y^2 (y^2)^(1/5) for y in 0..1. Newton's iteration for r^5 = y^2 is
  *   r' = (4 r + y^2 / r^4) / 5.
  * From r = 1, above the root, it falls by at most a fifth per step until it is near. */
@@ -70,4 +72,30 @@ uint32_t cs_srgb_blend_on_white(const struct cs_srgb *tone, uint32_t colour) {
     for (int k = 0; k < 3; k++)
         light[k] = (clear + (255 - clear) * tone->linear[colour >> 8 * k & 255]) / 255;
     return cs_srgb_pack(tone, light[0], light[1], light[2]);
+}
+
+/* Colour maps of looks, the ink of lines, and a conversion from sRGB to linear RGB. */
+
+// a cubic within 0.002 of the sRGB curve: + and * only, since libm's last bits differ by
+// machine
+void cs_colour_linear(uint32_t hex, float linear[3]) {
+    for (int i = 0; i < 3; i++) {
+        const double c = (double)(hex >> (16 - 8 * i) & 255) / 255;
+        linear[i] = (float)(c * (c * (c * 0.305306011 + 0.682171111) + 0.012522878));
+    }
+}
+
+void cs_colour_stops(int32_t look, float stops[6][4]) {
+    const uint32_t *table = cs_look_of(look)->stops;
+    for (int i = 0; i < 6; i++) {
+        cs_colour_linear(table ? table[i] : 0, stops[i]);
+        stops[i][3] = 1;
+    }
+}
+
+// luminance of linear RGB in the primaries of sRGB (Y of IEC 61966-2-1), against a middle grey
+void cs_colour_ink(const double background[3], float ink[3]) {
+    const double luminance =
+        0.2126 * background[0] + 0.7152 * background[1] + 0.0722 * background[2];
+    cs_colour_linear(luminance > 0.18 ? 0x1d2733 : 0xe9eef4, ink);
 }

@@ -11,7 +11,7 @@
 
 #include "base/arena.h"
 #include "base/clock.h"
-#include "base/thread.h"
+#include "base/worker_thread.h"
 
 #include <pthread.h>
 #include <stdio.h>

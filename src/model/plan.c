@@ -3,12 +3,11 @@
 
 #include "base/pool.h"
 #include "mesh/trimesh.h"
-#include "model/event/viewpoint_forces.h"
+#include "model/event/event_state.h"
 #include "model/force/terms.h"
 #include "model/solver/multigrid.h"
 #include "model/spring/springs.h"
 #include "scene/body_pairs.h"
-#include "scene/crossing_policy.h"
 #include "scene/event_key.h"
 #include "scene/shape.h"
 

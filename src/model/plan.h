@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "model/system/feature.h"
+#include "model/system/particle_system.h"
 #include "scene/scene.h"
 
 #include <clothsim/integrator.h>
@@ -24,5 +25,24 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
 /* Appends the plan as aligned text, one feature per line, with the bytes allocated for it so
  * far. */
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out);
+
+/* Builds the system of a scene. */
+
+/* Builds the system of a checked scene by its plan, with all arrays in the system's arena. The
+ * scene must outlive it. On failure *system is empty, and the status is CS_ERR_MEMORY, or
+ * CS_ERR_SCENE from a force. */
+enum cs_status cs_system_build(struct cs_system *system, const struct cs_scene *scene,
+                               const struct cs_plan *plan, struct cs_error *error);
+
+/* How the threads of the pool share a system: blocks of particles, chunks
+ * of springs.
+ *
+ * Each thread adds forces to the particles of its own block alone, in the order in which one
+ * thread would. Sums, and the bits of the state, are therefore those of one thread. */
+
+/* Fills the partition in system->springs for the pool's present number of threads; bodies and
+ * runs must be there. It stays valid for any number of threads. Returns CS_ERR_MEMORY if out of
+ * memory. */
+enum cs_status cs_thread_partition_build(struct cs_system *system, struct cs_error *error);
 
 #endif

@@ -6,14 +6,13 @@
  *   3. Masses, which may depend on the springs at a particle; then state and pins.
  *   4. Forces, which may read all of that.
  *   5. Crossings, and events with the bounds on frequencies. */
-#include "model/system_build.h"
+#include "model/plan.h"
 
 #include "model/contact/ccd/crossings.h"
 #include "model/event/events.h"
-#include "model/force/spectral_bounds.h"
+#include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "model/system/shape_clusters.h"
-#include "model/thread_partition.h"
 #include "scene/shape.h"
 
 #include <stdlib.h>

@@ -4,7 +4,7 @@
  * A grid's springs reach at most two rows, so a thread computes those of its rows, and those of
  * the rows at its border twice. A mesh's springs reach anywhere; they are computed once, in
  * chunks, into slots, and each thread then gathers the forces on its own particles. */
-#include "model/thread_partition.h"
+#include "model/plan.h"
 
 #include "base/pool.h"
 #include "scene/shape.h"

@@ -9,6 +9,7 @@
 
 /* Returns the number of surfaces. */
 uint32_t cs_scene_surfaces(const struct cs_scene *scene);
+
 /* Returns the collider of a surface; NULL if it is a body. */
 const struct cs_collider *cs_scene_obstacle(const struct cs_scene *scene, uint32_t surface);
 
@@ -16,7 +17,31 @@ const struct cs_collider *cs_scene_obstacle(const struct cs_scene *scene, uint32
  * coefficient of the pair. */
 bool cs_scene_bodies_collide(const struct cs_scene *scene, uint32_t a, uint32_t b,
                              double *friction);
+
 /* Returns true if any two may. */
 bool cs_scene_has_body_contact(const struct cs_scene *scene);
+
+/* Treatment of edges that go through triangles, as the scene wants it. */
+
+/* Treatment of crossings; each includes the count but the first. */
+enum cs_crossings_policy {
+    CS_CROSSINGS_IGNORE, /* nothing: they are not looked for */
+    CS_CROSSINGS_COUNT,  /* counted after each frame */
+    CS_CROSSINGS_LIMIT,  /* counted, and steps that would make one are cut */
+    CS_CROSSINGS_STOP    /* counted after each step: the first ends the run */
+};
+
+/* Returns true if the scene leaves it open and has bodies in contact: they get `limit`. */
+static inline bool cs_scene_crossings_by_pairs(const struct cs_scene *scene) {
+    return scene->crossings < 0 && cs_scene_has_body_contact(scene);
+}
+
+/* Returns the policy of a scene. */
+static inline enum cs_crossings_policy cs_scene_crossings(const struct cs_scene *scene) {
+    if (cs_scene_crossings_by_pairs(scene))
+        return CS_CROSSINGS_LIMIT;
+    return scene->crossings < 0 ? CS_CROSSINGS_IGNORE
+                                : (enum cs_crossings_policy)scene->crossings;
+}
 
 #endif

@@ -26,4 +26,11 @@ enum cs_status cs_check_unit(const struct cs_check *at, const char *path, double
 enum cs_status cs_check_pose(const struct cs_check *at, const char *body, const char *shape,
                              struct cs_pose *place);
 
+/* Checks of a scene's events that ranges cannot express. */
+
+/* Checks that times are in order, particles exist and keys can change; normalises directions
+ * and fills absent values of viewpoints. cs_scene_check calls it, and its failures are alike:
+ * path_out (CS_TEXT_MAX bytes) gets the JSON path. */
+enum cs_status cs_events_check(struct cs_scene *scene, char *path_out, struct cs_error *error);
+
 #endif

@@ -1,12 +1,10 @@
 /* Checks of events that the range of a single key cannot express: times, targets, directions,
  * paths, overlaps. */
-#include "scene/event_check.h"
 
 #include "base/options.h"
 #include "scene/check.h"
 #include "scene/event_key.h"
 #include "scene/shape.h"
-#include "scene/viewpoint.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -26,4 +26,10 @@ bool cs_event_key_acts(const struct cs_scene *scene, double value, const char *k
 /* Returns true if an event of a checked scene changes masses. */
 bool cs_event_changes_mass(const struct cs_event *event);
 
+/* Check of a view: an eye, its target, and the direction up. */
+
+/* Returns the fault of a view, or NULL; *key is then "target" or "up". */
+const char *cs_viewpoint_fault(const double eye[3], const double target[3], const double up[3],
+                               const char **key);
+
 #endif

@@ -2,6 +2,32 @@
 #include "scene/scene.h"
 #include "scene/table_rows.h"
 
+const char *const cs_pin_names[] = {"top-left", "top-right", "bottom-left", "bottom-right",
+                                    "top",      "bottom",    "left",        "right",
+                                    "edges",    NULL};
+
+static const struct cs_option box_rows[] = {
+    VECTOR(struct cs_box, min, 3, "m", NULL, -BIG, BIG, "corner with the smallest coordinates"),
+    VECTOR(struct cs_box, max, 3, "m", NULL, -BIG, BIG, "corner with the largest coordinates"),
+};
+
+static const struct cs_table box_table = {ROWS(box_rows), .size = sizeof(struct cs_box),
+                                          .optional = true};
+
+static const struct cs_option pin_rows[] = {
+    CHOICE(struct cs_pin, at, cs_pin_names, -1,
+           "a corner or an edge of the grid; a plain string means this"),
+    INT(struct cs_pin, index, "", -1, 0, 4294967295.0,
+        "a particle of the body, row * columns + column, or a vertex from 0; a plain number "
+        "means "
+        "this"),
+    TABLE(struct cs_pin, box, box_table, "every particle that starts inside"),
+};
+
+const struct cs_table cs_pin_table = {ROWS(pin_rows), .size = sizeof(struct cs_pin),
+                                      .one_of = true, .shorthand_text = "at",
+                                      .shorthand_number = "index"};
+
 static const double absent3[3] = {ABSENT, ABSENT, ABSENT};
 
 /* what an event acts on: the same two keys in each that acts on particles */
@@ -28,6 +54,7 @@ static const struct cs_option impact_rows[] = {
          "total change of momentum of the free particles, distributed by mass: each gets the "
          "same change of velocity; over an interval a steady force"),
 };
+
 static const struct cs_table impact_table = {
     ROWS(impact_rows), .size = sizeof(struct cs_impact), .optional = true};
 
@@ -37,6 +64,7 @@ static const struct cs_option gust_rows[] = {
     REAL(struct cs_wind_change, strength, "Pa or N", ABSENT, 0, BIG,
          "in the unit of forces.wind; 0 turns it off; absent: unchanged"),
 };
+
 static const struct cs_table gust_table = {
     ROWS(gust_rows), .size = sizeof(struct cs_wind_change), .optional = true};
 
@@ -50,9 +78,12 @@ static const struct cs_option viewpoint_rows[] = {
     REAL(struct cs_viewpoint, aspect, "", ABSENT, 0.01, 100,
          "width over height; absent: the picture's value"),
 };
+
 static const struct cs_table viewpoint_table = {ROWS(viewpoint_rows),
                                                 .size = sizeof(struct cs_viewpoint)};
+
 static const double whole[4] = {0, 0, 1, 1};
+
 static const struct cs_option viewpoint_force_rows[] = {
     TABLE(struct cs_viewpoint_force, viewpoint, viewpoint_table,
           "position and view; the force acts along the view"),
@@ -68,6 +99,7 @@ static const struct cs_option viewpoint_force_rows[] = {
     INT(struct cs_viewpoint_force, body, "", -1, 0, 4294967295.0,
         "number of the body from 0 that it acts on; absent: every body"),
 };
+
 static const struct cs_table viewpoint_force_table = {
     ROWS(viewpoint_force_rows), .size = sizeof(struct cs_viewpoint_force), .optional = true};
 
@@ -78,18 +110,22 @@ static const struct cs_option ramp_rows[] = {
     REAL(struct cs_ramp, value, "", ABSENT, -1e12, 1e12,
          "new value, within the key's range; must be given"),
 };
+
 static const struct cs_table ramp_table = {ROWS(ramp_rows), .size = sizeof(struct cs_ramp),
                                            .optional = true};
 
 static const char *const motion_names[] = {"linear", "smooth", NULL};
+
 static const struct cs_option path_rows[] = {
     REAL(struct cs_path_point, at, "s", ABSENT, 0, BIG,
          "when the point is reached; must be given"),
     VECTOR(struct cs_path_point, point, 3, "m", NULL, -BIG, BIG,
            "position of the first particle then; the others keep their offsets from it"),
 };
+
 static const struct cs_table path_table = {ROWS(path_rows),
                                            .size = sizeof(struct cs_path_point)};
+
 static const struct cs_option grab_rows[] = {
     AIM_ROWS(struct cs_grab),
     LIST(struct cs_grab, path, path_table,
@@ -101,22 +137,27 @@ static const struct cs_option grab_rows[] = {
     BOOL(struct cs_grab, relative, 0,
          "points are displacements from the position where each particle was grabbed"),
 };
+
 static const struct cs_table grab_table = {ROWS(grab_rows), .size = sizeof(struct cs_grab),
                                            .optional = true};
 
 static const struct cs_option hold_rows[] = {AIM_ROWS(struct cs_pin_change)};
+
 static const struct cs_table hold_table = {
     ROWS(hold_rows), .size = sizeof(struct cs_pin_change), .optional = true};
 
 static const double zero3[3] = {0, 0, 0};
+
 static const struct cs_option shift_rows[] = {
     REAL(struct cs_path_point, at, "s", ABSENT, 0, BIG,
          "when the point is reached; must be given"),
     VECTOR(struct cs_path_point, point, 3, "m", NULL, -BIG, BIG,
            "displacement then, from the position at the start of the event"),
 };
+
 static const struct cs_table shift_table = {ROWS(shift_rows),
                                             .size = sizeof(struct cs_path_point)};
+
 static const struct cs_option move_rows[] = {
     INT(struct cs_move, collider, "", -1, 0, 4294967295.0,
         "number of the collider from 0; must be given"),
@@ -126,6 +167,7 @@ static const struct cs_option move_rows[] = {
     VECTOR(struct cs_move, spin, 3, "rad/s", zero3, -BIG, BIG,
            "angular velocity about its centre, a plane's point or a floor's x = z = 0"),
 };
+
 static const struct cs_table move_table = {ROWS(move_rows), .size = sizeof(struct cs_move),
                                            .optional = true};
 
@@ -149,5 +191,6 @@ static const struct cs_option event_rows[] = {
     TABLE(struct cs_event, move, move_table,
           "a collider moves along a path and turns, until to or another move"),
 };
+
 const struct cs_table cs_event_table = {ROWS(event_rows), .size = sizeof(struct cs_event),
                                         .one_of = true, .n_always_optional = 3};

@@ -1,9 +1,9 @@
 /* Checks of a scene that ranges of single values cannot express. */
 #include "scene/body_pairs.h"
+#include "scene/check.h"
 #include "scene/collider.h"
-#include "scene/event_check.h"
+#include "scene/event_key.h"
 #include "scene/shape.h"
-#include "scene/viewpoint.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -16,7 +16,7 @@
 #include "base/vector.h"
 #include "model/contact/ccd/step_limit.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
-#include "model/post_step/strain_limit.h"
+#include "model/post_step/contact_projection.h"
 #include "sim/energy_ledger.h"
 #include "sim/trace.h"
 

@@ -21,7 +21,7 @@
 #ifndef CS_ENERGY_LEDGER_H
 #define CS_ENERGY_LEDGER_H
 
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 
 /* X(name, column): energies in J of a state. A force of terms.h adds its energy to the column
  * that its struct cs_term names, else to its own column after these, in the order of forces. */

@@ -9,7 +9,6 @@
 #include "model/contact/ccd/step_limit.h"
 #include "model/force/diagnostics.h"
 #include "model/force/normals.h"
-#include "model/force/spectral_bounds.h"
 #include "model/force/terms.h"
 #include "sim/commit.h"
 #include "sim/energy_ledger.h"
@@ -30,8 +29,7 @@ static void *host_alloc(void *ctx, size_t bytes) {
     return cs_arena_alloc(&host->arena, bytes, &host->error);
 }
 
-/* Stores the message, with the pair that blocked the last rejected step if there is one.
- * cs_fail keeps the first message. */
+/* Stores the first message, with the pair that blocked the last rejected step, if any. */
 static enum cs_step host_fail(void *ctx, const char *format, ...) {
     struct cs_run_host *host = ctx;
     char message[512];
@@ -144,8 +142,7 @@ static void host_force_diagonal(void *ctx, double t, const double *x, const doub
 
 /* Sets the solver up again with a matrix that is closer to positive definite: first
  * CS_SOLVE_PSD, which drops the transverse part of compressed springs, then CS_SOLVE_BOUND
- * for friction on curved surfaces too. Counted in clamped_setups. Returns false if both are
- * already set. */
+ * for friction on curved surfaces too. Returns false if both are already set. */
 static bool clamp(struct cs_run_host *host) {
     struct cs_matrix matrix = host->linear.matrix;
     if (matrix.psd && matrix.bound)
@@ -240,8 +237,7 @@ static void host_bounds_at(void *ctx, double t, const double *x, const double *v
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }
 
-/* The admissible fraction of a displacement; below 1 counts as a subdivided step. Remembers
- * the blocking pair for the message of host_fail. */
+/* The admissible fraction of a displacement; stores the blocking pair for host_fail. */
 static double host_max_step_fraction(void *ctx, double t0, const double *x0, double t1,
                                      const double *x1) {
     struct cs_run_host *host = ctx;
@@ -315,8 +311,7 @@ static double host_longest_step(void *ctx, double t, const double *x, const doub
     return step;
 }
 
-/* Prepares contact by projection. Methods with another model than the equation of motion have
- * no force to decide static friction by. */
+/* Contact by projection; for CS_FIDELITY_OTHER no force decides static friction. */
 static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *error) {
     struct cs_system *system = host->run->system;
     if (!begin(host, CS_FEATURE_CONTACT))
@@ -332,8 +327,7 @@ static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *err
     return CS_OK;
 }
 
-/* True if no post-step correction, contact or event can change the state of this scene:
- * commit only checks. */
+/* True if commit only checks: no correction, contact or event can change the state. */
 static bool may_pass(const struct cs_system *system) {
     static const enum cs_feature acting[] = {CS_FEATURE_VELOCITY_LOSS, CS_FEATURE_CONTACT,
                                              CS_FEATURE_CROSSINGS, CS_FEATURE_STRAIN_LIMIT,
@@ -390,8 +384,7 @@ void cs_run_host_fail_solves(struct cs_run_host *host) {
     host->table.solve = failing_solve;
 }
 
-/* Everything that depends on the state follows an event: blow-up bound, ledger, trace, and the
- * particles that static friction holds. */
+/* An event also updates the blow-up bound, the ledger, the trace and static friction. */
 bool cs_run_host_apply_events(struct cs_run_host *host, double t) {
     struct cs_system *system = host->run->system;
     const bool changed = cs_events_apply(system, t);

@@ -19,6 +19,7 @@ struct cs_method {
  * No row counts as given. CS_ERR_MEMORY. */
 enum cs_status cs_method_init(struct cs_method *method, const struct cs_integrator *integrator,
                               const void *options, struct cs_error *error);
+
 /* Frees the options and zeroes the method. */
 void cs_method_finish(struct cs_method *method);
 
@@ -33,6 +34,7 @@ enum cs_status cs_method_read(struct cs_method *method, struct cs_registry *regi
  * after the ':', or NULL. */
 enum cs_status cs_method_find(struct cs_method *method, struct cs_registry *registry,
                               const char *text, const char **pairs, struct cs_error *error);
+
 /* The second half: sets "key=value,key=value" and checks the result; pairs NULL sets nothing.
  */
 enum cs_status cs_method_set_pairs(struct cs_method *method, const char *pairs,
@@ -52,6 +54,7 @@ enum cs_status cs_method_check(const struct cs_method *method, const char *place
 
 /* True if an option was set, to its default or not. */
 bool cs_method_is_given(const struct cs_method *method, const struct cs_option *row);
+
 /* The value of a CHOICE: its number among the names. */
 int32_t cs_method_choice(const struct cs_method *method, const struct cs_option *choice);
 
@@ -74,8 +77,40 @@ enum cs_status cs_method_parse_pair(const char *name, char **pairs, const char *
 
 /* True for a method of fixed steps with an option `dt`. */
 bool cs_method_takes_dt(const struct cs_integrator *integrator);
+
 /* Sets that option. Returns false if there is none, the method is adaptive, or dt is out of
  * range. */
 bool cs_method_set_dt(struct cs_method *method, double dt);
+
+/* The name of a series: a method with its options, the same in every output of a
+ * study. */
+
+/* Capacity of a name, with its zero. */
+enum { CS_SERIES_BYTES = 256 };
+
+/* Cuts SERIES off "SERIES=NAME:key=value": *text then begins with NAME. name is "" if there
+ * is no SERIES. CS_ERR_USAGE if it has other characters than letters, digits and _ + -, or
+ * more than 60: it becomes part of file names. */
+enum cs_status cs_series_parse_name(const char **text, char name[CS_SERIES_BYTES],
+                                    struct cs_error *error);
+
+/* Refuses a name of a series that is another integrator's name: a table could not tell the
+ * two apart. */
+enum cs_status cs_series_check_name(struct cs_registry *registry, const char *name,
+                                    const struct cs_method *method, struct cs_error *error);
+
+/* Adds "key=value,key=value" of the options that differ from the defaults, in the order of
+ * the table, without the option `except`, which a study varies. A given atol is added at its
+ * default too. */
+void cs_method_add_options(const struct cs_method *method, const char *except,
+                           struct cs_text *out);
+
+/* The default name of a series: "NAME" or "NAME:options". CS_ERR_USAGE if it does not fit
+ * into CS_SERIES_BYTES. */
+enum cs_status cs_series_name(const struct cs_method *method, const char *except,
+                              char name[CS_SERIES_BYTES], struct cs_error *error);
+
+/* The name of a series as part of a file name, ':' as '.': distinct names stay distinct. */
+void cs_series_file_name(const char *name, char file[CS_SERIES_BYTES]);
 
 #endif

@@ -2,7 +2,7 @@
  * called. */
 #include "sim/module.h"
 
-#include "base/value_kind.h"
+#include "base/options.h"
 #include "sim/crash.h"
 #include "sim/process_state.h"
 

@@ -4,16 +4,89 @@
 #define CS_RUN_HOST_H
 
 #include "base/clock.h"
-#include "model/contact/ccd/blocked_step.h"
+#include "model/contact/ccd/step_limit.h"
 #include "model/event/events.h"
 #include "model/post_step/contact_projection.h"
-#include "model/post_step/step_bound.h"
 #include "model/solver/linear.h"
-#include "sim/advance_check.h"
-#include "sim/blow_up_check.h"
-#include "sim/budget.h"
+#include "model/system/particle_system.h"
 #include "sim/process_state.h"
 #include "sim/run_state.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Detects a blow-up: numbers that are not finite, or more kinetic energy
+ * than the scene can give. */
+
+/* The bound on kinetic energy at time t, in J:
+ *   100 (start_energy + speed + (force_gain + sqrt(force_rate) (t - t_forces))^2)
+ * start_energy is potential: the one of the start, the springs at twice their length, and
+ * shape matching. The other two bound free flight under outer forces, sum m (|v| + a t)^2 /
+ * 2, by (p + q)^2 <= 2 p^2 + 2 q^2 with speed = sum m v^2 and force_rate = sum m a^2. Where
+ * the outer forces change, sqrt(sum m (a1 t1 + a2 t2)^2) <= sqrt(sum m a1^2) t1 + sqrt(sum m
+ * a2^2) t2: force_gain adds up the pieces. The factor 100 is a margin, chosen by trial. */
+struct cs_blow_up_check {
+    double start_energy; /* J */
+    double speed;        /* J: twice the kinetic energy of the start */
+    double force_rate;   /* J/s2: sum of F^2 / m of the outer forces since t_forces */
+    double force_gain;   /* sqrt(J), by the pieces before t_forces */
+    double t_forces;     /* s, when the forces were last evaluated */
+};
+
+/* Sets the bound from the state and the forces that the system has at time t. */
+void cs_blow_up_check_set(struct cs_blow_up_check *bound, const struct cs_system *system,
+                          double t);
+
+/* Sets the bound again after the events at time t. It starts from the state that they leave,
+ * with the larger of the values now and those at the end of the segment; a grab may pull all
+ * particles along. If viewpoint forces only tested visibility again, the bound continues with
+ * the new forces: a fresh start at each test would follow a blow-up. */
+void cs_blow_up_check_after_events(struct cs_blow_up_check *bound, struct cs_system *system,
+                                   double t);
+
+/* Checks the state (x, v) after a step. Returns true on a blow-up; run->outcome and
+ * run->blow_up then say which, where and by how much. */
+bool cs_blow_up_check_step(const struct cs_blow_up_check *bound, struct cs_run *run, double t,
+                           const double *x, const double *v);
+
+/* Limit on the processor time of a run, checked every few steps. */
+
+/* Processor time and the rhythm of its checks. Zeroed: no limit. */
+struct cs_budget {
+    double end;              /* s of cs_clock_cpu; 0: no limit */
+    double last_check;       /* s of cs_clock_wall, at the last check */
+    uint32_t steps;          /* steps since the last check */
+    uint32_t check_interval; /* steps between two checks, 1 to 1024 */
+};
+
+/* Grants cpu_seconds of processor time of the whole process, from now on. */
+void cs_budget_start(struct cs_budget *budget, double cpu_seconds);
+
+/* Returns true if the time is used up. Call it after every step: most calls only count. */
+bool cs_budget_is_over(struct cs_budget *budget);
+
+/* Checks the post-conditions of advance() before a state is hashed, written
+ * or drawn.
+ *
+ * The contract asks three things of a method: the last commit was at t1, all numbers are
+ * finite, and pinned particles still have their bits. A method that breaks one could
+ * otherwise report a wrong result as a success. */
+
+/* The state of the check within one advance; host->commit sets last_commit. */
+struct cs_advance_check {
+    const struct cs_system *system; /* borrowed */
+    uint64_t pins_hash;             /* hash of x and v of the pinned particles at the begin */
+    double last_commit;             /* s, the end of the last committed step */
+};
+
+/* Starts the check of an advance that begins at t. */
+void cs_advance_check_begin(struct cs_advance_check *left, const struct cs_system *system,
+                            double t);
+
+/* Checks the state after an advance to t. Pinned particles on a path are left out: commit
+ * places them. Returns false on a violation and adds one line about it to why. */
+bool cs_advance_check_passes(const struct cs_advance_check *left, double t,
+                             struct cs_text *why);
 
 /* One per run, owned by struct cs_run; ctx of the method's calls. */
 struct cs_run_host {

@@ -6,7 +6,7 @@
  * count too. */
 #include "sim/run_record.h"
 
-#include "model/event/event_serialise.h"
+#include "model/event/event_state.h"
 #include "sim/host.h"
 
 #include <string.h>

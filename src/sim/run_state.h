@@ -3,7 +3,7 @@
 #define CS_RUN_STATE_H
 
 #include "base/trace_stream.h"
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 
 #include <clothsim/integrator.h>
 #include <signal.h>
@@ -13,7 +13,7 @@
 #define CS_OUTCOME_LIST(X)                                                                     \
     X(CS_RUNNING, "finished")                                                                  \
     X(CS_NOT_FINITE, "blew up: not finite")                                                    \
-    X(CS_UNBOUNDED, "blew up: unbounded energy")                                        \
+    X(CS_UNBOUNDED, "blew up: unbounded energy")                                               \
     X(CS_INTERRUPTED, "interrupted")                                                           \
     X(CS_OVER_BUDGET, "over budget")                                                           \
     X(CS_FAILED, "failed")

@@ -2,8 +2,8 @@
 #include "study/energy_monitor.h"
 
 #include "base/table.h"
+#include "model/event/event_state.h"
 #include "model/event/events.h"
-#include "model/event/viewpoint_forces.h"
 #include "model/force/terms.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
 #define CS_OVERLAP_WARNING_H
 
 #include "base/text.h"
+#include "model/system/particle_system.h"
 #include "scene/scene.h"
 
 /* Adds one line about the first pair, and how many more there are; nothing if there is none.
@@ -14,5 +15,21 @@
  * false. CS_ERR_MEMORY. */
 enum cs_status cs_overlap_warning_print(const struct cs_scene *scene, double seconds,
                                         struct cs_text *out, struct cs_error *error);
+
+/* Warns of colliders that are too small for the contact samples of a mesh.
+ */
+
+/* Adds one line about the first collider that can enter between the samples of the longest edge
+ * (model/contact/contact_samples.h), and how many more there are. Nothing if there is none, or
+ * without contact by force. */
+void cs_sampling_warning_print(const struct cs_system *system, struct cs_text *out);
+
+/* Warns of bodies that start inside a closed surface they collide with.
+ */
+
+/* Adds one line about the first body inside a closed body or mesh collider that it collides
+ * with, and how many more there are; nothing if there is none. Contact prevents crossing, hence
+ * such a body cannot get out. */
+void cs_containment_warning_print(const struct cs_system *system, struct cs_text *out);
 
 #endif

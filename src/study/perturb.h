@@ -5,7 +5,7 @@
 #ifndef CS_PERTURB_H
 #define CS_PERTURB_H
 
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 
 /* Adds noise without correlation between particles: it has a component along every mode. After
  * it no spring is at its rest length. */

@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "scene/file/scene_hash.h"
+#include "scene/file/scene_read.h"
 #include "study/provenance_write.h"
 
 #include <math.h>

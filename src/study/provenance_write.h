@@ -13,6 +13,7 @@ void cs_scene_each_file(const struct cs_scene *scene,
 /* Adds the members of a scene, each line indented by two. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_provenance_out_print_scene(const struct cs_scene *scene, struct cs_text *out,
                                              struct cs_error *error);
+
 /* Adds those of an open session, scene and method; hash and method are those of
  * the resolved scene. As above. */
 enum cs_status cs_provenance_out_print(struct cs_session *session, const char *hash,
@@ -27,6 +28,7 @@ struct cs_picture_provenance {
     bool fast_render;                            /* --fast-render */
     uint32_t restarts;                           /* see cs_provenance_out_add_restarts */
 };
+
 /* Adds it as one JSON object in one line. */
 void cs_provenance_out_print_recipe(const struct cs_picture_provenance *recipe,
                                     struct cs_text *out);
@@ -42,7 +44,26 @@ struct cs_provenance_out_module {
     char hash[CS_HASH_DIGITS];
     const char *library; /* borrowed from the module */
 };
+
 void cs_provenance_out_find_module(struct cs_session *session,
                                    struct cs_provenance_out_module *module);
+
+/* Describes the machine that a measurement was made on. */
+
+/* Facts of the machine and the build; texts without a size are constants. */
+struct cs_machine {
+    char host[64], processor[128]; /* "" unknown */
+    long processors;
+    double load; /* of the last minute */
+    const char *version, *compiler, *flags;
+};
+
+/* Fills in what can be found out; unknown facts are "" or 0. Does not fail. */
+void cs_machine_detect(struct cs_machine *machine);
+
+enum { CS_MACHINE_NAME = 200 };
+
+/* Writes "host: processor". Times under equal names are comparable. */
+void cs_machine_name(char name[CS_MACHINE_NAME]);
 
 #endif

@@ -9,9 +9,30 @@
 #define CS_RECORDED_RUN_H
 
 #include "base/hash.h"
-#include "study/crossing_stats.h"
+#include "model/contact/ccd/crossings.h"
+#include "sim/run.h"
 #include "study/follow.h"
 #include "study/session.h"
+
+/* Statistics of crossings over the frames of a run. */
+
+/* Zeroed: nothing was counted, as where the scene ignores crossings. */
+struct cs_crossing_stats {
+    bool is_counted;
+    uint64_t start_count; /* where the run began */
+    uint64_t max_count,
+        last_count;              /* of all frames and of the last one, the start among them */
+    double max_time, first_time; /* s: when they were most, and the first frame with any */
+    struct cs_crossing_count first; /* there; n 0: there were none */
+};
+
+/* Counts the crossings of the present state, if the scene asks for it. Called at the start and
+ * after each frame. */
+void cs_crossing_stats_add(struct cs_crossing_stats *stats, const struct cs_run *run);
+
+/* "3 at the end, 12 at most, at t = 0.5 s; from t = 0.2 s on: ..." */
+void cs_crossing_stats_print(const struct cs_crossing_stats *stats,
+                             const struct cs_system *system, struct cs_text *out);
 
 /* The scene and the number of frames, common to all runs of a comparison. */
 struct cs_recorded_run_settings {
@@ -68,6 +89,7 @@ enum cs_status cs_recorded_run_execute(struct cs_recorded_run *recording, double
                                        struct cs_trajectory *track,
                                        struct cs_recorded_run_result *end,
                                        struct cs_error *error);
+
 /* Closes the scene; a zeroed object is allowed. */
 void cs_recorded_run_close(struct cs_recorded_run *recording);
 
@@ -76,6 +98,7 @@ void cs_recorded_run_close(struct cs_recorded_run *recording);
 enum cs_status cs_trajectory_init(struct cs_trajectory *track,
                                   const struct cs_recorded_run *recording,
                                   struct cs_error *error);
+
 /* Returns x (3,n) of a frame; v (3,n) follows it. */
 double *cs_trajectory_state(const struct cs_trajectory *track, uint32_t frame);
 void cs_trajectory_finish(struct cs_trajectory *track);

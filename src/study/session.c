@@ -3,9 +3,7 @@
 
 #include "base/pool.h"
 #include "model/plan.h"
-#include "model/system_build.h"
 #include "scene/body_pairs.h"
-#include "scene/crossing_policy.h"
 #include "scene/shape.h"
 #include "sim/install_paths.h"
 #include "study/perturb.h"

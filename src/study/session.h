@@ -7,7 +7,7 @@
 #ifndef CS_SESSION_H
 #define CS_SESSION_H
 
-#include "model/post_step/initial_penetration.h"
+#include "model/post_step/contact_projection.h"
 #include "scene/file/scene_read.h"
 #include "sim/method.h"
 #include "sim/run.h"

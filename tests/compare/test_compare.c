@@ -2,8 +2,7 @@
 #include "place.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_cell.h"
-#include "study/compare/compare_plot.h"
-#include "study/compare/compare_svg.h"
+#include "study/compare/compare_curves.h"
 #include "study/compare/ranking.h"
 
 #include <math.h>

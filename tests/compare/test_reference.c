@@ -2,7 +2,7 @@
 #include "scene.h"
 
 #include "study/reference/compare_reference.h"
-#include "study/reference/compare_reference_choice.h"
+#include "study/reference/compare_reference_state.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,9 +3,8 @@
  * against is the closed form where there is one. */
 #include "../suite.h"
 #include "model/force/terms.h"
+#include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
-#include "study/conform/conform_reference.h"
-#include "study/conform/conform_scenes.h"
 
 #include <math.h>
 #include <stdlib.h>

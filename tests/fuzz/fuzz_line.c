@@ -1,7 +1,6 @@
 /* Any words as the command line of every command: sorted and read as what each option takes, or
  * refused with a message. Nothing is run. */
 #include "cli/commands.h"
-#include "cli/completion.h"
 #include "cli/run/run_checkpoint.h"
 #include "sim/method.h"
 

@@ -3,7 +3,6 @@
 #define CS_FUZZ_READ_BACK_H
 
 #include "scene/file/scene_read.h"
-#include "scene/file/scene_write.h"
 
 #include <string.h>
 

@@ -6,8 +6,8 @@
  * differences with a step of 1e-6: truncation is near 1e-11 and rounding near 1e-9 of the
  * largest entry. */
 #include "fixture.h"
+#include "model/force/diagnostics.h"
 #include "model/force/normals.h"
-#include "model/force/spectral_bounds.h"
 #include "model/force/terms.h"
 #include "model/solver/linear.h"
 #include "planted_terms.h"

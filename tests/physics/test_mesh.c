@@ -6,7 +6,7 @@
 #include "model/force/diagnostics.h"
 #include "model/force/normals.h"
 #include "model/force/terms.h"
-#include "model/post_step/strain_limit.h"
+#include "model/post_step/contact_projection.h"
 #include "model/solver/linear.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
  * with them, on their paths, by order, derivative and count. */
 #include "methods.h"
 
-#include "model/contact/ccd/accd_candidates.h"
+#include "model/contact/ccd/accd.h"
 #include "model/contact/ccd/crossings.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/posed_collider.h"

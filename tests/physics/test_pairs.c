@@ -3,11 +3,10 @@
 #include "methods.h"
 
 #include "base/pool.h"
-#include "model/contact/ccd/accd_candidates.h"
+#include "model/contact/ccd/accd.h"
 #include "model/contact/ccd/crossings.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/plan.h"
-#include "model/system_build.h"
 #include "scene/file/scene_read.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
  * Methods with a step are run at two and must fall by their order; those with error control
  * must meet 1e-5. Methods of another model are left out. */
 #include "methods.h"
-#include "model/force/spectral_bounds.h"
+#include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "model/solver/linear.h"
 #include "planted_terms.h"

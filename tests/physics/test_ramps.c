@@ -2,7 +2,7 @@
 #include "eventful.h"
 
 #include "model/event/events.h"
-#include "model/system_build.h"
+#include "model/plan.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 /* Forces from a viewpoint: their momentum, their times, whom they reach. */
 #include "methods.h"
 
+#include "model/event/event_state.h"
 #include "model/event/events.h"
-#include "model/event/viewpoint_forces.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -10,6 +10,7 @@ import tempfile
 from pathlib import Path
 
 import sources
+import tree
 
 HERE = Path(__file__).resolve().parent
 TEN = "".join(f"    total += part[{i}];\n" for i in range(10))
@@ -17,8 +18,9 @@ TORN = "one two three four five six seven eight nine ten eleven twelve thirteen\
 PARTS = {"tests/tools/retired_words.txt": "lot chunk\n"}
 EXCEPTIONS, ALLOWED = "tests/tools/retired_exceptions.txt", "tests/tools/english_allowed.txt"
 PUBLIC = {"include/clothsim/c.h": ""}
-UNIT = {f"src/base/u{i}.h": "int a;\n" for i in range(301)}
-HEADER = {f"src/base/h{i}.h": "int a;\n" for i in range(181)}
+LIMIT = {name: limit for name, _, limit, _ in tree.LIMITS}
+UNIT = {f"src/base/u{i}.h": "int a;\n" for i in range(LIMIT["units"] + 1)}
+HEADER = {f"src/base/h{i}.h": "int a;\n" for i in range(LIMIT["headers"] + 1)}
 ROOMS = [f"r{i}" for i in range(8)]
 ARROWS = {f"src/{room}/a.c": "".join(f'#include "{other}/a.h"\n' for other in ROOMS)
           for room in ROOMS}
@@ -35,11 +37,11 @@ FAULTS = (
                  "src/base/b.c": "/* struct cs_b { */\nstruct job { int k; }; // cs_job(\n"}, None),
     ("tree.py", {"src/base/a.h": "/* a */\n", "include/clothsim/a.h": "/* a */\n"},
      "header a.h stands 2 times: src/base/a.h, include/clothsim/a.h"),
-    ("tree.py", UNIT, "301 units in src (NAME.c, NAME.h or both), expected at most 300"),
-    ("tree.py", HEADER, "181 headers in src, expected at most 180"),
+    ("tree.py", UNIT, f"{LIMIT['units'] + 1} units in src (NAME.c, NAME.h or both), expected at most {LIMIT['units']}"),
+    ("tree.py", HEADER, f"{LIMIT['headers'] + 1} headers in src, expected at most {LIMIT['headers']}"),
     ("tree.py", ARROWS, "56 arrows between rooms, expected at most 45"),
-    ("tree.py", {"src/base/a.c": "int a;\n" * 48001},
-     "48001 lines of code in src, expected at most 48000"),
+    ("tree.py", {"src/base/a.c": "int a;\n" * (LIMIT["code"] + 1)},
+     f"{LIMIT['code'] + 1} lines of code in src, expected at most {LIMIT['code']}"),
     ("tree.py", {"src/base/a.c": "/* a\n\n */\n" + "int a; /* b */\n" * 18},
      "10 % of the lines of code and comment in src are comment, expected at least 15"),
     ("floors.sh", {"plugins/a.h": '#include "b.h"\n', "plugins/b.h": '#include "a.h"\n', **PUBLIC},

@@ -3,7 +3,7 @@
 #ifndef CS_TEST_RAYS_H
 #define CS_TEST_RAYS_H
 
-#include "model/event/visibility.h"
+#include "model/event/event_state.h"
 
 #include "mesh/trimesh.h"
 #include "model/contact/posed_collider.h"

@@ -3,7 +3,6 @@
 #define SHEET_H
 
 #include "model/plan.h"
-#include "model/system_build.h"
 #include "scene/file/scene_read.h"
 #include "unit.h"
 

@@ -1,7 +1,6 @@
 /* Colliders as triangles: on the surface, outwards, closed, of the right volume. */
 #include "base/vec3.h"
 #include "draw/collider_mesh.h"
-#include "draw/sphere_cap.h"
 #include "mesh/trimesh.h"
 
 #include "unit.h"

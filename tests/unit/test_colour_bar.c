@@ -2,8 +2,8 @@
  * that the colours of a frame end at. */
 #include "unit.h"
 
-#include "draw/colour.h"
 #include "draw/colour_bar.h"
+#include "draw/srgb.h"
 #include "model/force/diagnostics.h"
 
 #include <math.h>

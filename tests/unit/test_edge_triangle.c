@@ -1,6 +1,5 @@
 /* Signs of determinants, and edges through triangles, against whole numbers of 128 bits. */
 #include "model/contact/ccd/edge_triangle.h"
-#include "model/contact/ccd/orient3d.h"
 #include "unit.h"
 
 #include <math.h>

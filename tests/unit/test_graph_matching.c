@@ -1,5 +1,5 @@
 /* Joining the nodes of a graph in pairs, on graphs small enough to do by hand. */
-#include "model/solver/graph_matching.h"
+#include "model/solver/multigrid_hierarchy.h"
 #include "unit.h"
 
 enum { MOST = 64 };

@@ -2,7 +2,7 @@
  * it, with exact derivatives, and as far as the true distance says. */
 #include "model/contact/barrier_law.h"
 #include "model/contact/narrow_phase/feature_weights.h"
-#include "model/contact/narrow_phase/mesh_feature_tangent.h"
+#include "model/contact/narrow_phase/mesh_feature.h"
 #include "pair_positions.h"
 #include "unit.h"
 

@@ -3,7 +3,6 @@
  */
 #include "base/options.h"
 #include "mesh/trimesh.h"
-#include "scene/file/scene_hash.h"
 #include "scene/file/scene_read.h"
 #include "unit.h"
 

@@ -3,7 +3,6 @@
 #include "base/options.h"
 #include "scene/file/json.h"
 #include "scene/file/scene_read.h"
-#include "scene/file/scene_write.h"
 #include "unit.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Strain limiting of pairs and chains against closed forms. */
-#include "model/post_step/strain_limit.h"
+#include "model/post_step/contact_projection.h"
 #include "sheet.h"
 
 #define CHAIN                                                                                  \

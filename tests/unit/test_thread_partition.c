@@ -1,7 +1,7 @@
 /* How threads share a system: blocks of whole rows that cover it, runs where they have ends,
  * chunks with every spring once, springs around every particle. */
 #include "base/pool.h"
-#include "model/thread_partition.h"
+#include "model/plan.h"
 #include "sheet.h"
 
 #define CLOTH "{\"cloth\": {\"grid\": [%d, %d]}, \"mass\": {\"total\": 1}}"

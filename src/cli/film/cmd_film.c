@@ -6,7 +6,6 @@
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/film/film_sheet.h"
-#include "cli/line/interrupt.h"
 #include "cli/line/print.h"
 #include "cli/run_output.h"
 #include "io/png.h"

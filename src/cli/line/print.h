@@ -5,7 +5,9 @@
 #include "base/status.h"
 #include "base/text.h"
 
+#include <signal.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 
 /* Adds `left`, then `right` from `column` on, wrapped at 80 columns with a hanging indent. If
@@ -24,5 +26,34 @@ void cs_print_message(const char *message);
 
 /* True for "-", which means standard output; path may be NULL. */
 bool cs_print_is_stdout(const char *path);
+
+/* One line on the terminal with the progress of a run. */
+
+/* State of the line. */
+struct cs_progress {
+    bool shown;         /* not quiet */
+    bool terminal;      /* stderr is one */
+    const char *label;  /* the counted noun: "frame" */
+    double start, last; /* s */
+    int width;          /* of the present line */
+};
+
+/* Starts the clock. what: the noun that is counted, "frame". */
+void cs_progress_begin(struct cs_progress *progress, const char *what, bool quiet);
+
+/* Rewrites the line, at most ten times per second; without a terminal it adds a line every half
+ * minute. progress is a struct cs_progress, so studies can pass this function as their
+ * callback. The time left assumes equal items. */
+void cs_progress_show(void *progress, uint32_t done, uint32_t total);
+
+/* Removes the line. */
+void cs_progress_end(struct cs_progress *progress);
+
+/* Turns SIGINT and SIGTERM into a request to stop at the next step. */
+
+/* Catches both signals from now on. Returns a flag that becomes 1 with the first one. A second
+ * one after two seconds or more ends the program at once. Writing to a closed pipe becomes an
+ * error of the write (SIGPIPE is ignored). */
+const volatile sig_atomic_t *cs_interrupt_catch(void);
 
 #endif

@@ -8,14 +8,11 @@
 #include "base/file.h"
 #include "base/pool.h"
 #include "cli/commands.h"
-#include "cli/line/interrupt.h"
 #include "cli/line/print.h"
-#include "cli/run/run_job.h"
-#include "cli/run/run_outputs.h"
+#include "cli/run/job_state.h"
 #include "cli/run/run_range.h"
-#include "cli/run/run_report.h"
 #include "model/force/diagnostics.h"
-#include "study/isolate.h"
+#include "study/process_pool.h"
 
 #include <string.h>
 

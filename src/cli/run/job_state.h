@@ -4,17 +4,28 @@
 
 #include "base/hash.h"
 #include "base/text.h"
-#include "cli/run/run_camera.h"
 #include "cli/run/run_checkpoint.h"
 #include "cli/run/run_settings.h"
 #include "cli/run_output.h"
 #include "io/frame_writer.h"
 #include "sim/energy_ledger.h"
 #include "sim/run_record.h"
-#include "study/crossing_stats.h"
 #include "study/energy_monitor.h"
 #include "study/frame_picture.h"
+#include "study/recorded_run.h"
 #include "study/session.h"
+
+/* Finds a camera, or a camera path, that frames a whole run. */
+
+struct cs_run_camera {
+    const struct cs_job_settings *settings;
+    struct cs_error error; /* of the run before */
+};
+
+/* Callback for edit_scene of a session. If camera.frame is auto, runs the scene once without
+ * pictures and gives it the camera that shows its bodies in all frames to be drawn: a fixed one
+ * if they are large enough in each frame, else a path. Errors are in camera->error. */
+void cs_run_camera_find(struct cs_scene *scene, void *camera);
 
 /* Facts of one frame for the report. */
 struct cs_job_frame {
@@ -112,5 +123,53 @@ static inline uint32_t cs_job_restarts(const struct cs_job *job) {
                ? 0
                : job->checkpoints.interval.frames;
 }
+
+/* One run from its settings to its last frame.
+ *
+ *   session -> description and provenance -> checks of outputs -> locks of folders -> warnings
+ *   -> checkpoint or start -> per frame: step, sample, outputs, checkpoint -> end of outputs
+ * Everything that can be refused is checked before the first file is touched. */
+
+/* Runs to the last frame, a blow-up or an interruption (job->session.run.outcome), and waits
+ * for the last picture. On failure the frames before it are kept. cs_job_finish must be called
+ * in any case. Errors: those of cs_session_open and of the outputs. */
+enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *settings,
+                          struct cs_error *error);
+
+/* Closes the outputs first, because a picture in progress draws into an image of the writer;
+ * then the locks and the session. */
+void cs_job_finish(struct cs_job *job);
+
+/* The list of a run's outputs, and calls of all of them stage by stage. */
+
+/* Compares the outputs with the files that the run reads and with each other: none may
+ * overwrite another, not even with -y. Then, unless earlier files may be replaced, looks for
+ * such. CS_ERR_FILE names the option and both files, or the first earlier file. */
+enum cs_status cs_run_outputs_check(const struct cs_job *job, struct cs_error *error);
+
+/* Opens what the outputs need, and locks their folders. */
+enum cs_status cs_run_outputs_open(struct cs_job *job, struct cs_error *error);
+
+/* Calls the outputs in the order of the list until one fails; at CS_RUN_END all of them. */
+enum cs_status cs_run_outputs_at(struct cs_job *job, enum cs_run_stage stage,
+                                 struct cs_error *error);
+
+/* Serialises the outputs' state in the order of the list. */
+void cs_run_outputs_record(struct cs_job *job, struct cs_serialiser *record);
+
+/* Writes the manifest of each folder of the run. All files must be complete. */
+enum cs_status cs_run_outputs_sign(const struct cs_job *job, struct cs_error *error);
+
+/* Reports a run as a table for readers and as JSON for programs. */
+
+/* Adds the table. */
+void cs_report_print_table(const struct cs_job *job, struct cs_text *out);
+
+/* Adds the JSON: every value that decides the run, versions, counts, energies, outcome and the
+ * hash of each frame. */
+void cs_report_print_json(const struct cs_job *job, struct cs_text *out);
+
+/* Adds "blew up: ... at t = ... s, particle ..." or "finished". */
+void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out);
 
 #endif

@@ -4,7 +4,7 @@
  * A fixed camera is fitted to the extremes of all frames at once. A path begins with a camera
  * per frame; eye and target are then averaged over 2 reach + 1 frames. The largest reach that
  * keeps the bodies in every picture wins: it is halved until it does. */
-#include "cli/run/run_camera.h"
+#include "cli/run/job_state.h"
 
 #include "draw/camera_fit.h"
 #include "study/follow.h"

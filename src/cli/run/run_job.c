@@ -1,16 +1,12 @@
 /* Runs a scene frame by frame and passes each frame to its outputs. */
-#include "cli/run/run_job.h"
+#include "cli/run/job_state.h"
 
 #include "base/clock.h"
-#include "cli/line/progress.h"
-#include "cli/run/run_outputs.h"
-#include "scene/file/scene_hash.h"
-#include "scene/file/scene_write.h"
-#include "study/containment_warning.h"
+#include "cli/line/print.h"
+#include "scene/file/scene_read.h"
 #include "study/follow.h"
 #include "study/overlap_warning.h"
 #include "study/provenance_write.h"
-#include "study/sampling_warning.h"
 
 #include <stdlib.h>
 

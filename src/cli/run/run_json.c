@@ -2,7 +2,7 @@
 #include "base/ieee_check.h"
 #include "base/json_writer.h"
 #include "base/pool.h"
-#include "cli/run/run_report.h"
+#include "cli/run/job_state.h"
 #include "study/provenance_write.h"
 
 #include <cjson/cJSON.h>

@@ -1,5 +1,5 @@
 /* Holds the list of a run's outputs and walks it. */
-#include "cli/run/run_outputs.h"
+#include "cli/run/job_state.h"
 
 #include "cli/manifest.h"
 #include "io/file_conflicts.h"

@@ -1,5 +1,5 @@
 /* Prints the result of a run as a table: outcome, counts, energy, memory and times. */
-#include "cli/run/run_report.h"
+#include "cli/run/job_state.h"
 
 #include "base/pool.h"
 #include "cli/line/print.h"

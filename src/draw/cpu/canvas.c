@@ -8,7 +8,6 @@
  * Passes 2 (stripes) and 4 (bands) run on all threads. Each stripe or band writes its own rows
  * only, so the picture does not depend on their number or order. */
 #include "draw/cpu/band_pass.h"
-#include "draw/cpu/body_geometry.h"
 #include "draw/cpu/collider_geometry.h"
 #include "draw/matrix.h"
 #include "draw/overlay.h"

@@ -5,6 +5,8 @@
 #include "draw/collider_mesh.h"
 #include "draw/cpu/shade.h"
 #include "draw/ground.h"
+#include "draw/mesh.h"
+#include "draw/render.h"
 
 /* Fills the materials of all colliders, and adds the squares of planes, then all others, as the
  * camera sees them; surface number = collider. *n_squares: triangles of squares. */
@@ -22,5 +24,31 @@ void cs_collider_geometry_add_shadow(const struct cs_collider_geometry *solids,
 /* Adds the ground's rectangle of this frame, if it is not empty. */
 void cs_ground_add(const struct cs_ground *ground, const struct cs_clip_transform *clip,
                    struct cs_triangles *triangles);
+
+/* Cloths and meshes as triangles for the camera and for the light. */
+
+/* One body of the scene; memory of the arena. */
+struct cs_body_geometry {
+    const struct cs_srgb *srgb; /* borrowed: set before init */
+    struct cs_mesh mesh;
+    struct cs_shading_material *material;
+    float *uv;                            /* (n_vertices, 2); NULL without a texture */
+    struct cs_clip_vertex *clip_vertices; /* (n_vertices) of the last projection */
+    bool hidden;                          /* drawn as lines instead; it still casts shadow */
+};
+
+/* Allocates from the arena and fills the material `coat`. CS_ERR_MEMORY. */
+enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
+                                     const struct cs_canvas_settings *settings, uint32_t b,
+                                     struct cs_shading_material *coat, struct cs_arena *arena,
+                                     struct cs_error *error);
+
+/* Takes positions and values of a frame of n particles. */
+void cs_body_geometry_update(struct cs_body_geometry *body, uint32_t n,
+                             const struct cs_frame *frame);
+
+/* Projects the vertices and adds the triangles; kind says how many attributes are needed. */
+void cs_body_geometry_add(struct cs_body_geometry *body, const struct cs_clip_transform *clip,
+                          const struct cs_triangle_kind *kind, struct cs_triangles *triangles);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "base/arena.h"
 #include "draw/cpu/triangle.h"
-#include "draw/light_frustum.h"
+#include "draw/view.h"
 
 enum {
     CS_SHADOW_MAP_BORDER = 8, /* empty texels on each side, which samples may touch */

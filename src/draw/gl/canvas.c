@@ -4,23 +4,183 @@
  * map; then sky, colliders, ground, bodies and lines; read the samples back. OpenGL stays the
  * second opinion on the software renderer (cpu/canvas.c), whose formulas and order are the
  * same. */
-#include "draw/gl/collider.h"
+#include "draw/collider_mesh.h"
 #include "draw/gl/context.h"
-#include "draw/gl/driver.h"
-#include "draw/gl/framebuffer.h"
 #include "draw/gl/gl.h"
-#include "draw/gl/lines.h"
-#include "draw/gl/shadow.h"
-#include "draw/gl/sky_and_ground.h"
-#include "draw/gl/surface.h"
-#include "draw/light_frustum.h"
 #include "draw/mesh.h"
 #include "draw/overlay.h"
 #include "draw/render.h"
 #include "draw/scene_extent.h"
+#include "draw/view.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+/* Colliders drawn through OpenGL. */
+
+/* Geometry and buffers of all colliders. */
+struct cs_gl_colliders {
+    struct cs_collider_geometry solids;
+    struct cs_surface *surfaces; /* (n) as seen from the camera */
+    struct cs_surface *shadows;  /* (n) as seen from the light */
+    const struct cs_view_block *view;
+};
+
+/* Fills and uploads a collider for the camera, and for the light unless it is a plane. */
+static void upload(struct cs_gl_colliders *colliders, uint32_t i) {
+    const struct cs_collider_geometry *solids = &colliders->solids;
+    const struct cs_solid *solid = solids->of + i;
+    if (solid->n == 0)
+        return;
+    cs_solids_fill(solids, i, colliders->view->eye);
+    cs_surface_upload(colliders->surfaces + i, solids->vertices, solid->n);
+    if (cs_shape_is_endless(solid->at.shape))
+        return;
+    cs_solids_fill(solids, i, colliders->view->light);
+    cs_surface_upload(colliders->shadows + i, solids->vertices, solid->n);
+}
+
+/* Makes the buffers from the colliders' poses at the start (scene->colliders.n). view is
+ * borrowed, for camera and light. CS_ERR_MEMORY. */
+static enum cs_status gl_colliders_init(struct cs_gl_colliders *colliders,
+                                        const struct cs_system *system,
+                                        const struct cs_view_block *view,
+                                        const struct cs_posed_collider *obstacles,
+                                        struct cs_arena *arena, struct cs_error *error) {
+    const uint32_t n = system->scene->colliders.n;
+    colliders->view = view;
+    colliders->surfaces = cs_arena_alloc_array(arena, n, sizeof *colliders->surfaces, error);
+    colliders->shadows = cs_arena_alloc_array(arena, n, sizeof *colliders->shadows, error);
+    if (cs_collider_geometry_init(&colliders->solids, system, obstacles, arena, error))
+        return error->status;
+    for (uint32_t i = 0; i < n; i++) {
+        cs_surface_init(colliders->surfaces + i, NULL, 0);
+        cs_surface_init(colliders->shadows + i, NULL, 0);
+        upload(colliders, i);
+    }
+    return CS_OK;
+}
+
+/* Uploads those that have moved; seen_anew: the camera has moved, and all are uploaded. */
+static void gl_colliders_move(struct cs_gl_colliders *colliders,
+                              const struct cs_posed_collider *obstacles, bool seen_anew) {
+    for (uint32_t i = 0; i < colliders->solids.n; i++)
+        if (cs_solid_move(colliders->solids.of + i, obstacles + i) || seen_anew)
+            upload(colliders, i);
+}
+
+/* Draws the visible ones with the given program. */
+static void gl_colliders_draw(const struct cs_gl_colliders *colliders,
+                              const struct cs_surface_program *program) {
+    // squares first, because they may be blended
+    for (int pass = 0; pass < 2; pass++)
+        for (uint32_t i = 0; i < colliders->solids.n; i++) {
+            const struct cs_posed_collider *obstacle = &colliders->solids.of[i].at;
+            const bool square = cs_shape_is_endless(obstacle->shape);
+            struct cs_surface_style style;
+            if (!obstacle->collider->visible || square != (pass == 0))
+                continue;
+            cs_style_solid(&style, obstacle, colliders->solids.cell);
+            cs_surface_program_use(program, &style);
+            if (square)
+                gl.Enable(GL_BLEND);
+            cs_surface_draw(colliders->surfaces + i);
+            gl.Disable(GL_BLEND);
+        }
+}
+
+/* Draws all but planes into the shadow map, whose program is in use. */
+static void gl_colliders_draw_shadow(const struct cs_gl_colliders *colliders) {
+    for (uint32_t i = 0; i < colliders->solids.n; i++) {
+        const struct cs_posed_collider *obstacle = &colliders->solids.of[i].at;
+        if (obstacle->collider->visible && !cs_shape_is_endless(obstacle->shape))
+            cs_surface_draw(colliders->shadows + i);
+    }
+}
+
+/* Shadow map through OpenGL: depth seen from the light. */
+
+/* OpenGL names: program without colour, frame buffer, depth texture. */
+struct cs_shadow {
+    unsigned program, frame, texture;
+};
+
+/* The texture compares: a sample returns the lit fraction of four texels, blended (Reeves
+ * 1987). */
+static void make_texture(struct cs_shadow *shadow) {
+    gl.GenTextures(1, &shadow->texture);
+    gl.ActiveTexture(GL_TEXTURE1);
+    gl.BindTexture(GL_TEXTURE_2D, shadow->texture);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, CS_SHADOW_SIDE, CS_SHADOW_SIDE, 0,
+                  GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, NULL);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+}
+
+/* Makes the map. CS_ERR_MODULE if the driver cannot. */
+static enum cs_status shadow_init(struct cs_shadow *shadow, struct cs_error *error) {
+    if (cs_shader_make(&cs_shader_shadow, &shadow->program, error) != CS_OK)
+        return error->status;
+    make_texture(shadow);
+    gl.GenFramebuffers(1, &shadow->frame);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, shadow->frame);
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow->texture,
+                            0);
+    gl.DrawBuffer(GL_NONE);
+    gl.ReadBuffer(GL_NONE);
+    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        return cs_fail(error, CS_ERR_MODULE, "the driver cannot draw a shadow");
+    return CS_OK;
+}
+
+/* Starts the map: everything drawn until the next frame buffer casts shadow. */
+static void shadow_begin(const struct cs_shadow *shadow) {
+    gl.BindFramebuffer(GL_FRAMEBUFFER, shadow->frame);
+    gl.Viewport(0, 0, CS_SHADOW_SIDE, CS_SHADOW_SIDE);
+    gl.DepthMask(GL_TRUE);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.Clear(GL_DEPTH_BUFFER_BIT);
+    gl.UseProgram(shadow->program);
+}
+
+/* Binds the map to texture unit 1, as the surface program samples it. */
+static void shadow_bind(const struct cs_shadow *shadow) {
+    gl.ActiveTexture(GL_TEXTURE1);
+    gl.BindTexture(GL_TEXTURE_2D, shadow->texture);
+}
+
+/* Choice of Mesa's driver, and of the CPU instructions that it may use. */
+
+static const char *in_force;
+
+/* Sets the environment for the software driver llvmpipe and, unless fast, for SSE4.1 code. One
+ * version of Mesa then gives the same pixels on every x86-64 CPU that was tried: the default
+ * path uses fused multiply-add, the pinned one does not. Mesa reads the environment once, so
+ * only the first call of a process decides. Returns the choice: "caps=sse4.1" or
+ * "caps=native". */
+static const char *driver_pin(bool fast) {
+    if (in_force)
+        return in_force;
+    setenv("GALLIUM_DRIVER", "llvmpipe", 1); // an unknown driver here would crash OSMesa
+    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+    // nothing is written into the user's home; where a folder is named, shaders are kept there
+    if (!getenv("MESA_SHADER_CACHE_DIR"))
+        setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    unsetenv("MESA_GL_VERSION_OVERRIDE");
+    unsetenv("MESA_GLSL_VERSION_OVERRIDE");
+    unsetenv("LP_NATIVE_VECTOR_WIDTH");
+    // without AVX2 there is no fused multiply-add, which alone makes pixels differ between CPUs
+    if (fast)
+        unsetenv("GALLIUM_OVERRIDE_CPU_CAPS");
+    else
+        setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 1);
+    in_force = fast ? "caps=native" : "caps=sse4.1";
+    return in_force;
+}
 
 /* A body: its mesh, its buffers, its style. */
 struct cs_cloth_picture {
@@ -98,7 +258,7 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
                            struct cs_error *error) {
     const struct cs_render *render = &canvas->scene->render;
     /* before there is a context: Mesa reads its environment only once */
-    const char *caps = cs_driver_pin(settings->fast_render);
+    const char *caps = driver_pin(settings->fast_render);
     if (cs_context_create(&canvas->context, error) != CS_OK || cs_gl_load(error) != CS_OK)
         return error->status;
     snprintf(canvas->description, sizeof canvas->description, "%s | %s | %s",
@@ -114,9 +274,9 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
     if (cs_framebuffer_init(&canvas->target, render, &canvas->arena, error) != CS_OK ||
         cs_sky_and_ground_init(&canvas->backdrop, &ground, error) != CS_OK ||
         cs_surface_program_init(&canvas->program, error) != CS_OK ||
-        cs_shadow_init(&canvas->shadow, error) != CS_OK ||
-        cs_gl_colliders_init(&canvas->colliders, canvas->system, &canvas->view.block,
-                             settings->colliders, &canvas->arena, error) != CS_OK ||
+        shadow_init(&canvas->shadow, error) != CS_OK ||
+        gl_colliders_init(&canvas->colliders, canvas->system, &canvas->view.block,
+                          settings->colliders, &canvas->arena, error) != CS_OK ||
         init_cloths(canvas, settings->textures, error) != CS_OK ||
         cs_gl_lines_init(&canvas->lines, error) != CS_OK ||
         cs_overlay_init(&canvas->overlay, canvas->system, canvas->view.pixels_per_m,
@@ -164,18 +324,18 @@ static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_spher
     cs_view_upload(&canvas->view);
     if (!has_shadow)
         return;
-    cs_shadow_begin(&canvas->shadow);
-    cs_gl_colliders_draw_shadow(&canvas->colliders);
+    shadow_begin(&canvas->shadow);
+    gl_colliders_draw_shadow(&canvas->colliders);
     for (uint32_t b = 0; b < canvas->scene->bodies.n; b++)
         cs_surface_draw(&canvas->cloths[b].surface);
 }
 
 /* Draws everything from back to front of what blends: ground over colliders, lines over all. */
 static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
-    cs_shadow_bind(&canvas->shadow);
+    shadow_bind(&canvas->shadow);
     cs_framebuffer_begin(&canvas->target);
     cs_sky_and_ground_draw_sky(&canvas->backdrop);
-    cs_gl_colliders_draw(&canvas->colliders, &canvas->program);
+    gl_colliders_draw(&canvas->colliders, &canvas->program);
     if (canvas->backdrop.ground.present)
         cs_sky_and_ground_draw_ground(&canvas->backdrop);
     for (uint32_t b = 0; b < canvas->scene->bodies.n; b++) {
@@ -201,7 +361,7 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
     const bool varies = cs_view_varies(canvas->scene);
     if (varies)
         move_camera(canvas, frame, &solid);
-    cs_gl_colliders_move(&canvas->colliders, frame->colliders, varies);
+    gl_colliders_move(&canvas->colliders, frame->colliders, varies);
     draw_shadow(canvas, &solid);
     draw_scene(canvas, frame);
     cs_framebuffer_read(&canvas->target, image);
@@ -213,7 +373,9 @@ static const char *description(const struct cs_canvas *canvas) {
 }
 
 #define EXPORT __attribute__((visibility("default")))
+
 extern EXPORT const struct cs_renderer clothsim_renderer;
+
 EXPORT const struct cs_renderer clothsim_renderer = {
     .abi = CS_RENDERER_ABI,
     .name = cs_context_name,

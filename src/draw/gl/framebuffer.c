@@ -1,8 +1,6 @@
 /* Draws into a multisampled texture, and reads it back sample by sample. */
-#include "draw/gl/framebuffer.h"
 
 #include "draw/gl/gl.h"
-#include "draw/gl/shader.h"
 
 #include <stdbool.h>
 

@@ -1,8 +1,6 @@
 /* Draws lines and the rectangle of the colour bar through OpenGL. */
-#include "draw/gl/lines.h"
 
 #include "draw/gl/gl.h"
-#include "draw/gl/shader.h"
 
 /* Draws the collected lines; the shader widens each into a quad. */
 static void draw(struct cs_lines *base, const struct cs_line_style *style) {

@@ -1,5 +1,4 @@
 /* Compiles and links shaders, and holds the GLSL that they share. */
-#include "draw/gl/shader.h"
 
 #include "draw/gl/gl.h"
 #include "draw/view.h"

@@ -1,8 +1,6 @@
 /* Draws the sky and the grid on the ground through OpenGL. */
-#include "draw/gl/sky_and_ground.h"
 
 #include "draw/gl/gl.h"
-#include "draw/gl/shader.h"
 
 static enum cs_status init_ground(struct cs_sky_and_ground *backdrop, struct cs_error *error) {
     const struct cs_ground *ground = &backdrop->ground;

@@ -1,9 +1,15 @@
 /* Uploads, shades and draws triangles through OpenGL. */
-#include "draw/gl/surface.h"
-
 #include "draw/gl/gl.h"
-#include "draw/gl/shader.h"
 #include "draw/mesh.h"
+#include "draw/view.h"
+
+void cs_view_upload(struct cs_view_state *view) {
+    if (!view->buffer)
+        gl.GenBuffers(1, &view->buffer);
+    gl.BindBuffer(GL_UNIFORM_BUFFER, view->buffer);
+    gl.BufferData(GL_UNIFORM_BUFFER, sizeof view->block, &view->block, GL_DYNAMIC_DRAW);
+    gl.BindBufferBase(GL_UNIFORM_BUFFER, CS_VIEW_BINDING, view->buffer);
+}
 
 /* Describes an attribute of the bound vertex array: `size` floats at an offset of each vertex.
  * Locations: 0 position, 1 normal, 2 texture coordinates, 3 value. */

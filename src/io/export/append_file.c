@@ -1,5 +1,5 @@
 /* Files that grow in place, by pwrite at known offsets; interrupted calls go on. */
-#include "io/export/append_file.h"
+#include "io/export/writer.h"
 
 #include "base/file.h"
 

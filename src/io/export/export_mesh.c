@@ -1,9 +1,9 @@
 /* Joins the particles of all bodies to triangles and lines, and makes triangles of colliders. A
  * collider's triangles are made once in its own frame, then posed at every sample. */
-#include "io/export/export_mesh.h"
+#include "io/export/writer.h"
 
 #include "base/little_endian.h"
-#include "model/system/faces.h"
+#include "model/system/surfaces.h"
 
 #include <math.h>
 #include <string.h>

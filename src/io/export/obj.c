@@ -5,7 +5,6 @@
 #include "base/file.h"
 #include "base/little_endian.h"
 #include "base/text.h"
-#include "io/export/export_name.h"
 #include "io/export/writer.h"
 
 #include <math.h>

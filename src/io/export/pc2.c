@@ -12,7 +12,6 @@
  * The number of samples is written after their positions. A file that a crash cut off therefore
  * never promises a sample that it does not hold. */
 #include "base/little_endian.h"
-#include "io/export/append_file.h"
 #include "io/export/writer.h"
 
 /* The cache of bodies or of colliders; closed if they have none. */

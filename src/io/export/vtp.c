@@ -9,8 +9,6 @@
 #include "base/file.h"
 #include "base/little_endian.h"
 #include "base/text.h"
-#include "io/export/append_file.h"
-#include "io/export/export_name.h"
 #include "io/export/writer.h"
 
 /* Parts that the files of all samples have in common. */

@@ -6,7 +6,102 @@
 #ifndef CS_EXPORT_WRITER_H
 #define CS_EXPORT_WRITER_H
 
-#include "io/export/export_mesh.h"
+#include "base/arena.h"
+#include "base/file.h"
+#include "base/status.h"
+#include "model/contact/posed_collider.h"
+#include "model/system/particle_system.h"
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* Paths of exported files. */
+
+enum { CS_EXPORT_PATH = 4096 }; /* bytes of a path with its end */
+
+/* Refuses a path that snprintf has cut off; length: its result. CS_ERR_FILE. */
+static inline enum cs_status cs_export_check(int length, const char *folder,
+                                             struct cs_error *error) {
+    return length >= CS_EXPORT_PATH
+               ? cs_fail(error, CS_ERR_FILE,
+                         "cannot use the folder \"%.60s...\": the path is too long", folder)
+               : CS_OK;
+}
+
+/* Writes the path FOLDER/NAME. */
+static inline enum cs_status cs_export_name(char path[CS_EXPORT_PATH], const char *folder,
+                                            const char *name, struct cs_error *error) {
+    return cs_export_check(snprintf(path, CS_EXPORT_PATH, "%s/%s", folder, name), folder,
+                           error);
+}
+
+/* Writes the path FOLDER/NAME_00012.ENDING of a sample. */
+static inline enum cs_status cs_export_number(char path[CS_EXPORT_PATH], const char *folder,
+                                              const char *name, uint32_t number,
+                                              const char *ending, struct cs_error *error) {
+    return cs_export_check(
+        snprintf(path, CS_EXPORT_PATH, "%s/%s_%05u.%s", folder, name, number, ending), folder,
+        error);
+}
+
+/* Exported geometry: bodies, or colliders, as one mesh of triangles and
+ * lines. */
+
+/* A value of all points at the last sample, stored as it is written to files. */
+struct cs_export_field {
+    const char *name, *plural; /* "velocity", "velocities" */
+    uint32_t components;       /* 1 or 3 */
+    uint64_t *words; /* (n, components) little-endian doubles (base/little_endian.h) */
+};
+
+enum { CS_EXPORT_FIELDS = 4 };
+
+/* Points of bodies are the particles, in their order. All arrays belong to the arena. */
+struct cs_export_mesh {
+    const char *name, *item; /* of the files: "bodies"; of a part: "body" */
+    uint32_t n, n_triangles, n_lines, n_items;
+    uint32_t *triangles; /* (n_triangles, 3), counter-clockwise from outside */
+    uint32_t *lines;     /* (n_lines, 2): bodies that are a row of particles */
+    float
+        *uv; /* (n_triangles, 3, 2) of corners, v upwards, NAN where a body has none; or NULL */
+    uint32_t *items;                                     /* (n_items) indices in the scene */
+    uint32_t *first_point, *first_triangle, *first_line; /* (n_items + 1) ranges of the items */
+    double *local_positions; /* (n, 3) m, in the frames of colliders; NULL: bodies */
+    bool is_moving;          /* false: the positions of the first sample stay */
+    uint32_t n_fields;
+    struct cs_export_field fields[CS_EXPORT_FIELDS]; /* the first: positions in m */
+};
+
+/* Adds a field with so many components per point; returns it. On failure error is set. */
+struct cs_export_field *cs_export_mesh_add_field(struct cs_export_mesh *skin,
+                                                 const char *const names[2],
+                                                 uint32_t components, struct cs_arena *arena,
+                                                 struct cs_error *error);
+
+/* Makes the mesh of all bodies of a system: topology and texture coordinates. */
+enum cs_status cs_export_mesh_of_bodies(struct cs_export_mesh *skin,
+                                        const struct cs_system *system, struct cs_arena *arena,
+                                        struct cs_error *error);
+
+/* Makes the mesh of the visible colliders: meshes as they are, planes and floors as the square
+ * that is drawn, spheres, boxes and capsules with points on their surface. Empty if no collider
+ * is visible. */
+enum cs_status cs_export_mesh_of_colliders(struct cs_export_mesh *skin,
+                                           const struct cs_system *system,
+                                           struct cs_arena *arena, struct cs_error *error);
+
+/* Sets the positions of colliders at time t in s. */
+void cs_export_mesh_pose_colliders(struct cs_export_mesh *skin, const struct cs_system *system,
+                                   double t);
+
+/* Fills uv (n) with one texture coordinate per point, if skin->uv exists: that of its first
+ * corner, which differs from the others at seams only; 0 if it has none. */
+void cs_export_mesh_point_uv(const struct cs_export_mesh *skin, float (*uv)[2]);
+
+/* Sets a field from an array (components, n). */
+void cs_export_mesh_set(const struct cs_export_mesh *skin, const struct cs_export_field *field,
+                        const double *values);
 
 /* X(BIT, name): the formats. */
 #define CS_EXPORT_LIST(X) X(OBJ, obj) X(PC2, pc2) X(VTP, vtp) X(NPZ, npz)
@@ -80,5 +175,68 @@ static inline bool cs_export_mesh_has_sample(const struct cs_export_mesh *skin,
                                              const struct cs_export_sample *sample) {
     return skin->n > 0 && (skin->is_moving || sample->number == 0);
 }
+
+/* A file that grows sample by sample and is valid after each. It has its final
+ * path from the start; its header or its list tells readers how much of it counts. */
+
+/* An open file; zeroed: closed. */
+struct cs_append_file {
+    int file;        /* descriptor + 1, so that 0 means closed */
+    uint64_t length; /* bytes written completely */
+    char path[CS_EXPORT_PATH];
+};
+
+/* Opens a new file; or, if kept > 0, an existing one, cut off after `kept` bytes: samples after
+ * the checkpoint of a continued run are dropped. All calls fail with CS_ERR_FILE; this one also
+ * if the existing file is shorter. Does not follow a symbolic link. */
+enum cs_status cs_append_file_open(struct cs_append_file *grown, const char *path,
+                                   uint64_t kept, struct cs_error *error);
+
+/* Writes n bytes at offset `at`, at most the length. On failure the file is as long as
+ * before. */
+enum cs_status cs_append_file_write(struct cs_append_file *grown, uint64_t at,
+                                    const void *bytes, size_t n, struct cs_error *error);
+
+/* Reads n bytes at offset `at`; fewer are a failure. */
+enum cs_status cs_append_file_read(const struct cs_append_file *grown, uint64_t at, void *bytes,
+                                   size_t n, struct cs_error *error);
+
+/* Returns when the disk has what was written. Does nothing if closed. */
+enum cs_status cs_append_file_sync(const struct cs_append_file *grown, struct cs_error *error);
+
+/* Closes the file; safe on a closed one. */
+void cs_append_file_close(struct cs_append_file *grown);
+
+/* Uncompressed ZIP archives of any size, written in one pass. */
+
+enum { CS_ZIP_MEMBERS_MAX = 24 };
+
+/* An entry of the central directory, kept until the archive is finished. */
+struct cs_zip_member {
+    char name[40];
+    uint64_t offset, bytes; /* of its local header in the file; length of its data */
+    uint32_t crc;           /* CRC-32 of the data so far */
+};
+
+/* An archive that is being written; all but `file` zeroed at the start. */
+struct cs_zip {
+    FILE *file;      /* borrowed, seekable; failures to write are found when it is finished */
+    uint64_t offset; /* bytes written */
+    unsigned n;
+    struct cs_zip_member members[CS_ZIP_MEMBERS_MAX];
+};
+
+/* Begins a member of exactly `bytes` bytes, which cs_zip_put then writes. The name is copied.
+ */
+void cs_zip_begin(struct cs_zip *zip, const char *name, uint64_t bytes);
+
+/* Appends n bytes to the member. */
+void cs_zip_put(struct cs_zip *zip, const void *bytes, size_t n);
+
+/* Ends the member, whose bytes are all written: completes its header. */
+void cs_zip_end(struct cs_zip *zip);
+
+/* Writes the central directory; the caller finishes the file. */
+void cs_zip_finish(struct cs_zip *zip);
 
 #endif

@@ -17,12 +17,12 @@
 #ifndef CS_CONTACT_SAMPLES_H
 #define CS_CONTACT_SAMPLES_H
 
-#include "model/contact/collider_query.h"
+#include "model/contact/collider_params.h"
 #include "model/contact/contact_set.h"
 #include "model/system/surfaces.h"
 
 /* Largest number of parts of an edge. Colliders that are finer still can pass, and
- * study/sampling_warning.h warns of them. */
+ * study/overlap_warning.h warns of them. */
 enum { CS_CONTACT_SAMPLE_PARTS_MAX = 16 };
 
 /* Edges or triangles [begin, end) of a system against one collider; one thread at a time

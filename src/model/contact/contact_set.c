@@ -2,9 +2,208 @@
 #include "model/contact/contact_set.h"
 
 #include "base/pool.h"
+#include "base/vec3.h"
+#include "base/vector.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Matrix of contacts: diagonal blocks, products with vectors, and bounds.
+ *
+ * A contact has the matrix A = c g g^T + (w w^T) x B + F, by its n <= 4 points, with the 12 x
+ * 12 part F = ck F H present only in an exact matrix. Its product is evaluated without forming
+ * A:
+ *
+ *   (A p)_k = c (sum g_j.p_j) g_k + w_k B (sum w_j p_j) + sum F_kj p_j
+ *
+ * The solver applies the diagonal blocks A_kk itself, and cs_contact_set_multiply subtracts
+ * them from each row. Products are computed contact by contact, stored, and then gathered by
+ * particles in a second pass: no two threads write the same number. */
+
+/* A contact with its matrix terms. */
+struct whole {
+    const struct cs_contact_entry *pair;
+    struct cs_contact_matrix_part *part;
+    const struct cs_contact_hessian *full; /* NULL: the set is not exact */
+};
+
+/* Contact `number` of a chunk with its terms. */
+static struct whole whole_of(const struct cs_contact_set *set, uint32_t chunk, size_t number) {
+    const struct cs_contact_chunk *of = set->chunks + chunk;
+    return (struct whole){of->pairs + number, of->parts + number,
+                          set->has_hessians ? of->hessians + number : NULL};
+}
+
+/* block += A_kk, with c g g^T times factor[0] and w^2 B times factor[1]. */
+static void add_own(const struct whole *whole, uint32_t k, const double factor[2],
+                    double block[6]) {
+    static const uint32_t row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    const struct cs_contact_matrix_part *part = whole->part;
+    const double *g = whole->pair->vectors[k], w = part->weights[k];
+    const double along = factor[0] * part->gradient_weight, rub = factor[1] * w * w;
+    for (int e = 0; e < 6; e++) {
+        block[e] += along * (g[row[e]] * g[column[e]]) + rub * part->block[e];
+        if (whole->full)
+            block[e] += whole->full->m[3 * k + row[e]][3 * k + column[e]];
+    }
+}
+
+/* Factors by which the blocks of point k grow, so that they bound the matrix of the contact:
+ * sum |g_j| / |g_k| and sum |w_j| / |w_k| (proof: find_growth of pair_lanes.c). F is not
+ * bounded by them. */
+static void find_growth(const struct whole *whole, uint32_t k, double factor[2]) {
+    const struct cs_contact_entry *pair = whole->pair;
+    const double *share = whole->part->weights;
+    double length[4], sum = 0, shares = 0;
+    for (uint32_t j = 0; j < pair->n; j++) {
+        length[j] = sqrt(cs_vec3_dot(pair->vectors[j], pair->vectors[j]));
+        sum += length[j];
+        shares += fabs(share[j]);
+    }
+    factor[0] = length[k] > 0 ? sum / length[k] : 1;
+    factor[1] = share[k] != 0 ? shares / fabs(share[k]) : 1;
+}
+
+/* index of a contact in its chunk */
+static size_t number_of(const struct cs_contact_set *set, const struct cs_contact_vertex *end) {
+    return (size_t)(end->pair - set->chunks[end->chunk].pairs);
+}
+
+/* Each particle sums the blocks of its own vertices, in the order of its list. */
+void cs_contact_set_add_blocks(const struct cs_contact_set *set, size_t begin, size_t end,
+                               double *blocks) {
+    const size_t n = set->n_particles;
+    for (size_t i = begin; i < end && set->n; i++)
+        for (uint32_t e = set->starts[i]; e < set->starts[i + 1]; e++) {
+            const struct cs_contact_vertex *at = set->particle_vertices + e;
+            const struct whole whole = whole_of(set, at->chunk, number_of(set, at));
+            double block[6] = {0}, factor[2] = {1, 1};
+            if (set->diagonal_bound)
+                find_growth(&whole, at->vertex, factor);
+            add_own(&whole, at->vertex, factor, block);
+            for (size_t c = 0; c < 6; c++)
+                blocks[c * n + i] += block[c];
+        }
+}
+
+/* --- the matrix times a vector --- */
+
+/* One product: y += (A - diagonal) p. */
+struct product {
+    const struct cs_contact_set *set;
+    const double *p;
+    double *y;
+};
+
+/* out = s p for a symmetric block */
+static void turn(const double s[6], const double p[3], double out[3]) {
+    out[0] = s[0] * p[0] + s[1] * p[1] + s[2] * p[2];
+    out[1] = s[1] * p[0] + s[3] * p[1] + s[4] * p[2];
+    out[2] = s[2] * p[0] + s[4] * p[1] + s[5] * p[2];
+}
+
+/* Stores the product of one contact, without its diagonal blocks. */
+static void multiply_pair(const struct whole *whole, double p[4][3]) {
+    const struct cs_contact_entry *pair = whole->pair;
+    struct cs_contact_matrix_part *part = whole->part;
+    double along = 0, v[3] = {0};
+    for (uint32_t k = 0; k < pair->n; k++) {
+        along += cs_vec3_dot(pair->vectors[k], p[k]);
+        for (int c = 0; c < 3; c++)
+            v[c] += part->weights[k] * p[k][c];
+    }
+    double rub[3];
+    turn(part->block, v, rub);
+    for (uint32_t k = 0; k < pair->n; k++) {
+        double b[6] = {0}, own[3];
+        add_own(whole, k, (double[2]){1, 1}, b);
+        turn(b, p[k], own);
+        for (int c = 0; c < 3; c++) {
+            double turned = 0;
+            for (int j = 0; whole->full && j < 12; j++)
+                turned += whole->full->m[3 * k + (uint32_t)c][j] * p[j / 3][j % 3];
+            part->product[k][c] = part->gradient_weight * along * pair->vectors[k][c] +
+                                  part->weights[k] * rub[c] + turned - own[c];
+        }
+    }
+}
+
+/* The same without gradient and Hessian: w_k B (sum w_j p_j - w_k p_k). */
+static void multiply_point(const struct whole *whole, double p[4][3]) {
+    struct cs_contact_matrix_part *part = whole->part;
+    double all[3] = {0};
+    for (uint32_t k = 0; k < whole->pair->n; k++)
+        for (int c = 0; c < 3; c++)
+            all[c] += part->weights[k] * p[k][c];
+    for (uint32_t k = 0; k < whole->pair->n; k++) {
+        double others[3];
+        for (int c = 0; c < 3; c++)
+            others[c] = part->weights[k] * (all[c] - part->weights[k] * p[k][c]);
+        turn(part->block, others, part->product[k]);
+    }
+}
+
+/* Products of all contacts of a chunk; points of colliders have p = 0. */
+static void multiply_chunk(void *arg, uint32_t number) {
+    const struct product *product = arg;
+    const struct cs_contact_set *set = product->set;
+    const struct cs_contact_chunk *chunk = set->chunks + number;
+    const size_t n = set->n_particles;
+    for (size_t l = 0; l < chunk->n; l++) {
+        const struct cs_contact_entry *pair = chunk->pairs + l;
+        const struct whole whole = whole_of(set, number, l);
+        double p[4][3];
+        for (uint32_t k = 0; k < pair->n; k++)
+            for (size_t c = 0; c < 3; c++)
+                p[k][c] = cs_contact_set_has(set, pair->particles[k])
+                              ? product->p[c * n + pair->particles[k]]
+                              : 0;
+        if (set->no_gradients)
+            multiply_point(&whole, p);
+        else
+            multiply_pair(&whole, p);
+    }
+}
+
+/* Gathers the products of the particles [begin, end). */
+static void add_products(void *arg, size_t begin, size_t end) {
+    const struct product *product = arg;
+    const struct cs_contact_set *set = product->set;
+    const size_t n = set->n_particles;
+    for (size_t i = begin; i < end; i++)
+        for (uint32_t e = set->starts[i]; e < set->starts[i + 1]; e++) {
+            const struct cs_contact_vertex *at = set->particle_vertices + e;
+            const struct cs_contact_matrix_part *part =
+                set->chunks[at->chunk].parts + number_of(set, at);
+            for (size_t c = 0; c < 3; c++)
+                product->y[c * n + i] += part->product[at->vertex][c];
+        }
+}
+
+/* First all contacts, then all particles: the second pass reads what the first has stored. */
+void cs_contact_set_multiply(const struct cs_contact_set *set, const double *p, double *y) {
+    struct product product = {set, p, y};
+    if (!set->n)
+        return;
+    cs_pool_run(set->n_chunks, multiply_chunk, &product);
+    cs_vector_parallel_for(set->n_particles, add_products, &product);
+}
+
+void cs_contact_set_add_bound(const struct cs_contact_set *set, double *stiffness,
+                              double *damping) {
+    for (uint32_t l = 0; l < set->n_chunks; l++)
+        for (size_t p = 0; p < set->chunks[l].n; p++) {
+            const struct cs_contact_entry *pair = set->chunks[l].pairs + p;
+            const struct cs_contact_matrix_part *part = set->chunks[l].parts + p;
+            for (uint32_t k = 0; k < pair->n; k++) {
+                if (!cs_contact_set_has(set, pair->particles[k]))
+                    continue;
+                stiffness[pair->particles[k]] += part->block[k];
+                damping[pair->particles[k]] += part->weights[k];
+            }
+        }
+}
 
 /* Frees the arrays that grow; the arena calls it. */
 static void finish(void *object) {

@@ -9,7 +9,7 @@
  * (l1, l2) minimises |w - l1 u - l2 v|^2 + q (u.u (l1 - 1/2)^2 + v.v (l2 - 1/2)^2). This is a
  * system of two equations. q = CS_PAIR_DISTANCE_PARALLEL keeps it regular for parallel edges;
  * triangles have a q too small to change a distance, for those without area. Then l is moved
- * into the primitives by the smooth positive part S of scene/soft.h, over
+ * into the primitives by the smooth positive part S of scene/shape_core.h, over
  * CS_PAIR_DISTANCE_BLEND to both sides of a border:
  *
  *   triangle   L_i = S(l_i) / (S(l0) + S(l1) + S(l2)),   l0 = 1 - l1 - l2
@@ -24,7 +24,7 @@
 #define CS_CONTACT_PAIR_DISTANCE_H
 
 #include "base/vec3.h"
-#include "scene/soft.h"
+#include "scene/shape_core.h"
 
 #include <float.h>
 #include <stdbool.h>

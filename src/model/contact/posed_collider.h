@@ -4,7 +4,7 @@
 #ifndef CS_POSED_COLLIDER_H
 #define CS_POSED_COLLIDER_H
 
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 #include "scene/collider.h"
 
 /* Motion of one collider by an event, until the next change of its path. Its shift is
@@ -79,13 +79,12 @@ static inline bool cs_posed_collider_is_near(const struct cs_posed_collider *obs
 /* Smooth distance in m, on which the contact force depends: never smaller than the distance
  * outside, with three continuous derivatives there. It is exact for spheres, planes and the
  * flat faces of boxes. At the ends of a capsule's axis and at the edges of a box the nearest
- * point of the core moves from one feature to the next, by the quintic of scene/soft.h. It does
- * so within a band of half the radius to both sides. The distance is there too large by at most
- * 0.005 of the radius on an edge and 0.01 on a corner.
- * gradient  of that function; its length is 1 where the distance is exact, never 0
- * hessian   1/m, of that function: xx, xy, xz, yy, yz, zz; 0 where n points up by default
- * Inside the core of a box it goes on as the distance does, with the same bend where the
- * nearest face changes. */
+ * point of the core moves from one feature to the next, by the quintic of scene/shape_core.h.
+ * It does so within a band of half the radius to both sides. The distance is there too large by
+ * at most 0.005 of the radius on an edge and 0.01 on a corner. gradient  of that function; its
+ * length is 1 where the distance is exact, never 0 hessian   1/m, of that function: xx, xy, xz,
+ * yy, yz, zz; 0 where n points up by default Inside the core of a box it goes on as the
+ * distance does, with the same bend where the nearest face changes. */
 static inline double cs_posed_collider_smooth_distance(const struct cs_posed_collider *obstacle,
                                                        const double p[3], double gradient[3],
                                                        double hessian[6]) {

@@ -1,7 +1,232 @@
 /* The force term of contact samples (contact_samples.h). Particles themselves have contact by
  * term_contact.c. */
-#include "model/contact/contact_samples_force.h"
+#include "base/pool.h"
+#include "base/vec3.h"
+#include "model/contact/contact_samples.h"
 #include "model/force/term.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Forces, energies, matrices and bounds of contact samples on the
+ * vertices of their edges and triangles. All functions use all threads. */
+
+/* quantity that is evaluated */
+enum ask { ASK_FORCE, ASK_CHANGE, ASK_ENERGY, ASK_MATRIX, ASK_BOUND };
+
+/* One query for all chunks. */
+struct job {
+    struct cs_contact_samples *covers;
+    struct cs_contact_set *set;
+    enum ask ask;
+    struct cs_eval eval;
+    const struct cs_matrix *matrix;
+};
+
+/* w_i f at each vertex */
+static void set_contact(const double f[3], const struct cs_contact_sample_point *point,
+                        struct cs_contact_entry *place) {
+    for (uint32_t k = 0; k < place->n; k++)
+        for (int c = 0; c < 3; c++)
+            place->vectors[k][c] = point->w[k] * f[c];
+}
+
+/* Bounds of one sample. Row i of its matrix has w_i w_j times one block, and the weights sum to
+ * 1, so that the row sum is w_i times the bound of the point. */
+static void bound(const struct cs_point_contact *contact,
+                  const struct cs_contact_sample_point *point,
+                  struct cs_contact_matrix_part *part) {
+    double stiffness, damping;
+    cs_point_contact_bound(contact, &stiffness, &damping);
+    for (uint32_t k = 0; k < point->n; k++) {
+        part->block[k] = stiffness * point->w[k];
+        part->weights[k] = point->w[k] * damping;
+    }
+}
+
+/* Matrix terms of one sample: (w w^T) x B, without a gradient. */
+static void fill_matrix(const struct cs_point_contact *contact, const struct cs_matrix *matrix,
+                        const struct cs_contact_sample_point *point,
+                        struct cs_contact_entry *place, struct cs_contact_matrix_part *part) {
+    memset(place->vectors, 0, sizeof place->vectors);
+    memset(part->block, 0, sizeof part->block);
+    memcpy(part->weights, point->w, sizeof point->w);
+    part->gradient_weight = 0;
+    cs_point_contact_add_block(contact, matrix, part->block);
+}
+
+/* Matrix terms or bounds of one sample. */
+static void answer_part(const struct job *job, const struct cs_contact_sample_point *point,
+                        const struct cs_point_contact *contact, struct cs_contact_chunk *chunk,
+                        struct cs_contact_entry *place) {
+    struct cs_contact_matrix_part *part = cs_contact_chunk_part(chunk);
+    if (part && job->ask == ASK_MATRIX)
+        fill_matrix(contact, job->matrix, point, place, part);
+    else if (part)
+        bound(contact, point, part);
+}
+
+/* Force of one sample, or its change. */
+static void answer_force(const struct job *job, const struct cs_posed_collider_law *near,
+                         const struct cs_contact_sample_point *point,
+                         const struct cs_point_contact *contact,
+                         struct cs_contact_entry *place) {
+    const size_t n = job->covers->system->view.n;
+    const struct cs_contact_force_parts parts = cs_force_parts_of(job->eval.parts);
+    double f[3];
+    if (job->ask == ASK_CHANGE) {
+        double dp[3], dv[3];
+        cs_contact_sample_interpolate(point, n, job->eval.dx, dp);
+        cs_contact_sample_interpolate(point, n, job->eval.dv, dv);
+        const struct cs_point_contact_motion move = cs_posed_collider_law_motion(near, dp, dv);
+        cs_point_contact_jvp(contact, parts, &move, f);
+    } else {
+        cs_point_contact_force(contact, parts, f);
+    }
+    set_contact(f, point, place);
+}
+
+/* Evaluates one sample if it is in range and can move. */
+static void meet(const struct job *job, const struct cs_posed_collider_law *near,
+                 const struct cs_contact_sample_point *point, struct cs_contact_chunk *chunk) {
+    const struct cs_system *system = job->covers->system;
+    struct cs_point_contact contact;
+    double p[3], v[3];
+    cs_contact_sample_interpolate(point, system->view.n, job->eval.x, p);
+    cs_contact_sample_interpolate(point, system->view.n, job->eval.v, v);
+    if (!cs_posed_collider_law_in_range(near, p, v, &contact) ||
+        cs_contact_sample_mass(system, point) == HUGE_VAL)
+        return;
+    if (job->ask == ASK_ENERGY) {
+        chunk->energy += cs_barrier_energy(contact.d, contact.range, contact.k);
+        return;
+    }
+    struct cs_contact_entry *place = cs_contact_chunk_next(chunk);
+    if (!place)
+        return;
+    place->n = point->n;
+    memcpy(place->particles, point->particles, sizeof point->particles);
+    if (job->ask == ASK_MATRIX || job->ask == ASK_BOUND)
+        answer_part(job, point, &contact, chunk, place);
+    else
+        answer_force(job, near, point, &contact, place);
+}
+
+/* Middle of the box of particles [first, last]; returns half its diagonal in m. */
+static double box_of(const double *x, size_t n, uint32_t first, uint32_t last,
+                     double middle[3]) {
+    double squared = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double *at = x + c * n;
+        double low = at[first], high = low;
+        for (size_t i = (size_t)first + 1; i <= last; i++) {
+            low = at[i] < low ? at[i] : low;
+            high = at[i] > high ? at[i] : high;
+        }
+        middle[c] = 0.5 * (low + high);
+        squared += 0.25 * (high - low) * (high - low);
+    }
+    return sqrt(squared);
+}
+
+/* The same for the vertices of one item: no sample of it is further from the middle. */
+static double reach_of(const struct cs_contact_sample_chunk *chunk, uint32_t item, size_t n,
+                       const double *x, double middle[3]) {
+    const uint32_t *at = chunk->vertices + (size_t)chunk->vertices_per_item * item;
+    double squared = 0;
+    for (size_t c = 0; c < 3; c++) {
+        double low = x[c * n + at[0]], high = low;
+        for (uint32_t k = 1; k < chunk->vertices_per_item; k++) {
+            const double p = x[c * n + at[k]];
+            low = p < low ? p : low;
+            high = p > high ? p : high;
+        }
+        middle[c] = 0.5 * (low + high);
+        squared += 0.25 * (high - low) * (high - low);
+    }
+    return sqrt(squared);
+}
+
+/* Evaluates one chunk. Boxes of the chunk and of each item come before single samples. */
+static void do_chunk(void *arg, uint32_t number) {
+    const struct job *job = arg;
+    const struct cs_contact_sample_chunk *chunk = job->covers->chunks + number;
+    const struct cs_posed_collider_law *near = job->covers->colliders + chunk->collider;
+    const size_t n = job->covers->system->view.n;
+    struct cs_contact_chunk *found = job->set->chunks + number;
+    double middle[3];
+    cs_contact_chunk_clear(found);
+    const double all = box_of(job->eval.x, n, chunk->first, chunk->last, middle);
+    if (!cs_posed_collider_is_near(&near->collider, near->params.range + all, middle))
+        return;
+    for (uint32_t i = chunk->begin; i < chunk->end; i++) {
+        struct cs_contact_sample_point point;
+        if (!chunk->subdivisions[i - chunk->begin])
+            continue;
+        const double reach = near->params.range + reach_of(chunk, i, n, job->eval.x, middle);
+        if (cs_posed_collider_is_near(&near->collider, reach, middle))
+            for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
+                meet(job, near, &point, found);
+    }
+}
+
+/* Poses all colliders, evaluates all chunks and counts their contacts. */
+static void do_chunks(struct job *job) {
+    const struct cs_system *system = job->covers->system;
+    for (uint32_t c = 0; c < system->scene->colliders.n; c++)
+        cs_posed_collider_law_at(system, c, job->eval.t, job->covers->colliders + c);
+    cs_pool_run(job->covers->n_chunks, do_chunk, job);
+    cs_contact_set_count(job->set);
+}
+
+/* Sets samples->current_set to the forces at a state, or to their change if at->dx or at->dv is
+ * set. */
+static void contact_samples_set(struct cs_contact_samples *samples, const struct cs_eval *at) {
+    struct job job = {.covers = samples,
+                      .set = &samples->current_set,
+                      .ask = at->dx || at->dv ? ASK_CHANGE : ASK_FORCE,
+                      .eval = *at};
+    do_chunks(&job);
+    cs_contact_set_gather(&samples->current_set);
+}
+
+/* Elastic energy in J. */
+static double contact_samples_energy(struct cs_contact_samples *samples,
+                                     const struct cs_eval *at) {
+    struct job job = {
+        .covers = samples, .set = &samples->current_set, .ask = ASK_ENERGY, .eval = *at};
+    do_chunks(&job);
+    return cs_contact_set_energy(&samples->current_set);
+}
+
+/* Sets samples->blocks to the matrix. kept: samples->matrix, for products; otherwise
+ * current_set, for blocks alone, which bound the whole matrix if matrix->bound is set. */
+/* Bounds of the diagonal are only for matrices that are not kept: products need the exact
+ * blocks. */
+static void contact_samples_set_matrix(struct cs_contact_samples *samples,
+                                       const struct cs_matrix *matrix, bool kept) {
+    struct cs_contact_set *set = kept ? &samples->matrix : &samples->current_set;
+    struct job job = {
+        .covers = samples,
+        .set = set,
+        .ask = ASK_MATRIX,
+        .eval = {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_ALL},
+        .matrix = matrix};
+    set->diagonal_bound = !kept && matrix->bound;
+    do_chunks(&job);
+    cs_contact_set_gather(set);
+    samples->blocks = set;
+}
+
+/* Adds the Gershgorin row sums of df/dx (N/m) and df/dv (N s/m) at a state. */
+static void contact_samples_add_bound(struct cs_contact_samples *samples,
+                                      const struct cs_eval *at, double *stiffness,
+                                      double *damping) {
+    struct job job = {
+        .covers = samples, .set = &samples->current_set, .ask = ASK_BOUND, .eval = *at};
+    do_chunks(&job);
+    cs_contact_set_add_bound(&samples->current_set, stiffness, damping);
+}
 
 /* Returns whether a collider is round, so that it may need samples. */
 static bool any_round(const struct cs_scene *scene) {
@@ -27,7 +252,7 @@ static const char *idle_why(const struct cs_system *system) {
 }
 
 static void prepare(const struct cs_system *system, const struct cs_eval *at) {
-    cs_contact_samples_set(system->contact_samples, at);
+    contact_samples_set(system->contact_samples, at);
 }
 
 static void add(const struct cs_system *system, const struct cs_eval *at, double *f) {
@@ -36,12 +261,12 @@ static void add(const struct cs_system *system, const struct cs_eval *at, double
 }
 
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
-    return cs_contact_samples_energy(system->contact_samples, at);
+    return contact_samples_energy(system->contact_samples, at);
 }
 
 static void prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
                            bool kept) {
-    cs_contact_samples_set_matrix(system->contact_samples, matrix, kept);
+    contact_samples_set_matrix(system->contact_samples, matrix, kept);
 }
 
 static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
@@ -56,7 +281,7 @@ static void add_product(const struct cs_system *system, const double *p, double 
 
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
                          const struct cs_gershgorin *sums) {
-    cs_contact_samples_add_bound(system->contact_samples, at, sums->stiffness, sums->damping);
+    contact_samples_add_bound(system->contact_samples, at, sums->stiffness, sums->damping);
 }
 
 static const char *const ramps[] = {"colliders.friction", NULL};

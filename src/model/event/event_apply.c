@@ -4,12 +4,8 @@
  * same change of velocity, J / m with m their total free mass: a cloth that is hit as a whole
  * moves as a whole. At once the velocities jump; over an interval T a constant acceleration J
  * / (m T) acts. */
-#include "model/event/event_apply.h"
+#include "model/event/event_state.h"
 
-#include "model/event/event_move.h"
-#include "model/event/event_path.h"
-#include "model/event/event_times.h"
-#include "model/event/viewpoint_forces.h"
 #include "scene/shape.h"
 
 #include <math.h>

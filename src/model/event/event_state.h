@@ -4,7 +4,51 @@
 #ifndef CS_EVENT_STATE_H
 #define CS_EVENT_STATE_H
 
-#include "model/system/system.h"
+#include "base/serialise.h"
+#include "model/system/particle_system.h"
+
+/* Visibility: the particles that are seen through a rectangle from a
+ * viewpoint.
+ *
+ * A particle is visible if it lies in front of the eye, its perspective image lies in the
+ * rectangle, and nothing lies on the straight line to it: no triangle of any body except
+ * those it is a corner of, and no visible collider. (Flag thesis, ch. 5: the points that
+ * OpenGL's selection finds; here by geometry in doubles, so that all machines see the same.) */
+
+/* A viewpoint in the form that tests need. */
+struct cs_visibility_query {
+    double eye[3];          /* m */
+    double axes[3][3];      /* unit vectors: to the right, up, and in the direction of view */
+    double low[2], high[2]; /* the rectangle as slopes: right / forward, up / forward */
+};
+
+/* Scratch arrays for n particles, owned by the caller's arena. */
+struct cs_visibility_scratch {
+    /* (3,n) m, positions relative to the eye, along its axes */
+    double *projected;
+    /* (n) cell of each candidate; (n) candidates by cell; (n + 1) position in `order` where the
+     * candidates of each cell start */
+    uint32_t *cells, *order, *cell_starts;
+};
+
+/* Prepares a viewpoint from an event of the scene that was checked: eye and target differ, up
+ * is not along the view, the rectangle is not empty. */
+void cs_visibility_query_make(struct cs_visibility_query *visibility,
+                              const struct cs_viewpoint_force *viewpoint_force);
+
+/* Takes the scratch arrays from an arena. CS_ERR_MEMORY. */
+enum cs_status cs_visibility_scratch_init(struct cs_visibility_scratch *work, uint32_t n,
+                                          struct cs_arena *arena, struct cs_error *error);
+
+/* Sets seen (n): true for the particles of a body (-1: of all bodies) that are visible at
+ * time t and positions x (3,n). The rectangle includes its sides. The line ends a billionth
+ * of its length before the particle: a particle that touches a surface is not hidden by it.
+ * Planes are infinite, and the space behind them is solid, as are the other colliders. A
+ * particle with a position that is not finite is not visible. */
+void cs_visibility_query_run(const struct cs_visibility_query *visibility,
+                             const struct cs_system *system, double t, const double *x,
+                             int64_t body, const struct cs_visibility_scratch *work,
+                             bool *seen);
 
 /* One event. A grab or a move follows a path of legs, from point to point; a leg has one chord,
  * or CS_EVENT_CHORDS of constant velocity if it is smooth. */
@@ -56,5 +100,166 @@ struct cs_events {
     double values_time;        /* s, of the ramps' values */
     bool has_ramps, has_grabs; /* some are active in the segment; gusts count as ramps */
 };
+
+/* Starts and ends single events; for events.c. */
+
+/* Starts an event at events->begin. One that happens at once acts fully here: a change of
+ * velocity, a new value, a pin, a release. One over an interval becomes active. */
+void cs_event_start(struct cs_system *system, uint32_t event);
+
+/* Ends an event over an interval: values get their last number exactly, particles that it
+ * holds become free, a moved collider stops. */
+void cs_event_finish(struct cs_system *system, uint32_t event);
+
+/* Sets the value of an active ramp or gust to the one at t. The caller refreshes the springs.
+ */
+void cs_event_set_value(struct cs_system *system, uint32_t event, double t);
+
+/* Sums system->event_force (3,n): the accelerations in m/s2 of all active impacts and
+ * viewpoint forces on free particles. NULL without such events: then it does nothing. */
+void cs_event_sum_pushes(struct cs_system *system);
+
+/* Recomputes stiffness and damping of the springs from the scene's values: those of the runs
+ * that forces use, and those of the list in the view. */
+void cs_event_refresh_springs(struct cs_system *system);
+
+/* Events that move colliders; for events.c and event_apply.c. */
+
+/* True if an event of the scene moves a collider. */
+bool cs_event_moves_any(const struct cs_scene *scene);
+
+/* Takes system->motions, with every collider at rest, and the arrays of the view that show
+ * them. CS_ERR_MEMORY. */
+enum cs_status cs_event_moves_build(struct cs_system *system, struct cs_error *error);
+
+/* begin: the event takes control of the collider, also from another event. end: the collider
+ * stops where it is, if this event still controls it. */
+void cs_event_begin_move(struct cs_system *system, uint32_t event, double t);
+void cs_event_end_move(struct cs_system *system, uint32_t event, double t);
+
+/* Makes the collider follow the chord of the event that begins at t; call it after
+ * cs_event_next_leg. Its rotation up to t is stored first. */
+void cs_event_follow_move(struct cs_system *system, uint32_t event, double t);
+
+/* Writes the motion of all colliders to the view: velocity, spin, and the origin that makes
+ * origin + t velocity the centre at time t. */
+void cs_event_show_moves(struct cs_system *system);
+
+/* Largest speed in m/s of a point of a turning collider; of a plane, at the particle farthest
+ * from its centre. */
+double cs_event_angular_speed(const struct cs_system *system);
+
+/* The position of a grab or a move on its path. */
+
+/* Starts the path of a grab or a move at t, at the point state->chord_to. */
+void cs_event_begin_path(struct cs_event_state *state, double t);
+
+/* Moves to the next chord of the path if one begins at t: its two ends, times and velocity.
+ * After the last point the velocity is 0 and the end HUGE_VAL. */
+void cs_event_next_leg(struct cs_events *events, uint32_t event, double t);
+
+/* The times at which something begins, ends or turns in a scene with events. */
+
+/* Chords of a smooth leg of a path, from point to point; chosen by trial. */
+enum { CS_EVENT_CHORDS = 16 };
+
+/* s: times that are nearer to each other count as one. A step between them would consist of
+ * rounding errors. */
+#define CS_EVENT_SAME 1e-9
+
+/* t, or the time of the frame that lies within CS_EVENT_SAME of it. */
+double cs_event_time_snap(const struct cs_scene *scene, double t);
+
+/* The path of a grab or a move: n points, borrowed from the scene, and the chords of each
+ * leg. n 0: none. */
+struct cs_event_path {
+    const struct cs_path_point *points;
+    uint32_t n, n_chords;
+};
+
+struct cs_event_path cs_event_path_of(const struct cs_event *event);
+
+/* An upper bound of the number of times: two per event, and one per chord. */
+size_t cs_event_times_count(const struct cs_scene *scene);
+
+/* Fills events->times (capacity cs_event_times_count) and begin and end of each state. A time
+ * within CS_EVENT_SAME of a frame becomes the frame's, and times as near to each other become
+ * one, the earlier. */
+void cs_event_times_fill(struct cs_events *events);
+
+/* Time in s of the end of a chord of a leg, as it stands in events->times. */
+double cs_event_chord_end(const struct cs_events *events, uint32_t event, uint32_t leg,
+                          uint32_t chord);
+
+/* The state of a scene's events, for a checkpoint. */
+
+/* Writes or reads everything that events have changed in a system since it was built, except
+ * x and v: their own state, pins, masses, values, pushes, and colliders on paths. Springs
+ * follow from the values. Does nothing for a system without events. A record that would lead
+ * outside an array sets record->failed. */
+void cs_events_serialise(struct cs_system *system, struct cs_serialiser *record);
+
+/* Viewpoint forces: the particles that the events `viewpoint_force` act
+ * on, and the times at which visibility is tested.
+ *
+ * A viewpoint force over an interval acts on the particles that its last visibility test
+ * selected. Between two tests the selection stays the same, and the force is smooth. A test
+ * with another result restarts the method, like every event. The times of tests are computed
+ * one by one and not listed in events->times, because an interval may be long. A scene
+ * without viewpoint forces has none of this. */
+
+/* One viewpoint force. */
+struct cs_viewpoint_force_state {
+    /* number of its event in the scene */
+    uint32_t event;
+    struct cs_visibility_query query;
+    /* (n) the particles that the last test selected */
+    bool *is_visible;
+    /* between begin and end of its interval */
+    bool active;
+    /* tests since the begin, without the one there; test k is at begin + k / refresh */
+    double n_tests;
+    /* s, of the next test; HUGE_VAL: none */
+    double next;
+};
+
+/* All viewpoint forces of a scene, in the system's arena. */
+struct cs_viewpoint_forces {
+    uint32_t n;
+    struct cs_viewpoint_force_state *states; /* (n) in the scene's order */
+    struct cs_visibility_scratch work;
+    bool *work_marks; /* (n particles) work, the events' */
+};
+
+/* True if the scene has a viewpoint force. */
+bool cs_viewpoint_forces_any(const struct cs_scene *scene);
+
+/* Builds the viewpoint forces of a system whose events exist already. CS_ERR_MEMORY. */
+enum cs_status cs_viewpoint_forces_build(struct cs_system *system, struct cs_error *error);
+
+/* start: tests visibility at the begin of an event. One over an interval becomes active; one
+ * at once adds force times duration to the momentum of each selected free particle. finish:
+ * the force ends. */
+void cs_viewpoint_force_start(struct cs_system *system, uint32_t event);
+void cs_viewpoint_force_finish(struct cs_system *system, uint32_t event);
+
+/* Repeats the visibility tests that are due at t. Returns true if one selects other particles
+ * than before. */
+bool cs_viewpoint_forces_retest(struct cs_system *system, double t);
+
+/* Time in s of the next test of all; HUGE_VAL: none. */
+double cs_viewpoint_forces_next(const struct cs_viewpoint_forces *viewpoint_forces);
+
+/* push (3,n) += the acceleration in m/s2 of the selected free particles, by all active
+ * forces. */
+void cs_viewpoint_forces_add_push(const struct cs_system *system, double *push);
+
+/* The greatest force in N on one particle: the sum of |force| of all active ones. */
+double cs_viewpoint_forces_force(const struct cs_viewpoint_forces *viewpoint_forces,
+                                 const struct cs_scene *scene);
+
+/* The number of tests of a scene until t that lie between frames, where a method has to stop.
+ */
+uint32_t cs_viewpoint_forces_cuts(const struct cs_scene *scene, double t);
 
 #endif

@@ -1,6 +1,6 @@
 /* event_times.c - the times at which events begin, end or turn: snapped to frames, sorted,
  * near ones merged. */
-#include "model/event/event_times.h"
+#include "model/event/event_state.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,7 @@
 /* viewpoint_forces.c - selects the particles of viewpoint forces, and schedules the
  * visibility tests. */
-#include "model/event/viewpoint_forces.h"
 
-#include "model/event/event_times.h"
+#include "model/event/event_state.h"
 
 #include <math.h>
 #include <string.h>

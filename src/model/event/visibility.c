@@ -17,12 +17,12 @@
  * p passes through the triangle if p.(a x b), p.(b x c) and p.(c x a) have the same sign. It
  * meets the plane of the triangle at the fraction a.(b x c) / (sum of the three) of its
  * length. */
-#include "model/event/visibility.h"
+#include "model/event/event_state.h"
 
 #include "base/portable_sine.h"
 #include "base/vec3.h"
 #include "model/contact/posed_collider.h"
-#include "model/system/faces.h"
+#include "model/system/surfaces.h"
 
 #include <math.h>
 #include <string.h>

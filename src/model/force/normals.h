@@ -2,7 +2,7 @@
 #ifndef CS_NORMALS_H
 #define CS_NORMALS_H
 
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 
 /* Writes system->normals (3,n), by all threads: at each particle the unit vector along (right -
  * left) x (up - down), where the particle itself replaces a missing neighbour (cloth thesis,

@@ -1,5 +1,5 @@
 /* Bounds on frequencies and damping rates by Gershgorin's circles, from all forces. */
-#include "model/force/spectral_bounds.h"
+#include "model/force/diagnostics.h"
 
 #include "model/force/terms.h"
 

@@ -6,7 +6,7 @@
 #ifndef CS_TERM_H
 #define CS_TERM_H
 
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 
 /* Arrays of the system that a force reads. The system allocates only those that a force asks
  * for. */

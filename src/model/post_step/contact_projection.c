@@ -7,11 +7,97 @@
  * resting_on, and so does a commit without contact. */
 #include "model/post_step/contact_projection.h"
 
+#include "base/vec3.h"
 #include "base/vector.h"
-#include "model/post_step/project_particle.h"
+#include "model/contact/posed_collider.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
+
+/* Projection of one particle that a step has brought behind the surface of
+ * a collider: push, absorption and friction. */
+
+/* Effect of one collider on a particle. */
+enum cs_project_result {
+    /* nothing: it is in front, or not finite */
+    CS_PROJECT_NONE,
+    CS_PROJECT_PUSHED,
+    /* it is at rest on a collider at rest: velocity and displacement were taken completely */
+    CS_PROJECT_STUCK
+};
+
+/* Shortens the part of a across n by `lost`; returns whether nothing of it is left. */
+static bool apply_friction(double a[3], const double n[3], double lost) {
+    const double along = a[0] * n[0] + a[1] * n[1] + a[2] * n[2];
+    double across[3], squared = 0;
+    for (int c = 0; c < 3; c++) {
+        across[c] = a[c] - along * n[c];
+        squared += across[c] * across[c];
+    }
+    const double length = sqrt(squared), kept = length > lost ? 1 - lost / length : 0;
+    for (int c = 0; c < 3; c++)
+        a[c] = kept * across[c] + along * n[c];
+    return kept == 0;
+}
+
+/* Factor of the inward velocity that is taken away: above 1 the velocity is reflected. */
+static double fraction_of(const struct cs_collider *collider) {
+    const double ka = collider->absorption;
+    return ka < 0 ? 1 - ka : ka;
+}
+
+/* Corrects the velocity relative to the collider; returns whether nothing of it is left. */
+static bool absorb(const struct cs_collider *collider, const double n[3], double v[3]) {
+    const double inward = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
+    if (inward >= 0)
+        return false;
+    const double changed = -inward * fraction_of(collider);
+    const bool held =
+        apply_friction(v, n, collider->friction * changed) && collider->absorption == 1;
+    for (int c = 0; c < 3; c++)
+        v[c] = held ? 0 : v[c] + changed * n[c];
+    return held;
+}
+
+/* Moves a particle at p with velocity v onto the surface, offset by the collider's thickness,
+ * after a step of dt that began at `last`. Against a moving collider all is relative to the
+ * motion of its matter. With the outward normal n and the gap d < 0:
+ *
+ *   p -= d n                                             (cloth thesis, eq. 5.27 to 5.31)
+ *   v -= ka (v.n) n  if v.n < 0, ka the absorption       (eq. 5.32 as meant)
+ *   |T_v| -= at most mu times the change along n         (Coulomb)
+ *   |T_x| -= at most mu min(ka, 1) |d|                   (Macklin et al. 2014)
+ *
+ * with T_v, T_x the tangential parts of v and of the displacement since `last`. A negative
+ * absorption reflects the normal velocity, times |ka|. Position and velocity are corrected
+ * alike, so that a particle that friction holds stays in its place. */
+static enum cs_project_result project_particle(const struct cs_posed_collider *obstacle,
+                                               double dt, const double last[3], double p[3],
+                                               double v[3]) {
+    const struct cs_collider *collider = obstacle->collider;
+    double n[3], provenance[3], from[3], move[3];
+    const double gap = cs_posed_collider_signed_distance(obstacle, p, n);
+    if (!(gap < 0))
+        return CS_PROJECT_NONE;
+
+    /* position that the particle would have, had it moved with the collider */
+    cs_posed_collider_velocity(obstacle, p, provenance);
+    for (int c = 0; c < 3; c++) {
+        from[c] = last[c] + dt * provenance[c];
+        move[c] = p[c] - from[c];
+        v[c] -= provenance[c];
+    }
+    const bool stopped = absorb(collider, n, v);
+    const bool kept =
+        apply_friction(move, n, collider->friction * fmin(fraction_of(collider), 1) * -gap);
+    for (int c = 0; c < 3; c++) {
+        v[c] += provenance[c];
+        p[c] = from[c] + move[c] - gap * n[c];
+    }
+    return stopped && kept && cs_vec3_is_zero(provenance) ? CS_PROJECT_STUCK
+                                                          : CS_PROJECT_PUSHED;
+}
 
 /* One commit. */
 struct step {
@@ -65,7 +151,7 @@ static unsigned project_against_all(const struct step *step, size_t i) {
     take(contact->state_before, n, i, last);
     for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
         const enum cs_project_result touch =
-            cs_project_particle(contact->colliders + k, step->dt, last, p, v);
+            project_particle(contact->colliders + k, step->dt, last, p, v);
         if (touch == CS_PROJECT_NONE)
             continue;
         pushed++;

@@ -16,6 +16,7 @@
 #include "model/contact/posed_collider.h"
 #include "model/post_step/projection_energy.h"
 #include "model/post_step/static_friction.h"
+#include "model/system/particle_system.h"
 
 /* Numbers of pairs of a particle and a collider over the whole run: tested, and projected. */
 struct cs_projection_counts {
@@ -67,5 +68,61 @@ bool cs_contact_projection_update_sticking(struct cs_contact_projection *contact
  * whether the state was changed. */
 bool cs_contact_projection_resolve(struct cs_contact_projection *contact, double t, double dt,
                                    double *x, double *v);
+
+/* Longest step for which projection stays a small correction. */
+
+/* Admissible depth in m behind a surface after a step: a tenth of the shortest spring. HUGE_VAL
+ * without springs, because nothing is deformed by a push then. */
+double cs_step_bound_depth(const struct cs_system *system);
+
+/* Longest step in s from (x, v) after which no free particle is deeper than `depth` behind a
+ * collider of `colliders` (scene->colliders.n, at the same time), or than it is already plus
+ * `depth`. Each particle is taken to fall freely and straight towards the surface. HUGE_VAL if
+ * none approaches. */
+double cs_step_bound_step(const struct cs_system *system,
+                          const struct cs_posed_collider *colliders, double depth,
+                          const double *x, const double *v);
+
+/* Limits the strain of stretch springs after a step (Provot 1995). */
+
+/* Shortens every stretch spring of a body with a strain limit that is longer than strain_limit
+ * times its rest length. Its ends move along it by their inverse masses (Provot 1995; cloth
+ * thesis, sec. 5.3):
+ *
+ *   x_a += w_a (l - s L) / (w_a + w_b) u,   x_b -= w_b (l - s L) / (w_a + w_b) u
+ *
+ * Velocities change by the displacement over max(dt, a frame): a sheet too weak for its weight
+ * is held, and a short step of an adaptive method does not turn a small displacement into a
+ * blow. At most strain_limit_sweeps passes, every other one backwards; fewer if a pass finds
+ * nothing. A pass over a grid has the order of strain_limit_grid.h, over a mesh that of the
+ * springs. Returns the number of corrections. x, v (3,n) in m and m/s are changed in place.
+ *
+ * Only stretch springs are limited: with shear and bend springs too, the passes work against
+ * each other and pump energy into a hanging sheet at dt = 1/60 s. */
+uint64_t cs_strain_limit_apply(const struct cs_system *system, double dt, double *x, double *v);
+
+/* Particles that start inside a collider, and bodies that start
+ * crossed. */
+
+/* Particles that were moved out, for the report. */
+struct cs_initial_penetration {
+    /* number of particles that were moved out */
+    uint32_t n;
+    /* m, largest distance that one was moved */
+    double depth;
+};
+
+/* Checks every free particle of the state that a system starts from. Contact would push a
+ * particle out of a collider with energy that comes from nothing. By the law `project`, inside
+ * means behind the surface offset by the thickness. With contact.start "move-out" it is moved
+ * out along normals, and *inside reports it.
+ *
+ * CS_ERR_SCENE, with particle, collider and depth, if contact.start refuses; if colliders leave
+ * no way out; if a contact sample (model/contact/contact_samples.h) is then still inside; or if
+ * edges of bodies with contact pierce triangles, unless crossings are ignored. The state may
+ * then have been changed in part. */
+enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
+                                              struct cs_initial_penetration *inside,
+                                              struct cs_error *error);
 
 #endif

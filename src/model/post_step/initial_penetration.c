@@ -5,7 +5,7 @@
  * intersect. A particle is moved out of the collider in which it is deepest, along its normal
  * by the depth, until it is in none. Colliders that overlap may push it to and fro, so the
  * number of passes is limited. */
-#include "model/post_step/initial_penetration.h"
+#include "model/post_step/contact_projection.h"
 
 #include "model/contact/ccd/crossings.h"
 #include "model/contact/contact_samples.h"

@@ -1,5 +1,5 @@
 /* step_bound.c - time to a surface, and to the admissible depth behind it, in free fall. */
-#include "model/post_step/step_bound.h"
+#include "model/post_step/contact_projection.h"
 
 #include <math.h>
 

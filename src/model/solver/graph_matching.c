@@ -1,7 +1,7 @@
 /* Heavy-edge matching of a weighted graph. Two passes of it make aggregates of four nodes, as
  * in the double pairwise aggregation of Notay (2010). Time is proportional to the number of
  * edges. */
-#include "model/solver/graph_matching.h"
+#include "model/solver/multigrid_hierarchy.h"
 
 #include <stdbool.h>
 

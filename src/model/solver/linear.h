@@ -25,7 +25,7 @@
 #define CS_LINEAR_H
 
 #include "model/solver/multigrid.h"
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 
 /* Limits of the rules above: a ratio of stiffness to mass, and iterations with multigrid. */
 enum { CS_LINEAR_STIFF = 16, CS_LINEAR_STALL_ITERATIONS = 500 };

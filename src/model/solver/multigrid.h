@@ -20,9 +20,9 @@
 #ifndef CS_MULTIGRID_H
 #define CS_MULTIGRID_H
 
+#include "model/solver/contact_coupling.h"
 #include "model/solver/multigrid_hierarchy.h"
-#include "model/solver/pair_vertices.h"
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 
 /* A scene has levels if one of its bodies has more particles than this. On smaller sheets
  * coarse levels do not pay: block Jacobi took about as long (measured with square sheets). */

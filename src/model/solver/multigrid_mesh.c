@@ -7,7 +7,6 @@
 
 #include "base/pool.h"
 #include "model/solver/float_lanes.h"
-#include "model/solver/graph_matching.h"
 
 #include <string.h>
 

@@ -19,13 +19,160 @@
  *
  * Four numbers per spring instead of six for a block: the product is bound by memory, and its
  * factors are most of what it reads. */
-#include "model/spring/springs.h"
-
 #include "base/pool.h"
 #include "model/spring/grid_stencil.h"
+#include "model/spring/run_pieces.h"
+#include "model/spring/springs.h"
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
+
+/* Diagonal 3x3 blocks: of the springs' derivatives, and of the matrix in factored form.
+ *
+ * A spring's part of the derivative is ((-B, B), (B, -B)): it adds the same block at both of
+ * its ends,
+ *
+ *   df/dx     -k ((1 - L/l) I + (L/l) u u^T)
+ *   df/dv     -c I (relative) or -c u u^T (axial)
+ *   matrix    s I + w w^T      (springs_matrix.c)
+ *
+ * Grids' springs get their blocks in the pass of the force (springs.c); the rest is added here.
+ */
+
+/* Symmetric blocks of a piece of a mesh, component by component. */
+struct blocks {
+    double rows[SYM][PIECE];
+};
+
+/* Stores the block of spring i. */
+CS_INLINE void put_block(const double *block, size_t i, struct blocks *blocks) {
+    for (size_t c = 0; c < SYM; c++)
+        blocks->rows[c][i] = block[c];
+}
+
+/* Adds the blocks to both ends, sums (6,n), in the order of the springs. */
+CS_INLINE void add_blocks(const struct piece *piece, const struct blocks *blocks, size_t n,
+                          double *sums) {
+    double *a = sums + piece->run->first_a, *b = sums + piece->run->first_b;
+    const uint32_t *ends = piece->run->ends + 2 * (size_t)piece->start;
+    for (size_t i = 0; i < piece->count; i++)
+        for (size_t c = 0; c < SYM; c++) {
+            a[c * n + ends[2 * i]] += blocks->rows[c][i];
+            b[c * n + ends[2 * i + 1]] += blocks->rows[c][i];
+        }
+}
+
+/* Blocks of df/dx of a piece of a mesh. */
+CS_INLINE void stiff_piece(const struct piece *piece, const struct ends e,
+                           struct blocks *blocks) {
+    const size_t count = piece->count;
+    for (size_t i = 0; i < count; i++) {
+        double block[SYM];
+        stiff_block(turned_of(across(e, i, true), piece->lengths[i]), piece->stiffnesses[i],
+                    block);
+        put_block(block, i, blocks);
+    }
+}
+
+/* Blocks of df/dv of a piece of a mesh. */
+CS_INLINE void damped_piece(const struct piece *piece, const struct ends e,
+                            struct blocks *blocks) {
+    const double d = -piece->run->damping;
+    const bool axial = piece->run->axial;
+    const size_t count = piece->count;
+    for (size_t i = 0; i < count; i++) {
+        double block[SYM];
+        set_block(axial ? 0 : d, axial ? d : 0, turned_of(across(e, i, true), 0).u, block);
+        put_block(block, i, blocks);
+    }
+}
+
+/* Adds the blocks of a mesh's run: kxx always, dvv if it has dampers. */
+CS_INLINE void run_diagonal(const struct cs_spring_run *run, size_t n, const double *x,
+                            double *kxx, double *dvv) {
+    struct gather_buffer places;
+    struct blocks blocks;
+    for (uint32_t start = 0; start < run->count; start += PIECE) {
+        const struct piece piece = piece_of(run, start);
+        const struct ends e = ends_of(&piece, x, n, false, &places);
+        stiff_piece(&piece, e, &blocks);
+        add_blocks(&piece, &blocks, n, kxx);
+        if (run->damping == 0)
+            continue;
+        damped_piece(&piece, e, &blocks);
+        add_blocks(&piece, &blocks, n, dvv);
+    }
+}
+
+/* Relative dampers have a multiple of the identity. Grids summed it in the row xx of dvv alone;
+ * this copies it to yy and zz. Mixed components are 0. */
+static void add_scalar_part(const struct cs_spring_run *first, size_t n, double *dvv) {
+    const size_t particles = first->columns * ((size_t)first->rows_below + 1);
+    for (size_t c = 3; c < SYM; c += 2)
+        memcpy(dvv + c * n + first->row, dvv + first->row, particles * sizeof *dvv);
+}
+
+/* Tells whether run r is the first of a grid. */
+static bool begins_grid(const struct cs_springs *springs, uint32_t r) {
+    const struct cs_spring_run *run = springs->runs + r;
+    return run->columns && (r == 0 || run[-1].body != run->body);
+}
+
+/* Serial: a mesh's springs add to both ends in their order. */
+CS_CLONES void cs_springs_finish_diagonal(const struct cs_springs *springs, uint32_t n,
+                                          const struct cs_eval *at) {
+    for (uint32_t r = 0; r < springs->n_runs; r++) {
+        const struct cs_spring_run *run = springs->runs + r;
+        if (!run->columns)
+            run_diagonal(run, n, at->x, at->dfdx_blocks, at->dfdv_blocks);
+        else if (begins_grid(springs, r) && run->damping != 0 && !run->axial)
+            add_scalar_part(run, n, at->dfdv_blocks);
+    }
+}
+
+/* The block of one spring of a grid in the matrix. */
+CS_INLINE void diagonal_block(const struct stencil_input *in,
+                              const struct stencil_direction *way, size_t i, double *out) {
+    const double *s = way->factors;
+    const size_t count = way->count;
+    (void)in;
+    set_block(s[i], 1, (struct difference){s[count + i], s[2 * count + i], s[3 * count + i]},
+              out);
+}
+
+CS_STENCIL_KERNEL(own_blocks, diagonal_block, 0, SYM, 0);
+
+/* Row by row for grids, spring by spring for meshes; serial, so the order of the sums is fixed.
+ */
+CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
+                                          const double *factors, double *sums) {
+    const struct spring_job job = {
+        .springs = springs, .n = n, .at = {.dfdx_blocks = sums}, .factors = factors};
+    const struct cs_block all = {0, n, 0, springs->n_runs};
+    struct blocks blocks;
+    uint32_t n_runs = 1;
+    for (uint32_t r = 0; r < springs->n_runs; r += n_runs) {
+        const struct cs_spring_run *run = springs->runs + r;
+        n_runs = 1;
+        if (run->columns) {
+            n_runs = add_row_stencil(&job, &all, run, has_anything, &own_blocks);
+            continue;
+        }
+        const double *s = factors + 4 * (size_t)run->first, *w = s + run->count;
+        for (uint32_t start = 0; start < run->count; start += PIECE) {
+            const struct piece piece = piece_of(run, start);
+            for (size_t i = 0, k = start; i < piece.count; i++, k++) {
+                const size_t count = run->count;
+                double block[SYM];
+                set_block(s[k], 1, (struct difference){w[k], w[count + k], w[2 * count + k]},
+                          block);
+                put_block(block, i, &blocks);
+            }
+            add_blocks(&piece, &blocks, n, sums);
+        }
+    }
+}
 
 /* Computes the factors of one piece, in place in the run's rows s, wx, wy, wz. There is no
  * branch in the loop, so it vectorises. */

@@ -3,7 +3,7 @@
 #include "model/system/shape_clusters.h"
 
 #include "mesh/trimesh.h"
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 #include "scene/shape.h"
 
 #include <math.h>

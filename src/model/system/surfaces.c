@@ -2,7 +2,6 @@
  * edge. */
 #include "model/system/surfaces.h"
 
-#include "model/system/faces.h"
 #include "scene/body_pairs.h"
 
 /* Edges of a body. A grid has them along its rows, along its columns, and one diagonal per

@@ -2,6 +2,8 @@
 #ifndef CS_JSON_CHECK_H
 #define CS_JSON_CHECK_H
 
+#include "base/text.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -31,5 +33,17 @@ void cs_json_locate(const char *text, size_t offset, uint32_t *line, uint32_t *c
 /* On checked text: the first offset from `at` that is not blank; the one after a string. */
 size_t cs_json_skip_blank(const char *text, size_t at);
 size_t cs_json_skip_text(const char *text, size_t at);
+
+/* Checks that a text is valid UTF-8, and cuts it between characters. */
+
+/* Returns the bytes of the first character of a zero-terminated text, 0 if it is not valid:
+ * overlong forms and surrogates are not. */
+size_t cs_utf8_length(const char *text);
+
+/* Returns true if s is valid UTF-8 without control characters. */
+bool cs_utf8_is_plain(const char *s);
+
+/* Adds s in quotes with JSON's escapes, for messages; a long one is cut and ends with "...". */
+void cs_utf8_add_short(struct cs_text *out, const char *s);
 
 #endif

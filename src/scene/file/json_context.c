@@ -2,7 +2,7 @@
  * column. */
 #include "scene/file/json_context.h"
 
-#include "scene/file/utf8.h"
+#include "scene/file/json_check.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -75,4 +75,155 @@ enum cs_status cs_json_context_fail_type(struct cs_json_context *context,
         context, value, false, "found %s, expected %s", cs_text_get(&found), expected);
     cs_text_finish(&found);
     return status;
+}
+
+/* Finds and sets values of a JSON tree by a path such as bodies[0].springs.stretch. */
+
+/* One step of a path: a key of an object or an index of a list. */
+struct step {
+    char key[128]; /* "": an index */
+    uint32_t index;
+};
+
+/* Reads the step at *at and moves past it; returns false if there is none. */
+static bool take_step(const char **at, bool first, struct step *step) {
+    const char *s = *at;
+    *step = (struct step){0};
+    if (*s == '[') {
+        const size_t digits = strspn(s + 1, "0123456789");
+        /* at most 9 digits, so that the index fits 32 bits */
+        if (digits < 1 || digits > 9 || s[1 + digits] != ']')
+            return false;
+        for (size_t i = 1; i <= digits; i++)
+            step->index = 10 * step->index + (uint32_t)(s[i] - '0');
+        *at = s + digits + 2;
+        return true;
+    }
+    /* only the first key has no point before it */
+    if (!first && *s++ != '.')
+        return false;
+    const size_t length = strcspn(s, ".[]");
+    if (length < 1 || length >= sizeof step->key)
+        return false;
+    memcpy(step->key, s, length);
+    *at = s + length;
+    return true;
+}
+
+/* The member that a step selects, or NULL. */
+static struct cs_json *member_at(const struct cs_json *value, const struct step *step) {
+    return step->key[0] ? cs_json_find(value, step->key) : cs_json_at(value, step->index);
+}
+
+const struct cs_json *cs_json_nearest(const struct cs_json *root, const char *path) {
+    struct step step;
+    const struct cs_json *value = root;
+    for (const char *at = path; *at && take_step(&at, at == path, &step);) {
+        const struct cs_json *member = member_at(value, &step);
+        if (!member)
+            break;
+        value = member;
+    }
+    return value;
+}
+
+/* Checks that a step fits its parent: a key an object, an index a list. */
+static enum cs_status check_step(const struct cs_json *parent, const struct step *step,
+                                 const char *path, struct cs_error *error) {
+    const bool is_key = step->key[0] != 0;
+    if (cs_json_kind_of(parent) != (is_key ? CS_JSON_OBJECT : CS_JSON_LIST)) {
+        struct cs_text found = {0};
+        cs_json_describe(parent, &found);
+        if (is_key)
+            cs_fail(error, CS_ERR_USAGE, "--set %s: found %s before \"%s\", expected an object",
+                    path, cs_text_get(&found), step->key);
+        else
+            cs_fail(error, CS_ERR_USAGE, "--set %s: found %s before [%u], expected a list",
+                    path, cs_text_get(&found), step->index);
+        cs_text_finish(&found);
+        return error->status;
+    }
+    /* an index equal to the count is allowed: it appends */
+    if (!is_key && step->index > cs_json_count(parent))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--set %s: index %u is out of range, expected 0..%u (%u adds one)", path,
+                       step->index, cs_json_count(parent), cs_json_count(parent));
+    return CS_OK;
+}
+
+/* Puts a value at a step of its parent, which owns it from then on. */
+static enum cs_status put(struct cs_json *parent, const struct step *step,
+                          struct cs_json *value, struct cs_error *error) {
+    const bool done = step->key[0] ? cs_json_put(parent, step->key, value)
+                                   : cs_json_put_at(parent, step->index, value);
+    return done ? CS_OK : cs_fail(error, CS_ERR_MEMORY, "out of memory for --set");
+}
+
+/* Returns false for a text that can only be meant as JSON. */
+static bool is_bare_word(const char *value) {
+    return !strchr("{[\"+-.0123456789", value[strspn(value, " \t\r\n")]) || !*value;
+}
+
+/* Parses the value of an override: JSON, or else a bare word. */
+static enum cs_status make_value(const char *path, const char *value, struct cs_json **made,
+                                 struct cs_error *error) {
+    struct cs_json_fault fault = {0};
+    enum cs_status status = cs_json_parse(value, strlen(value), made, &fault);
+    if (!status) {
+        /* the offsets are those of the argument, not of the scene file */
+        cs_json_drop_positions(*made);
+        return CS_OK;
+    }
+    /* a bare word is a text, so that the shell needs no second pair of quotes */
+    if (status == CS_ERR_SCENE && is_bare_word(value)) {
+        if (!cs_utf8_is_plain(value))
+            return cs_fail(error, CS_ERR_USAGE,
+                           "--set %s: the value is not UTF-8 text without control characters",
+                           path);
+        *made = cs_json_create_text(value);
+        status = *made ? CS_OK : CS_ERR_MEMORY;
+    }
+    if (status == CS_ERR_MEMORY)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for --set");
+    if (status)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--set %s: the value is not JSON: %s (at column %zu)", path,
+                       fault.message, fault.offset + 1);
+    return CS_OK;
+}
+
+/* Descends to the parent of the path's last step, and makes missing objects and lists. */
+static enum cs_status make_parents(struct cs_json **parent, const char *path, struct step *step,
+                                   struct cs_error *error) {
+    const char *at = path;
+    for (int depth = 1;; depth++) {
+        if (depth > CS_JSON_DEPTH_MAX || !take_step(&at, at == path, step))
+            return cs_fail(error, CS_ERR_USAGE,
+                           "--set %s: not a path, expected one like bodies[0].springs.stretch",
+                           path);
+        if (check_step(*parent, step, path, error) || !*at)
+            return error->status;
+        if (!member_at(*parent, step) &&
+            put(*parent, step, cs_json_create(*at == '[' ? CS_JSON_LIST : CS_JSON_OBJECT),
+                error))
+            return error->status;
+        *parent = member_at(*parent, step);
+    }
+}
+
+enum cs_status cs_json_override(struct cs_json *root, const char *path, const char *value,
+                                struct cs_error *error) {
+    struct step step;
+    struct cs_json *parent = root, *made = NULL;
+    /* its keys get into the scene, and from there into reports */
+    if (!cs_utf8_is_plain(path))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--set %s: the path is not UTF-8 text without control characters", path);
+    if (make_value(path, value, &made, error))
+        return error->status;
+    if (make_parents(&parent, path, &step, error)) {
+        cs_json_destroy(made);
+        return error->status;
+    }
+    return put(parent, &step, made, error);
 }

@@ -1,6 +1,6 @@
 /* Hashes what a scene means: XXH3 (128 bits) over sorted "path=value" lines, defaults left
  * out. */
-#include "scene/file/scene_hash.h"
+#include "scene/file/scene_read.h"
 
 #include "base/options.h"
 #include "mesh/trimesh.h"

@@ -4,7 +4,7 @@
 
 #include "mesh/spring_network.h"
 #include "model/system/shape_clusters.h"
-#include "scene/file/json_path.h"
+#include "scene/file/json_context.h"
 #include "scene/file/mesh_read.h"
 #include "scene/shape.h"
 

@@ -6,14 +6,64 @@
 
 #include "base/file.h"
 #include "base/options.h"
-#include "scene/file/json_path.h"
+#include "base/status.h"
+#include "scene/file/json_context.h"
 #include "scene/file/scene_mesh.h"
-#include "scene/file/stdin_input.h"
 #include "scene/file/table_read.h"
 
+#include <errno.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Standard input as a scene file. */
+
+/* Name of standard input in place of a scene file, and its title in messages. */
+#define CS_STDIN_INPUT_NAME  "-"
+#define CS_STDIN_INPUT_TITLE "standard input"
+
+/* the contents, read once per process */
+static struct {
+    char *text;
+    size_t bytes;
+    bool read;
+} input;
+
+/* Reads pieces to the end, and only then marks the input as read. */
+static enum cs_status read_all(size_t max, struct cs_error *error) {
+    enum { PIECE = 1 << 16 };
+    while (!feof(stdin)) {
+        char *longer = realloc(input.text, input.bytes + PIECE);
+        if (!longer)
+            return cs_fail(error, CS_ERR_MEMORY, "out of memory for " CS_STDIN_INPUT_TITLE);
+        input.text = longer;
+        errno = 0;
+        input.bytes += fread(input.text + input.bytes, 1, PIECE, stdin);
+        if (ferror(stdin))
+            return cs_fail(error, CS_ERR_FILE, "cannot read " CS_STDIN_INPUT_TITLE ": %s",
+                           strerror(errno));
+        if (input.bytes > max)
+            return cs_fail(error, CS_ERR_FILE,
+                           "cannot read " CS_STDIN_INPUT_TITLE ": expected at most %zu bytes",
+                           max);
+    }
+    input.read = true;
+    return CS_OK;
+}
+
+/* Reads all of standard input, at most max bytes. It is read once and stored until the program
+ * ends, because studies open their scene more than once; *text is borrowed. CS_ERR_FILE,
+ * CS_ERR_MEMORY. */
+static enum cs_status stdin_input_read(size_t max, const char **text, size_t *bytes,
+                                       struct cs_error *error) {
+    if (!input.read && read_all(max, error))
+        return error->status;
+    *text = input.text;
+    *bytes = input.bytes;
+    return CS_OK;
+}
 
 #define INTEGRATOR "integrator"
 
@@ -195,9 +245,9 @@ done:
 /* Reads the scene from standard input. */
 static enum cs_status read_input(struct cs_scene *scene, const struct cs_override *overrides,
                                  uint32_t n_overrides, struct cs_error *error) {
-    const char *text;
-    size_t bytes;
-    if (cs_stdin_input_read(CS_JSON_BYTES_MAX, &text, &bytes, error))
+    const char *text = NULL;
+    size_t bytes = 0;
+    if (stdin_input_read(CS_JSON_BYTES_MAX, &text, &bytes, error))
         return error->status;
     return cs_scene_read_text(scene, CS_STDIN_INPUT_TITLE, text, bytes, overrides, n_overrides,
                               error);

@@ -1,5 +1,5 @@
 /* Prints a scene as JSON with every value that it holds, defaults included. */
-#include "scene/file/scene_write.h"
+#include "scene/file/scene_read.h"
 
 #include "base/json_writer.h"
 #include "base/options.h"

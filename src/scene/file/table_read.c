@@ -2,7 +2,6 @@
 #include "scene/file/table_read.h"
 
 #include "base/options.h"
-#include "base/value_kind.h"
 
 #include <string.h>
 

@@ -5,6 +5,7 @@
 #include "sim/module.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -160,4 +161,199 @@ enum cs_status cs_cell_list_add_modules(const char *list, struct cs_arena *arena
     }
     *plugins = all;
     return CS_OK;
+}
+
+/* Expands a method to its steps or tolerances. */
+
+/* Steps of a default range, each half of the last; and the limit of cells in any range. */
+enum { DEFAULT_STEPS = 8, MOST_POINTS = 64 };
+
+/* First step of an explicit method in units of 2/omega. omega is an upper bound: the true limit
+ * is up to 1.5 times longer for the leap-frog, and about twice for Runge-Kutta methods. 2.2 is
+ * just beyond both, so a series begins with an unstable step. */
+#define BEYOND_LIMIT 2.2
+
+/* Appends "name=value" to a list of options. */
+static void add_option(char *options, size_t size, const char *name, double value) {
+    struct cs_text number = {0};
+    const size_t used = strlen(options);
+    cs_text_add_real(&number, value);
+    snprintf(options + used, size - used, "%s%s=%s", used ? "," : "", name,
+             cs_text_get(&number));
+    cs_text_finish(&number);
+}
+
+/* A cell with the options that all cells of the entry share. */
+static void init_cell(struct cs_cell *cell, const struct cs_cell_list_entry *entry) {
+    const struct cs_integrator *integrator = entry->method.integrator;
+    cs_cell_init(cell, integrator->name);
+    memcpy(cell->series, entry->series, sizeof cell->series);
+    memcpy(cell->fixed, entry->fixed, sizeof cell->fixed);
+    snprintf(cell->family, sizeof cell->family, "%s", cs_family_of(integrator));
+    snprintf(cell->key, sizeof cell->key, "%s", entry->module);
+    cell->adaptive = integrator->traits & CS_ADAPTIVE;
+    snprintf(cell->options, sizeof cell->options, "%s", entry->fixed);
+}
+
+/* Adds the cell of one step or tolerance. An adaptive method without a given atol gets rtol
+ * times the size of the scene, within the range of the option. */
+static enum cs_status add_point(struct cs_cell_list *sweep,
+                                const struct cs_cell_list_entry *entry, double value,
+                                double size, struct cs_error *error) {
+    struct cs_cell cell;
+    init_cell(&cell, entry);
+    snprintf(cell.control, sizeof cell.control, "%s", entry->control);
+    if (*entry->control) {
+        cell.value = value;
+        add_option(cell.options, sizeof cell.options, entry->control, value);
+    }
+    const struct cs_option *atol = cs_option_find(&entry->method.table, "atol");
+    if (cell.adaptive && *entry->control && atol && !strstr(entry->fixed, "atol="))
+        add_option(cell.options, sizeof cell.options, "atol",
+                   fmin(fmax(value * size, atol->min), atol->max));
+    return cs_cell_list_add(sweep, &cell, error);
+}
+
+/* Default range: rtol from 1e-2 to 1e-9 of an adaptive method; DEFAULT_STEPS steps from one
+ * frame down of a fixed one. Explicit methods begin just beyond their stability limit. */
+static void default_range(const struct cs_cell_list_entry *entry,
+                          const struct cs_cell_list_settings *settings, double *high,
+                          double *low) {
+    const struct cs_option *row = cs_option_find(&entry->method.table, entry->control);
+    if (entry->method.integrator->traits & CS_ADAPTIVE) {
+        *high = fmin(1e-2, row->max);
+        *low = fmax(1e-9, row->min);
+        return;
+    }
+    *high = 1 / settings->fps;
+    if (!(entry->method.integrator->traits & CS_IMPLICIT))
+        while (*high > 2 * BEYOND_LIMIT * 2 / settings->omega)
+            *high /= 2;
+    *low = fmax(*high / (1 << (DEFAULT_STEPS - 1)), row->min);
+}
+
+enum cs_status cs_cell_list_expand(struct cs_cell_list *sweep,
+                                   const struct cs_cell_list_entry *entry,
+                                   const struct cs_cell_list_settings *settings,
+                                   struct cs_error *error) {
+    double high = entry->high, low = entry->low;
+    if (entry->method.integrator->fidelity == CS_FIDELITY_OTHER) {
+        struct cs_cell cell;
+        init_cell(&cell, entry);
+        cs_cell_refuse(
+            &cell,
+            "its model is not the equation of motion: an error against it has no meaning");
+        return cs_cell_list_add(sweep, &cell, error);
+    }
+    if (!*entry->control)
+        return add_point(sweep, entry, (double)NAN, settings->size, error);
+    if (isnan(high))
+        default_range(entry, settings, &high, &low);
+    const bool adaptive = entry->method.integrator->traits & CS_ADAPTIVE;
+    for (int k = 0; k < MOST_POINTS; k++) {
+        // powers, so that 1e-3 is 1e-3 to the bit and a step halves exactly
+        const double value =
+            adaptive ? high * pow(10, -0.5 * k) : high / (double)(UINT64_C(1) << k);
+        if (value < low * (1 - 1e-9) || add_point(sweep, entry, value, settings->size, error))
+            break;
+    }
+    return error->status;
+}
+
+/* Keeps the cells of a comparison sorted by series. */
+
+/* Inserts a copy at an index; the capacity doubles when it is used up. */
+static enum cs_status insert(struct cs_cell_list *sweep, uint32_t at,
+                             const struct cs_cell *cell, struct cs_error *error) {
+    if (sweep->n == sweep->capacity) {
+        const uint32_t capacity = sweep->capacity ? 2 * sweep->capacity : 64;
+        struct cs_cell *cells = realloc(sweep->cells, capacity * sizeof *cells);
+        if (!cells)
+            return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u cells", capacity);
+        sweep->cells = cells;
+        sweep->capacity = capacity;
+    }
+    struct cs_cell *place = sweep->cells + at;
+    memmove(place + 1, place, (sweep->n++ - at) * sizeof *place);
+    *place = *cell;
+    return CS_OK;
+}
+
+/* Reports two different methods under one series name. */
+static enum cs_status refuse_series(const struct cs_cell *one, const struct cs_cell *other,
+                                    struct cs_error *error) {
+    return cs_fail(error, CS_ERR_USAGE,
+                   "series \"%s\" is %s%s%s and %s%s%s: give one of them another name",
+                   one->series, one->method, *one->fixed ? ":" : "", one->fixed, other->method,
+                   *other->fixed ? ":" : "", other->fixed);
+}
+
+/* Walks the whole series: a duplicate can be anywhere, and the place is before the first
+ * smaller value. */
+enum cs_status cs_cell_list_add(struct cs_cell_list *sweep, const struct cs_cell *cell,
+                                struct cs_error *error) {
+    uint32_t at = sweep->n;
+    for (uint32_t k = 0; k < sweep->n; k++) {
+        const struct cs_cell *other = sweep->cells + k;
+        if (!cs_cell_same_series(other, cell))
+            continue;
+        if (strcmp(other->method, cell->method) != 0 || strcmp(other->fixed, cell->fixed) != 0)
+            return refuse_series(other, cell, error);
+        if (!strcmp(other->options, cell->options))
+            return CS_OK;
+        at = k + 1;
+        if (other->value < cell->value) {
+            at = k;
+            break;
+        }
+    }
+    return insert(sweep, at, cell, error);
+}
+
+void cs_cell_refuse(struct cs_cell *cell, const char *why) {
+    snprintf(cell->outcome, sizeof cell->outcome, "refused");
+    snprintf(cell->note, sizeof cell->note, "%.239s", why);
+}
+
+/* Replaces the cells of the series in place; the cells after it move up. */
+void cs_cell_list_refuse(struct cs_cell_list *sweep, uint32_t first, const char *why) {
+    const struct cs_cell *of = sweep->cells + first;
+    struct cs_cell cell;
+    uint32_t next = first + 1;
+    cs_cell_init(&cell, of->method);
+    memcpy(cell.series, of->series, sizeof cell.series);
+    memcpy(cell.fixed, of->fixed, sizeof cell.fixed);
+    cs_cell_refuse(&cell, why);
+    while (next < sweep->n && cs_cell_same_series(sweep->cells + next, &cell))
+        next++;
+    memmove(sweep->cells + first + 1, sweep->cells + next,
+            (sweep->n - next) * sizeof *sweep->cells);
+    sweep->n -= next - first - 1;
+    sweep->cells[first] = cell;
+}
+
+/* A series is counted at its first cell that was not run, the one after a cell with an outcome.
+ */
+uint32_t cs_cell_list_drop_unrun(struct cs_cell_list *sweep, uint32_t *series) {
+    uint32_t kept = 0;
+    *series = 0;
+    for (uint32_t k = 0; k < sweep->n; k++) {
+        const struct cs_cell *cell = sweep->cells + k;
+        if (*cell->outcome)
+            sweep->cells[kept++] = *cell;
+        else
+            *series += k > 0 && *cell[-1].outcome;
+    }
+    const uint32_t dropped = sweep->n - kept;
+    sweep->n = kept;
+    return dropped;
+}
+
+void cs_cell_list_finish(struct cs_cell_list *sweep) {
+    free(sweep->cells);
+    *sweep = (struct cs_cell_list){0};
+}
+
+void cs_cell_integrator(const struct cs_cell *cell, char *out, size_t size) {
+    snprintf(out, size, "%s%s%s", cell->method, *cell->options ? ":" : "", cell->options);
 }

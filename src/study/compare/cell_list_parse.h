@@ -11,7 +11,68 @@
 #define CS_CELL_LIST_PARSE_H
 
 #include "base/arena.h"
-#include "study/compare/cell_list_expand.h"
+#include "base/hash.h"
+#include "study/compare/compare_cell.h"
+
+/* The cells of a comparison: methods with their steps or tolerances. Cells of one
+ * series are adjacent, by falling step or tolerance. */
+
+/* Zeroed: empty. */
+struct cs_cell_list {
+    struct cs_cell *cells; /* (n) owned; those of a refused method have their outcome */
+    uint32_t n, capacity;
+};
+
+/* Frees the cells; the list is then empty. */
+void cs_cell_list_finish(struct cs_cell_list *sweep);
+
+/* Inserts a cell into its series after those with longer steps or looser tolerances; an equal
+ * one is left as it is. CS_ERR_USAGE if the series has another method or other options;
+ * CS_ERR_MEMORY. The list is unchanged on failure. Pointers to cells become invalid. */
+enum cs_status cs_cell_list_add(struct cs_cell_list *sweep, const struct cs_cell *cell,
+                                struct cs_error *error);
+
+/* Removes the cells that were not run. Returns their number; *series: that of their series. */
+uint32_t cs_cell_list_drop_unrun(struct cs_cell_list *sweep, uint32_t *series);
+
+/* Marks a cell as refused, with the reason. */
+void cs_cell_refuse(struct cs_cell *cell, const char *why);
+
+/* Replaces the series that begins at cell `first` by one refused cell with the reason. */
+void cs_cell_list_refuse(struct cs_cell_list *sweep, uint32_t first, const char *why);
+
+/* "NAME:options" of a cell, of at most CS_CELL_INTEGRATOR characters. */
+enum { CS_CELL_INTEGRATOR = 336 };
+
+void cs_cell_integrator(const struct cs_cell *cell, char *out, size_t size);
+
+/* Expands one method of a list to cells. */
+
+/* Facts of the scene that steps and tolerances are derived from. */
+struct cs_cell_list_settings {
+    const char *list;           /* NULL: every method there is */
+    const char *const *plugins; /* (n_plugins) module files */
+    uint32_t n_plugins;
+    double fps, omega; /* of the scene: the default steps come from them */
+    double size;       /* m: atol is rtol times it, so that another unit changes nothing */
+};
+
+/* One method of a list, while it is read. */
+struct cs_cell_list_entry {
+    struct cs_method method;
+    char series[CS_SERIES_BYTES];
+    char fixed[sizeof((struct cs_cell *)0)->fixed]; /* options without the swept one */
+    const char *control;                            /* "dt", "rtol" or "" */
+    double low, high;                               /* of the control; NAN: the default sweep */
+    char module[CS_HASH_DIGITS]; /* hash of the file: a rebuilt module is a different one */
+};
+
+/* Adds the cells of the entry over its range, or over the default range. A method of another
+ * model gets one refused cell. CS_ERR_USAGE, CS_ERR_MEMORY. */
+enum cs_status cs_cell_list_expand(struct cs_cell_list *sweep,
+                                   const struct cs_cell_list_entry *entry,
+                                   const struct cs_cell_list_settings *settings,
+                                   struct cs_error *error);
 
 /* Reads the list of methods into cells. A module file is found by the name of its first method,
  * hence cs_cell_list_add_modules comes first. CS_ERR_USAGE for a list that cannot be read or an

@@ -7,7 +7,7 @@
 #include "base/json_writer.h"
 #include "model/event/events.h"
 #include "scene/body_pairs.h"
-#include "scene/file/scene_write.h"
+#include "scene/file/scene_read.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_measure.h"
 #include "study/compare/compare_results.h"

@@ -8,7 +8,27 @@
 #ifndef CS_COMPARE_H
 #define CS_COMPARE_H
 
+#include "draw/render.h"
 #include "study/compare/compare_state.h"
+#include "study/compare/ranking.h"
+#include "study/reproduce.h"
+
+/* Prints a comparison as aligned text. */
+
+/* Adds the scene with its contact and switched-off corrections, and the reference: methods,
+ * error bar, horizon. */
+void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *out);
+
+/* Add the names of the columns, and the row of a cell. */
+void cs_table_add_head(const struct cs_compare *compare, struct cs_text *out);
+void cs_table_add_row(const struct cs_compare *compare, const struct cs_cell *cell,
+                      struct cs_text *out);
+
+/* Adds one line per series: observed order, largest stable step, achieved tolerance. */
+void cs_table_add_series(const struct cs_compare *compare, struct cs_text *out);
+
+/* Adds the energy balance of each cell, as far as it is known. */
+void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out);
 
 /* Makes the comparison and fills compare.csv. If there is no valid reference, the cells have
  * costs and counts only: that is a result. On failure the finished rows stay in compare.csv.
@@ -18,7 +38,37 @@
 enum cs_status cs_compare_run(struct cs_compare *compare,
                               const struct cs_compare_settings *settings,
                               struct cs_error *error);
+
 /* Frees all results; a zeroed object is allowed. */
 void cs_compare_finish(struct cs_compare *compare);
+
+/* Writes the files of a comparison besides compare.csv: JSON, Markdown,
+ * diagrams. */
+
+/* Writes compare.json, compare.md, error_time.gp and error_work.gp, and compare.html on
+ * request; PNG, SVG and PDF of the diagrams if gnuplot is found. CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_compare_write_report(const struct cs_compare *compare,
+                                       struct cs_error *error);
+
+/* Contact sheets: the last frame of each method, with particles coloured by
+ * their distance to the reference. */
+
+/* Writes FOLDER/pictures/KIND_SERIES.png and, if gnuplot is found, FOLDER/KIND.png with all of
+ * them. KIND is equal_step (the step with which most methods finished) or equal_cost (the best
+ * of each method within a cost that all can keep). Colours are powers of ten from the
+ * reference's bar to the largest error. Nothing is drawn without errors of position.
+ * CS_ERR_MODULE (renderer), CS_ERR_FILE, CS_ERR_MEMORY, CS_ERR_INTERRUPT. */
+enum cs_status cs_compare_contact_sheet_write(const struct cs_compare *compare,
+                                              enum cs_renderer_kind kind,
+                                              struct cs_error *error);
+
+/* Reproduces a row of a comparison. */
+
+/* Runs the method of a row of settings->file, a compare.csv (1: the first row after the names),
+ * on the scene in origin.json beside it. Compares outcome, time, steps and final state.
+ * CS_ERR_USAGE if there is no such row, or if the clock ended it. */
+enum cs_status cs_compare_reproduce_row(struct cs_reproduction *again,
+                                        const struct cs_reproduction_settings *settings,
+                                        uint32_t row, struct cs_error *error);
 
 #endif

@@ -6,9 +6,9 @@
 #include "base/hash.h"
 #include "base/table.h"
 #include "sim/energy_ledger.h"
+#include "sim/method.h"
 #include "sim/run.h"
-#include "sim/series.h"
-#include "study/machine.h"
+#include "study/provenance_write.h"
 
 /* One row. All fields are values, so rows can be copied and moved. Figures that do not apply
  * are NAN: an error beyond the horizon, an order that is not steady. */

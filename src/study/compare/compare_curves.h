@@ -50,7 +50,9 @@ struct cs_curves {
 /* The colours of Okabe, Ito 2008, which colour-blind readers tell apart; that of the front
  * is the eighth. */
 extern const char *const cs_curve_colours[CS_CURVE_COLOURS];
+
 #define CS_FRONT_COLOUR "#f0e442"
+
 /* Colour of the ring around a cell in which edges went through triangles. */
 #define CS_RING_COLOUR "#b00020"
 
@@ -61,8 +63,10 @@ void cs_curves_make(struct cs_curves *curves, const struct cs_plot_settings *set
 
 /* Number of curves with points for which there is no room. */
 uint32_t cs_curves_left_out(const struct cs_curves *curves);
+
 /* True if the reference's own error is within the range. */
 bool cs_curves_show_bar(const struct cs_curves *curves);
+
 /* y coordinate of crosses. */
 double cs_curves_edge(const struct cs_curves *curves);
 
@@ -70,8 +74,10 @@ double cs_curves_edge(const struct cs_curves *curves);
  * the reference's own error. */
 bool cs_curves_point(const struct cs_plot_settings *settings, const struct cs_cell *cell,
                      double *x, double *y);
+
 /* True if the cell has quartiles of the processor time on the x axis. */
 bool cs_curves_quartiles(const struct cs_plot_settings *settings, const struct cs_cell *cell);
+
 /* Position of the cross of a cell that did not finish. Returns false if it has none. */
 bool cs_curves_cross(const struct cs_curves *curves, const struct cs_cell *cell, double *x);
 
@@ -85,9 +91,32 @@ struct cs_tick {
     int digit, decade;
     bool label;
 };
+
 /* Fills the ticks of a range; returns their number. Decades have a label, within two of them 2
  * and 5 as well, within one all digits; above ten decades only every second or third has one.
  */
 uint32_t cs_curves_ticks(const double range[2], struct cs_tick ticks[CS_TICKS_MAX]);
+
+/* Prints cells as a log-log diagram: a gnuplot script with its data. */
+
+/* Adds the script: curves, the front behind them, quartiles of processor time as bars. If y is
+ * an error of position, nothing below the reference's bar is drawn. A run that did not finish
+ * is a cross at the upper edge; a ring marks a cell in which edges went through triangles. */
+void cs_plot_print(const struct cs_plot_settings *settings, struct cs_text *out);
+
+/* Writes FOLDER/NAME.gp, and the pictures if gnuplot is found. *drawn: they were made.
+ * CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_plot_write(const struct cs_plot_settings *settings, const char *folder,
+                             bool *drawn, struct cs_error *error);
+
+/* Prints cells as a log-log diagram in SVG, without another program. */
+
+/* Adds an <svg> element: the front as a staircase behind the curves, quartiles of processor
+ * time as bars, crosses for runs that did not finish. A line below names series without room.
+ */
+void cs_svg_print(const struct cs_plot_settings *settings, struct cs_text *out);
+
+/* Adds a text with &, <, > and quotes escaped, for HTML and SVG. */
+void cs_svg_add_text(struct cs_text *out, const char *text);
 
 #endif

@@ -1,8 +1,8 @@
 /* Prints cells as a log-log diagram: a gnuplot script that holds its data. */
-#include "study/compare/compare_plot.h"
+#include "study/compare/compare_curves.h"
 
 #include "base/file.h"
-#include "io/gnuplot.h"
+#include "io/subprocess.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
 /* Draws contact sheets: last frames of the methods, coloured by distance to the reference. */
-#include "study/compare/compare_sheet.h"
+#include "study/compare/compare.h"
 
 #include "base/file.h"
-#include "io/gnuplot.h"
 #include "io/png.h"
+#include "io/subprocess.h"
 #include "sim/install_paths.h"
 
 #include <math.h>

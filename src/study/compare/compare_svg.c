@@ -1,5 +1,5 @@
 /* Draws cells as a log-log diagram in SVG: axes on the data, front, curves, quartile bars. */
-#include "study/compare/compare_svg.h"
+#include "study/compare/compare_curves.h"
 
 #include <math.h>
 #include <stdio.h>

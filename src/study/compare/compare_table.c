@@ -1,5 +1,5 @@
 /* Prints a comparison as aligned text. */
-#include "study/compare/compare_table.h"
+#include "study/compare/compare.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -46,6 +46,7 @@ struct cs_ranking {
  * which must not change meanwhile. Returns CS_ERR_MEMORY; the ranking is then empty. */
 enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compare *compare,
                                struct cs_error *error);
+
 /* Frees the marks of cells; a zeroed ranking is allowed. */
 void cs_ranking_finish(struct cs_ranking *ranking);
 
@@ -56,5 +57,18 @@ void cs_ranking_at(const struct cs_compare *compare, double bound, struct cs_ran
 /* True if the pairs of each ratio of contenders leave at most that fraction open to either
  * side. Ratios above 3 count as narrow: they decide nothing. */
 bool cs_ranking_is_narrow(const struct cs_ranking *ranking, double share);
+
+/* States the results of a comparison in words, with warnings. */
+
+/* Adds the ranking, one line per statement after `bullet`. A line states facts of the rows that
+ * were run, and claims nothing of others. */
+void cs_verdict_print(const struct cs_ranking *ranking, const char *bullet,
+                      const struct cs_compare *compare, struct cs_text *out);
+
+/* Adds a line: the cheapest way to an error of at most bound. */
+void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct cs_text *out);
+
+/* Adds the warnings that apply, one per line after `bullet`, each with advice. */
+void cs_compare_warn(const struct cs_compare *compare, const char *bullet, struct cs_text *out);
 
 #endif

@@ -17,6 +17,11 @@
 
 #include "study/conform/conform_card.h"
 
+#include <clothsim/integrator.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 /* CS_CONFORM_SPRINGS: the check compares with the motion of springs, which a method of another
  * model (CS_FIDELITY_OTHER) does not follow. It is skipped for such a method. */
 enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
@@ -65,10 +70,66 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     X("fidelity", fidelity, ANY, "the limit of the iterations is the stated one")              \
     X("threads", threads, ANY, "the same bits for all thread counts")                          \
     X("resume", resume, ANY, "a resumed run equals the uninterrupted one")
-
 #define X(name, function, of, what)                                                            \
     void cs_check_##function(const struct cs_conform *card, struct cs_conform_row *row);
+
 CS_CONFORM_LIST(X)
 #undef X
+
+/* Stores reference states, shared by the cards of several methods.
+ *
+ * A reference does not depend on the tested method, so one run of each serves all cards that a
+ * command makes. */
+
+struct cs_conform_kept;
+
+/* Empty when zeroed. */
+struct cs_conform_cache {
+    struct cs_conform_kept *first; /* owned */
+};
+
+/* Returns the n values stored under that name, which the cache owns, or NULL if there are none,
+ * if their number differs, or without a cache. */
+const double *cs_conform_cache_find(const struct cs_conform_cache *cache, const char *name,
+                                    size_t n);
+
+/* Stores a copy under that name. Without a cache or out of memory nothing is stored, and the
+ * next card runs the reference again: therefore there is no error. */
+void cs_conform_cache_store(struct cs_conform_cache *cache, const char *name,
+                            const double *values, size_t n);
+
+/* Frees all values; the cache is then empty. */
+void cs_conform_cache_finish(struct cs_conform_cache *cache);
+
+/* The method whose solution orders and errors are measured against. */
+
+/* The classical Runge-Kutta method of order 4 with option dt, for tiny steps. Independent of
+ * the modules, so no module is compared with itself. */
+extern const struct cs_integrator cs_conform_reference;
+
+/* Scenes in which one force acts alone, and scenes whose forces change with
+ * time. */
+
+/* One scene of a force check. */
+struct cs_force_scene {
+    const char *check;       /* of the card, that runs it */
+    const char *description; /* for the note: the force and how it acts */
+    const char *json;
+    double rate; /* 1/s, of the fastest change: that of an oscillation or a decay, or the
+                    inverse of the time over which a force builds up motion */
+    bool depends_on_velocity; /* some force depends on the velocity: the order with damping
+                                 holds */
+    bool deforms; /* bodies change their shape: no scene for a method of another model */
+};
+
+/* Every scene runs CS_FORCE_FRAMES frames of CS_FORCE_FRAME, and has at most
+ * CS_FORCE_PARTICLES particles. */
+enum { CS_FORCE_FRAMES = 5, CS_FORCE_PARTICLES = 18, CS_FORCE_VALUES = 3 * CS_FORCE_PARTICLES };
+
+#define CS_FORCE_FRAME 0.1 /* s */
+
+/* The table of scenes (cs_n_force_scenes); several scenes can belong to one check. */
+extern const struct cs_force_scene cs_force_scenes[];
+extern const uint32_t cs_n_force_scenes;
 
 #endif

@@ -1,9 +1,7 @@
 /* Runs the drum, a stretched sheet in a fixed frame, and its reference solution. */
 #include "study/conform/conform_drum.h"
 
-#include "study/conform/conform_cache.h"
 #include "study/conform/conform_checks.h"
-#include "study/conform/conform_reference.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,11 +3,124 @@
 
 #include "base/file.h"
 #include "base/table.h"
-#include "study/golden/golden_image.h"
+#include "draw/image_diff.h"
+#include "io/png.h"
+#include "study/follow.h"
+#include "study/frame_picture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Checks one picture in two levels. */
+
+static void path_of(const struct cs_golden *golden, const struct cs_golden_row *row,
+                    const char *ending, char path[1024]) {
+    snprintf(path, 1024, "%.500s/image/%.400s%s", golden->folder, row->image, ending);
+}
+
+static enum cs_status write_image(const struct cs_golden *golden,
+                                  const struct cs_golden_row *row, const char *ending,
+                                  const struct cs_image *image, struct cs_error *error) {
+    char path[1024];
+    path_of(golden, row, ending, path);
+    return cs_png_write(path, image, 6, NULL, 0, error);
+}
+
+/* Writes the picture and 16 times the difference beside the golden image. */
+static enum cs_status write_evidence(const struct cs_golden *golden,
+                                     const struct cs_golden_row *row,
+                                     const struct cs_image *found,
+                                     const struct cs_image *expected, struct cs_error *error) {
+    struct cs_image amplified = {found->width, found->height, malloc(cs_image_bytes(found)),
+                                 NULL};
+    if (!amplified.rgb)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    cs_image_amplify(found, expected, &amplified);
+    if (!write_image(golden, row, ".actual.png", found, error))
+        write_image(golden, row, ".difference.png", &amplified, error);
+    free(amplified.rgb);
+    return error->status;
+}
+
+/* Fills row->message if the picture does not pass. */
+static enum cs_status judge(const struct cs_golden *golden, struct cs_golden_row *row,
+                            const struct cs_image *found, const char *renderer,
+                            struct cs_error *error) {
+    const bool same_renderer = !strcmp(renderer, row->note);
+    /* equal hashes of pixels decide: the golden picture need not be read */
+    if (same_renderer && !strcmp(row->found, row->hash))
+        return CS_OK;
+    char path[1024];
+    struct cs_image expected;
+    path_of(golden, row, ".png", path);
+    if (cs_png_read(path, &expected, error))
+        return error->status;
+    if (expected.width != found->width || expected.height != found->height) {
+        cs_text_add(&row->message, "%u x %u pixels, expected %u x %u", found->width,
+                    found->height, expected.width, expected.height);
+    } else {
+        const struct cs_image_difference d = cs_image_compare(found, &expected);
+        if (same_renderer || !cs_image_difference_passes(&d)) {
+            cs_text_add(
+                &row->message,
+                "%llu pixels differ, RMSE %.3f, %.3f %% off by more than 2, largest %d%s",
+                (unsigned long long)d.pixels, d.rmse, 100 * d.share, d.largest,
+                same_renderer ? " (same renderer: every pixel counts)" : "");
+            write_evidence(golden, row, found, &expected, error);
+        }
+    }
+    free(expected.rgb);
+    return error->status;
+}
+
+/* Accepts the picture. Only the CPU renderer may, because its pixels are equal on all machines.
+ */
+static enum cs_status accept_image(const struct cs_golden *golden, struct cs_golden_row *row,
+                                   const struct cs_image *found, struct cs_text *renderer,
+                                   struct cs_error *error) {
+    if (strncmp(cs_text_get(renderer), "cpu", 3))
+        return cs_fail(error, CS_ERR_CHECK,
+                       "%s: only --renderer cpu may accept images, found %s", row->image,
+                       cs_text_get(renderer));
+    if (!strcmp(row->found, row->hash) && !strcmp(row->note, cs_text_get(renderer)))
+        return CS_OK;
+    cs_text_add(&row->message, "accepted");
+    snprintf(row->renderer, sizeof row->renderer, "%s", cs_text_get(renderer));
+    row->note = row->renderer;
+    return write_image(golden, row, ".png", found, error);
+}
+
+static enum cs_status check_with(const struct cs_golden *golden, enum cs_renderer_kind kind,
+                                 struct cs_session *session, struct cs_golden_row *row,
+                                 struct cs_error *error) {
+    struct cs_image found = {0};
+    struct cs_text renderer = {0};
+    if (!cs_snapshot_draw(&session->run, kind, &found, &renderer, error)) {
+        cs_hash_bytes(found.rgb, cs_image_bytes(&found), row->found);
+        if (golden->accept_all)
+            accept_image(golden, row, &found, &renderer, error);
+        else
+            judge(golden, row, &found, cs_text_get(&renderer), error);
+    }
+    free(found.rgb);
+    cs_text_finish(&renderer);
+    return error->status;
+}
+
+/* Renders the last frame of a row's run and compares it with the golden image; the result is in
+ * row->found, row->renderer and row->message. With accept_all the image is replaced. */
+static enum cs_status golden_check_image(struct cs_golden *golden, struct cs_golden_row *row,
+                                         struct cs_error *error) {
+    struct cs_session session;
+    if (cs_golden_step(golden, &row->run, true, &session, error))
+        return error->status;
+    for (int kind = 0; cs_renderer_names[kind] && !error->status; kind++)
+        if (golden->renderers >> kind & 1)
+            check_with(golden, (enum cs_renderer_kind)kind, &session, row, error);
+    cs_session_close(&session);
+    return error->status;
+}
 
 enum { HASH_FIELDS = 6, IMAGE_FIELDS = 7 };
 
@@ -191,6 +304,48 @@ enum cs_status cs_golden_check(struct cs_golden *golden, struct cs_error *error)
     if (golden->images)
         check_table(golden, "image.tsv",
                     "scene\tintegrator\toverrides\tframe\timage\tpixels\trenderer",
-                    IMAGE_FIELDS, cs_golden_check_image, error);
+                    IMAGE_FIELDS, golden_check_image, error);
+    return error->status;
+}
+
+/* Opens the session of a golden row and steps it to the row's frame. */
+
+/* Splits "path=value;path=value" in place. Returns the number of overrides. */
+static uint32_t split_overrides(char *text, struct cs_override *overrides, uint32_t most) {
+    uint32_t n = 0;
+    char *pair;
+    while (n < most && (pair = strsep(&text, ";"))) {
+        char *equals = strchr(pair, '=');
+        if (!equals)
+            continue;
+        *equals = 0;
+        overrides[n++] = (struct cs_override){pair, equals + 1};
+    }
+    return n;
+}
+
+enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_golden_run *run,
+                              bool render, struct cs_session *session, struct cs_error *error) {
+    char scene[1280], text[1024];
+    struct cs_override overrides[16];
+    /* scenes are named from the folder above the golden one */
+    snprintf(scene, sizeof scene, "%s/../%s", golden->folder, run->scene);
+    /* a copy, which split_overrides cuts up */
+    snprintf(text, sizeof text, "%s", run->overrides);
+    const struct cs_session_settings settings = {
+        .scene = scene,
+        .overrides = overrides,
+        .n_overrides = split_overrides(text, overrides, 16),
+        .integrator = strcmp(run->integrator, "-") ? run->integrator : NULL,
+        .render = render,
+        .threads = golden->threads,
+        .run = {.stop = golden->stop},
+    };
+    if (cs_session_open(session, &settings, error))
+        return error->status;
+    struct cs_follow follow = {.run = &session->run, .last = run->frames};
+    cs_follow_next(&follow, error);
+    if (cs_follow_check(&session->run, "", error))
+        cs_session_close(session);
     return error->status;
 }

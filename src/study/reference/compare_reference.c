@@ -1,14 +1,139 @@
 /* Computes the verified reference: four runs, their differences, and whether they agree. */
 #include "study/reference/compare_reference.h"
 
+#include "base/file.h"
 #include "base/hash.h"
 #include "model/force/diagnostics.h"
-#include "study/reference/compare_reference_cache.h"
-#include "study/reference/compare_reference_choice.h"
+#include "scene/file/scene_read.h"
+#include "study/reference/compare_reference_state.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* Stores a reference in a file for further comparisons of the
+ * scene. */
+
+#define MAGIC "clothsim ref 1\n"
+
+enum { FILE_BYTES_MAX = 1 << 30 };
+
+/* Head of the file, in the byte order of the machine: on another one `one` is not 1, and the
+ * file counts as missing. */
+struct header {
+    char magic[16];
+    double one;
+    uint32_t n, frames;
+    double fps;
+    char hash[40];                         /* of the states */
+    struct cs_compare_reference reference; /* pointers in it mean nothing */
+};
+
+/* Writes the hash of everything a reference depends on, CS_HASH_DIGITS characters.
+ * CS_ERR_MEMORY. */
+static enum cs_status compare_reference_key(
+    const struct cs_compare_reference *reference, const struct cs_recorded_run *recording,
+    const struct cs_compare_reference_settings *settings, char *key, struct cs_error *error) {
+    const struct cs_session_settings *session = &settings->run->session;
+    const struct cs_scene *scene = &recording->session.scene;
+    const size_t values = 6 * (size_t)recording->session.system.view.n;
+    const struct cs_method *method = &recording->session.method;
+    char start[CS_HASH_DIGITS], of_scene[CS_HASH_DIGITS];
+    struct cs_text all = {0};
+    if (cs_scene_hash(scene, &method->table, method->options, of_scene, error))
+        return error->status;
+    // meshes are files of their own or made here: the start is as they came out
+    cs_hash_doubles(recording->initial_state, values, start);
+    cs_text_add(&all, "%s|", start);
+    cs_text_add(&all, "%s|%zu|%u|%.17g|%.17g|", CS_VERSION, sizeof(struct header),
+                settings->run->frames, scene->time.fps, settings->accuracy);
+    for (int k = 0; k < CS_COMPARE_REFERENCE_RUNS; k++)
+        cs_text_add(&all, "%s|", reference->methods[k]);
+    // where the methods are chosen here, a module that is added changes nothing
+    for (uint32_t k = 0; k < session->n_plugins && settings->methods[0]; k++)
+        cs_text_add(&all, "%s|", session->plugins[k]);
+    cs_text_add(&all, "%s", of_scene);
+    if (all.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the name of a reference");
+    else
+        cs_hash_bytes(cs_text_get(&all), all.length, key);
+    cs_text_finish(&all);
+    return error->status;
+}
+
+/* Path of the file; 16 digits of the key suffice for its name. */
+static void file_path(const char *folder, const char *key, char *path, size_t size) {
+    snprintf(path, size, "%s/reference-%.16s.state", folder, key);
+}
+
+/* Reads or writes DIR/reference-KEY.state. A file that does not match the scene, the machine or
+ * its own hash counts as missing. */
+static bool compare_reference_read(struct cs_compare_reference *reference, const char *folder,
+                                   const char *key, const struct cs_recorded_run *recording) {
+    char path[4096], *bytes, hash[CS_HASH_DIGITS];
+    size_t length;
+    struct cs_error missing = {0};
+    struct header header;
+    file_path(folder, key, path, sizeof path);
+    if (cs_file_read(path, FILE_BYTES_MAX, &bytes, &length, &missing))
+        return false;
+    struct cs_trajectory track;
+    bool good = length > sizeof header && !cs_trajectory_init(&track, recording, &missing);
+    /* a file that does not fit or was damaged is passed over, and the reference is computed */
+    if (good) {
+        memcpy(&header, bytes, sizeof header);
+        const size_t values = ((size_t)track.frames + 1) * 6 * track.n;
+        good = !memcmp(header.magic, MAGIC, sizeof MAGIC) && header.one == 1 &&
+               header.n == track.n && header.frames == track.frames &&
+               length == sizeof header + values * sizeof(double);
+        if (good) {
+            memcpy(track.states, bytes + sizeof header, values * sizeof(double));
+            cs_hash_doubles(track.states, values, hash);
+            good = !strcmp(hash, header.hash);
+        }
+        if (good) {
+            *reference = header.reference;
+            track.n_recorded = track.frames;
+            reference->trajectory = track;
+            reference->cached = true;
+        } else
+            cs_trajectory_finish(&track);
+    }
+    free(bytes);
+    return good;
+}
+
+/* The file appears under its name only when it is complete, so parallel comparisons can share a
+ * cache. */
+static enum cs_status compare_reference_write(const struct cs_compare_reference *reference,
+                                              const char *folder, const char *key,
+                                              struct cs_error *error) {
+    const struct cs_trajectory *track = &reference->trajectory;
+    const size_t values = ((size_t)track->frames + 1) * 6 * track->n;
+    struct header *header = calloc(1, sizeof *header);
+    struct cs_file_out out = {0};
+    char path[4096];
+    if (!header)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the reference");
+    file_path(folder, key, path, sizeof path);
+    memcpy(header->magic, MAGIC, sizeof MAGIC);
+    header->one = 1;
+    header->n = track->n;
+    header->frames = track->frames;
+    header->reference = *reference;
+    /* an address means nothing to the next run */
+    header->reference.trajectory.states = NULL;
+    cs_hash_doubles(track->states, values, header->hash);
+    if (!cs_folder_create(folder, error) && !cs_file_create(&out, path, error)) {
+        /* failures of fwrite are seen by cs_file_finish */
+        fwrite(header, sizeof *header, 1, out.file);
+        fwrite(track->states, sizeof(double), values, out.file);
+        cs_file_finish(&out, error);
+    }
+    free(header);
+    return error->status;
+}
 
 /* Families agree if they differ by at most EXPLAINED times the larger of their own errors, or
  * by FLOOR of the motion. */
@@ -225,7 +350,7 @@ enum cs_status cs_compare_reference_plan(struct cs_compare_reference *reference,
         name_twins(reference, 1, chosen[1], error))
         return error->status;
     if (!cs_recorded_run_open(&probe, settings->run, chosen[0], error))
-        cs_compare_reference_key(reference, &probe, settings, key, error);
+        compare_reference_key(reference, &probe, settings, key, error);
     cs_recorded_run_close(&probe);
     return error->status;
 }
@@ -239,10 +364,10 @@ enum cs_status cs_compare_reference_get(struct cs_compare_reference *reference,
         cs_recorded_run_open(&probe, settings->run, reference->methods[0], error))
         return error->status;
     const bool found =
-        settings->cache && cs_compare_reference_read(reference, settings->cache, key, &probe);
+        settings->cache && compare_reference_read(reference, settings->cache, key, &probe);
     if (!found && !compute(reference, &probe, settings, error) && reference->families_agree &&
         settings->cache)
-        cs_compare_reference_write(reference, settings->cache, key, error);
+        compare_reference_write(reference, settings->cache, key, error);
     tell(settings, CS_COMPARE_REFERENCE_RUNS + 1, "");
     cs_recorded_run_close(&probe);
     if (error->status)

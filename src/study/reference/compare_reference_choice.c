@@ -1,5 +1,5 @@
 /* Chooses two families of methods for a reference, and tightens their settings. */
-#include "study/reference/compare_reference_choice.h"
+#include "study/reference/compare_reference_state.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,8 +2,32 @@
 #ifndef CS_COMPARE_REFERENCE_STATE_H
 #define CS_COMPARE_REFERENCE_STATE_H
 
-#include "study/reference/horizon.h"
+#include "study/recorded_run.h"
 #include "study/trajectory_error.h"
+
+/* Measures how long a trajectory can be compared point by point.
+ *
+ * Two runs of one method start 1e-13 m apart in one particle. Their later distance shows how
+ * the scene amplifies any error; it is a property of the scene, not of the method. The horizon
+ * is the time at which the distance reaches the accuracy wanted: from there on pointwise errors
+ * measure the amplification, not the method. */
+
+#define CS_HORIZON_START 1e-13 /* m */
+
+/* Growth of a small displacement. */
+struct cs_horizon {
+    double growth;     /* RMS distance at the last frame / at the start */
+    double separation; /* m, RMS at the last frame */
+    double time; /* s of the first frame with an RMS distance of the accuracy; HUGE_VAL: none */
+};
+
+/* Measures with velocity-verlet at its own step, or with `fallback` ("NAME:options") if that
+ * does not finish. If neither finishes, growth is NAN and time 0. accuracy in m.
+ * CS_ERR_INTERRUPT, CS_ERR_MEMORY, CS_ERR_MODULE. */
+enum cs_status cs_horizon_measure(struct cs_horizon *horizon,
+                                  const struct cs_recorded_run_settings *settings,
+                                  double accuracy, const char *fallback,
+                                  struct cs_error *error);
 
 enum { CS_COMPARE_REFERENCE_RUNS = 4 };
 
@@ -36,5 +60,18 @@ struct cs_compare_reference {
     bool cached;      /* read from the cache */
     char reason[320]; /* why they do not agree, or why there are no pointwise errors */
 };
+
+/* Chooses the two families of methods of a reference. */
+
+/* Writes the tighter settings of "NAME:key=value,...": rtol and atol divided by 10, dt by 2.
+ * CS_ERR_USAGE if they cannot be read or do not fit. */
+enum cs_status cs_compare_reference_tighten(const char *integrator, char *out, size_t size,
+                                            struct cs_error *error);
+
+/* Chooses the best available method of each family, with its settings. instead: the next
+ * candidate for the second family; "" if there is none or both families are given. */
+enum cs_status cs_compare_reference_choose(const struct cs_compare_reference_settings *settings,
+                                           char chosen[2][256], char instead[256],
+                                           struct cs_error *error);
 
 #endif

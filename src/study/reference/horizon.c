@@ -1,5 +1,5 @@
 /* Measures the predictability horizon: how fast runs with nearly equal starts separate. */
-#include "study/reference/horizon.h"
+#include "study/reference/compare_reference_state.h"
 
 #include "study/trajectory_error.h"
 

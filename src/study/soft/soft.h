@@ -22,6 +22,7 @@ enum cs_soft_series {
     CS_SOFT_MATCHED,  /* over vertices: shape matching instead of springs */
     CS_SOFT_SERIES
 };
+
 extern const char *const cs_soft_names[];
 
 /* One body, run for some frames. Times are medians over frames, or over pictures. */
@@ -62,5 +63,12 @@ enum cs_status cs_soft_run(struct cs_soft *soft, struct cs_error *error);
 /* Exponent p of time = c x^p over a series, by least squares of the logarithms. x is the number
  * of springs, or of vertices for CS_SOFT_MATCHED. NAN with fewer than two different x. */
 double cs_soft_growth(const struct cs_soft *soft, enum cs_soft_series series);
+
+/* Prints the rows of soft.h as tables, CSV and a diagram. */
+
+/* Tables and what they say; a CSV, a row a line; the script of the diagram NAME.png. */
+void cs_soft_print(const struct cs_soft *soft, struct cs_text *out);
+void cs_soft_print_csv(const struct cs_soft *soft, struct cs_text *out);
+void cs_soft_print_plot(const struct cs_soft *soft, struct cs_text *out);
 
 #endif

@@ -1,6 +1,6 @@
 /* Notes whether linear theory and runs include contact, and how much energy crosses a collider.
  */
-#include "study/stability/contact_note.h"
+#include "study/stability/stability_state.h"
 
 #include "model/contact/barrier_law.h"
 #include "model/contact/collider_params.h"

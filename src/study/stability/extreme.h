@@ -18,7 +18,7 @@
 #define CS_EXTREME_H
 
 #include "study/energy_monitor.h"
-#include "study/stability/stability_reference.h"
+#include "study/stability/stability_state.h"
 
 /* Result of one scene with one method. Lives in memory shared with the workers; texts are those
  * of the catalogue and the registry. */

@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 #include "study/process_pool.h"
-#include "study/stability/stability_journal.h"
+#include "study/stability/stability_state.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* Varies one value of a scene over the columns of a stability map. */
-#include "study/stability/stability_axis.h"
+#include "study/stability/stability_state.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* Judges a step against the reference, and bisects the border of stable steps. */
-#include "study/stability/stability_boundary.h"
+#include "study/stability/stability_state.h"
 
 #include <math.h>
 

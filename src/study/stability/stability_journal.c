@@ -1,8 +1,8 @@
 /* Appends the results of a map to a file as binary records, and reads them back. */
-#include "study/stability/stability_journal.h"
+#include "study/stability/stability_state.h"
 
 #include "base/hash.h"
-#include "scene/file/scene_hash.h"
+#include "scene/file/scene_read.h"
 
 #include <dirent.h>
 #include <errno.h>

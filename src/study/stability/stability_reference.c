@@ -7,9 +7,9 @@
  *   3. Run velocity-verlet at half of its Gershgorin limit from the perturbed start. At each
  *    sample: tighten the limit of the worst mode, and the bounds that depend on the state.
  *   4. If the run is not stable, reset the limits to those of the start and halve the step. */
-#include "study/stability/stability_reference.h"
+#include "study/stability/stability_state.h"
 
-#include "model/force/spectral_bounds.h"
+#include "model/force/diagnostics.h"
 
 #include <math.h>
 #include <stdio.h>

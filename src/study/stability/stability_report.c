@@ -4,7 +4,7 @@
 
 #include "base/json_writer.h"
 #include "base/table.h"
-#include "study/stability/contact_note.h"
+#include "study/stability/stability_state.h"
 
 #include <math.h>
 

@@ -4,9 +4,110 @@
 
 #include "base/hash.h"
 #include "base/table.h"
-#include "sim/series.h"
-#include "study/stability/stability_axis.h"
-#include "study/stability/stability_boundary.h"
+#include "base/text.h"
+#include "model/system/particle_system.h"
+#include "sim/method.h"
+#include "study/session.h"
+#include "study/stability/theory.h"
+#include "study/stability_verdict.h"
+
+/* Varies one value of a scene over the columns of a stability map. */
+
+/* Values that a map can vary. */
+enum cs_axis { CS_AXIS_STIFFNESS, CS_AXIS_DAMPING, CS_AXIS_MASS, CS_AXIS_RESOLUTION, CS_AXES };
+
+extern const char *const cs_axis_names[]; /* closed by NULL */
+
+/* Unit of the axis, as text. */
+const char *cs_axis_unit(enum cs_axis axis);
+
+/* Values from..to; 0, 0: chosen by the scene. */
+struct cs_range {
+    double from, to;
+};
+
+/* Appends to the session's overrides those that give every body of the scene the value on the
+ * axis, in proportion to what the scene has; cells of the grid for the resolution. The longer
+ * list is the arena's. */
+enum cs_status cs_axis_overrides(const struct cs_system *system, enum cs_axis axis,
+                                 double value, struct cs_arena *arena,
+                                 struct cs_session_settings *session, struct cs_error *error);
+
+/* The scene's own value: that of the first body (stretch stiffness, damping, mass of a
+ * particle, columns of the grid); 0 where it has none. */
+double cs_axis_scene_value(const struct cs_system *system, enum cs_axis axis);
+
+/* Values that the axis covers where none are asked for. */
+struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis);
+
+/* Runs a trusted reference that other runs are judged by, and evaluates
+ * linear theory along its trajectory.
+ *
+ * Linear theory holds at one state. A spring that stretches, turns or meets a collider changes
+ * K and C, so the limit at the start can be too long for the rest of the run. The limit is
+ * therefore evaluated at each sample of the reference, and the smallest one counts. */
+
+/* Reference run and the limits of one method. Contains no pointers: it is stored in the journal
+ * of a map as it is. */
+struct cs_reference {
+    bool exists; /* else only the limits at the start exist, and message says why */
+    char message[320];
+    double seconds;            /* simulated: enough for 200 steps at the limit */
+    struct cs_sampled_run run; /* velocity-verlet with a small step */
+    double gershgorin_limit;   /* s, limit by Gershgorin bounds, of contact along the way */
+    struct cs_theory_limit start_limit;    /* before the start is perturbed */
+    struct cs_theory_limit smallest_limit; /* along the way */
+};
+
+/* Runs the scene of `settings` by velocity-verlet, and finds the limits of the method of
+ * `settings` along this run.
+ *
+ * From `settings` the run takes seconds (as a minimum), samples, perturbation and budget; it
+ * chooses its step itself and halves it up to 3 times if the run is not stable. A method
+ * without option dt gets no limits (HUGE_VAL). A reference that fails is a result: exists is
+ * false and message says why. Errors: those of scene, method, memory, or CS_ERR_INTERRUPT. */
+enum cs_status cs_reference_run(struct cs_reference *reference,
+                                const struct cs_sampled_run_settings *settings,
+                                struct cs_error *error);
+
+/* Judges one cell of a map, and bisects the border between stable and
+ * unstable steps.
+ *
+ * The border assumes that stability is monotone in dt near it: every shorter step is stable,
+ * every longer one unstable. Resonances of a method can violate this; the bisection then finds
+ * one of several borders. */
+
+/* Steps of one cell: a sound run that reaches them is CS_STABILITY_SHORT, not stable. */
+enum { CS_CELL_STEPS = 20000 };
+
+/* Result of one cell: one step length on one scene. */
+struct cs_stability_cell {
+    /* s; 0: not tried yet */
+    double dt;
+    enum cs_stability_verdict verdict;
+    double drift;       /* see cs_stability_drift; NAN if the run did not finish */
+    double time;        /* s, where the verdict showed; the end of a stable one */
+    uint32_t particles; /* of a local instability: most at one time */
+    double crossings;   /* most of all samples; NAN where they are not counted */
+};
+
+/* Runs one cell with the step dt in s and judges it by a reference, over the time of the
+ * reference or CS_CELL_STEPS steps, whichever is shorter. A blow-up or a failed method is a
+ * verdict. Errors: those of cs_sampled_run_execute; *cell is then undefined. */
+enum cs_status cs_stability_run_cell(const struct cs_sampled_run_settings *settings,
+                                     const struct cs_reference *reference, double dt,
+                                     struct cs_stability_cell *cell, struct cs_error *error);
+
+/* Finds the largest stable step in s, *border, to 1 %.
+ *
+ * stable: a stable step, 0 if none is known. unstable: an unstable one, HUGE_VAL if none is
+ * known; at least one of the two must be known. The search steps by factors of 4 until it has a
+ * bracket, then bisects its logarithm by runs over the whole time of the reference. *border is
+ * 0 if no stable step was found, HUGE_VAL if every step up to 10 s is stable, NAN if the budget
+ * of a run ended. */
+enum cs_status cs_stability_boundary(const struct cs_sampled_run_settings *settings,
+                                     const struct cs_reference *reference, double stable,
+                                     double unstable, double *border, struct cs_error *error);
 
 /* Request for a map. Texts and arrays are borrowed for the life of the map. */
 struct cs_stability_settings {
@@ -24,6 +125,7 @@ struct cs_stability_settings {
     void (*progress)(void *ctx, uint32_t done, uint32_t total);
     void *ctx;
 };
+
 /* Columns and rows that a map may have at most, each. */
 enum { CS_MAP_CELLS_MAX = 1024 };
 
@@ -57,5 +159,48 @@ struct cs_stability {
     struct cs_journal journal;
     struct cs_arena arena;
 };
+
+/* Stores the results of a map while it grows, so an interrupted map
+ * resumes.
+ *
+ * FOLDER/SERIES.partial is a sequence of binary records of equal size: a key, a kind, a column,
+ * a row, and a reference, a cell or a border. The key hashes everything the results depend on,
+ * so records of a different map are skipped. Each record names its map and cell, hence the
+ * order of records does not matter and files can be concatenated. */
+
+/* Opens FOLDER/SERIES.partial and takes over its results of the same map: same version, scene,
+ * start, method, axis, steps, values, times. Each record is appended whole, by the process that
+ * has it. Without a folder there is no journal, and all other calls do nothing. CS_ERR_FILE,
+ * CS_ERR_MEMORY. */
+enum cs_status cs_journal_open(struct cs_stability *map, struct cs_error *error);
+
+/* Append the reference of a column, one of its cells, or its border. Called by worker
+ * processes; the table locks the file. CS_ERR_FILE. */
+enum cs_status cs_journal_append_reference(const struct cs_stability *map, uint32_t column,
+                                           struct cs_error *error);
+enum cs_status cs_journal_append_cell(const struct cs_stability *map, uint32_t column,
+                                      uint32_t row, struct cs_error *error);
+enum cs_status cs_journal_append_boundary(const struct cs_stability *map, uint32_t column,
+                                          struct cs_error *error);
+
+/* Deletes the file of a complete map. */
+void cs_journal_remove(const struct cs_stability *map);
+
+/* Appends the journals of the folders to those of the folder `out`; *n: journals read. A record
+ * that is cut off at the end of a file is dropped. CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_journal_merge(const char *const *folders, uint32_t n_folders, const char *out,
+                                uint32_t *n, struct cs_error *error);
+
+/* Notes on the role of contact in the stability studies, as text. */
+
+/* Adds `before` and whether contact is a part of linear theory and of runs. Adds nothing for
+ * scenes without contact. */
+void cs_contact_note_add(const struct cs_scene *scene, const char *before, struct cs_text *out);
+
+/* Adds the energy in J that a particle needs to cross the thinnest collider, next to the
+ * kinetic energy of the heaviest particle at `speed` (m/s; 0: unknown). Adds the damping by
+ * friction that limits explicit steps. Adds nothing for scenes without contact by force. */
+void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
+                                  struct cs_text *out);
 
 #endif

@@ -17,7 +17,7 @@
 #ifndef CS_STIFFEST_MODES_H
 #define CS_STIFFEST_MODES_H
 
-#include "model/system/system.h"
+#include "model/system/particle_system.h"
 
 /* A direction of motion, described by its Rayleigh quotients. */
 struct cs_mode {

@@ -7,10 +7,84 @@
 #include "model/contact/broad_phase/candidates_find.h"
 
 #include "base/pool.h"
-#include "model/contact/broad_phase/item_boxes.h"
+#include "model/contact/broad_phase/aabb_clusters.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+/* Bounding boxes of points, edges and triangles, and of their clusters. */
+
+/* Items of one kind at a state; all pointers are borrowed. */
+struct cs_item_boxes {
+    const double *x; /* (3, n) */
+    size_t n;
+    const uint32_t *vertices; /* (items, each); NULL: an item is a point itself */
+    uint32_t vertices_per_item;
+    const uint32_t *body;    /* (n) of each point */
+    const bool *is_nonempty; /* of each body: it meets one; else boxes are empty */
+};
+
+static const struct cs_aabb cs_box_none = {{HUGE_VAL, HUGE_VAL, HUGE_VAL},
+                                           {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+
+/* Box of an item, grown by `grow` in m to all sides; empty for CS_NO_ITEM, and for bodies
+ * without contact. */
+static struct cs_aabb item_box(const struct cs_item_boxes *boxes, uint32_t item, double grow) {
+    struct cs_aabb box;
+    if (item == CS_NO_ITEM)
+        return cs_box_none;
+    const uint32_t *at =
+        boxes->vertices ? boxes->vertices + (size_t)boxes->vertices_per_item * item : &item;
+    if (!boxes->is_nonempty[boxes->body[at[0]]])
+        return cs_box_none;
+    for (size_t c = 0; c < 3; c++) {
+        const double *x = boxes->x + c * boxes->n;
+        box.low[c] = box.high[c] = x[at[0]];
+        for (uint32_t k = 1; k < boxes->vertices_per_item; k++) {
+            box.low[c] = x[at[k]] < box.low[c] ? x[at[k]] : box.low[c];
+            box.high[c] = x[at[k]] > box.high[c] ? x[at[k]] : box.high[c];
+        }
+        box.low[c] -= grow;
+        box.high[c] += grow;
+    }
+    return box;
+}
+
+struct filling {
+    const struct cs_item_boxes *boxes;
+    struct cs_aabb_clusters *clusters;
+};
+
+/* clusters per job */
+enum { TOGETHER = 64 };
+
+static void fill_cluster(const struct filling *filling, uint32_t number) {
+    struct cs_aabb_clusters *clusters = filling->clusters;
+    struct cs_aabb all = cs_box_none;
+    for (uint32_t lane = 0; lane < CS_AABB_CLUSTER; lane++) {
+        const struct cs_aabb box = item_box(
+            filling->boxes, clusters->items[CS_AABB_CLUSTER * (size_t)number + lane], 0);
+        cs_aabb_cluster_set(clusters->clusters + number, lane, &box);
+        cs_aabb_merge(&all, &box);
+    }
+    clusters->cluster_boxes[number] = all;
+}
+
+static void fill_some(void *arg, uint32_t block) {
+    const struct filling *filling = arg;
+    for (uint32_t k = TOGETHER * block; k < TOGETHER * (block + 1) && k < filling->clusters->n;
+         k++)
+        fill_cluster(filling, k);
+}
+
+/* Sets the boxes of all clusters and sorts them into cells, with all threads. Returns false if
+ * out of memory. */
+static bool item_boxes_fill(const struct cs_item_boxes *boxes,
+                            struct cs_aabb_clusters *clusters) {
+    struct filling filling = {boxes, clusters};
+    cs_pool_run((clusters->n + TOGETHER - 1) / TOGETHER, fill_some, &filling);
+    return cs_aabb_clusters_sort(clusters);
+}
 
 /* --- made once --- */
 
@@ -172,7 +246,7 @@ static struct cs_aabb group_box(const struct cs_candidates *candidates, bool edg
     const struct cs_item_boxes points = boxes_of(candidates, NULL, 1);
     struct cs_aabb all = edges ? candidates->edges.cluster_boxes[cluster] : cs_box_none;
     for (uint32_t k = 0; k < CS_AABB_CLUSTER && !edges; k++) {
-        const struct cs_aabb one = cs_item_box(
+        const struct cs_aabb one = item_box(
             &points, candidates->points.items[CS_AABB_CLUSTER * (size_t)cluster + k], 0);
         cs_aabb_merge(&all, &one);
     }
@@ -239,7 +313,7 @@ static void find_item(struct work *work, const struct group *group, uint32_t ite
         struct cs_nearby_clusters *near = work->batch->query + k;
         if (!near->n)
             continue;
-        const struct cs_aabb box = cs_item_box(&boxes, item, group->reach[k]);
+        const struct cs_aabb box = item_box(&boxes, item, group->reach[k]);
         const uint32_t n = cs_nearby_clusters_items(near, group->others, &box);
         for (uint32_t l = 0; l < n; l++)
             take(work, item, near->items[l]);
@@ -300,7 +374,7 @@ static void find_batch(void *arg, uint32_t number) {
 static bool fill(const struct cs_candidates *candidates, struct cs_aabb_clusters *clusters,
                  const uint32_t *corners, uint32_t each) {
     const struct cs_item_boxes boxes = boxes_of(candidates, corners, each);
-    return cs_item_boxes_fill(&boxes, clusters);
+    return item_boxes_fill(&boxes, clusters);
 }
 
 /* Boxes of triangles and edges are set first; then all batches run in parallel. */

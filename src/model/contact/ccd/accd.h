@@ -3,6 +3,8 @@
 #ifndef CS_ACCD_H
 #define CS_ACCD_H
 
+#include "model/system/particle_system.h"
+
 #include <stdbool.h>
 
 /* Point p[0] against triangle p[1..3], and edge p[0..1] against edge p[2..3]. */
@@ -27,5 +29,19 @@ double cs_exact_distance_squared(enum cs_primitive_pair_kind kind, const double 
  * start and moves. Moves that are not finite give `most`. */
 double cs_accd_safe_fraction(enum cs_primitive_pair_kind kind, const double p[4][3],
                              const double moves[4][3], double most);
+
+/* Collision-free fraction of a step, computed from contact's candidate
+ * list. */
+
+/* Returns whether the candidate list contains all pairs of primitives that may meet on the way
+ * from x0 to x1: contact is defined between all bodies, or `apart` says that the others may
+ * cross, and the move is short. If so, the list covers the whole way afterwards. */
+bool cs_accd_candidates_suffice(const struct cs_system *system, bool apart, const double *x0,
+                                const double *x1);
+
+/* cs_crossings_safe_fraction over the pairs of the list, bit for bit the same. With all
+ * threads. Only after cs_accd_candidates_suffice returned true for the same x0 and x1. */
+double cs_accd_candidates_safe_fraction(const struct cs_system *system, const double *x0,
+                                        const double *x1);
 
 #endif

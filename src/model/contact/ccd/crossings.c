@@ -14,10 +14,9 @@
 
 #include "base/pool.h"
 #include "model/contact/ccd/accd.h"
-#include "model/contact/ccd/accd_candidates.h"
 #include "model/contact/ccd/edge_triangle.h"
 #include "model/contact/surface_points.h"
-#include "scene/crossing_policy.h"
+#include "scene/body_pairs.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,9 +5,85 @@
  * in range. */
 #include "model/contact/narrow_phase/contact_pairs.h"
 
-#include "model/contact/narrow_phase/candidates_in_range.h"
+#include "base/vector.h"
+#include "model/contact/narrow_phase/exact_distance.h"
 #include "model/contact/narrow_phase/narrow_phase.h"
 #include "model/contact/surface_points.h"
+
+#include <clothsim/clones.h>
+
+/* Refuses a body with two primitives closer than its thickness: contact would push it apart
+ * from the first step on, because its edges leave no room for such a thickness. */
+static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error *error) {
+    const struct cs_candidates *search = &pairs->candidates;
+    const size_t n = pairs->system->view.n;
+    for (uint32_t l = 0; l < search->n_chunks; l++)
+        for (size_t p = 0; p < search->chunks[l].n; p++) {
+            uint32_t at[4];
+            double places[4][3];
+            struct cs_pair_distance s;
+            cs_candidate_vertices(pairs->system->surfaces, search->chunks[l].kind,
+                                  search->chunks[l].pairs + 2 * p, at);
+            const uint32_t body = search->body[at[0]];
+            if (body != search->body[at[2]])
+                continue;
+            for (size_t k = 0; k < 4; k++)
+                for (size_t c = 0; c < 3; c++)
+                    places[k][c] = pairs->system->start[c * n + at[k]];
+            cs_pair_distance_set(&s, search->chunks[l].kind, places);
+            const double range = cs_body_pair_params_range(
+                cs_body_pair_params_of(&pairs->body_pairs, body, body),
+                search->chunks[l].kind == CS_PAIR_EDGE_EDGE);
+            const uint32_t first = pairs->system->bodies[body].first;
+            if (s.d < range)
+                return cs_fail(error, CS_ERR_SCENE,
+                               "bodies[%u].self_contact: layers are only %.3g m apart at the "
+                               "start (particles %u and %u), expected at least the thickness, "
+                               "%.3g m; reduce bodies[%u].thickness",
+                               body, s.d, at[0] - first, at[2] - first, range, body);
+        }
+    return CS_OK;
+}
+
+/* Prepares both lists of active contacts and the four matrices. */
+static enum cs_status init_answers(struct cs_pairs *pairs, struct cs_arena *arena,
+                                   struct cs_error *error) {
+    const uint32_t n = pairs->system->view.n, n_chunks = pairs->candidates.n_chunks;
+    for (int k = 0; k < 2; k++)
+        if (cs_active_contacts_init(pairs->lists + k, &pairs->candidates,
+                                    &pairs->feature_weights, arena, error))
+            return error->status;
+    if (cs_psd_operator_init(&pairs->solver_psd, n_chunks, arena, error) ||
+        cs_psd_operator_init(&pairs->other_psd, n_chunks, arena, error) ||
+        cs_contact_set_init(&pairs->solver_exact, n, n_chunks, arena, error))
+        return error->status;
+    return cs_contact_set_init(&pairs->other_exact, n, n_chunks, arena, error);
+}
+
+/* Order: surfaces, parameters of pairs, candidate list, features, queries; then the first list,
+ * at the start positions, which check_start reads. */
+enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error) {
+    if (cs_surface_points_build(system, error))
+        return error->status;
+    struct cs_pairs *pairs = cs_arena_alloc(&system->arena, sizeof *pairs, error);
+    if (!pairs || cs_body_pair_table_build(system, &pairs->body_pairs, error) ||
+        cs_candidates_init(&pairs->candidates, system, &pairs->body_pairs, error) ||
+        cs_feature_weights_init(&pairs->feature_weights, system->surfaces, &system->arena,
+                                error))
+        return error->status;
+    pairs->system = system;
+    pairs->point_motion = cs_arena_alloc_array(&system->arena, system->surfaces->n_points,
+                                               sizeof *pairs->point_motion, error);
+    pairs->current_contacts = pairs->lists;
+    if (init_answers(pairs, &system->arena, error))
+        return error->status;
+    if (!cs_candidates_update(
+            &pairs->candidates,
+            cs_surface_points_positions(system, CS_POINTS_BEGIN, 0, system->start)))
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the contact pairs");
+    system->pairs = pairs;
+    return check_start(pairs, error);
+}
 
 /* Active contacts at x: those of a list that fits, else found into the list that the solver's
  * matrix does not use; NULL if out of memory. */
@@ -137,4 +213,104 @@ void cs_pairs_add_bound(struct cs_pairs *pairs, const struct cs_eval *at, double
         return;
     cs_gather_add(gather, gather->row_sums, 1, 0, n, stiffness);
     cs_gather_add(gather, gather->row_sums + gather->n_rows, 1, 0, n, damping);
+}
+
+/* Motion of surface points, and the swept-box test of pairs on all numbers of a point at once.
+ */
+
+/* One call of cs_point_motion_set. */
+struct setting {
+    const struct cs_system *system;
+    const double *x0, *x1;
+    struct cs_point_motion *moves;
+};
+
+static void set_some(void *arg, size_t begin, size_t end) {
+    const struct setting *setting = arg;
+    const size_t n = setting->system->surfaces->n_points;
+    for (size_t i = begin; i < end; i++) {
+        double *move = setting->moves[i].values;
+        for (size_t c = 0; c < 3; c++) {
+            const double from = setting->x0[c * n + i];
+            move[CS_POINT_MOVE_FROM + c] = from;
+            move[CS_POINT_MOVE_BY + c] = setting->x1[c * n + i] - from;
+        }
+        move[CS_POINT_MOVE_INVERSE_MASS] =
+            cs_surface_points_inverse_mass(setting->system, (uint32_t)i);
+    }
+}
+
+void cs_point_motion_set(const struct cs_system *system, const double *x0, const double *x1,
+                         struct cs_point_motion *moves) {
+    struct setting setting = {system, x0, x1, moves};
+    cs_vector_parallel_for(system->surfaces->n_points, set_some, &setting);
+}
+
+CS_INLINE double min_of(double a, double b) {
+    return a < b ? a : b;
+}
+
+CS_INLINE double max_of(double a, double b) {
+    return a > b ? a : b;
+}
+
+/* 1 if the swept boxes of both primitives may come within reach. Differences of the bounds of
+ * both sides are taken for positions and displacements alike; point p[1] belongs to the first
+ * side of two edges, else to the triangle. */
+CS_INLINE uint32_t boxes_may_overlap(bool edges, const double *restrict p[4], double reach) {
+    double below[CS_POINT_MOVE_NUMBERS], above[CS_POINT_MOVE_NUMBERS];
+    for (int k = 0; k < CS_POINT_MOVE_NUMBERS; k++) {
+        const double a = p[0][k], b = p[1][k], c = p[2][k], d = p[3][k];
+        const double low = min_of(c, d), high = max_of(c, d);
+        const double least = edges ? min_of(a, b) : a, most = edges ? max_of(a, b) : a;
+        below[k] = least - (edges ? high : max_of(b, high));
+        above[k] = most - (edges ? low : min_of(b, low));
+    }
+    uint32_t meet = 1;
+    for (int c = 0; c < 3; c++) {
+        const double closing = below[CS_POINT_MOVE_BY + c],
+                     opening = above[CS_POINT_MOVE_BY + c];
+        meet &= below[c] + (closing < 0 ? closing : 0) <= reach;
+        meet &= above[c] + (opening > 0 ? opening : 0) >= -reach;
+    }
+    return meet;
+}
+
+CS_INLINE size_t filter(bool edges, const struct cs_point_motion *restrict moves,
+                        const struct cs_moving_pairs *pairs, double reach, uint32_t *out) {
+    const uint32_t *of = edges ? pairs->surfaces->edges : pairs->surfaces->triangles;
+    size_t n = 0;
+    for (size_t k = 0; k < 2 * pairs->n; k += 2) {
+        const uint32_t i = pairs->items[k], j = pairs->items[k + 1];
+        const uint32_t *first = edges ? of + 2 * (size_t)i : &i;
+        const uint32_t *second = of + (edges ? 2 : 3) * (size_t)j;
+        const double *p[4] = {moves[first[0]].values,
+                              moves[edges ? first[1] : second[0]].values,
+                              moves[edges ? second[0] : second[1]].values,
+                              moves[edges ? second[1] : second[2]].values};
+        // Compaction without a branch: a rejected pair is overwritten by the next.
+        out[2 * n] = i;
+        out[2 * n + 1] = j;
+        n += boxes_may_overlap(edges, p, reach);
+    }
+    return n;
+}
+
+CS_CLONES static size_t sieve_triangles(const struct cs_point_motion *moves,
+                                        const struct cs_moving_pairs *pairs, double reach,
+                                        uint32_t *out) {
+    return filter(false, moves, pairs, reach, out);
+}
+
+CS_CLONES static size_t sieve_edges(const struct cs_point_motion *moves,
+                                    const struct cs_moving_pairs *pairs, double reach,
+                                    uint32_t *out) {
+    return filter(true, moves, pairs, reach, out);
+}
+
+size_t cs_point_motion_filter(const struct cs_point_motion *moves,
+                              const struct cs_moving_pairs *pairs, double reach,
+                              uint32_t *out) {
+    return pairs->edges ? sieve_edges(moves, pairs, reach, out)
+                        : sieve_triangles(moves, pairs, reach, out);
 }

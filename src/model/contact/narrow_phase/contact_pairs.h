@@ -16,7 +16,41 @@
 
 #include "model/contact/narrow_phase/active_contacts.h"
 #include "model/contact/narrow_phase/psd_operator.h"
-#include "model/contact/point_motion.h"
+#include "model/system/surfaces.h"
+
+/* Start, displacement and inverse mass of every surface point, one cache line
+ * per point, because pairs access points at random. */
+
+/* Indices of the eight numbers of a point: start (3, m), inverse mass (1/kg), displacement (3,
+ * m), and one that is 0. */
+enum {
+    CS_POINT_MOVE_FROM = 0,
+    CS_POINT_MOVE_INVERSE_MASS = 3,
+    CS_POINT_MOVE_BY = 4,
+    CS_POINT_MOVE_NUMBERS = 8
+};
+
+struct cs_point_motion {
+    double values[CS_POINT_MOVE_NUMBERS];
+};
+
+/* Sets moves (n_points) for the straight motion from x0 to x1 (3,n_points). */
+void cs_point_motion_set(const struct cs_system *system, const double *x0, const double *x1,
+                         struct cs_point_motion *moves);
+
+/* Pairs of a point and a triangle, or of two edges; borrowed. */
+struct cs_moving_pairs {
+    const struct cs_surfaces *surfaces;
+    bool edges;
+    const uint32_t *items; /* (n, 2) by their numbers */
+    size_t n;
+};
+
+/* Copies to out (n, 2) the pairs whose primitives may come within `reach` in m at one fraction
+ * of the move: cs_swept_aabbs_overlap (swept_aabb.h) of their own points. Returns how many; a
+ * few nanoseconds per pair. out must have room for all pairs. */
+size_t cs_point_motion_filter(const struct cs_point_motion *moves,
+                              const struct cs_moving_pairs *pairs, double reach, uint32_t *out);
 
 /* All state of contact between surfaces; the system's arena owns it. */
 struct cs_pairs {
@@ -58,6 +92,7 @@ enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error);
 
 /* Evaluates forces at a state, or their change if at->dx or at->dv is set, with all threads. */
 void cs_pairs_set(struct cs_pairs *pairs, const struct cs_eval *at);
+
 /* f (3,n) += the result at the particles [begin, end). */
 void cs_pairs_add(const struct cs_pairs *pairs, size_t begin, size_t end, double *f);
 
@@ -68,6 +103,7 @@ double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at);
  * stays until the next such call. Otherwise the diagonal blocks alone are wanted, which bound
  * the whole matrix if matrix->bound is set. */
 void cs_pairs_set_matrix(struct cs_pairs *pairs, const struct cs_matrix *matrix, bool kept);
+
 /* blocks (6,n) += the diagonal blocks of the last matrix at the particles [begin, end). */
 void cs_pairs_add_blocks(const struct cs_pairs *pairs, size_t begin, size_t end,
                          double *blocks);

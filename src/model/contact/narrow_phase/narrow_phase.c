@@ -16,7 +16,7 @@
 #include "model/contact/narrow_phase/narrow_phase.h"
 
 #include "base/pool.h"
-#include "model/contact/collider_query.h"
+#include "model/contact/collider_params.h"
 
 #include <string.h>
 

@@ -5,7 +5,7 @@
 
 #include "model/contact/body_pair_params.h"
 #include "model/contact/contact_set.h"
-#include "model/contact/narrow_phase/mesh_feature_tangent.h"
+#include "model/contact/narrow_phase/mesh_feature.h"
 #include "model/contact/point_contact.h"
 
 /* Terms of a pair's matrix P = c g g^T + (w w^T) x B besides the gradient g, as in struct

@@ -1,8 +1,7 @@
 /* Evaluates pairs in lanes: forces, Jacobian products, bounds, matrix factors and products.
  *
  * Each loop over lanes holds a whole pair per iteration and has no branch on data, so that
- * compilers turn it into vectors. Pair kind and matrix type are compile-time constants in each
- * clone; a test of them inside the loop would prevent that.
+ * compilers turn it into vectors. Pair kind and matrix type are constants of each clone.
  *
  * Formulas, with the distance d, its gradient g_k and the weights w_k of point k, the velocity
  * V = sum w_k v_k of the contact points, n their direction and T = V - n (n.V):
@@ -16,9 +15,9 @@
  * R is the bracket of the force with its sign, H the Hessian of d, F and K the barrier law, B
  * the block of friction and damping of point_contact.h. Product and diagonal work on the
  * factors that the matrix has stored. */
-#include "base/vectorise.h"
-
 #include "model/contact/narrow_phase/pair_lanes.h"
+
+#include "base/vector.h"
 
 /* Copies one lane to or from a pair in point order. */
 CS_INLINE void read_lane(double from[4][3][CS_PAIR_LANES], int lane, double to[4][3]) {

@@ -6,15 +6,176 @@
 #include "model/contact/narrow_phase/pair_step_check.h"
 
 #include "base/pool.h"
-#include "model/contact/narrow_phase/pair_motion.h"
+#include "base/vector.h"
+#include "model/contact/barrier_law.h"
+#include "model/contact/pair_distance.h"
+#include "model/contact/step_check.h"
 #include "model/contact/surface_points.h"
 
+#include <math.h>
 #include <string.h>
+
+/* A pair whose points move along straight lines during a step, and the contact
+ * energy that a second-order model at the start of the step misses.
+ *
+ *   e = |psi(d(s)) - (psi + F a + K a^2/2)|,   a = -s g.dx
+ *
+ * with psi, F, K at the start, dx the whole displacement and s the fraction of it. The step
+ * resolves the contact if e is at most CS_UNRESOLVED_ENERGY_MAX of the energy of the pair. */
+
+/* Positions at the start and displacements of the whole step, in m. */
+struct cs_pair_motion {
+    enum cs_pair_kind kind;
+    double x0[4][3], displacement[4][3]; /* m */
+    double inverse_mass[4];              /* 1/kg */
+};
+
+/* m2, squared relative displacement of points i and j */
+CS_INLINE double pair_motion_relative_squared(struct cs_pair_motion *way, int i, int j) {
+    const double *a = way->displacement[i], *b = way->displacement[j];
+    const double r[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return cs_vec3_dot(r, r);
+}
+
+CS_INLINE double pair_motion_max(double most, double squared) {
+    return squared > most ? squared : most;
+}
+
+/* m, largest relative displacement of a point of one side and a point of the other. Contact
+ * points are convex combinations of the points, so none moves further relative to the other
+ * side. */
+CS_INLINE double pair_motion_longest(struct cs_pair_motion *way) {
+    const bool edges = way->kind == CS_PAIR_EDGE_EDGE;
+    double most = edges ? 0 : pair_motion_max(0, pair_motion_relative_squared(way, 0, 1));
+    most = pair_motion_max(most, pair_motion_relative_squared(way, 0, 2));
+    most = pair_motion_max(most, pair_motion_relative_squared(way, 0, 3));
+    most = edges ? pair_motion_max(most, pair_motion_relative_squared(way, 1, 2)) : most;
+    most = edges ? pair_motion_max(most, pair_motion_relative_squared(way, 1, 3)) : most;
+    return sqrt(most);
+}
+
+/* The second-order model, at the start of a step. */
+struct cs_pair_motion_start {
+    struct cs_barrier law;
+    /* J: psi(d); and the energy of the pair, psi(d) + kinetic energy of the relative motion of
+     * its contact points + psi(D/2) */
+    double contact_energy, total_energy;
+    /* m, first-order decrease -g.dx of the distance over the whole step */
+    double approach;
+};
+
+/* Sets the model from the pair s at the start; h: seconds of the whole step. The effective mass
+ * of the contact points is 1 / sum (w_k^2 / m_k), infinite if all are pinned. psi(D/2) keeps
+ * pairs that barely touch from being judged. */
+CS_INLINE void pair_motion_begin(struct cs_pair_motion *way, const struct cs_pair_distance *s,
+                                 double h, double range, double k,
+                                 struct cs_pair_motion_start *start) {
+    double weight[4], g[4][3], v[3] = {0}, inverse = 0;
+    cs_pair_distance_weights(s, weight);
+    cs_pair_distance_gradient(s, g);
+    start->approach = 0;
+    for (int j = 0; j < 4; j++) {
+        inverse += weight[j] * weight[j] * way->inverse_mass[j];
+        start->approach -= cs_vec3_dot(g[j], way->displacement[j]);
+        for (int c = 0; c < 3; c++)
+            v[c] += weight[j] * way->displacement[j][c] / h;
+    }
+    const double kinetic = 0.5 * cs_vec3_dot(v, v) / inverse;
+    start->law = cs_barrier_at(s->d, range, k);
+    start->contact_energy = cs_barrier_energy(s->d, range, k);
+    start->total_energy = (inverse > 0 ? kinetic : HUGE_VAL) + start->contact_energy +
+                          cs_barrier_energy(0.5 * range, range, k);
+}
+
+/* e in J after the fraction `share` of the step, where the distance is d. */
+CS_INLINE double pair_motion_unresolved_energy(const struct cs_pair_motion_start *start,
+                                               double share, double d, double range, double k) {
+    const double come = share * start->approach;
+    const double seen = start->contact_energy + start->law.force * come +
+                        0.5 * start->law.stiffness * come * come;
+    return fabs(cs_barrier_energy(d, range, k) - seen);
+}
+
+/* Number of samples of a step after its start: they are at most half a range of relative motion
+ * apart, so that no contact is passed over. */
+CS_INLINE double pair_motion_samples(double longest, double range) {
+    return longest / (0.5 * range);
+}
+
+/* Eight pairs in lanes; lanes without a pair hold unspecified numbers. */
+enum { CS_PAIR_MOTION_LANES = 8 };
+
+struct cs_pair_motion_lanes {
+    double x0[4][3][CS_PAIR_MOTION_LANES], displacement[4][3][CS_PAIR_MOTION_LANES],
+        inverse_mass[4][CS_PAIR_MOTION_LANES];
+    double range[CS_PAIR_MOTION_LANES], k[CS_PAIR_MOTION_LANES];
+    double result[CS_PAIR_MOTION_LANES];
+};
+
+/* Copies one lane to a pair in point order. */
+CS_INLINE void read_motion(struct cs_pair_motion_lanes *lanes, int lane,
+                           struct cs_pair_motion *way) {
+    CS_UNROLLED
+    for (int k = 0; k < 12; k++) {
+        way->x0[k / 3][k % 3] = lanes->x0[k / 3][k % 3][lane];
+        way->displacement[k / 3][k % 3] = lanes->displacement[k / 3][k % 3][lane];
+    }
+    CS_UNROLLED
+    for (int k = 0; k < 4; k++)
+        way->inverse_mass[k] = lanes->inverse_mass[k][lane];
+}
+
+/* Result of one lane. A pair that is out of range at both ends counts as resolved. */
+CS_INLINE double motion_ask(struct cs_pair_motion *way, double h, double range, double k) {
+    struct cs_pair_distance at, to;
+    struct cs_pair_motion_start start;
+    double end[4][3];
+    CS_UNROLLED
+    for (int j = 0; j < 12; j++)
+        end[j / 3][j % 3] = way->x0[j / 3][j % 3] + way->displacement[j / 3][j % 3];
+    cs_pair_distance_set(&at, way->kind, way->x0);
+    cs_pair_distance_set(&to, way->kind, end);
+    pair_motion_begin(way, &at, h, range, k, &start);
+    const double nearest = to.d < at.d ? to.d : at.d;
+    const double unseen = pair_motion_unresolved_energy(&start, 1, to.d, range, k);
+    const double much = unseen > CS_UNRESOLVED_ENERGY_MAX * start.total_energy ? 1 : 0;
+    const double near = nearest < range ? much : 0;
+    return pair_motion_samples(pair_motion_longest(way), range) < 1 ? near : 2;
+}
+
+CS_INLINE void check_all(enum cs_pair_kind kind, struct cs_pair_motion_lanes *restrict lanes,
+                         double h) {
+    for (int l = 0; l < CS_PAIR_MOTION_LANES; l++) {
+        struct cs_pair_motion way = {.kind = kind};
+        read_motion(lanes, l, &way);
+        lanes->result[l] = motion_ask(&way, h, lanes->range[l], lanes->k[l]);
+    }
+}
+
+CS_CLONES static void check_triangles(struct cs_pair_motion_lanes *restrict lanes, double h) {
+    check_all(CS_PAIR_POINT_TRIANGLE, lanes, h);
+}
+
+CS_CLONES static void check_edges(struct cs_pair_motion_lanes *restrict lanes, double h) {
+    check_all(CS_PAIR_EDGE_EDGE, lanes, h);
+}
+
+/* Sets result: 1 if the energy missed at the end of the step is above the limit, 0 if it is
+ * not, 2 if the step is too long to be judged by its end alone. h: seconds of the step. */
+static void pair_motion_lanes_check(enum cs_pair_kind kind, struct cs_pair_motion_lanes *lanes,
+                                    double h) {
+    if (kind == CS_PAIR_EDGE_EDGE)
+        check_edges(lanes, h);
+    else
+        check_triangles(lanes, h);
+}
 
 /* largest number of samples of one step; longer steps have coarser samples */
 enum { POINTS_MAX = 64 };
+
 /* pairs per call of the swept-box filter */
 enum { SOME = 256 };
+
 #define NONE UINT32_MAX
 
 struct job {
@@ -57,7 +218,7 @@ static bool measure(struct cs_pair_motion *way, int points, double range, double
 /* Judges a step of any length by its samples. */
 static bool is_unresolved(const struct job *job, struct cs_pair_motion *way, double range,
                           double k) {
-    const double along = cs_pair_motion_samples(cs_pair_motion_longest(way), range);
+    const double along = pair_motion_samples(pair_motion_longest(way), range);
     const int points = along < POINTS_MAX ? 1 + (int)along : POINTS_MAX;
     double d[POINTS_MAX + CS_PAIR_LANES], unseen = 0;
     struct cs_pair_distance at;
@@ -65,10 +226,10 @@ static bool is_unresolved(const struct job *job, struct cs_pair_motion *way, dou
     if (!measure(way, points, range, d))
         return false;
     cs_pair_distance_set(&at, way->kind, way->x0);
-    cs_pair_motion_begin(way, &at, job->h, range, k, &start);
+    pair_motion_begin(way, &at, job->h, range, k, &start);
     for (int j = 1; j <= points; j++)
-        unseen = fmax(unseen, cs_pair_motion_unresolved_energy(&start, j / (double)points, d[j],
-                                                               range, k));
+        unseen = fmax(
+            unseen, pair_motion_unresolved_energy(&start, j / (double)points, d[j], range, k));
     return unseen > CS_UNRESOLVED_ENERGY_MAX * start.total_energy;
 }
 
@@ -91,7 +252,7 @@ static bool is_lane_unresolved(const struct work *work, uint32_t l) {
 /* Checks the collected pairs. */
 static void ask(struct work *work) {
     if (work->waiting)
-        cs_pair_motion_lanes_check(work->kind, &work->lanes, work->job->h);
+        pair_motion_lanes_check(work->kind, &work->lanes, work->job->h);
     for (uint32_t l = 0; l < work->waiting; l++)
         work->unseen = work->unseen || is_lane_unresolved(work, l);
     work->waiting = 0;

@@ -1,0 +1,75 @@
+/* particle_system.h - a scene as arrays: only what the scene and the method need is allocated.
+ */
+#ifndef CS_PARTICLE_SYSTEM_H
+#define CS_PARTICLE_SYSTEM_H
+
+#include "base/arena.h"
+#include "base/text.h"
+#include "model/spring/springs.h"
+#include "model/system/feature.h"
+#include "scene/scene.h"
+
+#include <clothsim/integrator.h>
+
+struct cs_term;
+struct cs_trimesh;
+
+/* Particles of one body, from `first` on: a grid of rows x columns, or a mesh (columns and rows
+ * are 0). */
+struct cs_body_range {
+    uint32_t first, count, columns, rows;
+    const struct cs_trimesh *mesh; /* borrowed from the scene; NULL: a grid */
+};
+
+struct cs_events;
+struct cs_collider_params;
+struct cs_pairs;
+struct cs_contact_samples;
+struct cs_collider_motion;
+struct cs_surfaces;
+struct cs_points;
+struct cs_crossings;
+
+/* A built system. Its arena owns all arrays; the scene is borrowed. */
+struct cs_system {
+    struct cs_view view;          /* the part that integrators see */
+    const struct cs_scene *scene; /* borrowed; with events, their changed copy */
+    struct cs_plan plan;          /* features built and left out, with reasons and bytes */
+    struct cs_body_range *bodies; /* (scene->bodies.n) */
+    struct cs_springs springs;
+    double *mass, *inv_mass; /* (n) */
+    double *start;           /* (3,n) positions at time 0 */
+    double *state;           /* 6n: x (3,n), v (3,n) at time 0 */
+    double *area;            /* (n) each particle's part of the surface in m2; NULL: not used */
+    double *normals; /* (3,n) at the positions of the last update; NULL: no force uses them */
+    double *event_force; /* (3,n) m/s2, of events over an interval; NULL: no such event */
+    uint32_t *pinned, n_pinned;                /* (n_pinned) particles, ascending */
+    const struct cs_term *terms[CS_TERMS_MAX]; /* the forces that this scene has */
+    uint32_t n_terms;
+    struct cs_collider_motion
+        *motions;            /* (scene->colliders.n); NULL: no event moves a collider */
+    double *collider_motion; /* (3, colliders, 3) the view's copy of motions; NULL likewise */
+    const struct cs_collider_params
+        *collider_params;   /* (scene->colliders.n); NULL without contact by force */
+    struct cs_pairs *pairs; /* contact between bodies, and with mesh colliders; NULL: none */
+    struct cs_contact_samples
+        *contact_samples; /* contact points between particles, for colliders; NULL: none */
+    const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
+    struct cs_points *points;       /* NULL unless colliders are meshes (surface_points.h) */
+    struct cs_crossings *crossings; /* NULL unless asked for (crossing_policy.h) */
+    struct cs_events *events;       /* NULL without events; it owns the scene's changed copy */
+    struct cs_arena arena;          /* owns the arrays */
+};
+
+/* Frees the arena; *system is empty afterwards. Safe on an empty one. */
+void cs_system_finish(struct cs_system *system);
+
+/* Sets mass (n) in kg of all particles from the scene's values, and inv_mass (n) of those that
+ * are not pinned. Pinned particles keep the inverse mass 0. */
+void cs_system_set_masses(struct cs_system *system);
+
+/* Appends "particle 312 (body 0, column 24, row 4)", or "(body 0, vertex 312)" for a mesh. */
+void cs_system_print_particle(const struct cs_system *system, uint32_t particle,
+                              struct cs_text *out);
+
+#endif

@@ -1,0 +1,245 @@
+/* advance_check.c - finds steps without commit, numbers that are not finite, and pinned
+ * particles that moved. */
+#include "sim/run_host.h"
+
+#include "base/clock.h"
+#include "base/vector.h"
+#include "model/event/event_state.h"
+#include "model/event/events.h"
+#include "model/force/diagnostics.h"
+#include "model/force/terms.h"
+#include "model/system/shape_clusters.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Relative to 1 + |t|: the rounding that a sum of steps may leave at the end. */
+#define ROUNDING 1e-9
+
+/* One step of the FNV-1a hash over 64-bit words instead of bytes. Both operations are
+ * invertible, so a change of a single word always changes the hash. */
+static uint64_t add_word(uint64_t sum, double value) {
+    uint64_t word;
+    memcpy(&word, &value, sizeof word);
+    return (sum ^ word) * 0x100000001b3u;
+}
+
+/* Hash of x and v of the pinned particles, without those that commit places on their path. */
+static uint64_t sum_pins(const struct cs_system *system) {
+    const struct cs_events *events = system->events;
+    const size_t n = system->view.n;
+    uint64_t sum = 0xcbf29ce484222325u;
+    for (uint32_t p = 0; p < system->n_pinned; p++) {
+        const size_t i = system->pinned[p];
+        const bool on_path = events && events->has_grabs && events->held_by[i];
+        for (size_t c = 0; c < 6 && !on_path; c++)
+            sum = add_word(sum, system->state[c * n + i]);
+    }
+    return sum;
+}
+
+void cs_advance_check_begin(struct cs_advance_check *left, const struct cs_system *system,
+                            double t) {
+    *left = (struct cs_advance_check){
+        .system = system, .pins_hash = sum_pins(system), .last_commit = t};
+}
+
+/* The first particle with a number that is not finite, or n. 0 * x is 0 for finite x, else
+ * NaN: the sum tests all numbers without a branch, and the loop below runs after a failure
+ * only. */
+static uint32_t find_not_finite(const struct cs_system *system) {
+    const size_t n = system->view.n;
+    double sum = 0;
+    for (size_t k = 0; k < 6 * n; k++)
+        sum += 0 * system->state[k];
+    uint32_t i = sum == 0 ? system->view.n : 0;
+    for (; i < n; i++)
+        for (size_t c = 0; c < 6; c++)
+            if (!isfinite(system->state[c * n + i]))
+                return i;
+    return i;
+}
+
+bool cs_advance_check_passes(const struct cs_advance_check *left, double t,
+                             struct cs_text *why) {
+    const struct cs_system *system = left->system;
+    if (!(fabs(left->last_commit - t) <= ROUNDING * (1 + fabs(t)))) {
+        cs_text_add(
+            why, "advance should have ended at t = %.9g s, but the last commit was at %.9g s",
+            t, left->last_commit);
+        return false;
+    }
+    const uint32_t particle = find_not_finite(system);
+    if (particle < system->view.n) {
+        cs_text_add(why, "after its last commit it left non-finite values in ");
+        cs_system_print_particle(system, particle, why);
+    } else if (sum_pins(system) != left->pins_hash)
+        cs_text_add(why, "it moved a pinned particle");
+    return !why->length;
+}
+
+/* Reads the clocks seldom enough to cost nothing per step. */
+
+void cs_budget_start(struct cs_budget *budget, double cpu_seconds) {
+    *budget = (struct cs_budget){.end = cs_clock_cpu() + cpu_seconds,
+                                 .last_check = cs_clock_wall(),
+                                 .check_interval = 1};
+}
+
+/* Reads the clock about once per millisecond, as the clock of the process is a system call.
+ * The interval halves if the last one took longer and doubles if it took less, up to 1024
+ * steps. */
+bool cs_budget_is_over(struct cs_budget *budget) {
+    enum { MOST_BETWEEN = 1024 };
+    if (budget->end == 0 || ++budget->steps < budget->check_interval)
+        return false;
+    const double now = cs_clock_wall();
+    const bool seldom = now - budget->last_check > 1e-3;
+    budget->check_interval = seldom ? budget->check_interval / 2 : budget->check_interval * 2;
+    budget->check_interval = budget->check_interval < 1              ? 1
+                             : budget->check_interval > MOST_BETWEEN ? MOST_BETWEEN
+                                                                     : budget->check_interval;
+    budget->last_check = now;
+    budget->steps = 0;
+    return cs_clock_cpu() > budget->end;
+}
+
+/* Detects a blow-up; the bound is derived in blow_up_check.h. */
+
+/* The bound on kinetic energy at t, in J. */
+static double energy_at(const struct cs_blow_up_check *bound, double t) {
+    const double pushed = bound->force_gain + sqrt(bound->force_rate) * (t - bound->t_forces);
+    return 100 * (bound->start_energy + bound->speed + pushed * pushed);
+}
+
+/* Sum of F^2 / m in J/s2, F the sum of the greatest forces that the terms can exert on a
+ * particle. Forces that give none only convert energy that is there, or take it away. */
+static double force_power_bound(const struct cs_system *system) {
+    double sum = 0;
+    for (size_t i = 0; i < system->view.n; i++) {
+        double push = 0;
+        for (uint32_t k = 0; k < system->n_terms; k++)
+            if (system->terms[k]->max_acceleration)
+                push += system->terms[k]->max_acceleration(system, i);
+        sum += push * push / system->mass[i];
+    }
+    return sum;
+}
+
+void cs_blow_up_check_set(struct cs_blow_up_check *bound, const struct cs_system *system,
+                          double t) {
+    const double *x = system->state, *v = x + 3 * (size_t)system->view.n;
+    const struct cs_energy energy = cs_diagnostics_energy(system, t, x, v);
+    *bound = (struct cs_blow_up_check){
+        .start_energy = energy.elastic + energy.other +
+                        cs_springs_energy_at_twice(&system->springs) +
+                        cs_shape_clusters_energy(system),
+        .speed = 2 * energy.kinetic,
+        .force_rate = force_power_bound(system),
+        .t_forces = t,
+    };
+}
+
+/* Continues the bound from t on with other forces: closes the piece before t, and takes the
+ * larger rate of those now and at the end of the ramps. Leaves the values at t. */
+static void follow_looks(struct cs_blow_up_check *bound, struct cs_system *system, double t) {
+    bound->force_gain += sqrt(bound->force_rate) * (t - bound->t_forces);
+    bound->t_forces = t;
+    bound->force_rate = force_power_bound(system);
+    cs_events_move_values(system, system->events->end);
+    bound->force_rate = fmax(bound->force_rate, force_power_bound(system));
+    cs_events_move_values(system, t);
+}
+
+/* Two bounds are made, with the values at the begin and at the end of the segment that begins,
+ * and the larger energies and forces count: ramps are linear, and each force grows with its
+ * value. The speed w of paths adds 2 m w^2 for every particle, since a grab may pull all along.
+ */
+void cs_blow_up_check_after_events(struct cs_blow_up_check *bound, struct cs_system *system,
+                                   double t) {
+    struct cs_blow_up_check now;
+    if (system->events->begin < t) {
+        follow_looks(bound, system, t);
+        return;
+    }
+    cs_blow_up_check_set(&now, system, t);
+    cs_events_move_values(system, system->events->end);
+    cs_blow_up_check_set(bound, system, t);
+    cs_events_move_values(system, t);
+    bound->start_energy = fmax(bound->start_energy, now.start_energy);
+    bound->force_rate = fmax(bound->force_rate, now.force_rate);
+    const double speed = cs_events_speed(system);
+    for (size_t i = 0; i < system->view.n; i++)
+        bound->speed += 2 * system->mass[i] * speed * speed;
+}
+
+typedef double lanes __attribute__((vector_size(2 * sizeof(double))));
+
+static inline lanes load(const double *from) {
+    lanes out;
+    memcpy(&out, from, sizeof out);
+    return out;
+}
+
+/* The state to check, component-major. */
+struct watched {
+    size_t n;
+    const double *mass, *x, *v;
+};
+
+/* Kinetic energy in J of the particles [begin, end); not finite if a position or velocity
+ * there is not: s - s is 0 for a finite s = x + y + z, else NaN. In lanes, because it runs
+ * after every step. */
+static double watch_part(const void *arg, size_t begin, size_t end) {
+    enum { LANES = sizeof(lanes) / sizeof(double) };
+    const struct watched *watched = arg;
+    const size_t n = watched->n;
+    const double *mass = watched->mass, *x = watched->x, *v = watched->v;
+    /* two sums of each, so that one addition need not wait for the one before */
+    lanes e[2] = {{0}}, p[2] = {{0}};
+    size_t i = begin;
+    for (; i + 2 * LANES <= end; i += 2 * LANES)
+        for (size_t k = 0; k < 2; k++) {
+            const size_t at = i + k * LANES;
+            const lanes a = load(v + at), b = load(v + n + at), c = load(v + 2 * n + at);
+            const lanes sum = load(x + at) + load(x + n + at) + load(x + 2 * n + at);
+            e[k] += load(mass + at) * (a * a + b * b + c * c);
+            p[k] += sum - sum;
+        }
+    double energy = e[0][0] + e[0][1] + e[1][0] + e[1][1];
+    double places = p[0][0] + p[0][1] + p[1][0] + p[1][1];
+    for (; i < end; i++) {
+        const double sum = x[i] + x[n + i] + x[2 * n + i];
+        energy += mass[i] * (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+        places += sum - sum;
+    }
+    return 0.5 * energy + places;
+}
+
+/* Kinetic energy decides: a number that is not finite anywhere makes it so. */
+bool cs_blow_up_check_step(const struct cs_blow_up_check *bound, struct cs_run *run, double t,
+                           const double *x, const double *v) {
+    const size_t n = run->system->view.n;
+    const struct watched watched = {n, run->system->mass, x, v};
+    const double energy = cs_vector_sum(n, watch_part, &watched), most = energy_at(bound, t);
+    // NaN is not <= most
+    if (energy <= most)
+        return false;
+
+    /* report the first particle that is not finite, else the fastest */
+    uint32_t worst = 0;
+    double fastest = -1;
+    run->outcome = CS_UNBOUNDED;
+    for (size_t i = 0; i < n && run->outcome == CS_UNBOUNDED; i++) {
+        const double speed = v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i];
+        const double place = x[i] + x[n + i] + x[2 * n + i];
+        if (speed > fastest || !isfinite(speed + place)) {
+            fastest = speed;
+            worst = (uint32_t)i;
+        }
+        if (!isfinite(speed + place))
+            run->outcome = CS_NOT_FINITE;
+    }
+    run->blow_up = (struct cs_blow_up){t, worst, energy, most};
+    return true;
+}
