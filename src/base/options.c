@@ -1,5 +1,5 @@
 /* Defaults, checks and printing of any struct by its table of options. The kinds' differences
- * are in value_kind.c; here is what they have in common. */
+ * are in options.c; here is what they have in common. */
 #include "base/options.h"
 
 #include "base/json_writer.h"

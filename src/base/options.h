@@ -66,7 +66,7 @@ void cs_option_print_range(const struct cs_option *row, struct cs_text *out);
 void cs_option_print_expected(const struct cs_option *row, struct cs_text *out);
 
 /* The kinds of values that an option holds, and all that depends on the kind. A
- * new kind is a line of enum cs_type and a row of the table in value_kind.c. */
+ * new kind is a line of enum cs_type and a row of the table in options.c. */
 
 /* JSON form of a value: a number or a list of numbers, true or false, a name of the option's
  * choices, a text, an object, a list of objects. */

@@ -31,7 +31,7 @@ bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now);
 
 /* Fills `vertices` with a visible collider in world coordinates, counter-clockwise seen from
  * outside. The square of a plane lies a little below its position, or it would show through
- * cloth on it. A sphere is filled as far as it is visible from eye (sphere_cap.h). */
+ * cloth on it. A sphere is filled as far as it is visible from eye (collider_mesh.h). */
 void cs_solids_fill(const struct cs_collider_geometry *solids, uint32_t i, const float eye[4]);
 
 /* The visible side of a sphere as triangles, computed without sines.

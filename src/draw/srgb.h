@@ -107,7 +107,7 @@ CS_INLINE void cs_srgb_store(const struct cs_srgb *tone, uint32_t colour,
  * stops differ for readers who see no green, and by lightness in grey. */
 void cs_colour_stops(int32_t look, float stops[6][4]);
 
-/* Converts 0xRRGGBB in sRGB to linear RGB, within 0.002 (colour.c). */
+/* Converts 0xRRGGBB in sRGB to linear RGB, within 0.002 (srgb.c). */
 void cs_colour_linear(uint32_t hex, float linear[3]);
 
 /* Sets a dark or a light ink in linear RGB, the one with more contrast to a background. */

@@ -332,7 +332,7 @@ struct cs_scene {
     struct cs_list bodies;    /* struct cs_body, at least one */
     struct cs_list colliders; /* struct cs_collider */
     struct cs_contact_keys contact;
-    int32_t crossings; /* enum cs_crossings_policy, -1: absent: see crossing_policy.h */
+    int32_t crossings; /* enum cs_crossings_policy, -1: absent: see body_pairs.h */
     struct cs_body_pairs_keys pairs;
     struct cs_forces forces;
     struct cs_list events; /* struct cs_event */

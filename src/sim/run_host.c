@@ -1,4 +1,4 @@
-/* advance_check.c - finds steps without commit, numbers that are not finite, and pinned
+/* Finds steps without commit, numbers that are not finite, and pinned
  * particles that moved. */
 #include "sim/run_host.h"
 
@@ -104,7 +104,7 @@ bool cs_budget_is_over(struct cs_budget *budget) {
     return cs_clock_cpu() > budget->end;
 }
 
-/* Detects a blow-up; the bound is derived in blow_up_check.h. */
+/* Detects a blow-up; the bound is derived in run_host.h. */
 
 /* The bound on kinetic energy at t, in J. */
 static double energy_at(const struct cs_blow_up_check *bound, double t) {

@@ -1,7 +1,7 @@
 /* stability_verdict.h - verdicts on a run: numerical criteria for the terms of the cloth
  * thesis.
  *
- * A run is judged by a trusted run of the same scene (stability_reference.h). The criteria
+ * A run is judged by a trusted run of the same scene (stability_state.h). The criteria
  * bound speed and energy by multiples of those of the trusted run, because absolute bounds
  * would depend on the scene. */
 #ifndef CS_STABILITY_VERDICT_H

@@ -5,7 +5,7 @@
  * one would overflow 32 bits: E_k >= 0 is solved for the first and the last pixel of a row in
  * 64 bits, once per sample and row.
  *
- * Depth is written as in OpenGL, then reversed to whole steps (clip_project.h). Interpolation
+ * Depth is written as in OpenGL, then reversed to whole steps (triangle.h). Interpolation
  * may leave the range of the corners at the border of a triangle; the clamp to that range
  * removes the overshoot. */
 #include "draw/cpu/raster.h"

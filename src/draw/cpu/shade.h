@@ -12,7 +12,7 @@ enum { CS_FRAGMENTS = 256 };
 /* A surface style (surface_style.h) in the form and precision that shading needs. */
 struct cs_shading_material {
     enum cs_surface_mode mode;
-    int attributes;                   /* that shading wants: see clip_project.h */
+    int attributes;                   /* that shading wants: see triangle.h */
     bool has_ambient_occlusion;       /* attribute 3 is the depth of a fold (mesh.h) */
     float base[2][3];                 /* linear colour of front, back */
     float ambient, diffuse, specular; /* reflection coefficients */

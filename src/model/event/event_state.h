@@ -1,6 +1,6 @@
 /* event_state.h - the state of the events of a run: times, holders, values in transition.
  *
- * All of it goes into a checkpoint (event_serialise.h), but for the pointers. */
+ * All of it goes into a checkpoint (events.h), but for the pointers. */
 #ifndef CS_EVENT_STATE_H
 #define CS_EVENT_STATE_H
 

@@ -22,7 +22,7 @@
 /* Builds the events of a system whose other arrays exist, from its arena. CS_ERR_MEMORY. */
 enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error);
 
-/* Sets the system's bounds on frequency and damping (spectral_bounds.h) to the largest that
+/* Sets the system's bounds on frequency and damping (diagnostics.h) to the largest that
  * its ramps and releases can reach. They must hold for the whole run, as view->omega and
  * view->delta promise. The system's values are restored. work has 2n doubles. */
 void cs_events_set_bounds(struct cs_system *system, double *work);

@@ -15,7 +15,7 @@ enum cs_term_use {
     CS_USE_AREA = 1u << 1     /* area (n) */
 };
 
-/* Row sums for the bounds of spectral_bounds.h: at each particle the sum of the norms of the
+/* Row sums for the bounds of diagnostics.h: at each particle the sum of the norms of the
  * 3x3 blocks in its row of a force's derivative, the diagonal block and those of its
  * neighbours. */
 struct cs_gershgorin {

@@ -5,7 +5,7 @@
  *
  * 1. particles pinned by static friction return to their positions (static_friction.h);
  * 2. every other free particle is projected against each collider in the scene's order
- *    (project_particle.h), each after the one before;
+ *    (contact_projection.h), each after the one before;
  * 3. if any was pushed, the energy of the result is limited (projection_energy.h);
  * 4. later in the commit, static friction decides which particles stick in the steps to come.
  */
@@ -94,7 +94,7 @@ double cs_step_bound_step(const struct cs_system *system,
  * Velocities change by the displacement over max(dt, a frame): a sheet too weak for its weight
  * is held, and a short step of an adaptive method does not turn a small displacement into a
  * blow. At most strain_limit_sweeps passes, every other one backwards; fewer if a pass finds
- * nothing. A pass over a grid has the order of strain_limit_grid.h, over a mesh that of the
+ * nothing. A pass over a grid has the order of strain_limit.c, over a mesh that of the
  * springs. Returns the number of corrections. x, v (3,n) in m and m/s are changed in place.
  *
  * Only stretch springs are limited: with shear and bend springs too, the passes work against

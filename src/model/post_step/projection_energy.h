@@ -7,7 +7,7 @@
  * order:
  *
  * 1. the pushes alone are accepted if they respect the limit;
- * 2. otherwise the body follows them as in an implicit step (elastic_response.h), and its
+ * 2. otherwise the body follows them as in an implicit step (projection_energy.h), and its
  *    velocity by as much as belongs to the displacement in a step of the method;
  * 3. otherwise a fraction of the correction is applied, by bisection, and the rest in later
  *    commits. Velocities never point inwards.

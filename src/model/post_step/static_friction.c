@@ -159,7 +159,7 @@ void cs_static_friction_serialise(struct cs_static_friction *stick,
     CS_SERIALISER(record, stick->n_sticking);
 }
 
-/* Exchanges the system's list of pins; see temporary_pins.h. */
+/* Exchanges the system's list of pins; see static_friction.h. */
 
 enum cs_status cs_temporary_pins_init(struct cs_temporary_pins *pins, struct cs_system *system,
                                       struct cs_arena *arena, struct cs_error *error) {

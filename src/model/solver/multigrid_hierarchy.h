@@ -2,10 +2,10 @@
  * for every matrix.
  *
  * A grid is coarsened by 2 x 2 cells. A mesh is coarsened by joining cells in pairs, twice, as
- * in double pairwise aggregation (Notay 2010), along the heaviest springs (graph_matching.h).
- * Pinned particles do not influence the aggregates, because events may pin and release them:
- * they are dead cells. A spring from a living to a dead cell (a Dirichlet spring) adds its
- * block to the diagonal of the living cell's aggregate.
+ * in double pairwise aggregation (Notay 2010), along the heaviest springs
+ * (multigrid_hierarchy.h). Pinned particles do not influence the aggregates, because events may
+ * pin and release them: they are dead cells. A spring from a living to a dead cell (a Dirichlet
+ * spring) adds its block to the diagonal of the living cell's aggregate.
  *
  * With P the prolongation, constant on each aggregate, Galerkin's product P^T A P is again a
  * matrix of masses and springs. A coarse cell has the sum of its cells' masses; two coarse

@@ -124,7 +124,7 @@ struct cs_springs {
     const struct cs_spring_run *runs;
     uint32_t n_runs, n; /* runs; springs */
 
-    /* Partition among threads (thread_partition.h). With one thread the pointers are NULL, and
+    /* Partition among threads (plan.h). With one thread the pointers are NULL, and
      * one block has all particles. */
     const struct cs_block *blocks; /* (n_blocks) ascending */
     uint32_t n_blocks;

@@ -56,7 +56,7 @@ struct cs_system {
         *contact_samples; /* contact points between particles, for colliders; NULL: none */
     const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
     struct cs_points *points;       /* NULL unless colliders are meshes (surface_points.h) */
-    struct cs_crossings *crossings; /* NULL unless asked for (crossing_policy.h) */
+    struct cs_crossings *crossings; /* NULL unless asked for (body_pairs.h) */
     struct cs_events *events;       /* NULL without events; it owns the scene's changed copy */
     struct cs_arena arena;          /* owns the arrays */
 };

@@ -21,7 +21,7 @@ static void add_edge(uint32_t *edges, uint32_t *n, uint32_t a, uint32_t b) {
 }
 
 /* Edges of a grid, ascending by both ends. A cell's diagonal runs from top right to bottom
- * left, as in faces.h. */
+ * left, as in surfaces.h. */
 static void list_grid_edges(const struct cs_body_range *body, uint32_t *edges) {
     uint32_t n = 0;
     for (uint32_t r = 0; r < body->rows; r++)

@@ -89,7 +89,7 @@ static enum cs_status print_origin(struct cs_compare *compare, struct cs_error *
     return error->status;
 }
 
-/* origin.json beside compare.csv, for compare_reproduce.h. */
+/* origin.json beside compare.csv, for compare.h. */
 static enum cs_status write_origin(const struct cs_compare *compare, struct cs_error *error) {
     char path[4096];
     snprintf(path, sizeof path, "%s/origin.json", compare->settings->folder);

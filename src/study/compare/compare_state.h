@@ -10,7 +10,7 @@
 
 /* The error norms that a comparison can be ranked by. */
 
-/* Position norms come first (see compare_norm.c); all are distances to the reference. */
+/* Position norms come first (see compare_state.c); all are distances to the reference. */
 enum cs_norm {
     CS_NORM_END,
     CS_NORM_PATH,
@@ -52,7 +52,7 @@ double cs_norm_scale(enum cs_norm norm, const struct cs_compare_reference *refer
 /* Request for a comparison. All pointers are borrowed. */
 struct cs_compare_settings {
     struct cs_recorded_run_settings run;
-    const char *methods;       /* list as in cell_list.h; NULL: all */
+    const char *methods;       /* list as in cell_list_parse.h; NULL: all */
     const char *reference[2];  /* "NAME:options" of its families, or NULL */
     double accuracy;           /* m, see compare_reference.h */
     double budget;             /* s of processor time that one run may take; 0: see below */

@@ -3,14 +3,14 @@
  *   motion    exact motions and conserved momenta               conform_motion.c
  *   order     oscillators, order, tolerance, limit, events      conform_order.c
  *   forces    each force alone, unequal masses, time            conform_forces.c
- *   energy    symmetry in time, bounded energy                  conform_energy.c
+ *   energy    symmetry in time, bounded energy                  conform_motion.c
  *   contact   incline, rest, bounce                             conform_contact.c
  *   rules     descriptor, options, commits, pins, failures      conform_rules.c
  *   fidelity  the limit of a method's iterations                conform_fidelity.c
  *   memory, threads, resume: the rules of the host              files of these names
  *
  * An error is measured against a closed form, an invariant or the independent method of
- * conform_reference.h. It is never measured against the same method at a smaller step, because
+ * conform_checks.h. It is never measured against the same method at a smaller step, because
  * a wrong limit would then pass. */
 #ifndef CS_CONFORM_CHECKS_H
 #define CS_CONFORM_CHECKS_H

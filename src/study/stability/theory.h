@@ -7,7 +7,7 @@
  * freedom.
  *
  * A step h is stable for the oscillator if the point (h^2 square, h rate) is in a set S of the
- * plane. S depends on the method only; its border is measured by amplification.h. The limit of
+ * plane. S depends on the method only; its border is measured by theory.h. The limit of
  * the system is the smallest limit over all p.
  *
  * The mode with the smallest limit is not always the fastest one. explicit-euler for example

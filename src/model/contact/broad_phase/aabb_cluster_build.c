@@ -147,7 +147,7 @@ enum cs_status cs_cluster_input_build(const struct cs_cluster_input *order,
 }
 
 /* Measures flat regions: boxes of the edges of each block, then the bound of (s - r) / sqrt(2)
- * over each block and its neighbours. Theory: flat_regions.h.
+ * over each block and its neighbours. Theory: aabb_cluster_build.h.
  *
  * The cost is one pass over the edges and 9 boxes per block, a small part of a search for
  * pairs. */

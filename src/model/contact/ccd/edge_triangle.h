@@ -14,7 +14,7 @@
  * moved by (e, e^2, e^3) with an infinitesimal e > 0. It then pierces exactly one of the
  * triangles around the vertex or beside the side where the surface continues, and none or both
  * of a fold. Triangles without area and NaN are never pierced. The order of vertices does not
- * matter. Signs: orient3d.h. */
+ * matter. Signs: edge_triangle.h. */
 bool cs_edge_crosses_triangle(const double edge[2][3], const double triangle[3][3]);
 
 /* Side of a plane on which a point lies, without rounding.

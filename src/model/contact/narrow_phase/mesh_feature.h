@@ -46,7 +46,7 @@
  * b |u| < e and x (1 - step(x)) is at most 0.2845. b is below 1/2, so both ends never overlap.
  *
  * Each inner edge is measured half by either of its triangles, and each vertex in equal parts
- * by all its triangles: feature_weights_find.c. */
+ * by all its triangles: feature_weights.c. */
 #ifndef CS_NARROW_PHASE_MESH_FEATURE_H
 #define CS_NARROW_PHASE_MESH_FEATURE_H
 
