@@ -14,6 +14,6 @@ void cs_old_name_report(const char *place, const char *old, const char *name) {
             return;
     if (n < REPORTS_MAX)
         reported[n++] = old;
-    fprintf(stderr, "clothsim: %s%s is now %s%s; the old name goes in the next release\n", place,
-            old, place, name);
+    fprintf(stderr, "clothsim: %s%s is now %s%s; the old name goes in the next release\n",
+            place, old, place, name);
 }
