@@ -66,7 +66,8 @@ static enum cs_status list_names(const char *folder, struct list *list,
         }
     }
     closedir(entries);
-    qsort(list->entries, list->n, sizeof *list->entries, by_name);
+    if (list->n)
+        qsort(list->entries, list->n, sizeof *list->entries, by_name);
     return error->status;
 }
 
