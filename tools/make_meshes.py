@@ -163,8 +163,9 @@ TWISTER = """{
 }
 """
 
-funnel()
-needles()
-tetrahedron()
-bight()
-twister()
+if __name__ == "__main__":
+    funnel()
+    needles()
+    tetrahedron()
+    bight()
+    twister()
