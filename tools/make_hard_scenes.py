@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the nine scenes of scenes/hard, in which contact is fast, thin or sharp, and their
-meshes: a star of spikes, needles, and a tube whose ends turn on chords."""
+"""Writes the scenes of scenes/hard, in which contact is fast, thin or sharp, and their meshes: a
+star of spikes, needles, and a tube whose ends turn on chords."""
 import json
 import math
 
@@ -151,6 +151,66 @@ def scenes():
     }
 
 
+def more():
+    """ten that no number of the program was chosen by"""
+    sheet = lambda y, **keys: cloth(32, 0.6, {"translate": [0.01, y, 0.02]}, **keys)
+    floor = {"floor": {"height": 0}, "friction": 0.3, "thickness": THIN}
+    mesh = lambda shape, scale, at, turn=(0, 0, 0, 1): {
+        "mesh": {"shape": shape, "scale": scale, "place": {"translate": at, "rotate": list(turn)}}}
+    hard = {"friction": 0.3, "thickness": THIN}
+    soft = {"network": {"placement": "opposed-normals", "springs": 4, "surface": 4, "seed": 3},
+            "mass": {"total": 0.2}, "springs": {"stretch": 400, "bend": 0, "damping": 0.05},
+            "friction": 0.3, "thickness": THIN}
+    moved = lambda k, to, **path: {"from": 0, "to": to, "move": {"collider": k} | path}
+    tip = (0.2798, 0.1159, 0.3647, 0.8805)
+    ringed = lambda x, turn: mesh("torus", [0.2, 0.2, 0.2], [x, 0, 0], turn) | soft | {
+        "mass": {"total": 0.1}, "springs": {"stretch": 800, "bend": 0, "damping": 0.05}}
+    return {
+        "corner": ("A sheet falls by a metre on the corner of a box.",
+                   {"bodies": [sheet(1.3)],
+                    "colliders": [mesh("box", [0.25, 0.25, 0.25], [0, 0.22, 0], tip) | hard, floor]}),
+        "wires": ("A sheet is thrown at 5 m/s on two crossed wires of 3 mm.",
+                  {"bodies": [sheet(0.5, velocity=[0, -5, 0])], "colliders": [
+                      {"capsule": {"from": [-0.5, 0.3, 0], "to": [0.5, 0.3, 0], "radius": 0.0015}} | hard,
+                      {"capsule": {"from": [0, 0.29, -0.5], "to": [0, 0.29, 0.5], "radius": 0.0015}} | hard,
+                      floor]}),
+        "press": ("A folded sheet is pressed flat between two plates.",
+                  {"bodies": [sheet(0.15)], "colliders": [
+                      mesh("box", [0.4, 0.1, 0.4], [0, 0.05, 0]) | hard,
+                      mesh("box", [0.38, 0.1, 0.38], [0.01, 0.26, 0]) | hard],
+                   "events": [moved(1, 0.5, path=[{"at": 0.5, "point": [0, -0.1, 0]}])]}),
+        "whip": ("A corner of a hanging sheet is led at up to 20 m/s to and fro.",
+                 {"bodies": [cloth(32, 0.6, {"translate": [0, 0, 0]}, start="hanging", pins=["top-left"])],
+                  "events": [grab("bottom-right", 0, 0.3, [
+                      {"at": 0.04, "point": [-0.3, 0.2, 0.5]}, {"at": 0.1, "point": [-0.4, 0.2, -0.5]},
+                      {"at": 0.15, "point": [-0.2, 0.3, 0.4]}, {"at": 0.3, "point": [-0.5, 0.4, 0]}])]}),
+        "stack": ("Ten sheets fall on one another and on a floor.",
+                  {"bodies": [cloth(12, 0.3, {"translate": [0.002 * (k % 3), 0.01 + 0.006 * k, 0.003 * (k % 2)]})
+                              for k in range(10)],
+                   "colliders": [floor], "pairs": {"among": "all", "friction": 0.3}}),
+        "hammock": ("A bear falls into a sheet that is held by its corners.",
+                    {"bodies": [sheet(0.5, pins=["top-left", "top-right", "bottom-left", "bottom-right"]),
+                                mesh("limbs", [0.25, 0.25, 0.25], [0, 0.8, 0]) | soft],
+                     "pairs": {"among": "all", "friction": 0.3}}),
+        "knife": ("A blade comes down at 5 m/s on the middle of a sheet held at two edges.",
+                  {"bodies": [sheet(0.3, pins=["left", "right"])],
+                   "colliders": [mesh("box", [0.004, 0.2, 0.3], [0.01, 0.45, 0.02]) | hard],
+                   "events": [moved(0, 0.1, path=[{"at": 0.04, "point": [0, -0.2, 0]}])]}),
+        "links": ("Two rings, one through the other, hang by some points of the first.",
+                  {"bodies": [ringed(0, (0, 0, 0, 1)) | {"pins": [0, 1, 2, 3]},
+                              ringed(0.07, (0.7071067812, 0, 0, 0.7071067812))],
+                   "pairs": {"among": "all", "friction": 0.3}}),
+        "spin": ("A sheet that turns at 30 rad/s falls on a floor.",
+                 {"bodies": [sheet(0.05) | {"cloth": {"grid": [32, 32], "size": [0.6, 0.6], "start": "flat",
+                                                      "place": {"translate": [0, 0.05, 0]}, "spin": [0, 30, 0]}}],
+                  "colliders": [floor]}),
+        "net": ("A soft ball is thrown at 10 m/s into a sheet held at its edges.",
+                {"bodies": [cloth(32, 0.6, {"translate": [0, 0, 0]}, start="hanging", pins=["edges"]),
+                            mesh("sphere", [0.15, 0.15, 0.15], [0.02, 0.01, 0.4]) | soft],
+                 "pairs": {"among": "all", "friction": 0.3}}),
+    }
+
+
 def lines(value):
     """one line, or one for each object of a list"""
     if not (isinstance(value, list) and isinstance(value[0], dict)):
@@ -160,7 +220,7 @@ def lines(value):
 
 def main():
     star(), needles(), tube()
-    for name, (about, keys) in scenes().items():
+    for name, (about, keys) in (scenes() | more()).items():
         scene = {"about": about} | keys
         scene.setdefault("contact", "force")
         scene["camera"] = {"eye": [0.7, 0.7, 1.1], "target": [0, 0.1, 0]}
