@@ -206,7 +206,8 @@ static const char *const inside_names[] = {"refuse", "move-out", NULL};
 static const struct cs_option contact_rows[] = {
     CHOICE(struct cs_contact_keys, law, contact_names, CS_CONTACT_PROJECT,
            "project: after each step particles inside a collider are moved to its surface; "
-           "force: a force between surfaces in contact range, part of the equation of motion"),
+           "force: a force between surfaces in contact range, part of the equation of motion; "
+           "the default where bodies meet or a collider is a mesh"),
     CHOICE(struct cs_contact_keys, start, inside_names, CS_CONTACT_START_REFUSE,
            "a particle that starts inside a collider: refuse the scene, or move it out first, "
            "as the report then states"),

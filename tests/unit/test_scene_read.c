@@ -207,7 +207,7 @@ TEST(checks_get_a_place) {
     cs_scene_read_text(&scene, "s.json", text, strlen(text), NULL, 0, &twice);
     UNIT_ASSERT_FAILED(&twice, CS_ERR_SCENE,
                        "found body 0 twice, expected bodies[0].self_contact");
-    text = "{\"bodies\": [" BODY ", " BODY "],\n\"pairs\": \"all\"}";
+    text = "{\"bodies\": [" BODY ", " BODY "],\n\"pairs\": \"all\", \"contact\": \"project\"}";
     cs_scene_read_text(&scene, "s.json", text, strlen(text), NULL, 0, &law);
     UNIT_ASSERT_FAILED(&law, CS_ERR_SCENE, "s.json:2:10: pairs: contact.law is project");
     cs_scene_read_text(&scene, "s.json", "{}", 2, NULL, 0, &none);

@@ -253,18 +253,17 @@ bool cs_json_put_at(struct cs_json *list, uint32_t index, struct cs_json *value)
     return done;
 }
 
-bool cs_json_wrap(struct cs_json *object, const char *key, const char *inner) {
-    cJSON *value = cJSON_DetachItemFromObjectCaseSensitive(node_of(object), key);
-    cJSON *wrapper = cJSON_CreateObject();
-    const int place = value->valueint;
-    if (!wrapper) {
-        cJSON_Delete(value);
+bool cs_json_wrap(struct cs_json *value, const char *inner) {
+    cJSON *outside = node_of(value), *inside = cJSON_CreateNull();
+    if (!inside)
         return false;
-    }
-    wrapper->valueint = place;
-    if (!cs_json_put(value_of(wrapper), inner, value_of(value))) {
-        cJSON_Delete(wrapper);
-        return false;
-    }
-    return cs_json_put(object, key, value_of(wrapper));
+    inside->type = outside->type & ~cJSON_StringIsConst;
+    inside->child = outside->child;
+    inside->valuestring = outside->valuestring;
+    inside->valuedouble = outside->valuedouble;
+    inside->valueint = outside->valueint;
+    outside->type = cJSON_Object | (outside->type & cJSON_StringIsConst);
+    outside->child = NULL;
+    outside->valuestring = NULL;
+    return cs_json_put(value, inner, value_of(inside));
 }

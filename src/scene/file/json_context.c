@@ -77,6 +77,18 @@ enum cs_status cs_json_context_fail_type(struct cs_json_context *context,
     return status;
 }
 
+const struct cs_option *cs_json_shorthand(const struct cs_table *table,
+                                          const struct cs_json *value) {
+    const enum cs_json_kind kind = cs_json_kind_of(value);
+    if (kind == CS_JSON_TEXT && table->shorthand_text)
+        return cs_option_find(table, table->shorthand_text);
+    if (kind == CS_JSON_NUMBER && table->shorthand_number)
+        return cs_option_find(table, table->shorthand_number);
+    if (kind == CS_JSON_LIST && table->shorthand_list)
+        return cs_option_find(table, table->shorthand_list);
+    return NULL;
+}
+
 /* Finds and sets values of a JSON tree by a path such as bodies[0].springs.stretch. */
 
 /* One step of a path: a key of an object or an index of a list. */
@@ -192,8 +204,27 @@ static enum cs_status make_value(const char *path, const char *value, struct cs_
     return CS_OK;
 }
 
+/* The table of what a step leads to, or NULL: an element of a list has the list's own. */
+static const struct cs_table *table_at(const struct cs_table *table, const struct step *step) {
+    if (!table || !step->key[0])
+        return table;
+    const struct cs_option *row = cs_option_find(table, step->key);
+    return row ? row->table : NULL;
+}
+
+/* Makes of a shorthand before a key the object that it stands for. */
+static enum cs_status expand_shorthand(struct cs_json *value, const struct cs_table *table,
+                                       const struct step *step, struct cs_error *error) {
+    const struct cs_option *row =
+        table && step->key[0] ? cs_json_shorthand(table, value) : NULL;
+    return !row || cs_json_wrap(value, row->name)
+               ? CS_OK
+               : cs_fail(error, CS_ERR_MEMORY, "out of memory for --set");
+}
+
 /* Descends to the parent of the path's last step, and makes missing objects and lists. */
-static enum cs_status make_parents(struct cs_json **parent, const char *path, struct step *step,
+static enum cs_status make_parents(struct cs_json **parent, const struct cs_table *table,
+                                   const char *path, struct step *step,
                                    struct cs_error *error) {
     const char *at = path;
     for (int depth = 1;; depth++) {
@@ -201,18 +232,20 @@ static enum cs_status make_parents(struct cs_json **parent, const char *path, st
             return cs_fail(error, CS_ERR_USAGE,
                            "--set %s: not a path, expected one like bodies[0].springs.stretch",
                            path);
-        if (check_step(*parent, step, path, error) || !*at)
+        if (expand_shorthand(*parent, table, step, error) ||
+            check_step(*parent, step, path, error) || !*at)
             return error->status;
         if (!member_at(*parent, step) &&
             put(*parent, step, cs_json_create(*at == '[' ? CS_JSON_LIST : CS_JSON_OBJECT),
                 error))
             return error->status;
         *parent = member_at(*parent, step);
+        table = table_at(table, step);
     }
 }
 
-enum cs_status cs_json_override(struct cs_json *root, const char *path, const char *value,
-                                struct cs_error *error) {
+enum cs_status cs_json_override(struct cs_json *root, const struct cs_table *table,
+                                const char *path, const char *value, struct cs_error *error) {
     struct step step;
     struct cs_json *parent = root, *made = NULL;
     /* its keys get into the scene, and from there into reports */
@@ -221,7 +254,7 @@ enum cs_status cs_json_override(struct cs_json *root, const char *path, const ch
                        "--set %s: the path is not UTF-8 text without control characters", path);
     if (make_value(path, value, &made, error))
         return error->status;
-    if (make_parents(&parent, path, &step, error)) {
+    if (make_parents(&parent, table, path, &step, error)) {
         cs_json_destroy(made);
         return error->status;
     }

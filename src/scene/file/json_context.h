@@ -3,6 +3,7 @@
 #define CS_JSON_CONTEXT_H
 
 #include "base/arena.h"
+#include "base/options.h"
 #include "scene/file/json.h"
 
 /* State of a reading; all pointers are borrowed. */
@@ -39,11 +40,17 @@ enum cs_status cs_json_context_fail_type(struct cs_json_context *context,
 /* Returns the value at the path, or the deepest one that exists on the way to it. */
 const struct cs_json *cs_json_nearest(const struct cs_json *root, const char *path);
 
+/* The row of the table that a plain text, number or list sets in place of the whole object, or
+ * NULL. */
+const struct cs_option *cs_json_shorthand(const struct cs_table *table,
+                                          const struct cs_json *value);
+
 /* Puts value - JSON, or a bare word, which is taken as a text - at the path. Makes missing
- * objects and lists on the way; an index is at most the length of its list (which appends). The
- * new value has no position. On failure CS_ERR_USAGE (message: "--set path: ...") or
- * CS_ERR_MEMORY; objects that were made on the way stay. */
-enum cs_status cs_json_override(struct cs_json *root, const char *path, const char *value,
-                                struct cs_error *error);
+ * objects and lists on the way, and of a shorthand of the root's table the object that it stands
+ * for; an index is at most the length of its list (which appends). The new value has no
+ * position. On failure CS_ERR_USAGE (message: "--set path: ...") or CS_ERR_MEMORY; objects that
+ * were made on the way stay. */
+enum cs_status cs_json_override(struct cs_json *root, const struct cs_table *table,
+                                const char *path, const char *value, struct cs_error *error);
 
 #endif

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/options.h"
 #include "base/status.h"
+#include "scene/body_pairs.h"
 #include "scene/file/json_context.h"
 #include "scene/file/scene_mesh.h"
 #include "scene/file/table_read.h"
@@ -107,11 +108,11 @@ static enum cs_status apply_overrides(struct cs_json *root, const struct cs_over
                                       uint32_t n, struct cs_error *error) {
     for (uint32_t i = 0; i < n; i++) {
         /* a plain name becomes an object, so that integrator.dt can be set beside it */
-        const struct cs_json *integrator = cs_json_find(root, INTEGRATOR);
+        struct cs_json *integrator = cs_json_find(root, INTEGRATOR);
         if (integrator && cs_json_kind_of(integrator) == CS_JSON_TEXT &&
-            !cs_json_wrap(root, INTEGRATOR, "name"))
+            !cs_json_wrap(integrator, "name"))
             return cs_fail(error, CS_ERR_MEMORY, "out of memory for --set");
-        if (cs_json_override(root, overrides[i].path, overrides[i].value, error))
+        if (cs_json_override(root, &cs_scene_table, overrides[i].path, overrides[i].value, error))
             return error->status;
     }
     return CS_OK;
@@ -197,6 +198,15 @@ static enum cs_status read_integrator(struct cs_json_context *context,
     return context->error->status;
 }
 
+/* Chooses the law where the scene names none: surfaces that meet are kept apart by a force. */
+static void choose_contact_law(const struct cs_json *root, struct cs_scene *scene) {
+    const struct cs_json *contact = cs_json_find(root, "contact");
+    const bool is_named = contact && (cs_json_kind_of(contact) != CS_JSON_OBJECT ||
+                                      cs_json_find(contact, "law"));
+    if (!is_named && cs_scene_has_body_contact(scene))
+        scene->contact.law = CS_CONTACT_FORCE;
+}
+
 /* Runs cs_scene_check; a failure gets the position of the faulty value. */
 static enum cs_status check(struct cs_json_context *context, const struct cs_json *root,
                             struct cs_scene *scene) {
@@ -234,6 +244,7 @@ enum cs_status cs_scene_read_text(struct cs_scene *scene, const char *path, cons
         (status = read_integrator(&context, root, scene)) ||
         (status = cs_scene_read_meshes(&context, root, scene)))
         goto done;
+    choose_contact_law(root, scene);
     status = check(&context, root, scene);
 done:
     cs_json_destroy(root);

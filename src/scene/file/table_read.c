@@ -136,19 +136,6 @@ static enum cs_status read_row(struct cs_json_context *context, const struct cs_
     return readers[cs_value_kind_of(row)->form](context, value, row, object);
 }
 
-/* The row that a plain text, number or list sets in place of the whole table, or NULL. */
-static const struct cs_option *shorthand_of(const struct cs_table *table,
-                                            const struct cs_json *value) {
-    const enum cs_json_kind kind = cs_json_kind_of(value);
-    if (kind == CS_JSON_TEXT && table->shorthand_text)
-        return cs_option_find(table, table->shorthand_text);
-    if (kind == CS_JSON_NUMBER && table->shorthand_number)
-        return cs_option_find(table, table->shorthand_number);
-    if (kind == CS_JSON_LIST && table->shorthand_list)
-        return cs_option_find(table, table->shorthand_list);
-    return NULL;
-}
-
 /* The most similar key, or NULL. */
 static const char *nearest_key(const struct cs_table *table, const char *apart,
                                const char *key) {
@@ -251,7 +238,7 @@ enum cs_status cs_table_read(struct cs_json_context *context, const struct cs_js
                              const struct cs_table *table, void *object) {
     if (table->optional)
         *(bool *)object = true;
-    const struct cs_option *shorthand = shorthand_of(table, value);
+    const struct cs_option *shorthand = cs_json_shorthand(table, value);
     if (shorthand)
         return read_row(context, value, shorthand, object);
     if (cs_json_kind_of(value) != CS_JSON_OBJECT)
