@@ -121,3 +121,34 @@ void cs_camera_fit_extremes(const struct cs_camera_fit *fit, size_t n, const dou
             out[c * CS_CAMERA_FIT_EXTREMES + k] = i < n ? x[c * n + i] : 0;
     }
 }
+
+/* Depth in m below the box of the start that a run is taken to reach: that of a floor below, or
+ * what a sheet of the box's width hangs down. */
+static double depth_below(const struct cs_scene *scene, const double low[3],
+                          const double high[3]) {
+    const double *g = scene->forces.gravity;
+    const double width = fmax(high[0] - low[0], high[2] - low[2]);
+    double depth = cs_dot(g, g) > 0 ? 0.5 * width : 0;
+    for (uint32_t k = 0; k < scene->colliders.n; k++) {
+        const struct cs_collider *collider = cs_scene_colliders(scene) + k;
+        const double below = low[1] - collider->floor.height;
+        if (collider->floor.present && below >= 0 && below < 3 * fmax(width, high[1] - low[1]))
+            depth = below;
+    }
+    return depth;
+}
+
+struct cs_camera cs_camera_fit_start(const struct cs_scene *scene, const double low[3],
+                                     const double high[3]) {
+    struct cs_camera_fit fit;
+    struct cs_camera camera;
+    double corners[3 * 8];
+    for (int k = 0; k < 8; k++)
+        for (int i = 0; i < 3; i++)
+            corners[8 * i + k] = k >> i & 1 ? high[i] : low[i];
+    for (int k = 0; k < 8; k++)
+        corners[8 + k] -= k >> 1 & 1 ? 0 : depth_below(scene, low, high);
+    cs_camera_fit_begin(&fit, &scene->camera, scene->render.size);
+    cs_camera_fit_solve(&fit, 8, corners, 0.9, &camera);
+    return camera;
+}

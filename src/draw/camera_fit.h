@@ -41,4 +41,9 @@ enum { CS_CAMERA_FIT_STEPS = 8, CS_CAMERA_FIT_EXTREMES = 4 * (CS_CAMERA_FIT_STEP
 void cs_camera_fit_extremes(const struct cs_camera_fit *fit, size_t n, const double *x,
                             double *out);
 
+/* The camera of CS_FRAME_START: it shows the box from low to high of all that there is at the
+ * start, and what is below it as far as a near floor, else by half the box's width. */
+struct cs_camera cs_camera_fit_start(const struct cs_scene *scene, const double low[3],
+                                     const double high[3]);
+
 #endif

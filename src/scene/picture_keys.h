@@ -4,7 +4,7 @@
 
 #include <clothsim/option.h>
 
-enum cs_frame_kind { CS_FRAME_GIVEN, CS_FRAME_AUTO };
+enum cs_frame_kind { CS_FRAME_GIVEN, CS_FRAME_AUTO, CS_FRAME_START };
 enum cs_projection { CS_PROJECTION_PERSPECTIVE, CS_PROJECTION_ORTHOGRAPHIC };
 struct cs_camera_key {
     double at;                /* s; NAN: not given, refused */

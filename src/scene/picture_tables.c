@@ -7,7 +7,7 @@ static const double up3[3] = {0, 1, 0};
 static const double absent3[3] = {ABSENT, ABSENT, ABSENT};
 
 static const double eye[3] = {1.2, 0.7, 2.2};
-static const char *const frame_names[] = {"given", "auto", NULL};
+static const char *const frame_names[] = {"given", "auto", "start", NULL};
 static const char *const projection_names[] = {"perspective", "orthographic", NULL};
 static const char *const camera_motions[] = {"linear", "smooth", NULL};
 static const struct cs_option key_rows[] = {
@@ -20,7 +20,8 @@ static const struct cs_table key_table = {ROWS(key_rows), .size = sizeof(struct 
 static const struct cs_option camera_rows[] = {
     CHOICE(struct cs_camera, frame, frame_names, CS_FRAME_GIVEN,
            "given: the camera stands at eye; auto: it keeps that direction, from a position "
-           "where the bodies fill the picture"),
+           "where the bodies fill the picture; start: likewise, where all that there is at the "
+           "start and the way down from it fit, the default without frame, eye, target and path"),
     VECTOR(struct cs_camera, eye, 3, "m", eye, -BIG, BIG, "position of the camera"),
     VECTOR(struct cs_camera, target, 3, "m", zero3, -BIG, BIG,
            "point that the camera looks at"),

@@ -72,3 +72,28 @@ TEST(extremes_stand_for_all) {
     cs_camera_fit_rows(&fit, &camera, N, x, rows);
     ck_assert_double_eq_tol(rows[1] - rows[0], 1.2, 0.012);
 }
+
+/* The camera of a scene that names none shows the box of the start, and the floor below it. */
+TEST(the_start_is_in_the_picture) {
+    struct cs_collider floor = {.floor = {.present = true, .height = -2}};
+    const double low[3] = {4, 0, -1}, high[3] = {6, 2, 1};
+    struct cs_scene scene = {.camera = {.frame = CS_FRAME_START,
+                                        .eye = {1, 2, 3},
+                                        .up = {0, 1, 0},
+                                        .fov = 40},
+                             .render = {.size = {640, 480}},
+                             .forces = {.gravity = {0, -9.81, 0}},
+                             .colliders = {.items = &floor, .n = 0}};
+    for (uint32_t n = 0; n < 2; n++) {
+        struct cs_camera_fit fit;
+        double rows[2];
+        scene.colliders.n = n;
+        const struct cs_camera camera = cs_camera_fit_start(&scene, low, high);
+        cs_camera_fit_begin(&fit, &camera, scene.render.size);
+        for (int k = 0; k < 8; k++) {
+            const double corner[3] = {k & 1 ? 4 : 6, k & 2 ? 2 : n ? -2 : -1, k & 4 ? -1 : 1};
+            cs_camera_fit_rows(&fit, &camera, 1, corner, rows);
+            ck_assert_msg(fabs(rows[0]) <= 0.9 + 1e-9, "corner %d at %g", k, rows[0]);
+        }
+    }
+}

@@ -207,6 +207,17 @@ static void choose_contact_law(const struct cs_json *root, struct cs_scene *scen
         scene->contact.law = CS_CONTACT_FORCE;
 }
 
+/* Chooses the camera where the scene says of none where it stands. */
+static void choose_camera(const struct cs_json *root, struct cs_scene *scene) {
+    static const char *const keys[] = {"frame", "eye", "target", "path"};
+    const struct cs_json *camera = cs_json_find(root, "camera");
+    bool is_placed = camera && cs_json_kind_of(camera) != CS_JSON_OBJECT;
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
+        is_placed = is_placed || (camera && cs_json_find(camera, keys[k]));
+    if (!is_placed)
+        scene->camera.frame = CS_FRAME_START;
+}
+
 /* Runs cs_scene_check; a failure gets the position of the faulty value. */
 static enum cs_status check(struct cs_json_context *context, const struct cs_json *root,
                             struct cs_scene *scene) {
@@ -245,6 +256,7 @@ enum cs_status cs_scene_read_text(struct cs_scene *scene, const char *path, cons
         (status = cs_scene_read_meshes(&context, root, scene)))
         goto done;
     choose_contact_law(root, scene);
+    choose_camera(root, scene);
     status = check(&context, root, scene);
 done:
     cs_json_destroy(root);
