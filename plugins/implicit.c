@@ -2,20 +2,20 @@
  *
  * With K = df/dx, D = df/dv of CS_PART_LINEARISED at (x, v), and step h:
  *
- *   implicit-linearised  (M - h D - h^2 K) dv = h (f + h K v)                the whole system
+ *   implicit-linearised  (M - h D - h^2 K) dv = h (f + h K (v - w))          the whole system
  *
  *   implicit-block       (m I - h D_ii - h^2 K_ii) dv_i = h (f_i + h K_ii v_i)  each particle
  *
  * and then v' = v + dv, x' = x + h v'. The first is Baraff and Witkin 1998 (cloth thesis, eq.
- * 5.20); it is one Newton step of implicit Euler. The second is the cloth thesis's shortcut
- * (sec. 5.3, end): K_ii v_i treats a particle that moves with its neighbours as if they stood
- * still, which is a drag of size h K_ii. It is stable because it is nearly frozen, and
- * approaches the equation of motion only as h K h / m goes to 0.
+ * 5.20); it is one Newton step of implicit Euler. w is the velocity of the obstacles in contact
+ * (host->euler_setup). The second is the cloth thesis's shortcut (sec. 5.3, end): K_ii v_i
+ * treats a particle that moves with its neighbours as if they stood still, which is a drag of
+ * size h K_ii. It is stable because it is nearly frozen, and approaches the equation of motion
+ * only as h K h / m goes to 0.
  */
 #include "fixed_step.h"
 
 #include <clothsim/small.h>
-#include <string.h>
 
 #define DT_HELP "maximum step; 0: one step per frame"
 #define DT_MAX  10
@@ -49,11 +49,8 @@ static const struct cs_option block_rows[] = {
 struct linearised {
     struct fixed_step loop; /* first: the loop's functions take it for the whole */
     double rtol;
-    uint32_t flags;   /* of solve_setup */
-    double *f;        /* (3,n) in N, then h (f - D v) in N s */
-    double *av;       /* (3,n) in N s: A v */
+    uint32_t flags;   /* of euler_setup */
     double *b;        /* (3,n) in N s: the right-hand side */
-    const double *v;  /* (3,n) of the running step, borrowed */
     double *dv;       /* (3,n) in m/s */
     double *external; /* (3,n) in N: CS_PART_FREE_FALL at the last restart */
 };
@@ -94,47 +91,17 @@ CS_CLONES static void move(size_t n, double h, const double *dv, double *x, doub
     }
 }
 
-/* b = h (f + h K v) with h^2 K v = M v - h D v - A v, the K that is in A: the exact K of a
- * spring that is nearly closed would be huge here and clamped there, and throw the particles
- * apart. */
-CS_CLONES static void build_rhs(struct linearised *self) {
-    const struct cs_host *host = self->loop.host;
-    const double *mass = host->view->mass;
-    const size_t n = host->view->n;
-    for (size_t c = 0; c < 3; c++)
-        for (size_t i = 0, k = c * n; i < n; i++, k++)
-            self->b[k] = self->f[k] + (mass[i] * self->v[k] - self->av[k]);
-}
-
 static enum cs_step step_linearised(struct fixed_step *loop, double t, double h, double *x,
                                     double *v) {
     struct linearised *self = (struct linearised *)loop;
     const struct cs_host *host = loop->host;
-    const size_t n = host->view->n;
-    enum cs_step status = host->solve_setup(host->ctx, t, x, v, 1, -h, -h * h, self->flags);
+    enum cs_step status = host->euler_setup(host->ctx, t, h, x, v, self->flags, self->b);
     if (status != CS_STEP_OK)
         return status;
-    host->force(host->ctx, t, x, v, CS_PART_ALL, self->f);
-    host->jvp(host->ctx, t, x, v, CS_PART_LINEARISED, NULL, v, self->dv);
-    for (size_t k = 0; k < 3 * n; k++)
-        self->f[k] = h * (self->f[k] - self->dv[k]);
-
-    /* a second time where the host had to clamp an exact A after b was made with it */
-    self->v = v;
-    host->matrix_product(host->ctx, v, self->av);
-    for (bool same = false; !same && status == CS_STEP_OK;) {
-        build_rhs(self);
-        start_solve(self, h);
-        status = host->solve(host->ctx, self->b, self->rtol, self->dv);
-        same = true;
-        if (!(self->flags & CS_SOLVE_PSD)) {
-            memcpy(self->b, self->av, 3 * n * sizeof *self->b);
-            host->matrix_product(host->ctx, v, self->av);
-            same = !memcmp(self->b, self->av, 3 * n * sizeof *self->b);
-        }
-    }
+    start_solve(self, h);
+    status = host->solve(host->ctx, self->b, self->rtol, self->dv);
     if (status == CS_STEP_OK)
-        move(n, h, self->dv, x, v);
+        move(host->view->n, h, self->dv, x, v);
     return status;
 }
 
@@ -244,10 +211,11 @@ static enum cs_step create_linearised(const struct cs_host *host, const void *op
     self->loop = fixed_step_of(host, asked->dt, step_linearised);
     self->rtol = asked->rtol;
     self->flags = asked->hessian == 0 ? CS_SOLVE_PSD : 0;
-    if (!(self->f = take(host, 3)) || !(self->b = take(host, 3)) ||
-        !(self->av = take(host, 3)) || !(self->dv = take(host, 3)) ||
+    if (!(self->b = take(host, 3)) || !(self->dv = take(host, 3)) ||
         !(self->external = take(host, 3)))
         return CS_STEP_FAIL;
+    if (!CS_HAS(host, euler_setup))
+        return host->fail(host->ctx, "the host is older than this module: no euler_setup");
     return fixed_step_guard(&self->loop, NULL);
 }
 
@@ -277,7 +245,7 @@ static const struct cs_integrator implicit_linearised = {
     .source = "Baraff, Witkin 1998; cloth thesis, eq. 5.20",
     .order = 1,
     .order_damped = 1,
-    .needs = CS_NEED_JVP | CS_NEED_SOLVE,
+    .needs = CS_NEED_SOLVE,
     .traits = CS_IMPLICIT,
     .options = linearised_rows,
     .n_options = sizeof linearised_rows / sizeof linearised_rows[0],

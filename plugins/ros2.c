@@ -10,6 +10,10 @@
  * and g^2 K p = M p - g D p - A p, so that it is the K of A: the exact one of a nearly closed
  * spring would be huge here and clamped there.
  *
+ * Obstacles that move make F depend on t. With t as one more variable of y, whose k are 1 and
+ * -1, the right-hand sides get g dF/dt and -g dF/dt; for contact that is K (v - w) in place of
+ * K v, with w the velocity of the obstacle's surface (host->euler_setup).
+ *
  * A step is refused and halved if it moves the ends of a spring against each other by more than
  * half its length, in a stage or as a whole: the linearisation has no relation to large
  * rotations. So is one whose stage passes over contact.
@@ -40,6 +44,7 @@ struct method {
     double *k1, *k2; /* (3,n) in m/s2: kv of both stages, M^-1 b before */
     double *bx, *b;  /* (3,n) right-hand side */
     double *xn, *vn; /* (3,n) state of the second stage, then of the step's end */
+    double *drift;   /* (3,n) in N: g dF/dt by obstacles that move; NULL: none does */
 };
 
 /* b += g K bx, as (M bx - g D bx - A bx) / g; work: (3,n) */
@@ -54,6 +59,24 @@ static void add_stiffness(struct method *self, double t, double g, const double 
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
             self->b[c * n + i] += (view->mass[i] * self->bx[c * n + i] - work[c * n + i]) / g;
+}
+
+/* A at the step's begin, and the drift: the right-hand side of a step of implicit Euler of
+ * length g holds it, beside what add_stiffness finds without the obstacles' motion. */
+static enum cs_step set_up(struct method *self, double t, double g, const double *x,
+                           const double *v) {
+    const struct cs_host *host = self->base.fixed.host;
+    if (!self->drift)
+        return host->solve_setup(host->ctx, t, x, v, 1, -g, -g * g, CS_SOLVE_PSD);
+    return host->euler_setup(host->ctx, t, g, x, v, CS_SOLVE_PSD, self->drift);
+}
+
+/* b += drift, which holds g (f + g K (v - w)) before, with b = f + g K v */
+static void add_drift(struct method *self, double g) {
+    for (size_t k = 0; self->drift && k < 3 * (size_t)self->base.fixed.host->view->n; k++) {
+        self->drift[k] = self->drift[k] / g - self->b[k];
+        self->b[k] += self->drift[k];
+    }
 }
 
 /* kv from A kv = b, started from a free fall: kv = M^-1 b */
@@ -99,7 +122,7 @@ static enum cs_step take(struct method *self, struct span *span, double *x, doub
     const struct cs_view *view = host->view;
     const size_t n = view->n;
     double *k1 = self->k1, *k2 = self->k2, *bx = self->bx, *b = self->b;
-    enum cs_step status = host->solve_setup(host->ctx, t, x, v, 1, -g, -g * g, CS_SOLVE_PSD);
+    enum cs_step status = set_up(self, t, g, x, v);
     if (status != CS_STEP_OK)
         return status;
 
@@ -107,6 +130,7 @@ static enum cs_step take(struct method *self, struct span *span, double *x, doub
     host->force(host->ctx, t, x, v, CS_PART_ALL, b);
     memcpy(bx, v, 3 * n * sizeof *v);
     add_stiffness(self, t, g, x, v, k1);
+    add_drift(self, g);
     if ((status = solve(self, k1)) != CS_STEP_OK)
         return status;
     for (size_t k = 0; k < 3 * n; k++) {
@@ -131,6 +155,8 @@ static enum cs_step take(struct method *self, struct span *span, double *x, doub
             bx[k] = self->vn[k] - 2 * (v[k] + g * k1[k]);
         }
     add_stiffness(self, t, g, x, v, k2);
+    for (size_t k = 0; self->drift && k < 3 * n; k++)
+        b[k] -= self->drift[k];
     if ((status = solve(self, k2)) != CS_STEP_OK)
         return status;
     /* kx = bx + g kv in either stage */
@@ -170,8 +196,12 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         return CS_STEP_FAIL;
     struct method *self = (struct method *)base;
     self->rtol = asked->rtol;
-    double **const arrays[] = {&self->k1, &self->k2, &self->bx, &self->b, &self->xn, &self->vn};
-    return step_halving_alloc(host, arrays, 6);
+    double **const arrays[] = {&self->k1, &self->k2, &self->bx,   &self->b,
+                               &self->xn, &self->vn, &self->drift};
+    // obstacles are in the view if they move; only a force of theirs is in the matrix
+    const bool drifts = host->view->n_colliders && CS_HAS(host, euler_setup) &&
+                        CS_HAS(host, contact_blocks) && host->contact_blocks;
+    return step_halving_alloc(host, arrays, drifts ? 7 : 6);
 }
 
 const struct cs_integrator ros2 = {

@@ -12,6 +12,7 @@
 #include "model/force/terms.h"
 #include "sim/commit.h"
 #include "sim/energy_ledger.h"
+#include "sim/linear_setup.h"
 #include "sim/trace.h"
 
 #include <math.h>
@@ -140,55 +141,9 @@ static void host_force_diagonal(void *ctx, double t, const double *x, const doub
     cs_trace_vector(host, "force", "f", t, f);
 }
 
-/* Sets the solver up again with a matrix that is closer to positive definite: first
- * CS_SOLVE_PSD, which drops the transverse part of compressed springs, then CS_SOLVE_BOUND
- * for friction on curved surfaces too. Returns false if both are already set. */
-static bool clamp(struct cs_run_host *host) {
-    struct cs_matrix matrix = host->linear.matrix;
-    if (matrix.psd && matrix.bound)
-        return false;
-    host->run->counts.clamped_setups++;
-    matrix.bound = matrix.psd;
-    matrix.psd = true;
-    cs_linear_setup(&host->linear, &matrix);
-    return true;
-}
-
-/* Prepares A at (t, x, v). Copies the state, because host_solve may have to set up again
- * after the method has moved on. A diagonal block that is not definite clamps at once. */
-static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const double *v,
-                                     double cm, double cd, double ck, uint32_t flags) {
-    struct cs_run_host *host = ctx;
-    const size_t bytes = 3 * sizeof *x * host->run->system->view.n;
-    cs_move_values(host, t);
-    if (!host->linear.system)
-        return host_fail(ctx, "solve was used without CS_NEED_SOLVE");
-    if (!(cm > 0) || !(cd <= 0) || !(ck <= 0))
-        return host_fail(ctx, "solve needs cm > 0, cd <= 0 and ck <= 0, found %g, %g, %g", cm,
-                         cd, ck);
-    cs_trace_state(host, "solve set-up", t, x, v);
-    const double begin = cs_stage_begin(host);
-    host->run->counts.solve_setups++;
-    memcpy(host->setup_x, x, bytes);
-    if (host->setup_v)
-        memcpy(host->setup_v, v, bytes);
-    const struct cs_matrix matrix = {.t = t,
-                                     .x = host->setup_x,
-                                     .v = host->setup_v,
-                                     .cm = cm,
-                                     .cd = cd,
-                                     .ck = ck,
-                                     .psd = flags & CS_SOLVE_PSD,
-                                     .bound = flags & CS_SOLVE_BOUND};
-    if (!cs_linear_setup(&host->linear, &matrix))
-        clamp(host);
-    cs_stage_end(host, CS_STAGE_SOLVE, begin);
-    return CS_STEP_OK;
-}
-
-/* Solves A u = b by conjugate gradients. If these meet p.Ap <= 0, A is clamped, u starts
- * again from 0, and all iterations count. Fails at the iteration limit, or if a clamped A is
- * still indefinite. */
+/* Solves A u = b by conjugate gradients. If these meet p.Ap <= 0, A is clamped, the b of
+ * euler_setup with it, u starts again from 0, and all iterations count. Fails at the iteration
+ * limit, or if a clamped A is still indefinite. */
 static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *u) {
     struct cs_run_host *host = ctx;
     uint64_t iterations;
@@ -200,7 +155,7 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
     enum cs_linear_end end = cs_linear_solve(&host->linear, b, rtol, u, &iterations, &residual);
     host->run->counts.solve_iterations += iterations;
     // set-up tests diagonal blocks alone: an indefinite matrix may show only here
-    while (end == CS_LINEAR_INDEFINITE && clamp(host)) {
+    while (end == CS_LINEAR_INDEFINITE && cs_host_clamp(host, b)) {
         memset(u, 0, 3 * sizeof *u * host->run->system->view.n);
         end = cs_linear_solve(&host->linear, b, rtol, u, &iterations, &residual);
         host->run->counts.solve_iterations += iterations;
@@ -355,11 +310,12 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .jvp = host_jvp,
         .diagonal = host_diagonal,
         .force_diagonal = host_force_diagonal,
-        .solve_setup = host_solve_setup,
+        .solve_setup = cs_host_solve_setup,
         .solve = host_solve,
         .matrix_product = host_matrix_product,
         .commit = cs_host_commit,
         .may_overstep = may_pass(system),
+        .euler_setup = cs_host_euler_setup,
     };
     cs_blow_up_check_set(&host->blow_up, system, 0);
     if (add_rate(host, error) || add_contact(host, error))

@@ -88,6 +88,14 @@ void cs_advance_check_begin(struct cs_advance_check *left, const struct cs_syste
 bool cs_advance_check_passes(const struct cs_advance_check *left, double t,
                              struct cs_text *why);
 
+/* The step of the last euler_setup, whose b follows A where that has to be clamped. The arrays
+ * are the method's. */
+struct cs_euler_step {
+    double t, h;         /* s */
+    const double *x, *v; /* (3,n) in m and m/s */
+    double *b;           /* (3,n) in N s; NULL: solve_setup came last */
+};
+
 /* One per run, owned by struct cs_run; ctx of the method's calls. */
 struct cs_run_host {
     struct cs_host table;    /* the calls that the method sees */
@@ -97,6 +105,7 @@ struct cs_run_host {
         *setup_x; /* (3,n) in m: positions at the last solve_setup, for a clamped second one */
     double
         *setup_v; /* (3,n) in m/s: its velocities; NULL: no part of the matrix depends on v */
+    struct cs_euler_step euler;
     double *bounds_work; /* (2n) scratch; NULL: no force has bounds at a state alone */
     struct cs_contact_projection contact; /* only with contact by projection */
     double penetration_max; /* m behind a surface that a step may end, of contact by

@@ -127,6 +127,17 @@ static void trap_blocks(const struct cs_system *system, const struct cs_matrix *
     }
 }
 
+static void trap_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                          double *y) {
+    const size_t n = system->view.n;
+    for (size_t i = 0; i < n; i++) {
+        const double q = depth(system, matrix->x, i);
+        const double come = -matrix->ck * 3 * planted.trap * q * q * along(n, matrix->v, i);
+        for (size_t c = 0; c < 3; c++)
+            y[c * n + i] += come * planted_direction[c];
+    }
+}
+
 static void trap_bound(const struct cs_system *system, const struct cs_eval *at,
                        const struct cs_gershgorin *sums) {
     for (size_t i = 0; i < system->view.n; i++) {
@@ -145,6 +156,7 @@ const struct cs_term cs_term_trap = {
     .energy = trap_energy,
     .energy_kind = CS_ENERGY_OTHER,
     .add_blocks = trap_blocks,
+    .add_approach = trap_approach,
     .add_state_bound = trap_bound,
 };
 

@@ -89,6 +89,8 @@ TEST(bits_and_calls_agree) {
                       "%s: its bit is another's", term->name);
         ck_assert_msg(!linearised || term->add_jvp, "%s: in the matrix, no jvp", term->name);
         ck_assert_msg(shares == linearised, "%s: %d shares of the matrix", term->name, shares);
+        ck_assert_msg(!term->add_blocks == !term->add_approach,
+                      "%s: only one of add_blocks and add_approach", term->name);
         ck_assert_msg(!linearised || term->add_bound || term->add_state_bound,
                       "%s: in the matrix, no bound", term->name);
         ck_assert_msg(!(term->part_bits & CS_PART_WITH_ENERGY) == !term->energy,

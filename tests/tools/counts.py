@@ -14,7 +14,7 @@ from pathlib import Path
 
 # what may be found at most, or at least
 LIMITS = {
-    "functions with >= 7 parameters": ("most", 10),
+    "functions with >= 7 parameters": ("most", 11),
     ".c files without head comment": ("most", 0),
     "functions >= 20 lines without a comment inside [%]": ("most", 35),
     "comment lines in include [%]": ("least", 45),

@@ -142,6 +142,19 @@ CS_INLINE void cs_point_contact_add_block(const struct cs_point_contact *contact
     }
 }
 
+/* y = ck df/dx V with df/dx as in the block above: how the force changes in a step by the way
+ * that the point goes relative to the collider, in units of ck. */
+CS_INLINE void cs_point_contact_approach(const struct cs_point_contact *contact,
+                                         const struct cs_matrix *matrix, double y[3]) {
+    const double *g = contact->g, *h = contact->h, *v = contact->v;
+    const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
+    const double along = -matrix->ck * law.stiffness * cs_point_contact_dot(g, v);
+    const double curve = matrix->psd ? 0 : matrix->ck * law.force;
+    y[0] = along * g[0] + curve * (h[0] * v[0] + h[1] * v[1] + h[2] * v[2]);
+    y[1] = along * g[1] + curve * (h[1] * v[0] + h[3] * v[1] + h[4] * v[2]);
+    y[2] = along * g[2] + curve * (h[2] * v[0] + h[4] * v[1] + h[5] * v[2]);
+}
+
 /* Largest stiffness in N/m and damping in N s/m that the point adds in any direction: K |g|^2,
  * and tau K |g|^2 + mu N / s. */
 CS_INLINE void cs_point_contact_bound(const struct cs_point_contact *contact, double *stiffness,

@@ -1,6 +1,7 @@
 /* Contact of particles with colliders by force: each particle feels the law of point_contact.h
  * from each collider in whose range it is. Particles act one by one, so the matrix has diagonal
  * blocks only. Colliders come in the scene's order, which is the order of the sums. */
+#include "base/vector.h"
 #include "model/contact/collider_params.h"
 #include "model/force/term.h"
 #include "model/force/terms.h"
@@ -277,6 +278,33 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
     }
 }
 
+/* One collider of add_approach. */
+struct approach {
+    struct cs_posed_collider_law near;
+    const struct cs_matrix *matrix;
+    size_t n;
+    double *y;
+};
+
+static void add_approaches(void *arg, size_t begin, size_t end) {
+    const struct approach *to = arg;
+    struct cs_point_contact touch;
+    for (size_t i = begin; i < end; i++)
+        if (touch_of(&to->near, to->n, to->matrix->x, to->matrix->v, i, &touch)) {
+            double a[3];
+            cs_point_contact_approach(&touch, to->matrix, a);
+            add_at(to->y, to->n, i, a);
+        }
+}
+
+static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                         double *y) {
+    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
+        struct approach to = {near_of(system, c, matrix->t), matrix, system->view.n, y};
+        cs_vector_parallel_for(to.n, add_approaches, &to);
+    }
+}
+
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
                          const struct cs_gershgorin *sums) {
     const size_t n = system->view.n;
@@ -310,5 +338,6 @@ const struct cs_term cs_term_contact = {
     .energy_column = "other",
     .work_column = "friction",
     .add_blocks = add_blocks,
+    .add_approach = add_approach,
     .add_state_bound = add_bound_at,
 };

@@ -12,7 +12,7 @@
  * vertices of their edges and triangles. All functions use all threads. */
 
 /* quantity that is evaluated */
-enum ask { ASK_FORCE, ASK_CHANGE, ASK_ENERGY, ASK_MATRIX, ASK_BOUND };
+enum ask { ASK_FORCE, ASK_CHANGE, ASK_APPROACH, ASK_ENERGY, ASK_MATRIX, ASK_BOUND };
 
 /* One query for all chunks. */
 struct job {
@@ -66,7 +66,7 @@ static void answer_part(const struct job *job, const struct cs_contact_sample_po
         bound(contact, point, part);
 }
 
-/* Force of one sample, or its change. */
+/* Force of one sample, its change, or its approach. */
 static void answer_force(const struct job *job, const struct cs_posed_collider_law *near,
                          const struct cs_contact_sample_point *point,
                          const struct cs_point_contact *contact,
@@ -80,6 +80,8 @@ static void answer_force(const struct job *job, const struct cs_posed_collider_l
         cs_contact_sample_interpolate(point, n, job->eval.dv, dv);
         const struct cs_point_contact_motion move = cs_posed_collider_law_motion(near, dp, dv);
         cs_point_contact_jvp(contact, parts, &move, f);
+    } else if (job->ask == ASK_APPROACH) {
+        cs_point_contact_approach(contact, job->matrix, f);
     } else {
         cs_point_contact_force(contact, parts, f);
     }
@@ -279,6 +281,21 @@ static void add_product(const struct cs_system *system, const double *p, double 
     cs_contact_set_multiply(&system->contact_samples->matrix, p, y);
 }
 
+/* into the set that the matrix does not use */
+static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                         double *y) {
+    struct cs_contact_samples *samples = system->contact_samples;
+    struct job job = {
+        .covers = samples,
+        .set = &samples->current_set,
+        .ask = ASK_APPROACH,
+        .eval = {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_POTENTIAL},
+        .matrix = matrix};
+    do_chunks(&job);
+    cs_contact_set_gather(&samples->current_set);
+    cs_contact_set_add(&samples->current_set, 0, system->view.n, y);
+}
+
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
                          const struct cs_gershgorin *sums) {
     contact_samples_add_bound(system->contact_samples, at, sums->stiffness, sums->damping);
@@ -303,5 +320,6 @@ const struct cs_term cs_term_cover = {
     .prepare_matrix = prepare_matrix,
     .add_blocks = add_blocks,
     .add_matrix_product = add_product,
+    .add_approach = add_approach,
     .add_state_bound = add_bound_at,
 };

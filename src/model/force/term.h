@@ -85,6 +85,11 @@ struct cs_term {
                            bool kept);
     /* y += the stored entries times p, without the diagonal blocks. */
     void (*add_matrix_product)(const struct cs_system *system, const double *p, double *y);
+    /* With add_blocks, for methods that are linear in a step. y (3,n) += ck df/dx, just as the
+     * matrix kept last has it, times the velocities of the matrix's state relative to the
+     * surfaces that the force comes from: those of obstacles that move. With all threads. */
+    void (*add_approach)(const struct cs_system *system, const struct cs_matrix *matrix,
+                         double *y);
     /* For the springs alone, whose factors the solver knows. If at->dfdx_blocks and
      * at->dfdv_blocks are given, add_force adds diagonal blocks of df/dx and df/dv too, and f
      * may be NULL; this call, after all blocks of particles, adds the remaining ones. */

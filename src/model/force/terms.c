@@ -16,6 +16,7 @@ struct job {
     const struct cs_system *system;
     struct cs_eval at;
     double *out;
+    bool without_blocks; /* leaves out forces with blocks in the matrix */
 };
 
 /* Zeroes the particles of a block. */
@@ -49,15 +50,15 @@ static void clear_pinned(const struct cs_system *system, const struct cs_block *
 }
 
 /* Tells whether a term is among the chosen parts. */
-static bool is_asked(const struct cs_term *term, const struct cs_eval *at) {
-    return term->part_bits & at->parts;
+static bool is_asked(const struct cs_term *term, const struct job *job) {
+    return term->part_bits & job->at.parts && !(job->without_blocks && term->add_blocks);
 }
 
 /* Prepares the chosen terms, one after the other; each uses all threads. */
 static void prepare(const struct job *job) {
     const struct cs_system *system = job->system;
     for (uint32_t k = 0; k < system->n_terms; k++)
-        if (system->terms[k]->prepare && is_asked(system->terms[k], &job->at))
+        if (system->terms[k]->prepare && is_asked(system->terms[k], job))
             system->terms[k]->prepare(system, &job->at);
 }
 
@@ -71,13 +72,13 @@ static void force_block(void *arg, uint32_t number) {
     at.block = &block;
     clear(system, &block, job->out);
     for (uint32_t k = 0; k < system->n_terms; k++)
-        if (is_asked(system->terms[k], &at))
+        if (is_asked(system->terms[k], job))
             system->terms[k]->add_force(system, &at, job->out);
     clear_pinned(system, &block, job->out);
 }
 
 void cs_terms_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
-    struct job job = {system, *at, f};
+    struct job job = {.system = system, .at = *at, .out = f};
     job.at.dx = job.at.dv = NULL;
     prepare(&job);
     cs_pool_run(system->springs.n_blocks, force_block, &job);
@@ -92,13 +93,25 @@ static void jvp_block(void *arg, uint32_t number) {
     at.block = &block;
     clear(system, &block, job->out);
     for (uint32_t k = 0; k < system->n_terms; k++)
-        if (is_asked(system->terms[k], &at) && system->terms[k]->add_jvp)
+        if (is_asked(system->terms[k], job) && system->terms[k]->add_jvp)
             system->terms[k]->add_jvp(system, &at, job->out);
     clear_pinned(system, &block, job->out);
 }
 
 void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
-    struct job job = {system, *at, df};
+    struct job job = {.system = system, .at = *at, .out = df};
+    prepare(&job);
+    cs_pool_run(system->springs.n_blocks, jvp_block, &job);
+}
+
+void cs_terms_scalar_damping(const struct cs_system *system, double t, const double *x,
+                             const double *v, double *df) {
+    struct job job = {
+        .system = system,
+        .at = {.t = t, .x = x, .v = v, .parts = CS_PART_LINEARISED, .dv = v},
+        .out = df,
+        .without_blocks = true,
+    };
     prepare(&job);
     cs_pool_run(system->springs.n_blocks, jvp_block, &job);
 }
@@ -123,6 +136,16 @@ void cs_terms_add_product(const struct cs_system *system, const double *p, doubl
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (system->terms[k]->add_matrix_product)
             system->terms[k]->add_matrix_product(system, p, y);
+}
+
+void cs_terms_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                       double *y) {
+    const struct cs_block all = {.begin = 0, .end = system->view.n};
+    clear(system, &all, y);
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (system->terms[k]->add_approach)
+            system->terms[k]->add_approach(system, matrix, y);
+    clear_pinned(system, &all, y);
 }
 
 /* Adds the diagonal parts of all terms but the springs. */

@@ -27,6 +27,10 @@ void cs_terms_force(const struct cs_system *system, const struct cs_eval *at, do
 /* df (3,n) = (df/dx) dx + (df/dv) dv of the chosen parts, 0 on pinned particles. Normals as
  * above. */
 void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, double *df);
+/* df (3,n) = (df/dv) v of the forces of CS_PART_LINEARISED without blocks in the matrix, 0 on
+ * pinned particles. */
+void cs_terms_scalar_damping(const struct cs_system *system, double t, const double *x,
+                             const double *v, double *df);
 /* The diagonal blocks kxx, dvv (6,n) of df/dx and df/dv of CS_PART_LINEARISED: xx, xy, xz, yy,
  * yz, zz. */
 void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at, double *kxx,
@@ -52,6 +56,10 @@ void cs_terms_prepare_matrix(const struct cs_system *system, const struct cs_mat
 /* y (3,n) += p times the entries between particles of the terms that have some, without their
  * diagonal blocks, in the matrix kept last. */
 void cs_terms_add_product(const struct cs_system *system, const double *p, double *y);
+/* y (3,n) = ck df/dx of the forces with blocks times the velocities relative to obstacles, as
+ * add_approach of term.h has it; 0 on pinned particles. After cs_terms_prepare_matrix, kept. */
+void cs_terms_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                       double *y);
 /* Tells whether a force of the scene has 3x3 blocks in the matrix, not only numbers. */
 bool cs_terms_have_blocks(const struct cs_system *system);
 

@@ -154,6 +154,7 @@ struct product {
     const struct cs_linear *linear;
     const double *from;
     double *to;
+    bool without_blocks;
 };
 
 /* to += blocks times from, for symmetric blocks (6,n) in the order xx, xy, xz, yy, yz, zz. */
@@ -179,17 +180,28 @@ CS_CLONES static void mul_mass(void *arg, size_t begin, size_t end) {
     for (size_t c = 0; c < 3; c++)
         for (size_t i = begin; i < end; i++)
             product->to[c * n + i] = mass[i] * product->from[c * n + i];
-    if (product->linear->blocks)
+    if (product->linear->blocks && !product->without_blocks)
         add_blocks(product, product->linear->blocks, begin, end);
 }
 
+/* y = A p, of the forces that the product is to have. */
+static void multiply(struct product *product) {
+    const struct cs_linear *linear = product->linear;
+    const struct cs_system *system = linear->system;
+    cs_vector_parallel_for(system->view.n, mul_mass, product);
+    cs_springs_mul_add(&system->springs, system->view.n, linear->factors, product->from,
+                       product->to);
+    if (!product->without_blocks)
+        cs_terms_add_product(system, product->from, product->to);
+    clear_pinned(system, product->to);
+}
+
 void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y) {
-    const size_t n = linear->system->view.n;
-    struct product product = {linear, p, y};
-    cs_vector_parallel_for(n, mul_mass, &product);
-    cs_springs_mul_add(&linear->system->springs, (uint32_t)n, linear->factors, p, y);
-    cs_terms_add_product(linear->system, p, y);
-    clear_pinned(linear->system, y);
+    multiply(&(struct product){linear, p, y, false});
+}
+
+void cs_linear_mul_scalar(const struct cs_linear *linear, const double *p, double *y) {
+    multiply(&(struct product){linear, p, y, true});
 }
 
 /* z = D^-1 r with the inverse diagonal blocks. */
@@ -208,7 +220,7 @@ CS_CLONES static void mul_inverse(void *arg, size_t begin, size_t end) {
 }
 
 void cs_linear_precondition(struct cs_linear *linear, const double *r, double norm, double *z) {
-    struct product product = {linear, r, z};
+    struct product product = {linear, r, z, false};
     if (linear->stiff)
         cs_multigrid_apply(&linear->multigrid, r, norm, z);
     else

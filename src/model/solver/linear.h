@@ -57,6 +57,9 @@ bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix);
 /* y = A p for p that is 0 on pinned particles; y (3,n) is 0 there too. */
 void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y);
 
+/* The same without the forces that have blocks: masses, scalar parts and springs alone. */
+void cs_linear_mul_scalar(const struct cs_linear *linear, const double *p, double *y);
+
 /* z = B^-1 r with the preconditioner B, symmetric and positive definite. norm is |r|, by which
  * multigrid scales r for single precision. */
 void cs_linear_precondition(struct cs_linear *linear, const double *r, double norm, double *z);

@@ -202,6 +202,30 @@ void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y)
         cs_contact_set_multiply(&pairs->solver_exact, p, y);
 }
 
+/* The elastic part of an exact matrix times the velocities is a Jacobian product. */
+void cs_pairs_add_approach(struct cs_pairs *pairs, const struct cs_matrix *matrix, double *y) {
+    const struct cs_system *system = pairs->system;
+    const size_t n = system->view.n;
+    struct cs_narrow_phase narrow = {
+        .query = CS_CONTACT_QUERY_JVP,
+        .eval = {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_POTENTIAL},
+        .along_velocities = true};
+    if (pairs->failed)
+        return;
+    // the factors that the matrix has stored, or a pass over the pairs
+    if (matrix->psd) {
+        cs_psd_operator_approach(&pairs->solver_psd, system->surfaces->n_points,
+                                 cs_surface_points_velocities(system, matrix->t, matrix->v), y);
+        return;
+    }
+    run(pairs, &narrow);
+    const struct cs_gather *gather = &pairs->current_contacts->force_gather;
+    for (size_t row = 0; row < 3 * (size_t)gather->n_rows; row++)
+        gather->row_sums[row] *= matrix->ck;
+    if (pairs->current_contacts->n)
+        cs_gather_add(gather, gather->row_sums, 3, 0, n, y);
+}
+
 /* Damping follows stiffness in the same array, n_rows numbers later. */
 void cs_pairs_add_bound(struct cs_pairs *pairs, const struct cs_eval *at, double *stiffness,
                         double *damping) {

@@ -111,6 +111,10 @@ void cs_pairs_add_blocks(const struct cs_pairs *pairs, size_t begin, size_t end,
 /* y (3,n) += (the solver's matrix - its diagonal blocks) p, with all threads. */
 void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y);
 
+/* y (3,n) += the elastic part of the solver's matrix, which was made at the state of `matrix`,
+ * times the velocities of all points there: with all threads. */
+void cs_pairs_add_approach(struct cs_pairs *pairs, const struct cs_matrix *matrix, double *y);
+
 /* Adds the Gershgorin row sums of df/dx (N/m) and df/dv (N s/m) at a state. */
 void cs_pairs_add_bound(struct cs_pairs *pairs, const struct cs_eval *at, double *stiffness,
                         double *damping);

@@ -281,15 +281,17 @@ static bool begin(const struct work *work) {
            cs_psd_operator_chunk_begin(narrow->psd, work->number);
 }
 
-/* Gathers x, v, and for a Jacobian product dx and dv, of the points of a chunk. Directions
- * exist for particles only: points of colliders have 0. */
+/* Gathers x, v, and for a Jacobian product dx and dv, of the points of a chunk. Directions but
+ * the velocities exist for particles only: points of colliders have 0. */
 static const double *read_rows(const struct cs_narrow_phase *narrow, uint32_t number) {
     const struct cs_system *system = narrow->contacts->candidates->system;
     const struct cs_gather *gather = &narrow->contacts->force_gather;
     const size_t n = system->view.n, n_points = system->surfaces->n_points;
     cs_gather_read(gather, number, 3, narrow->v, n_points);
     if (narrow->query == CS_CONTACT_QUERY_JVP) {
-        cs_gather_read(gather, number, 6, narrow->eval.dx, n);
+        const bool along = narrow->along_velocities;
+        cs_gather_read(gather, number, 6, along ? narrow->v : narrow->eval.dx,
+                       along ? n_points : n);
         cs_gather_read(gather, number, 9, narrow->eval.dv, n);
     }
     return cs_gather_read(gather, number, 0, narrow->x, n_points);

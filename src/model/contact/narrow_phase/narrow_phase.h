@@ -23,6 +23,8 @@ struct cs_narrow_phase {
     const double *x, *v;
     enum cs_contact_query query;
     struct cs_eval eval;
+    /* the direction of a Jacobian product is v, for points of colliders too, and dv is 0 */
+    bool along_velocities;
     const struct cs_matrix *matrix; /* of CS_CONTACT_QUERY_MATRIX */
     /* receives a positive semi-definite matrix */
     struct cs_psd_operator *psd;

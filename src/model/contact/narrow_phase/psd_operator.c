@@ -110,10 +110,13 @@ void cs_psd_operator_add_blocks(const struct cs_psd_operator *product, size_t be
 
 /* --- times a vector --- */
 
-/* One product: y += (P - diagonal) p. */
+/* One product: y += (P - diagonal) p for n points; or, for an approach, the elastic part of P
+ * times p. */
 struct job {
     const struct cs_psd_operator *product;
     const double *p;
+    size_t n;
+    bool approach;
     double *y;
 };
 
@@ -137,6 +140,13 @@ static void add_lanes(vectors by, uint32_t (*to)[4], uint32_t count, double *sum
                 sums[3 * (size_t)to[l][k] + c] += by[k][c][l];
 }
 
+/* The product without B. */
+static void approach(enum cs_pair_kind kind, const struct cs_pair_factors *factors, vectors p) {
+    struct cs_pair_factors elastic = *factors;
+    memset(elastic.block, 0, sizeof elastic.block);
+    cs_pair_lanes_multiply(kind, &elastic, p);
+}
+
 /* Multiplies up to TOGETHER blocks: loads all, multiplies all, adds all. A vector load directly
  * after scalar stores to the same addresses would stall. */
 static void multiply_some(const struct job *job, uint32_t number, size_t first, const double *p,
@@ -148,8 +158,10 @@ static void multiply_some(const struct job *job, uint32_t number, size_t first, 
     vectors by[TOGETHER];
     for (size_t b = 0; b < n; b++)
         read_lanes(p, to + b * CS_PAIR_LANES, count_at(chunk, first + b), by[b]);
-    for (size_t b = 0; b < n; b++)
+    for (size_t b = 0; b < n && !job->approach; b++)
         cs_pair_lanes_multiply(chunk->kind, factors + b, by[b]);
+    for (size_t b = 0; b < n && job->approach; b++)
+        approach(chunk->kind, factors + b, by[b]);
     for (size_t b = 0; b < n; b++)
         add_lanes(by[b], to + b * CS_PAIR_LANES, count_at(chunk, first + b), sums);
 }
@@ -165,7 +177,7 @@ static void take_own(const double *own, const double *p, size_t n, double *sums)
     }
 }
 
-/* Product of one chunk, into its rows. Points of colliders have p = 0 and do not move. */
+/* Product of one chunk, into its rows. Points from job->n on have p = 0. */
 static void multiply_chunk(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_gather *gather = &job->product->contacts->force_gather;
@@ -173,9 +185,12 @@ static void multiply_chunk(void *arg, uint32_t number) {
     const size_t blocks = blocks_of(job->product->contacts->chunks + number);
     if (!blocks)
         return;
-    const double *p = cs_gather_read(gather, number, 0, job->p, gather->n_particles);
+    const double *p = cs_gather_read(gather, number, 0, job->p, job->n);
     double *sums = cs_gather_of(rows, gather->row_sums, 3);
-    take_own(cs_gather_of(rows, job->product->diagonal, 6), p, rows->n, sums);
+    if (job->approach)
+        memset(sums, 0, 3 * sizeof *sums * rows->n);
+    else
+        take_own(cs_gather_of(rows, job->product->diagonal, 6), p, rows->n, sums);
     for (size_t b = 0; b < blocks; b += TOGETHER)
         multiply_some(job, number, b, p, sums);
 }
@@ -186,11 +201,21 @@ static void add_part(void *arg, size_t begin, size_t end) {
     cs_gather_add(gather, gather->row_sums, 3, begin, end, job->y);
 }
 
-void cs_psd_operator_apply(const struct cs_psd_operator *product, const double *p, double *y) {
-    struct job job = {product, p, y};
+static void run(struct job *job) {
+    const struct cs_psd_operator *product = job->product;
     // Never fails: the rows were at least 6 wide when the matrix was made.
     if (!product->contacts->n || !cs_gather_reserve(&product->contacts->force_gather, 3))
         return;
-    cs_pool_run(product->n_chunks, multiply_chunk, &job);
-    cs_vector_parallel_for(product->contacts->force_gather.n_particles, add_part, &job);
+    cs_pool_run(product->n_chunks, multiply_chunk, job);
+    cs_vector_parallel_for(product->contacts->force_gather.n_particles, add_part, job);
+}
+
+/* Points of colliders have p = 0 and do not move. */
+void cs_psd_operator_apply(const struct cs_psd_operator *product, const double *p, double *y) {
+    run(&(struct job){product, p, product->contacts->force_gather.n_particles, false, y});
+}
+
+void cs_psd_operator_approach(const struct cs_psd_operator *product, size_t n_points,
+                              const double *v, double *y) {
+    run(&(struct job){product, v, n_points, true, y});
 }

@@ -53,5 +53,9 @@ void cs_psd_operator_add_blocks(const struct cs_psd_operator *product, size_t be
 
 /* y (3,n) += (P - its diagonal blocks) p, with all threads. Sums are those of one thread. */
 void cs_psd_operator_apply(const struct cs_psd_operator *product, const double *p, double *y);
+/* y (3,n) += (sum of c g g^T) v for the velocities v (3,n_points) of all points, those of
+ * colliders too: what the elastic forces change by the way that pairs go. */
+void cs_psd_operator_approach(const struct cs_psd_operator *product, size_t n_points,
+                              const double *v, double *y);
 
 #endif

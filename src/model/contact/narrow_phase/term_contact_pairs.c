@@ -40,6 +40,11 @@ static void add_product(const struct cs_system *system, const double *p, double 
     cs_pairs_multiply(system->pairs, p, y);
 }
 
+static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                         double *y) {
+    cs_pairs_add_approach(system->pairs, matrix, y);
+}
+
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
                          const struct cs_gershgorin *sums) {
     cs_pairs_add_bound(system->pairs, at, sums->stiffness, sums->damping);
@@ -61,5 +66,6 @@ const struct cs_term cs_term_pairs = {
     .prepare_matrix = prepare_matrix,
     .add_blocks = add_blocks,
     .add_matrix_product = add_product,
+    .add_approach = add_approach,
     .add_state_bound = add_bound_at,
 };

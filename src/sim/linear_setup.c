@@ -1,0 +1,151 @@
+/* Sets up the host's linear systems.
+ *
+ * A linearised step of implicit Euler solves, with K = df/dx and D = df/dv at (t, x, v),
+ *
+ *   M dv = h f(x + h (v + dv), v + dv) ~ h (f + h K (v - w) + h K dv + D dv)
+ *
+ * where w is the velocity of the surface that a force comes from: what counts for contact is
+ * how the distance changes, and a moving obstacle changes it too. So
+ *
+ *   A dv = b,   A = M - h D - h^2 K,   b = h f + h^2 K (v - w)
+ *
+ * with one K in A and b, the clamped one if A is clamped. The force at t + h instead would not
+ * be linear, and the exact df/dt by the obstacle's motion has another K: with either, a cloth
+ * thrown at an obstacle would differ from the obstacle thrown at it.
+ *
+ * Forces whose part of A is a number, and springs, are in b by h^2 K v = M v - h D v - A v.
+ * Forces with blocks give h^2 K (v - w) themselves (add_approach of term.h), so that no D that
+ * is only near the derivative, as that of clamped friction, gets into b. */
+#include "sim/linear_setup.h"
+
+#include "model/force/terms.h"
+#include "sim/trace.h"
+
+#include <clothsim/clones.h>
+#include <string.h>
+
+/* Takes the next step towards a definite matrix; false: both are taken. */
+static bool clamp(struct cs_matrix *matrix) {
+    if (matrix->psd && matrix->bound)
+        return false;
+    matrix->bound = matrix->psd;
+    matrix->psd = true;
+    return true;
+}
+
+/* The failure of a set-up that was not declared, or whose coefficients are wrong. */
+static enum cs_step refuse(struct cs_run_host *host, double cm, double cd, double ck) {
+    if (!host->linear.system)
+        return host->table.fail(host, "solve was used without CS_NEED_SOLVE");
+    if (!(cm > 0) || !(cd <= 0) || !(ck <= 0))
+        return host->table.fail(
+            host, "solve needs cm > 0, cd <= 0 and ck <= 0, found %g, %g, %g", cm, cd, ck);
+    return CS_STEP_OK;
+}
+
+/* Prepares A at (t, x, v). Copies the state, because host_solve may have to set up again
+ * after the method has moved on. A diagonal block that is not definite clamps at once. */
+enum cs_step cs_host_solve_setup(void *ctx, double t, const double *x, const double *v,
+                                 double cm, double cd, double ck, uint32_t flags) {
+    struct cs_run_host *host = ctx;
+    const size_t bytes = 3 * sizeof *x * host->run->system->view.n;
+    cs_move_values(host, t);
+    if (refuse(host, cm, cd, ck))
+        return CS_STEP_FAIL;
+    cs_trace_state(host, "solve set-up", t, x, v);
+    const double begin = cs_stage_begin(host);
+    host->run->counts.solve_setups++;
+    // the b of a former euler_setup belongs to another A
+    host->euler.b = NULL;
+    memcpy(host->setup_x, x, bytes);
+    if (host->setup_v)
+        memcpy(host->setup_v, v, bytes);
+    const struct cs_matrix matrix = {.t = t,
+                                     .x = host->setup_x,
+                                     .v = host->setup_v,
+                                     .cm = cm,
+                                     .cd = cd,
+                                     .ck = ck,
+                                     .psd = flags & CS_SOLVE_PSD,
+                                     .bound = flags & CS_SOLVE_BOUND};
+    if (!cs_linear_setup(&host->linear, &matrix))
+        cs_host_clamp(host, NULL);
+    cs_stage_end(host, CS_STAGE_SOLVE, begin);
+    return CS_STEP_OK;
+}
+
+/* b = h (f - D v) + (M v - A v), of springs and the forces whose part of A is a number. */
+CS_CLONES static void add_scalar_parts(const struct cs_view *view, double h, const double *v,
+                                       const double *f, const double *av, double *b) {
+    const size_t n = view->n;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0, k = c * n; i < n; i++, k++)
+            b[k] = h * (f[k] - b[k]) + (view->mass[i] * v[k] - av[k]);
+}
+
+/* Sets b for the A of the last set-up. f: all forces at the step's begin, not in q; the other
+ * vectors of the solver are free until it starts. */
+static void build_rhs(struct cs_run_host *host, const double *f) {
+    const struct cs_system *system = host->run->system;
+    const struct cs_euler_step *step = &host->euler;
+    double *work = host->linear.q;
+    cs_terms_scalar_damping(system, step->t, step->x, step->v, step->b);
+    cs_linear_mul_scalar(&host->linear, step->v, work);
+    add_scalar_parts(&system->view, step->h, step->v, f, work, step->b);
+    host->run->counts.jvps += 2;
+    if (!cs_terms_have_blocks(system))
+        return;
+    cs_terms_approach(system, &host->linear.matrix, work);
+    for (size_t k = 0; k < 3 * (size_t)system->view.n; k++)
+        step->b[k] -= work[k];
+}
+
+/* A of the step, and with rhs its b. A diagonal block that is not definite clamps at once. */
+static void set_up(struct cs_run_host *host, const struct cs_matrix *matrix, bool rhs) {
+    struct cs_matrix clamped = *matrix;
+    const struct cs_euler_step *step = &host->euler;
+    double *f = host->linear.r;
+    // A leaves r alone, so that b may follow it
+    host->table.force(host, step->t, step->x, step->v, CS_PART_ALL, f);
+    const double begin = cs_stage_begin(host);
+    while (!cs_linear_setup(&host->linear, &clamped) && clamp(&clamped))
+        host->run->counts.clamped_setups++;
+    if (rhs)
+        build_rhs(host, f);
+    cs_stage_end(host, CS_STAGE_SOLVE, begin);
+}
+
+enum cs_step cs_host_euler_setup(void *ctx, double t, double h, const double *x,
+                                 const double *v, uint32_t flags, double *b) {
+    struct cs_run_host *host = ctx;
+    cs_move_values(host, t);
+    if (refuse(host, 1, -h, -h * h))
+        return CS_STEP_FAIL;
+    cs_trace_state(host, "solve set-up", t, x, v);
+    host->run->counts.solve_setups++;
+    // no copies: the method keeps all three until it has solved
+    host->euler = (struct cs_euler_step){.t = t, .h = h, .x = x, .v = v, .b = b};
+    set_up(host,
+           &(struct cs_matrix){.t = t,
+                               .x = x,
+                               .v = v,
+                               .cm = 1,
+                               .cd = -h,
+                               .ck = -h * h,
+                               .psd = flags & CS_SOLVE_PSD,
+                               .bound = flags & CS_SOLVE_BOUND},
+           true);
+    return CS_STEP_OK;
+}
+
+bool cs_host_clamp(struct cs_run_host *host, const double *b) {
+    struct cs_matrix matrix = host->linear.matrix;
+    if (!clamp(&matrix))
+        return false;
+    host->run->counts.clamped_setups++;
+    if (host->euler.b)
+        set_up(host, &matrix, b == host->euler.b);
+    else
+        cs_linear_setup(&host->linear, &matrix);
+    return true;
+}
