@@ -4,7 +4,8 @@
  * The decisions of one step, in order:
  * 1. Choose the length of the part: as the part before; twice as long if that is aligned,
  *    stable and looks admissible; halved until it is not longer than 0.9 of the stability
- *    limit at the state. After a refusal step 1 is left out, because the state is the same.
+ *    limit at the state, and, with checks_free_motion, until the host admits the motion
+ *    without forces. After a refusal step 1 is left out, because the state is the same.
  * 2. More than max_depth halvings: the run fails with the reason of the last refusal.
  * 3. Take the part. If the host does not admit the displacement, restore the state, halve,
  *    and go to 2.
@@ -124,18 +125,25 @@ static double longest_at(const struct fixed_step *self, double t, const double *
     return 0.9 * self->limit(self, omega, delta);
 }
 
-/* True if the host admits the straight displacement h v, which predicts the step's own: one
- * that it refuses would mostly be refused afterwards. Many accepted parts in a row earn a try
- * without this test. Uses saved_state as scratch. */
-static bool is_growth_admissible(const struct fixed_step *self, double t, double h,
-                                 const double *x, const double *v) {
+/* True if the host admits the straight displacement h v, the motion without forces. Uses
+ * saved_state as scratch. */
+static bool is_free_motion_admissible(const struct fixed_step *self, double t, double h,
+                                      const double *x, const double *v) {
     const struct cs_host *host = self->host;
-    if (!self->saved_state ||
-        self->subdivision.accepted_in_row >= STEP_SUBDIVISION_GROW_ALWAYS_AFTER)
-        return true;
     for (size_t i = 0; i < 3 * (size_t)host->view->n; i++)
         self->saved_state[i] = x[i] + h * v[i];
     return host->max_step_fraction(host->ctx, t, x, t + h, self->saved_state) >= 1;
+}
+
+/* True if a part of length h may be tried after shorter ones. The free motion predicts the
+ * step's own: one that the host refuses would mostly be refused afterwards. Many accepted parts
+ * in a row earn a try without this test, except where every part needs it. */
+static bool is_growth_admissible(const struct fixed_step *self, double t, double h,
+                                 const double *x, const double *v) {
+    return !self->saved_state ||
+           (!self->checks_free_motion &&
+            self->subdivision.accepted_in_row >= STEP_SUBDIVISION_GROW_ALWAYS_AFTER) ||
+           is_free_motion_admissible(self, t, h, x, v);
 }
 
 /* Chooses the length of the next part, step 1 of the list above. Stops one halving past
@@ -145,11 +153,20 @@ static void choose_cuts(struct fixed_step *self, double t, double h, const doubl
     const double longest = longest_at(self, t, x, v);
     struct step_subdivision *cuts = &self->subdivision;
     const double twice = 2 * step_subdivision_length(cuts, h);
+    bool admitted = !self->saved_state || !self->checks_free_motion;
     if (step_subdivision_may_grow(cuts) && twice <= longest &&
-        is_growth_admissible(self, t, twice, x, v))
+        is_growth_admissible(self, t, twice, x, v)) {
         step_subdivision_grow(cuts);
-    while (step_subdivision_length(cuts, h) > longest && cuts->depth <= self->max_depth)
-        step_subdivision_refuse(cuts);
+        admitted = true;
+    }
+    for (; cuts->depth <= self->max_depth; step_subdivision_refuse(cuts)) {
+        const double part = step_subdivision_length(cuts, h);
+        if (part > longest)
+            continue;
+        if (admitted || is_free_motion_admissible(self, t, part, x, v))
+            return;
+        self->refused_by_contact = true;
+    }
 }
 
 /* One step of length h from t, whole or in parts. It ends at `end`, which is t + h up to

@@ -4,10 +4,12 @@
  * advance is cut into the fewest equal steps that are not longer than dt.
  *
  * In scenes with contact by force (fixed_step_guard) a step may be cut into parts
- * (step_subdivision.h) for two reasons:
+ * (step_subdivision.h) for three reasons:
  * 1. It would pass over contact that it cannot see, or through a surface
- *    (host->max_step_fraction).
- * 2. The method chose dt by its stability limit, which is shorter in contact
+ *    (host->max_step_fraction from the state before the step to the one after).
+ * 2. The motion without forces, x to x + h v, would (checks_free_motion). A step that enters
+ *    contact and leaves it again has both its ends outside, and is seen by this test alone.
+ * 3. The method chose dt by its stability limit, which is shorter in contact
  *    (host->bounds_at).
  *
  * Each part is committed by itself. */
@@ -44,6 +46,11 @@ struct fixed_step {
 
     /* only in scenes with contact by force, see fixed_step_guard */
     double *saved_state; /* (6n) the state before a step; NULL: no step is judged */
+    /* For a method whose result depends on contact that is neither at the begin of a step nor
+     * at its end: one with stages, or with an iteration. The force at the begin alone does not
+     * move a particle into contact and out of it. */
+    bool checks_free_motion;
+    bool refused_by_contact; /* the last part that was refused passed over contact */
     double (*limit)(const struct fixed_step *self, double omega,
                     double delta); /* s; NULL: none */
 };

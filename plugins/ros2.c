@@ -143,7 +143,7 @@ static enum cs_step take(struct method *self, struct span *span, double *x, doub
              span->narrow && has_unresolved_friction(self, t + h, h, self->xn, self->vn)))
         return CS_STEP_OK;
     if (base->fixed.saved_state &&
-        (base->refused_by_contact =
+        (base->fixed.refused_by_contact =
              host->max_step_fraction(host->ctx, t, x, t + h, self->xn) < 1))
         return CS_STEP_OK;
 

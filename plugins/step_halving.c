@@ -21,7 +21,7 @@
 static enum cs_step fail_at_shortest_part(struct fixed_step *loop, double t, double h) {
     const struct step_halving *self = (const struct step_halving *)loop;
     const struct cs_host *host = loop->host;
-    if (self->refused_by_contact || (self->newton && self->newton->line_search_blocked))
+    if (loop->refused_by_contact || (self->newton && self->newton->line_search_blocked))
         return host->fail(host->ctx,
                           "a step of %.3g s at t = %.9g s, after %u halvings, still misses "
                           "contact or crosses a surface",
@@ -51,7 +51,7 @@ static enum cs_step take_step(struct step_halving *self, double t, double h, dou
         host->max_step_fraction(host->ctx, t, saved, t + h, x) < 1) {
         memcpy(x, saved, bytes);
         *accepted = false;
-        self->refused_by_contact = true;
+        self->fixed.refused_by_contact = true;
         self->fixed.history_void = true; // the method's history is of the step that was undone
     }
     return status;
@@ -62,7 +62,7 @@ static enum cs_step attempt(struct fixed_step *loop, double t, double h, double 
                             bool *cut) {
     struct step_halving *self = (struct step_halving *)loop;
     bool accepted = false;
-    self->refused_by_contact = false;
+    loop->refused_by_contact = false;
     const enum cs_step status = take_step(self, t, h, x, v, &accepted);
     *cut = status == CS_STEP_OK && !accepted;
     self->last_h = accepted ? h : self->last_h;
@@ -81,6 +81,7 @@ struct step_halving *step_halving_create(const struct cs_host *host, size_t byte
     self->step = step;
     if (fixed_step_guard(&self->fixed, NULL) != CS_STEP_OK)
         return NULL;
+    self->fixed.checks_free_motion = true;
     self->fixed.max_depth =
         self->fixed.saved_state ? STEP_HALVINGS_IN_CONTACT : STEP_HALVINGS_MAX;
     return self;

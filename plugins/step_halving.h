@@ -26,7 +26,6 @@ struct step_halving {
     struct fixed_step fixed;  /* its step is not used */
     struct newton *newton;    /* NULL: the method has none */
     double last_h;            /* length of the last accepted step in s */
-    bool refused_by_contact;  /* the last step was undone because it passed over contact */
     bool refused_by_rotation; /* the last step was refused by springs_rotated_far */
     /* Steps from (x, v) at t to t + h, without the commit. If *accepted stays false, x and v
      * are unchanged. */

@@ -13,6 +13,7 @@
  */
 #include <clothsim/integrator.h>
 #include <math.h>
+#include <string.h>
 
 /* The options and their table: type, unit, default, range, meaning. A method of fixed
  * steps calls its step dt, an adaptive one its tolerance rtol: the card sets them by these
@@ -31,6 +32,7 @@ struct midpoint {
     double dt;
     double *f;      /* (3,n) force in N */
     double *middle; /* (6n) the state half a step on: x, then v */
+    double *before; /* (6n) the state before a step */
 };
 
 /* All memory is taken here. What host->alloc gives is zeroed and freed by the host; NULL was
@@ -45,7 +47,8 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     self->dt = ((const struct options *)options)->dt;
     self->f = host->alloc(host->ctx, 3 * n * sizeof *self->f);
     self->middle = host->alloc(host->ctx, 6 * n * sizeof *self->middle);
-    return self->f && self->middle ? CS_STEP_OK : CS_STEP_FAIL;
+    self->before = host->alloc(host->ctx, 6 * n * sizeof *self->before);
+    return self->f && self->middle && self->before ? CS_STEP_OK : CS_STEP_FAIL;
 }
 
 /* The state was set from outside. A method that keeps earlier steps forgets them here; this one
@@ -77,21 +80,54 @@ static void step(struct midpoint *self, double t, double h, double *x, double *v
     move(self, h, x, vm, x);
 }
 
+/* True if the displacement to x1 would pass over contact by force that no stage sees, or carry
+ * surfaces through each other. The host offers the question where the scene needs it. */
+static bool is_refused(const struct midpoint *self, double t, double h, const double *x1) {
+    const struct cs_host *host = self->host;
+    return CS_HAS(host, max_step_fraction) && host->max_step_fraction &&
+           host->max_step_fraction(host->ctx, t, self->before, t + h, x1) < 1;
+}
+
+/* A refused step is taken as two halves, and those likewise, down to this fraction of dt. */
+#define SHORTEST (1 / 65536.)
+
+/* One step from t to `end`, which is t + h up to rounding, with its commit. Two displacements
+ * are judged: that of the step, and that without forces, since a step that enters contact and
+ * leaves it again ends outside. */
+static enum cs_step take_step(struct midpoint *self, double t, double h, double end, double *x,
+                              double *v) {
+    const struct cs_host *host = self->host;
+    const size_t bytes = 6 * host->view->n * sizeof *x; /* v follows x */
+    memcpy(self->before, x, bytes);
+    move(self, h, x, v, self->middle);
+    bool refused = is_refused(self, t, h, self->middle), changed;
+    if (!refused) {
+        step(self, t, h, x, v);
+        refused = is_refused(self, t, h, x);
+    }
+    if (!refused)
+        // contact, strain limit, blow-up: return anything but CS_STEP_OK at once; if
+        // changed is true a method with a history restarts
+        return host->commit(host->ctx, end, h, x, v, &changed);
+
+    memcpy(x, self->before, bytes);
+    if (h < SHORTEST * self->dt)
+        return host->fail(host->ctx,
+                          "a step of %.3g s at t = %.9g s still misses contact or crosses a "
+                          "surface",
+                          h, t);
+    const enum cs_step status = take_step(self, t, h / 2, t + h / 2, x, v);
+    return status == CS_STEP_OK ? take_step(self, t + h / 2, h / 2, end, x, v) : status;
+}
+
 /* From t0 to exactly t1, in equal steps not longer than dt. */
 static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
     struct midpoint *self = object;
-    const struct cs_host *host = self->host;
     // a dt that fits is not spoilt by the rounding of t1 - t0
     const double n = ceil((t1 - t0) / self->dt * (1 - 1e-9)), h = (t1 - t0) / n;
     enum cs_step status = CS_STEP_OK;
-    for (double i = 0; i < n && status == CS_STEP_OK; i++) {
-        const double t = t0 + i * h, end = i + 1 < n ? t0 + (i + 1) * h : t1;
-        bool changed;
-        step(self, t, h, x, v);
-        // contact, strain limit, blow-up: return anything but CS_STEP_OK at once; if
-        // changed is true a method with a history restarts
-        status = host->commit(host->ctx, end, h, x, v, &changed);
-    }
+    for (double i = 0; i < n && status == CS_STEP_OK; i++)
+        status = take_step(self, t0 + i * h, h, i + 1 < n ? t0 + (i + 1) * h : t1, x, v);
     return status;
 }
 

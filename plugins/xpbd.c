@@ -210,18 +210,19 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
 /* The loop with each of its steps cut into equal parts. */
 static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
     struct xpbd *self = object;
-    const struct fixed_step asked = self->loop;
+    const double dt = self->loop.dt;
+    const bool automatic = self->loop.dt_automatic;
     double n;
-    const enum cs_step status = fixed_step_count(&self->loop, t1 - t0, &n);
+    enum cs_step status = fixed_step_count(&self->loop, t1 - t0, &n);
     if (status != CS_STEP_OK)
         return status;
-    const bool told = self->loop.noted;
+    // the reduced dt is noted once above, and substeps are no reduction
     self->loop.dt = (t1 - t0) / n / (double)self->substeps;
     self->loop.dt_automatic = true;
-    const enum cs_step end = fixed_step_advance(self, t0, t1, x, v);
-    self->loop = asked;
-    self->loop.noted = told;
-    return end;
+    status = fixed_step_advance(self, t0, t1, x, v);
+    self->loop.dt = dt;
+    self->loop.dt_automatic = automatic;
+    return status;
 }
 
 /* True if a spring has a damper against every relative velocity of its ends. */
@@ -267,6 +268,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         return CS_STEP_FAIL;
     if (take_contact(self, vectors) != CS_STEP_OK)
         return CS_STEP_FAIL;
+    self->loop.checks_free_motion = true;
     return fixed_step_guard(&self->loop, NULL);
 }
 

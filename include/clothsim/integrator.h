@@ -181,9 +181,9 @@ struct cs_host {
                       double *delta);
     /* [advance] The admissible fraction, 0..1, of the displacement from x0 (3,n) at t0 to x1 at
      * t1. Below 1 the displacement passes over contact that a step cannot see from its start,
-     * or carries surfaces through each other: the method rejects the step and takes a shorter
-     * one. 0: no fraction is admissible. Within an iteration t1 is t0: then only crossings of
-     * surfaces count. */
+     * or carries surfaces through each other: take a shorter step. 0: no fraction is. Within an
+     * iteration t1 is t0: then only crossings of surfaces count. With stages or an iteration,
+     * ask about x0 + h v0 too: a step that enters contact and leaves it again ends outside. */
     double (*max_step_fraction)(void *ctx, double t0, const double *x0, double t1,
                                 const double *x1);
 

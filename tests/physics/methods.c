@@ -18,7 +18,6 @@ static const struct {
     {"crossings", "averaged-euler", "dt=1e-3", "gains energy at longer steps"},
     {"crossings", "explicit-euler", "dt=1e-3", "gains energy at longer steps"},
     {"crossings", "fast-mass-spring", NULL, "does not ask whether a step crosses"},
-    {"crossings", "midpoint", NULL, "does not ask whether a step crosses"},
     {"drum", "gauss", "rtol=1e-13", "of order 4: its errors are as small as that"},
     {"drop", "midpoint", NULL, "gains energy at the step that suits the others"},
     {"events", "averaged-euler", "dt=1e-3", "its own step follows the damping alone"},
