@@ -143,7 +143,7 @@ static void host_force_diagonal(void *ctx, double t, const double *x, const doub
 
 /* Solves A u = b by conjugate gradients. If these meet p.Ap <= 0, A is clamped, the b of
  * euler_setup with it, u starts again from 0, and all iterations count. Fails at the iteration
- * limit, or if a clamped A is still indefinite. */
+ * limit, if a clamped A is still indefinite, or if a number is not finite. */
 static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *u) {
     struct cs_run_host *host = ctx;
     uint64_t iterations;
@@ -163,12 +163,8 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
     cs_stage_end(host, CS_STAGE_SOLVE, begin);
     cs_trace_vector(host, "solve", "b", host->advance_check.last_commit, b);
     cs_trace_vector(host, "solve", "u", host->advance_check.last_commit, u);
-    if (end == CS_LINEAR_LIMIT)
-        return host_fail(
-            ctx, "the linear solver stopped after %llu iterations at a residual of %.3g",
-            (unsigned long long)iterations, residual);
-    if (end == CS_LINEAR_INDEFINITE)
-        return host_fail(ctx, "conjugate gradients broke down: p.Ap is not positive");
+    if (end != CS_LINEAR_DONE)
+        return cs_run_host_fail_solve(host, end, b, iterations, residual);
     return CS_STEP_OK;
 }
 

@@ -44,18 +44,19 @@ void cs_advance_check_begin(struct cs_advance_check *left, const struct cs_syste
         .system = system, .pins_hash = sum_pins(system), .last_commit = t};
 }
 
-/* The first particle with a number that is not finite, or n. 0 * x is 0 for finite x, else
- * NaN: the sum tests all numbers without a branch, and the loop below runs after a failure
- * only. */
-static uint32_t find_not_finite(const struct cs_system *system) {
+/* The first particle with a number in `rows` rows of n that is not finite, or n. 0 * x is 0 for
+ * finite x, else NaN: the sum tests all numbers without a branch, and the loop below runs after
+ * a failure only. */
+static uint32_t find_not_finite(const struct cs_system *system, const double *numbers,
+                                size_t rows) {
     const size_t n = system->view.n;
     double sum = 0;
-    for (size_t k = 0; k < 6 * n; k++)
-        sum += 0 * system->state[k];
+    for (size_t k = 0; k < rows * n; k++)
+        sum += 0 * numbers[k];
     uint32_t i = sum == 0 ? system->view.n : 0;
     for (; i < n; i++)
-        for (size_t c = 0; c < 6; c++)
-            if (!isfinite(system->state[c * n + i]))
+        for (size_t c = 0; c < rows; c++)
+            if (!isfinite(numbers[c * n + i]))
                 return i;
     return i;
 }
@@ -69,13 +70,44 @@ bool cs_advance_check_passes(const struct cs_advance_check *left, double t,
             t, left->last_commit);
         return false;
     }
-    const uint32_t particle = find_not_finite(system);
+    const uint32_t particle = find_not_finite(system, system->state, 6);
     if (particle < system->view.n) {
         cs_text_add(why, "after its last commit it left non-finite values in ");
         cs_system_print_particle(system, particle, why);
     } else if (sum_pins(system) != left->pins_hash)
         cs_text_add(why, "it moved a pinned particle");
     return !why->length;
+}
+
+/* Adds the cause: the first particle with such a right-hand side b (3,n), else what overflows
+ * where all numbers of b are finite. */
+static void print_not_finite(const struct cs_system *system, const double *b,
+                             struct cs_text *why) {
+    const uint32_t particle = find_not_finite(system, b, 3);
+    if (particle < system->view.n) {
+        cs_text_add(why, "a force is infinite or not a number at ");
+        cs_system_print_particle(system, particle, why);
+    } else
+        cs_text_add(why, "a stiffness is infinite or not a number, or a sum overflows");
+}
+
+enum cs_step cs_run_host_fail_solve(struct cs_run_host *host, enum cs_linear_end end,
+                                    const double *b, uint64_t iterations, double residual) {
+    struct cs_text why = {0};
+    if (end == CS_LINEAR_LIMIT)
+        cs_text_add(&why,
+                    "the linear solver stopped after %llu iterations at a residual of %.3g",
+                    (unsigned long long)iterations, residual);
+    else if (end == CS_LINEAR_INDEFINITE)
+        cs_text_add(&why, "conjugate gradients broke down: p.Ap is not positive");
+    else {
+        cs_text_add(&why, "in the step from t = %.9g s the linear system has no solution: ",
+                    host->advance_check.last_commit);
+        print_not_finite(host->run->system, b, &why);
+    }
+    const enum cs_step step = host->table.fail(host, "%s", cs_text_get(&why));
+    cs_text_finish(&why);
+    return step;
 }
 
 /* Reads the clocks seldom enough to cost nothing per step. */

@@ -123,6 +123,11 @@ struct cs_run_host {
     struct cs_arena arena; /* memory of the method and of the solver */
 };
 
+/* Fails the run with the reason why a linear solve did not end in CS_LINEAR_DONE. b (3,n) is
+ * its right-hand side. Returns CS_STEP_FAIL. */
+enum cs_step cs_run_host_fail_solve(struct cs_run_host *host, enum cs_linear_end end,
+                                    const double *b, uint64_t iterations, double residual);
+
 /* Wall time in s at the begin of a stage; 0 without settings.timed: no clock is read then. */
 static inline double cs_stage_begin(const struct cs_run_host *host) {
     return host->settings.timed ? cs_clock_wall() : 0;

@@ -125,3 +125,29 @@ TEST(cut_steps_stay_cut) {
         fixture_close(&cloth);
     }
 }
+
+/* A force that is not finite ends the run with time and place, and not as a solve that has
+ * nothing to do. */
+TEST(solve_that_is_not_finite_is_told) {
+    static const char *const methods[] = {"implicit-linearised", "ros2"};
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
+        for (int overflows = 0; overflows < 2; overflows++) {
+            struct fixture cloth;
+            struct cs_error error = {0};
+            fixture_open(&cloth, methods[i], SCENE, 0.1, 0.001);
+            fixture_start(&cloth);
+            fixture_frames(&cloth, 1);
+            // without a commit in between, as a stage of a method would
+            cloth.x[20] = overflows ? 1e200 : (double)NAN;
+            ck_assert_int_eq(cs_run_frame(&cloth.session.run, &error), CS_ERR_MODULE);
+            ck_assert_msg(strstr(error.message,
+                                 "in the step from t = 0.0166666667 s the linear "
+                                 "system has no solution: ") != NULL,
+                          "%s", error.message);
+            ck_assert_msg(strstr(error.message,
+                                 overflows ? "a sum overflows" : "not a number at particle ") !=
+                              NULL,
+                          "%s", error.message);
+            fixture_close(&cloth);
+        }
+}

@@ -271,3 +271,30 @@ TEST(indefinite_matrix_is_found_out) {
     cs_arena_finish(&arena);
     sheet_close(&pair);
 }
+
+/* Numbers that are not finite count neither as converged nor as indefinite: in the right-hand
+ * side, in the start, in the matrix; so does a right-hand side whose length overflows. */
+TEST(what_is_not_finite_is_no_solution) {
+    static const double bad[] = {NAN, INFINITY, -INFINITY, 1e200};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
+        for (int where = 0; where < 3; where++) {
+            struct solver solver;
+            double b[ROWS], u[ROWS] = {0}, residual;
+            uint64_t iterations;
+            start(&solver, "axial");
+            if (where == 2)
+                solver.sheet.system.mass[5] = bad[k];
+            cs_linear_setup(
+                &solver.linear,
+                &(struct cs_matrix){
+                    .x = solver.sheet.x, .cm = 1, .cd = -H, .ck = -H * H, .psd = true});
+            fill_right(&solver, b);
+            if (where < 2)
+                (where ? u : b)[5] = bad[k];
+            const enum cs_linear_end end =
+                cs_linear_solve(&solver.linear, b, 1e-6, u, &iterations, &residual);
+            ck_assert_int_eq(end, CS_LINEAR_NOT_FINITE);
+            ck_assert_double_eq(residual, 0);
+            shut(&solver);
+        }
+}

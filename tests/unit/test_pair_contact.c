@@ -127,3 +127,42 @@ TEST(nothing_is_pushed_as_a_whole) {
     }
     ck_assert_msg(worst[0] < 1e-12 && worst[1] < 1e-12, "%g %g", worst[0], worst[1]);
 }
+
+/* Points that coincide have no direction. With friction and damping everything is finite
+ * there: a point on a triangle, on its edge, on its vertex, and edges that cross. */
+TEST(all_is_finite_at_distance_zero) {
+    static const double triangle[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    static const double on[][3] = {{0.25, 0.25, 0}, {0.5, 0, 0}, {0, 0, 0}};
+    for (int k = 0; k < 12; k++) {
+        struct place place = {.kind = k < 9 ? CS_PAIR_POINT_TRIANGLE : CS_PAIR_EDGE_EDGE,
+                              .form = forms[k / 3 % 3],
+                              .meeting = {.range = 1, .k = 2, .friction = 0.5},
+                              .v = {{0.3, -0.2, 0.1}},
+                              .dp = {{-0.1, 0.3, 0.2}},
+                              .dv = {{0.2, 0.1, -0.3}}};
+        struct cs_pair_contact reaction;
+        struct cs_pair_contact_motion move;
+        double f[4][3], df[4][3], stiffness[4], damping[4], sum = 0;
+        for (int c = 0; c < 9; c++)
+            place.p[1 + c / 3][c % 3] = triangle[c / 3][c % 3];
+        memcpy(place.p[0], on[k % 3], sizeof place.p[0]);
+        if (k >= 9) // edges that cross, from a vertex, in one line
+            for (int c = 0; c < 3; c++)
+                place.p[1][c] = on[k % 3][c] + (k == 11 ? c == 0 : c == 2);
+        react(&place, place.p, place.v, &reaction);
+        memcpy(move.p, place.p, sizeof move.p);
+        memcpy(move.v, place.v, sizeof move.v);
+        memcpy(move.dp, place.dp, sizeof move.dp);
+        memcpy(move.dv, place.dv, sizeof move.dv);
+        const struct cs_contact_force_parts parts = {1, 1};
+        cs_pair_contact_force(&reaction, parts, f);
+        cs_pair_contact_jvp(&reaction, parts, &move, df);
+        cs_pair_contact_bound(&reaction, stiffness, damping);
+        for (int j = 0; j < 4; j++) {
+            sum += stiffness[j] + damping[j];
+            for (int c = 0; c < 3; c++)
+                sum += f[j][c] + df[j][c] + reaction.g[j][c];
+        }
+        ck_assert_msg(isfinite(sum), "case %d: %g", k, sum);
+    }
+}

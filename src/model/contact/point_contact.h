@@ -37,6 +37,12 @@ CS_INLINE double cs_point_contact_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* g.g, the divisor of projections on g. Two points that coincide have no direction, and g = 0
+ * there: 1e-30 keeps quotients finite, and changes no bit where g.g is above 1e-13. */
+CS_INLINE double cs_point_contact_square(const double g[3]) {
+    return cs_point_contact_dot(g, g) + 1e-30;
+}
+
 /* Parts of the force that are wanted, as factors 0 or 1. friction includes damping. */
 struct cs_contact_force_parts {
     double elastic, friction;
@@ -46,7 +52,7 @@ struct cs_contact_force_parts {
 CS_INLINE void cs_point_contact_force(const struct cs_point_contact *contact,
                                       struct cs_contact_force_parts parts, double f[3]) {
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
-    const double square = cs_point_contact_dot(contact->g, contact->g);
+    const double square = cs_point_contact_square(contact->g);
     const double approach = cs_point_contact_dot(contact->g, contact->v);
     const double along = parts.elastic * law.force -
                          parts.friction * contact->damping * law.stiffness * approach;
@@ -79,7 +85,7 @@ CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
                           h[1] * dp[0] + h[3] * dp[1] + h[4] * dp[2],
                           h[2] * dp[0] + h[4] * dp[1] + h[5] * dp[2]};
     const double dd = cs_point_contact_dot(g, dp) + move->extra_dd;
-    const double square = cs_point_contact_dot(g, g), dsquare = 2 * cs_point_contact_dot(g, dg);
+    const double square = cs_point_contact_square(g), dsquare = 2 * cs_point_contact_dot(g, dg);
     const double approach = cs_point_contact_dot(g, v);
     const double dapproach = cs_point_contact_dot(dg, v) + cs_point_contact_dot(g, move->dv);
     const double dforce = -law.stiffness * dd;
@@ -122,7 +128,7 @@ CS_INLINE void cs_point_contact_add_block(const struct cs_point_contact *contact
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const double *g = contact->g;
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
-    const double square = cs_point_contact_dot(g, g);
+    const double square = cs_point_contact_square(g);
     const double a = cs_point_contact_dot(g, contact->v) / square;
     double t[3];
     for (int c = 0; c < 3; c++)
@@ -160,7 +166,7 @@ CS_INLINE void cs_point_contact_approach(const struct cs_point_contact *contact,
 CS_INLINE void cs_point_contact_bound(const struct cs_point_contact *contact, double *stiffness,
                                       double *damping) {
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
-    const double square = cs_point_contact_dot(contact->g, contact->g);
+    const double square = cs_point_contact_square(contact->g);
     const double approach = cs_point_contact_dot(contact->g, contact->v);
     const double sliding =
         cs_point_contact_dot(contact->v, contact->v) - approach * approach / square;

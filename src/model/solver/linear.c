@@ -240,7 +240,9 @@ static void give_up_multigrid(struct cs_linear *linear) {
  *   1. norm <= goal: done. The residual is the recurrence's, not recomputed from u.
  *   2. The iteration limit: rounding or the condition number prevents convergence.
  *   3. r.z <= 0 with multigrid, or 500 iterations with it: fall back to blocks and restart.
- *   4. p.A p <= 0, or not a number: A is indefinite, or overflowed.
+ *   4. p.A p <= 0: A is indefinite.
+ *   5. |b|, |r| or p.A p is not finite: b, A or the start is not, or a product overflowed. All
+ *      comparisons are written so that a NaN never counts as converged.
  *
  * The start u counts: Newton and multistep methods pass a good guess and save iterations. */
 enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, double rtol,
@@ -261,11 +263,16 @@ enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, do
         memset(u, 0, n3 * sizeof *u);
         return CS_LINEAR_DONE;
     }
+    // goal would be infinite, and every residual below it
+    if (!isfinite(size))
+        return CS_LINEAR_NOT_FINITE;
     cs_vector_kernels.linear_sum(n3, 1, r, -1, q, r);
     double norm = sqrt(cs_vector_dot(n3, r, r)), rz = 0;
 
     bool fresh = true; // restart: the direction does not depend on the last one
-    while (norm > goal) {
+    while (!(norm <= goal)) {
+        if (!isfinite(norm))
+            return CS_LINEAR_NOT_FINITE;
         if (*iterations == limit) {
             *residual = norm / size;
             return CS_LINEAR_LIMIT;
@@ -285,8 +292,9 @@ enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, do
         rz = next;
         cs_linear_mul(linear, p, q);
         const double curvature = cs_vector_dot(n3, p, q);
-        // negated, to catch a NaN too
-        if (!(curvature > 0))
+        if (!isfinite(curvature))
+            return CS_LINEAR_NOT_FINITE;
+        if (curvature <= 0)
             return CS_LINEAR_INDEFINITE;
         const double step = rz / curvature;
         cs_vector_kernels.linear_sum(n3, 1, u, step, p, u);

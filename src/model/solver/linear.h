@@ -65,15 +65,21 @@ void cs_linear_mul_scalar(const struct cs_linear *linear, const double *p, doubl
 void cs_linear_precondition(struct cs_linear *linear, const double *r, double norm, double *z);
 
 /* How a solve ended: by its residual, by a direction of negative curvature, by the iteration
- * limit. */
-enum cs_linear_end { CS_LINEAR_DONE, CS_LINEAR_INDEFINITE, CS_LINEAR_LIMIT };
+ * limit, by a number that is not finite. */
+enum cs_linear_end {
+    CS_LINEAR_DONE,
+    CS_LINEAR_INDEFINITE,
+    CS_LINEAR_LIMIT,
+    CS_LINEAR_NOT_FINITE
+};
 
 /* Solves A u = b to |b - A u| <= rtol |b| in the Euclidean norm, starting from u (3,n). Rows of
  * pinned particles are ignored in b and become 0 in u. *iterations counts products A p;
  * *residual is |b - A u| / |b|, by the recurrence. Results:
  *   - CS_LINEAR_DONE: the residual is reached. u = 0 if b is 0.
- *   - CS_LINEAR_INDEFINITE: p.A p <= 0 or not a number. u holds the last iterate, *residual is
- *     0.
+ *   - CS_LINEAR_INDEFINITE: p.A p <= 0. u holds the last iterate, *residual is 0.
+ *   - CS_LINEAR_NOT_FINITE: b, A, the start or a product is not finite. u must not be used,
+ *     *residual is 0.
  *   - CS_LINEAR_LIMIT: 10 n + 100 iterations did not suffice. u holds the last iterate. */
 enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, double rtol,
                                    double *u, uint64_t *iterations, double *residual);
