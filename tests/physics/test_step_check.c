@@ -93,7 +93,7 @@ static double unseen_of(const struct pair *pair, const struct cs_pair_distance *
         const double share = j / (double)points, come = share * approach;
         for (int l = 0; l < 12; l++)
             p[l / 3][l % 3] = pair->from[l / 3][l % 3] + share * pair->by[l / 3][l % 3];
-        cs_pair_distance_set(&s, pair->kind, p);
+        cs_pair_distance_set(&s, pair->kind, range, p);
         most = fmax(most,
                     fabs(cs_barrier_energy(s.d, range, k) - cs_barrier_energy(at->d, range, k) -
                          law.force * come - 0.5 * law.stiffness * come * come));
@@ -124,7 +124,7 @@ static bool pair_is_seen(const struct fixture *cloth, struct pair *pair) {
     double g[4][3], approach = 0;
     if (!(range > 0))
         return true;
-    cs_pair_distance_set(&at, pair->kind, pair->from);
+    cs_pair_distance_set(&at, pair->kind, range, pair->from);
     cs_pair_distance_gradient(&at, g);
     for (int l = 0; l < 4; l++)
         approach -= cs_vec3_dot(g[l], pair->by[l]);

@@ -24,7 +24,8 @@ static bool add_one(const struct sheet *sheet, enum cs_pair_kind kind, const uin
         }
     params.range *= use ? CS_FEATURE_RANGE_RATIO : CS_EDGE_RANGE_RATIO;
     params.k *= use ? use->weight : 1;
-    cs_pair_contact_measure(&reaction, kind, use ? use->form : (struct cs_feature_kind){0}, p);
+    cs_pair_contact_measure(&reaction, kind, use ? use->form : (struct cs_feature_kind){0},
+                            params.range, p);
     if (kind == CS_PAIR_EDGE_EDGE && !(reaction.distance.d < params.range))
         return false;
     cs_pair_contact_set(&reaction, &params, &system->scene->contact, v);

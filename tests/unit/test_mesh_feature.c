@@ -262,7 +262,7 @@ static double nearest_on(const struct field *field, const uint32_t *corners, dou
     for (int k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++)
             p[k][c] = field->x[c * POINTS + (k ? corners[k - 1] : 0)];
-    cs_pair_distance_frame(&plane, CS_PAIR_POINT_TRIANGLE, p);
+    cs_pair_distance_frame(&plane, CS_PAIR_POINT_TRIANGLE, 0, p);
     const double *l = plane.unclamped;
     for (int k = 0; k < 4; k++) { // the plane, and the three rims
         const double *a = p[k ? k : 1], *b = p[k ? 1 + k % 3 : 1];
@@ -308,7 +308,7 @@ static double plain_triangle(struct field *field, uint32_t t, double range, doub
     uint32_t nearest = 3;
     struct cs_pair_distance plane;
     place_of(field, (uint32_t[4]){0, c[0], c[1], c[2]}, p);
-    cs_pair_distance_frame(&plane, CS_PAIR_POINT_TRIANGLE, p);
+    cs_pair_distance_frame(&plane, CS_PAIR_POINT_TRIANGLE, 0, p);
     const double l[3] = {1 - plane.unclamped[0] - plane.unclamped[1], plane.unclamped[0],
                          plane.unclamped[1]};
     for (uint32_t k = 0; k < 3; k++) {

@@ -23,7 +23,7 @@ struct place {
 
 static void react(const struct place *place, double p[4][3], double v[4][3],
                   struct cs_pair_contact *reaction) {
-    cs_pair_contact_measure(reaction, place->kind, place->form, p);
+    cs_pair_contact_measure(reaction, place->kind, place->form, place->meeting.range, p);
     cs_pair_contact_set(reaction, &place->meeting, &keys, v);
 }
 
@@ -46,11 +46,15 @@ static bool put(uint64_t *state, int pair, struct place *place,
     draw_four(state, place->dv);
     const double y = 0.54 + 0.44 * draw(state);
     place->meeting = (struct cs_body_pair_params){.range = 1, .k = 10, .friction = 0.4};
-    react(place, place->p, place->v, reaction);
     const bool edges = place->kind == CS_PAIR_EDGE_EDGE;
-    place->meeting.range = (edges ? reaction->distance.d : reaction->feature.d) / y;
+    // the distance of edges depends on their range a little
+    for (int round = 0; round < 8; round++) {
+        react(place, place->p, place->v, reaction);
+        place->meeting.range = (edges ? reaction->distance.d : reaction->feature.d) / y;
+    }
     react(place, place->p, place->v, reaction);
-    return !edges || place_is_good(&reaction->distance);
+    const double at = reaction->contact.d / place->meeting.range;
+    return !edges || (place_is_good(&reaction->distance) && at > 0.1 && at < 0.98);
 }
 
 static double energy(const struct cs_pair_contact *reaction) {

@@ -30,10 +30,10 @@ static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error 
             for (size_t k = 0; k < 4; k++)
                 for (size_t c = 0; c < 3; c++)
                     places[k][c] = pairs->system->start[c * n + at[k]];
-            cs_pair_distance_set(&s, search->chunks[l].kind, places);
             const double range = cs_body_pair_params_range(
                 cs_body_pair_params_of(&pairs->body_pairs, body, body),
                 search->chunks[l].kind == CS_PAIR_EDGE_EDGE);
+            cs_pair_distance_set(&s, search->chunks[l].kind, range, places);
             const uint32_t first = pairs->system->bodies[body].first;
             if (s.d < range)
                 return cs_fail(error, CS_ERR_SCENE,

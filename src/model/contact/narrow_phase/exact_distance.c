@@ -109,8 +109,7 @@ struct work {
 };
 
 /* Distances of a block. Edges have the smooth one, that of their force. Triangles have the true
- * one, because their features may have smaller distances than the smooth one of the whole
- * triangle; a feature in range implies a true distance in range (mesh_feature.h). */
+ * one: a feature in range implies a true distance in range (mesh_feature.h). */
 static void measure_lanes(enum cs_pair_kind kind, struct cs_pair_lanes *lanes) {
     struct cs_exact_distance_lanes near;
     if (kind == CS_PAIR_EDGE_EDGE) {

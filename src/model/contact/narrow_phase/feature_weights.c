@@ -77,7 +77,7 @@ CS_INLINE void measure_lane(struct lanes *restrict at, int i) {
     CS_UNROLLED
     for (int k = 0; k < 12; k++)
         p[k / 3][k % 3] = at->p[k / 3][k % 3][i];
-    cs_pair_distance_frame(&plane, CS_PAIR_POINT_TRIANGLE, p);
+    cs_pair_distance_frame(&plane, CS_PAIR_POINT_TRIANGLE, 0, p);
     const double *l = plane.unclamped;
     CS_UNROLLED
     for (int c = 0; c < 3; c++)

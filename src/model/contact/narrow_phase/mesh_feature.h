@@ -172,7 +172,7 @@ CS_INLINE void cs_mesh_feature_measure(struct cs_mesh_feature *s, struct cs_feat
                                        double p[4][3]) {
     const double least = CS_PAIR_DISTANCE_MIN * CS_PAIR_DISTANCE_MIN;
     s->kind = form;
-    cs_pair_distance_frame(&s->plane, CS_PAIR_POINT_TRIANGLE, p);
+    cs_pair_distance_frame(&s->plane, CS_PAIR_POINT_TRIANGLE, 0, p);
     const double *u = s->plane.u, *v = s->plane.v, *w = s->plane.w, *l = s->plane.unclamped;
     cs_mesh_feature_clamp(s);
     for (int c = 0; c < 3; c++) {
@@ -323,7 +323,7 @@ CS_INLINE void cs_mesh_feature_tangent(const struct cs_mesh_feature *s, double d
     struct cs_mesh_feature_tangents d;
     double by[3][3];
     cs_pair_distance_differences(CS_PAIR_POINT_TRIANGLE, dp, d.plane.u, d.plane.v, d.plane.w);
-    cs_pair_distance_jvp_positions(&s->plane, &d.plane);
+    cs_pair_distance_jvp_positions(CS_PAIR_POINT_TRIANGLE, &s->plane, &d.plane);
     cs_mesh_feature_tangent_clamp(s, &d);
     cs_mesh_feature_tangent_gradients(s, &d);
     d.f1 = cs_mesh_feature_tangent_blend(s, &d);

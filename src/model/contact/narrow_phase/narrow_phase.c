@@ -83,7 +83,7 @@ static void add_alone(const struct work *work, const struct cs_pair_lanes *from,
     memcpy(pair->particles, at, sizeof pair->particles);
     read(narrow->x, system->surfaces->n_points, pair->particles, p);
     read(narrow->v, system->surfaces->n_points, pair->particles, v);
-    cs_pair_contact_measure(&reaction, work->chunk->kind, form, p);
+    cs_pair_contact_measure(&reaction, work->chunk->kind, form, params.range, p);
     cs_pair_contact_set(&reaction, &params, &system->scene->contact, v);
     cs_pair_contact_matrix(&reaction, narrow->matrix, pair->vectors, &share);
     part->gradient_weight = share.gradient_weight;

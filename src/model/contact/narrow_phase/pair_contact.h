@@ -30,12 +30,14 @@ struct cs_pair_contact {
     double g[4][3], weight[4];
 };
 
-/* Sets the distance, its gradient and the weights by the four points p. */
+/* Sets the distance, its gradient and the weights by the four points p. range: of edges, in m.
+ */
 CS_INLINE void cs_pair_contact_measure(struct cs_pair_contact *reaction, enum cs_pair_kind kind,
-                                       struct cs_feature_kind form, double p[4][3]) {
+                                       struct cs_feature_kind form, double range,
+                                       double p[4][3]) {
     reaction->kind = kind;
     if (kind == CS_PAIR_EDGE_EDGE) {
-        cs_pair_distance_set(&reaction->distance, kind, p);
+        cs_pair_distance_set(&reaction->distance, kind, range, p);
         cs_pair_distance_gradient(&reaction->distance, reaction->g);
         cs_pair_distance_weights(&reaction->distance, reaction->weight);
     } else {

@@ -38,7 +38,7 @@ CS_INLINE void measure(enum cs_pair_kind kind, struct cs_pair_lanes *restrict la
         double p[4][3];
         struct cs_pair_distance distance;
         read_lane(lanes->p, l, p);
-        cs_pair_distance_set(&distance, kind, p);
+        cs_pair_distance_set(&distance, kind, lanes->range[l], p);
         lanes->d[l] = distance.d;
     }
 }
@@ -70,7 +70,7 @@ CS_INLINE void lane_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, i
     read_lane(lanes->v, lane, v);
     const struct cs_feature_kind form = {lanes->is_edge[lane], lanes->is_off_plane[lane],
                                          lanes->blend_radius[lane]};
-    cs_pair_contact_measure(reaction, kind, form, p);
+    cs_pair_contact_measure(reaction, kind, form, params.range, p);
     cs_pair_contact_set(reaction, &params, &law->keys, v);
 }
 

@@ -36,7 +36,7 @@ struct cs_pair_lanes {
     uint32_t n;
 };
 
-/* Sets d from p by the smooth distance of pair_distance.h. For features of triangles d comes
+/* Sets d from p and range by the distance of pair_distance.h. For features of triangles d comes
  * from feature_weights.h instead. */
 void cs_pair_lanes_measure(enum cs_pair_kind kind, struct cs_pair_lanes *lanes);
 

@@ -133,8 +133,8 @@ CS_INLINE double motion_ask(struct cs_pair_motion *way, double h, double range, 
     CS_UNROLLED
     for (int j = 0; j < 12; j++)
         end[j / 3][j % 3] = way->x0[j / 3][j % 3] + way->displacement[j / 3][j % 3];
-    cs_pair_distance_set(&at, way->kind, way->x0);
-    cs_pair_distance_set(&to, way->kind, end);
+    cs_pair_distance_set(&at, way->kind, range, way->x0);
+    cs_pair_distance_set(&to, way->kind, range, end);
     pair_motion_begin(way, &at, h, range, k, &start);
     const double nearest = to.d < at.d ? to.d : at.d;
     const double unseen = pair_motion_unresolved_energy(&start, 1, to.d, range, k);
@@ -199,6 +199,8 @@ struct work {
 static bool measure(struct cs_pair_motion *way, int points, double range, double *d) {
     struct cs_pair_lanes lanes;
     bool near = false;
+    for (int l = 0; l < CS_PAIR_LANES; l++)
+        lanes.range[l] = range;
     for (int first = 0; first <= points; first += CS_PAIR_LANES) {
         double share[CS_PAIR_LANES];
         for (int l = 0; l < CS_PAIR_LANES; l++)
@@ -225,7 +227,7 @@ static bool is_unresolved(const struct job *job, struct cs_pair_motion *way, dou
     struct cs_pair_motion_start start;
     if (!measure(way, points, range, d))
         return false;
-    cs_pair_distance_set(&at, way->kind, way->x0);
+    cs_pair_distance_set(&at, way->kind, range, way->x0);
     pair_motion_begin(way, &at, job->h, range, k, &start);
     for (int j = 1; j <= points; j++)
         unseen = fmax(
