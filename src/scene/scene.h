@@ -197,11 +197,15 @@ struct cs_collider {
 };
 
 enum cs_contact_law { CS_CONTACT_PROJECT, CS_CONTACT_FORCE };
-enum cs_contact_projection_start { CS_CONTACT_START_REFUSE, CS_CONTACT_START_MOVE_OUT };
+enum cs_contact_projection_start {
+    CS_CONTACT_START_REFUSE,
+    CS_CONTACT_START_MOVE_OUT,
+    CS_CONTACT_START_KEEP
+};
 /* Contact between particles and all colliders. */
 struct cs_contact_keys {
     int32_t law;   /* enum cs_contact_law */
-    int32_t start; /* enum cs_contact_projection_start, of particles that start inside */
+    int32_t start; /* enum cs_contact_projection_start, of what starts inside or within range */
     /* of the law force: */
     double stiffness; /* N/m per particle; NAN: that of the softest body's stretch springs */
     double damping;   /* s, times the stiffness of the contact: N s/m */

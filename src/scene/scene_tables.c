@@ -202,15 +202,17 @@ static const struct cs_table collider_table = {
     ROWS(collider_rows), .size = sizeof(struct cs_collider), .one_of = true};
 
 static const char *const contact_names[] = {"project", "force", NULL};
-static const char *const inside_names[] = {"refuse", "move-out", NULL};
+static const char *const inside_names[] = {"refuse", "move-out", "keep", NULL};
 static const struct cs_option contact_rows[] = {
     CHOICE(struct cs_contact_keys, law, contact_names, CS_CONTACT_PROJECT,
            "project: after each step particles inside a collider are moved to its surface; "
            "force: a force between surfaces in contact range, part of the equation of motion; "
            "the default where bodies meet or a collider is a mesh"),
-    CHOICE(struct cs_contact_keys, start, inside_names, CS_CONTACT_START_REFUSE,
-           "a particle that starts inside a collider: refuse the scene, or move it out first, "
-           "as the report then states"),
+    CHOICE(
+        struct cs_contact_keys, start, inside_names, CS_CONTACT_START_REFUSE,
+        "a particle that starts inside a collider, or, for force, bodies that start with more "
+        "contact energy than at rest: refuse the scene, move them out first, as the report "
+        "then states, or keep them"),
     REAL(struct cs_contact_keys, stiffness, "N/m", ABSENT, 1e-9, 1e12,
          "for force, per particle; absent: springs.stretch of the softest body that has such "
          "springs"),

@@ -195,14 +195,13 @@ enum cs_status cs_session_begin(struct cs_session *session, const double *start,
     cs_run_finish(&session->run);
     if (start)
         memcpy(system->state, start, 6 * (size_t)system->view.n * sizeof *start);
-    const struct cs_initial_penetration *inside = &session->initial_penetration;
+    struct cs_text moved = {0};
+    cs_initial_penetration_print(&session->initial_penetration, &moved);
     if (!cs_run_begin(&session->run, system, session->method.integrator,
                       session->method.options, &session->settings.run, error) &&
-        inside->n && !start)
-        cs_run_note(&session->run,
-                    "%u particle%s started inside colliders, moved out by at "
-                    "most %.3g m",
-                    inside->n, inside->n == 1 ? "" : "s", inside->depth);
+        moved.length && !start)
+        cs_run_note(&session->run, "%s", cs_text_get(&moved));
+    cs_text_finish(&moved);
     return error->status;
 }
 

@@ -112,7 +112,7 @@ TEST(cut_steps_stay_cut) {
         fixture_open(
             &cloth, methods[i],
             "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5], \"place\": {\"translate\": "
-            "[0, 0.51, 0]}}, \"mass\": {\"particle\": 0.001}, \"springs\": {\"stretch\": "
+            "[0, 0.61, 0]}}, \"mass\": {\"particle\": 0.001}, \"springs\": {\"stretch\": "
             "200, \"damping\": 0.01}}], \"colliders\": [{\"floor\": {\"height\": 0}}], "
             "\"contact\": \"force\"}");
         fixture_start(&cloth);

@@ -60,6 +60,25 @@ CS_INLINE double cs_barrier_energy(double d, double range, double k) {
            further * (core.force + 0.5 * core.stiffness * further);
 }
 
+/* J that a contact takes up from the range to its core, where the pole of the law ends. */
+CS_INLINE double cs_barrier_capacity(double range, double k) {
+    return cs_barrier_energy(CS_BARRIER_CORE * range, range, k);
+}
+
+/* m, distance at which a contact carries `load` N, to 1e-12 of the range: the range without a
+ * load, 0 for one that the law does not carry. F falls with d, so that halving finds it. */
+static inline double cs_barrier_balance(double range, double k, double load) {
+    double low = 0, high = range;
+    for (int halving = 0; halving < 40 && load > 0; halving++) {
+        const double d = 0.5 * (low + high);
+        if (cs_barrier_at(d, range, k).force > load)
+            low = d;
+        else
+            high = d;
+    }
+    return high;
+}
+
 /* dK/dd in N/m2; 0 in the core, where K is constant, and out of range. (1-y)^2 (1+2y+3y^2) /
  * y^3 = 1/y^3 - 4 + 3y has the derivative 3 - 3/y^4, to be divided by D. */
 CS_INLINE double cs_barrier_slope(double d, double range, double k) {

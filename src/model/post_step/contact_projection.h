@@ -101,28 +101,47 @@ double cs_step_bound_step(const struct cs_system *system,
  * each other and pump energy into a hanging sheet at dt = 1/60 s. */
 uint64_t cs_strain_limit_apply(const struct cs_system *system, double dt, double *x, double *v);
 
-/* Particles that start inside a collider, and bodies that start
- * crossed. */
+/* Particles that start inside a collider, and bodies that start crossed, in touch, or within
+ * the range of contact. */
 
-/* Particles that were moved out, for the report. */
+/* Particles and bodies that were moved, for the report. */
 struct cs_initial_penetration {
     /* number of particles that were moved out */
     uint32_t n;
     /* m, largest distance that one was moved */
     double depth;
+    /* moves of whole bodies to balance, by contact by force */
+    uint32_t n_moves;
+    /* m, the longest of them */
+    double shift;
+    /* J of contact by force before and after them */
+    double energy[2];
 };
 
-/* Checks every free particle of the state that a system starts from. Contact would push a
- * particle out of a collider with energy that comes from nothing. By the law `project`, inside
- * means behind the surface offset by the thickness. With contact.start "move-out" it is moved
- * out along normals, and *inside reports it.
+/* Checks the state that a system starts from. Contact would push a particle out of a collider
+ * with energy that comes from nothing. By the law `project`, inside means behind the surface
+ * offset by the thickness. With contact.start "move-out" a particle is moved out along normals:
+ * onto that surface, or by contact by force to the distance at which it carries its own weight.
+ * *inside reports it. contact.start "keep" leaves all as it is, but for crossings.
  *
  * CS_ERR_SCENE, with particle, collider and depth, if contact.start refuses; if colliders leave
- * no way out; if a contact sample (model/contact/contact_samples.h) is then still inside; or if
- * edges of bodies with contact pierce triangles, unless crossings are ignored. The state may
- * then have been changed in part. */
+ * no way out; if a contact sample (model/contact/contact_samples.h) is then still inside; if
+ * edges of bodies with contact pierce triangles, unless crossings are ignored; or as
+ * cs_initial_layer_resolve. The state may then have been changed in part. */
 enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
                                               struct cs_initial_penetration *inside,
                                               struct cs_error *error);
+
+/* The part for contact by force, after which no two surfaces touch, or store more energy than
+ * at rest (initial_layer.c). contact.start "move-out" moves bodies to balance, and counts them
+ * in *inside. CS_ERR_SCENE, with both surfaces, their energy and the move that would do;
+ * CS_ERR_MEMORY. */
+enum cs_status cs_initial_layer_resolve(struct cs_system *system,
+                                        struct cs_initial_penetration *inside,
+                                        struct cs_error *error);
+
+/* Adds what was moved as one line without an end; nothing if nothing was. */
+void cs_initial_penetration_print(const struct cs_initial_penetration *inside,
+                                  struct cs_text *out);
 
 #endif

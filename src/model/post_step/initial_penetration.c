@@ -7,7 +7,9 @@
  * number of passes is limited. */
 #include "model/post_step/contact_projection.h"
 
+#include "model/contact/barrier_law.h"
 #include "model/contact/ccd/crossings.h"
+#include "model/contact/collider_params.h"
 #include "model/contact/contact_samples.h"
 #include "model/contact/posed_collider.h"
 
@@ -56,16 +58,28 @@ static enum cs_status refuse(const struct cs_system *system, uint32_t i, uint32_
     return error->status;
 }
 
+/* m in front of the bare surface of a collider to which a particle is moved: by contact by
+ * force where it carries its own weight. */
+static double way_beyond(const struct cs_system *system, uint32_t i, uint32_t collider) {
+    const double *g = system->scene->forces.gravity;
+    const double weight = system->mass[i] * sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    return system->collider_params
+               ? cs_barrier_balance(system->collider_params[collider].range,
+                                    system->collider_params[collider].k, weight)
+               : 0;
+}
+
 /* Moves particle i out of all colliders, or refuses it. */
 static enum cs_status clear(struct cs_system *system, uint32_t i,
                             struct cs_initial_penetration *inside, struct cs_error *error) {
     const size_t size = system->view.n;
     double *x = system->state;
-    double p[3] = {x[i], x[size + i], x[2 * size + i]}, n[3], depth, moved = 0;
+    double p[3] = {x[i], x[size + i], x[2 * size + i]}, n[3] = {0}, depth, moved = 0;
     uint32_t collider = 0;
     for (int pass = 0; find(system, p, &collider, n, &depth); pass++) {
         if (pass == PASSES || system->scene->contact.start == CS_CONTACT_START_REFUSE)
             return refuse(system, i, collider, depth, error);
+        depth += way_beyond(system, i, collider);
         for (int c = 0; c < 3; c++)
             p[c] += depth * n[c];
         moved += depth;
@@ -135,10 +149,9 @@ static enum cs_status check_crossings(const struct cs_system *system, struct cs_
 }
 
 /* Particles first, then samples, whose vertices may have been moved, then crossings. */
-enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
-                                              struct cs_initial_penetration *inside,
-                                              struct cs_error *error) {
-    *inside = (struct cs_initial_penetration){0};
+static enum cs_status check_inside(struct cs_system *system,
+                                   struct cs_initial_penetration *inside,
+                                   struct cs_error *error) {
     for (uint32_t i = 0; i < system->view.n && system->scene->colliders.n && !error->status;
          i++)
         if (system->inv_mass[i] > 0)
@@ -146,4 +159,37 @@ enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
     if (!error->status && system->contact_samples)
         check_between(system, error);
     return error->status ? error->status : check_crossings(system, error);
+}
+
+/* Bodies within range come last: no move of whole bodies cures what is inside or crossed. A
+ * move may bring a body into another surface, and all is checked again. */
+static enum cs_status resolve(struct cs_system *system, struct cs_initial_penetration *inside,
+                              struct cs_error *error) {
+    if (check_inside(system, inside, error))
+        return error->status;
+    if (system->scene->contact.law == CS_CONTACT_FORCE &&
+        cs_initial_layer_resolve(system, inside, error))
+        return error->status;
+    return inside->n_moves ? check_inside(system, inside, error) : CS_OK;
+}
+
+enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
+                                              struct cs_initial_penetration *inside,
+                                              struct cs_error *error) {
+    *inside = (struct cs_initial_penetration){0};
+    return system->scene->contact.start == CS_CONTACT_START_KEEP
+               ? check_crossings(system, error)
+               : resolve(system, inside, error);
+}
+
+void cs_initial_penetration_print(const struct cs_initial_penetration *inside,
+                                  struct cs_text *out) {
+    if (inside->n)
+        cs_text_add(out, "%u particle%s started inside colliders, moved out by at most %.3g m",
+                    inside->n, inside->n == 1 ? "" : "s", inside->depth);
+    if (inside->n_moves)
+        cs_text_add(out,
+                    "%sbodies moved to balance by at most %.3g m: contact energy at the start "
+                    "%.3g J, now %.3g J",
+                    inside->n ? "; " : "", inside->shift, inside->energy[0], inside->energy[1]);
 }
