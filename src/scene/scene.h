@@ -207,7 +207,7 @@ struct cs_contact_keys {
     int32_t law;   /* enum cs_contact_law */
     int32_t start; /* enum cs_contact_projection_start, of what starts inside or within range */
     /* of the law force: */
-    double stiffness; /* N/m per particle; NAN: that of the softest body's stretch springs */
+    double stiffness; /* N/m per particle; NAN: from what may come (contact/approach.h) */
     double damping;   /* s, times the stiffness of the contact: N s/m */
     double friction_speed; /* m/s at which friction is 0.7 of its limit */
 };

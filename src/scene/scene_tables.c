@@ -214,8 +214,8 @@ static const struct cs_option contact_rows[] = {
         "contact energy than at rest: refuse the scene, move them out first, as the report "
         "then states, or keep them"),
     REAL(struct cs_contact_keys, stiffness, "N/m", ABSENT, 1e-9, 1e12,
-         "for force, per particle; absent: springs.stretch of the softest body that has such "
-         "springs"),
+         "for force, per particle; absent: 40 m v^2/D^2 for the speed v at which surfaces may "
+         "meet, at least springs.stretch of the softest body that has such springs"),
     REAL(struct cs_contact_keys, damping, "s", 0, 0, BIG,
          "for force: normal damping over contact stiffness"),
     REAL(struct cs_contact_keys, friction_speed, "m/s", 1e-3, 1e-9, BIG,

@@ -2,6 +2,7 @@
  */
 #include "model/contact/body_pair_params.h"
 
+#include "model/contact/approach.h"
 #include "model/contact/collider_params.h"
 #include "scene/body_pairs.h"
 
@@ -60,7 +61,7 @@ static void meet(struct cs_body_pair_table *body_pairs, uint32_t a, uint32_t b,
     body_pairs->range_min = fmin(body_pairs->range_min, meeting->range);
 }
 
-/* All pairs share the stiffness k; range and friction differ. */
+/* Range, friction and, unless the scene gives it, stiffness differ from pair to pair. */
 enum cs_status cs_body_pair_table_build(struct cs_system *system,
                                         struct cs_body_pair_table *body_pairs,
                                         struct cs_error *error) {
@@ -71,13 +72,16 @@ enum cs_status cs_body_pair_table_build(struct cs_system *system,
         cs_arena_alloc_array(&system->arena, (size_t)n * n, sizeof *body_pairs->params, error);
     body_pairs->has_partner =
         cs_arena_alloc_array(&system->arena, n, sizeof *body_pairs->has_partner, error);
-    if (error->status || cs_collider_params_stiffness(system, &meeting.k, error))
+    double softest;
+    if (error->status || cs_collider_params_softest(system, &softest, error))
         return error->status;
     for (uint32_t a = 0; a < n; a++)
         for (uint32_t b = a; b < n && !error->status; b++) {
             if (!cs_scene_bodies_collide(system->scene, a, b, &meeting.friction))
                 continue;
             meeting.range = range_between(system, a, b, error);
+            meeting.k = cs_approach_stiffness(system, softest, cs_approach_energy(system, a, b),
+                                              meeting.range);
             meet(body_pairs, a, b, &meeting);
         }
     return error->status;

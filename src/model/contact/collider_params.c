@@ -3,6 +3,7 @@
 #include "model/contact/collider_params.h"
 
 #include "base/vec3.h"
+#include "model/contact/approach.h"
 
 #include <math.h>
 
@@ -16,15 +17,23 @@ static double softest(const struct cs_springs *springs) {
     return k;
 }
 
-enum cs_status cs_collider_params_stiffness(const struct cs_system *system, double *k,
-                                            struct cs_error *error) {
-    const double given = system->scene->contact.stiffness;
-    *k = isnan(given) ? softest(&system->springs) : given;
-    if (!isfinite(*k))
+enum cs_status cs_collider_params_softest(struct cs_system *system, double *k,
+                                          struct cs_error *error) {
+    *k = softest(&system->springs);
+    if (isnan(system->scene->contact.stiffness) && !isfinite(*k))
         return cs_fail(error, CS_ERR_SCENE,
                        "contact.stiffness: no stretch spring to derive it from, expected a "
                        "number in N/m");
-    return CS_OK;
+    return cs_approach_build(system, error);
+}
+
+/* J, the most with which a particle of any body comes to a collider. */
+static double energy_of(const struct cs_system *system, uint32_t collider) {
+    double energy = 0;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++)
+        energy =
+            fmax(energy, cs_approach_energy(system, b, system->scene->bodies.n + collider));
+    return energy;
 }
 
 enum cs_status cs_collider_params_table_build(struct cs_system *system,
@@ -32,19 +41,20 @@ enum cs_status cs_collider_params_table_build(struct cs_system *system,
     const struct cs_scene *scene = system->scene;
     const double shortest = cs_springs_shortest(&system->springs);
     double k;
-    if (cs_collider_params_stiffness(system, &k, error))
+    if (cs_collider_params_softest(system, &k, error))
         return error->status;
     struct cs_collider_params *pairings =
         cs_arena_alloc_array(&system->arena, scene->colliders.n, sizeof *pairings, error);
     for (uint32_t c = 0; pairings && c < scene->colliders.n; c++) {
         const double thickness = cs_scene_colliders(scene)[c].thickness;
-        pairings[c].k = k;
         pairings[c].range = thickness > 0 ? thickness : CS_RANGE_SHARE * shortest;
         if (!(pairings[c].range > 0))
             return cs_fail(error, CS_ERR_SCENE,
                            "colliders[%u].thickness: 0, but there is no spring to derive the "
                            "contact range from; expected a length in m",
                            c);
+        pairings[c].k =
+            cs_approach_stiffness(system, k, energy_of(system, c), pairings[c].range);
     }
     system->collider_params = pairings;
     return error->status;

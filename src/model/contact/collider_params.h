@@ -17,14 +17,16 @@ struct cs_collider_params {
     double range; /* m in front of the surface */
 };
 
-/* Sets *k in N/m to contact.stiffness, or to that of the softest stretch spring. CS_ERR_SCENE
- * if neither exists. */
-enum cs_status cs_collider_params_stiffness(const struct cs_system *system, double *k,
-                                            struct cs_error *error);
+/* Sets *k in N/m to the stiffness of the softest stretch spring, from which the default is
+ * derived, and builds system->approach. CS_ERR_SCENE if there is no such spring and the scene
+ * gives no contact.stiffness; CS_ERR_MEMORY. */
+enum cs_status cs_collider_params_softest(struct cs_system *system, double *k,
+                                          struct cs_error *error);
 
-/* Sets system->collider_params, one per collider, after the springs were built. k: see above;
- * range: the collider's thickness, or CS_RANGE_SHARE of the shortest spring. The system's arena
- * owns it. CS_ERR_SCENE if a value is neither given nor to be derived; CS_ERR_MEMORY. */
+/* Sets system->collider_params, one per collider, after the springs were built. k:
+ * cs_approach_stiffness; range: the collider's thickness, or CS_RANGE_SHARE of the shortest
+ * spring. The system's arena owns it. CS_ERR_SCENE if a value is neither given nor to be
+ * derived; CS_ERR_MEMORY. */
 enum cs_status cs_collider_params_table_build(struct cs_system *system, struct cs_error *error);
 
 /* A posed collider with its contact parameters, ready to be evaluated at

@@ -21,6 +21,7 @@ struct cs_body_range {
     const struct cs_trimesh *mesh; /* borrowed from the scene; NULL: a grid */
 };
 
+struct cs_approach;
 struct cs_events;
 struct cs_collider_params;
 struct cs_pairs;
@@ -50,7 +51,8 @@ struct cs_system {
         *motions;            /* (scene->colliders.n); NULL: no event moves a collider */
     double *collider_motion; /* (3, colliders, 3) the view's copy of motions; NULL likewise */
     const struct cs_collider_params
-        *collider_params;   /* (scene->colliders.n); NULL without contact by force */
+        *collider_params; /* (scene->colliders.n); NULL without contact by force */
+    const struct cs_approach *approach; /* NULL without contact by force (approach.h) */
     struct cs_pairs *pairs; /* contact between bodies, and with mesh colliders; NULL: none */
     struct cs_contact_samples
         *contact_samples; /* contact points between particles, for colliders; NULL: none */

@@ -1,0 +1,267 @@
+/* Speeds at which surfaces may meet, by boxes of positions and velocities at the start. */
+#include "model/contact/approach.h"
+
+#include "model/contact/posed_collider.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The largest speed on a smooth leg of a path, 3 s^2 - 2 s^3, over the mean. */
+#define SMOOTH_PEAK 1.5
+
+/* A body or a collider at the start. */
+struct surface {
+    double low[3], high[3]; /* m */
+    /* m/s of its particles, without those that are pinned */
+    double slowest[3], fastest[3];
+    double path_speed; /* m/s, largest along its events */
+    double mass;       /* kg, heaviest particle; 0: a collider */
+    double drop;       /* m to the nearest collider below it */
+    bool tethered;     /* it has pins that no event releases */
+    /* a plane: the box is empty, and it is all behind the plane */
+    bool endless;
+    double point[3], normal[3]; /* m, unit vector */
+};
+
+struct cs_approach {
+    double gravity, down[3]; /* m/s2 and its direction */
+    uint32_t n_bodies, n;    /* bodies, and bodies and colliders */
+    struct surface *surfaces;
+};
+
+static double length_of(const double a[3]) {
+    return sqrt(cs_vec3_dot(a, a));
+}
+
+/* --- boxes --- */
+
+static void clear(struct surface *surface) {
+    *surface = (struct surface){0};
+    for (int c = 0; c < 3; c++) {
+        surface->low[c] = HUGE_VAL;
+        surface->high[c] = -HUGE_VAL;
+    }
+}
+
+static void extend(struct surface *surface, const double p[3], double radius) {
+    for (int c = 0; c < 3; c++) {
+        surface->low[c] = fmin(surface->low[c], p[c] - radius);
+        surface->high[c] = fmax(surface->high[c], p[c] + radius);
+    }
+}
+
+static bool any_release(const struct cs_scene *scene) {
+    for (uint32_t e = 0; e < scene->events.n; e++)
+        if (cs_scene_events(scene)[e].release.present)
+            return true;
+    return false;
+}
+
+static void set_body(const struct cs_system *system, uint32_t body, struct surface *out) {
+    const struct cs_body_range *range = system->bodies + body;
+    const size_t n = system->view.n;
+    bool pinned = false;
+    clear(out);
+    for (size_t i = range->first; i < (size_t)range->first + range->count; i++) {
+        const double *x = system->state + i, *v = x + 3 * n;
+        const double p[3] = {x[0], x[n], x[2 * n]};
+        extend(out, p, 0);
+        out->mass = fmax(out->mass, system->mass[i]);
+        pinned = pinned || system->inv_mass[i] == 0;
+        for (size_t c = 0; c < 3; c++) {
+            out->slowest[c] = i == range->first ? v[c * n] : fmin(out->slowest[c], v[c * n]);
+            out->fastest[c] = i == range->first ? v[c * n] : fmax(out->fastest[c], v[c * n]);
+        }
+    }
+    out->tethered = pinned && !any_release(system->scene);
+}
+
+/* A mesh by its vertices, a core by its corners and its radius. */
+static void set_collider(const struct cs_system *system, uint32_t collider,
+                         struct surface *out) {
+    struct cs_posed_collider at;
+    cs_posed_collider_at(system, collider, 0, &at);
+    const struct cs_trimesh *mesh =
+        at.collider->mesh.present ? at.collider->mesh.geometry : NULL;
+    clear(out);
+    out->endless = cs_shape_is_endless(at.shape);
+    memcpy(out->point, at.centre, sizeof out->point);
+    memcpy(out->normal, at.axes[1], sizeof out->normal);
+    for (size_t i = 0; i < (mesh ? mesh->n : 8) && !out->endless; i++) {
+        double p[3], own[3];
+        for (size_t k = 0; k < 3; k++)
+            own[k] = mesh ? mesh->positions[k * mesh->n + i]
+                          : (i >> k & 1 ? 1 : -1) * at.half_sizes[k];
+        for (int c = 0; c < 3; c++)
+            p[c] = at.centre[c] + own[0] * at.axes[0][c] + own[1] * at.axes[1][c] +
+                   own[2] * at.axes[2][c];
+        extend(out, p, mesh ? 0 : at.radius);
+    }
+}
+
+/* --- speeds --- */
+
+/* m/s, largest along a path that begins at `from` and `begin`. A first point that is no shift
+ * is reached from the middle of what is grabbed. */
+static double speed_along(const struct cs_list *path, int32_t motion, const double from[3],
+                          double begin) {
+    const struct cs_path_point *points = path->items;
+    double speed = 0;
+    for (uint32_t k = 0; k < path->n; k++) {
+        const double *before = k ? points[k - 1].point : from;
+        const double seconds = points[k].at - (k ? points[k - 1].at : begin);
+        double way[3];
+        for (int c = 0; c < 3; c++)
+            way[c] = points[k].point[c] - before[c];
+        if (seconds > 0)
+            speed = fmax(speed, length_of(way) / seconds);
+    }
+    return speed * (motion == CS_MOTION_SMOOTH ? SMOOTH_PEAK : 1);
+}
+
+/* m, half the diagonal of a surface's box; 0 of an endless one */
+static double half_diagonal(const struct surface *surface) {
+    double sides[3];
+    for (int c = 0; c < 3; c++)
+        sides[c] = 0.5 * (surface->high[c] - surface->low[c]);
+    const double length = length_of(sides);
+    return isfinite(length) ? length : 0;
+}
+
+/* Adds the events that move bodies and colliders along paths. */
+static void add_paths(const struct cs_scene *scene, struct cs_approach *approach) {
+    for (uint32_t e = 0; e < scene->events.n; e++) {
+        const struct cs_event *event = cs_scene_events(scene) + e;
+        const double begin = isnan(event->at) ? event->from : event->at, still[3] = {0};
+        if (event->move.present) {
+            struct surface *at = approach->surfaces + approach->n_bodies + event->move.collider;
+            at->path_speed =
+                fmax(at->path_speed,
+                     speed_along(&event->move.path, event->move.motion, still, begin) +
+                         length_of(event->move.spin) * half_diagonal(at));
+        }
+        for (uint32_t b = 0; event->grab.present && b < approach->n_bodies; b++) {
+            struct surface *at = approach->surfaces + b;
+            double middle[3];
+            for (int c = 0; c < 3; c++)
+                middle[c] = event->grab.relative ? 0 : 0.5 * (at->low[c] + at->high[c]);
+            if (event->grab.target.body < 0 || event->grab.target.body == b)
+                at->path_speed =
+                    fmax(at->path_speed,
+                         speed_along(&event->grab.path, event->grab.motion, middle, begin));
+        }
+    }
+}
+
+/* --- drops --- */
+
+/* m, smallest value of direction.p in a box */
+static double least_along(const struct surface *at, const double direction[3]) {
+    double sum = 0;
+    for (int c = 0; c < 3; c++)
+        sum += fmin(direction[c] * at->low[c], direction[c] * at->high[c]);
+    return sum;
+}
+
+/* m that a may fall onto a plane; -1 if it does not. */
+static double drop_onto_plane(const struct cs_approach *approach, const struct surface *a,
+                              const struct surface *plane) {
+    const double steep = -cs_vec3_dot(plane->normal, approach->down);
+    const double height =
+        least_along(a, plane->normal) - cs_vec3_dot(plane->normal, plane->point);
+    return steep > 0 && height > 0 ? height / steep : -1;
+}
+
+/* m/s, largest difference of initial velocities */
+static double relative_speed(const struct surface *a, const struct surface *b) {
+    double apart[3];
+    for (int c = 0; c < 3; c++)
+        apart[c] = fmax(a->fastest[c] - b->slowest[c], b->fastest[c] - a->slowest[c]);
+    return length_of(apart);
+}
+
+/* m that a may fall onto b, which is no plane: the gap along gravity, if the box of a, on its
+ * way down past b and carried aside by the initial velocities, meets that of b; else -1. */
+static double drop_onto_box(const struct cs_approach *approach, const struct surface *a,
+                            const struct surface *b) {
+    double up[3];
+    for (int c = 0; c < 3; c++)
+        up[c] = -approach->down[c];
+    const double gap = least_along(b, approach->down) + least_along(a, up);
+    const double whole = -least_along(b, up) - least_along(a, approach->down);
+    const double aside = relative_speed(a, b) * sqrt(2 * fmax(whole, 0) / approach->gravity);
+    for (int c = 0; c < 3; c++) {
+        const double way = approach->down[c] * whole;
+        if (a->low[c] + fmin(way, 0) - aside > b->high[c] ||
+            a->high[c] + fmax(way, 0) + aside < b->low[c])
+            return -1;
+    }
+    return gap;
+}
+
+/* m that a may fall onto b; 0 or less if it does not. */
+static double drop_onto(const struct cs_approach *approach, const struct surface *a,
+                        const struct surface *b) {
+    if (approach->gravity == 0)
+        return 0;
+    const double drop =
+        b->endless ? drop_onto_plane(approach, a, b) : drop_onto_box(approach, a, b);
+    return a->tethered && drop > 2 * half_diagonal(a) ? 0 : drop;
+}
+
+/* Sets the drop of a body to the nearest collider below it. */
+static void set_drop(struct cs_approach *approach, struct surface *body) {
+    double least = HUGE_VAL;
+    for (uint32_t c = approach->n_bodies; c < approach->n; c++) {
+        const double drop = drop_onto(approach, body, approach->surfaces + c);
+        least = drop > 0 ? fmin(least, drop) : least;
+    }
+    body->drop = least < HUGE_VAL ? least : 0;
+}
+
+enum cs_status cs_approach_build(struct cs_system *system, struct cs_error *error) {
+    const struct cs_scene *scene = system->scene;
+    const double *g = scene->forces.gravity;
+    if (system->approach)
+        return CS_OK;
+    struct cs_approach *approach = cs_arena_alloc(&system->arena, sizeof *approach, error);
+    struct surface *surfaces = cs_arena_alloc_array(
+        &system->arena, scene->bodies.n + scene->colliders.n, sizeof *surfaces, error);
+    if (error->status)
+        return error->status;
+    *approach = (struct cs_approach){.gravity = length_of(g),
+                                     .n_bodies = scene->bodies.n,
+                                     .n = scene->bodies.n + scene->colliders.n,
+                                     .surfaces = surfaces};
+    for (int c = 0; c < 3 && approach->gravity > 0; c++)
+        approach->down[c] = g[c] / approach->gravity;
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        set_body(system, b, surfaces + b);
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        set_collider(system, c, surfaces + scene->bodies.n + c);
+    add_paths(scene, approach);
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        set_drop(approach, surfaces + b);
+    system->approach = approach;
+    return CS_OK;
+}
+
+double cs_approach_energy(const struct cs_system *system, uint32_t a, uint32_t b) {
+    const struct cs_approach *approach = system->approach;
+    const struct surface *first = approach->surfaces + a, *second = approach->surfaces + b;
+    double drop = fmax(drop_onto(approach, first, second), 0);
+    if (b < approach->n_bodies)
+        drop = fmax(fmax(drop, drop_onto(approach, second, first)),
+                    fmax(first->drop, second->drop));
+    const double thrown = relative_speed(first, second);
+    const double path = a == b ? first->path_speed : first->path_speed + second->path_speed;
+    const double squared = fmax(thrown * thrown + 2 * approach->gravity * drop, path * path);
+    return 0.5 * fmax(first->mass, second->mass) * squared;
+}
+
+double cs_approach_stiffness(const struct cs_system *system, double softest, double energy,
+                             double range) {
+    const double given = system->scene->contact.stiffness;
+    return isnan(given) ? fmax(softest, CS_APPROACH_STIFFNESS * energy / (range * range))
+                        : given;
+}

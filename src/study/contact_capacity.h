@@ -1,0 +1,36 @@
+/* contact_capacity.h - the energy that contact by force can hold beside the energy that may
+ * come, for reports and warnings. */
+#ifndef CS_CONTACT_CAPACITY_H
+#define CS_CONTACT_CAPACITY_H
+
+#include "base/text.h"
+#include "model/system/particle_system.h"
+
+/* A barrier must hold this many times the energy that comes: steps pass unseen over what is
+ * below CS_UNRESOLVED_ENERGY_MAX = 1/50 of it (step_check.h), and would come to an end at the
+ * surface. */
+#define CS_APPROACH_MARGIN 50.0
+
+/* What the contact of two surfaces can hold, and what comes. */
+struct cs_contact_capacity {
+    uint32_t a, b;   /* a body; itself, another body, or n_bodies + a collider */
+    double range, k; /* m, N/m */
+    double holds;    /* J that one contact takes up: cs_barrier_capacity */
+    double comes;    /* J of one particle */
+    double k_needed; /* N/m with which it holds CS_APPROACH_MARGIN times what comes */
+};
+
+/* Sets *out to the two surfaces that hold the least in terms of what comes; where nothing
+ * comes, that hold the least. Returns false without contact by force, or if the system is not
+ * built. */
+bool cs_contact_capacity_find(const struct cs_system *system, struct cs_contact_capacity *out);
+
+/* Adds "a contact of bodies[0] with colliders[0] takes up 3.3 J ...": one line without an end.
+ */
+void cs_contact_capacity_print(const struct cs_system *system,
+                               const struct cs_contact_capacity *capacity, struct cs_text *out);
+
+/* Adds a warning about the scene's contact.stiffness if it holds too little. */
+void cs_contact_capacity_warn(const struct cs_system *system, struct cs_text *out);
+
+#endif
