@@ -7,6 +7,7 @@
 #include "model/plan.h"
 #include "scene/body_pairs.h"
 #include "scene/file/scene_read.h"
+#include "study/contact_capacity.h"
 #include "study/overlap_warning.h"
 #include "study/session.h"
 
@@ -39,6 +40,21 @@ static void add_count(struct cs_text *out, const char *before, uint32_t n, const
     cs_text_add(out, "%s%u %s%s", before, n, what, n == 1 ? "" : "s");
 }
 
+/* Adds what the start was changed to, and what contact by force holds. */
+static void add_contact(const struct cs_session *session, struct cs_text *out) {
+    struct cs_text line = {0};
+    struct cs_contact_capacity capacity;
+    cs_initial_penetration_print(&session->initial_penetration, &line);
+    if (line.length)
+        cs_text_add(out, "start: %s\n", cs_text_get(&line));
+    cs_text_finish(&line);
+    if (!cs_contact_capacity_find(&session->system, &capacity))
+        return;
+    cs_text_add(out, "contact: ");
+    cs_contact_capacity_print(&session->system, &capacity, out);
+    cs_text_add(out, "\n");
+}
+
 /* "FILE: ok, 4096 particles, ..." */
 static enum cs_status add_verdict(const struct cs_session *session, struct cs_text *out,
                                   struct cs_error *error) {
@@ -51,11 +67,14 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
     add_count(out, ", ", plan->n_springs, "spring");
     add_count(out, ", ", scene->colliders.n, "collider");
     cs_text_add(out, ", %s\n", session->method.integrator->name);
+    add_contact(session, out);
     struct cs_text warning = {0};
     if (!cs_overlap_warning_print(scene, 1, &warning, error) && !warning.length)
         cs_sampling_warning_print(&session->system, &warning);
     if (!error->status && !warning.length)
         cs_containment_warning_print(&session->system, &warning);
+    if (!error->status && !warning.length)
+        cs_contact_capacity_warn(&session->system, &warning);
     if (!error->status && warning.length)
         cs_text_add(out, "warning: %s\n", cs_text_get(&warning));
     cs_text_finish(&warning);

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "cli/line/print.h"
 #include "scene/file/scene_read.h"
+#include "study/contact_capacity.h"
 #include "study/follow.h"
 #include "study/overlap_warning.h"
 #include "study/provenance_write.h"
@@ -135,7 +136,8 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     return cs_run_outputs_at(job, CS_RUN_BEGIN, error);
 }
 
-/* Warns of bodies without effective contact: the first of three checks that finds something. */
+/* Warns of bodies without effective contact: or with too weak a one: the first of four checks
+ * that finds something. */
 static enum cs_status warn(struct cs_job *job, struct cs_error *error) {
     const struct cs_scene *scene = &job->session.scene;
     if (cs_overlap_warning_print(scene, job->frames / scene->time.fps, &job->warning, error))
@@ -144,6 +146,8 @@ static enum cs_status warn(struct cs_job *job, struct cs_error *error) {
         cs_sampling_warning_print(&job->session.system, &job->warning);
     if (!job->warning.length)
         cs_containment_warning_print(&job->session.system, &job->warning);
+    if (!job->warning.length)
+        cs_contact_capacity_warn(&job->session.system, &job->warning);
     return CS_OK;
 }
 

@@ -3,6 +3,7 @@
 #include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/run/job_state.h"
+#include "study/contact_capacity.h"
 #include "study/provenance_write.h"
 
 #include <cjson/cJSON.h>
@@ -102,6 +103,20 @@ static void add_crossings(const struct cs_job *job, struct cs_text *out) {
     cs_text_add(out, "},\n");
 }
 
+/* Only with contact by force. */
+static void add_contact(const struct cs_system *system, struct cs_text *out) {
+    struct cs_contact_capacity at;
+    const uint32_t n_bodies = system->scene->bodies.n;
+    if (!cs_contact_capacity_find(system, &at))
+        return;
+    cs_json_write(out, "  'contact': {'body': %u", at.a);
+    cs_json_write(out, at.b < n_bodies ? ", 'other_body': %u" : ", 'collider': %u",
+                  at.b < n_bodies ? at.b : at.b - n_bodies);
+    cs_json_write(out, ", 'range': %g, 'stiffness': %g", at.range, at.k);
+    cs_json_write(out, ", 'holds': %g, 'comes': %g, 'stiffness_needed': %g},\n", at.holds,
+                  at.comes, at.k_needed);
+}
+
 static void add_measures(const struct cs_run *run, struct cs_text *out) {
     const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
     cs_json_write(out, "  'energy': {'kinetic': %g, 'elastic': %g, 'gravity': %g",
@@ -162,6 +177,7 @@ void cs_report_print_json(const struct cs_job *job, struct cs_text *out) {
     add_outcome(job, out);
     add_counts(&run->counts, out);
     add_crossings(job, out);
+    add_contact(run->system, out);
     add_measures(run, out);
     cs_json_write(out, "  'state_hash': %s,\n", job->hash);
     add_seconds(job, out);

@@ -3,6 +3,7 @@
 
 #include "base/pool.h"
 #include "cli/line/print.h"
+#include "study/contact_capacity.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -65,6 +66,17 @@ static void add_crossings(const struct cs_job *job, struct cs_text *out) {
         return;
     cs_crossing_stats_print(&job->crossings, &job->session.system, &found);
     cs_print_hanging("crossings", cs_text_get(&found), VALUE_COLUMN, out);
+    cs_text_finish(&found);
+}
+
+/* Only with contact by force: what it holds, and what may come. */
+static void add_contact(const struct cs_job *job, struct cs_text *out) {
+    struct cs_contact_capacity capacity;
+    struct cs_text found = {0};
+    if (!cs_contact_capacity_find(&job->session.system, &capacity))
+        return;
+    cs_contact_capacity_print(&job->session.system, &capacity, &found);
+    cs_print_hanging("contact", cs_text_get(&found), VALUE_COLUMN, out);
     cs_text_finish(&found);
 }
 
@@ -149,6 +161,7 @@ void cs_report_print_table(const struct cs_job *job, struct cs_text *out) {
     add_frames(job, out);
     add_watch(job, out);
     add_crossings(job, out);
+    add_contact(job, out);
     add_counts(job, out);
     add_measures(job, out);
     if (job->settings->session.run.timed) {

@@ -1,10 +1,8 @@
-/* Notes whether linear theory and runs include contact, and how much energy crosses a collider.
- */
+/* Notes whether linear theory and runs include contact, and what energy contact holds. */
 #include "study/stability/stability_state.h"
 
-#include "model/contact/barrier_law.h"
-#include "model/contact/collider_params.h"
 #include "scene/body_pairs.h"
+#include "study/contact_capacity.h"
 
 #include <math.h>
 
@@ -25,28 +23,28 @@ static bool any_friction(const struct cs_scene *scene) {
     return false;
 }
 
-/* The barrier energy is that from the edge of the range to its core, below which the law ends.
- * Near rest the friction force is about mu N v / friction_speed: a damping rate of mu N / (m
+/* Near rest the friction force is about mu N v / friction_speed: a damping rate of mu N / (m
  * friction_speed), which an explicit step must resolve. */
 void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
                                   struct cs_text *out) {
     const struct cs_scene *scene = system->scene;
-    double least = HUGE_VAL, heaviest = 0;
-    if (!system->collider_params)
+    struct cs_contact_capacity capacity;
+    double heaviest = 0;
+    if (!cs_contact_capacity_find(system, &capacity))
         return;
-    for (uint32_t c = 0; c < scene->colliders.n; c++) {
-        const double range = system->collider_params[c].range;
-        least = fmin(least, cs_barrier_energy(CS_BARRIER_CORE * range, range,
-                                              system->collider_params[c].k));
-    }
     for (uint32_t i = 0; i < system->view.n; i++)
         if (system->inv_mass[i] > 0)
             heaviest = fmax(heaviest, system->mass[i]);
-    cs_text_add(out, "a particle needs %.3g J to cross a collider", least);
+    cs_contact_capacity_print(system, &capacity, out);
     if (speed > 0)
-        cs_text_add(out, ", and has at most %.3g J: %.3g kg at %.3g m/s",
+        cs_text_add(out, "; a particle of the runs has at most %.3g J: %.3g kg at %.3g m/s",
                     0.5 * heaviest * speed * speed, heaviest, speed);
     cs_text_add(out, "\n");
+    struct cs_text warning = {0};
+    cs_contact_capacity_warn(system, &warning);
+    if (warning.length)
+        cs_text_add(out, "warning: %s\n", cs_text_get(&warning));
+    cs_text_finish(&warning);
     if (any_friction(scene))
         cs_text_add(
             out,

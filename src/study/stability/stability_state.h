@@ -197,9 +197,9 @@ enum cs_status cs_journal_merge(const char *const *folders, uint32_t n_folders, 
  * scenes without contact. */
 void cs_contact_note_add(const struct cs_scene *scene, const char *before, struct cs_text *out);
 
-/* Adds the energy in J that a particle needs to cross the thinnest collider, next to the
- * kinetic energy of the heaviest particle at `speed` (m/s; 0: unknown). Adds the damping by
- * friction that limits explicit steps. Adds nothing for scenes without contact by force. */
+/* Adds the energy in J that contact holds beside the one that comes (contact_capacity.h), next
+ * to the kinetic energy of the heaviest particle at `speed` (m/s; 0: unknown). Adds the damping
+ * by friction that limits explicit steps. Adds nothing for scenes without contact by force. */
 void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
                                   struct cs_text *out);
 
