@@ -109,6 +109,13 @@ static void plan_contact(struct cs_plan *plan, const struct cs_scene *scene, boo
            scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT,
            "the scene has colliders",
            scene->colliders.n > 0 ? "contact is a force" : "no colliders");
+    decide(plan, CS_FEATURE_FRICTION_ANCHORS, cs_scene_friction_sticks(scene),
+           "contact.friction_law is stick",
+           scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n > 0
+               ? (scene->contact.friction_law == CS_FRICTION_BRISTLES
+                      ? "no friction on colliders that are no meshes"
+                      : "contact.friction_law is smooth")
+               : NULL);
     const bool shown = render && scene->render.look == CS_LOOK_CROSSINGS;
     const bool wanted = cs_scene_crossings(scene) != CS_CROSSINGS_IGNORE;
     decide(plan, CS_FEATURE_CROSSINGS, wanted || shown,
@@ -194,6 +201,7 @@ void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {
         for (uint32_t k = 0; f == CS_FEATURE_AREA && k < cs_n_terms; k++)
             if (plan->forces[k].reason)
                 print_row(cs_terms[k]->name, plan->forces + k, out);
-        print_row(feature_names[f], plan->rows + f, out);
+        if (plan->rows[f].reason)
+            print_row(feature_names[f], plan->rows + f, out);
     }
 }

@@ -9,6 +9,7 @@
 #include "model/plan.h"
 
 #include "model/contact/ccd/crossings.h"
+#include "model/contact/friction_anchors.h"
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
@@ -231,6 +232,8 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
     /* events choose particles by where they start, so before them */
     memcpy(system->start, system->state, 3 * sizeof(double) * system->view.n);
     choose_terms(system, error);
+    if (!error->status && begin(system, CS_FEATURE_FRICTION_ANCHORS))
+        cs_friction_anchors_build(system, error);
     if (!error->status && begin(system, CS_FEATURE_CROSSINGS))
         cs_crossings_build(system, error);
     if (error->status)

@@ -2,6 +2,8 @@
  * itself, and by the colliders that are meshes. */
 #include "scene/body_pairs.h"
 
+#include "scene/event_key.h"
+
 uint32_t cs_scene_surfaces(const struct cs_scene *scene) {
     for (uint32_t c = 0; c < scene->colliders.n; c++)
         if (cs_scene_colliders(scene)[c].mesh.present)
@@ -49,4 +51,18 @@ bool cs_scene_has_body_contact(const struct cs_scene *scene) {
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         any = any || cs_scene_bodies(scene)[b].self_contact;
     return any;
+}
+
+bool cs_scene_sticks_to(const struct cs_scene *scene, uint32_t collider) {
+    const struct cs_collider *to = cs_scene_colliders(scene) + collider;
+    return scene->contact.law == CS_CONTACT_FORCE &&
+           scene->contact.friction_law == CS_FRICTION_BRISTLES && !to->mesh.present &&
+           cs_event_key_acts(scene, to->friction, ".friction");
+}
+
+bool cs_scene_friction_sticks(const struct cs_scene *scene) {
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        if (cs_scene_sticks_to(scene, c))
+            return true;
+    return false;
 }

@@ -21,6 +21,13 @@ bool cs_scene_bodies_collide(const struct cs_scene *scene, uint32_t a, uint32_t 
 /* Returns true if any two may. */
 bool cs_scene_has_body_contact(const struct cs_scene *scene);
 
+/* Returns true if friction on a collider has anchors (contact.friction_law stick): it is no
+ * mesh, and its friction is above 0, now or after a ramp. */
+bool cs_scene_sticks_to(const struct cs_scene *scene, uint32_t collider);
+
+/* Returns true if friction on any collider has. */
+bool cs_scene_friction_sticks(const struct cs_scene *scene);
+
 /* Treatment of edges that go through triangles, as the scene wants it. */
 
 /* Treatment of crossings; each includes the count but the first. */

@@ -1,8 +1,12 @@
-/* pair_keys.h - keys of a scene about contact between bodies. */
+/* pair_keys.h - keys of a scene about friction, and about contact between bodies. */
 #ifndef CS_PAIR_KEYS_H
 #define CS_PAIR_KEYS_H
 
 #include <clothsim/option.h>
+
+/* Friction of contact by force: a function of the velocity, or with a memory
+ * (model/contact/bristle_law.h). */
+enum cs_friction_law { CS_FRICTION_SMOOTH, CS_FRICTION_BRISTLES };
 
 /* Two bodies in contact. */
 struct cs_body_pair_keys {

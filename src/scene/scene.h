@@ -210,6 +210,7 @@ struct cs_contact_keys {
     double stiffness; /* N/m per particle; NAN: from what may come (contact/approach.h) */
     double damping;   /* s, times the stiffness of the contact: N s/m */
     double friction_speed; /* m/s at which friction is 0.7 of its limit */
+    int32_t friction_law;  /* enum cs_friction_law */
 };
 
 enum cs_wind_unit { CS_WIND_PA, CS_WIND_N };

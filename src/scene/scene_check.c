@@ -174,6 +174,39 @@ static enum cs_status check_meetings(const struct cs_check *at, const struct cs_
         "expected contact.law force");
 }
 
+/* Refuses friction that sticks where it is not known: without a force, and between surfaces
+ * that meet in pairs. */
+static enum cs_status check_sticking(const struct cs_check *at, const struct cs_scene *scene) {
+    const struct cs_body_pair_keys *pairs = scene->pairs.list.items;
+    char path[64] = "";
+    if (scene->contact.friction_law != CS_FRICTION_BRISTLES)
+        return CS_OK;
+    if (scene->contact.law != CS_CONTACT_FORCE)
+        return cs_check_refuse(at, "contact.friction_law",
+                               "found stick with contact.law project, expected contact.law "
+                               "force");
+    for (uint32_t b = scene->bodies.n; b--;)
+        if (cs_scene_bodies(scene)[b].self_contact && cs_scene_bodies(scene)[b].friction > 0)
+            snprintf(path, sizeof path, "bodies[%u].friction", b);
+    if (scene->pairs.among == CS_PAIRS_ALL && scene->pairs.friction > 0 && scene->bodies.n > 1)
+        snprintf(path, sizeof path, "pairs.friction");
+    for (uint32_t p = scene->pairs.list.n; p--;)
+        if (pairs[p].friction > 0)
+            snprintf(path, sizeof path, "pairs.list[%u].friction", p);
+    for (uint32_t c = scene->colliders.n; c--;)
+        if (cs_scene_colliders(scene)[c].mesh.present) {
+            char key[64];
+            snprintf(key, sizeof key, "colliders[%u].friction", c);
+            if (cs_event_key_acts(scene, cs_scene_colliders(scene)[c].friction, key))
+                memcpy(path, key, sizeof path);
+        }
+    return *path ? cs_check_refuse(at, path,
+                                   "contact.friction_law stick is not known between surfaces "
+                                   "that meet in pairs; expected 0 here, or friction_law "
+                                   "smooth")
+                 : CS_OK;
+}
+
 /* Checks that the keys of a camera path ascend in time and that each is a view. */
 static enum cs_status check_camera_path(const struct cs_check *at,
                                         const struct cs_camera *camera) {
@@ -234,6 +267,7 @@ enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_
     const struct cs_check at = {path_out, error};
     path_out[0] = 0;
     if (check_bodies(&at, scene) || check_colliders(&at, scene) || check_meetings(&at, scene) ||
+        check_sticking(&at, scene) ||
         (scene->forces.wind.present &&
          cs_check_unit(&at, "forces.wind.direction", scene->forces.wind.direction, 3)) ||
         check_camera(&at, &scene->camera) || check_light(&at, &scene->light) ||

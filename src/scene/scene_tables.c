@@ -203,6 +203,7 @@ static const struct cs_table collider_table = {
 
 static const char *const contact_names[] = {"project", "force", NULL};
 static const char *const inside_names[] = {"refuse", "move-out", "keep", NULL};
+static const char *const friction_names[] = {"smooth", "stick", NULL};
 static const struct cs_option contact_rows[] = {
     CHOICE(struct cs_contact_keys, law, contact_names, CS_CONTACT_PROJECT,
            "project: after each step particles inside a collider are moved to its surface; "
@@ -219,7 +220,10 @@ static const struct cs_option contact_rows[] = {
     REAL(struct cs_contact_keys, damping, "s", 0, 0, BIG,
          "for force: normal damping over contact stiffness"),
     REAL(struct cs_contact_keys, friction_speed, "m/s", 1e-3, 1e-9, BIG,
-         "for force: sliding speed at which friction reaches 0.7 of its limit"),
+         "for force, smooth: sliding speed at which friction reaches 0.7 of its limit"),
+    CHOICE(struct cs_contact_keys, friction_law, friction_names, CS_FRICTION_SMOOTH,
+           "for force: smooth: friction depends on the velocity alone, and what rests creeps; "
+           "stick: particles hang on anchors in colliders and rest below the limit"),
 };
 static const struct cs_table contact_table = {
     ROWS(contact_rows), .size = sizeof(struct cs_contact_keys), .shorthand_text = "law"};

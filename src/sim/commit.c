@@ -6,15 +6,17 @@
  *    error.
  * 3. Strain limit, contact projection, velocity loss, positions on grabbed paths. The ledger
  *    books each.
- * 4. Checks: blow-up, interrupt, budget, then a first crossing of surfaces if the scene stops
+ * 4. Anchors of sticking friction follow the points that slip.
+ * 5. Checks: blow-up, interrupt, budget, then a first crossing of surfaces if the scene stops
  *    there.
- * 5. The observer, which may move the state.
- * 6. The ledger and contact store the state that the next step starts from; static friction
+ * 6. The observer, which may move the state.
+ * 7. The ledger and contact store the state that the next step starts from; static friction
  *    decides again which particles it holds, and pins them. */
 #include "sim/commit.h"
 
 #include "base/vector.h"
 #include "model/contact/ccd/step_limit.h"
+#include "model/contact/friction_anchors.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/post_step/contact_projection.h"
 #include "sim/energy_ledger.h"
@@ -163,6 +165,7 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
     if (settings->ledger)
         cs_energy_ledger_book_step(settings->ledger, t, x, v);
     correct(host, t, dt, x, v, changed);
+    cs_friction_anchors_commit(host->run->system, t, x, v);
     if (cs_step_limit_failed(host->run->system))
         return host->table.fail(ctx, "out of memory for the contact pairs");
     enum cs_step step = judge(host, t, x, v);

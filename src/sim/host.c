@@ -280,9 +280,9 @@ static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *err
 
 /* True if commit only checks: no correction, contact or event can change the state. */
 static bool may_pass(const struct cs_system *system) {
-    static const enum cs_feature acting[] = {CS_FEATURE_VELOCITY_LOSS, CS_FEATURE_CONTACT,
-                                             CS_FEATURE_CROSSINGS, CS_FEATURE_STRAIN_LIMIT,
-                                             CS_FEATURE_EVENTS};
+    static const enum cs_feature acting[] = {
+        CS_FEATURE_VELOCITY_LOSS, CS_FEATURE_CONTACT,          CS_FEATURE_CROSSINGS,
+        CS_FEATURE_STRAIN_LIMIT,  CS_FEATURE_FRICTION_ANCHORS, CS_FEATURE_EVENTS};
     bool acts = cs_step_limit_applies(system);
     for (size_t k = 0; k < sizeof acting / sizeof *acting; k++)
         acts |= system->plan.rows[acting[k]].built;

@@ -2,6 +2,7 @@
 #include "sim/run.h"
 
 #include "base/clock.h"
+#include "model/contact/friction_anchors.h"
 #include "sim/commit.h"
 #include "sim/crash.h"
 #include "sim/host.h"
@@ -94,6 +95,7 @@ static enum cs_step advance(struct cs_run *run, double from, double to) {
 /* Creates the method, counts its memory in run->method_bytes, and restarts it at 0. */
 static enum cs_status start(struct cs_run *run, const void *options, struct cs_error *error) {
     struct cs_run_host *host = run->host;
+    cs_friction_anchors_start(run->system, 0, run->x);
     host->process_state = cs_process_state_save();
     cs_crash_begin(CS_CRASH_METHOD);
     host->creating = true;
@@ -214,6 +216,17 @@ size_t cs_run_bytes(const struct cs_run *run) {
     const struct cs_system *system = run->system;
     return system->arena.used + system->plan.rows[CS_FEATURE_MESHES].bytes +
            run->host->arena.used;
+}
+
+void cs_run_hash(const struct cs_run *run, char digits[CS_HASH_DIGITS]) {
+    const struct cs_friction_anchors *anchors = run->system->friction_anchors;
+    char both[2][CS_HASH_DIGITS];
+    cs_hash_doubles(run->x, 6 * (size_t)run->system->view.n, digits);
+    if (!anchors)
+        return;
+    memcpy(both[0], digits, CS_HASH_DIGITS);
+    cs_hash_doubles(anchors->values, anchors->n_values, both[1]);
+    cs_hash_bytes(both, sizeof both, digits);
 }
 
 void cs_run_note(struct cs_run *run, const char *format, ...) {

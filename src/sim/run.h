@@ -5,6 +5,7 @@
 #ifndef CS_RUN_H
 #define CS_RUN_H
 
+#include "base/hash.h"
 #include "model/force/diagnostics.h"
 #include "sim/run_state.h"
 
@@ -50,6 +51,10 @@ void cs_run_goals(const struct cs_run *run, double *g);
  * Exact, and the same on every machine with the same number of threads. The private memory of
  * foreign libraries is not included. */
 size_t cs_run_bytes(const struct cs_run *run);
+
+/* Hash of the state, as 32 hexadecimal digits: that of x and v, and in a scene with friction
+ * that sticks the hash of that hash and the one of all anchors. */
+void cs_run_hash(const struct cs_run *run, char digits[CS_HASH_DIGITS]);
 
 /* Adds a remark to the report, as the method does by host->note. */
 void cs_run_note(struct cs_run *run, const char *format, ...) CS_PRINTF(2, 3);

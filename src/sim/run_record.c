@@ -6,6 +6,7 @@
  * count too. */
 #include "sim/run_record.h"
 
+#include "model/contact/friction_anchors.h"
 #include "model/event/event_state.h"
 #include "sim/host.h"
 
@@ -34,7 +35,7 @@ static struct cs_archive archive_of(struct cs_serialiser *record) {
 }
 
 /* Everything that the model has changed since the run began: state, time, blow-up bound,
- * events, contact. */
+ * events, contact, anchors of friction. */
 static void record_system(struct cs_run *run, struct cs_serialiser *record) {
     struct cs_run_host *host = run->host;
     struct cs_system *system = run->system;
@@ -45,6 +46,9 @@ static void record_system(struct cs_run *run, struct cs_serialiser *record) {
     cs_events_serialise(system, record);
     if (system->plan.rows[CS_FEATURE_CONTACT].built)
         cs_contact_projection_serialise(&host->contact, record);
+    if (system->friction_anchors)
+        cs_serialiser_bytes(record, system->friction_anchors->values,
+                            system->friction_anchors->n_values * sizeof(double));
 }
 
 /* Counts and remarks, which only reports show. A damaged number of remarks fails the record. */

@@ -125,7 +125,7 @@ static void add_result(const struct cs_session *session, const char *outcome, do
     const struct cs_run *run = &session->run;
     const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
     char hash[CS_HASH_DIGITS];
-    cs_hash_doubles(run->x, 6 * (size_t)session->system.view.n, hash);
+    cs_run_hash(run, hash);
     cs_csv_add_text(out, outcome);
     cs_text_add(out, ",%u", run->frame);
     cs_csv_add_number(out, run->t);

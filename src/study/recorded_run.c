@@ -120,7 +120,7 @@ enum cs_status cs_recorded_run_execute(struct cs_recorded_run *recording, double
         step_frames(recording, track, end, error);
         end->counts = session->run.counts;
         store_notes(end, &session->run);
-        cs_hash_doubles(session->run.x, 6 * (size_t)session->system.view.n, end->hash);
+        cs_run_hash(&session->run, end->hash);
     }
     cs_follow_result(&session->run, "; finished rows are saved", &end->result, error);
     if (end->result.outcome == CS_FAILED)

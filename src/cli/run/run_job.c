@@ -30,7 +30,7 @@ static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
 /* Hashes and judges the state of the frame. */
 static void look(struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
-    cs_hash_doubles(run->x, 6 * (size_t)job->session.system.view.n, job->hash);
+    cs_run_hash(run, job->hash);
     cs_energy_monitor_sample(&job->monitor, run, &job->sound);
     cs_crossing_stats_add(&job->crossings, run);
 }

@@ -65,11 +65,13 @@ enum cs_status cs_collider_params_table_build(struct cs_system *system,
 void cs_posed_collider_law_at(const struct cs_system *system, uint32_t collider, double t,
                               struct cs_posed_collider_law *near) {
     const struct cs_scene *scene = system->scene;
-    *near =
-        (struct cs_posed_collider_law){.params = system->collider_params[collider],
-                                       .friction = cs_scene_colliders(scene)[collider].friction,
-                                       .friction_speed = scene->contact.friction_speed,
-                                       .damping = scene->contact.damping};
+    const double friction = cs_scene_colliders(scene)[collider].friction;
+    const bool sticks = scene->contact.friction_law == CS_FRICTION_BRISTLES;
+    *near = (struct cs_posed_collider_law){.params = system->collider_params[collider],
+                                           .friction = sticks ? 0 : friction,
+                                           .sticking_friction = sticks ? friction : 0,
+                                           .friction_speed = scene->contact.friction_speed,
+                                           .damping = scene->contact.damping};
     cs_posed_collider_at(system, collider, t, &near->collider);
 }
 

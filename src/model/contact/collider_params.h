@@ -37,6 +37,8 @@ struct cs_posed_collider_law {
     struct cs_posed_collider collider;
     struct cs_collider_params params;
     double friction, friction_speed, damping; /* mu (1), ev (m/s), tau (s) */
+    /* mu of contact.friction_law "stick"; friction is then 0, and the other way round */
+    double sticking_friction;
 };
 
 /* Sets *near to a collider at t. The scene must have contact by force. */

@@ -232,11 +232,15 @@ void cs_contact_sample_first(const struct cs_contact_sample_chunk *chunk, uint32
                                               .subdivisions =
                                                   chunk->subdivisions[item - chunk->begin],
                                               .a = chunk->vertices_per_item == 3};
+    // the first step of the iteration counts too
+    if (chunk->first_numbers)
+        point->number = chunk->first_numbers[item - chunk->begin] - 1;
     for (uint32_t k = 0; k < chunk->vertices_per_item; k++)
         point->particles[k] = chunk->vertices[(size_t)chunk->vertices_per_item * item + k];
 }
 
 bool cs_contact_sample_next(struct cs_contact_sample_point *point) {
+    point->number++;
     if (point->n == 2)
         point->a++;
     else if (point->a + ++point->b >= point->subdivisions)

@@ -36,6 +36,9 @@ struct cs_contact_sample_chunk {
     uint32_t first, last;
     /* (end - begin) number m of parts per edge; 0: no sample */
     uint8_t *subdivisions;
+    /* (end - begin) number of each item's first sample among all; NULL without anchors of
+     * friction */
+    uint32_t *first_numbers;
 };
 
 /* All samples of a system; its arena owns them. */
@@ -75,6 +78,8 @@ struct cs_contact_sample_point {
     double w[3];
     /* w = (m - a - b, a, b) / m with m = subdivisions */
     uint32_t subdivisions, a, b;
+    /* of the sample among all; with anchors of friction only */
+    uint32_t number;
 };
 
 /* Iterates over the samples of one item, without its vertices and, for a triangle, without its

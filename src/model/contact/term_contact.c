@@ -3,6 +3,7 @@
  * blocks only. Colliders come in the scene's order, which is the order of the sums. */
 #include "base/vector.h"
 #include "model/contact/collider_params.h"
+#include "model/contact/friction_anchors.h"
 #include "model/force/term.h"
 #include "model/force/terms.h"
 
@@ -15,13 +16,13 @@
 enum { ROW = 64 };
 
 /* Returns whether a collider is a plane or sphere without rotation, whose matter moves at one
- * velocity. */
+ * velocity, and friction on it is smooth. */
 static bool contact_rows_supported(const struct cs_posed_collider_law *near) {
     const struct cs_posed_collider *pose = &near->collider;
     const double *spin = pose->spin;
     const enum cs_shape_bounds bounds = pose->shape->bounds;
     return (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE) && spin[0] == 0 &&
-           spin[1] == 0 && spin[2] == 0;
+           spin[1] == 0 && spin[2] == 0 && near->sticking_friction == 0;
 }
 
 /* Distances and gradients of one row; a plane's gradient is its normal and is not stored. */
@@ -210,6 +211,7 @@ static void add_force(const struct cs_system *system, const struct cs_eval *at, 
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_posed_collider_law near = near_of(system, c, at->t);
         struct cs_point_contact touch;
+        struct cs_bristle bristle;
         if (contact_rows_supported(&near)) {
             contact_rows_add(&near, n, at, parts, f);
             continue;
@@ -218,6 +220,9 @@ static void add_force(const struct cs_system *system, const struct cs_eval *at, 
             if (touch_of(&near, n, at->x, at->v, i, &touch)) {
                 double a[3];
                 cs_point_contact_force(&touch, parts, a);
+                if (parts.friction > 0 &&
+                    cs_bristle_of_particle(system, c, &near, at->x, i, &bristle))
+                    cs_bristle_add_force(&touch, &bristle, a);
                 add_at(f, n, i, a);
             }
     }
@@ -238,11 +243,15 @@ static void add_jvp(const struct cs_system *system, const struct cs_eval *at, do
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_posed_collider_law near = near_of(system, c, at->t);
         struct cs_point_contact touch;
+        struct cs_bristle bristle;
         for (size_t i = at->block->begin; i < at->block->end; i++)
             if (touch_of(&near, n, at->x, at->v, i, &touch)) {
                 const struct cs_point_contact_motion move = move_of(&near, n, at, i);
                 double a[3];
                 cs_point_contact_jvp(&touch, parts, &move, a);
+                if (parts.friction > 0 &&
+                    cs_bristle_of_particle(system, c, &near, at->x, i, &bristle))
+                    cs_bristle_add_jvp(&touch, &bristle, &move, a);
                 add_at(df, n, i, a);
             }
     }
@@ -268,10 +277,13 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_posed_collider_law near = near_of(system, c, matrix->t);
         struct cs_point_contact touch;
+        struct cs_bristle bristle;
         for (size_t i = begin; i < end; i++)
             if (touch_of(&near, n, matrix->x, matrix->v, i, &touch)) {
                 double b[6] = {0};
                 cs_point_contact_add_block(&touch, matrix, b);
+                if (cs_bristle_of_particle(system, c, &near, matrix->x, i, &bristle))
+                    cs_bristle_add_block(&touch, &bristle, matrix, b);
                 for (size_t e = 0; e < 6; e++)
                     blocks[e * n + i] += b[e];
             }
@@ -280,6 +292,8 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
 
 /* One collider of add_approach. */
 struct approach {
+    const struct cs_system *system;
+    uint32_t collider;
     struct cs_posed_collider_law near;
     const struct cs_matrix *matrix;
     size_t n;
@@ -289,10 +303,14 @@ struct approach {
 static void add_approaches(void *arg, size_t begin, size_t end) {
     const struct approach *to = arg;
     struct cs_point_contact touch;
+    struct cs_bristle bristle;
     for (size_t i = begin; i < end; i++)
         if (touch_of(&to->near, to->n, to->matrix->x, to->matrix->v, i, &touch)) {
             double a[3];
             cs_point_contact_approach(&touch, to->matrix, a);
+            if (cs_bristle_of_particle(to->system, to->collider, &to->near, to->matrix->x, i,
+                                       &bristle))
+                cs_bristle_add_approach(&touch, &bristle, to->matrix, a);
             add_at(to->y, to->n, i, a);
         }
 }
@@ -300,7 +318,8 @@ static void add_approaches(void *arg, size_t begin, size_t end) {
 static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
                          double *y) {
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        struct approach to = {near_of(system, c, matrix->t), matrix, system->view.n, y};
+        struct approach to = {system,         c, near_of(system, c, matrix->t), matrix,
+                              system->view.n, y};
         cs_vector_parallel_for(to.n, add_approaches, &to);
     }
 }
@@ -311,6 +330,7 @@ static void add_bound_at(const struct cs_system *system, const struct cs_eval *a
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_posed_collider_law near = near_of(system, c, at->t);
         struct cs_point_contact touch;
+        struct cs_bristle bristle;
         if (contact_rows_supported(&near)) {
             contact_rows_add_bounds(&near, n, at, sums);
             continue;
@@ -319,6 +339,8 @@ static void add_bound_at(const struct cs_system *system, const struct cs_eval *a
             if (touch_of(&near, n, at->x, at->v, i, &touch)) {
                 double stiffness, damping;
                 cs_point_contact_bound(&touch, &stiffness, &damping);
+                if (cs_bristle_of_particle(system, c, &near, at->x, i, &bristle))
+                    cs_bristle_raise_bound(&bristle, &stiffness, &damping);
                 sums->stiffness[i] += stiffness;
                 sums->damping[i] += damping;
             }

@@ -3,6 +3,7 @@
 #include "base/pool.h"
 #include "base/vec3.h"
 #include "model/contact/contact_samples.h"
+#include "model/contact/friction_anchors.h"
 #include "model/force/term.h"
 
 #include <math.h>
@@ -33,11 +34,13 @@ static void set_contact(const double f[3], const struct cs_contact_sample_point 
 
 /* Bounds of one sample. Row i of its matrix has w_i w_j times one block, and the weights sum to
  * 1, so that the row sum is w_i times the bound of the point. */
-static void bound(const struct cs_point_contact *contact,
+static void bound(const struct cs_point_contact *contact, const struct cs_bristle *bristle,
                   const struct cs_contact_sample_point *point,
                   struct cs_contact_matrix_part *part) {
     double stiffness, damping;
     cs_point_contact_bound(contact, &stiffness, &damping);
+    if (bristle)
+        cs_bristle_raise_bound(bristle, &stiffness, &damping);
     for (uint32_t k = 0; k < point->n; k++) {
         part->block[k] = stiffness * point->w[k];
         part->weights[k] = point->w[k] * damping;
@@ -45,7 +48,8 @@ static void bound(const struct cs_point_contact *contact,
 }
 
 /* Matrix terms of one sample: (w w^T) x B, without a gradient. */
-static void fill_matrix(const struct cs_point_contact *contact, const struct cs_matrix *matrix,
+static void fill_matrix(const struct cs_point_contact *contact,
+                        const struct cs_bristle *bristle, const struct cs_matrix *matrix,
                         const struct cs_contact_sample_point *point,
                         struct cs_contact_entry *place, struct cs_contact_matrix_part *part) {
     memset(place->vectors, 0, sizeof place->vectors);
@@ -53,24 +57,27 @@ static void fill_matrix(const struct cs_point_contact *contact, const struct cs_
     memcpy(part->weights, point->w, sizeof point->w);
     part->gradient_weight = 0;
     cs_point_contact_add_block(contact, matrix, part->block);
+    if (bristle)
+        cs_bristle_add_block(contact, bristle, matrix, part->block);
 }
 
 /* Matrix terms or bounds of one sample. */
 static void answer_part(const struct job *job, const struct cs_contact_sample_point *point,
-                        const struct cs_point_contact *contact, struct cs_contact_chunk *chunk,
+                        const struct cs_point_contact *contact,
+                        const struct cs_bristle *bristle, struct cs_contact_chunk *chunk,
                         struct cs_contact_entry *place) {
     struct cs_contact_matrix_part *part = cs_contact_chunk_part(chunk);
     if (part && job->ask == ASK_MATRIX)
-        fill_matrix(contact, job->matrix, point, place, part);
+        fill_matrix(contact, bristle, job->matrix, point, place, part);
     else if (part)
-        bound(contact, point, part);
+        bound(contact, bristle, point, part);
 }
 
 /* Force of one sample, its change, or its approach. */
 static void answer_force(const struct job *job, const struct cs_posed_collider_law *near,
                          const struct cs_contact_sample_point *point,
                          const struct cs_point_contact *contact,
-                         struct cs_contact_entry *place) {
+                         const struct cs_bristle *bristle, struct cs_contact_entry *place) {
     const size_t n = job->covers->system->view.n;
     const struct cs_contact_force_parts parts = cs_force_parts_of(job->eval.parts);
     double f[3];
@@ -80,10 +87,16 @@ static void answer_force(const struct job *job, const struct cs_posed_collider_l
         cs_contact_sample_interpolate(point, n, job->eval.dv, dv);
         const struct cs_point_contact_motion move = cs_posed_collider_law_motion(near, dp, dv);
         cs_point_contact_jvp(contact, parts, &move, f);
+        if (bristle && parts.friction > 0)
+            cs_bristle_add_jvp(contact, bristle, &move, f);
     } else if (job->ask == ASK_APPROACH) {
         cs_point_contact_approach(contact, job->matrix, f);
+        if (bristle)
+            cs_bristle_add_approach(contact, bristle, job->matrix, f);
     } else {
         cs_point_contact_force(contact, parts, f);
+        if (bristle && parts.friction > 0)
+            cs_bristle_add_force(contact, bristle, f);
     }
     set_contact(f, point, place);
 }
@@ -93,6 +106,7 @@ static void meet(const struct job *job, const struct cs_posed_collider_law *near
                  const struct cs_contact_sample_point *point, struct cs_contact_chunk *chunk) {
     const struct cs_system *system = job->covers->system;
     struct cs_point_contact contact;
+    struct cs_bristle found, *bristle = NULL;
     double p[3], v[3];
     cs_contact_sample_interpolate(point, system->view.n, job->eval.x, p);
     cs_contact_sample_interpolate(point, system->view.n, job->eval.v, v);
@@ -107,11 +121,13 @@ static void meet(const struct job *job, const struct cs_posed_collider_law *near
     if (!place)
         return;
     place->n = point->n;
+    if (cs_bristle_of_sample(system, near, point, p, &found))
+        bristle = &found;
     memcpy(place->particles, point->particles, sizeof point->particles);
     if (job->ask == ASK_MATRIX || job->ask == ASK_BOUND)
-        answer_part(job, point, &contact, chunk, place);
+        answer_part(job, point, &contact, bristle, chunk, place);
     else
-        answer_force(job, near, point, &contact, place);
+        answer_force(job, near, point, &contact, bristle, place);
 }
 
 /* Middle of the box of particles [first, last]; returns half its diagonal in m. */

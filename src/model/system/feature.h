@@ -16,6 +16,7 @@
     X(AREA, "area shares")                                                                     \
     X(VELOCITY_LOSS, "velocity loss")                                                          \
     X(CONTACT, "contact projection")                                                           \
+    X(FRICTION_ANCHORS, "friction anchors")                                                    \
     X(CROSSINGS, "crossings")                                                                  \
     X(STRAIN_LIMIT, "strain limit")                                                            \
     X(EVENTS, "events")                                                                        \

@@ -26,6 +26,7 @@ struct cs_events;
 struct cs_collider_params;
 struct cs_pairs;
 struct cs_contact_samples;
+struct cs_friction_anchors;
 struct cs_collider_motion;
 struct cs_surfaces;
 struct cs_points;
@@ -56,6 +57,8 @@ struct cs_system {
     struct cs_pairs *pairs; /* contact between bodies, and with mesh colliders; NULL: none */
     struct cs_contact_samples
         *contact_samples; /* contact points between particles, for colliders; NULL: none */
+    struct cs_friction_anchors
+        *friction_anchors; /* anchors of friction that sticks; NULL: it is smooth */
     const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
     struct cs_points *points;       /* NULL unless colliders are meshes (surface_points.h) */
     struct cs_crossings *crossings; /* NULL unless asked for (body_pairs.h) */

@@ -225,7 +225,7 @@ static enum cs_status check_hash(struct cs_golden *golden, struct cs_golden_row 
         cs_text_add(&row->message, "this build is without %s", row->note);
         return CS_OK;
     }
-    cs_hash_doubles(session.run.x, 6 * (size_t)session.system.view.n, row->found);
+    cs_run_hash(&session.run, row->found);
     if (is_for_this_build(row, session.method.integrator) && strcmp(row->found, row->hash))
         cs_text_add(&row->message, "hash %s, expected %s (%s after frame %u)", row->found,
                     row->hash, cs_outcome_text(session.run.outcome), session.run.frame);

@@ -45,7 +45,13 @@ void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
     if (warning.length)
         cs_text_add(out, "warning: %s\n", cs_text_get(&warning));
     cs_text_finish(&warning);
-    if (any_friction(scene))
+    if (any_friction(scene) && scene->contact.friction_law == CS_FRICTION_BRISTLES)
+        cs_text_add(out,
+                    "friction that sticks holds a particle by %.3g N/m and %.3g N s/m, "
+                    "which limits explicit steps\n",
+                    system->collider_params->k,
+                    2 * sqrt(system->collider_params->k * heaviest));
+    else if (any_friction(scene))
         cs_text_add(
             out,
             "friction under a load N damps a particle of m kg at up to mu N/(m %.3g m/s), "

@@ -1,0 +1,208 @@
+/* bristle_law.c - the force of a bristle, its derivatives, and the spring that a step leaves.
+ */
+#include "model/contact/bristle_law.h"
+
+#include "base/vec3.h"
+
+#include <math.h>
+
+/* Relative distance from the limit within which a point that slides on counts as slipping: the
+ * rounding of an anchor that followed. */
+#define AT_LIMIT 1e-9
+
+/* A vector across the normal: u - g (g.u)/g.g; *along is the factor of g. */
+static void project(const double g[3], double square, const double u[3], double out[3],
+                    double *along) {
+    *along = cs_vec3_dot(g, u) / square;
+    for (int c = 0; c < 3; c++)
+        out[c] = u[c] - g[c] * *along;
+}
+
+/* State of a bristle: its trial force and what is left of it. */
+struct trial {
+    double square;                       /* g.g */
+    double stretch[3], sliding[3];       /* P (x - a) in m, T in m/s */
+    double force[3], length;             /* trial in N, T in m/s, |trial| */
+    double stretch_along, sliding_along; /* factors of g that P removed */
+    double load, fraction;               /* mu N, and min(1, mu N/|trial|) */
+    bool slips;
+};
+
+static struct trial trial_of(const struct cs_point_contact *contact,
+                             const struct cs_bristle *bristle) {
+    const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
+    struct trial trial = {.square = cs_vec3_dot(contact->g, contact->g)};
+    project(contact->g, trial.square, bristle->stretch, trial.stretch, &trial.stretch_along);
+    project(contact->g, trial.square, contact->v, trial.sliding, &trial.sliding_along);
+    for (int c = 0; c < 3; c++)
+        trial.force[c] =
+            bristle->stiffness * trial.stretch[c] + bristle->damping * trial.sliding[c];
+    trial.length = sqrt(cs_vec3_dot(trial.force, trial.force));
+    trial.load = bristle->friction * law.force * sqrt(trial.square);
+    trial.fraction = trial.length > trial.load ? trial.load / trial.length : 1;
+    trial.slips = trial.length > trial.load * (1 + AT_LIMIT) ||
+                  (trial.length > trial.load * (1 - AT_LIMIT) &&
+                   cs_vec3_dot(trial.force, trial.sliding) > 0);
+    return trial;
+}
+
+void cs_bristle_add_force(const struct cs_point_contact *contact,
+                          const struct cs_bristle *bristle, double f[3]) {
+    const struct trial trial = trial_of(contact, bristle);
+    for (int c = 0; c < 3; c++)
+        f[c] -= trial.fraction * trial.force[c];
+}
+
+/* d(P u) = du - dg (g.u)/g.g - g d((g.u)/g.g), times a factor, added to out. */
+static void add_projected_change(const double g[3], const double dg[3], double square,
+                                 const double u[3], double along, const double du[3],
+                                 double factor, double out[3]) {
+    const double dsquare = 2 * cs_vec3_dot(g, dg);
+    const double dalong = (cs_vec3_dot(dg, u) + cs_vec3_dot(g, du) - along * dsquare) / square;
+    for (int c = 0; c < 3; c++)
+        out[c] += factor * (du[c] - dg[c] * along - g[c] * dalong);
+}
+
+void cs_bristle_add_jvp(const struct cs_point_contact *contact,
+                        const struct cs_bristle *bristle,
+                        const struct cs_point_contact_motion *move, double df[3]) {
+    const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
+    const struct trial trial = trial_of(contact, bristle);
+    const double *g = contact->g, *h = contact->h, *dp = move->dp;
+    const double dg[3] = {h[0] * dp[0] + h[1] * dp[1] + h[2] * dp[2],
+                          h[1] * dp[0] + h[3] * dp[1] + h[4] * dp[2],
+                          h[2] * dp[0] + h[4] * dp[1] + h[5] * dp[2]};
+    double dtrial[3] = {0};
+    add_projected_change(g, dg, trial.square, bristle->stretch, trial.stretch_along, dp,
+                         bristle->stiffness, dtrial);
+    add_projected_change(g, dg, trial.square, contact->v, trial.sliding_along, move->dv,
+                         bristle->damping, dtrial);
+    if (!trial.slips || trial.length == 0) {
+        for (int c = 0; c < 3; c++)
+            df[c] -= dtrial[c];
+        return;
+    }
+    const double dd = cs_vec3_dot(g, dp) + move->extra_dd, length = sqrt(trial.square);
+    const double dload = bristle->friction * (law.force * cs_vec3_dot(g, dg) / length -
+                                              law.stiffness * dd * length);
+    const double turn = cs_vec3_dot(trial.force, dtrial) / (trial.length * trial.length);
+    const double fraction = trial.load / trial.length;
+    for (int c = 0; c < 3; c++)
+        df[c] -= fraction * (dtrial[c] - turn * trial.force[c]) +
+                 dload / trial.length * trial.force[c];
+}
+
+void cs_bristle_add_block(const struct cs_point_contact *contact,
+                          const struct cs_bristle *bristle, const struct cs_matrix *matrix,
+                          double b[6]) {
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    const struct trial trial = trial_of(contact, bristle);
+    const double *g = contact->g, *e = trial.force;
+    const bool turns = trial.slips && !matrix->bound && trial.length > 0;
+    const double slope =
+        -(matrix->ck * bristle->stiffness + matrix->cd * bristle->damping) * trial.fraction;
+    const double slip = turns ? 1 / (trial.length * trial.length) : 0;
+    for (int k = 0; k < 6; k++) {
+        const int r = row[k], s = column[k];
+        b[k] += slope * ((r == s) - g[r] * g[s] / trial.square - slip * e[r] * e[s]);
+    }
+}
+
+/* h K T of an approach: in slip the bristle is stretched across the trial alone. */
+static void elastic_change(const struct cs_bristle *bristle, const struct trial *trial,
+                           bool bound, double h, double out[3]) {
+    const double squared = trial->length * trial->length;
+    const double along = trial->slips && !bound && squared > 0
+                             ? cs_vec3_dot(trial->force, trial->sliding) / squared
+                             : 0;
+    for (int c = 0; c < 3; c++)
+        out[c] = h * bristle->stiffness * trial->fraction *
+                 (trial->sliding[c] - along * trial->force[c]);
+}
+
+/* The step's end: direction w, size of z, and the slopes c and p (friction_anchors.h). */
+struct chord {
+    double w[3], size, c, p;
+};
+
+static struct chord chord_of(const struct cs_bristle *bristle, const struct trial *trial,
+                             const struct cs_bristle_pull *pull, const double g[3],
+                             bool bound) {
+    const double h = pull->h, stiff = h * bristle->stiffness + bristle->damping;
+    double free[3], z[3], change[3], along;
+    struct chord chord = {.c = 0};
+    project(g, trial->square, pull->motion, free, &along);
+    for (int c = 0; c < 3; c++) {
+        free[c] = trial->sliding[c] +
+                  h * (free[c] + trial->fraction * trial->force[c] * pull->inverse);
+        z[c] = (bristle->stiffness * trial->stretch[c] + stiff * free[c]) /
+               (1 + h * pull->inverse * stiff);
+    }
+    chord.size = sqrt(cs_vec3_dot(z, z));
+    const double fraction = chord.size > trial->load ? trial->load / chord.size : 1;
+    double now = 0, then = 0, way = 0, scale = 0;
+    elastic_change(bristle, trial, bound, h, change);
+    for (int c = 0; c < 3; c++) {
+        const double w = chord.size > 0 ? z[c] / chord.size : 0;
+        const double u = free[c] - h * pull->inverse * fraction * z[c];
+        chord.w[c] = w;
+        then += w * fraction * z[c];
+        now += w * (trial->fraction * trial->force[c] + change[c]);
+        way += w * (u - trial->sliding[c]);
+        scale += fabs(u) + fabs(trial->sliding[c]);
+    }
+    if (fabs(way) > 1e-9 * scale)
+        chord.c = fmin(fmax((then - now) / way, 0), stiff);
+    else
+        chord.c = fraction < 1 ? 0 : stiff;
+    chord.p = fmax(chord.c, stiff * fraction);
+    return chord;
+}
+
+void cs_bristle_add_chord(const struct cs_point_contact *contact,
+                          const struct cs_bristle *bristle, const struct cs_matrix *matrix,
+                          const struct cs_bristle_pull *pull, double b[6]) {
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    const struct trial trial = trial_of(contact, bristle);
+    const double *g = contact->g;
+    const struct chord chord = chord_of(bristle, &trial, pull, g, matrix->bound);
+    if (!trial.slips && chord.size <= trial.load) {
+        cs_bristle_add_block(contact, bristle, matrix, b);
+        return;
+    }
+    for (int k = 0; k < 6; k++) {
+        const int r = row[k], s = column[k];
+        b[k] += pull->h * (chord.p * ((r == s) - g[r] * g[s] / trial.square) -
+                           (chord.p - chord.c) * chord.w[r] * chord.w[s]);
+    }
+}
+
+void cs_bristle_add_approach(const struct cs_point_contact *contact,
+                             const struct cs_bristle *bristle, const struct cs_matrix *matrix,
+                             double y[3]) {
+    const struct cs_matrix elastic = {.ck = matrix->ck, .bound = matrix->bound};
+    const double *v = contact->v;
+    double b[6] = {0};
+    cs_bristle_add_block(contact, bristle, &elastic, b);
+    y[0] += b[0] * v[0] + b[1] * v[1] + b[2] * v[2];
+    y[1] += b[1] * v[0] + b[3] * v[1] + b[4] * v[2];
+    y[2] += b[2] * v[0] + b[4] * v[1] + b[5] * v[2];
+}
+
+void cs_bristle_raise_bound(const struct cs_bristle *bristle, double *stiffness,
+                            double *damping) {
+    *stiffness = fmax(*stiffness, bristle->stiffness);
+    *damping = fmax(*damping, bristle->damping);
+}
+
+bool cs_bristle_slips(const struct cs_point_contact *contact, const struct cs_bristle *bristle,
+                      double stretch[3]) {
+    const struct trial trial = trial_of(contact, bristle);
+    const double length = sqrt(cs_vec3_dot(trial.stretch, trial.stretch));
+    const double spring = bristle->stiffness * length;
+    if (trial.fraction == 1 || spring <= trial.load)
+        return false;
+    for (int c = 0; c < 3; c++)
+        stretch[c] = trial.stretch[c] * (trial.load / spring);
+    return true;
+}

@@ -1,0 +1,101 @@
+/* bristle_law.h - friction with a memory (contact.friction_law "stick"): a contact point hangs
+ * on an anchor in the collider by a spring and a damper, and slips at Coulomb's limit.
+ *
+ * With the place x of the point, its anchor a, the sliding velocity T = P V, P = I - g g^T/g.g,
+ * the load N = F |g| and the law of point_contact.h for F and g:
+ *
+ *   trial = k_t P (x - a) + c_t T      f = -trial min(1, mu N/|trial|)
+ *
+ * k_t = k, the stiffness of the contact, and c_t = 2 sqrt(k_t m) damps a point of mass m
+ * critically: without it explicit methods ring on at some 10 mm/s. Below the limit the point
+ * rests exactly; above it the force is mu N, whatever the speed. After a step in which it slips
+ * the anchor follows (friction_anchors.h), so that
+ *
+ *   k_t |P (x - a)| <= mu N
+ *
+ * Where sliding is straight that changes no force, which is smooth within a step. Where it
+ * turns or stops the direction of the spring lags behind by up to a step: methods have order 1
+ * there.
+ *
+ * The limit is the spring's, not that of spring and damper together, k_t (x - a) + c_t T = mu
+ * N. With the latter an anchor runs ahead of a fast point and pulls it on when it stops, and
+ * friction falls below mu N for methods that evaluate forces at a velocity of half a step
+ * before.
+ *
+ * The work against springs and dampers is friction's. What a spring stores, |trial|^2/(2 k_t)
+ * at rest, is not part of the energy.
+ *
+ * Source: a spring and a slider across the normal, Cundall, Strack 1979. */
+#ifndef CS_BRISTLE_LAW_H
+#define CS_BRISTLE_LAW_H
+
+#include "model/contact/point_contact.h"
+
+/* The bristle of one contact point. */
+struct cs_bristle {
+    /* x - a in m */
+    double stretch[3];
+    /* mu (1), k_t (N/m), c_t (N s/m) */
+    double friction, stiffness, damping;
+};
+
+/* f += the force of friction in N. */
+void cs_bristle_add_force(const struct cs_point_contact *contact,
+                          const struct cs_bristle *bristle, double f[3]);
+
+/* df += its exact change along a motion. At the limit it is that of slip where the point goes
+ * on sliding, else that of rest. */
+void cs_bristle_add_jvp(const struct cs_point_contact *contact,
+                        const struct cs_bristle *bristle,
+                        const struct cs_point_contact_motion *move, double df[3]);
+
+/* b (6) += the symmetric part that the solver uses, with s = min(1, mu N/|trial|) and e =
+ * trial/|trial|:
+ *
+ *   -(ck k_t + cd c_t) s (I - n n^T - e e^T)      e e^T only where it slips
+ *
+ * Left out: the change of the load and of the normal. It is never negative with cd, ck <= 0.
+ * bound: leaves out e e^T too, an upper bound. */
+void cs_bristle_add_block(const struct cs_point_contact *contact,
+                          const struct cs_bristle *bristle, const struct cs_matrix *matrix,
+                          double b[6]);
+
+/* A contact point in a step of implicit Euler, of length h in s: 1/m in 1/kg, and F/m of all
+ * forces in m/s2. */
+struct cs_bristle_pull {
+    double h, inverse;
+    const double *motion; /* (3) */
+};
+
+/* b (6) += the block of a method that is linear in a step, in place of the one above, by the
+ * chord from the force now to the force at the end of the step. With T_free = T + h (P F/m + s
+ * trial/m), q = k_t P (x - a), B = h k_t + c_t and mu N as it is now, implicit Euler ends at
+ *
+ *   phi = w min(mu N, |z|),  z = (q + B T_free)/(1 + h B/m) = |z| w      friction
+ *   u = T_free - h phi/m                                                 sliding velocity
+ *
+ * and the block h (p (P - w w^T) + c w w^T) takes the linear step there: c = w.(phi - s trial -
+ * h K T)/w.(u - T) with the K of cs_bristle_add_approach, p = max(c, B min(1, mu N/|z|)). By
+ * the slope at the begin of the step a point that slips and would come to rest is thrown back
+ * beyond it, to and fro for ever. */
+void cs_bristle_add_chord(const struct cs_point_contact *contact,
+                          const struct cs_bristle *bristle, const struct cs_matrix *matrix,
+                          const struct cs_bristle_pull *pull, double b[6]);
+
+/* y += ck df/dx V with df/dx as in the block: the anchor goes with the collider, so the bristle
+ * is stretched by the relative velocity (cs_point_contact_approach). */
+void cs_bristle_add_approach(const struct cs_point_contact *contact,
+                             const struct cs_bristle *bristle, const struct cs_matrix *matrix,
+                             double y[3]);
+
+/* Raises the bounds of cs_point_contact_bound to those of contact and bristle together. They
+ * act at right angles to each other, so the larger one counts. */
+void cs_bristle_raise_bound(const struct cs_bristle *bristle, double *stiffness,
+                            double *damping);
+
+/* Returns true if the point slips and the spring alone is above the limit; *stretch is then
+ * the P (x - a) that an anchor must leave. */
+bool cs_bristle_slips(const struct cs_point_contact *contact, const struct cs_bristle *bristle,
+                      double stretch[3]);
+
+#endif
