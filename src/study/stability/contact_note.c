@@ -1,6 +1,7 @@
 /* Notes whether linear theory and runs include contact, and what energy contact holds. */
 #include "study/stability/stability_state.h"
 
+#include "model/contact/collider_params.h"
 #include "scene/body_pairs.h"
 #include "study/contact_capacity.h"
 
