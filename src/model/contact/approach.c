@@ -2,6 +2,7 @@
 #include "model/contact/approach.h"
 
 #include "model/contact/posed_collider.h"
+#include "scene/body_pairs.h"
 
 #include <math.h>
 #include <string.h>
@@ -246,16 +247,39 @@ enum cs_status cs_approach_build(struct cs_system *system, struct cs_error *erro
     return CS_OK;
 }
 
+/* m2/s2, of the speed at which two surfaces may meet after a drop */
+static double square_between(const struct cs_approach *approach, const struct surface *a,
+                             const struct surface *b, double drop) {
+    const double thrown = relative_speed(a, b);
+    const double path = a == b ? a->path_speed : a->path_speed + b->path_speed;
+    return fmax(thrown * thrown + 2 * approach->gravity * drop, path * path);
+}
+
+/* The largest of these of a body and whatever it meets: it meets itself and others as fast
+ * afterwards. */
+static double largest_square(const struct cs_system *system, uint32_t body) {
+    const struct cs_approach *approach = system->approach;
+    const struct surface *a = approach->surfaces + body;
+    double most = 0, friction;
+    for (uint32_t c = 0; c < approach->n; c++) {
+        const struct surface *b = approach->surfaces + c;
+        const double drop = fmax(fmax(drop_onto(approach, a, b), drop_onto(approach, b, a)), 0);
+        if (c >= approach->n_bodies)
+            most = fmax(most, square_between(approach, a, b, fmin(drop, a->drop)));
+        else if (cs_scene_bodies_collide(system->scene, body, c, &friction))
+            most = fmax(most, square_between(approach, a, b,
+                                             fmax(drop, fmax(a->drop, b->drop))));
+    }
+    return most;
+}
+
 double cs_approach_energy(const struct cs_system *system, uint32_t a, uint32_t b) {
     const struct cs_approach *approach = system->approach;
     const struct surface *first = approach->surfaces + a, *second = approach->surfaces + b;
-    double drop = fmax(drop_onto(approach, first, second), 0);
-    if (b < approach->n_bodies)
-        drop = fmax(fmax(drop, drop_onto(approach, second, first)),
-                    fmax(first->drop, second->drop));
-    const double thrown = relative_speed(first, second);
-    const double path = a == b ? first->path_speed : first->path_speed + second->path_speed;
-    const double squared = fmax(thrown * thrown + 2 * approach->gravity * drop, path * path);
+    const double squared =
+        b < approach->n_bodies ? fmax(largest_square(system, a), largest_square(system, b))
+                               : square_between(approach, first, second,
+                                                fmax(drop_onto(approach, first, second), 0));
     return 0.5 * fmax(first->mass, second->mass) * squared;
 }
 

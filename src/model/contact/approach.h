@@ -6,6 +6,9 @@
  *   sqrt(|v_a - v_b|^2 + 2 g h)   the fastest initial velocities, spin included, and the drop h
  *   u_a + u_b                     speeds of grabs and moved colliders along their paths
  *
+ * and for two bodies, or a body and itself, the largest of these with whatever either of them
+ * meets, since a body that is struck meets others, and itself, as fast as that.
+ *
  * h is the gap along gravity between the bounding boxes at the start, where one lies above the
  * other; of two bodies, or a body and itself, at least the drop of either to the nearest
  * collider, from where they may be stopped one by one. Nothing below means no drop. A body that
