@@ -16,7 +16,7 @@
 #define G 9.81
 
 TEST(law_is_one_function) {
-    const double range = 0.02, k = 700, e = 1e-7;
+    const double range = 0.02, k = 700, e = 2e-9;
     for (double d = -0.01; d < 1.2 * range; d += 1.7e-4) {
         const struct cs_barrier law = cs_barrier_at(d, range, k);
         const double slope =
@@ -38,15 +38,15 @@ TEST(law_is_one_function) {
                             1e-9 * k);
     ck_assert_double_eq(cs_barrier_at(range, range, k).force, 0);
     ck_assert_double_eq(cs_barrier_energy(1.5 * range, range, k), 0);
-    // what it takes to cross: 1.36 k D^2
+    // what it takes to cross: 83 k D^2
     ck_assert_double_eq_tol(cs_barrier_energy(CS_BARRIER_CORE * range, range, k) /
                                 (k * range * range),
-                            1.36, 0.005);
+                            83, 0.005);
 }
 
 /* the distance at which the law carries a force, by bisection */
 static double distance_of(double force, double range, double k) {
-    double low = 0.05 * range, high = range;
+    double low = CS_BARRIER_CORE * range, high = range;
     for (int i = 0; i < 200; i++) {
         const double d = (low + high) / 2;
         *(cs_barrier_at(d, range, k).force > force ? &low : &high) = d;

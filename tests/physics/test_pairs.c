@@ -98,19 +98,19 @@ TEST(orders_hold_in_contact) {
 }
 
 /* what rk4 loses of the energy over a run, which falls by 2^4 or so with each halving of the
- * step */
+ * step, in the mean of three: losses of one step change their sign where edges turn */
 TEST(energy_is_kept) {
     for (int scene = ON_BODY; scene <= ON_ITSELF; scene++) {
         double lost[2];
         for (int k = 0; k < 2; k++) {
             struct fixture cloth;
-            open(&cloth, scene, k ? "rk4:dt=2.5e-4" : "rk4:dt=1e-3", 0, 0);
+            open(&cloth, scene, k ? "rk4:dt=1.25e-4" : "rk4:dt=1e-3", 0, 0);
             const double before = fixture_energy(&cloth);
             fixture_frames(&cloth, 4);
             lost[k] = fabs(fixture_energy(&cloth) - before);
             fixture_close(&cloth);
         }
-        ck_assert_msg(lost[0] < 5e-5 && lost[1] < lost[0] / 200, "scene %d: lost %.3g, %.3g J",
+        ck_assert_msg(lost[0] < 5e-5 && lost[1] < lost[0] / 3000, "scene %d: lost %.3g, %.3g J",
                       scene, lost[0], lost[1]);
     }
 }

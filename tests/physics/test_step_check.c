@@ -119,7 +119,9 @@ static bool pair_is_seen(const struct fixture *cloth, struct pair *pair) {
     const uint32_t *body = pairs->candidates.body;
     const struct cs_body_pair_params *params =
         cs_body_pair_params_of(&pairs->body_pairs, body[pair->at[0]], body[pair->at[2]]);
-    const double range = params->range * (pair->kind ? CS_EDGE_RANGE_RATIO : 1), k = params->k;
+    const bool edges = pair->kind == CS_PAIR_EDGE_EDGE;
+    // both kinds take up the same: half the range, four times the stiffness
+    const double range = params->range * (edges ? 0.5 : 1), k = params->k * (edges ? 4 : 1);
     struct cs_pair_distance at;
     double g[4][3], approach = 0;
     if (!(range > 0))

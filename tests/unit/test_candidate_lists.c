@@ -23,7 +23,7 @@ static bool add_one(const struct sheet *sheet, enum cs_pair_kind kind, const uin
             v[k][c] = sheet->v[c * sheet->n + at[k]];
         }
     params.range *= use ? CS_FEATURE_RANGE_RATIO : CS_EDGE_RANGE_RATIO;
-    params.k *= use ? use->weight : 1;
+    params.k *= use ? use->weight : 4;
     cs_pair_contact_measure(&reaction, kind, use ? use->form : (struct cs_feature_kind){0},
                             params.range, p);
     if (kind == CS_PAIR_EDGE_EDGE && !(reaction.distance.d < params.range))

@@ -236,6 +236,23 @@ TEST(edges_of_any_length_have_a_force) {
     ck_assert_msg(sum < 1e-12 && torque < 1e-12, "%g %g", sum, torque);
 }
 
+/* An edge that crosses a ridge of 1000 D anywhere but within D of its ends is as far from it
+ * everywhere, so that nothing draws it along. */
+TEST(distance_is_the_same_along_a_ridge) {
+    for (double along = 1; along <= 999; along += 0.37)
+        for (int turn = 0; turn < 3; turn++) {
+            const double angle[3][2] = {{0, 1.5}, {0.9, 1.2}, {1.46, 0.35}};
+            double g[4][3], p[4][3] = {{0, 0, 0}, {1000, 0, 0}};
+            for (int k = 0; k < 2; k++) {
+                p[2 + k][0] = along + (k ? 1 : -1) * angle[turn][0];
+                p[2 + k][1] = (k ? 1 : -1) * angle[turn][1];
+                p[2 + k][2] = 0.25;
+            }
+            const double d = distance_at(CS_PAIR_EDGE_EDGE, CS_EDGE_RANGE_RATIO, p, g);
+            ck_assert_msg(fabs(d - 0.25) < 1e-4, "%g D along, turn %d: %g", along, turn, d);
+        }
+}
+
 /* Points move by up to D, so that steps are fractions of it. */
 TEST(edges_of_any_length_have_exact_derivatives) {
     uint64_t state = 5;

@@ -7,23 +7,25 @@
  *   K =  psi'' = (k/6) (1-y)^2 (1+2y+3y^2) / y^3       K(D/2) = 0.92 k
  *
  * psi has three continuous derivatives at y = 1 and F two, which keeps the order of methods up
- * to 4 in the mean of many contacts. Below y = 1/20 the stiffness stays what it is there, 1333
- * k, so that a trial state that has passed through still has a finite force. To get there a
- * pair must take up 1.36 k D^2.
+ * to 4 in the mean of many contacts. Below y = 1/1000 the stiffness stays what it is there,
+ * 1.67e8 k, so that a trial state that has passed through still has a finite force. To get
+ * there a pair must take up 83.0 k D^2.
  *
  * A law without the pole, (k D^2/12) (1-y)^4, was tried first: at the same k a ribbon twisted
  * by four turns crossed itself. This one held.
  *
- * Branches at y = 1 and 1/20 are written as selections, so that loops over many distances
+ * Branches at y = 1 and 1/1000 are written as selections, so that loops over many distances
  * vectorise. */
 #ifndef CS_CONTACT_BARRIER_LAW_H
 #define CS_CONTACT_BARRIER_LAW_H
 
 #include <clothsim/clones.h>
 
-/* y below which the stiffness is constant. Chosen so that a trial state of an iteration has
- * finite forces; a pair must take up 1.36 k D^2 to get there. */
-#define CS_BARRIER_CORE 0.05 /* y below which the stiffness is constant */
+/* y below which the stiffness is constant, which keeps the forces of trial states finite. The
+ * energy at the core must be far above 50 times that of what comes: a step may miss
+ * CS_UNRESOLVED_ENERGY_MAX of the latter, so a lower barrier is passed unseen. At 1/20 it was
+ * 1.36 k D^2, and surfaces at 10 m/s came to 1e-9 m of each other. */
+#define CS_BARRIER_CORE 1e-3
 
 /* Force F in N and stiffness K in N/m of the law at one distance. */
 struct cs_barrier {

@@ -60,8 +60,9 @@ static struct cs_active_lanes *next(struct cs_active_chunk *chunk) {
     return blocks && at ? blocks + chunk->n / CS_PAIR_LANES : NULL;
 }
 
-/* Appends a feature or edge pair; share is the fraction of the range of its kind. */
-static void put(const struct work *work, const struct cs_weighted_feature *use, double share) {
+/* Appends a feature or edge pair. */
+static void put(const struct work *work, const struct cs_weighted_feature *use) {
+    const bool edges = work->chunk->kind == CS_PAIR_EDGE_EDGE;
     struct cs_active_chunk *chunk = work->chunk;
     const struct cs_body_pair_params params = meeting_of(work->active->candidates, use->points);
     struct cs_active_lanes *to = next(chunk);
@@ -69,8 +70,9 @@ static void put(const struct work *work, const struct cs_weighted_feature *use, 
     if (!to)
         return;
     memcpy(chunk->points + chunk->n++, use->points, sizeof *chunk->points);
-    to->range[l] = share * params.range;
-    to->k[l] = params.k;
+    to->range[l] = edges ? cs_body_pair_params_range(&params, true)
+                         : CS_FEATURE_RANGE_RATIO * params.range;
+    to->k[l] = cs_body_pair_params_stiffness(&params, edges);
     to->friction[l] = params.friction;
     to->weight[l] = use->weight;
     to->psd_weight[l] = use->psd_weight;
@@ -87,7 +89,7 @@ static void put(const struct work *work, const struct cs_weighted_feature *use, 
 static void finish_point(struct work *work) {
     for (uint32_t k = 0; k < work->n_felt; k++)
         if (cs_feature_weights_counts(work->chunk->features + k))
-            put(work, work->chunk->features + k, CS_FEATURE_RANGE_RATIO);
+            put(work, work->chunk->features + k);
     work->n_felt = 0;
 }
 
@@ -151,7 +153,7 @@ static void take(struct work *work, const uint32_t pair[2]) {
     if (is_fixed(search->system, edges.points))
         return;
     if (work->chunk->kind == CS_PAIR_EDGE_EDGE)
-        put(work, &edges, CS_EDGE_RANGE_RATIO);
+        put(work, &edges);
     else
         queue_pair(work, edges.points, pair[1]);
 }

@@ -271,7 +271,7 @@ static void take(struct work *work, const uint32_t pair[2]) {
     const struct cs_body_pair_params *params =
         cs_body_pair_params_of(&pairs->body_pairs, search->body[at[0]], search->body[at[2]]);
     lanes->range[l] = cs_body_pair_params_range(params, work->kind == CS_PAIR_EDGE_EDGE);
-    lanes->k[l] = params->k;
+    lanes->k[l] = cs_body_pair_params_stiffness(params, work->kind == CS_PAIR_EDGE_EDGE);
     for (size_t k = 0; k < 4; k++) {
         const double *move = pairs->point_motion[at[k]].values;
         lanes->inverse_mass[k][l] = move[CS_POINT_MOVE_INVERSE_MASS];
