@@ -239,6 +239,7 @@ TEST(edges_of_any_length_have_a_force) {
 /* An edge that crosses a ridge of 1000 D anywhere but within D of its ends is as far from it
  * everywhere, so that nothing draws it along. */
 TEST(distance_is_the_same_along_a_ridge) {
+    double worst = 0;
     for (double along = 1; along <= 999; along += 0.37)
         for (int turn = 0; turn < 3; turn++) {
             const double angle[3][2] = {{0, 1.5}, {0.9, 1.2}, {1.46, 0.35}};
@@ -249,8 +250,9 @@ TEST(distance_is_the_same_along_a_ridge) {
                 p[2 + k][2] = 0.25;
             }
             const double d = distance_at(CS_PAIR_EDGE_EDGE, CS_EDGE_RANGE_RATIO, p, g);
-            ck_assert_msg(fabs(d - 0.25) < 1e-4, "%g D along, turn %d: %g", along, turn, d);
+            worst = fmax(worst, fabs(d - 0.25));
         }
+    ck_assert_msg(worst < 1e-4, "%g", worst);
 }
 
 /* Points move by up to D, so that steps are fractions of it. */
@@ -348,7 +350,7 @@ TEST(triangles_of_any_size_have_a_force) {
     ck_assert(!cs_feature_weights_init(&features, &surfaces, &arena, &error));
     uint64_t state = 6;
     int near = 0;
-    for (int pose = 0; pose < POSES / 5; pose++) {
+    for (int pose = 0; pose < POSES / 50; pose++) {
         double p[4][3], x[18], energy;
         draw_edges(&state, pose, p);
         for (int side = 0; side < 2; side++) {
@@ -365,6 +367,6 @@ TEST(triangles_of_any_size_have_a_force) {
         near += least < 0.25;
         UNIT_ASSERT_OFTEN(!(least < 0.25) || energy > 0);
     }
-    ck_assert_int_gt(near, POSES / 20);
+    ck_assert_int_gt(near, POSES / 200);
     cs_arena_finish(&arena);
 }
