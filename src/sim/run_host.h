@@ -4,7 +4,7 @@
 #define CS_RUN_HOST_H
 
 #include "base/clock.h"
-#include "model/contact/ccd/step_limit.h"
+#include "model/contact/ccd/blocked_step.h"
 #include "model/event/events.h"
 #include "model/post_step/contact_projection.h"
 #include "model/solver/linear.h"

@@ -6,11 +6,6 @@
 #include "base/text.h"
 #include "model/system/particle_system.h"
 
-/* A barrier must hold this many times the energy that comes: steps pass unseen over what is
- * below CS_UNRESOLVED_ENERGY_MAX = 1/50 of it (step_check.h), and would come to an end at the
- * surface. */
-#define CS_APPROACH_MARGIN 50.0
-
 /* What the contact of two surfaces can hold, and what comes. */
 struct cs_contact_capacity {
     uint32_t a, b;   /* a body; itself, another body, or n_bodies + a collider */

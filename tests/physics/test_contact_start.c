@@ -201,8 +201,8 @@ static const struct {
      "{\"bodies\": [" DROPPED("0", "0") ", " DROPPED("0", "1") "], %s}",
      "\"forces\": {\"gravity\": [0, 0, 0]}", 0, 1, 25},
     {"one that falls onto another",
-     "{\"bodies\": [" DROPPED("0", "0") ", " DROPPED("0", "1") "], %s}", "\"about\": \"\"", 0, 1,
-     25 + 2 * G},
+     "{\"bodies\": [" DROPPED("0", "0") ", " DROPPED("0", "1") "], %s}", "\"about\": \"\"", 0,
+     1, 25 + 2 * G},
     {"a floor that rises",
      "{\"bodies\": [" DROPPED("0", "0.5") "], %s, \"forces\": {\"gravity\": [0, 0, 0]}}",
      "\"colliders\": [{\"floor\": {\"height\": 0.1}}], \"events\": [{\"from\": 1, \"to\": 1.5, "
@@ -280,5 +280,82 @@ TEST(stiffness_that_is_too_small_is_told) {
                      1.01 * strtod(digits + strlen("expected at least "), NULL));
         cs_text_finish(&warning);
         fixture_close(&cloth);
+    }
+}
+
+/* A sheet thrown at 10 m/s, at what is too soft by 1e4 times. */
+#define THROWN                                                                                 \
+    "{\"cloth\": {\"grid\": [6, 6], \"size\": [0.1, 0.1], \"start\": \"flat\", \"place\": "    \
+    "{\"translate\": [0.003, 0.05, 0.007]}, \"velocity\": [0, -10, 0]}, \"mass\": "            \
+    "{\"total\": "                                                                             \
+    "0.02}, \"springs\": {\"stretch\": 100, \"shear\": 30}}"
+#define SOFT()                                                                                 \
+    "\"forces\": {\"gravity\": [0, 0, 0]}, \"contact\": {\"law\": \"force\", \"stiffness\": "  \
+    "%s}}"
+
+/* The message of a method that gives up names the place, both energies and the stiffness that
+ * holds; with that one the same run goes on. */
+TEST(jam_is_told_with_what_would_hold) {
+    static const struct {
+        const char *method, *scene, *there;
+    } rows[] = {
+        {"velocity-verlet",
+         "{\"bodies\": [" THROWN
+         "], \"colliders\": [{\"mesh\": {\"shape\": \"box\", \"scale\": "
+         "[1, 0.06, 1]}, \"thickness\": 0.002}], " SOFT(),
+         " at vertex "},
+        {"implicit-linearised",
+         "{\"bodies\": [" THROWN
+         ", {\"cloth\": {\"grid\": [7, 7], \"size\": [0.12, 0.12], \"start\": \"flat\"}, "
+         "\"mass\": {\"total\": 0.03}, \"springs\": {\"stretch\": 100, \"shear\": 30}, "
+         "\"thickness\": 0.002}], \"pairs\": \"all\", " SOFT(),
+         " at particle "},
+        {"newmark",
+         "{\"bodies\": [" THROWN
+         "], \"colliders\": [{\"mesh\": {\"shape\": \"box\", \"scale\": "
+         "[1, 0.06, 1]}, \"thickness\": 0.002}], " SOFT(),
+         " at vertex "},
+        {"dopri5",
+         "{\"bodies\": [" THROWN
+         "], \"colliders\": [{\"mesh\": {\"shape\": \"box\", \"scale\": "
+         "[1, 0.06, 1]}, \"thickness\": 0.002}], " SOFT(),
+         " at vertex "},
+    };
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        char k[32] = "0.5";
+        for (int again = 0; again < 2; again++) {
+            struct fixture cloth;
+            struct cs_error error = {0};
+            fixture_open(&cloth, rows[r].method, rows[r].scene, k);
+            fixture_start(&cloth);
+            for (int frame = 0; frame < 3 && !error.status; frame++)
+                cs_run_frame(&cloth.session.run, &error);
+            if (again) {
+                ck_assert_msg(!error.status, "k %s: %s", k, error.message);
+            } else {
+                double apart, holds, comes, factor, needed;
+                ck_assert_int_eq(error.status, CS_ERR_MODULE);
+                const char *there = strstr(error.message, "; there ");
+                ck_assert_msg(there && strstr(there, rows[r].there), "%s", error.message);
+                const char *digits = strstr(there, " m apart");
+                ck_assert(digits != NULL);
+                while (digits > there && digits[-1] != ' ')
+                    digits--;
+                ck_assert_msg(
+                    sscanf(
+                        digits,
+                        "%lf m apart: contact takes up %lf J there and %lf J come; %lf times "
+                        "the stiffness would hold (contact.stiffness %lf N/m)",
+                        &apart, &holds, &comes, &factor, &needed) == 5,
+                    "%s", error.message);
+                // of a particle of 0.02 kg / 36, or of a contact point, which may be heavier
+                ck_assert(apart >= 0 && apart < 0.001 && holds < comes);
+                ck_assert_double_eq_tol(comes, 0.5 * 0.02 / 36 * 100, 0.3 * comes);
+                ck_assert_double_eq_tol(factor, 50 * comes / holds, 0.02 * factor);
+                ck_assert_double_eq_tol(needed, factor * 0.5, 0.02 * needed);
+                snprintf(k, sizeof k, "%g", needed);
+            }
+            fixture_close(&cloth);
+        }
     }
 }

@@ -27,6 +27,11 @@
  * D^2/80, and steps that resolve the motion, some D/v long, resolve the contact too. */
 #define CS_APPROACH_STIFFNESS 80.0
 
+/* A barrier must hold this many times the energy that comes: steps pass unseen over what is
+ * below CS_UNRESOLVED_ENERGY_MAX = 1/50 of it (step_check.h), and would come to an end at the
+ * surface. */
+#define CS_APPROACH_MARGIN 50.0
+
 struct cs_approach;
 
 /* Builds system->approach in the system's arena, once: later calls do nothing. Bodies must have

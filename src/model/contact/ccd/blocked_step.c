@@ -1,0 +1,352 @@
+/* Finds the primitives that blocked a step, once, where a run ends: by the questions of
+ * step_limit.c in their order, particle by particle and pair by pair. */
+#include "model/contact/ccd/blocked_step.h"
+
+#include "model/contact/approach.h"
+#include "model/contact/barrier_law.h"
+#include "model/contact/broad_phase/swept_aabb.h"
+#include "model/contact/ccd/accd.h"
+#include "model/contact/ccd/step_limit.h"
+#include "model/contact/contact_samples.h"
+#include "model/contact/narrow_phase/pair_step_check.h"
+#include "model/contact/step_check.h"
+#include "model/contact/surface_points.h"
+#include "model/system/surfaces.h"
+#include "scene/body_pairs.h"
+
+#include <math.h>
+#include <string.h>
+
+/* points times triangles that are tested in about ten seconds */
+#define PAIRS_MAX 1e9
+
+enum cs_status cs_blocked_step_init(struct cs_blocked_step *blocked,
+                                    const struct cs_system *system, struct cs_arena *arena,
+                                    struct cs_error *error) {
+    *blocked = (struct cs_blocked_step){0};
+    if (cs_step_limit_applies(system))
+        blocked->x =
+            cs_arena_alloc_array(arena, 6 * (size_t)system->view.n, sizeof(double), error);
+    return error->status;
+}
+
+void cs_blocked_step_store(struct cs_blocked_step *blocked, const struct cs_system *system,
+                           const double t[2], const double *const x[2], double share) {
+    const size_t n3 = 3 * (size_t)system->view.n;
+    blocked->is_set = blocked->x && share < 1;
+    for (size_t end = 0; end < 2 && blocked->is_set; end++) {
+        blocked->t[end] = t[end];
+        memcpy(blocked->x + end * n3, x[end], n3 * sizeof *blocked->x);
+    }
+}
+
+/* --- what contact holds at a place --- */
+
+/* Contact at a place of the blocked step. */
+struct place {
+    double d, range, k; /* m, m, N/m */
+    double energy;      /* J that comes there: in motion relative to each other, and stored */
+    bool held;          /* no point of it is free */
+};
+
+/* Adds distance, energies, and what would hold, by the margin of approach.h. Energy grows with
+ * k and with the square of the range. */
+static void print_place(const struct place *at, struct cs_text *out) {
+    cs_text_add(out, ", %.3g m apart", at->d);
+    if (at->held || !(at->range > 0)) {
+        cs_text_add(out, at->held ? ": all points there are pinned or on paths"
+                                  : ": no contact is defined between them");
+        return;
+    }
+    const double holds = cs_barrier_capacity(at->range, at->k);
+    const double factor = CS_APPROACH_MARGIN * at->energy / holds;
+    cs_text_add(out, ": contact takes up %.3g J there and %.3g J come", holds, at->energy);
+    if (factor > 1)
+        cs_text_add(out,
+                    "; %.3g times the stiffness would hold (contact.stiffness %.3g N/m), "
+                    "or %.3g times the thickness",
+                    factor, factor * at->k, sqrt(factor));
+}
+
+/* J, kinetic energy of the relative motion of a mass in a step of h seconds. */
+static double kinetic(double mass, const double way[3], double h) {
+    return h > 0 ? 0.5 * mass * cs_vec3_dot(way, way) / (h * h) : 0;
+}
+
+/* --- colliders that are no meshes --- */
+
+/* The point of a body that the step takes deepest into the range of a collider. */
+struct point_search {
+    const struct cs_collider_step *step;
+    uint32_t collider;
+    double y; /* distance at the end over the range; of the best one */
+    uint32_t particle;
+    struct place place;
+};
+
+/* Takes a point over that goes deepest and misses contact. */
+static void try_point(struct point_search *search, uint32_t particle, double mass,
+                      const double from[3], const double to[3]) {
+    const struct cs_collider_step *step = search->step;
+    const double range = step->params.range, k = step->params.k;
+    double start[3], way[3], g[3], h[6];
+    if (!cs_collider_step_misses_contact(step, mass, from, to))
+        return;
+    for (int c = 0; c < 3; c++) {
+        start[c] = from[c] + step->at_t1.centre[c] - step->at_t0.centre[c];
+        way[c] = to[c] - start[c];
+    }
+    const double y = cs_posed_collider_smooth_distance(&step->at_t1, to, g, h) / range;
+    if (!(y < search->y))
+        return;
+    const double d = cs_posed_collider_smooth_distance(&step->at_t1, start, g, h);
+    search->y = y;
+    search->particle = particle;
+    search->place = (struct place){
+        d, range, k, kinetic(mass, way, step->h) + cs_barrier_energy(d, range, k), false};
+}
+
+/* Tests all free particles. */
+static void try_particles(const struct cs_system *system, struct point_search *search) {
+    const size_t n = system->view.n;
+    const double *x0 = search->step->x0, *x1 = search->step->x1;
+    for (uint32_t i = 0; i < n; i++)
+        if (system->inv_mass[i] > 0)
+            try_point(search, i, system->mass[i],
+                      (const double[3]){x0[i], x0[n + i], x0[2 * n + i]},
+                      (const double[3]){x1[i], x1[n + i], x1[2 * n + i]});
+}
+
+/* Tests all samples; a sample is named by its first vertex. */
+static void try_samples(const struct cs_system *system, struct point_search *search) {
+    const struct cs_contact_samples *samples = system->contact_samples;
+    for (uint32_t l = 0; samples && l < samples->n_chunks; l++)
+        for (uint32_t i = samples->chunks[l].begin;
+             samples->chunks[l].collider == search->collider && i < samples->chunks[l].end;
+             i++) {
+            struct cs_contact_sample_point point;
+            for (cs_contact_sample_first(samples->chunks + l, i, &point);
+                 cs_contact_sample_next(&point);) {
+                double from[3], to[3];
+                cs_contact_sample_interpolate(&point, system->view.n, search->step->x0, from);
+                cs_contact_sample_interpolate(&point, system->view.n, search->step->x1, to);
+                const double mass = cs_contact_sample_mass(system, &point);
+                if (mass < HUGE_VAL)
+                    try_point(search, point.particles[0], mass, from, to);
+            }
+        }
+}
+
+/* Adds the point of a body that misses contact with a collider; returns false if none does. */
+static bool print_point(const struct cs_blocked_step *blocked, const struct cs_system *system,
+                        struct cs_text *out) {
+    for (uint32_t c = 0; c < system->scene->colliders.n; c++)
+        for (int samples = 0; samples < 2; samples++) {
+            struct cs_collider_step step = {.x0 = blocked->x,
+                                            .x1 = blocked->x + 3 * (size_t)system->view.n};
+            struct point_search search = {.step = &step, .collider = c, .y = HUGE_VAL};
+            cs_collider_step_set(&step, system, c, blocked->t[0], blocked->t[1]);
+            if (samples)
+                try_samples(system, &search);
+            else
+                try_particles(system, &search);
+            if (!(search.y < HUGE_VAL))
+                continue;
+            cs_text_add(out, samples ? "; there the surface at " : "; there ");
+            cs_system_print_particle(system, search.particle, out);
+            cs_text_add(out, " comes to colliders[%u]", c);
+            print_place(&search.place, out);
+            return true;
+        }
+    return false;
+}
+
+/* --- pairs --- */
+
+/* Reads positions at the start and moves of a pair's points; x (2) of (3,n_points). */
+static void read_pair(size_t n, const double *const x[2], const uint32_t at[4], double p[4][3],
+                      double moves[4][3]) {
+    for (size_t k = 0; k < 4; k++)
+        for (size_t c = 0; c < 3; c++) {
+            p[k][c] = x[0][c * n + at[k]];
+            moves[k][c] = x[1][c * n + at[k]] - p[k][c];
+        }
+}
+
+/* Sets a place from a pair: its true distance, and the energy of its contact points, or what
+ * may come to the two bodies if that is more or if the step has no duration. */
+static void set_place(const struct cs_system *system, enum cs_primitive_pair_kind kind,
+                      const uint32_t at[4], double p[4][3], double moves[4][3], double h,
+                      struct place *out) {
+    const struct cs_surfaces *s = system->surfaces;
+    const bool edges = kind == CS_PRIMITIVE_EDGE_EDGE;
+    const uint32_t a = cs_surfaces_body(s->first_point, s->n_bodies, at[0]),
+                   b = cs_surfaces_body(s->first_point, s->n_bodies, at[3]);
+    double weight[4], way[3] = {0}, inverse = 0, total = 0, friction;
+    struct cs_pair_distance pair;
+    for (int k = 0; k < 4; k++)
+        total += cs_surface_points_inverse_mass(system, at[k]);
+    *out = (struct place){.d = sqrt(cs_exact_distance_squared(kind, (const double(*)[3])p)),
+                          .held = total == 0};
+    if (out->held || !system->pairs || !cs_scene_bodies_collide(system->scene, a, b, &friction))
+        return;
+    const struct cs_body_pair_params *params =
+        cs_body_pair_params_of(&system->pairs->body_pairs, a, b);
+    out->range = cs_body_pair_params_range(params, edges);
+    out->k = params->k;
+    cs_pair_distance_set(&pair, edges ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE, out->range,
+                         p);
+    cs_pair_distance_weights(&pair, weight);
+    for (int k = 0; k < 4; k++) {
+        inverse += weight[k] * weight[k] * cs_surface_points_inverse_mass(system, at[k]);
+        for (int c = 0; c < 3; c++)
+            way[c] += weight[k] * moves[k][c];
+    }
+    // a contact point that is held meets a free one of another place
+    const double moving = inverse > 0 ? kinetic(1 / inverse, way, h) : 0;
+    out->energy = fmax(moving + cs_barrier_energy(pair.d, out->range, out->k),
+                       cs_approach_energy(system, a < b ? a : b, a < b ? b : a));
+}
+
+/* Adds "; there the edge at ... VERB the edge at ...", and the place. */
+static void print_pair(const struct cs_system *system, const char *verb,
+                       enum cs_primitive_pair_kind kind, const uint32_t at[4],
+                       const struct place *place, struct cs_text *out) {
+    const bool edges = kind == CS_PRIMITIVE_EDGE_EDGE;
+    cs_text_add(out, edges ? "; there the edge at " : "; there ");
+    cs_surfaces_print_point(system, at[0], out);
+    cs_text_add(out, edges ? " %s the edge at " : " %s the triangle at ", verb);
+    cs_surfaces_print_point(system, at[edges ? 2 : 1], out);
+    print_place(place, out);
+}
+
+/* Adds the nearest of the candidates, in units of their range; returns false if none is in
+ * range at either end. */
+static bool print_nearest(const struct cs_blocked_step *blocked, const struct cs_system *system,
+                          const double *const x[2], struct cs_text *out) {
+    const struct cs_candidates *candidates = &system->pairs->candidates;
+    const size_t n = system->surfaces->n_points;
+    enum cs_primitive_pair_kind best = CS_PRIMITIVE_POINT_TRIANGLE;
+    double least = 1, p[4][3], moves[4][3];
+    uint32_t at[4], nearest[4] = {0};
+    for (uint32_t l = 0; l < candidates->n_chunks; l++)
+        for (size_t k = 0; k < candidates->chunks[l].n; k++) {
+            const bool edges = candidates->chunks[l].kind == CS_PAIR_EDGE_EDGE;
+            const enum cs_primitive_pair_kind kind =
+                edges ? CS_PRIMITIVE_EDGE_EDGE : CS_PRIMITIVE_POINT_TRIANGLE;
+            cs_candidate_vertices(system->surfaces, candidates->chunks[l].kind,
+                                  candidates->chunks[l].pairs + 2 * k, at);
+            const double range =
+                cs_candidate_range_of(candidates, candidates->chunks[l].kind, at);
+            for (int end = 0; end < 2; end++) {
+                read_pair(n, (const double *const[2]){x[end], x[end]}, at, p, moves);
+                const double y =
+                    sqrt(cs_exact_distance_squared(kind, (const double(*)[3])p)) / range;
+                if (y < least) {
+                    least = y;
+                    best = kind;
+                    memcpy(nearest, at, sizeof nearest);
+                }
+            }
+        }
+    if (!(least < 1))
+        return false;
+    struct place place;
+    read_pair(n, x, nearest, p, moves);
+    set_place(system, best, nearest, p, moves, blocked->t[1] - blocked->t[0], &place);
+    print_pair(system, "comes to", best, nearest, &place, out);
+    return true;
+}
+
+/* --- crossings --- */
+
+/* Search for the pair that meets first, by a test of all pairs. */
+struct search {
+    const struct cs_surfaces *surfaces;
+    const double *x[2];
+    double share;
+    enum cs_primitive_pair_kind kind;
+    /* its points, valid if share is below 1 */
+    uint32_t at[4];
+};
+
+/* Takes a pair over if it meets earlier than the best one so far. */
+static void try_pair(struct search *search, enum cs_primitive_pair_kind kind,
+                     const uint32_t at[4]) {
+    const size_t n = search->surfaces->n_points,
+                 side = kind == CS_PRIMITIVE_POINT_TRIANGLE ? 1 : 2;
+    struct cs_swept_aabb swept_boxes[2] = {cs_swept_aabb_empty(), cs_swept_aabb_empty()};
+    double p[4][3], moves[4][3];
+    for (size_t k = 0; k < 4; k++)
+        cs_swept_aabb_add_point(swept_boxes + (k >= side), n, at[k], search->x[0],
+                                search->x[1]);
+    if (!cs_swept_aabbs_overlap(swept_boxes, swept_boxes + 1, CS_ACCD_DISTANCE_MIN))
+        return;
+    for (size_t k = side; k < 4; k++)
+        for (size_t l = 0; l < side; l++)
+            if (at[k] == at[l])
+                return;
+    read_pair(n, search->x, at, p, moves);
+    const double share = cs_accd_safe_fraction(kind, (const double(*)[3])p,
+                                               (const double(*)[3])moves, search->share);
+    if (!(share < search->share))
+        return;
+    search->share = share;
+    search->kind = kind;
+    memcpy(search->at, at, sizeof search->at);
+}
+
+/* Tests all pairs of a point and a triangle, and all pairs of edges. */
+static void try_all(struct search *search) {
+    const struct cs_surfaces *s = search->surfaces;
+    for (uint32_t i = 0; i < s->n_points; i++)
+        for (size_t t = 0; t < s->n_triangles; t++) {
+            const uint32_t *c = s->triangles + 3 * t;
+            try_pair(search, CS_PRIMITIVE_POINT_TRIANGLE,
+                     (const uint32_t[4]){i, c[0], c[1], c[2]});
+        }
+    for (size_t e = 0; e < s->n_edges; e++)
+        for (size_t f = e + 1; f < s->n_edges; f++) {
+            const uint32_t *a = s->edges + 2 * e, *b = s->edges + 2 * f;
+            try_pair(search, CS_PRIMITIVE_EDGE_EDGE,
+                     (const uint32_t[4]){a[0], a[1], b[0], b[1]});
+        }
+}
+
+/* Adds the pair that crosses first; nothing if none does, or there are too many to test. */
+static void print_crossing(const struct cs_blocked_step *blocked,
+                           const struct cs_system *system, const double *const x[2],
+                           struct cs_text *out) {
+    const struct cs_surfaces *s = system->surfaces;
+    struct search search = {.surfaces = s, .x = {x[0], x[1]}, .share = 1};
+    struct place place;
+    double p[4][3], moves[4][3];
+    if ((double)s->n_points * s->n_triangles > PAIRS_MAX)
+        return;
+    try_all(&search);
+    if (!(search.share < 1))
+        return;
+    read_pair(s->n_points, x, search.at, p, moves);
+    set_place(system, search.kind, search.at, p, moves, blocked->t[1] - blocked->t[0], &place);
+    print_pair(system, "would cross", search.kind, search.at, &place, out);
+}
+
+void cs_blocked_step_print(const struct cs_blocked_step *blocked,
+                           const struct cs_system *system, struct cs_text *out) {
+    const double *t = blocked->t, *x0 = blocked->x, *x1 = x0 + 3 * (size_t)system->view.n;
+    const double *x[2];
+    if (!blocked->is_set)
+        return;
+    if (system->collider_params && t[1] > t[0] && print_point(blocked, system, out))
+        return;
+    if (!system->surfaces)
+        return;
+    x[0] = cs_surface_points_positions(system, CS_POINTS_BEGIN, t[0], x0);
+    x[1] = cs_surface_points_positions(system, CS_POINTS_END, t[1], x1);
+    if (system->pairs && t[1] > t[0] &&
+        !cs_contact_pairs_resolve_step(system->pairs, t[0], x0, t[1], x1) &&
+        print_nearest(blocked, system, x, out))
+        return;
+    if (cs_scene_crossings(system->scene) == CS_CROSSINGS_LIMIT)
+        print_crossing(blocked, system, x, out);
+}
