@@ -1,4 +1,4 @@
-/* pair_keys.h - keys of a scene about friction, and about contact between bodies. */
+/* pair_keys.h - keys of a scene about friction, contact between bodies, and its start. */
 #ifndef CS_PAIR_KEYS_H
 #define CS_PAIR_KEYS_H
 
@@ -19,6 +19,13 @@ struct cs_body_pairs_keys {
     int32_t among;       /* enum cs_pairs_among */
     double friction;     /* of pairs that are not in the list */
     struct cs_list list; /* struct cs_body_pair_keys */
+};
+
+/* Treatment of what starts inside a collider, or within the range of contact by force. */
+enum cs_contact_start_policy {
+    CS_CONTACT_START_REFUSE,
+    CS_CONTACT_START_MOVE_OUT,
+    CS_CONTACT_START_ALLOW
 };
 
 #endif

@@ -197,18 +197,13 @@ struct cs_collider {
 };
 
 enum cs_contact_law { CS_CONTACT_PROJECT, CS_CONTACT_FORCE };
-enum cs_contact_projection_start {
-    CS_CONTACT_START_REFUSE,
-    CS_CONTACT_START_MOVE_OUT,
-    CS_CONTACT_START_KEEP
-};
 /* Contact between particles and all colliders. */
 struct cs_contact_keys {
     int32_t law;   /* enum cs_contact_law */
-    int32_t start; /* enum cs_contact_projection_start, of what starts inside or within range */
+    int32_t start; /* enum cs_contact_start_policy, of what starts inside or within range */
     /* of the law force: */
-    double stiffness; /* N/m per particle; NAN: from what may come (contact/approach.h) */
-    double damping;   /* s, times the stiffness of the contact: N s/m */
+    double stiffness;      /* N/m per particle; NAN: from what may come (contact/approach.h) */
+    double damping;        /* s, times the stiffness of the contact: N s/m */
     double friction_speed; /* m/s at which friction is 0.7 of its limit */
     int32_t friction_law;  /* enum cs_friction_law */
 };

@@ -202,7 +202,7 @@ static const struct cs_table collider_table = {
     ROWS(collider_rows), .size = sizeof(struct cs_collider), .one_of = true};
 
 static const char *const contact_names[] = {"project", "force", NULL};
-static const char *const inside_names[] = {"refuse", "move-out", "keep", NULL};
+static const char *const inside_names[] = {"refuse", "move-out", "allow", NULL};
 static const char *const friction_names[] = {"smooth", "stick", NULL};
 static const struct cs_option contact_rows[] = {
     CHOICE(struct cs_contact_keys, law, contact_names, CS_CONTACT_PROJECT,
@@ -213,7 +213,7 @@ static const struct cs_option contact_rows[] = {
         struct cs_contact_keys, start, inside_names, CS_CONTACT_START_REFUSE,
         "a particle that starts inside a collider, or, for force, bodies that start with more "
         "contact energy than at rest: refuse the scene, move them out first, as the report "
-        "then states, or keep them"),
+        "then states, or allow it"),
     REAL(struct cs_contact_keys, stiffness, "N/m", ABSENT, 1e-9, 1e12,
          "for force, per particle; absent: 40 m v^2/D^2 for the speed v at which surfaces may "
          "meet, at least springs.stretch of the softest body that has such springs"),

@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "model/system/particle_system.h"
 
-/* What the contact of two surfaces can hold, and what comes. */
+/* Capacity of the contact of two surfaces, beside the energy that comes. */
 struct cs_contact_capacity {
     uint32_t a, b;   /* a body; itself, another body, or n_bodies + a collider */
     double range, k; /* m, N/m */

@@ -117,12 +117,12 @@ TEST(move_out_ends_at_balance) {
     }
 }
 
-/* "keep" leaves all as it is, and the shipped scenes' start out of range needs nothing. */
-TEST(keep_takes_what_there_is) {
+/* "allow" leaves all as it is, and the shipped scenes' start out of range needs nothing. */
+TEST(allowed_start_is_left_as_it_is) {
     for (int k = 0; k < N_NEAR; k++) {
         struct cs_session session;
         struct cs_error error = {0};
-        open_near(&session, k, START("keep"), &error);
+        open_near(&session, k, START("allow"), &error);
         ck_assert_msg(!error.status, "%s", error.message);
         ck_assert(session.initial_penetration.n_moves == 0);
         ck_assert_int_eq(memcmp(session.system.start, session.system.state,

@@ -88,6 +88,7 @@ static void set_collider(const struct cs_system *system, uint32_t collider,
     out->endless = cs_shape_is_endless(at.shape);
     memcpy(out->point, at.centre, sizeof out->point);
     memcpy(out->normal, at.axes[1], sizeof out->normal);
+    // corners of the core by the bits of i
     for (size_t i = 0; i < (mesh ? mesh->n : 8) && !out->endless; i++) {
         double p[3], own[3];
         for (size_t k = 0; k < 3; k++)
@@ -141,6 +142,7 @@ static void add_paths(const struct cs_scene *scene, struct cs_approach *approach
                      speed_along(&event->move.path, event->move.motion, still, begin) +
                          length_of(event->move.spin) * half_diagonal(at));
         }
+        // a grab without a body acts on all
         for (uint32_t b = 0; event->grab.present && b < approach->n_bodies; b++) {
             struct surface *at = approach->surfaces + b;
             double middle[3];
@@ -191,6 +193,7 @@ static double drop_onto_box(const struct cs_approach *approach, const struct sur
     const double gap = least_along(b, approach->down) + least_along(a, up);
     const double whole = -least_along(b, up) - least_along(a, approach->down);
     const double aside = relative_speed(a, b) * sqrt(2 * fmax(whole, 0) / approach->gravity);
+    // the box swept down, and widened to both sides
     for (int c = 0; c < 3; c++) {
         const double way = approach->down[c] * whole;
         if (a->low[c] + fmin(way, 0) - aside > b->high[c] ||
@@ -234,6 +237,7 @@ enum cs_status cs_approach_build(struct cs_system *system, struct cs_error *erro
                                      .n_bodies = scene->bodies.n,
                                      .n = scene->bodies.n + scene->colliders.n,
                                      .surfaces = surfaces};
+    // surfaces first: paths and drops read their boxes
     for (int c = 0; c < 3 && approach->gravity > 0; c++)
         approach->down[c] = g[c] / approach->gravity;
     for (uint32_t b = 0; b < scene->bodies.n; b++)

@@ -69,7 +69,7 @@ CS_INLINE double cs_barrier_capacity(double range, double k) {
 
 /* m, distance at which a contact carries `load` N, to 1e-12 of the range: the range without a
  * load, 0 for one that the law does not carry. F falls with d, so that halving finds it. */
-static inline double cs_barrier_balance(double range, double k, double load) {
+static inline double cs_barrier_loaded_distance(double range, double k, double load) {
     double low = 0, high = range;
     for (int halving = 0; halving < 40 && load > 0; halving++) {
         const double d = 0.5 * (low + high);

@@ -122,7 +122,7 @@ struct cs_initial_penetration {
  * with energy that comes from nothing. By the law `project`, inside means behind the surface
  * offset by the thickness. With contact.start "move-out" a particle is moved out along normals:
  * onto that surface, or by contact by force to the distance at which it carries its own weight.
- * *inside reports it. contact.start "keep" leaves all as it is, but for crossings.
+ * *inside reports it. contact.start "allow" leaves all as it is, but for crossings.
  *
  * CS_ERR_SCENE, with particle, collider and depth, if contact.start refuses; if colliders leave
  * no way out; if a contact sample (model/contact/contact_samples.h) is then still inside; if

@@ -116,6 +116,7 @@ static void measure_pairs(const struct search *search, struct interface *at) {
         if (k != at->a * n_bodies + at->b && k != at->b * n_bodies + at->a)
             table->params[k].k = 0;
     }
+    // the pair itself still has its own
     at->range = cs_body_pair_params_of(table, at->a, at->b)->range;
     at->k = cs_body_pair_params_of(table, at->a, at->b)->k;
     at->energy = cs_pairs_energy(system->pairs, &eval);
@@ -229,6 +230,7 @@ static bool choose(const struct search *search, const struct interface *at, stru
     const bool held[2] = {has_pins(system, at->a), single || has_pins(system, at->b)};
     if ((held[0] && held[1]) || !(length > 0))
         return false;
+    // above 0: pushed against gravity
     const double up = -(f[0] * g[0] + f[1] * g[1] + f[2] * g[2]);
     const bool second = held[0] || (!held[1] && up <= 0);
     way->body = second ? at->b : at->a;
@@ -242,6 +244,7 @@ static bool find_way(const struct search *search, const struct interface *at, st
     double low = 0, high = at->range / 64;
     if (!choose(search, at, way))
         return false;
+    // doubled until it is enough, then halved between the last two
     while (!is_balanced(search, way, high, at)) {
         low = high;
         high *= 2;
@@ -268,6 +271,7 @@ static enum cs_status refuse(const struct search *search, const struct interface
     const bool asked = scene->contact.start == CS_CONTACT_START_MOVE_OUT;
     struct cs_text other = {0}, cure = {0};
     struct way way;
+    // the way is found as for move-out, and not gone
     cs_text_add(&other, at->b < scene->bodies.n ? "bodies[%u]" : "colliders[%u]",
                 at->b < scene->bodies.n ? at->b : at->b - scene->bodies.n);
     if (find_way(search, at, &way))
@@ -307,6 +311,7 @@ static void check_candidate(const struct cs_system *system, const double *x,
             for (int l = 0; l < CS_EXACT_DISTANCE_LANES; l++)
                 lanes.p[k][c][l] = x[c * n + at[k]];
     }
+    // all lanes hold this candidate
     cs_exact_distance_measure(kind, &lanes);
     if (lanes.squared[0] > TOUCHING * TOUCHING || inverse_mass == 0)
         return;
@@ -378,6 +383,7 @@ enum cs_status cs_initial_layer_resolve(struct cs_system *system,
                             .f = calloc(6 * n, sizeof(double)),
                             .k = calloc(n_bodies * n_bodies + 1, sizeof(double)),
                             .gravity = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])};
+    // of all bodies: more cannot rest on one interface
     for (size_t i = 0; i < n; i++)
         search.mass += system->mass[i];
     if (search.f && search.k)

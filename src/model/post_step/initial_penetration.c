@@ -64,7 +64,7 @@ static double way_beyond(const struct cs_system *system, uint32_t i, uint32_t co
     const double *g = system->scene->forces.gravity;
     const double weight = system->mass[i] * sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
     return system->collider_params
-               ? cs_barrier_balance(system->collider_params[collider].range,
+               ? cs_barrier_loaded_distance(system->collider_params[collider].range,
                                     system->collider_params[collider].k, weight)
                : 0;
 }
@@ -177,7 +177,7 @@ enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
                                               struct cs_initial_penetration *inside,
                                               struct cs_error *error) {
     *inside = (struct cs_initial_penetration){0};
-    return system->scene->contact.start == CS_CONTACT_START_KEEP
+    return system->scene->contact.start == CS_CONTACT_START_ALLOW
                ? check_crossings(system, error)
                : resolve(system, inside, error);
 }

@@ -163,61 +163,92 @@ static bool print_point(const struct cs_blocked_step *blocked, const struct cs_s
 
 /* --- pairs --- */
 
-/* Reads positions at the start and moves of a pair's points; x (2) of (3,n_points). */
-static void read_pair(size_t n, const double *const x[2], const uint32_t at[4], double p[4][3],
-                      double moves[4][3]) {
+/* Two primitives during the blocked step: their points, positions at its start in m, moves. */
+struct pair_move {
+    enum cs_primitive_pair_kind kind;
+    uint32_t at[4];
+    double p[4][3], moves[4][3];
+};
+
+/* Reads positions and moves of the points pair->at; x (2) of (3,n_points). */
+static void read_pair(size_t n, const double *const x[2], struct pair_move *pair) {
     for (size_t k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++) {
-            p[k][c] = x[0][c * n + at[k]];
-            moves[k][c] = x[1][c * n + at[k]] - p[k][c];
+            pair->p[k][c] = x[0][c * n + pair->at[k]];
+            pair->moves[k][c] = x[1][c * n + pair->at[k]] - pair->p[k][c];
         }
 }
 
-/* Sets a place from a pair: its true distance, and the energy of its contact points, or what
- * may come to the two bodies if that is more or if the step has no duration. */
-static void set_place(const struct cs_system *system, enum cs_primitive_pair_kind kind,
-                      const uint32_t at[4], double p[4][3], double moves[4][3], double h,
-                      struct place *out) {
-    const struct cs_surfaces *s = system->surfaces;
-    const bool edges = kind == CS_PRIMITIVE_EDGE_EDGE;
-    const uint32_t a = cs_surfaces_body(s->first_point, s->n_bodies, at[0]),
-                   b = cs_surfaces_body(s->first_point, s->n_bodies, at[3]);
-    double weight[4], way[3] = {0}, inverse = 0, total = 0, friction;
-    struct cs_pair_distance pair;
-    for (int k = 0; k < 4; k++)
-        total += cs_surface_points_inverse_mass(system, at[k]);
-    *out = (struct place){.d = sqrt(cs_exact_distance_squared(kind, (const double(*)[3])p)),
-                          .held = total == 0};
-    if (out->held || !system->pairs || !cs_scene_bodies_collide(system->scene, a, b, &friction))
-        return;
-    const struct cs_body_pair_params *params =
-        cs_body_pair_params_of(&system->pairs->body_pairs, a, b);
-    out->range = cs_body_pair_params_range(params, edges);
-    out->k = params->k;
-    cs_pair_distance_set(&pair, edges ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE, out->range,
-                         p);
-    cs_pair_distance_weights(&pair, weight);
-    for (int k = 0; k < 4; k++) {
-        inverse += weight[k] * weight[k] * cs_surface_points_inverse_mass(system, at[k]);
-        for (int c = 0; c < 3; c++)
-            way[c] += weight[k] * moves[k][c];
-    }
-    // a contact point that is held meets a free one of another place
-    const double moving = inverse > 0 ? kinetic(1 / inverse, way, h) : 0;
-    out->energy = fmax(moving + cs_barrier_energy(pair.d, out->range, out->k),
-                       cs_approach_energy(system, a < b ? a : b, a < b ? b : a));
+/* m, true distance at the start */
+static double distance_of(const struct pair_move *pair) {
+    return sqrt(cs_exact_distance_squared(pair->kind, (const double(*)[3])pair->p));
 }
 
-/* Adds "; there the edge at ... VERB the edge at ...", and the place. */
-static void print_pair(const struct cs_system *system, const char *verb,
-                       enum cs_primitive_pair_kind kind, const uint32_t at[4],
-                       const struct place *place, struct cs_text *out) {
-    const bool edges = kind == CS_PRIMITIVE_EDGE_EDGE;
+/* J, kinetic energy of the relative motion of both contact points in h seconds, and energy that
+ * is stored. */
+static double energy_of(const struct cs_system *system, struct pair_move *pair, double h,
+                        const struct place *at) {
+    double weight[4], way[3] = {0}, inverse = 0;
+    struct cs_pair_distance distance;
+    cs_pair_distance_set(&distance,
+                         pair->kind == CS_PRIMITIVE_EDGE_EDGE ? CS_PAIR_EDGE_EDGE
+                                                              : CS_PAIR_POINT_TRIANGLE,
+                         at->range, pair->p);
+    cs_pair_distance_weights(&distance, weight);
+    for (int k = 0; k < 4; k++) {
+        inverse += weight[k] * weight[k] * cs_surface_points_inverse_mass(system, pair->at[k]);
+        for (int c = 0; c < 3; c++)
+            way[c] += weight[k] * pair->moves[k][c];
+    }
+    // points that are held may meet beside a free one, which has no weight then
+    return (inverse > 0 ? kinetic(1 / inverse, way, h) : 0) +
+           cs_barrier_energy(distance.d, at->range, at->k);
+}
+
+/* Contact of a pair in a step of h seconds. Its energy is at least the one that may come to the
+ * two bodies: the pair may have been slowed down already, and h may be 0. */
+static struct place place_of(const struct cs_system *system, struct pair_move *pair, double h) {
+    const struct cs_surfaces *s = system->surfaces;
+    const uint32_t a = cs_surfaces_body(s->first_point, s->n_bodies, pair->at[0]),
+                   b = cs_surfaces_body(s->first_point, s->n_bodies, pair->at[3]);
+    struct place at = {.d = distance_of(pair), .held = true};
+    double friction;
+    for (int k = 0; k < 4; k++)
+        at.held = at.held && cs_surface_points_inverse_mass(system, pair->at[k]) == 0;
+    // without contact the range stays 0
+    if (at.held || !system->pairs || !cs_scene_bodies_collide(system->scene, a, b, &friction))
+        return at;
+    const struct cs_body_pair_params *params =
+        cs_body_pair_params_of(&system->pairs->body_pairs, a, b);
+    at.range = cs_body_pair_params_range(params, pair->kind == CS_PRIMITIVE_EDGE_EDGE);
+    at.k = params->k;
+    at.energy = fmax(energy_of(system, pair, h, &at),
+                     cs_approach_energy(system, a < b ? a : b, a < b ? b : a));
+    return at;
+}
+
+/* Adds "; there the edge at ... VERB the edge at ...", and the contact there. */
+static void print_pair(const struct cs_blocked_step *blocked, const struct cs_system *system,
+                       const char *verb, struct pair_move *pair, struct cs_text *out) {
+    const bool edges = pair->kind == CS_PRIMITIVE_EDGE_EDGE;
+    const struct place at = place_of(system, pair, blocked->t[1] - blocked->t[0]);
     cs_text_add(out, edges ? "; there the edge at " : "; there ");
-    cs_surfaces_print_point(system, at[0], out);
+    cs_surfaces_print_point(system, pair->at[0], out);
     cs_text_add(out, edges ? " %s the edge at " : " %s the triangle at ", verb);
-    cs_surfaces_print_point(system, at[edges ? 2 : 1], out);
-    print_place(place, out);
+    cs_surfaces_print_point(system, pair->at[edges ? 2 : 1], out);
+    print_place(&at, out);
+}
+
+/* Returns the distance of a candidate at the nearer end of the step, over its range. */
+static double nearness_of(const struct cs_candidates *candidates, const double *const x[2],
+                          struct pair_move *pair) {
+    const size_t n = candidates->system->surfaces->n_points;
+    const enum cs_pair_kind kind =
+        pair->kind == CS_PRIMITIVE_EDGE_EDGE ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE;
+    read_pair(n, (const double *const[2]){x[1], x[1]}, pair);
+    const double end = distance_of(pair);
+    read_pair(n, x, pair);
+    return fmin(end, distance_of(pair)) / cs_candidate_range_of(candidates, kind, pair->at);
 }
 
 /* Adds the nearest of the candidates, in units of their range; returns false if none is in
@@ -225,37 +256,24 @@ static void print_pair(const struct cs_system *system, const char *verb,
 static bool print_nearest(const struct cs_blocked_step *blocked, const struct cs_system *system,
                           const double *const x[2], struct cs_text *out) {
     const struct cs_candidates *candidates = &system->pairs->candidates;
-    const size_t n = system->surfaces->n_points;
-    enum cs_primitive_pair_kind best = CS_PRIMITIVE_POINT_TRIANGLE;
-    double least = 1, p[4][3], moves[4][3];
-    uint32_t at[4], nearest[4] = {0};
+    struct pair_move pair, nearest;
+    double least = 1;
     for (uint32_t l = 0; l < candidates->n_chunks; l++)
         for (size_t k = 0; k < candidates->chunks[l].n; k++) {
-            const bool edges = candidates->chunks[l].kind == CS_PAIR_EDGE_EDGE;
-            const enum cs_primitive_pair_kind kind =
-                edges ? CS_PRIMITIVE_EDGE_EDGE : CS_PRIMITIVE_POINT_TRIANGLE;
-            cs_candidate_vertices(system->surfaces, candidates->chunks[l].kind,
-                                  candidates->chunks[l].pairs + 2 * k, at);
-            const double range =
-                cs_candidate_range_of(candidates, candidates->chunks[l].kind, at);
-            for (int end = 0; end < 2; end++) {
-                read_pair(n, (const double *const[2]){x[end], x[end]}, at, p, moves);
-                const double y =
-                    sqrt(cs_exact_distance_squared(kind, (const double(*)[3])p)) / range;
-                if (y < least) {
-                    least = y;
-                    best = kind;
-                    memcpy(nearest, at, sizeof nearest);
-                }
+            const enum cs_pair_kind kind = candidates->chunks[l].kind;
+            pair.kind = kind == CS_PAIR_EDGE_EDGE ? CS_PRIMITIVE_EDGE_EDGE
+                                                  : CS_PRIMITIVE_POINT_TRIANGLE;
+            cs_candidate_vertices(system->surfaces, kind, candidates->chunks[l].pairs + 2 * k,
+                                  pair.at);
+            const double y = nearness_of(candidates, x, &pair);
+            if (y < least) {
+                least = y;
+                nearest = pair;
             }
         }
-    if (!(least < 1))
-        return false;
-    struct place place;
-    read_pair(n, x, nearest, p, moves);
-    set_place(system, best, nearest, p, moves, blocked->t[1] - blocked->t[0], &place);
-    print_pair(system, "comes to", best, nearest, &place, out);
-    return true;
+    if (least < 1)
+        print_pair(blocked, system, "comes to", &nearest, out);
+    return least < 1;
 }
 
 /* --- crossings --- */
@@ -265,9 +283,7 @@ struct search {
     const struct cs_surfaces *surfaces;
     const double *x[2];
     double share;
-    enum cs_primitive_pair_kind kind;
-    /* its points, valid if share is below 1 */
-    uint32_t at[4];
+    struct pair_move best; /* valid if share is below 1 */
 };
 
 /* Takes a pair over if it meets earlier than the best one so far. */
@@ -276,24 +292,25 @@ static void try_pair(struct search *search, enum cs_primitive_pair_kind kind,
     const size_t n = search->surfaces->n_points,
                  side = kind == CS_PRIMITIVE_POINT_TRIANGLE ? 1 : 2;
     struct cs_swept_aabb swept_boxes[2] = {cs_swept_aabb_empty(), cs_swept_aabb_empty()};
-    double p[4][3], moves[4][3];
+    struct pair_move pair = {.kind = kind};
     for (size_t k = 0; k < 4; k++)
         cs_swept_aabb_add_point(swept_boxes + (k >= side), n, at[k], search->x[0],
                                 search->x[1]);
     if (!cs_swept_aabbs_overlap(swept_boxes, swept_boxes + 1, CS_ACCD_DISTANCE_MIN))
         return;
+    // primitives with a common point never meet
     for (size_t k = side; k < 4; k++)
         for (size_t l = 0; l < side; l++)
             if (at[k] == at[l])
                 return;
-    read_pair(n, search->x, at, p, moves);
-    const double share = cs_accd_safe_fraction(kind, (const double(*)[3])p,
-                                               (const double(*)[3])moves, search->share);
+    memcpy(pair.at, at, sizeof pair.at);
+    read_pair(n, search->x, &pair);
+    const double share = cs_accd_safe_fraction(kind, (const double(*)[3])pair.p,
+                                               (const double(*)[3])pair.moves, search->share);
     if (!(share < search->share))
         return;
     search->share = share;
-    search->kind = kind;
-    memcpy(search->at, at, sizeof search->at);
+    search->best = pair;
 }
 
 /* Tests all pairs of a point and a triangle, and all pairs of edges. */
@@ -319,16 +336,11 @@ static void print_crossing(const struct cs_blocked_step *blocked,
                            struct cs_text *out) {
     const struct cs_surfaces *s = system->surfaces;
     struct search search = {.surfaces = s, .x = {x[0], x[1]}, .share = 1};
-    struct place place;
-    double p[4][3], moves[4][3];
     if ((double)s->n_points * s->n_triangles > PAIRS_MAX)
         return;
     try_all(&search);
-    if (!(search.share < 1))
-        return;
-    read_pair(s->n_points, x, search.at, p, moves);
-    set_place(system, search.kind, search.at, p, moves, blocked->t[1] - blocked->t[0], &place);
-    print_pair(system, "would cross", search.kind, search.at, &place, out);
+    if (search.share < 1)
+        print_pair(blocked, system, "would cross", &search.best, out);
 }
 
 void cs_blocked_step_print(const struct cs_blocked_step *blocked,
@@ -341,6 +353,7 @@ void cs_blocked_step_print(const struct cs_blocked_step *blocked,
         return;
     if (!system->surfaces)
         return;
+    // in the order of cs_step_limit_fraction: pairs before crossings
     x[0] = cs_surface_points_positions(system, CS_POINTS_BEGIN, t[0], x0);
     x[1] = cs_surface_points_positions(system, CS_POINTS_END, t[1], x1);
     if (system->pairs && t[1] > t[0] &&
