@@ -36,6 +36,7 @@ void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
     for (uint32_t i = 0; i < system->view.n; i++)
         if (system->inv_mass[i] > 0)
             heaviest = fmax(heaviest, system->mass[i]);
+    // what may come by the scene's start, then what came in the runs
     cs_contact_capacity_print(system, &capacity, out);
     if (speed > 0)
         cs_text_add(out, "; a particle of the runs has at most %.3g J: %.3g kg at %.3g m/s",
@@ -46,12 +47,15 @@ void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
     if (warning.length)
         cs_text_add(out, "warning: %s\n", cs_text_get(&warning));
     cs_text_finish(&warning);
-    if (any_friction(scene) && scene->contact.friction_law == CS_FRICTION_BRISTLES)
+    double stiffest = 0;
+    for (uint32_t c = 0; system->collider_params && c < scene->colliders.n; c++)
+        stiffest = fmax(stiffest, system->collider_params[c].k);
+    if (stiffest > 0 && any_friction(scene) &&
+        scene->contact.friction_law == CS_FRICTION_BRISTLES)
         cs_text_add(out,
                     "friction that sticks holds a particle by %.3g N/m and %.3g N s/m, "
                     "which limits explicit steps\n",
-                    system->collider_params->k,
-                    2 * sqrt(system->collider_params->k * heaviest));
+                    stiffest, 2 * sqrt(stiffest * heaviest));
     else if (any_friction(scene))
         cs_text_add(
             out,
