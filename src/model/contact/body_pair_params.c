@@ -79,6 +79,7 @@ enum cs_status cs_body_pair_table_build(struct cs_system *system,
         for (uint32_t b = a; b < n && !error->status; b++) {
             if (!cs_scene_bodies_collide(system->scene, a, b, &meeting.friction))
                 continue;
+            // the stiffness depends on the range, and on what comes to these two
             meeting.range = range_between(system, a, b, error);
             meeting.k = cs_approach_stiffness(system, softest, cs_approach_energy(system, a, b),
                                               meeting.range);

@@ -48,6 +48,7 @@ enum cs_status cs_collider_params_table_build(struct cs_system *system,
     for (uint32_t c = 0; pairings && c < scene->colliders.n; c++) {
         const double thickness = cs_scene_colliders(scene)[c].thickness;
         pairings[c].range = thickness > 0 ? thickness : CS_RANGE_SHARE * shortest;
+        // the stiffness divides by it
         if (!(pairings[c].range > 0))
             return cs_fail(error, CS_ERR_SCENE,
                            "colliders[%u].thickness: 0, but there is no spring to derive the "

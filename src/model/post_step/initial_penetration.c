@@ -65,7 +65,7 @@ static double way_beyond(const struct cs_system *system, uint32_t i, uint32_t co
     const double weight = system->mass[i] * sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
     return system->collider_params
                ? cs_barrier_loaded_distance(system->collider_params[collider].range,
-                                    system->collider_params[collider].k, weight)
+                                            system->collider_params[collider].k, weight)
                : 0;
 }
 
@@ -79,6 +79,7 @@ static enum cs_status clear(struct cs_system *system, uint32_t i,
     for (int pass = 0; find(system, p, &collider, n, &depth); pass++) {
         if (pass == PASSES || system->scene->contact.start == CS_CONTACT_START_REFUSE)
             return refuse(system, i, collider, depth, error);
+        // one that is moved by contact by force carries its weight where it comes to lie
         depth += way_beyond(system, i, collider);
         for (int c = 0; c < 3; c++)
             p[c] += depth * n[c];

@@ -150,6 +150,7 @@ static bool print_point(const struct cs_blocked_step *blocked, const struct cs_s
                 try_samples(system, &search);
             else
                 try_particles(system, &search);
+            // the first collider with such a point rejected the step
             if (!(search.y < HUGE_VAL))
                 continue;
             cs_text_add(out, samples ? "; there the surface at " : "; there ");
@@ -265,6 +266,7 @@ static bool print_nearest(const struct cs_blocked_step *blocked, const struct cs
                                                   : CS_PRIMITIVE_POINT_TRIANGLE;
             cs_candidate_vertices(system->surfaces, kind, candidates->chunks[l].pairs + 2 * k,
                                   pair.at);
+            // ties go to the first in the order of the list
             const double y = nearness_of(candidates, x, &pair);
             if (y < least) {
                 least = y;
