@@ -23,7 +23,8 @@
 #define STEP (1.0 / 480)
 
 #define CONTACT                                                                                \
-    "\"contact\": {\"law\": \"force\", \"stiffness\": 95, \"damping\": 0.02,"                  \
+    "\"contact\": {\"law\": \"force\", \"start\": \"allow\", \"stiffness\": 95, \"damping\": " \
+    "0.02,"                                                                                    \
     " \"friction_speed\": 0.02}, \"time\": {\"fps\": 20}"
 
 /* Four particles with equal forces: a rigid body in any model. Rotated by an angle about z, and
@@ -49,7 +50,8 @@
     "-1]}, \"mass\": {\"particle\": 0.1}, \"springs\": {\"stretch\": 20, \"shear\": 10, "      \
     "\"bend\": 2, \"damping\": 0}}], \"forces\": {\"gravity\": [0, 0, 0]}, \"colliders\": "    \
     "[{\"plane\": {\"point\": [0, 0, -0.25], \"normal\": [0, 0, 1]}, \"thickness\": 0.2, "     \
-    "\"friction\": 0}], \"contact\": {\"law\": \"force\", \"stiffness\": 100}, \"time\": "     \
+    "\"friction\": 0}], \"contact\": {\"law\": \"force\", \"start\": \"allow\", "              \
+    "\"stiffness\": 100}, \"time\": "                                                          \
     "{\"fps\": 50}}"
 #define BOUNCE_RATE 40 /* 1/s, of springs, and of contact where it is deepest */
 enum { BOUNCE_FRAMES = 25 };

@@ -20,7 +20,8 @@
  * contact. */
 #define PLANE                                                                                  \
     ", \"colliders\": [{\"plane\": {\"point\": [0, 0, -0.3], \"normal\": [0, 0, 1]},"          \
-    " \"thickness\": 0.6, \"friction\": 0.4}], \"contact\": {\"law\": \"force\","              \
+    " \"thickness\": 0.6, \"friction\": 0.4}], \"contact\": {\"law\": \"force\", \"start\": "  \
+    "\"allow\","                                                                               \
     " \"stiffness\": 15, \"damping\": 0.01, \"friction_speed\": 0.3}"
 
 /* s; with w T = 21 radians over 0.3 s the error of the fourth-order reference, (h w)^4 w T /

@@ -51,7 +51,8 @@
     " \"mass\": {\"particle\": 0.1}, " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY          \
     "}, \"colliders\": [{\"plane\": {\"point\": [0, 0, -0.2], \"normal\": [0, 0, 1]},"         \
     " \"thickness\": 0.4, \"friction\": " friction                                             \
-    "}], \"contact\": {\"law\": \"force\", \"stiffness\": 1, \"damping\": 0.02,"               \
+    "}], \"contact\": {\"law\": \"force\", \"start\": \"allow\", \"stiffness\": 1, "           \
+    "\"damping\": 0.02,"                                                                       \
     " \"friction_speed\": 0.2}, \"events\": [" events "], " FIVE_FRAMES "}"
 
 /* A sheet whose edges and diagonal slide over a thin pole out of reach of its particles: tests
@@ -60,7 +61,8 @@
     "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [0.3, 0, -0.3]},"              \
     " \"mass\": {\"particle\": 0.1}, " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY          \
     "}, \"colliders\": [{\"capsule\": {\"from\": [-2, 0, -0.25], \"to\": [2, 0, -0.25],"       \
-    " \"radius\": 0.02}, \"thickness\": 0.4, \"friction\": 0.5}], \"contact\": {\"law\":"      \
+    " \"radius\": 0.02}, \"thickness\": 0.4, \"friction\": 0.5}], \"contact\": {\"start\": "   \
+    "\"allow\", \"law\":"                                                                      \
     " \"force\", \"stiffness\": 1, \"damping\": 0.02, \"friction_speed\": 0.2}, " FIVE_FRAMES  \
     "}"
 
@@ -71,7 +73,8 @@
     " {\"cloth\": {\"grid\": [2, 2], \"velocity\": [-0.15, -0.1, -0.1], \"place\":"            \
     " {\"translate\": [0.2, 0.1, 0.3]}}, \"mass\": {\"particle\": 0.1}, \"thickness\": 0.4,"   \
     " " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY "}, \"pairs\": {\"among\": \"all\","    \
-    " \"friction\": " friction "}, \"contact\": {\"law\": \"force\", \"stiffness\": 1,"        \
+    " \"friction\": " friction                                                                 \
+    "}, \"contact\": {\"law\": \"force\", \"start\": \"allow\", \"stiffness\": 1,"             \
     " \"damping\": 0.02, \"friction_speed\": 0.2}, " FIVE_FRAMES "}"
 
 // ends of ramps lie between frames
