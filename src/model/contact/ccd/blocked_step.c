@@ -45,6 +45,7 @@ void cs_blocked_step_store(struct cs_blocked_step *blocked, const struct cs_syst
 /* Contact at a place of the blocked step. */
 struct place {
     double d, range, k; /* m, m, N/m */
+    double stiffness;   /* N/m, the scene's: edges have more (body_pair_params.h) */
     double energy;      /* J that comes there: in motion relative to each other, and stored */
     bool held;          /* no point of it is free */
 };
@@ -65,7 +66,7 @@ static void print_place(const struct place *at, struct cs_text *out) {
         cs_text_add(out,
                     "; %.3g times the stiffness would hold (contact.stiffness %.3g N/m), "
                     "or %.3g times the thickness",
-                    factor, factor * at->k, sqrt(factor));
+                    factor, factor * at->stiffness, sqrt(factor));
 }
 
 /* J, kinetic energy of the relative motion of a mass in a step of h seconds. */
@@ -103,7 +104,7 @@ static void try_point(struct point_search *search, uint32_t particle, double mas
     search->y = y;
     search->particle = particle;
     search->place = (struct place){
-        d, range, k, kinetic(mass, way, step->h) + cs_barrier_energy(d, range, k), false};
+        d, range, k, k, kinetic(mass, way, step->h) + cs_barrier_energy(d, range, k), false};
 }
 
 /* Tests all free particles. */
@@ -221,8 +222,10 @@ static struct place place_of(const struct cs_system *system, struct pair_move *p
         return at;
     const struct cs_body_pair_params *params =
         cs_body_pair_params_of(&system->pairs->body_pairs, a, b);
-    at.range = cs_body_pair_params_range(params, pair->kind == CS_PRIMITIVE_EDGE_EDGE);
-    at.k = params->k;
+    const bool edges = pair->kind == CS_PRIMITIVE_EDGE_EDGE;
+    at.range = cs_body_pair_params_range(params, edges);
+    at.k = cs_body_pair_params_stiffness(params, edges);
+    at.stiffness = params->k;
     at.energy = fmax(energy_of(system, pair, h, &at),
                      cs_approach_energy(system, a < b ? a : b, a < b ? b : a));
     return at;
