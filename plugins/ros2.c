@@ -68,7 +68,8 @@ static enum cs_step set_up(struct method *self, double t, double g, const double
     const struct cs_host *host = self->base.fixed.host;
     if (!self->drift)
         return host->solve_setup(host->ctx, t, x, v, 1, -g, -g * g, CS_SOLVE_PSD);
-    return host->euler_setup(host->ctx, t, g, x, v, CS_SOLVE_PSD, self->drift);
+    return host->euler_setup(host->ctx, t, g, x, v, CS_SOLVE_PSD | CS_SOLVE_TANGENT,
+                             self->drift);
 }
 
 /* b += drift, which holds g (f + g K (v - w)) before, with b = f + g K v */

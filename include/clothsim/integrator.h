@@ -102,7 +102,10 @@ enum cs_solve_flag {
     /* Take friction by an upper bound: at the slope that its force has now, instead of the
      * smaller one that it grows by. Newton's iteration far from a solution needs it, or it
      * overshoots; a linearised method must not have it, whose forces at rest would be wrong. */
-    CS_SOLVE_BOUND = 1u << 1
+    CS_SOLVE_BOUND = 1u << 1,
+    /* Of euler_setup: take friction by its derivative, as solve_setup does. For methods that
+     * need more of A than one step of implicit Euler. */
+    CS_SOLVE_TANGENT = 1u << 2
 };
 
 /* The calls of the host. Pass ctx as the first argument of every call. */
@@ -217,8 +220,9 @@ struct cs_host {
 
     /* [advance] The linear system of a linearised step of implicit Euler, A dv = b with
      * A = M - h D - h^2 K as solve_setup(1, -h, -h h) makes it and
-     * b (3,n) = h f + h^2 K (v - w) in N s, at (t, x, v). K is that of A; w is the velocity of
-     * the surface that a force comes from, of obstacles that move, and 0 else. With
+     * b (3,n) = h f + h^2 K (v - w) in N s, at (t, x, v), but for friction of contact, whose D
+     * is the chord to where it will be at the end of the step. K is that of A; w is the
+     * velocity of the surface that a force comes from, of obstacles that move, and 0 else. With
      * solve(b) and v += dv, x += h v the step is done. x, v and b must stay until that solve:
      * where it has to clamp A, it writes the b of the clamped A too. f is computed on the
      * way, which counts as a force and two Jacobian products. Needs CS_NEED_SOLVE. Not in hosts

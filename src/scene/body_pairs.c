@@ -60,6 +60,18 @@ bool cs_scene_sticks_to(const struct cs_scene *scene, uint32_t collider) {
            cs_event_key_acts(scene, to->friction, ".friction");
 }
 
+bool cs_scene_has_friction(const struct cs_scene *scene) {
+    const struct cs_body_pair_keys *pairs = scene->pairs.list.items;
+    bool any = scene->pairs.friction > 0;
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        any = any || cs_scene_colliders(scene)[c].friction > 0;
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        any = any || cs_scene_bodies(scene)[b].friction > 0;
+    for (uint32_t p = 0; p < scene->pairs.list.n; p++)
+        any = any || pairs[p].friction > 0;
+    return any;
+}
+
 bool cs_scene_friction_sticks(const struct cs_scene *scene) {
     for (uint32_t c = 0; c < scene->colliders.n; c++)
         if (cs_scene_sticks_to(scene, c))

@@ -21,6 +21,9 @@ bool cs_scene_bodies_collide(const struct cs_scene *scene, uint32_t a, uint32_t 
 /* Returns true if any two may. */
 bool cs_scene_has_body_contact(const struct cs_scene *scene);
 
+/* Returns true if a coefficient of friction of the scene is above 0, as ramps have it now. */
+bool cs_scene_has_friction(const struct cs_scene *scene);
+
 /* Returns true if friction on a collider has anchors (contact.friction_law stick): it is no
  * mesh, and its friction is above 0, now or after a ramp. */
 bool cs_scene_sticks_to(const struct cs_scene *scene, uint32_t collider);

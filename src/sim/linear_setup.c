@@ -13,12 +13,17 @@
  * be linear, and the exact df/dt by the obstacle's motion has another K: with either, a cloth
  * thrown at an obstacle would differ from the obstacle thrown at it.
  *
+ * h D v, which the slope of friction brings into f(v + dv) ~ f + D dv, is in no b: D stands at
+ * dv alone. So D may be any slope that serves the step: for contact, friction has its chord
+ * (contact/friction_chord.h), which needs the forces before A.
+ *
  * Forces whose part of A is a number, and springs, are in b by h^2 K v = M v - h D v - A v.
  * Forces with blocks give h^2 K (v - w) themselves (add_approach of term.h), so that no D that
  * is only near the derivative, as that of clamped friction, gets into b. */
 #include "sim/linear_setup.h"
 
 #include "model/force/terms.h"
+#include "scene/body_pairs.h"
 #include "sim/trace.h"
 
 #include <clothsim/clones.h>
@@ -102,14 +107,23 @@ static void build_rhs(struct cs_run_host *host, const double *f) {
 
 /* A of the step, and with rhs its b. A diagonal block that is not definite clamps at once. */
 static void set_up(struct cs_run_host *host, const struct cs_matrix *matrix, bool rhs) {
-    struct cs_matrix clamped = *matrix;
+    const struct cs_system *system = host->run->system;
     const struct cs_euler_step *step = &host->euler;
-    double *f = host->linear.r;
-    // A leaves r alone, so that b may follow it
-    host->table.force(host, step->t, step->x, step->v, CS_PART_ALL, f);
+    struct cs_matrix clamped = *matrix;
+    struct cs_eval at = {.t = step->t, .x = step->x, .v = step->v, .parts = CS_PART_POTENTIAL};
+    double *f = host->linear.r, *contact = host->linear.z;
+    const struct cs_chord_forces chord = {.all = f, .contact = contact};
+    // A leaves r and z alone, so that its friction may know the forces, and b follow it
+    host->table.force(host, at.t, at.x, at.v, CS_PART_ALL, f);
     const double begin = cs_stage_begin(host);
+    if (cs_terms_have_blocks(system) && cs_scene_has_friction(system->scene) &&
+        !step->tangent) {
+        cs_terms_force(system, &at, contact);
+        clamped.chord = &chord;
+    }
     while (!cs_linear_setup(&host->linear, &clamped) && clamp(&clamped))
         host->run->counts.clamped_setups++;
+    host->linear.matrix.chord = NULL;
     if (rhs)
         build_rhs(host, f);
     cs_stage_end(host, CS_STAGE_SOLVE, begin);
@@ -124,7 +138,8 @@ enum cs_step cs_host_euler_setup(void *ctx, double t, double h, const double *x,
     cs_trace_state(host, "solve set-up", t, x, v);
     host->run->counts.solve_setups++;
     // no copies: the method keeps all three until it has solved
-    host->euler = (struct cs_euler_step){.t = t, .h = h, .x = x, .v = v, .b = b};
+    host->euler = (struct cs_euler_step){
+        .t = t, .h = h, .x = x, .v = v, .b = b, .tangent = flags & CS_SOLVE_TANGENT};
     set_up(host,
            &(struct cs_matrix){.t = t,
                                .x = x,

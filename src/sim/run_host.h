@@ -94,6 +94,7 @@ struct cs_euler_step {
     double t, h;         /* s */
     const double *x, *v; /* (3,n) in m and m/s */
     double *b;           /* (3,n) in N s; NULL: solve_setup came last */
+    bool tangent;        /* friction by its derivative in A: CS_SOLVE_TANGENT */
 };
 
 /* One per run, owned by struct cs_run; ctx of the method's calls. */

@@ -138,7 +138,6 @@ TEST(ten_sheets_come_to_rest) {
     static char text[1 << 13];
     struct fixture pile;
     write_pile(text, sizeof text);
-    // longer steps may chatter: linearised_friction_chatters_above_a_limit in test_quiet.c
     fixture_open(&pile, "implicit-linearised:dt=1e-3", "%s", text);
     fixture_start(&pile);
     for (uint32_t frame = 0; frame < (suite_all ? 180 : 1); frame++) {

@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/friction_anchors.h"
+#include "model/contact/friction_chord.h"
 #include "model/force/term.h"
 #include "model/force/terms.h"
 
@@ -281,7 +282,12 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
         for (size_t i = begin; i < end; i++)
             if (touch_of(&near, n, matrix->x, matrix->v, i, &touch)) {
                 double b[6] = {0};
-                cs_point_contact_add_block(&touch, matrix, b);
+                struct cs_contact_pull pull = {.h = -matrix->cd};
+                if (matrix->chord) {
+                    cs_contact_pull_add(&pull, matrix, n, i, system->inv_mass[i], 1);
+                    cs_friction_chord_add_block(&touch, matrix, &pull, b);
+                } else
+                    cs_point_contact_add_block(&touch, matrix, b);
                 if (cs_bristle_of_particle(system, c, &near, matrix->x, i, &bristle))
                     cs_bristle_add_block(&touch, &bristle, matrix, b);
                 for (size_t e = 0; e < 6; e++)

@@ -4,6 +4,7 @@
 #include "base/vec3.h"
 #include "model/contact/contact_samples.h"
 #include "model/contact/friction_anchors.h"
+#include "model/contact/friction_chord.h"
 #include "model/force/term.h"
 
 #include <math.h>
@@ -48,17 +49,25 @@ static void bound(const struct cs_point_contact *contact, const struct cs_bristl
 }
 
 /* Matrix terms of one sample: (w w^T) x B, without a gradient. */
-static void fill_matrix(const struct cs_point_contact *contact,
-                        const struct cs_bristle *bristle, const struct cs_matrix *matrix,
+static void fill_matrix(const struct job *job, const struct cs_point_contact *contact,
+                        const struct cs_bristle *bristle,
                         const struct cs_contact_sample_point *point,
                         struct cs_contact_entry *place, struct cs_contact_matrix_part *part) {
+    const struct cs_system *system = job->covers->system;
+    struct cs_contact_pull pull = {.h = -job->matrix->cd};
     memset(place->vectors, 0, sizeof place->vectors);
     memset(part->block, 0, sizeof part->block);
     memcpy(part->weights, point->w, sizeof point->w);
     part->gradient_weight = 0;
-    cs_point_contact_add_block(contact, matrix, part->block);
+    for (uint32_t k = 0; k < point->n && job->matrix->chord; k++)
+        cs_contact_pull_add(&pull, job->matrix, system->view.n, point->particles[k],
+                            system->inv_mass[point->particles[k]], point->w[k]);
+    if (job->matrix->chord)
+        cs_friction_chord_add_block(contact, job->matrix, &pull, part->block);
+    else
+        cs_point_contact_add_block(contact, job->matrix, part->block);
     if (bristle)
-        cs_bristle_add_block(contact, bristle, matrix, part->block);
+        cs_bristle_add_block(contact, bristle, job->matrix, part->block);
 }
 
 /* Matrix terms or bounds of one sample. */
@@ -68,7 +77,7 @@ static void answer_part(const struct job *job, const struct cs_contact_sample_po
                         struct cs_contact_entry *place) {
     struct cs_contact_matrix_part *part = cs_contact_chunk_part(chunk);
     if (part && job->ask == ASK_MATRIX)
-        fill_matrix(contact, bristle, job->matrix, point, place, part);
+        fill_matrix(job, contact, bristle, point, place, part);
     else if (part)
         bound(contact, bristle, point, part);
 }

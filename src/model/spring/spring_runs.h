@@ -88,14 +88,22 @@ struct cs_eval {
     const struct cs_block *block;      /* particles to add to; NULL in prepare */
 };
 
+/* Forces at the state of a matrix, by which friction by its chord knows where a step ends
+ * (contact/friction_chord.h): (3,n) in N. */
+struct cs_chord_forces {
+    const double *all, *contact; /* the sum of all forces, and of the elastic ones of contact */
+};
+
 /* The matrix of a linear solver, A = cm M + cd df/dv + ck df/dx at a state. cd and ck are at
  * most 0, as in implicit methods: backward Euler has cm = 1, cd = -h, ck = -h^2. */
 struct cs_matrix {
     double t;
     const double *x, *v; /* (3,n) in m and m/s */
     double cm, cd, ck;
-    bool psd;   /* each force's part is made positive semi-definite */
-    bool bound; /* friction by an upper bound (CS_SOLVE_BOUND) */
+    bool psd;                            /* each force's part is made positive semi-definite */
+    bool bound;                          /* friction by an upper bound (CS_SOLVE_BOUND) */
+    const struct cs_chord_forces *chord; /* friction by its chord, and cd = -h; NULL: by its
+                                            derivative */
 };
 
 /* Springs [begin, end) of a mesh's run, whose forces one thread computes. Their ends lie

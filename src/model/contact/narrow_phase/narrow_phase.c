@@ -17,6 +17,9 @@
 
 #include "base/pool.h"
 #include "model/contact/collider_params.h"
+#include "model/contact/friction_chord.h"
+#include "model/contact/narrow_phase/pair_chord.h"
+#include "model/contact/surface_points.h"
 
 #include <string.h>
 
@@ -62,6 +65,32 @@ static void add_turn(const struct work *work, const struct cs_pair_contact *reac
     cs_pair_contact_hessian(reaction, work->narrow->matrix, full + chunk->n - 1);
 }
 
+/* cs_pair_contact_matrix, with friction by its chord if the matrix is to have that. */
+static void matrix_alone(const struct cs_narrow_phase *narrow, const uint32_t at[4],
+                         struct cs_pair_contact *reaction, double gradient[4][3],
+                         struct cs_pair_matrix_terms *share) {
+    const struct cs_system *system = narrow->contacts->candidates->system;
+    const struct cs_matrix *matrix = narrow->matrix;
+    struct cs_point_contact *touch = &reaction->contact;
+    const double mu = touch->friction;
+    struct cs_contact_pull pull = {.h = -matrix->cd};
+    // with the chord the smooth law's own slope is left out
+    touch->friction = matrix->chord ? 0 : mu;
+    cs_pair_contact_matrix(reaction, matrix, gradient, share);
+    for (size_t k = 0; k < 4 && matrix->chord; k++)
+        if (at[k] < system->view.n)
+            cs_contact_pull_add(&pull, matrix, system->view.n, at[k], system->inv_mass[at[k]],
+                                reaction->weight[k]);
+    const struct cs_sliding_contact slides = {
+        .n = {touch->g[0], touch->g[1], touch->g[2]},
+        .v = {touch->v[0], touch->v[1], touch->v[2]},
+        .force = cs_barrier_at(touch->d, touch->range, touch->k).force,
+        .friction = mu,
+        .friction_speed = touch->friction_speed};
+    if (matrix->chord)
+        cs_friction_chord_add(&pull, &slides, share->block);
+}
+
 /* Appends a pair to the exact set: its gradient, matrix terms and Hessian. */
 static void add_alone(const struct work *work, const struct cs_pair_lanes *from, uint32_t lane,
                       const uint32_t at[4]) {
@@ -85,7 +114,7 @@ static void add_alone(const struct work *work, const struct cs_pair_lanes *from,
     read(narrow->v, system->surfaces->n_points, pair->particles, v);
     cs_pair_contact_measure(&reaction, work->chunk->kind, form, params.range, p);
     cs_pair_contact_set(&reaction, &params, &system->scene->contact, v);
-    cs_pair_contact_matrix(&reaction, narrow->matrix, pair->vectors, &share);
+    matrix_alone(narrow, at, &reaction, pair->vectors, &share);
     part->gradient_weight = share.gradient_weight;
     memcpy(part->weights, share.weight, sizeof share.weight);
     memcpy(part->block, share.block, sizeof share.block);
@@ -137,12 +166,34 @@ static void add_pushes(const struct work *work, const struct cs_pair_lanes *lane
                 sums[3 * (size_t)to[l][k] + (size_t)c] += lanes->out[k][c][l];
 }
 
+/* Reads what friction by its chord depends on: columns 6 to 11 of the rows, and masses. */
+static void read_pulls(const struct work *work, size_t first, uint32_t n,
+                       struct cs_pair_pulls *pulls) {
+    const struct cs_system *system = work->narrow->contacts->candidates->system;
+    const size_t width = work->narrow->contacts->force_gather.width;
+    for (uint32_t l = 0; l < n; l++) {
+        const uint32_t *to = work->chunk->rows[first + l];
+        read_lane(work->rows + 6, width, to, l, pulls->all);
+        read_lane(work->rows + 9, width, to, l, pulls->contact);
+        for (size_t k = 0; k < 4; k++)
+            pulls->inverse_mass[k][l] =
+                cs_surface_points_inverse_mass(system, work->chunk->points[first + l][k]);
+    }
+}
+
 /* Stores the matrix factors of a block, which the operator multiplies with later. */
 static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     const struct cs_narrow_phase *narrow = work->narrow;
-    cs_pair_lanes_matrix(work->chunk->kind, lanes,
-                         &narrow->contacts->candidates->system->scene->contact, narrow->matrix,
-                         narrow->psd->chunks[work->number].factors + first / CS_PAIR_LANES);
+    const struct cs_contact_keys *keys = &narrow->contacts->candidates->system->scene->contact;
+    struct cs_pair_factors *factors =
+        narrow->psd->chunks[work->number].factors + first / CS_PAIR_LANES;
+    if (narrow->matrix->chord) {
+        struct cs_pair_pulls pulls;
+        read_pulls(work, first, lanes->n, &pulls);
+        cs_pair_lanes_chord_matrix(work->chunk->kind, lanes, keys, narrow->matrix, &pulls,
+                                   factors);
+    } else
+        cs_pair_lanes_matrix(work->chunk->kind, lanes, keys, narrow->matrix, factors);
 }
 
 /* Adds bounds to rows: stiffness in row_sums[row], damping in row_sums[n_rows + row]. */
@@ -168,6 +219,12 @@ static bool is_force(const struct cs_narrow_phase *narrow) {
 /* an exact matrix, whose pairs go into a set */
 static bool is_in_set(const struct cs_narrow_phase *narrow) {
     return narrow->query == CS_CONTACT_QUERY_MATRIX && !narrow->matrix->psd;
+}
+
+/* a matrix with friction by its chord, in lanes */
+static bool has_chord(const struct cs_narrow_phase *narrow) {
+    return narrow->query == CS_CONTACT_QUERY_MATRIX && narrow->matrix->psd &&
+           narrow->matrix->chord;
 }
 
 /* points are gathered for all queries but energies and exact matrices */
@@ -294,6 +351,10 @@ static const double *read_rows(const struct cs_narrow_phase *narrow, uint32_t nu
                        along ? n_points : n);
         cs_gather_read(gather, number, 9, narrow->eval.dv, n);
     }
+    if (has_chord(narrow)) {
+        cs_gather_read(gather, number, 6, narrow->matrix->chord->all, n);
+        cs_gather_read(gather, number, 9, narrow->matrix->chord->contact, n);
+    }
     return cs_gather_read(gather, number, 0, narrow->x, n_points);
 }
 
@@ -310,9 +371,10 @@ static void do_chunk(void *arg, uint32_t number) {
         cs_psd_operator_chunk_end(narrow->psd, number);
 }
 
-/* A row has 6 columns, or 12 for a Jacobian product. Exact sets are gathered by particles. */
+/* A row has 6 columns, or 12 for a Jacobian product and friction by its chord. Exact sets are
+ * gathered by particles. */
 bool cs_narrow_phase_run(struct cs_narrow_phase *narrow) {
-    const size_t width = narrow->query == CS_CONTACT_QUERY_JVP ? 12 : 6;
+    const size_t width = narrow->query == CS_CONTACT_QUERY_JVP || has_chord(narrow) ? 12 : 6;
     if (has_rows(narrow) && !cs_gather_reserve(&narrow->contacts->force_gather, width))
         return false;
     cs_pool_run(narrow->contacts->candidates->n_chunks, do_chunk, narrow);

@@ -1,0 +1,144 @@
+/* friction_chord.h - friction of one contact as a method that is linear in a step should take
+ * it.
+ *
+ * Friction f(T) = -L T/s(T), s(T) = sqrt(T.T + ev^2), turns within about ev. Its slope at the
+ * velocity T where a step begins says nothing of where the step ends: with the slope L/ev at
+ * rest a body that should slide sticks, and with the slope next to 0 while it slides it is
+ * thrown back beyond rest, to and fro. The chord from T to the velocity at the end of the step
+ * makes the linear step exact, and that velocity is known well enough from the contact alone:
+ * with its mass m, the force F on it and the tangential projector P, implicit Euler has
+ *
+ *   T_free = T + (h/m) (P F + L T/s(T)),   e = T_free/|T_free|
+ *   u + (h L/m) u/s(u) = |T_free|          the velocity at the end is u e
+ *
+ * and then, along = T.e, the slope -[p (P - e e^T) + c e e^T] with
+ *
+ *   c = L (u/s(u) - along/s(T)) / (u - along),   p = max(c, L/max(s(T), s(u)))
+ *
+ * c is L ev^2/s^3 where u and `along` agree. Several contacts of a point are taken as one with
+ * the sum of their loads, of whose slope each has its fraction. Inlined and without branches,
+ * because loops over lanes are hot. */
+#ifndef CS_CONTACT_FRICTION_CHORD_H
+#define CS_CONTACT_FRICTION_CHORD_H
+
+#include "model/contact/point_contact.h"
+
+#include <float.h>
+
+/* Accelerations of a contact point in a step. */
+struct cs_contact_pull {
+    double h;         /* s, of the step */
+    double inverse;   /* 1/kg: 1/m = sum w_k^2/m_k over the particles behind the point */
+    double motion[3]; /* m/s2: F/m = sum w_k F_k/m_k of all forces F_k */
+    double push[3];   /* m/s2: the same of the elastic forces of contact alone */
+};
+
+/* Newton's iterations for the velocity: from the start below 5 are enough for all digits, for
+ * h L/(m ev) from 1e-6 to 1e12. Tested by physics friction_chord. */
+enum { CS_FRICTION_CHORD_ITERATIONS = 6 };
+
+CS_INLINE double cs_friction_chord_max(double a, double b) {
+    return a > b ? a : b;
+}
+
+CS_INLINE double cs_friction_chord_min(double a, double b) {
+    return a < b ? a : b;
+}
+
+/* u >= 0 of u + a u/s(u) = length, for a >= 0. The left side is concave, so that Newton's
+ * iteration comes from below from its first step on. It starts at a lower bound, or closer: at
+ * ev length/sqrt(a^2 - length^2) below the limit of friction, which is its root without the
+ * first u, and near that limit at ev (a/2 ev)^(1/3), by square roots. */
+CS_INLINE double cs_friction_chord_speed(double a, double ev, double length) {
+    const double low = cs_friction_chord_max(length - a, length * ev / (ev + a));
+    const double fourth = sqrt(sqrt(0.5 * a / ev)), sixteenth = sqrt(sqrt(fourth));
+    const double limit = ev * fourth * sixteenth * sqrt(sqrt(sixteenth));
+    const double inside = cs_friction_chord_max(a * a - length * length, DBL_MIN);
+    const double below = cs_friction_chord_min(ev * length / sqrt(inside), limit);
+    double u = cs_friction_chord_min(length < a ? below : limit, length);
+    u = cs_friction_chord_max(low, u);
+    for (int k = 0; k < CS_FRICTION_CHORD_ITERATIONS; k++) {
+        const double s = sqrt(u * u + ev * ev), slope = 1 + a * ev * ev / (s * s * s);
+        u = cs_friction_chord_max(low, u - (u + a * u / s - length) / slope);
+    }
+    return u;
+}
+
+/* A contact that slides: unit normal, relative velocity in m/s, force of the barrier in N,
+ * which is negative for a feature that is subtracted; mu and ev. */
+struct cs_sliding_contact {
+    double n[3], v[3], force, friction, friction_speed;
+};
+
+/* The fraction that a contact has of all contact at its point, 0..1, by what both push along n.
+ */
+CS_INLINE double cs_friction_chord_fraction(const struct cs_contact_pull *pull,
+                                            const struct cs_sliding_contact *slides) {
+    const double force = slides->force < 0 ? -slides->force : slides->force;
+    const double own = force * pull->inverse + DBL_MIN;
+    return own / cs_friction_chord_max(own, cs_point_contact_dot(slides->n, pull->push));
+}
+
+/* b (6) += h times the block p (P - e e^T) + c e e^T of a contact. */
+CS_INLINE void cs_friction_chord_add(const struct cs_contact_pull *pull,
+                                     const struct cs_sliding_contact *slides, double b[6]) {
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    const double *n = slides->n, *v = slides->v, ev = slides->friction_speed;
+    const double force = slides->force, mu = slides->friction;
+    const double approach = cs_point_contact_dot(n, v);
+    const double off = cs_point_contact_dot(n, pull->motion);
+    const double t[3] = {v[0] - n[0] * approach, v[1] - n[1] * approach,
+                         v[2] - n[2] * approach};
+    const double speed = sqrt(cs_point_contact_dot(t, t) + ev * ev);
+    const double load =
+        mu * (force < 0 ? -force : force) / cs_friction_chord_fraction(pull, slides);
+    const double a = pull->h * load * pull->inverse;
+    double free[3], e[3];
+    for (int c = 0; c < 3; c++)
+        free[c] = t[c] + pull->h * (pull->motion[c] - n[c] * off) + a * t[c] / speed;
+    const double length = sqrt(cs_point_contact_dot(free, free));
+    for (int c = 0; c < 3; c++)
+        e[c] = free[c] / (length + DBL_MIN);
+    const double u = cs_friction_chord_speed(a, ev, length), s = sqrt(u * u + ev * ev);
+    const double along = cs_point_contact_dot(t, e), way = u - along;
+    const double size = 1e-9 * (s + speed);
+    const bool apart = way > size || way < -size;
+    const double chord = (u / s - along / speed) / (apart ? way : 1);
+    // where T and e differ in direction it may be negative, or above the greatest slope
+    const double held = cs_friction_chord_min(cs_friction_chord_max(chord, 0), 1 / ev);
+    const double c = apart ? held : ev * ev / (s * s * s);
+    const double p = cs_friction_chord_max(c, 1 / cs_friction_chord_max(s, speed));
+    for (int k = 0; k < 6; k++) {
+        const int r = row[k], q = column[k];
+        b[k] += pull->h * mu * force * (p * ((r == q) - n[r] * n[q]) - (p - c) * e[r] * e[q]);
+    }
+}
+
+/* cs_point_contact_add_block with friction by the chord. cd = -h. */
+CS_INLINE void cs_friction_chord_add_block(const struct cs_point_contact *contact,
+                                           const struct cs_matrix *matrix,
+                                           const struct cs_contact_pull *pull, double b[6]) {
+    const double length = sqrt(cs_point_contact_dot(contact->g, contact->g));
+    const struct cs_sliding_contact slides = {
+        .n = {contact->g[0] / length, contact->g[1] / length, contact->g[2] / length},
+        .v = {contact->v[0], contact->v[1], contact->v[2]},
+        .force = cs_barrier_at(contact->d, contact->range, contact->k).force * length,
+        .friction = contact->friction,
+        .friction_speed = contact->friction_speed};
+    struct cs_point_contact frictionless = *contact;
+    frictionless.friction = 0;
+    cs_point_contact_add_block(&frictionless, matrix, b);
+    cs_friction_chord_add(pull, &slides, b);
+}
+
+/* Adds what a particle with weight w contributes to the point. */
+CS_INLINE void cs_contact_pull_add(struct cs_contact_pull *pull, const struct cs_matrix *matrix,
+                                   size_t n, size_t i, double inverse_mass, double w) {
+    pull->inverse += w * w * inverse_mass;
+    for (size_t c = 0; c < 3; c++) {
+        pull->motion[c] += w * inverse_mass * matrix->chord->all[c * n + i];
+        pull->push[c] += w * inverse_mass * matrix->chord->contact[c * n + i];
+    }
+}
+
+#endif
