@@ -155,7 +155,7 @@ TEST(belts_carry) {
     static const char belt[] = "{\"from\": 0, \"to\": 1, \"move\": {\"collider\": 0, "
                                "\"path\": [{\"at\": 1, \"point\": [0.5, 0, 0]}]}}";
     const struct methods methods =
-        methods_find(&(struct methods_query){.test = "slide",
+        methods_find(&(struct methods_query){.test = "belts",
                                              .without = CS_EXPLICIT_OUTER | CS_NOT_GALILEAN,
                                              .rtol = RTOL,
                                              .residual = 1e-10});
