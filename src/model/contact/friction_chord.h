@@ -21,6 +21,7 @@
 #ifndef CS_CONTACT_FRICTION_CHORD_H
 #define CS_CONTACT_FRICTION_CHORD_H
 
+#include "base/vector.h"
 #include "model/contact/bristle_law.h"
 
 #include <float.h>
@@ -57,6 +58,7 @@ CS_INLINE double cs_friction_chord_speed(double a, double ev, double length) {
     const double below = cs_friction_chord_min(ev * length / sqrt(inside), limit);
     double u = cs_friction_chord_min(length < a ? below : limit, length);
     u = cs_friction_chord_max(low, u);
+    CS_UNROLLED
     for (int k = 0; k < CS_FRICTION_CHORD_ITERATIONS; k++) {
         const double s = sqrt(u * u + ev * ev), slope = 1 + a * ev * ev / (s * s * s);
         u = cs_friction_chord_max(low, u - (u + a * u / s - length) / slope);
@@ -94,9 +96,11 @@ CS_INLINE void cs_friction_chord_add(const struct cs_contact_pull *pull,
         mu * (force < 0 ? -force : force) / cs_friction_chord_fraction(pull, slides);
     const double a = pull->h * load * pull->inverse;
     double free[3], e[3];
+    CS_UNROLLED
     for (int c = 0; c < 3; c++)
         free[c] = t[c] + pull->h * (pull->motion[c] - n[c] * off) + a * t[c] / speed;
     const double length = sqrt(cs_point_contact_dot(free, free));
+    CS_UNROLLED
     for (int c = 0; c < 3; c++)
         e[c] = free[c] / (length + DBL_MIN);
     const double u = cs_friction_chord_speed(a, ev, length), s = sqrt(u * u + ev * ev);
@@ -108,6 +112,7 @@ CS_INLINE void cs_friction_chord_add(const struct cs_contact_pull *pull,
     const double held = cs_friction_chord_min(cs_friction_chord_max(chord, 0), 1 / ev);
     const double c = apart ? held : ev * ev / (s * s * s);
     const double p = cs_friction_chord_max(c, 1 / cs_friction_chord_max(s, speed));
+    CS_UNROLLED
     for (int k = 0; k < 6; k++) {
         const int r = row[k], q = column[k];
         b[k] += pull->h * mu * force * (p * ((r == q) - n[r] * n[q]) - (p - c) * e[r] * e[q]);
