@@ -10,21 +10,19 @@
  * rounding of an anchor that followed. */
 #define AT_LIMIT 1e-9
 
-/* A vector across the normal: u - g (g.u)/g.g; *along is the factor of g. */
-static void project(const double g[3], double square, const double u[3], double out[3],
-                    double *along) {
-    *along = cs_vec3_dot(g, u) / square;
+/* out = P u = u - g (g.u)/g.g. */
+static void project(const double g[3], double square, const double u[3], double out[3]) {
+    const double along = cs_vec3_dot(g, u) / square;
     for (int c = 0; c < 3; c++)
-        out[c] = u[c] - g[c] * *along;
+        out[c] = u[c] - g[c] * along;
 }
 
 /* State of a bristle: its trial force and what is left of it. */
 struct trial {
-    double square;                       /* g.g */
-    double stretch[3], sliding[3];       /* P (x - a) in m, T in m/s */
-    double force[3], length;             /* trial in N, T in m/s, |trial| */
-    double stretch_along, sliding_along; /* factors of g that P removed */
-    double load, fraction;               /* mu N, and min(1, mu N/|trial|) */
+    double square;                 /* g.g */
+    double stretch[3], sliding[3]; /* P (x - a) in m, T in m/s */
+    double force[3], length;       /* trial and |trial| in N */
+    double load, fraction;         /* mu N, and min(1, mu N/|trial|) */
     bool slips;
 };
 
@@ -32,14 +30,15 @@ static struct trial trial_of(const struct cs_point_contact *contact,
                              const struct cs_bristle *bristle) {
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
     struct trial trial = {.square = cs_vec3_dot(contact->g, contact->g)};
-    project(contact->g, trial.square, bristle->stretch, trial.stretch, &trial.stretch_along);
-    project(contact->g, trial.square, contact->v, trial.sliding, &trial.sliding_along);
+    project(contact->g, trial.square, bristle->stretch, trial.stretch);
+    project(contact->g, trial.square, contact->v, trial.sliding);
     for (int c = 0; c < 3; c++)
         trial.force[c] =
             bristle->stiffness * trial.stretch[c] + bristle->damping * trial.sliding[c];
     trial.length = sqrt(cs_vec3_dot(trial.force, trial.force));
     trial.load = bristle->friction * law.force * sqrt(trial.square);
     trial.fraction = trial.length > trial.load ? trial.load / trial.length : 1;
+    // a spring at the limit: in slip if the point goes on
     trial.slips = trial.length > trial.load * (1 + AT_LIMIT) ||
                   (trial.length > trial.load * (1 - AT_LIMIT) &&
                    cs_vec3_dot(trial.force, trial.sliding) > 0);
@@ -53,14 +52,20 @@ void cs_bristle_add_force(const struct cs_point_contact *contact,
         f[c] -= trial.fraction * trial.force[c];
 }
 
-/* d(P u) = du - dg (g.u)/g.g - g d((g.u)/g.g), times a factor, added to out. */
-static void add_projected_change(const double g[3], const double dg[3], double square,
-                                 const double u[3], double along, const double du[3],
+/* A change of g and of g.g along a motion. */
+struct turn {
+    const double *g;
+    double dg[3], square, dsquare;
+};
+
+/* out += factor d(P u), with d(P u) = du - dg a - g da and a = g.u/g.g. */
+static void add_projected_change(const struct turn *turn, const double u[3], const double du[3],
                                  double factor, double out[3]) {
-    const double dsquare = 2 * cs_vec3_dot(g, dg);
-    const double dalong = (cs_vec3_dot(dg, u) + cs_vec3_dot(g, du) - along * dsquare) / square;
+    const double *g = turn->g, *dg = turn->dg, a = cs_vec3_dot(g, u) / turn->square;
+    const double da =
+        (cs_vec3_dot(dg, u) + cs_vec3_dot(g, du) - a * turn->dsquare) / turn->square;
     for (int c = 0; c < 3; c++)
-        out[c] += factor * (du[c] - dg[c] * along - g[c] * dalong);
+        out[c] += factor * (du[c] - dg[c] * a - g[c] * da);
 }
 
 void cs_bristle_add_jvp(const struct cs_point_contact *contact,
@@ -69,26 +74,29 @@ void cs_bristle_add_jvp(const struct cs_point_contact *contact,
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
     const struct trial trial = trial_of(contact, bristle);
     const double *g = contact->g, *h = contact->h, *dp = move->dp;
-    const double dg[3] = {h[0] * dp[0] + h[1] * dp[1] + h[2] * dp[2],
-                          h[1] * dp[0] + h[3] * dp[1] + h[4] * dp[2],
-                          h[2] * dp[0] + h[4] * dp[1] + h[5] * dp[2]};
+    struct turn turn = {.g = g,
+                        .dg = {h[0] * dp[0] + h[1] * dp[1] + h[2] * dp[2],
+                               h[1] * dp[0] + h[3] * dp[1] + h[4] * dp[2],
+                               h[2] * dp[0] + h[4] * dp[1] + h[5] * dp[2]},
+                        .square = trial.square};
+    const double across = cs_vec3_dot(g, turn.dg), length = sqrt(trial.square);
     double dtrial[3] = {0};
-    add_projected_change(g, dg, trial.square, bristle->stretch, trial.stretch_along, dp,
-                         bristle->stiffness, dtrial);
-    add_projected_change(g, dg, trial.square, contact->v, trial.sliding_along, move->dv,
-                         bristle->damping, dtrial);
+    turn.dsquare = 2 * across;
+    add_projected_change(&turn, bristle->stretch, dp, bristle->stiffness, dtrial);
+    add_projected_change(&turn, contact->v, move->dv, bristle->damping, dtrial);
     if (!trial.slips || trial.length == 0) {
         for (int c = 0; c < 3; c++)
             df[c] -= dtrial[c];
         return;
     }
-    const double dd = cs_vec3_dot(g, dp) + move->extra_dd, length = sqrt(trial.square);
-    const double dload = bristle->friction * (law.force * cs_vec3_dot(g, dg) / length -
-                                              law.stiffness * dd * length);
-    const double turn = cs_vec3_dot(trial.force, dtrial) / (trial.length * trial.length);
+    // in slip f = -L e with e = trial/|trial|: L changes with the load, e across itself
+    const double dd = cs_vec3_dot(g, dp) + move->extra_dd;
+    const double dload =
+        bristle->friction * (law.force * across / length - law.stiffness * dd * length);
+    const double along = cs_vec3_dot(trial.force, dtrial) / (trial.length * trial.length);
     const double fraction = trial.load / trial.length;
     for (int c = 0; c < 3; c++)
-        df[c] -= fraction * (dtrial[c] - turn * trial.force[c]) +
+        df[c] -= fraction * (dtrial[c] - along * trial.force[c]) +
                  dload / trial.length * trial.force[c];
 }
 
@@ -98,6 +106,7 @@ void cs_bristle_add_block(const struct cs_point_contact *contact,
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const struct trial trial = trial_of(contact, bristle);
     const double *g = contact->g, *e = trial.force;
+    // along a trial that slips the force does not grow
     const bool turns = trial.slips && !matrix->bound && trial.length > 0;
     const double slope =
         -(matrix->ck * bristle->stiffness + matrix->cd * bristle->damping) * trial.fraction;
@@ -129,9 +138,9 @@ static struct chord chord_of(const struct cs_bristle *bristle, const struct tria
                              const struct cs_bristle_pull *pull, const double g[3],
                              bool bound) {
     const double h = pull->h, stiff = h * bristle->stiffness + bristle->damping;
-    double free[3], z[3], change[3], along;
+    double free[3], z[3], change[3];
     struct chord chord = {.c = 0};
-    project(g, trial->square, pull->motion, free, &along);
+    project(g, trial->square, pull->motion, free);
     for (int c = 0; c < 3; c++) {
         free[c] = trial->sliding[c] +
                   h * (free[c] + trial->fraction * trial->force[c] * pull->inverse);
@@ -139,6 +148,7 @@ static struct chord chord_of(const struct cs_bristle *bristle, const struct tria
                (1 + h * pull->inverse * stiff);
     }
     chord.size = sqrt(cs_vec3_dot(z, z));
+    // friction then, where the step ends, and now, both along w
     const double fraction = chord.size > trial->load ? trial->load / chord.size : 1;
     double now = 0, then = 0, way = 0, scale = 0;
     elastic_change(bristle, trial, bound, h, change);
@@ -170,6 +180,7 @@ void cs_bristle_add_chord(const struct cs_point_contact *contact,
         cs_bristle_add_block(contact, bristle, matrix, b);
         return;
     }
+    // cd = -h and ck = -h^2 are in c and p
     for (int k = 0; k < 6; k++) {
         const int r = row[k], s = column[k];
         b[k] += pull->h * (chord.p * ((r == s) - g[r] * g[s] / trial.square) -

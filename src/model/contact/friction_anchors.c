@@ -101,6 +101,7 @@ static void follow(const struct job *job, const struct point *point) {
     memcpy(to, point->p, sizeof to);
     if (!set(&job->near, point->anchor, point->p, point->mass, &bristle))
         return;
+    // at the start, and out of range, the anchor is the point
     if (job->v && cs_posed_collider_law_in_range(&job->near, point->p, point->v, &contact)) {
         double back[3];
         if (!cs_bristle_slips(&contact, &bristle, back))
@@ -150,6 +151,7 @@ void cs_friction_anchors_commit(const struct cs_system *system, double t, const 
     struct job job = {.system = system, .t = t, .x = x, .v = v};
     if (!system->friction_anchors)
         return;
+    // each anchor is written once, so that threads do not count
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         if (!system->friction_anchors->particles[c])
             continue;
@@ -194,21 +196,22 @@ enum cs_status cs_friction_anchors_build(struct cs_system *system, struct cs_err
     size_t used = 0;
     for (uint32_t c = 0; c < n_colliders; c++)
         used += cs_scene_sticks_to(system->scene, c) ? n3 : 0;
-    struct cs_friction_anchors *bristles = cs_arena_alloc(arena, sizeof *bristles, error);
+    struct cs_friction_anchors *anchors = cs_arena_alloc(arena, sizeof *anchors, error);
     double **particles = cs_arena_alloc_array(arena, n_colliders, sizeof *particles, error);
     double *values = cs_arena_alloc_array(arena, used + of_samples, sizeof *values, error);
     if (of_samples && !error->status)
         number_samples(system, error);
     if (error->status)
         return error->status;
-    *bristles = (struct cs_friction_anchors){.values = values,
-                                             .n_values = used + of_samples,
-                                             .particles = particles,
-                                             .samples = of_samples ? values + used : NULL};
+    // one array: particles by collider, then samples
+    *anchors = (struct cs_friction_anchors){.values = values,
+                                            .n_values = used + of_samples,
+                                            .particles = particles,
+                                            .samples = of_samples ? values + used : NULL};
     for (uint32_t c = 0; c < n_colliders; c++) {
         particles[c] = cs_scene_sticks_to(system->scene, c) ? values : NULL;
         values += particles[c] ? n3 : 0;
     }
-    system->friction_anchors = bristles;
+    system->friction_anchors = anchors;
     return CS_OK;
 }

@@ -1,10 +1,10 @@
 /* friction_anchors.h - anchors of friction that sticks (bristle_law.h), as a part of the state.
  *
- * Every particle has an anchor on every collider with friction that is no mesh, and so has
- * every contact sample. Anchors stay where they are in the frame of their collider, which
+ * Every particle and every contact sample has an anchor on every collider with friction that
+ * is no mesh. Anchors stay where they are in the frame of their collider, which
  * carries them along, during a step with all its trials. After each accepted step, in commit,
  * the anchor of a point that slips follows it, and the anchor of a point out of range is the
- * point itself. A checkpoint contains them, and so does the hash of a state. */
+ * point itself. Checkpoints and hashes of a state contain them. */
 #ifndef CS_FRICTION_ANCHORS_H
 #define CS_FRICTION_ANCHORS_H
 
