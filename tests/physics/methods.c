@@ -26,7 +26,6 @@ static const struct {
     {"events", "explicit-euler", "dt=1e-3", "its own step follows the damping alone"},
     {"let go", "implicit-block", NULL, "h K_ii v is a drag that a sliding sheet feels"},
     {"let rest", "implicit-block", NULL, "h K_ii v is a drag that a sliding sheet feels"},
-    {"let rest", "implicit-linearised", NULL, "throws back what slips at the end of a step"},
     {"let rest", "ros2", NULL, "throws back what slips at the end of a step"},
     {"lift", "explicit-euler", NULL, "moves first: the floor meets it in the step after"},
     {"momentum", "cvode-bdf", "linear_rtol=1e-12", "by default its solver may stop earlier"},

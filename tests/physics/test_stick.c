@@ -177,6 +177,33 @@ TEST(belts_carry) {
     }
 }
 
+/* m, the way of a block that starts on a slope at a speed across it, in steps of a frame */
+static void path_of(const char *method, double tangent, double across, double way[3]) {
+    struct fixture block;
+    open_slope(&block, method, tangent, "");
+    const double x[3] = {block.x[0], block.x[4], block.x[8]};
+    for (size_t i = 0; i < 4; i++)
+        block.v[8 + i] = across;
+    fixture_frames(&block, 60);
+    for (size_t c = 0; c < 3; c++)
+        way[c] = block.x[4 * c] - x[c];
+    fixture_close(&block);
+}
+
+/* The chord takes a linear step to where implicit Euler ends: from rest, in a bend, and into
+ * rest. */
+TEST(linear_steps_end_as_implicit_euler) {
+    static const double cases[][2] = {{0.5, 0}, {0.5, 0.5}, {0.2, 0.5}, {0, 0.5}};
+    for (size_t k = 0; k < LENGTH(cases); k++) {
+        double linear[3], full[3];
+        path_of("implicit-linearised:rtol=1e-10", cases[k][0], cases[k][1], linear);
+        path_of("backward-euler:rtol=1e-10", cases[k][0], cases[k][1], full);
+        const double apart = furthest(linear, full, 3);
+        ck_assert_msg(apart < 1e-7, "slope %g, %g m/s: %.3g m apart", cases[k][0], cases[k][1],
+                      apart);
+    }
+}
+
 /* A sheet at rest on a box or a ball that begin to turn at 2 rad/s: with contact samples on its
  * edges. %s: the collider and its first event. */
 #define TURNS                                                                                  \

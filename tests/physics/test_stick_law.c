@@ -120,14 +120,18 @@ static void wave(const struct fixture *sheet, double k, double *p) {
         p[i] = sheet->system->inv_mass[i % N] > 0 ? sin(k * (double)i) : 0;
 }
 
-/* The matrix is symmetric and not negative, and the one with the bound is above it. */
+/* The matrix is symmetric and not negative, the one with the bound is above it, and the one
+ * with friction by its chord is none of that less, whatever forces act. */
 TEST(matrix_is_symmetric_and_positive) {
     const struct cs_matrix clamped = {.cd = -0.02, .ck = -4e-4, .psd = true},
                            bound = {.cd = -0.02, .ck = -4e-4, .psd = true, .bound = true};
     for (int k = 0; k < 2; k++)
         for (int wave_number = 1; wave_number < 9; wave_number++) {
             struct fixture sheet;
-            double p[VALUES], q[VALUES], ap[VALUES], aq[VALUES], bp[VALUES];
+            double p[VALUES], q[VALUES], ap[VALUES], aq[VALUES], bp[VALUES], all[VALUES];
+            const struct cs_chord_forces forces = {.all = all, .contact = all};
+            struct cs_matrix chord = clamped;
+            chord.chord = &forces;
             open_wrapped(&sheet, k ? 0.05 : 1000);
             wave(&sheet, 0.7 * wave_number, p);
             wave(&sheet, 1.9 * wave_number, q);
@@ -137,6 +141,11 @@ TEST(matrix_is_symmetric_and_positive) {
             ck_assert_double_eq_tol(dot(q, ap), dot(p, aq), 1e-12);
             ck_assert_double_gt(dot(p, ap), 0);
             ck_assert_double_ge(dot(p, bp), dot(p, ap) * (1 - 1e-12));
+            wave(&sheet, 3.1 * wave_number, all);
+            multiply(&sheet, chord, p, ap);
+            multiply(&sheet, chord, q, aq);
+            ck_assert_double_eq_tol(dot(q, ap), dot(p, aq), 1e-12);
+            ck_assert_double_ge(dot(p, ap), 0);
             fixture_close(&sheet);
         }
 }

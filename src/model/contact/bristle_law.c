@@ -5,6 +5,7 @@
 #include "base/vec3.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Relative distance from the limit within which a point that slides on counts as slipping: the
  * rounding of an anchor that followed. */
@@ -129,17 +130,25 @@ static void elastic_change(const struct cs_bristle *bristle, const struct trial 
                  (trial->sliding[c] - along * trial->force[c]);
 }
 
-/* The step's end: direction w, size of z, and the slopes c and p (friction_anchors.h). */
+/* The slopes of a linear step: c r r^T + p (P - d d^T) with unit vectors r and d. */
 struct chord {
-    double w[3], size, c, p;
+    double r[3], d[3], c, p;
 };
 
-static struct chord chord_of(const struct cs_bristle *bristle, const struct trial *trial,
-                             const struct cs_bristle_pull *pull, const double g[3],
-                             bool bound) {
+/* Makes a vector one of length 1 if it is longer than `tiny`, else 0; returns its length. */
+static double unit(double v[3], double tiny) {
+    const double length = sqrt(cs_vec3_dot(v, v));
+    for (int c = 0; c < 3; c++)
+        v[c] = length > tiny ? v[c] / length : 0;
+    return length;
+}
+
+/* Returns false if the point rests now and at the end of the step: the exact slopes hold. */
+static bool find_chord(const struct cs_bristle *bristle, const struct trial *trial,
+                       const struct cs_contact_pull *pull, const double g[3], bool bound,
+                       struct chord *chord) {
     const double h = pull->h, stiff = h * bristle->stiffness + bristle->damping;
-    double free[3], z[3], change[3];
-    struct chord chord = {.c = 0};
+    double free[3], z[3], then[3], change[3], speed = 0;
     project(g, trial->square, pull->motion, free);
     for (int c = 0; c < 3; c++) {
         free[c] = trial->sliding[c] +
@@ -147,44 +156,44 @@ static struct chord chord_of(const struct cs_bristle *bristle, const struct tria
         z[c] = (bristle->stiffness * trial->stretch[c] + stiff * free[c]) /
                (1 + h * pull->inverse * stiff);
     }
-    chord.size = sqrt(cs_vec3_dot(z, z));
-    // friction then, where the step ends, and now, both along w
-    const double fraction = chord.size > trial->load ? trial->load / chord.size : 1;
-    double now = 0, then = 0, way = 0, scale = 0;
+    const double size = sqrt(cs_vec3_dot(z, z));
+    const double fraction = size > trial->load ? trial->load / size : 1;
+    if (!trial->slips && fraction == 1)
+        return false;
+    // from the velocity now to that at the end, and the change of friction on the way
     elastic_change(bristle, trial, bound, h, change);
     for (int c = 0; c < 3; c++) {
-        const double w = chord.size > 0 ? z[c] / chord.size : 0;
         const double u = free[c] - h * pull->inverse * fraction * z[c];
-        chord.w[c] = w;
-        then += w * fraction * z[c];
-        now += w * (trial->fraction * trial->force[c] + change[c]);
-        way += w * (u - trial->sliding[c]);
-        scale += fabs(u) + fabs(trial->sliding[c]);
+        chord->d[c] = u - trial->sliding[c];
+        chord->r[c] = fraction * z[c] - trial->fraction * trial->force[c] - change[c];
+        then[c] = bristle->stiffness * trial->stretch[c] + stiff * u;
+        speed += fabs(u) + fabs(trial->sliding[c]);
     }
-    if (fabs(way) > 1e-9 * scale)
-        chord.c = fmin(fmax((then - now) / way, 0), stiff);
-    else
-        chord.c = fraction < 1 ? 0 : stiff;
-    chord.p = fmax(chord.c, stiff * fraction);
-    return chord;
+    const double both = cs_vec3_dot(chord->r, chord->d), end = sqrt(cs_vec3_dot(then, then));
+    const double way = unit(chord->d, 1e-9 * speed), r = unit(chord->r, 1e-12 * trial->load);
+    if (way <= 1e-9 * speed)
+        memcpy(chord->d, z, sizeof z), unit(chord->d, 0);
+    chord->c = both > 1e-9 * r * way ? fmin(r * r / both, stiff) : 0;
+    chord->p = end > trial->load ? stiff * trial->load / end : stiff;
+    return true;
 }
 
-void cs_bristle_add_chord(const struct cs_point_contact *contact,
-                          const struct cs_bristle *bristle, const struct cs_matrix *matrix,
-                          const struct cs_bristle_pull *pull, double b[6]) {
+void cs_bristle_add_matrix(const struct cs_point_contact *contact,
+                           const struct cs_bristle *bristle, const struct cs_matrix *matrix,
+                           const struct cs_contact_pull *pull, double b[6]) {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const struct trial trial = trial_of(contact, bristle);
     const double *g = contact->g;
-    const struct chord chord = chord_of(bristle, &trial, pull, g, matrix->bound);
-    if (!trial.slips && chord.size <= trial.load) {
+    struct chord chord;
+    if (!matrix->chord || !find_chord(bristle, &trial, pull, g, matrix->bound, &chord)) {
         cs_bristle_add_block(contact, bristle, matrix, b);
         return;
     }
     // cd = -h and ck = -h^2 are in c and p
     for (int k = 0; k < 6; k++) {
-        const int r = row[k], s = column[k];
-        b[k] += pull->h * (chord.p * ((r == s) - g[r] * g[s] / trial.square) -
-                           (chord.p - chord.c) * chord.w[r] * chord.w[s]);
+        const int i = row[k], j = column[k];
+        const double plane = (i == j) - g[i] * g[j] / trial.square - chord.d[i] * chord.d[j];
+        b[k] += pull->h * (chord.p * plane + chord.c * chord.r[i] * chord.r[j]);
     }
 }
 

@@ -29,7 +29,7 @@
 #ifndef CS_BRISTLE_LAW_H
 #define CS_BRISTLE_LAW_H
 
-#include "model/contact/point_contact.h"
+#include "model/contact/friction_chord.h"
 
 /* The bristle of one contact point. */
 struct cs_bristle {
@@ -60,27 +60,23 @@ void cs_bristle_add_block(const struct cs_point_contact *contact,
                           const struct cs_bristle *bristle, const struct cs_matrix *matrix,
                           double b[6]);
 
-/* A contact point in a step of implicit Euler, of length h in s: 1/m in 1/kg, and F/m of all
- * forces in m/s2. */
-struct cs_bristle_pull {
-    double h, inverse;
-    const double *motion; /* (3) */
-};
-
-/* b (6) += the block of a method that is linear in a step, in place of the one above, by the
- * chord from the force now to the force at the end of the step. With T_free = T + h (P F/m + s
- * trial/m), q = k_t P (x - a), B = h k_t + c_t and mu N as it is now, implicit Euler ends at
+/* The same for any matrix. One with matrix->chord, of a method that is linear in a step, has
+ * friction by the chord from now to the end of the step (friction_chord.h), and pull is what
+ * acts on the point. With T_free = T + h (P F/m + s trial/m), q = k_t P (x - a), B = h k_t +
+ * c_t and mu N as it is now, implicit Euler ends at
  *
- *   phi = w min(mu N, |z|),  z = (q + B T_free)/(1 + h B/m) = |z| w      friction
- *   u = T_free - h phi/m                                                 sliding velocity
+ *   phi = z min(1, mu N/|z|),  z = (q + B T_free)/(1 + h B/m)     friction
+ *   u = T_free - h phi/m                                          sliding velocity
  *
- * and the block h (p (P - w w^T) + c w w^T) takes the linear step there: c = w.(phi - s trial -
- * h K T)/w.(u - T) with the K of cs_bristle_add_approach, p = max(c, B min(1, mu N/|z|)). By
- * the slope at the begin of the step a point that slips and would come to rest is thrown back
- * beyond it, to and fro for ever. */
-void cs_bristle_add_chord(const struct cs_point_contact *contact,
-                          const struct cs_bristle *bristle, const struct cs_matrix *matrix,
-                          const struct cs_bristle_pull *pull, double b[6]);
+ * and the block h (r r^T/(r.d) + p (P - d d^T/d.d)) takes the linear step there, also where
+ * sliding turns: d = u - T, r = phi - s trial - h K T with the K of cs_bristle_add_approach, p
+ * = B min(1, mu N/|q + B u|). Friction is the gradient of a convex function of u, so r.d > 0
+ * but for what the chord leaves out; the block is then cut to p alone. By the slope at the
+ * begin of the step a point that slips and would come to rest is thrown back beyond it, to and
+ * fro. */
+void cs_bristle_add_matrix(const struct cs_point_contact *contact,
+                           const struct cs_bristle *bristle, const struct cs_matrix *matrix,
+                           const struct cs_contact_pull *pull, double b[6]);
 
 /* y += ck df/dx V with df/dx as in the block: the anchor goes with the collider, so the bristle
  * is stretched by the relative velocity (cs_point_contact_approach). */

@@ -289,7 +289,7 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
                 } else
                     cs_point_contact_add_block(&touch, matrix, b);
                 if (cs_bristle_of_particle(system, c, &near, matrix->x, i, &bristle))
-                    cs_friction_chord_add_bristle(&touch, &bristle, matrix, &pull, b);
+                    cs_bristle_add_matrix(&touch, &bristle, matrix, &pull, b);
                 for (size_t e = 0; e < 6; e++)
                     blocks[e * n + i] += b[e];
             }

@@ -67,7 +67,7 @@ static void fill_matrix(const struct job *job, const struct cs_point_contact *co
     else
         cs_point_contact_add_block(contact, job->matrix, part->block);
     if (bristle)
-        cs_friction_chord_add_bristle(contact, bristle, job->matrix, &pull, part->block);
+        cs_bristle_add_matrix(contact, bristle, job->matrix, &pull, part->block);
 }
 
 /* Matrix terms or bounds of one sample. */
