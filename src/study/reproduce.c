@@ -81,7 +81,7 @@ static enum cs_status take_end(const struct work *work, struct cs_run_result *re
 static void compare_state(struct work *work, const char *then) {
     const struct cs_run *run = &work->session.run;
     char now[CS_HASH_DIGITS], what[48];
-    cs_hash_doubles(run->x, 6 * (size_t)run->system->view.n, now);
+    cs_run_hash(run, now);
     snprintf(what, sizeof what, "the state of frame %u", run->frame);
     if (strcmp(then, now) != 0)
         differ(work, what, then, now);
