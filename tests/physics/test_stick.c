@@ -28,7 +28,7 @@ static double distance_of(double force, double range, double k) {
 /* A square of four particles of 25 g at its height of balance on a slope, or a belt; %g: places
  * and directions by the slope, then events. */
 #define CONTACT                                                                                \
-    "\"contact\": {\"law\": \"force\", \"start\": \"keep\", \"friction_law\": \"stick\", "     \
+    "\"contact\": {\"law\": \"force\", \"start\": \"allow\", \"friction_law\": \"stick\", "    \
     "\"stiffness\": 1000, "                                                                    \
     "\"damping\": 0.001}"
 #define SLOPE                                                                                  \
@@ -115,7 +115,7 @@ TEST(sliding_is_coulombs) {
     " \"place\": {\"translate\": [0, 0.009, 0]}, \"velocity\": [%g, 0, 0]}, \"mass\": "        \
     "{\"total\": 0.1}, \"springs\": {\"stretch\": 0, \"shear\": 0, \"bend\": 0}}], "           \
     "\"colliders\": [{\"floor\": {}, \"thickness\": 0.02, \"friction\": 0.3}], \"forces\": "   \
-    "{\"gravity\": [0, -9.81, %g]}, \"contact\": {\"law\": \"force\", \"start\": \"keep\", "   \
+    "{\"gravity\": [0, -9.81, %g]}, \"contact\": {\"law\": \"force\", \"start\": \"allow\", "  \
     "\"friction_law\": "                                                                       \
     "\"stick\", \"stiffness\": 100}, \"time\": {\"fps\": 10}}"
 
@@ -211,7 +211,7 @@ TEST(linear_steps_end_as_implicit_euler) {
     "\"flat\", \"place\": {\"translate\": [%g, 0.0085, 0]}}, \"mass\": {\"areal_density\": "   \
     "0.5}, \"springs\": {\"stretch\": 60, \"shear\": 30, \"bend\": 0, \"damping\": 0.05}}], "  \
     "\"colliders\": [{%s, \"thickness\": 0.02, \"friction\": 0.8}], \"contact\": {\"law\": "   \
-    "\"force\", \"start\": \"keep\", \"friction_law\": \"stick\", \"stiffness\": 100, "        \
+    "\"force\", \"start\": \"allow\", \"friction_law\": \"stick\", \"stiffness\": 100, "       \
     "\"damping\": 0.01}, "                                                                     \
     "\"events\": [{\"from\": %g, \"to\": 3, \"move\": {\"collider\": 0, \"spin\": [0, 2, "     \
     "0]}}]}"

@@ -21,7 +21,7 @@
     "[0.2, 0.1, 0.1], \"radius\": 0.02}, \"thickness\": 0.3, \"friction\": %g}, {\"box\": "    \
     "{\"centre\": [0.3, 0.3, -0.25], \"size\": [0.4, 0.4, 0.4], \"radius\": 0.05}, "           \
     "\"thickness\": 0.3, \"friction\": %g}], \"contact\": {\"law\": \"force\", "               \
-    "\"start\": \"keep\", \"friction_law\": \"stick\", \"stiffness\": 50}, \"events\": "       \
+    "\"start\": \"allow\", \"friction_law\": \"stick\", \"stiffness\": 50}, \"events\": "      \
     "[{\"from\": 0, \"to\": 1, "                                                               \
     "\"move\": {\"collider\": 2, \"spin\": [1, 2, 3], \"path\": [{\"at\": 1, \"point\": [1, "  \
     "0, 0]}]}}]}"
@@ -157,7 +157,7 @@ TEST(matrix_is_symmetric_and_positive) {
     "\"place\": {\"translate\": [0, 0.009, 0]}}, \"mass\": {\"total\": 0.1}, \"springs\": "    \
     "{\"stretch\": 0, \"shear\": 0, \"bend\": 0}}], \"colliders\": [{\"floor\": {}, "          \
     "\"thickness\": 0.02, \"friction\": %g}], \"contact\": {\"law\": \"force\", "              \
-    "\"start\": \"keep\", \"friction_law\": \"%s\", \"stiffness\": %g}%s}"
+    "\"start\": \"allow\", \"friction_law\": \"%s\", \"stiffness\": %g}%s}"
 
 /* k_t = k, and c_t = 2 sqrt(k m): the block, the bounds and the force. */
 TEST(bristle_is_critically_damped) {
