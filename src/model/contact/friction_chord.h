@@ -22,7 +22,7 @@
 #define CS_CONTACT_FRICTION_CHORD_H
 
 #include "base/vector.h"
-#include "model/contact/bristle_law.h"
+#include "model/contact/point_contact.h"
 
 #include <float.h>
 
@@ -134,18 +134,6 @@ CS_INLINE void cs_friction_chord_add_block(const struct cs_point_contact *contac
     frictionless.friction = 0;
     cs_point_contact_add_block(&frictionless, matrix, b);
     cs_friction_chord_add(pull, &slides, b);
-}
-
-/* The block of a bristle in either matrix; its chord stands in bristle_law.h. */
-CS_INLINE void cs_friction_chord_add_bristle(const struct cs_point_contact *contact,
-                                             const struct cs_bristle *bristle,
-                                             const struct cs_matrix *matrix,
-                                             const struct cs_contact_pull *pull, double b[6]) {
-    const struct cs_bristle_pull to = {pull->h, pull->inverse, pull->motion};
-    if (matrix->chord)
-        cs_bristle_add_chord(contact, bristle, matrix, &to, b);
-    else
-        cs_bristle_add_block(contact, bristle, matrix, b);
 }
 
 /* Adds what a particle with weight w contributes to the point. */
