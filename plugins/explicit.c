@@ -193,7 +193,7 @@ static enum cs_step verlet_archive(void *object, const struct cs_archive *archiv
     .save = archive_, .load = archive_
 
 /* without damping the eigenvalues of a step lie outside the unit circle */
-static const char *const gains_energy[] = {"energy", "contact-energy", NULL};
+static const char *const gains_energy[] = {"energy", "contact-energy", "restitution", NULL};
 
 /* The output v is computed with the old acceleration, because the new one belongs to the next
  * step. The method is symplectic and symmetric in (x - x_old)/h, not in this v. */

@@ -100,9 +100,12 @@ static enum cs_step step_linearised(struct fixed_step *loop, double t, double h,
         return status;
     start_solve(self, h);
     status = host->solve(host->ctx, self->b, self->rtol, self->dv);
-    if (status == CS_STEP_OK)
-        move(host->view->n, h, self->dv, x, v);
-    return status;
+    if (status != CS_STEP_OK)
+        return status;
+    move(host->view->n, h, self->dv, x, v);
+    if (host->euler_finish)
+        host->euler_finish(host->ctx, x, v);
+    return CS_STEP_OK;
 }
 
 static enum cs_step restart_linearised(void *object, double t, const double *x,
@@ -214,8 +217,8 @@ static enum cs_step create_linearised(const struct cs_host *host, const void *op
     if (!(self->b = take(host, 3)) || !(self->dv = take(host, 3)) ||
         !(self->external = take(host, 3)))
         return CS_STEP_FAIL;
-    if (!CS_HAS(host, euler_setup))
-        return host->fail(host->ctx, "the host is older than this module: no euler_setup");
+    if (!CS_HAS(host, euler_finish))
+        return host->fail(host->ctx, "the host is older than this module: no euler_finish");
     return fixed_step_guard(&self->loop, NULL);
 }
 
@@ -245,7 +248,7 @@ static const struct cs_integrator implicit_linearised = {
     .source = "Baraff, Witkin 1998; cloth thesis, eq. 5.20",
     .order = 1,
     .order_damped = 1,
-    .needs = CS_NEED_SOLVE,
+    .needs = CS_NEED_SOLVE | CS_NEED_REBOUNDS,
     .traits = CS_IMPLICIT,
     .options = linearised_rows,
     .n_options = sizeof linearised_rows / sizeof linearised_rows[0],

@@ -65,7 +65,9 @@ enum cs_need {
     /* solve_setup, solve and matrix_product. */
     CS_NEED_SOLVE = 1u << 4,
     /* Groups that keep their shape, in the view. The host refuses scenes without them. */
-    CS_NEED_CLUSTERS = 1u << 5
+    CS_NEED_CLUSTERS = 1u << 5,
+    /* euler_finish: euler_setup steps particles in impact with colliders alone. */
+    CS_NEED_REBOUNDS = 1u << 6
 };
 
 /* Properties of the method. The program shows them, and `clothsim conform` tests them. */
@@ -229,6 +231,11 @@ struct cs_host {
      * whose size ends before it: ask CS_HAS(host, euler_setup) first. */
     enum cs_step (*euler_setup)(void *ctx, double t, double h, const double *x, const double *v,
                                 uint32_t flags, double *b);
+    /* [advance] With CS_NEED_REBOUNDS, and only where a particle can be in impact with a
+     * collider, else NULL. Call it after v += dv, x += h v: adds to x and v (3,n) what impacts
+     * do, which b leaves out. Ask max_step_fraction next, which judges particles in impact by
+     * a rule of their own. */
+    void (*euler_finish)(void *ctx, double *x, double *v);
 };
 
 /* Counts that only the method knows. */

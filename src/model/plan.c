@@ -3,6 +3,7 @@
 
 #include "base/pool.h"
 #include "mesh/trimesh.h"
+#include "model/contact/rebound.h"
 #include "model/event/event_state.h"
 #include "model/force/terms.h"
 #include "model/solver/multigrid.h"
@@ -139,6 +140,10 @@ static void plan_needs(struct cs_plan *plan, const struct cs_scene *scene, uint3
            cs_multigrid_is_used(scene) ? "the integrator asks for it; multigrid for stiff steps"
                                        : "the integrator asks for it",
            idle);
+    const bool rebounds = needs & CS_NEED_REBOUNDS && needs & CS_NEED_SOLVE;
+    decide(plan, CS_FEATURE_REBOUNDS, rebounds && cs_rebounds_possible(scene),
+           "particles in impact with a collider are stepped alone",
+           rebounds ? "no contact by force with a collider that is no mesh" : idle);
 }
 
 void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs,

@@ -7,6 +7,7 @@
 
 #include "base/vector.h"
 #include "model/contact/ccd/step_limit.h"
+#include "model/contact/rebound.h"
 #include "model/force/diagnostics.h"
 #include "model/force/normals.h"
 #include "model/force/terms.h"
@@ -293,6 +294,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
                                 struct cs_error *error) {
     struct cs_system *system = run->system;
     host->run = run;
+    system->rebounds = NULL; // those of a former run
     host->table = (struct cs_host){
         .size = sizeof host->table,
         .ctx = host,
@@ -323,7 +325,11 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
     host->setup_x = cs_arena_alloc_array(&host->arena, n3, sizeof(double), error);
     if (cs_terms_have_blocks(system))
         host->setup_v = cs_arena_alloc_array(&host->arena, n3, sizeof(double), error);
-    return cs_linear_init(&host->linear, system, &host->arena, error);
+    if (cs_linear_init(&host->linear, system, &host->arena, error) ||
+        !begin(host, CS_FEATURE_REBOUNDS))
+        return error->status;
+    host->table.euler_finish = cs_host_euler_finish;
+    return cs_rebounds_init(system, &host->arena, error);
 }
 
 /* The replacement of host_solve by cs_run_host_fail_solves. */

@@ -22,6 +22,7 @@
  * is only near the derivative, as that of clamped friction, gets into b. */
 #include "sim/linear_setup.h"
 
+#include "model/contact/rebound.h"
 #include "model/force/terms.h"
 #include "scene/body_pairs.h"
 #include "sim/trace.h"
@@ -88,6 +89,12 @@ CS_CLONES static void add_scalar_parts(const struct cs_view *view, double h, con
             b[k] = h * (f[k] - b[k]) + (view->mass[i] * v[k] - av[k]);
 }
 
+/* b -= y, both (3,n). */
+static void subtract(size_t n, const double *y, double *b) {
+    for (size_t k = 0; k < 3 * n; k++)
+        b[k] -= y[k];
+}
+
 /* Sets b for the A of the last set-up. f: all forces at the step's begin, not in q; the other
  * vectors of the solver are free until it starts. */
 static void build_rhs(struct cs_run_host *host, const double *f) {
@@ -101,8 +108,12 @@ static void build_rhs(struct cs_run_host *host, const double *f) {
     if (!cs_terms_have_blocks(system))
         return;
     cs_terms_approach(system, &host->linear.matrix, work);
-    for (size_t k = 0; k < 3 * (size_t)system->view.n; k++)
-        step->b[k] -= work[k];
+    subtract(system->view.n, work, step->b);
+    if (host->linear.matrix.rebounds && system->rebounds->any) {
+        cs_linear_mul(&host->linear, system->rebounds->change, work);
+        subtract(system->view.n, work, step->b);
+        host->run->counts.jvps++;
+    }
 }
 
 /* A of the step, and with rhs its b. A diagonal block that is not definite clamps at once. */
@@ -121,6 +132,9 @@ static void set_up(struct cs_run_host *host, const struct cs_matrix *matrix, boo
         cs_terms_force(system, &at, contact);
         clamped.chord = &chord;
     }
+    clamped.rebounds = system->rebounds != NULL;
+    if (clamped.rebounds)
+        cs_rebounds_find(system, step->t, step->h, step->x, step->v, f);
     while (!cs_linear_setup(&host->linear, &clamped) && clamp(&clamped))
         host->run->counts.clamped_setups++;
     host->linear.matrix.chord = NULL;
@@ -151,6 +165,13 @@ enum cs_step cs_host_euler_setup(void *ctx, double t, double h, const double *x,
                                .bound = flags & CS_SOLVE_BOUND},
            true);
     return CS_STEP_OK;
+}
+
+void cs_host_euler_finish(void *ctx, double *x, double *v) {
+    struct cs_run_host *host = ctx;
+    const double begin = cs_stage_begin(host);
+    cs_rebounds_move(host->run->system, host->euler.h, x, v);
+    cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }
 
 bool cs_host_clamp(struct cs_run_host *host, const double *b) {

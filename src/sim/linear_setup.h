@@ -10,6 +10,8 @@ enum cs_step cs_host_solve_setup(void *ctx, double t, const double *x, const dou
                                  double cm, double cd, double ck, uint32_t flags);
 enum cs_step cs_host_euler_setup(void *ctx, double t, double h, const double *x,
                                  const double *v, uint32_t flags, double *b);
+/* The call euler_finish. */
+void cs_host_euler_finish(void *ctx, double *x, double *v);
 
 /* Sets the last system up again with a matrix that is closer to positive definite: first
  * CS_SOLVE_PSD, which drops the transverse part of compressed springs, then CS_SOLVE_BOUND

@@ -3,6 +3,7 @@
 #include "methods.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* Without gravity, damping and friction the energy of springs, contact and motion is constant.
  * All particles of the flat sheet meet the obstacle at one time, so that the springs hardly
@@ -28,26 +29,27 @@ static const struct target plane = {"\"floor\": {\"height\": 0}", 0.002, 8};
 static const struct target mesh = {
     "\"mesh\": {\"shape\": \"box\", \"place\": {\"translate\": [0, -0.5, 0]}}", 0.01, 4};
 
-/* What a method keeps at its default step, where that is not 0.9 to 1.05 of the energy. */
+/* What a method keeps at its default step, where that is not 0.9 to 1.05 of the energy; `pairs`
+ * is the least where surfaces meet in pairs. */
 static const struct bounds {
     const char *method;
-    double least, most;
+    double least, most, pairs;
     const char *reason;
 } own_bounds[] = {
-    {"backward-euler", 0.15, 1, "dissipates: a step that is long against range/speed"},
-    {"bdf2", 0.9, 1.08, "a step after one of another length is of order 1"},
-    {"implicit-linearised", 0.15, 1, "dissipates as backward-euler"},
-    {"position-verlet", 0.75, 1.3, "its v is that of half a step before"},
-    {"symplectic-euler", 0.75, 1.15, "its energy swings by the first order of h"},
-    {"velocity-verlet", 0.9, 1.08, "its energy swings by the second order of h"},
-    {"xpbd", 0.15, 1, "dissipates as backward-euler"},
+    {"backward-euler", 0.15, 1, 0.05, "dissipates: a step that is long against range/speed"},
+    {"bdf2", 0.9, 1.08, 0.9, "a step after one of another length is of order 1"},
+    {"implicit-linearised", 0.97, 1.01, 0, "pairs: as backward-euler, without its iteration"},
+    {"position-verlet", 0.75, 1.3, 0.9, "its v is that of half a step before"},
+    {"symplectic-euler", 0.75, 1.15, 0.9, "its energy swings by the first order of h"},
+    {"velocity-verlet", 0.9, 1.08, 0.9, "its energy swings by the second order of h"},
+    {"xpbd", 0.15, 1, 0.05, "dissipates as backward-euler"},
 };
 
 static struct bounds bounds_of(const char *method) {
     for (size_t k = 0; k < LENGTH(own_bounds); k++)
         if (methods_is(method, own_bounds[k].method))
             return own_bounds[k];
-    return (struct bounds){.least = 0.9, .most = 1.05};
+    return (struct bounds){.least = 0.9, .most = 1.05, .pairs = 0.9};
 }
 
 /* Energy after the bounce, as a fraction of that before. The sheet comes into the range of the
@@ -73,9 +75,10 @@ static double kept(const char *method, const struct target *target, double speed
 static void check(const char *method, const struct target *target, double speed, double phase) {
     const struct bounds bounds = bounds_of(method);
     const double share = kept(method, target, speed, phase);
-    ck_assert_msg(share >= bounds.least && share <= bounds.most,
-                  "%s, %g m/s, phase %g: %.4f of the energy kept, expected %g to %g", method,
-                  speed, phase, share, bounds.least, bounds.most);
+    const double least = target == &mesh ? bounds.pairs : bounds.least;
+    ck_assert_msg(share >= least && share <= bounds.most,
+                  "%s, %s, %g m/s, phase %g: %.4f of the energy kept, expected %g to %g",
+                  method, target->obstacle, speed, phase, share, least, bounds.most);
 }
 
 /* Methods with stages or a Newton iteration once passed into contact and out of it within one
@@ -119,4 +122,89 @@ TEST(refused_steps_are_counted) {
         ck_assert_msg(sheet.session.run.counts.method.rejected > 0, "%s", method);
         fixture_close(&sheet);
     }
+}
+
+/* A particle alone, which no points between particles accompany, before other shapes. */
+#define PARTICLE                                                                               \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [1, 1], \"place\": {\"translate\": [0.1, %.17g, "    \
+    "0]}, "                                                                                    \
+    "\"velocity\": [1, %g, 0]}, \"mass\": {\"particle\": 0.01}}], \"contact\": {\"law\": "     \
+    "\"force\", \"stiffness\": 200}, \"forces\": {\"gravity\": [0, 0, 0]}, \"colliders\": "    \
+    "[{%s, "                                                                                   \
+    "\"thickness\": 0.004}]}"
+static const char *const shapes[] = {
+    "\"sphere\": {\"centre\": [0, -1, 0], \"radius\": 1}",
+    "\"box\": {\"centre\": [0, -0.5, 0], \"size\": [1, 1, 1], \"radius\": 0.1}",
+    "\"capsule\": {\"from\": [-1, -0.5, 0], \"to\": [1, -0.5, 0], \"radius\": 0.5}"};
+
+static double particle_keeps(const char *method, const char *shape, double speed) {
+    struct fixture one;
+    fixture_open(&one, method, PARTICLE, 0.004 + 1.37 * speed / 60, -speed, shape);
+    fixture_start(&one);
+    const double start = fixture_energy(&one);
+    fixture_frames(&one, 5);
+    const double end = fixture_energy(&one);
+    ck_assert_msg(one.v[one.n] > 0, "%s, %s, %g m/s: it does not come back", method, shape,
+                  speed);
+    fixture_close(&one);
+    return end / start;
+}
+
+/* Particles in impact are stepped alone: at every step, speed and phase. With one linear
+ * model for a step such throws kept 0.18 to 0.44. */
+TEST(linearised_steps_keep_the_energy_of_impacts) {
+    static const double speeds[] = {0.5, 1, 2, 3, 5, 7, 10, 15, 20};
+    static const double steps[] = {1 / 60., 8e-3, 4e-3, 2e-3, 1e-3};
+    for (size_t k = 0; k < LENGTH(speeds) * LENGTH(steps); k++) {
+        char method[64];
+        snprintf(method, sizeof method, "implicit-linearised:dt=%.17g",
+                 steps[k % LENGTH(steps)]);
+        for (double phase = 1.05; phase < 2; phase += 0.22)
+            check(method, &plane, speeds[k / LENGTH(steps)], phase);
+        for (size_t o = 0; o < LENGTH(shapes); o++) {
+            const double share = particle_keeps(method, shapes[o], speeds[k / LENGTH(steps)]);
+            ck_assert_msg(share > 0.97 && share < 1.02, "%s, %s, %g m/s: %.4f", method,
+                          shapes[o], speeds[k / LENGTH(steps)], share);
+        }
+    }
+}
+
+/* Mean velocity after an oblique throw at a floor with friction: along x and y. */
+static void throw_obliquely(const char *method, double friction, double phase, double mean[2]) {
+    struct fixture sheet;
+    fixture_open(&sheet, method,
+                 "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6], \"size\": [0.5, 0.5], "
+                 "\"start\": \"flat\", \"place\": {\"translate\": [0, %.15g, 0]}, "
+                 "\"velocity\": [3, -2, 0]}, \"mass\": {\"areal_density\": 0.2}, \"springs\": "
+                 "{\"stretch\": 60}}], \"contact\": \"force\", \"colliders\": [{\"floor\": "
+                 "{\"height\": 0}, \"thickness\": 0.002, \"friction\": %g}], \"forces\": "
+                 "{\"gravity\": [0, 0, 0]}}",
+                 0.002 + 2 * phase / 60, friction);
+    fixture_start(&sheet);
+    fixture_frames(&sheet, 4);
+    mean[0] = mean[1] = 0;
+    for (size_t i = 0; i < sheet.n; i++) {
+        mean[0] += sheet.v[i] / (double)sheet.n;
+        mean[1] += sheet.v[sheet.n + i] / (double)sheet.n;
+    }
+    fixture_close(&sheet);
+}
+
+/* The impulse of friction is mu times that of the impact, J = 2 m u, until the sheet sticks:
+ * 3 - 4 mu along the floor. */
+TEST(impacts_lose_what_friction_takes) {
+    static const double frictions[] = {0, 0.1, 0.3, 0.6, 1};
+    static const char *const methods[] = {"implicit-linearised", "implicit-linearised:dt=0.004",
+                                          "implicit-linearised:dt=0.001", "dopri5"};
+    for (size_t m = 0; m < LENGTH(methods); m++)
+        for (size_t f = 0; f < LENGTH(frictions); f++)
+            for (double phase = 1.1; phase < 2; phase += 0.4) {
+                double mean[2];
+                throw_obliquely(methods[m], frictions[f], phase, mean);
+                const double expected = fmax(0, 3 - 4 * frictions[f]);
+                ck_assert_msg(fabs(mean[0] - expected) < 0.03 * 3,
+                              "%s, friction %g: %.4f m/s along, expected %g", methods[m],
+                              frictions[f], mean[0], expected);
+                ck_assert_double_eq_tol(mean[1], 2, 0.03);
+            }
 }

@@ -5,6 +5,7 @@
 #include "model/contact/barrier_law.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/posed_collider.h"
+#include "model/contact/rebound_list.h"
 
 #include <clothsim/clones.h>
 #include <math.h>
@@ -49,7 +50,7 @@ bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, dou
         unseen = fmax(unseen, fabs(cs_barrier_energy(d - s, range, k) - held - law.force * s -
                                    0.5 * law.stiffness * s * s));
     }
-    return unseen > CS_UNRESOLVED_ENERGY_MAX * has;
+    return unseen > passing->unresolved_max * has;
 }
 
 /* Number of particles of a row that may be unresolved at a plane or sphere: a conservative test
@@ -57,7 +58,7 @@ bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, dou
  * at its end. By Taylor's formula e is at most s^3/6 max |psi'''|, and |psi'''| <= k/(2 D y^4)
  * there. It is compared with the kinetic energy m s^2 / 2h^2 alone:
  *
- *   s^3 k / (12 D y^4) <= 0.02 m s^2 / 2h^2   <=>   s k h^2 <= 6 0.02 D m y^4
+ *   s^3 k / (12 D y^4) <= a m s^2 / 2h^2   <=>   s k h^2 <= 6 a D m y^4,   a = unresolved_max
  *
  * so that no particle that is_unresolved would reject is left out. */
 CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *passing, size_t begin,
@@ -71,7 +72,7 @@ CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *passing, 
     const double ux = c[0] - before->centre[0], uy = c[1] - before->centre[1];
     const double uz = c[2] - before->centre[2];
     const double stiff = passing->params.k * passing->h * passing->h;
-    const double give = 6 * CS_UNRESOLVED_ENERGY_MAX * range;
+    const double give = 6 * passing->unresolved_max * range;
     uint32_t risky = 0;
     for (size_t i = 0; i < count; i++) {
         const double mx = b[i] - a[i] - ux, my = b[n + i] - a[n + i] - uy;
@@ -121,7 +122,10 @@ static bool row_is_resolved(const struct cs_collider_step *passing, size_t begin
 /* Tests particle i. */
 static bool is_unresolved(const struct cs_collider_step *passing, size_t i) {
     const size_t n = passing->system->view.n;
+    const struct cs_rebounds *rebounds = passing->system->rebounds;
     double from[3], to[3];
+    if (rebounds && rebounds->judged && rebounds->list[i].collider == passing->collider + 1)
+        return false;
     for (size_t c = 0; c < 3; c++) {
         from[c] = passing->x0[c * n + i];
         to[c] = passing->x1[c * n + i];
@@ -146,6 +150,8 @@ static double count_unresolved(const void *arg, size_t begin, size_t end) {
 void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_system *system,
                           uint32_t collider, double t0, double t1) {
     passing->system = system;
+    passing->collider = collider;
+    passing->unresolved_max = CS_UNRESOLVED_ENERGY_MAX;
     passing->h = t1 - t0;
     passing->params = system->collider_params[collider];
     cs_posed_collider_at(system, collider, t0, &passing->at_t0);
@@ -158,6 +164,8 @@ bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         struct cs_collider_step passing = {.x0 = x0, .x1 = x1};
         cs_collider_step_set(&passing, system, c, t0, t1);
+        if (system->rebounds)
+            passing.unresolved_max = CS_UNRESOLVED_BESIDE_REBOUNDS;
         if (cs_vector_sum(system->view.n, count_unresolved, &passing) > 0)
             return false;
     }

@@ -16,7 +16,9 @@
  * range apart, so that nothing is passed over. Returns true if e is at most
  * CS_UNRESOLVED_ENERGY_MAX of the energy of every particle: the kinetic energy of its motion
  * relative to the collider plus psi(d). x0, x1 (3,n) in m. Particles that are not finite are
- * left to the blow-up check. */
+ * left to the blow-up check. Particles in impact in the step that was finished last are left to
+ * cs_rebounds_resolve_step; in scenes with impacts others have CS_UNRESOLVED_BESIDE_REBOUNDS.
+ */
 #define CS_UNRESOLVED_ENERGY_MAX 0.02
 bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0,
                                        const double *x0, double t1, const double *x1);
@@ -25,11 +27,13 @@ bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0
 struct cs_collider_step {
     const struct cs_system *system;
     const double *x0, *x1; /* (3,n) m */
+    uint32_t collider;
     double h;
     struct cs_posed_collider at_t0, at_t1;
     struct cs_collider_params params;
+    double unresolved_max; /* of a particle's energy */
 };
-/* Sets all members but x0 and x1. */
+/* Sets all members but x0 and x1; unresolved_max to CS_UNRESOLVED_ENERGY_MAX. */
 void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_system *system,
                           uint32_t collider, double t0, double t1);
 

@@ -5,6 +5,7 @@
 #include "model/contact/collider_params.h"
 #include "model/contact/friction_anchors.h"
 #include "model/contact/friction_chord.h"
+#include "model/contact/rebound.h"
 #include "model/force/term.h"
 #include "model/force/terms.h"
 
@@ -279,10 +280,13 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
         const struct cs_posed_collider_law near = near_of(system, c, matrix->t);
         struct cs_point_contact touch;
         struct cs_bristle bristle;
-        for (size_t i = begin; i < end; i++)
-            if (touch_of(&near, n, matrix->x, matrix->v, i, &touch)) {
-                double b[6] = {0};
-                struct cs_contact_pull pull = {.h = -matrix->cd};
+        for (size_t i = begin; i < end; i++) {
+            const struct cs_rebound *rebound = cs_rebound_of(system, matrix, c, i);
+            struct cs_contact_pull pull = {.h = -matrix->cd};
+            double b[6] = {0};
+            if (rebound)
+                cs_rebound_add_block(rebound, matrix, b);
+            else if (touch_of(&near, n, matrix->x, matrix->v, i, &touch)) {
                 if (matrix->chord) {
                     cs_contact_pull_add(&pull, matrix, n, i, system->inv_mass[i], 1);
                     cs_friction_chord_add_block(&touch, matrix, &pull, b);
@@ -290,9 +294,11 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
                     cs_point_contact_add_block(&touch, matrix, b);
                 if (cs_bristle_of_particle(system, c, &near, matrix->x, i, &bristle))
                     cs_bristle_add_matrix(&touch, &bristle, matrix, &pull, b);
-                for (size_t e = 0; e < 6; e++)
-                    blocks[e * n + i] += b[e];
-            }
+            } else
+                continue;
+            for (size_t e = 0; e < 6; e++)
+                blocks[e * n + i] += b[e];
+        }
     }
 }
 
@@ -302,31 +308,38 @@ struct approach {
     uint32_t collider;
     struct cs_posed_collider_law near;
     const struct cs_matrix *matrix;
-    size_t n;
     double *y;
 };
 
+/* b loses y: an impact puts into b what it gives. */
 static void add_approaches(void *arg, size_t begin, size_t end) {
     const struct approach *to = arg;
+    const size_t n = to->system->view.n;
     struct cs_point_contact touch;
     struct cs_bristle bristle;
-    for (size_t i = begin; i < end; i++)
-        if (touch_of(&to->near, to->n, to->matrix->x, to->matrix->v, i, &touch)) {
-            double a[3];
+    for (size_t i = begin; i < end; i++) {
+        const struct cs_rebound *rebound =
+            cs_rebound_of(to->system, to->matrix, to->collider, i);
+        double a[3] = {0};
+        if (rebound)
+            for (int c = 0; c < 3; c++)
+                a[c] = -rebound->impulse[c];
+        else if (touch_of(&to->near, n, to->matrix->x, to->matrix->v, i, &touch)) {
             cs_point_contact_approach(&touch, to->matrix, a);
             if (cs_bristle_of_particle(to->system, to->collider, &to->near, to->matrix->x, i,
                                        &bristle))
                 cs_bristle_add_approach(&touch, &bristle, to->matrix, a);
-            add_at(to->y, to->n, i, a);
-        }
+        } else
+            continue;
+        add_at(to->y, n, i, a);
+    }
 }
 
 static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
                          double *y) {
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        struct approach to = {system,         c, near_of(system, c, matrix->t), matrix,
-                              system->view.n, y};
-        cs_vector_parallel_for(to.n, add_approaches, &to);
+        struct approach to = {system, c, near_of(system, c, matrix->t), matrix, y};
+        cs_vector_parallel_for(system->view.n, add_approaches, &to);
     }
 }
 

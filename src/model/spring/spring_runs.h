@@ -104,6 +104,7 @@ struct cs_matrix {
     bool bound;                          /* friction by an upper bound (CS_SOLVE_BOUND) */
     const struct cs_chord_forces *chord; /* friction by its chord, and cd = -h; NULL: by its
                                             derivative */
+    bool rebounds; /* of a step whose particles in impact were found (contact/rebound.h) */
 };
 
 /* Springs [begin, end) of a mesh's run, whose forces one thread computes. Their ends lie

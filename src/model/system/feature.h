@@ -24,6 +24,7 @@
     X(SPRING_LIST, "spring list")                                                              \
     X(CLUSTERS, "clusters")                                                                    \
     X(SOLVER, "linear solver")                                                                 \
+    X(REBOUNDS, "rebounds")                                                                    \
     X(RENDER, "renderer")                                                                      \
     X(THREADS, "threads")
 

@@ -59,6 +59,8 @@ struct cs_system {
         *contact_samples; /* contact points between particles, for colliders; NULL: none */
     struct cs_friction_anchors
         *friction_anchors; /* anchors of friction that sticks; NULL: it is smooth */
+    struct cs_rebounds
+        *rebounds; /* particles that are stepped alone; NULL: none are (rebound.h) */
     const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
     struct cs_points *points;       /* NULL unless colliders are meshes (surface_points.h) */
     struct cs_crossings *crossings; /* NULL unless asked for (body_pairs.h) */

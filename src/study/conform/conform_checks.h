@@ -4,7 +4,7 @@
  *   order     oscillators, order, tolerance, limit, events      conform_order.c
  *   forces    each force alone, unequal masses, time            conform_forces.c
  *   energy    symmetry in time, bounded energy                  conform_motion.c
- *   contact   incline, rest, bounce                             conform_contact.c
+ *   contact   incline, rest, bounce, impacts                    conform_contact.c
  *   rules     descriptor, options, commits, pins, failures      conform_rules.c
  *   fidelity  the limit of a method's iterations                conform_fidelity.c
  *   memory, threads, resume: the rules of the host              files of these names
@@ -62,6 +62,8 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
       "a block slides and creeps as the law predicts")                                         \
     X("contact-rest", contact_rest, SPRINGS, "a sheet comes to rest on a floor")               \
     X("contact-energy", contact_energy, SPRINGS, "no energy is gained in a bounce")            \
+    X("restitution", restitution, SPRINGS,                                                     \
+      "the energy kept by impacts at the method's own step")                                   \
     X("pins", pins, ANY, "pinned particles keep their bits")                                   \
     X("not-finite", not_finite, ANY, "non-finite numbers are reported")                        \
     X("failed-solve", failed_solve, ANY, "a linear solve that fails ends the run")             \

@@ -1,0 +1,318 @@
+/* Flights of particles in impact, and what a linearised step takes from them. */
+#include "model/contact/rebound.h"
+
+#include "base/vector.h"
+#include "model/contact/collider_params.h"
+#include "model/contact/friction_anchors.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Steps of a flight at most; one that needs more is no impact. */
+enum { FLIGHT_STEPS_MAX = 2000 };
+/* A step of a flight in units of sqrt(m/K), and in ranges: energy is then kept to 1 %. */
+#define FLIGHT_PHASE 0.1
+#define FLIGHT_RANGE 0.03
+/* Fraction of E that the linear model may miss before a particle is in impact, and that an end
+ * may depart from the flight. */
+#define MISSED_MAX    0.01
+#define DEPARTURE_MAX 0.1
+
+bool cs_rebounds_possible(const struct cs_scene *scene) {
+    if (scene->contact.law != CS_CONTACT_FORCE)
+        return false;
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        if (!cs_scene_colliders(scene)[c].mesh.present)
+            return true;
+    return false;
+}
+
+enum cs_status cs_rebounds_init(struct cs_system *system, struct cs_arena *arena,
+                                struct cs_error *error) {
+    struct cs_rebounds *rebounds = cs_arena_alloc_array(arena, 1, sizeof *rebounds, error);
+    if (!rebounds)
+        return error->status;
+    rebounds->list = cs_arena_alloc_array(arena, system->view.n, sizeof *rebounds->list, error);
+    rebounds->change =
+        cs_arena_alloc_array(arena, 3 * (size_t)system->view.n, sizeof(double), error);
+    system->rebounds = rebounds;
+    return error->status;
+}
+
+/* One particle before one collider at the begin of a step. Lengths along g, from the surface
+ * outwards. */
+struct flight {
+    double mass, h;           /* kg, s */
+    double range, k, damping; /* m, N/m, s: the law */
+    double other;             /* N, f0 */
+    double d, u;              /* m, m/s: at the begin */
+    double d1, w1;            /* at the end */
+};
+
+/* The time in s until a free flight with acceleration a comes into range, `beyond` m away:
+ * the first positive root of beyond + w t + a t^2/2. HUGE_VAL: never. */
+static double time_to_range(double beyond, double w, double a) {
+    const double square = w * w - 2 * a * beyond;
+    if (!(square > 0) || (w >= 0 && a >= 0))
+        return HUGE_VAL;
+    // without cancellation for either sign of w
+    return w < 0 ? 2 * beyond / (sqrt(square) - w) : (w + sqrt(square)) / -a;
+}
+
+/* The longest step in s of a flight at distance d with speed w, acceleration a and stiffness K:
+ * to the range in one step, then as the law wants it here and where the step leads. */
+static double flight_step(const struct flight *flight, double d, double w, double a,
+                          double stiffness) {
+    const double range = flight->range, beyond = d - range;
+    if (beyond > 1e-9 * range)
+        return time_to_range(beyond, w, a);
+    const double step = FLIGHT_RANGE * range / fmax(fabs(w), 1e-12);
+    if (w < 0)
+        stiffness = cs_barrier_at(d + w * step, range, flight->k).stiffness;
+    return fmin(step, FLIGHT_PHASE * sqrt(flight->mass / fmax(stiffness, 1e-300)));
+}
+
+/* Sets d1 and w1. Returns false if it takes too many steps. */
+static bool fly(struct flight *flight) {
+    const double m = flight->mass;
+    double d = flight->d, w = flight->u, t = 0;
+    struct cs_barrier law = cs_barrier_at(d, flight->range, flight->k);
+    double a = (law.force - flight->damping * law.stiffness * w + flight->other) / m;
+    for (int step = 0; t < flight->h; step++) {
+        if (step == FLIGHT_STEPS_MAX)
+            return false;
+        const double dt = fmin(flight_step(flight, d, w, a, law.stiffness), flight->h - t);
+        w += 0.5 * dt * a;
+        d += dt * w;
+        t = dt < flight->h - t ? t + dt : flight->h;
+        law = cs_barrier_at(d, flight->range, flight->k);
+        // the damper's half of the second kick is implicit, so that a stiff one stays stable
+        const double drag = flight->damping * law.stiffness / m;
+        a = (law.force + flight->other) / m;
+        w = (w + 0.5 * dt * a) / (1 + 0.5 * dt * drag);
+        a -= drag * w;
+    }
+    flight->d1 = d;
+    flight->w1 = w;
+    return true;
+}
+
+/* Energy in J of contact that the second-order model at d misses after an approach by s. */
+static double missed(const struct flight *flight, const struct cs_barrier *law, double s) {
+    const double range = flight->range, k = flight->k;
+    return fabs(cs_barrier_energy(flight->d - s, range, k) -
+                cs_barrier_energy(flight->d, range, k) - law->force * s -
+                0.5 * law->stiffness * s * s);
+}
+
+/* Tells whether the particle is in impact, and flies it. energy: E. */
+static bool rebounds(struct flight *flight, double energy) {
+    const double m = flight->mass, h = flight->h, range = flight->range, k = flight->k;
+    const struct cs_barrier law = cs_barrier_at(flight->d, range, k);
+    const double load = fabs(flight->other) * h;
+    // approach without contact, and by the linear step
+    const double free = -h * (flight->u + h * flight->other / m);
+    const double linear = (m * free - h * h * law.force) / (m + h * h * law.stiffness);
+    if ((flight->d >= range && flight->d - free >= range) ||
+        !(load < 0.5 * m * (fabs(flight->u) + sqrt(2 * energy / m))) || !fly(flight))
+        return false;
+    const double impulse = m * (flight->w1 - flight->u) - h * flight->other;
+    const double leaving = m * fmin(flight->u, flight->w1);
+    if (!(load < 0.5 * fmax(impulse, leaving)))
+        return false;
+    const double by_step = 0.5 * m * linear * linear / (h * h) +
+                           cs_barrier_energy(flight->d - linear, range, k) +
+                           flight->other * linear;
+    const double by_flight = 0.5 * m * flight->w1 * flight->w1 +
+                             cs_barrier_energy(flight->d1, range, k) +
+                             flight->other * (flight->d - flight->d1);
+    return fmax(fmax(missed(flight, &law, free), missed(flight, &law, linear)),
+                fabs(by_step - by_flight)) > MISSED_MAX * energy;
+}
+
+/* T1/T: the fraction that friction of the impulse J leaves of a speed T along the surface. One
+ * of friction that sticks is as small as that of smooth friction, not 0, for r to be finite. */
+static double speed_left(const struct cs_posed_collider_law *near, double mass, double impulse,
+                         double speed) {
+    const double friction = near->friction + near->sticking_friction;
+    const double lost = friction * fmax(impulse, 0) / mass;
+    const double soft = 1 / (1 + lost / near->friction_speed);
+    return lost > 0 ? fmax(soft, speed > 0 ? 1 - lost / speed : 0) : 1;
+}
+
+/* One collider and the step, for all particles. */
+struct search {
+    const struct cs_system *system;
+    struct cs_posed_collider_law near;
+    uint32_t collider;
+    double h;
+    double fastest; /* m/s of the collider's matter near particles; HUGE_VAL: it turns */
+    const double *x, *v, *f;
+};
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* A particle at the begin of a step: velocity v relative to the surface, force of the contact
+ * itself, and gradient of the distance. */
+struct start {
+    double v[3], own[3], g[3];
+};
+
+/* Sets *start and *flight of particle i. Returns false if it cannot come into range. */
+static bool approach(const struct search *search, size_t i, struct start *start,
+                     struct flight *flight) {
+    const size_t n = search->system->view.n;
+    const double h = search->h, m = search->system->mass[i];
+    const struct cs_posed_collider_law *near = &search->near;
+    double p[3], v[3], w[3], f[3], hessian[6];
+    for (size_t c = 0; c < 3; c++) {
+        p[c] = search->x[c * n + i];
+        v[c] = search->v[c * n + i];
+        f[c] = search->f[c * n + i];
+        start->own[c] = 0;
+    }
+    // the longest way of a particle out of range, by the forces of the step's begin
+    const double way = h * (sqrt(dot(v, v)) + search->fastest) + h * h / m * sqrt(dot(f, f));
+    struct cs_point_contact contact;
+    if (cs_posed_collider_law_in_range(near, p, v, &contact)) {
+        const struct cs_contact_force_parts parts = {1, 1};
+        struct cs_bristle bristle;
+        cs_point_contact_force(&contact, parts, start->own);
+        if (cs_bristle_of_particle(search->system, search->collider, near, search->x, i,
+                                   &bristle))
+            cs_bristle_add_force(&contact, &bristle, start->own);
+    } else if (!cs_posed_collider_is_near(&near->collider, near->params.range + way, p))
+        return false;
+    cs_posed_collider_velocity(&near->collider, p, w);
+    for (int c = 0; c < 3; c++)
+        start->v[c] = v[c] - w[c];
+    *flight = (struct flight){.mass = m,
+                              .h = h,
+                              .range = near->params.range,
+                              .k = near->params.k,
+                              .damping = near->damping};
+    flight->d = cs_posed_collider_smooth_distance(&near->collider, p, start->g, hessian);
+    flight->u = dot(start->g, start->v);
+    flight->other = dot(start->g, f) - dot(start->g, start->own);
+    return true;
+}
+
+/* Sets the impact and the change of velocity of particle i, if it is in impact. */
+static void find(const struct search *search, size_t i) {
+    const size_t n = search->system->view.n;
+    struct cs_rebound *rebound = search->system->rebounds->list + i;
+    double *change = search->system->rebounds->change + i;
+    struct flight flight;
+    struct start start;
+    double tangent[3];
+    if (!approach(search, i, &start, &flight))
+        return;
+    const double *g = start.g, m = flight.mass, h = flight.h;
+    const double energy =
+        0.5 * m * flight.u * flight.u + cs_barrier_energy(flight.d, flight.range, flight.k);
+    if (!rebounds(&flight, energy))
+        return;
+    const double impulse = m * (flight.w1 - flight.u) - h * flight.other;
+    for (int c = 0; c < 3; c++)
+        tangent[c] = start.v[c] - flight.u * g[c];
+    memcpy(rebound->g, g, sizeof rebound->g);
+    rebound->collider = search->collider + 1;
+    rebound->stiffness = cs_barrier_at(flight.d1, flight.range, flight.k).stiffness;
+    const double left = speed_left(&search->near, m, impulse, sqrt(dot(tangent, tangent)));
+    rebound->drag = m / h * (1 / left - 1);
+    rebound->displacement = flight.d1 - flight.d - h * flight.w1;
+    rebound->distance = flight.d1;
+    rebound->energy = energy;
+    // the force of the step's begin is among all forces, and is taken out
+    const double along = impulse + h * h * rebound->stiffness * (flight.w1 - flight.u);
+    for (size_t c = 0; c < 3; c++) {
+        rebound->impulse[c] = along * g[c] - h * rebound->drag * tangent[c] - h * start.own[c];
+        change[c * n] = (flight.w1 - flight.u) * g[c] - (1 - left) * tangent[c];
+    }
+}
+
+static void find_all(void *arg, size_t begin, size_t end) {
+    const struct search *search = arg;
+    const struct cs_rebound *list = search->system->rebounds->list;
+    for (size_t i = begin; i < end; i++)
+        if (search->system->inv_mass[i] > 0 && list[i].collider == 0)
+            find(search, i);
+}
+
+void cs_rebounds_find(const struct cs_system *system, double t, double h, const double *x,
+                      const double *v, const double *f) {
+    struct cs_rebounds *rebounds = system->rebounds;
+    rebounds->judged = false;
+    for (size_t i = 0; i < system->view.n; i++)
+        rebounds->list[i].collider = 0;
+    memset(rebounds->change, 0, 3 * system->view.n * sizeof *rebounds->change);
+    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
+        if (cs_scene_colliders(system->scene)[c].mesh.present)
+            continue;
+        struct search search = {
+            .system = system, .collider = c, .h = h, .x = x, .v = v, .f = f};
+        cs_posed_collider_law_at(system, c, t, &search.near);
+        const struct cs_posed_collider *pose = &search.near.collider;
+        search.fastest = dot(pose->spin, pose->spin) > 0
+                             ? HUGE_VAL
+                             : sqrt(dot(pose->velocity, pose->velocity));
+        cs_vector_parallel_for(system->view.n, find_all, &search);
+    }
+    rebounds->any = false;
+    for (size_t i = 0; i < system->view.n; i++)
+        rebounds->any |= rebounds->list[i].collider > 0;
+}
+
+void cs_rebounds_move(const struct cs_system *system, double h, double *x, double *v) {
+    const size_t n = system->view.n;
+    const double *change = system->rebounds->change;
+    system->rebounds->judged = true;
+    for (size_t i = 0; i < n; i++) {
+        const struct cs_rebound *rebound = system->rebounds->list + i;
+        for (size_t k = i, c = 0; c < 3 && rebound->collider; k += n, c++) {
+            v[k] += change[k];
+            x[k] += h * change[k] + rebound->displacement * rebound->g[c];
+        }
+    }
+}
+
+bool cs_rebounds_resolve_step(const struct cs_system *system, double t1, const double *x1) {
+    const size_t n = system->view.n;
+    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
+        const struct cs_collider_params *params = system->collider_params + k;
+        const double range = params->range, stiffness = params->k;
+        struct cs_posed_collider pose;
+        cs_posed_collider_at(system, k, t1, &pose);
+        for (size_t i = 0; i < n; i++) {
+            const struct cs_rebound *rebound = system->rebounds->list + i;
+            if (rebound->collider != k + 1)
+                continue;
+            const double p[3] = {x1[i], x1[n + i], x1[2 * n + i]};
+            double g[3], hessian[6];
+            const double d1 = rebound->distance;
+            const double d = cs_posed_collider_smooth_distance(&pose, p, g, hessian),
+                         s = d1 - d;
+            const struct cs_barrier law = cs_barrier_at(d1, range, stiffness);
+            const double departure = fabs(cs_barrier_energy(d, range, stiffness) -
+                                          cs_barrier_energy(d1, range, stiffness) -
+                                          law.force * s - 0.5 * law.stiffness * s * s);
+            // nor deeper into the pole of psi than the flight
+            if (!(departure <= DEPARTURE_MAX * rebound->energy) ||
+                (d1 > 0 && d < 0.5 * fmin(CS_BARRIER_CORE * range, d1)))
+                return false;
+        }
+    }
+    return true;
+}
+
+void cs_rebound_add_block(const struct cs_rebound *rebound, const struct cs_matrix *matrix,
+                          double b[6]) {
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    const double drag = -matrix->cd * rebound->drag;
+    const double along = -matrix->ck * rebound->stiffness - drag;
+    for (int e = 0; e < 6; e++)
+        b[e] += along * rebound->g[row[e]] * rebound->g[column[e]] +
+                (row[e] == column[e] ? drag : 0);
+}
