@@ -116,7 +116,7 @@ static void plan_contact(struct cs_plan *plan, const struct cs_scene *scene, boo
                ? (scene->contact.friction_law == CS_FRICTION_BRISTLES
                       ? "no friction on colliders that are no meshes"
                       : "contact.friction_law is smooth")
-               : NULL);
+               : "no contact by force with a collider");
     const bool shown = render && scene->render.look == CS_LOOK_CROSSINGS;
     const bool wanted = cs_scene_crossings(scene) != CS_CROSSINGS_IGNORE;
     decide(plan, CS_FEATURE_CROSSINGS, wanted || shown,

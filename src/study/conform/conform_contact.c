@@ -11,6 +11,7 @@
 #include "study/conform/conform_probe.h"
 
 #include <math.h>
+#include <string.h>
 
 #define G     9.81
 #define MU    0.3
@@ -185,6 +186,15 @@ void cs_check_contact_energy(const struct cs_conform *card, struct cs_conform_ro
     cs_probe_close(&sheet);
 }
 
+/* True if the step is the user's to choose: the method has a default for dt, and 0 is none. Such
+ * a step is made short against the contact, as its user would. */
+static bool takes_given_step(const struct cs_integrator *method) {
+    for (uint32_t k = 0; k < method->n_options; k++)
+        if (!strcmp(method->options[k].name, "dt"))
+            return method->options[k].def > 0;
+    return false;
+}
+
 /* Least and largest fraction of the energy that throws at a speed keep, over phases: where in a
  * step the sheet meets the floor. Returns false if a run ended. */
 static bool throw_sheets(const struct cs_conform *card, struct cs_conform_row *row,
@@ -199,6 +209,8 @@ static bool throw_sheets(const struct cs_conform *card, struct cs_conform_row *r
         double start = (double)NAN;
         if (cs_probe_open(&sheet, card, card->method, THROW, -speed, height))
             start = cs_probe_energy(&sheet);
+        if (takes_given_step(card->method))
+            cs_probe_set_level(&sheet, 0.03 * THROW_RANGE / speed, 1, 1, 0);
         done = cs_probe_run(&sheet, THROW_FRAMES);
         if (done) {
             const double share = cs_probe_energy(&sheet) / start;
