@@ -112,7 +112,7 @@ const struct cs_integrator bdf2 = {
     .source = "Gear 1971; Choi, Ko 2002",
     .order = 2,
     .order_damped = 2,
-    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE | CS_NEED_SPRINGS,
+    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE | CS_NEED_LAGGED_FRICTION | CS_NEED_SPRINGS,
     .traits = CS_IMPLICIT | CS_MULTISTEP,
     .create = create,
 };

@@ -216,7 +216,7 @@ const struct cs_integrator gauss = {
     .source = "Hairer, Lubich, Wanner 2006, sec. II.1.3; Houwen, Swart 1997",
     .order = 4,
     .order_damped = 4,
-    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE,
+    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE | CS_NEED_LAGGED_FRICTION,
     .traits = CS_IMPLICIT | CS_SYMPLECTIC,
     .create = create,
 };

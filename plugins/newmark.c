@@ -160,7 +160,7 @@ const struct cs_integrator newmark = {
     .source = "Newmark 1959; Hilber et al. 1977; Chung, Hulbert 1993",
     .order = 2,
     .order_damped = 2,
-    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE,
+    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE | CS_NEED_LAGGED_FRICTION,
     .traits = CS_IMPLICIT | CS_MULTISTEP,
     .create = create,
 };

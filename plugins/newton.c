@@ -7,7 +7,11 @@
  * 2. The linear solve gets the tolerance 1e-3, or a looser one that suffices: half of goal /
  *    |r|. The impulse, and with it the goal, moves with u.
  * 3. du from A du = -r. A is clamped while |r| >= 0.1 impulse, else exact.
- * 4. The line search accepts a length, or the iteration ends. */
+ * 4. The line search accepts a length, or the iteration ends.
+ *
+ * Where that fails and contact has friction, the same with lagged friction goes on from the
+ * last u, in outer iterations (iterate_lags). A linear solve that fails ends the iteration
+ * without a solution: the method then tries a shorter step. */
 #include "newton.h"
 
 #include <float.h>
@@ -26,6 +30,22 @@
 #define LINE_HALVINGS 12
 #define LINE_DECREASE 1e-4
 
+/* Share of P below which a slope is lost in its rounding: P sums 1e4 and more numbers. */
+#define MERIT_NOISE 1e-11
+
+/* An iteration with friction ends if so many steps do not lower |r| to this share of its
+ * smallest value. With true friction it is then in a circle, mostly of two states. Chosen by
+ * trial: sheets that clash took 0.3 to 0.5 fewer linear iterations with 4 than with 10, and
+ * 0.08 with 2 than with 4. */
+#define IDLE_GAIN   0.9
+#define IDLE        2
+#define IDLE_LAGGED 10
+
+/* Outer iterations, and the residual to which each solves, relative to the one that it starts
+ * from: they gain a factor of 5 to 60 each, so that more would be lost at the next. */
+#define OUTER_MAX   20
+#define OUTER_SHARE 0.05
+
 enum cs_step newton_init(struct newton *newton, const struct cs_host *host, double rtol,
                          int64_t iterations) {
     const size_t n = host->view->n;
@@ -36,6 +56,9 @@ enum cs_step newton_init(struct newton *newton, const struct cs_host *host, doub
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         if (!(*arrays[k] = host->alloc(host->ctx, 3 * n * sizeof(double))))
             return CS_STEP_FAIL;
+    if (CS_HAS(host, lag_friction) && host->lag_friction &&
+        !(newton->friction = host->alloc(host->ctx, 3 * n * sizeof(double))))
+        return CS_STEP_FAIL;
     for (size_t i = 0; i < n; i++)
         newton->mass += host->view->inv_mass[i] > 0 ? host->view->mass[i] : 0;
     return CS_STEP_OK;
@@ -93,8 +116,10 @@ static enum cs_step find_direction(struct newton *newton, const struct newton_st
     const struct cs_view *view = host->view;
     const size_t n = view->n;
     /* far from the solution only the clamped matrix is sure to give a direction downhill */
-    const uint32_t flags =
-        newton->norm < NEAR * newton->impulse ? 0 : CS_SOLVE_PSD | CS_SOLVE_BOUND;
+    const bool near = newton->norm < NEAR * newton->impulse;
+    // lagged friction is convex: its own slope goes downhill
+    const uint32_t flags = CS_SOLVE_MAY_FAIL | (near ? 0 : CS_SOLVE_PSD) |
+                           (near || newton->lagged ? 0 : CS_SOLVE_BOUND);
     enum cs_step status =
         host->solve_setup(host->ctx, stage->t, newton->x, newton->v, 1, -stage->s * stage->gv,
                           -stage->s * stage->gx, flags);
@@ -115,7 +140,8 @@ static enum cs_step find_direction(struct newton *newton, const struct newton_st
     return host->solve(host->ctx, newton->rhs, rtol, newton->du);
 }
 
-/* P(u) + s w.(u - u0): inertia and (s/gx) times the potential energy at X. Sets X and V. */
+/* P(u) + s w.(u - u0): inertia, (s/gx) times the potential energy at X, and (s/gv) times that
+ * of lagged friction at V, whose force goes to newton->friction. Sets X and V. */
 static double potential(struct newton *newton, const struct newton_stage *stage,
                         const double *u) {
     const struct cs_host *host = newton->host;
@@ -127,6 +153,9 @@ static double potential(struct newton *newton, const struct newton_stage *stage,
             const double du = u[c * n + i] - stage->ub[c * n + i];
             inertia += 0.5 * host->view->mass[i] * du * du;
         }
+    if (newton->lagged)
+        inertia += stage->s / stage->gv *
+                   host->friction_potential(host->ctx, newton->v, newton->friction);
     return inertia +
            stage->s / stage->gx * host->energy(host->ctx, stage->t, newton->x, newton->zeros);
 }
@@ -164,65 +193,143 @@ static double longest_move(struct newton *newton, const struct newton_stage *sta
     return share;
 }
 
+/* The merit along du: P at the start of a search, and s w.du of the frozen forces. */
+struct merit {
+    double start, work;
+};
+
+/* Lagged friction is among the forces without energy, but P has its potential. */
+static struct merit merit_at_start(struct newton *newton, const struct newton_stage *stage) {
+    const struct cs_host *host = newton->host;
+    const size_t n3 = 3 * (size_t)host->view->n;
+    struct merit merit = {.start = potential(newton, stage, newton->u_start)};
+    host->force(host->ctx, stage->t, newton->x, newton->v, CS_PART_WITHOUT_ENERGY, newton->f);
+    merit.work = host->vector->dot(n3, newton->f, newton->du);
+    if (newton->lagged)
+        merit.work -= host->vector->dot(n3, newton->friction, newton->du);
+    merit.work *= stage->s;
+    return merit;
+}
+
 /* Line search from u along du: accepts the first a that lowers |r| by 1e-4 a, or P by 1e-4 of
  * what its slope promises. P is evaluated only if |r| fails at first: it costs an energy and
- * a force more. Returns false if no length is accepted; u is then the last one tried. */
+ * a force more. With lagged friction P alone decides: with both tests an iteration may run in
+ * circles, where each undoes what the other has gained. |r| then decides only where the slope
+ * is lost in the rounding of P. Returns false if no length is accepted; u is then the last one
+ * tried. */
 static bool search(struct newton *newton, const struct newton_stage *stage, double *u) {
     const struct cs_host *host = newton->host;
     const size_t n3 = 3 * (size_t)host->view->n;
     const double norm = newton->norm;
     const double slope = host->vector->dot(n3, newton->r, newton->du);
-    double start = (double)NAN, work = 0;
+    struct merit merit = {.start = (double)NAN};
     memcpy(newton->u_start, u, n3 * sizeof *u);
     double a = longest_move(newton, stage);
     for (int k = 0; a > 0 && k <= LINE_HALVINGS; k++, a /= 2) {
         host->vector->linear_sum(n3, 1, newton->u_start, a, newton->du, u);
         evaluate(newton, stage, u);
-        if (newton->norm <= (1 - LINE_DECREASE * a) * norm)
+        const bool falls = newton->norm <= (1 - LINE_DECREASE * a) * norm;
+        if (falls && !newton->lagged)
             return true;
-        if (isnan(start)) {
-            // only now: most searches end above
-            start = potential(newton, stage, newton->u_start);
-            host->force(host->ctx, stage->t, newton->x, newton->v, CS_PART_WITHOUT_ENERGY,
-                        newton->f);
-            work = stage->s * host->vector->dot(n3, newton->f, newton->du);
-        }
-        if (potential(newton, stage, u) - a * work <= start + LINE_DECREASE * a * slope &&
+        if (isnan(merit.start)) // only now: most searches end above
+            merit = merit_at_start(newton, stage);
+        const double now = potential(newton, stage, u);
+        if (falls && -slope < MERIT_NOISE * fabs(merit.start))
+            return true;
+        if (now - a * merit.work <= merit.start + LINE_DECREASE * a * slope &&
             isfinite(newton->norm))
             return true;
     }
     return false;
 }
 
-enum cs_step newton_solve(struct newton *newton, const struct newton_stage *stage, double *u,
-                          bool *converged) {
+/* True if the residual is as small as asked, or as rounding lets it be: below the rounding
+ * floor an iteration that gains little is the last. before: |r| one iteration ago. */
+static bool is_solved(const struct newton *newton, const struct newton_stage *stage,
+                      const double *u, double before, double *goal) {
+    const double noise = newton_rounding_floor(newton, stage, u);
+    const double enough = newton->rtol * newton->impulse;
+    *goal = enough + newton->residual_floor * noise;
+    return newton->norm <= *goal ||
+           (newton->norm <= enough + noise && newton->norm > before / 2);
+}
+
+/* Newton's iteration with true friction, or with lagged friction. Where contact has friction it
+ * ends early if it gains nothing. */
+static enum cs_step iterate(struct newton *newton, const struct newton_stage *stage, double *u,
+                            bool *converged) {
+    const int idle_max = newton->lagged ? IDLE_LAGGED : IDLE;
+    double before = HUGE_VAL, best = HUGE_VAL, goal;
+    int idle = 0;
     *converged = false;
-    if (is_limited(newton))
-        shorten_start(newton, stage, u);
     evaluate(newton, stage, u);
-    double before = HUGE_VAL;
     for (int64_t k = 0; isfinite(newton->norm); k++) {
-        const double noise = newton_rounding_floor(newton, stage, u), rtol = newton->rtol;
-        const double goal = rtol * newton->impulse + newton->residual_floor * noise;
-        // below the rounding floor an iteration that gains little is the last
-        const bool ends =
-            newton->norm <= rtol * newton->impulse + noise && newton->norm > before / 2;
-        *converged = newton->norm <= goal || ends;
-        if (*converged || k == newton->iterations)
+        *converged = is_solved(newton, stage, u, before, &goal);
+        idle = newton->norm < IDLE_GAIN * best ? 0 : idle + 1;
+        best = idle ? best : newton->norm;
+        if (*converged || k == newton->iterations || (newton->friction && idle == idle_max))
             break;
         before = newton->norm;
         // the goal moves with the impulse: aim at half of it
         const double enough = 0.5 * goal / newton->norm;
         const enum cs_step status =
             find_direction(newton, stage, enough > LINEAR_RTOL ? enough : LINEAR_RTOL);
+        newton->linear_failed = status == CS_STEP_FAIL;
         if (status != CS_STEP_OK)
-            return status;
+            return newton->linear_failed ? CS_STEP_OK : status;
         if (!search(newton, stage, u)) {
-            *converged = newton->norm <= rtol * newton->impulse + noise;
+            *converged = is_solved(newton, stage, u, 0, &goal);
             break;
         }
     }
     return CS_STEP_OK;
+}
+
+/* Solves with friction lagged at newton->x, until |r| <= rtol |M (u - ub)|. */
+static enum cs_step solve_lagged(struct newton *newton, const struct newton_stage *stage,
+                                 double rtol, double *u, bool *converged) {
+    const struct cs_host *host = newton->host;
+    const double asked = newton->rtol;
+    host->lag_friction(host->ctx, stage->t, newton->x);
+    newton->lagged = true;
+    newton->rtol = rtol;
+    const enum cs_step status = iterate(newton, stage, u, converged);
+    newton->lagged = false;
+    newton->rtol = asked;
+    host->lag_friction(host->ctx, stage->t, NULL);
+    return status;
+}
+
+/* Outer iterations from u, where true friction has failed: each solves with friction lagged at
+ * the last solution, until the residual with true friction is small. They end early if they
+ * gain nothing. */
+static enum cs_step iterate_lags(struct newton *newton, const struct newton_stage *stage,
+                                 double *u, bool *converged) {
+    double before = HUGE_VAL, goal;
+    evaluate(newton, stage, u);
+    for (int k = 0; k < OUTER_MAX && newton->norm < before; k++) {
+        before = k ? newton->norm : HUGE_VAL;
+        const double rtol =
+            fmax(newton->rtol / 2, OUTER_SHARE * newton->norm / newton->impulse);
+        const enum cs_step status = solve_lagged(newton, stage, rtol, u, converged);
+        if (status != CS_STEP_OK || !*converged)
+            return status;
+        evaluate(newton, stage, u);
+        *converged = is_solved(newton, stage, u, 0, &goal);
+        if (*converged)
+            break;
+    }
+    return CS_STEP_OK;
+}
+
+enum cs_step newton_solve(struct newton *newton, const struct newton_stage *stage, double *u,
+                          bool *converged) {
+    if (is_limited(newton))
+        shorten_start(newton, stage, u);
+    const enum cs_step status = iterate(newton, stage, u, converged);
+    if (status != CS_STEP_OK || *converged || !newton->friction || !isfinite(newton->norm))
+        return status;
+    return iterate_lags(newton, stage, u, converged);
 }
 
 enum cs_step newton_step(struct newton *newton, const struct newton_stage *stage, double *u,
@@ -233,8 +340,9 @@ enum cs_step newton_step(struct newton *newton, const struct newton_stage *stage
     if (!isfinite(newton->norm))
         return CS_STEP_OK;
     const enum cs_step status = find_direction(newton, stage, newton->rtol);
+    newton->linear_failed = status == CS_STEP_FAIL;
     if (status != CS_STEP_OK)
-        return status;
+        return newton->linear_failed ? CS_STEP_OK : status;
     newton->host->vector->linear_sum(n3, 1, u, 1, newton->du, u);
     set_positions(newton, stage, u);
     *converged = isfinite(newton->host->vector->dot(n3, newton->x, newton->v));

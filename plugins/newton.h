@@ -17,6 +17,14 @@
  * and wind, have no potential: their force w is frozen at the start u0 of the search, where P
  * then has the slope of r.
  *
+ * Friction is no such force: its limit mu N follows the positions without delay, and in a fast
+ * contact P with frozen friction and |r| disagree. An iteration that accepts either then runs
+ * in circles. Where contact has friction and the iteration stalls, it goes on with friction
+ * lagged at its last positions (Li et al. 2020, sec. 5). That has a convex potential R of the
+ * velocities (host->friction_potential), P(u) = ... + (s/gv) R(V) has the slope of r, and P
+ * alone decides the line search. Friction is lagged again at each solution until the residual
+ * with true friction is small: equation and order of a method are as before.
+ *
  * Norms of r are |r|^2 = sum r_i^2 / m_i. Done: |r| <= rtol |M (u - ub)|, the impulse of the
  * stage, or |r| below what rounding of x and u alone may cause.
  */
@@ -33,8 +41,10 @@
     CS_OPTION(struct_, dt, "s", 0, 0, 10, "maximum step; 0: one step per frame"),              \
         CS_OPTION(struct_, rtol, "", 1e-6, 1e-14, 0.1,                                         \
                   "residual of Newton's iteration, relative to the impulse of the step"),      \
-        CS_OPTION(struct_, iterations, "", 30, 1, 1000,                                        \
-                  "maximum Newton iterations; then the step is halved, up to 8 times")
+        CS_OPTION(                                                                             \
+            struct_, iterations, "", 30, 1, 1000,                                              \
+            "maximum Newton iterations; then friction of contact is lagged, or the step "      \
+            "is halved, up to 8 times")
 
 /* The equation of one stage, in the symbols above; the vectors are borrowed. */
 struct newton_stage {
@@ -57,6 +67,9 @@ struct newton {
     double *r, *f;              /* (3,n) */
     double *rhs, *du, *u_start; /* (3,n) */
     double *zeros;              /* (3,n): stays 0 */
+    double *friction;           /* (3,n): lagged friction; NULL: no contact has friction */
+    bool lagged;                /* friction is lagged */
+    bool linear_failed;         /* a linear solve ended the last solution */
     double norm, impulse;       /* |r| and |M (u - ub)| of the last u, in sqrt(J) */
     double mass;                /* kg, of the free particles */
     bool line_search_blocked;   /* a move of the last solution was cut, for it went through a

@@ -84,7 +84,7 @@ const struct cs_integrator backward_euler = {
     .source = "Gast et al. 2015; Martin et al. 2011",
     .order = 1,
     .order_damped = 1,
-    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE,
+    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE | CS_NEED_LAGGED_FRICTION,
     .traits = CS_IMPLICIT,
     .create = create_euler,
 };
@@ -96,7 +96,7 @@ const struct cs_integrator implicit_midpoint = {
     .source = "Hairer, Lubich, Wanner 2006, sec. II.1",
     .order = 2,
     .order_damped = 2,
-    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE,
+    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE | CS_NEED_LAGGED_FRICTION,
     .traits = CS_IMPLICIT | CS_SYMPLECTIC,
     .create = create_midpoint,
 };

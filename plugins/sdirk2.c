@@ -76,7 +76,7 @@ const struct cs_integrator sdirk2 = {
     .source = "Alexander 1977",
     .order = 2,
     .order_damped = 2,
-    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE,
+    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE | CS_NEED_LAGGED_FRICTION,
     .traits = CS_IMPLICIT,
     .create = create,
 };

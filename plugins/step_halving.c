@@ -31,6 +31,11 @@ static enum cs_step fail_at_shortest_part(struct fixed_step *loop, double t, dou
                           "a step of %.3g s at t = %.9g s, after %u halvings, still moves a "
                           "spring's ends by more than half its length",
                           h, t, loop->max_depth);
+    if (self->newton->linear_failed)
+        return host->fail(host->ctx,
+                          "the linear solver fails in a step of %.3g s at t = %.9g s, after %u "
+                          "halvings",
+                          h, t, loop->max_depth);
     return host->fail(host->ctx,
                       "Newton's iteration fails in a step of %.3g s at t = %.9g s, after %u "
                       "halvings: the residual is %.3g of the impulse, expected %.3g",

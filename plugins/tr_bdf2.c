@@ -81,7 +81,7 @@ const struct cs_integrator tr_bdf2 = {
     .source = "Bank et al. 1985; Hosea, Shampine 1996",
     .order = 2,
     .order_damped = 2,
-    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE,
+    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE | CS_NEED_LAGGED_FRICTION,
     .traits = CS_IMPLICIT,
     .create = create,
 };

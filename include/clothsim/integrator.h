@@ -67,7 +67,9 @@ enum cs_need {
     /* Groups that keep their shape, in the view. The host refuses scenes without them. */
     CS_NEED_CLUSTERS = 1u << 5,
     /* euler_finish: euler_setup steps particles in impact with colliders alone. */
-    CS_NEED_REBOUNDS = 1u << 6
+    CS_NEED_REBOUNDS = 1u << 6,
+    /* lag_friction and friction_potential. */
+    CS_NEED_LAGGED_FRICTION = 1u << 7
 };
 
 /* Properties of the method. The program shows them, and `clothsim conform` tests them. */
@@ -107,7 +109,10 @@ enum cs_solve_flag {
     CS_SOLVE_BOUND = 1u << 1,
     /* Of euler_setup: take friction by its derivative, as solve_setup does. For methods that
      * need more of A than one step of implicit Euler. */
-    CS_SOLVE_TANGENT = 1u << 2
+    CS_SOLVE_TANGENT = 1u << 2,
+    /* A solve that fails is no failure of the run: it returns CS_STEP_FAIL and says nothing,
+     * and the method goes another way. Not in hosts without lag_friction. */
+    CS_SOLVE_MAY_FAIL = 1u << 3
 };
 
 /* The calls of the host. Pass ctx as the first argument of every call. */
@@ -236,6 +241,18 @@ struct cs_host {
      * do, which b leaves out. Ask max_step_fraction next, which judges particles in impact by
      * a rule of their own. */
     void (*euler_finish)(void *ctx, double *x, double *v);
+
+    /* Only where contact by force has friction, else NULL; and not in hosts whose size ends
+     * before it: ask CS_HAS(host, lag_friction) first. Both need CS_NEED_LAGGED_FRICTION. For
+     * methods that minimise: with its normal forces N and directions n at fixed positions,
+     * friction has a potential in the velocities (Li et al. 2020),
+     *   R(v) = sum mu N (sqrt(T.T + ev^2) - ev),  T the sliding velocity of each contact. */
+
+    /* [advance] From now on force, jvp, diagonal, solve_setup and bounds_at have -dR/dv of the
+     * contacts at (t, x) in place of friction. x NULL: friction again. End it before commit. */
+    void (*lag_friction)(void *ctx, double t, const double *x);
+    /* [advance] R in W at v, and f (3,n) = -dR/dv in N: the lagged friction alone. */
+    double (*friction_potential)(void *ctx, const double *v, double *f);
 };
 
 /* Counts that only the method knows. */

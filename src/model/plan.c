@@ -127,6 +127,21 @@ static void plan_contact(struct cs_plan *plan, const struct cs_scene *scene, boo
            "crossings is ignore");
 }
 
+/* Tells whether a contact by force has friction, now or after an event. */
+static bool has_friction(const struct cs_scene *scene) {
+    const uint32_t n = cs_scene_surfaces(scene);
+    bool any = cs_event_key_changes(scene, ".friction");
+    double friction;
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        any |= cs_scene_colliders(scene)[c].friction > 0;
+    // friction that sticks to colliders has a memory, and is not lagged
+    any &= scene->contact.law == CS_CONTACT_FORCE && !cs_scene_friction_sticks(scene);
+    for (uint32_t a = 0; a < n; a++)
+        for (uint32_t b = a; b < n; b++)
+            any |= cs_scene_bodies_collide(scene, a, b, &friction) && friction > 0;
+    return any;
+}
+
 /* Features that depend on the integrator. */
 static void plan_needs(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs) {
     const char *idle = "the integrator does not ask for it";
@@ -136,6 +151,10 @@ static void plan_needs(struct cs_plan *plan, const struct cs_scene *scene, uint3
     decide(plan, CS_FEATURE_CLUSTERS, needs & CS_NEED_CLUSTERS && matched,
            "bodies have shape_matching, and the integrator asks for it",
            needs & CS_NEED_CLUSTERS ? "no body has shape_matching" : idle);
+    const bool lags = needs & CS_NEED_LAGGED_FRICTION;
+    decide(plan, CS_FEATURE_LAGGED_FRICTION, lags && has_friction(scene),
+           "contact has friction, and the integrator asks for it",
+           lags ? "no contact by force with friction" : idle);
     decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE,
            cs_multigrid_is_used(scene) ? "the integrator asks for it; multigrid for stiff steps"
                                        : "the integrator asks for it",

@@ -7,6 +7,7 @@
 
 #include "base/vector.h"
 #include "model/contact/ccd/step_limit.h"
+#include "model/contact/lagged_friction.h"
 #include "model/contact/rebound.h"
 #include "model/force/diagnostics.h"
 #include "model/force/normals.h"
@@ -164,6 +165,8 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
     cs_stage_end(host, CS_STAGE_SOLVE, begin);
     cs_trace_vector(host, "solve", "b", host->advance_check.last_commit, b);
     cs_trace_vector(host, "solve", "u", host->advance_check.last_commit, u);
+    if (end != CS_LINEAR_DONE && host->solve_may_fail)
+        return CS_STEP_FAIL;
     if (end != CS_LINEAR_DONE)
         return cs_run_host_fail_solve(host, end, b, iterations, residual);
     return CS_STEP_OK;
@@ -247,6 +250,35 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
     return error->status;
 }
 
+/* Friction of the contacts at (t, x) from now on; x NULL: true friction. */
+static void host_lag_friction(void *ctx, double t, const double *x) {
+    struct cs_run_host *host = ctx;
+    struct cs_lagged_friction *lagged = host->run->system->lagged_friction;
+    const double begin = cs_stage_begin(host);
+    if (x)
+        cs_move_values(host, t), cs_lagged_friction_begin(lagged, t, x);
+    else
+        cs_lagged_friction_end(lagged);
+    cs_stage_end(host, CS_STAGE_CONTACT, begin);
+    cs_trace_vector(host, "lagged friction", "x", t, x);
+}
+
+static double host_friction_potential(void *ctx, const double *v, double *f) {
+    struct cs_run_host *host = ctx;
+    const double begin = cs_stage_begin(host);
+    const double sum = cs_lagged_friction_potential(host->run->system->lagged_friction, v, f);
+    cs_stage_end(host, CS_STAGE_CONTACT, begin);
+    return sum;
+}
+
+static enum cs_status add_lagged_friction(struct cs_run_host *host, struct cs_error *error) {
+    if (!begin(host, CS_FEATURE_LAGGED_FRICTION))
+        return CS_OK;
+    host->table.lag_friction = host_lag_friction;
+    host->table.friction_potential = host_friction_potential;
+    return cs_lagged_friction_build(host->run->system, &host->arena, error);
+}
+
 /* The longest step in s that moves no free particle deeper than penetration_max behind a
  * collider, or by that much deeper than it is. */
 static double host_longest_step(void *ctx, double t, const double *x, const double *v) {
@@ -316,7 +348,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .euler_setup = cs_host_euler_setup,
     };
     cs_blow_up_check_set(&host->blow_up, system, 0);
-    if (add_rate(host, error) || add_contact(host, error))
+    if (add_rate(host, error) || add_contact(host, error) || add_lagged_friction(host, error))
         return error->status;
     // only methods with CS_NEED_SOLVE pay for the solver's memory and the copies of the state
     if (!begin(host, CS_FEATURE_SOLVER))

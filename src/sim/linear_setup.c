@@ -63,6 +63,7 @@ enum cs_step cs_host_solve_setup(void *ctx, double t, const double *x, const dou
     host->run->counts.solve_setups++;
     // the b of a former euler_setup belongs to another A
     host->euler.b = NULL;
+    host->solve_may_fail = flags & CS_SOLVE_MAY_FAIL;
     memcpy(host->setup_x, x, bytes);
     if (host->setup_v)
         memcpy(host->setup_v, v, bytes);

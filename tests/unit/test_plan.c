@@ -81,6 +81,7 @@ TEST(each_key_builds_its_feature) {
          least | BIT(EVENTS) | BIT(VIEWPOINT_FORCES)},
         {CLOTH("") "}", CS_NEED_SPRINGS, least | BIT(SPRING_LIST)},
         {CLOTH("") "}", CS_NEED_SOLVE, least | BIT(SOLVER)},
+        {CLOTH("") "}", CS_NEED_LAGGED_FRICTION, least},
         {CLOTH("") "}", CS_NEED_CLUSTERS, least},
         {CLOTH(", \"shape_matching\": {}") "}", 0, FORCE(gravity)},
         {CLOTH(", \"shape_matching\": {}") "}", CS_NEED_CLUSTERS,

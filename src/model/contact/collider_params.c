@@ -4,6 +4,7 @@
 
 #include "base/vec3.h"
 #include "model/contact/approach.h"
+#include "model/contact/lagged_friction.h"
 
 #include <math.h>
 
@@ -68,11 +69,12 @@ void cs_posed_collider_law_at(const struct cs_system *system, uint32_t collider,
     const struct cs_scene *scene = system->scene;
     const double friction = cs_scene_colliders(scene)[collider].friction;
     const bool sticks = scene->contact.friction_law == CS_FRICTION_BRISTLES;
-    *near = (struct cs_posed_collider_law){.params = system->collider_params[collider],
-                                           .friction = sticks ? 0 : friction,
-                                           .sticking_friction = sticks ? friction : 0,
-                                           .friction_speed = scene->contact.friction_speed,
-                                           .damping = scene->contact.damping};
+    *near = (struct cs_posed_collider_law){
+        .params = system->collider_params[collider],
+        .friction = sticks || cs_lagged_friction_acts(system) ? 0 : friction,
+        .sticking_friction = sticks ? friction : 0,
+        .friction_speed = scene->contact.friction_speed,
+        .damping = scene->contact.damping};
     cs_posed_collider_at(system, collider, t, &near->collider);
 }
 

@@ -1,10 +1,12 @@
 /* Contact of particles with colliders by force: each particle feels the law of point_contact.h
  * from each collider in whose range it is. Particles act one by one, so the matrix has diagonal
  * blocks only. Colliders come in the scene's order, which is the order of the sums. */
+#include "base/pool.h"
 #include "base/vector.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/friction_anchors.h"
 #include "model/contact/friction_chord.h"
+#include "model/contact/lagged_friction.h"
 #include "model/contact/rebound.h"
 #include "model/force/term.h"
 #include "model/force/terms.h"
@@ -14,8 +16,8 @@
 
 /* Contact force of spheres and planes on rows of particles, vectorised. */
 
-/* particles per row */
-enum { ROW = 64 };
+/* particles per row, and per chunk of stored friction */
+enum { ROW = 64, STORED = 1024 };
 
 /* Returns whether a collider is a plane or sphere without rotation, whose matter moves at one
  * velocity, and friction on it is smooth. */
@@ -366,6 +368,37 @@ static void add_bound_at(const struct cs_system *system, const struct cs_eval *a
     }
 }
 
+/* One call of store_friction. */
+struct storing {
+    const struct cs_system *system;
+    const double t, *x;
+    uint32_t first;
+};
+
+static uint32_t friction_chunks(const struct cs_system *system) {
+    return (system->view.n + STORED - 1) / STORED;
+}
+
+static void store_chunk(void *arg, uint32_t chunk) {
+    const struct storing *storing = arg;
+    const struct cs_system *system = storing->system;
+    const uint32_t n = system->view.n, first = chunk * STORED;
+    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
+        const struct cs_posed_collider_law near = near_of(system, c, storing->t);
+        struct cs_point_contact touch;
+        for (uint32_t i = first; i < n && i < first + STORED; i++)
+            if (system->inv_mass[i] > 0 && touch_of(&near, n, storing->x, NULL, i, &touch))
+                cs_lagged_friction_store(system->lagged_friction, storing->first + chunk,
+                                         &touch, 1, &i, &(double){1});
+    }
+}
+
+static void store_friction(const struct cs_system *system, double t, const double *x,
+                           uint32_t first) {
+    struct storing storing = {system, t, x, first};
+    cs_pool_run(friction_chunks(system), store_chunk, &storing);
+}
+
 const struct cs_term cs_term_contact = {
     .name = "contact force",
     .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
@@ -380,5 +413,7 @@ const struct cs_term cs_term_contact = {
     .work_column = "friction",
     .add_blocks = add_blocks,
     .add_approach = add_approach,
+    .friction_chunks = friction_chunks,
+    .store_friction = store_friction,
     .add_state_bound = add_bound_at,
 };

@@ -5,6 +5,7 @@
 #include "model/contact/contact_samples.h"
 #include "model/contact/friction_anchors.h"
 #include "model/contact/friction_chord.h"
+#include "model/contact/lagged_friction.h"
 #include "model/force/term.h"
 
 #include <math.h>
@@ -14,7 +15,7 @@
  * vertices of their edges and triangles. All functions use all threads. */
 
 /* quantity that is evaluated */
-enum ask { ASK_FORCE, ASK_CHANGE, ASK_APPROACH, ASK_ENERGY, ASK_MATRIX, ASK_BOUND };
+enum ask { ASK_FORCE, ASK_CHANGE, ASK_APPROACH, ASK_ENERGY, ASK_MATRIX, ASK_BOUND, ASK_LAGGED };
 
 /* One query for all chunks. */
 struct job {
@@ -23,6 +24,7 @@ struct job {
     enum ask ask;
     struct cs_eval eval;
     const struct cs_matrix *matrix;
+    uint32_t first; /* chunk of lagged friction that the first chunk goes to */
 };
 
 /* w_i f at each vertex */
@@ -112,7 +114,8 @@ static void answer_force(const struct job *job, const struct cs_posed_collider_l
 
 /* Evaluates one sample if it is in range and can move. */
 static void meet(const struct job *job, const struct cs_posed_collider_law *near,
-                 const struct cs_contact_sample_point *point, struct cs_contact_chunk *chunk) {
+                 const struct cs_contact_sample_point *point, uint32_t number) {
+    struct cs_contact_chunk *chunk = job->set->chunks + number;
     const struct cs_system *system = job->covers->system;
     struct cs_point_contact contact;
     struct cs_bristle found, *bristle = NULL;
@@ -124,6 +127,11 @@ static void meet(const struct job *job, const struct cs_posed_collider_law *near
         return;
     if (job->ask == ASK_ENERGY) {
         chunk->energy += cs_barrier_energy(contact.d, contact.range, contact.k);
+        return;
+    }
+    if (job->ask == ASK_LAGGED) {
+        cs_lagged_friction_store(system->lagged_friction, job->first + number, &contact,
+                                 point->n, point->particles, point->w);
         return;
     }
     struct cs_contact_entry *place = cs_contact_chunk_next(chunk);
@@ -180,9 +188,8 @@ static void do_chunk(void *arg, uint32_t number) {
     const struct cs_contact_sample_chunk *chunk = job->covers->chunks + number;
     const struct cs_posed_collider_law *near = job->covers->colliders + chunk->collider;
     const size_t n = job->covers->system->view.n;
-    struct cs_contact_chunk *found = job->set->chunks + number;
     double middle[3];
-    cs_contact_chunk_clear(found);
+    cs_contact_chunk_clear(job->set->chunks + number);
     const double all = box_of(job->eval.x, n, chunk->first, chunk->last, middle);
     if (!cs_posed_collider_is_near(&near->collider, near->params.range + all, middle))
         return;
@@ -193,7 +200,7 @@ static void do_chunk(void *arg, uint32_t number) {
         const double reach = near->params.range + reach_of(chunk, i, n, job->eval.x, middle);
         if (cs_posed_collider_is_near(&near->collider, reach, middle))
             for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
-                meet(job, near, &point, found);
+                meet(job, near, &point, number);
     }
 }
 
@@ -253,6 +260,20 @@ static void contact_samples_add_bound(struct cs_contact_samples *samples,
         .covers = samples, .set = &samples->current_set, .ask = ASK_BOUND, .eval = *at};
     do_chunks(&job);
     cs_contact_set_add_bound(&samples->current_set, stiffness, damping);
+}
+
+static uint32_t friction_chunks(const struct cs_system *system) {
+    return system->contact_samples->n_chunks;
+}
+
+static void store_friction(const struct cs_system *system, double t, const double *x,
+                           uint32_t first) {
+    struct job job = {.covers = system->contact_samples,
+                      .set = &system->contact_samples->current_set,
+                      .ask = ASK_LAGGED,
+                      .eval = {.t = t, .x = x},
+                      .first = first};
+    do_chunks(&job);
 }
 
 /* Returns whether a collider is round, so that it may need samples. */
@@ -346,5 +367,7 @@ const struct cs_term cs_term_cover = {
     .add_blocks = add_blocks,
     .add_matrix_product = add_product,
     .add_approach = add_approach,
+    .friction_chunks = friction_chunks,
+    .store_friction = store_friction,
     .add_state_bound = add_bound_at,
 };

@@ -95,6 +95,14 @@ struct cs_term {
      * may be NULL; this call, after all blocks of particles, adds the remaining ones. */
     void (*add_diagonal)(const struct cs_system *system, const struct cs_eval *at);
 
+    /* --- friction of contact, for methods that lag it (lagged_friction.h) --- */
+    /* Number of chunks of its contacts; the same for the whole run. NULL: no friction. */
+    uint32_t (*friction_chunks)(const struct cs_system *system);
+    /* Stores the friction of all contacts at (t, x) by cs_lagged_friction_store, in the chunks
+     * from `first` on. Set if friction_chunks is. With all threads. */
+    void (*store_friction)(const struct cs_system *system, double t, const double *x,
+                           uint32_t first);
+
     /* --- how strong it is --- */
     /* Adds its Gershgorin bounds that hold for the whole run, with the scene's present values.
      * NULL: it has none, or none that holds for every state. */

@@ -23,6 +23,7 @@
     X(VIEWPOINT_FORCES, "viewpoints")                                                          \
     X(SPRING_LIST, "spring list")                                                              \
     X(CLUSTERS, "clusters")                                                                    \
+    X(LAGGED_FRICTION, "lagged friction")                                                      \
     X(SOLVER, "linear solver")                                                                 \
     X(REBOUNDS, "rebounds")                                                                    \
     X(RENDER, "renderer")                                                                      \

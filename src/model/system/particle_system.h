@@ -27,6 +27,7 @@ struct cs_collider_params;
 struct cs_pairs;
 struct cs_contact_samples;
 struct cs_friction_anchors;
+struct cs_lagged_friction;
 struct cs_collider_motion;
 struct cs_surfaces;
 struct cs_points;
@@ -45,8 +46,9 @@ struct cs_system {
     double *area;            /* (n) each particle's part of the surface in m2; NULL: not used */
     double *normals; /* (3,n) at the positions of the last update; NULL: no force uses them */
     double *event_force; /* (3,n) m/s2, of events over an interval; NULL: no such event */
-    uint32_t *pinned, n_pinned;                /* (n_pinned) particles, ascending */
-    const struct cs_term *terms[CS_TERMS_MAX]; /* the forces that this scene has */
+    uint32_t *pinned, n_pinned;                    /* (n_pinned) particles, ascending */
+    const struct cs_term *terms[CS_TERMS_MAX + 1]; /* the forces that this scene has, and
+                                                      lagged friction */
     uint32_t n_terms;
     struct cs_collider_motion
         *motions;            /* (scene->colliders.n); NULL: no event moves a collider */
@@ -61,6 +63,8 @@ struct cs_system {
         *friction_anchors; /* anchors of friction that sticks; NULL: it is smooth */
     struct cs_rebounds
         *rebounds; /* particles that are stepped alone; NULL: none are (rebound.h) */
+    struct cs_lagged_friction
+        *lagged_friction; /* NULL unless the method asks for it (lagged_friction.h) */
     const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
     struct cs_points *points;       /* NULL unless colliders are meshes (surface_points.h) */
     struct cs_crossings *crossings; /* NULL unless asked for (body_pairs.h) */

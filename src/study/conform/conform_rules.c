@@ -29,7 +29,8 @@ static bool is_check(const char *name) {
 void cs_check_abi(const struct cs_conform *card, struct cs_conform_row *row) {
     const struct cs_integrator *method = card->method;
     const uint32_t needs = CS_NEED_JVP | CS_NEED_DIAGONAL | CS_NEED_ENERGY | CS_NEED_SPRINGS |
-                           CS_NEED_SOLVE | CS_NEED_CLUSTERS | CS_NEED_REBOUNDS,
+                           CS_NEED_SOLVE | CS_NEED_CLUSTERS | CS_NEED_REBOUNDS |
+                           CS_NEED_LAGGED_FRICTION,
                    traits = CS_IMPLICIT | CS_ADAPTIVE | CS_MULTISTEP | CS_SYMPLECTIC |
                             CS_LIBRARY_BITS | CS_NOT_GALILEAN | CS_EXPLICIT_OUTER;
     bool falls_off = false;

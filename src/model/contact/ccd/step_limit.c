@@ -4,6 +4,7 @@
 
 #include "model/contact/ccd/crossings.h"
 #include "model/contact/contact_samples.h"
+#include "model/contact/lagged_friction.h"
 #include "model/contact/narrow_phase/pair_step_check.h"
 #include "model/contact/rebound.h"
 #include "model/contact/step_check.h"
@@ -47,7 +48,8 @@ bool cs_step_limit_failed(const struct cs_system *system) {
     const struct cs_pairs *pairs = system->pairs;
     const struct cs_contact_samples *samples = system->contact_samples;
     return (pairs && pairs->failed) ||
-           (samples && (samples->current_set.failed || samples->matrix.failed));
+           (samples && (samples->current_set.failed || samples->matrix.failed)) ||
+           (system->lagged_friction && system->lagged_friction->set.failed);
 }
 
 /* Counts crossings only under the policy that stops a run at the first one. */

@@ -109,6 +109,7 @@ static bool answer(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
         return false;
     pairs->current_contacts = narrow->contacts;
     if (narrow->query != CS_CONTACT_QUERY_ENERGY &&
+        narrow->query != CS_CONTACT_QUERY_LAGGED_FRICTION &&
         !cs_active_contacts_gather(pairs->current_contacts))
         return false;
     if (narrow->psd &&
@@ -146,6 +147,15 @@ double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at) {
     for (uint32_t l = 0; l < pairs->candidates.n_chunks && pairs->current_contacts->n; l++)
         sum += pairs->current_contacts->chunks[l].energy;
     return sum;
+}
+
+void cs_pairs_store_friction(struct cs_pairs *pairs, double t, const double *x,
+                             uint32_t first) {
+    // any numbers do as velocities of particles, which store_lagged leaves out
+    struct cs_narrow_phase narrow = {.query = CS_CONTACT_QUERY_LAGGED_FRICTION,
+                                     .eval = {.t = t, .x = x, .v = x},
+                                     .first_lagged = first};
+    run(pairs, &narrow);
 }
 
 /* --- matrices --- */

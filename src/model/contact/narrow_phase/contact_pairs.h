@@ -99,6 +99,10 @@ void cs_pairs_add(const struct cs_pairs *pairs, size_t begin, size_t end, double
 /* Elastic energy in J. */
 double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at);
 
+/* Stores the friction of all pairs at (t, x) by cs_lagged_friction_store, in the chunks from
+ * `first` on: one for each chunk of the candidates. */
+void cs_pairs_store_friction(struct cs_pairs *pairs, double t, const double *x, uint32_t first);
+
 /* Evaluates the matrix terms. kept: for the solver, which will ask for products; the matrix
  * stays until the next such call. Otherwise the diagonal blocks alone are wanted, which bound
  * the whole matrix if matrix->bound is set. */

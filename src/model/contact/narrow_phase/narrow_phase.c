@@ -18,6 +18,7 @@
 #include "base/pool.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/friction_chord.h"
+#include "model/contact/lagged_friction.h"
 #include "model/contact/narrow_phase/pair_chord.h"
 #include "model/contact/surface_points.h"
 
@@ -119,6 +120,29 @@ static void add_alone(const struct work *work, const struct cs_pair_lanes *from,
     memcpy(part->weights, share.weight, sizeof share.weight);
     memcpy(part->block, share.block, sizeof share.block);
     add_turn(work, &reaction);
+}
+
+/* Stores the friction of a pair. Only points of colliders move: V without the particles. */
+static void store_lagged(const struct work *work, const struct cs_pair_lanes *from,
+                         uint32_t lane, const uint32_t at[4]) {
+    const struct cs_narrow_phase *narrow = work->narrow;
+    const struct cs_system *system = narrow->contacts->candidates->system;
+    const size_t n_points = system->surfaces->n_points;
+    const struct cs_body_pair_params params = {from->range[lane], from->k[lane],
+                                               from->friction[lane]};
+    const struct cs_feature_kind form = {from->is_edge[lane], from->is_off_plane[lane],
+                                         from->blend_radius[lane]};
+    struct cs_pair_contact reaction;
+    double p[4][3], v[4][3];
+    read(narrow->x, n_points, at, p);
+    read(narrow->v, n_points, at, v);
+    for (int k = 0; k < 4; k++)
+        if (at[k] < system->view.n)
+            memset(v[k], 0, sizeof v[k]);
+    cs_pair_contact_measure(&reaction, work->chunk->kind, form, params.range, p);
+    cs_pair_contact_set(&reaction, &params, &system->scene->contact, v);
+    cs_lagged_friction_store(system->lagged_friction, narrow->first_lagged + work->number,
+                             &reaction.contact, 4, at, reaction.weight);
 }
 
 /* --- in lanes --- */
@@ -227,9 +251,10 @@ static bool has_chord(const struct cs_narrow_phase *narrow) {
            narrow->matrix->chord;
 }
 
-/* points are gathered for all queries but energies and exact matrices */
+/* points are gathered for all queries but energies and those that go pair by pair */
 static bool has_rows(const struct cs_narrow_phase *narrow) {
-    return narrow->query != CS_CONTACT_QUERY_ENERGY && !is_in_set(narrow);
+    return narrow->query != CS_CONTACT_QUERY_ENERGY &&
+           narrow->query != CS_CONTACT_QUERY_LAGGED_FRICTION && !is_in_set(narrow);
 }
 
 /* Evaluates a block whose pairs begin at `first`. */
@@ -240,6 +265,9 @@ static void evaluate_block(const struct work *work, struct cs_pair_lanes *lanes,
         push(work, lanes);
     else if (work->narrow->query == CS_CONTACT_QUERY_BOUND)
         add_bounds(work, lanes, first);
+    else if (work->narrow->query == CS_CONTACT_QUERY_LAGGED_FRICTION)
+        for (uint32_t l = 0; l < lanes->n; l++)
+            store_lagged(work, lanes, l, work->chunk->points[first + l]);
     else if (!is_in_set(work->narrow))
         share(work, lanes, first);
     else
@@ -258,7 +286,7 @@ static void psd_stiffness(const struct cs_narrow_phase *narrow,
                           struct cs_pair_lanes *lanes) {
     const double tau = narrow->contacts->candidates->system->scene->contact.damping;
     const bool positive = narrow->query == CS_CONTACT_QUERY_MATRIX && narrow->matrix->psd;
-    const bool rubs = from->friction[l] + tau > 0 && !(positive && narrow->matrix->bound);
+    const bool rubs = lanes->friction[l] + tau > 0 && !(positive && narrow->matrix->bound);
     const double count = positive && !rubs ? from->psd_weight[l] : from->weight[l];
     lanes->k[l] = count * from->k[l];
     lanes->psd_stiffness[l] = (positive ? from->psd_weight[l] : count) * from->k[l];
@@ -268,7 +296,10 @@ static void psd_stiffness(const struct cs_narrow_phase *narrow,
 static void fill(const struct cs_narrow_phase *narrow, const struct cs_active_lanes *from,
                  struct cs_pair_lanes *lanes) {
     memcpy(lanes->range, from->range, sizeof lanes->range);
-    memcpy(lanes->friction, from->friction, sizeof lanes->friction);
+    if (cs_lagged_friction_acts(narrow->contacts->candidates->system))
+        memset(lanes->friction, 0, sizeof lanes->friction);
+    else
+        memcpy(lanes->friction, from->friction, sizeof lanes->friction);
     memcpy(lanes->is_edge, from->is_edge, sizeof lanes->is_edge);
     memcpy(lanes->is_off_plane, from->is_off_plane, sizeof lanes->is_off_plane);
     memcpy(lanes->blend_radius, from->blend_radius, sizeof lanes->blend_radius);

@@ -12,7 +12,8 @@ enum cs_contact_query {
     CS_CONTACT_QUERY_JVP, /* of the force */
     CS_CONTACT_QUERY_ENERGY,
     CS_CONTACT_QUERY_MATRIX,
-    CS_CONTACT_QUERY_BOUND
+    CS_CONTACT_QUERY_BOUND,
+    CS_CONTACT_QUERY_LAGGED_FRICTION /* stored by lagged_friction.h */
 };
 
 /* One evaluation; the caller fills it. All pointers are borrowed. */
@@ -30,6 +31,8 @@ struct cs_narrow_phase {
     struct cs_psd_operator *psd;
     /* receives an exact matrix */
     struct cs_contact_set *exact_set;
+    /* chunk of lagged friction that the first chunk goes to */
+    uint32_t first_lagged;
 };
 
 /* Evaluates all active contacts with all threads. The result goes to
@@ -37,7 +40,8 @@ struct cs_narrow_phase {
  * - contacts->force_gather.row_sums: forces (n_rows, 3), or bounds (2, n_rows), stiffness
  *   before damping; rows must exist, except for energies;
  * - contacts->chunks[].energy for energies;
- * - psd or exact_set for a matrix.
+ * - psd or exact_set for a matrix;
+ * - the store of the system for lagged friction.
  *
  * Returns false if out of memory; results are then incomplete and the run must end. */
 bool cs_narrow_phase_run(struct cs_narrow_phase *narrow);

@@ -45,6 +45,15 @@ static void add_approach(const struct cs_system *system, const struct cs_matrix 
     cs_pairs_add_approach(system->pairs, matrix, y);
 }
 
+static uint32_t friction_chunks(const struct cs_system *system) {
+    return system->pairs->candidates.n_chunks;
+}
+
+static void store_friction(const struct cs_system *system, double t, const double *x,
+                           uint32_t first) {
+    cs_pairs_store_friction(system->pairs, t, x, first);
+}
+
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
                          const struct cs_gershgorin *sums) {
     cs_pairs_add_bound(system->pairs, at, sums->stiffness, sums->damping);
@@ -67,5 +76,7 @@ const struct cs_term cs_term_pairs = {
     .add_blocks = add_blocks,
     .add_matrix_product = add_product,
     .add_approach = add_approach,
+    .friction_chunks = friction_chunks,
+    .store_friction = store_friction,
     .add_state_bound = add_bound_at,
 };

@@ -1,0 +1,272 @@
+/* Friction of stored contacts: forces, derivatives, blocks and potential, chunk by chunk.
+ *
+ * The set gathers by particles in the order of chunks, so that no sum depends on threads. Its
+ * entries hold the forces, its parts the blocks of the matrix; weights are filled once. */
+#include "model/contact/lagged_friction.h"
+
+#include "base/pool.h"
+#include "base/vec3.h"
+#include "model/force/term.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One pass over all stored contacts. */
+struct pass {
+    struct cs_lagged_friction *lagged;
+    const double *v, *dv;           /* (3,n) m/s; dv: the change of the force is wanted */
+    const struct cs_matrix *matrix; /* blocks are wanted; NULL: forces */
+};
+
+/* Sliding velocity of a contact: T of the velocities v, and s = sqrt(T.T + ev^2). */
+struct sliding {
+    double t[3], speed;
+};
+
+static void project(const double normal[3], double v[3]) {
+    const double along = cs_vec3_dot(normal, v);
+    for (int c = 0; c < 3; c++)
+        v[c] -= normal[c] * along;
+}
+
+/* sum of w_k v_k over the particles of a contact; points of colliders do not count */
+static void interpolate(const struct cs_contact_set *set, const struct cs_contact_entry *entry,
+                        const double *weights, const double *v, double out[3]) {
+    const size_t n = set->n_particles;
+    for (uint32_t k = 0; k < entry->n; k++)
+        for (size_t c = 0; c < 3 && cs_contact_set_has(set, entry->particles[k]); c++)
+            out[c] += weights[k] * v[c * n + entry->particles[k]];
+}
+
+static struct sliding slide(const struct pass *pass, uint32_t chunk, size_t number) {
+    const struct cs_contact_set *set = &pass->lagged->set;
+    const struct cs_lagged_contact *contact = pass->lagged->chunks[chunk].contacts + number;
+    const double ev = pass->lagged->system->scene->contact.friction_speed;
+    struct sliding to;
+    memcpy(to.t, contact->obstacle, sizeof to.t);
+    interpolate(set, set->chunks[chunk].pairs + number,
+                set->chunks[chunk].parts[number].weights, pass->v, to.t);
+    project(contact->normal, to.t);
+    to.speed = sqrt(cs_vec3_dot(to.t, to.t) + ev * ev);
+    return to;
+}
+
+/* Stores the force of a contact, or its change along dv, and adds its potential. */
+static void find_force(const struct pass *pass, uint32_t chunk, size_t number) {
+    struct cs_contact_chunk *of = pass->lagged->set.chunks + chunk;
+    const struct cs_lagged_contact *contact = pass->lagged->chunks[chunk].contacts + number;
+    const struct sliding to = slide(pass, chunk, number);
+    const double *weights = of->parts[number].weights, rub = contact->load / to.speed;
+    const double ev = pass->lagged->system->scene->contact.friction_speed;
+    double along[3] = {to.t[0], to.t[1], to.t[2]};
+    if (pass->dv) {
+        double dt[3] = {0};
+        interpolate(&pass->lagged->set, of->pairs + number, weights, pass->dv, dt);
+        project(contact->normal, dt);
+        const double share = cs_vec3_dot(to.t, dt) / (to.speed * to.speed);
+        for (int c = 0; c < 3; c++)
+            along[c] = dt[c] - share * to.t[c];
+    }
+    // s - ev without cancellation
+    of->energy += contact->load * cs_vec3_dot(to.t, to.t) / (to.speed + ev);
+    for (uint32_t k = 0; k < of->pairs[number].n; k++)
+        for (int c = 0; c < 3; c++)
+            of->pairs[number].vectors[k][c] = -weights[k] * rub * along[c];
+}
+
+/* B = -cd mu N / s (I - n n^T - T T^T / s^2), as in point_contact.h. matrix.bound leaves the
+ * last part out, and matrix.psd what is subtracted. */
+static void find_block(const struct pass *pass, uint32_t chunk, size_t number) {
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    struct cs_contact_matrix_part *part = pass->lagged->set.chunks[chunk].parts + number;
+    const struct cs_lagged_contact *contact = pass->lagged->chunks[chunk].contacts + number;
+    const double *n = contact->normal;
+    const struct sliding to = slide(pass, chunk, number);
+    const double load = pass->matrix->psd && contact->load < 0 ? 0 : contact->load;
+    const double rub = -pass->matrix->cd * load / to.speed;
+    const double turn = pass->matrix->bound ? 0 : 1 / (to.speed * to.speed);
+    part->gradient_weight = 0;
+    for (int e = 0; e < 6; e++)
+        part->block[e] = rub * ((row[e] == column[e]) - n[row[e]] * n[column[e]] -
+                                turn * to.t[row[e]] * to.t[column[e]]);
+}
+
+static void do_chunk(void *arg, uint32_t chunk) {
+    const struct pass *pass = arg;
+    pass->lagged->set.chunks[chunk].energy = 0;
+    for (size_t k = 0; k < pass->lagged->set.chunks[chunk].n; k++)
+        if (pass->matrix)
+            find_block(pass, chunk, k);
+        else
+            find_force(pass, chunk, k);
+}
+
+static void run(struct pass *pass) {
+    if (pass->lagged->set.n)
+        cs_pool_run(pass->lagged->set.n_chunks, do_chunk, pass);
+}
+
+/* --- storing --- */
+
+void cs_lagged_friction_store(struct cs_lagged_friction *lagged, uint32_t chunk,
+                              const struct cs_point_contact *contact, uint32_t n,
+                              const uint32_t *particles, const double *weights) {
+    struct cs_contact_chunk *to = lagged->set.chunks + chunk;
+    struct cs_lagged_chunk *own = lagged->chunks + chunk;
+    const double length = sqrt(cs_point_contact_dot(contact->g, contact->g));
+    const double load = contact->friction * length *
+                        cs_barrier_at(contact->d, contact->range, contact->k).force;
+    if (load == 0)
+        return;
+    struct cs_contact_entry *entry = cs_contact_chunk_next(to);
+    struct cs_contact_matrix_part *part = entry ? cs_contact_chunk_part(to) : NULL;
+    struct cs_lagged_contact *contacts =
+        part ? cs_arena_realloc(own->contacts, &own->capacity, to->n, sizeof *contacts) : NULL;
+    to->failed = to->failed || !contacts;
+    if (!contacts)
+        return;
+    own->contacts = contacts;
+    contacts[to->n - 1].load = load;
+    for (int c = 0; c < 3; c++) {
+        contacts[to->n - 1].normal[c] = contact->g[c] / length;
+        contacts[to->n - 1].obstacle[c] = contact->v[c];
+    }
+    *entry = (struct cs_contact_entry){.n = n};
+    *part = (struct cs_contact_matrix_part){0};
+    memcpy(entry->particles, particles, n * sizeof *particles);
+    memcpy(part->weights, weights, n * sizeof *weights);
+}
+
+void cs_lagged_friction_begin(struct cs_lagged_friction *lagged, double t, const double *x) {
+    const struct cs_system *system = lagged->system;
+    uint32_t first = 0;
+    lagged->is_active = false; // contacts give their friction only then
+    for (uint32_t k = 0; k < lagged->set.n_chunks; k++)
+        cs_contact_chunk_clear(lagged->set.chunks + k);
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (system->terms[k]->store_friction) {
+            system->terms[k]->store_friction(system, t, x, first);
+            first += system->terms[k]->friction_chunks(system);
+        }
+    cs_contact_set_count(&lagged->set);
+    cs_contact_set_gather(&lagged->set);
+    lagged->is_active = true;
+}
+
+void cs_lagged_friction_end(struct cs_lagged_friction *lagged) {
+    lagged->is_active = false;
+}
+
+double cs_lagged_friction_potential(struct cs_lagged_friction *lagged, const double *v,
+                                    double *f) {
+    const struct cs_system *system = lagged->system;
+    const size_t n = system->view.n;
+    struct pass pass = {.lagged = lagged, .v = v};
+    run(&pass);
+    memset(f, 0, 3 * n * sizeof *f);
+    cs_contact_set_add(&lagged->set, 0, n, f);
+    for (size_t c = 0; c < 3; c++)
+        for (uint32_t p = 0; p < system->n_pinned; p++)
+            f[c * n + system->pinned[p]] = 0;
+    return lagged->set.n ? cs_contact_set_energy(&lagged->set) : 0;
+}
+
+/* --- the term --- */
+
+static void prepare(const struct cs_system *system, const struct cs_eval *at) {
+    struct pass pass = {.lagged = system->lagged_friction, .v = at->v, .dv = at->dv};
+    if (cs_lagged_friction_acts(system))
+        run(&pass);
+}
+
+static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
+    if (cs_lagged_friction_acts(system))
+        cs_contact_set_add(&system->lagged_friction->set, at->block->begin, at->block->end, f);
+}
+
+/* Stored contacts do not depend on the positions. */
+static void add_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
+    if (at->dv)
+        add_force(system, at, df);
+}
+
+static void prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
+                           bool kept) {
+    struct pass pass = {.lagged = system->lagged_friction, .v = matrix->v, .matrix = matrix};
+    pass.lagged->set.diagonal_bound = !kept && matrix->bound;
+    if (cs_lagged_friction_acts(system))
+        run(&pass);
+}
+
+static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
+                       size_t begin, size_t end, double *blocks) {
+    (void)matrix;
+    if (cs_lagged_friction_acts(system))
+        cs_contact_set_add_blocks(&system->lagged_friction->set, begin, end, blocks);
+}
+
+static void add_product(const struct cs_system *system, const double *p, double *y) {
+    if (cs_lagged_friction_acts(system))
+        cs_contact_set_multiply(&system->lagged_friction->set, p, y);
+}
+
+/* A row of w_k w_j B has the norm |w_k| sum |w_j| mu N / s. */
+static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
+                         const struct cs_gershgorin *sums) {
+    struct pass pass = {.lagged = system->lagged_friction, .v = at->v};
+    const struct cs_contact_set *set = &pass.lagged->set;
+    for (uint32_t l = 0; l < set->n_chunks && cs_lagged_friction_acts(system); l++)
+        for (size_t p = 0; p < set->chunks[l].n && set->n; p++) {
+            const struct cs_contact_entry *entry = set->chunks[l].pairs + p;
+            const double *weights = set->chunks[l].parts[p].weights;
+            const double rub =
+                fabs(pass.lagged->chunks[l].contacts[p].load) / slide(&pass, l, p).speed;
+            double sum = 0;
+            for (uint32_t k = 0; k < entry->n; k++)
+                sum += fabs(weights[k]);
+            for (uint32_t k = 0; k < entry->n; k++)
+                if (cs_contact_set_has(set, entry->particles[k]))
+                    sums->damping[entry->particles[k]] += fabs(weights[k]) * sum * rub;
+        }
+}
+
+static const struct cs_term term = {
+    .name = "lagged friction",
+    .part_bits = CS_PART_DISSIPATIVE,
+    .prepare = prepare,
+    .add_force = add_force,
+    .add_jvp = add_jvp,
+    .prepare_matrix = prepare_matrix,
+    .add_blocks = add_blocks,
+    .add_matrix_product = add_product,
+    .add_state_bound = add_bound_at,
+};
+
+/* Frees the arrays that grow; the arena calls it. */
+static void finish(void *object) {
+    struct cs_lagged_friction *lagged = object;
+    for (uint32_t l = 0; l < lagged->set.n_chunks; l++)
+        free(lagged->chunks[l].contacts);
+}
+
+enum cs_status cs_lagged_friction_build(struct cs_system *system, struct cs_arena *arena,
+                                        struct cs_error *error) {
+    struct cs_lagged_friction *lagged = cs_arena_alloc(arena, sizeof *lagged, error);
+    uint32_t n_chunks = 0;
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        n_chunks +=
+            system->terms[k]->friction_chunks ? system->terms[k]->friction_chunks(system) : 0;
+    if (!lagged || cs_contact_set_init(&lagged->set, system->view.n, n_chunks, arena, error))
+        return error->status;
+    lagged->system = system;
+    lagged->set.no_gradients = true;
+    lagged->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *lagged->chunks, error);
+    if (!error->status)
+        cs_arena_adopt(arena, finish, lagged, error);
+    if (error->status)
+        return error->status;
+    system->lagged_friction = lagged;
+    system->terms[system->n_terms++] = &term;
+    return CS_OK;
+}
