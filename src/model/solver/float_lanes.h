@@ -40,9 +40,9 @@ CS_INLINE void put(float *to, lanes value) {
 CS_INLINE struct vectors get3(const float *from, size_t n) {
     return (struct vectors){get(from), get(from + n), get(from + 2 * n)};
 }
-/* The numbers rounded to multiples of 1e-30 where they are below 1e-23. What decays over many cells
- * would become subnormal, which takes processors a hundred times as long, and adds nothing to a
- * residual that is scaled to 1. */
+/* The numbers rounded to multiples of 1e-30 where they are below 1e-23. What decays over many
+ * cells would become subnormal, which takes processors a hundred times as long, and adds
+ * nothing to a residual that is scaled to 1. */
 CS_INLINE lanes without_tiny(lanes value) {
     return (value + 1e-23F) - 1e-23F;
 }
