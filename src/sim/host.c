@@ -322,11 +322,19 @@ static bool may_pass(const struct cs_system *system) {
     return !acts;
 }
 
+/* Takes from a system what the host of a former run has added; that host's memory is gone. */
+static void forget_former_run(struct cs_system *system) {
+    system->rebounds = NULL;
+    // its term is the last one
+    system->n_terms -= system->lagged_friction ? 1 : 0;
+    system->lagged_friction = NULL;
+}
+
 enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
                                 struct cs_error *error) {
     struct cs_system *system = run->system;
     host->run = run;
-    system->rebounds = NULL; // those of a former run
+    forget_former_run(system);
     host->table = (struct cs_host){
         .size = sizeof host->table,
         .ctx = host,

@@ -152,6 +152,7 @@ enum cs_step cs_host_euler_setup(void *ctx, double t, double h, const double *x,
         return CS_STEP_FAIL;
     cs_trace_state(host, "solve set-up", t, x, v);
     host->run->counts.solve_setups++;
+    host->solve_may_fail = flags & CS_SOLVE_MAY_FAIL;
     // no copies: the method keeps all three until it has solved
     host->euler = (struct cs_euler_step){
         .t = t, .h = h, .x = x, .v = v, .b = b, .tangent = flags & CS_SOLVE_TANGENT};

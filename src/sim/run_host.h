@@ -107,7 +107,7 @@ struct cs_run_host {
     double
         *setup_v; /* (3,n) in m/s: its velocities; NULL: no part of the matrix depends on v */
     struct cs_euler_step euler;
-    bool solve_may_fail; /* the method asked for it at the last solve_setup */
+    bool solve_may_fail; /* the method asked for it at the last set-up */
     double *bounds_work; /* (2n) scratch; NULL: no force has bounds at a state alone */
     struct cs_contact_projection contact; /* only with contact by projection */
     double penetration_max; /* m behind a surface that a step may end, of contact by

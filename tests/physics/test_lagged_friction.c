@@ -163,6 +163,24 @@ TEST(it_is_there_where_it_is_used) {
     }
 }
 
+/* A session may begin again with the same system: the term of the former run is gone. */
+TEST(a_second_run_has_it_once) {
+    struct kinds kinds;
+    struct cs_error error = {0};
+    double first[VALUES], second[VALUES];
+    open(&kinds);
+    const uint32_t n_terms = kinds.cloth.system->n_terms;
+    kinds.host->lag_friction(kinds.host->ctx, 0, kinds.x);
+    force(&kinds, kinds.x, first);
+    ck_assert_int_eq(cs_session_begin(&kinds.cloth.session, NULL, &error), CS_OK);
+    ck_assert_uint_eq(kinds.cloth.system->n_terms, n_terms);
+    kinds.host = &kinds.cloth.session.run.host->table;
+    kinds.host->lag_friction(kinds.host->ctx, 0, kinds.x);
+    force(&kinds, kinds.x, second);
+    ck_bits(first, second, VALUES, "the force of the second run");
+    fixture_close(&kinds.cloth);
+}
+
 /* A sheet that slides on a floor and is pressed to it. */
 #define SLIDING                                                                                \
     "{\"bodies\": [{\"cloth\": {\"grid\": [4, 4], \"start\": \"flat\", \"velocity\": [0.5, 0," \
