@@ -324,6 +324,7 @@ static enum cs_step iterate_lags(struct newton *newton, const struct newton_stag
 
 enum cs_step newton_solve(struct newton *newton, const struct newton_stage *stage, double *u,
                           bool *converged) {
+    newton->linear_failed = false;
     if (is_limited(newton))
         shorten_start(newton, stage, u);
     const enum cs_step status = iterate(newton, stage, u, converged);
@@ -335,7 +336,7 @@ enum cs_step newton_solve(struct newton *newton, const struct newton_stage *stag
 enum cs_step newton_step(struct newton *newton, const struct newton_stage *stage, double *u,
                          bool *converged) {
     const size_t n3 = 3 * (size_t)newton->host->view->n;
-    *converged = false;
+    *converged = newton->linear_failed = false;
     evaluate(newton, stage, u);
     if (!isfinite(newton->norm))
         return CS_STEP_OK;
