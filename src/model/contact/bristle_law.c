@@ -20,7 +20,7 @@ static void project(const double g[3], double square, const double u[3], double 
 
 /* State of a bristle: its trial force and what is left of it. */
 struct trial {
-    double square;                 /* g.g */
+    double square;                 /* g.g, never 0 */
     double stretch[3], sliding[3]; /* P (x - a) in m, T in m/s */
     double force[3], length;       /* trial and |trial| in N */
     double load, fraction;         /* mu N, and min(1, mu N/|trial|) */
@@ -30,7 +30,7 @@ struct trial {
 static struct trial trial_of(const struct cs_point_contact *contact,
                              const struct cs_bristle *bristle) {
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
-    struct trial trial = {.square = cs_vec3_dot(contact->g, contact->g)};
+    struct trial trial = {.square = cs_point_contact_square(contact->g)};
     project(contact->g, trial.square, bristle->stretch, trial.stretch);
     project(contact->g, trial.square, contact->v, trial.sliding);
     for (int c = 0; c < 3; c++)

@@ -123,7 +123,7 @@ CS_INLINE void cs_friction_chord_add(const struct cs_contact_pull *pull,
 CS_INLINE void cs_friction_chord_add_block(const struct cs_point_contact *contact,
                                            const struct cs_matrix *matrix,
                                            const struct cs_contact_pull *pull, double b[6]) {
-    const double length = sqrt(cs_point_contact_dot(contact->g, contact->g));
+    const double length = sqrt(cs_point_contact_square(contact->g));
     const struct cs_sliding_contact slides = {
         .n = {contact->g[0] / length, contact->g[1] / length, contact->g[2] / length},
         .v = {contact->v[0], contact->v[1], contact->v[2]},
