@@ -64,7 +64,8 @@ bool cs_bristle_of_particle(const struct cs_system *system, uint32_t collider,
                             size_t particle, struct cs_bristle *bristle) {
     const size_t n = system->view.n;
     const double p[3] = {x[particle], x[n + particle], x[2 * n + particle]};
-    return set(near, anchor_of_particle(system, collider, particle), p, system->mass[particle],
+    return near->sticking_friction > 0 &&
+           set(near, anchor_of_particle(system, collider, particle), p, system->mass[particle],
                bristle);
 }
 
