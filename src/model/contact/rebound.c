@@ -1,6 +1,7 @@
 /* Flights of particles in impact, and what a linearised step takes from them. */
 #include "model/contact/rebound.h"
 
+#include "base/vec3.h"
 #include "base/vector.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/friction_anchors.h"
@@ -150,10 +151,6 @@ struct search {
     const double *x, *v, *f;
 };
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* A particle at the begin of a step: velocity v relative to the surface, force of the contact
  * itself, and gradient of the distance. */
 struct start {
@@ -174,7 +171,8 @@ static bool approach(const struct search *search, size_t i, struct start *start,
         start->own[c] = 0;
     }
     // the longest way of a particle out of range, by the forces of the step's begin
-    const double way = h * (sqrt(dot(v, v)) + search->fastest) + h * h / m * sqrt(dot(f, f));
+    const double way =
+        h * (sqrt(cs_vec3_dot(v, v)) + search->fastest) + h * h / m * sqrt(cs_vec3_dot(f, f));
     struct cs_point_contact contact;
     if (cs_posed_collider_law_in_range(near, p, v, &contact)) {
         const struct cs_contact_force_parts parts = {1, 1};
@@ -194,8 +192,8 @@ static bool approach(const struct search *search, size_t i, struct start *start,
                               .k = near->params.k,
                               .damping = near->damping};
     flight->d = cs_posed_collider_smooth_distance(&near->collider, p, start->g, hessian);
-    flight->u = dot(start->g, start->v);
-    flight->other = dot(start->g, f) - dot(start->g, start->own);
+    flight->u = cs_vec3_dot(start->g, start->v);
+    flight->other = cs_vec3_dot(start->g, f) - cs_vec3_dot(start->g, start->own);
     return true;
 }
 
@@ -220,7 +218,8 @@ static void find(const struct search *search, size_t i) {
     memcpy(rebound->g, g, sizeof rebound->g);
     rebound->collider = search->collider + 1;
     rebound->stiffness = cs_barrier_at(flight.d1, flight.range, flight.k).stiffness;
-    const double left = speed_left(&search->near, m, impulse, sqrt(dot(tangent, tangent)));
+    const double left =
+        speed_left(&search->near, m, impulse, sqrt(cs_vec3_dot(tangent, tangent)));
     rebound->drag = m / h * (1 / left - 1);
     rebound->displacement = flight.d1 - flight.d - h * flight.w1;
     rebound->distance = flight.d1;
@@ -247,7 +246,7 @@ void cs_rebounds_find(const struct cs_system *system, double t, double h, const 
     rebounds->judged = false;
     for (size_t i = 0; i < system->view.n; i++)
         rebounds->list[i].collider = 0;
-    memset(rebounds->change, 0, 3 * system->view.n * sizeof *rebounds->change);
+    memset(rebounds->change, 0, 3 * sizeof *rebounds->change * system->view.n);
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         if (cs_scene_colliders(system->scene)[c].mesh.present)
             continue;
@@ -255,9 +254,9 @@ void cs_rebounds_find(const struct cs_system *system, double t, double h, const 
             .system = system, .collider = c, .h = h, .x = x, .v = v, .f = f};
         cs_posed_collider_law_at(system, c, t, &search.near);
         const struct cs_posed_collider *pose = &search.near.collider;
-        search.fastest = dot(pose->spin, pose->spin) > 0
+        search.fastest = cs_vec3_dot(pose->spin, pose->spin) > 0
                              ? HUGE_VAL
-                             : sqrt(dot(pose->velocity, pose->velocity));
+                             : sqrt(cs_vec3_dot(pose->velocity, pose->velocity));
         cs_vector_parallel_for(system->view.n, find_all, &search);
     }
     rebounds->any = false;
