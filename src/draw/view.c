@@ -129,8 +129,9 @@ static void set_background(struct cs_view_block *block,
 void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_bounding_sphere *extent) {
     memset(view, 0, sizeof *view);
-    view->camera = scene->camera.frame == CS_FRAME_START ? cs_camera_fit_start(scene, extent->low, extent->high)
-                                                         : camera_at(&scene->camera, 0);
+    view->camera = scene->camera.frame == CS_FRAME_START
+                       ? cs_camera_fit_start(scene, extent->low, extent->high)
+                       : camera_at(&scene->camera, 0);
     set_camera(view, &scene->render, extent);
     set_light(&view->block, &scene->light);
     set_background(&view->block, &scene->render.background);

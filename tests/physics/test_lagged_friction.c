@@ -25,7 +25,8 @@
     " \"events\": [{\"at\": 0, \"move\": {\"collider\": 0, \"spin\": [0.3, 2, 0.5], \"path\":" \
     " [{\"at\": 1, \"point\": [0.2, 0, 0.1]}]}}, {\"at\": 0, \"move\": {\"collider\": 2, "     \
     "\"path\": [{\"at\": 1, \"point\": [0.3, 0.2, 0]}]}}],"                                    \
-    " \"contact\": {\"law\": \"force\", \"start\": \"allow\", \"stiffness\": 50, \"damping\": " \
+    " \"contact\": {\"law\": \"force\", \"start\": \"allow\", \"stiffness\": 50, "             \
+    "\"damping\": "                                                                            \
     "0.01,"                                                                                    \
     " \"friction_speed\": 0.3}}"
 

@@ -136,8 +136,8 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     return cs_run_outputs_at(job, CS_RUN_BEGIN, error);
 }
 
-/* Warns of bodies without effective contact: or with too weak a one: the first of four checks
- * that finds something. */
+/* Warns of bodies whose contact is not effective, or too weak: the first of four checks that
+ * finds something. */
 static enum cs_status warn(struct cs_job *job, struct cs_error *error) {
     const struct cs_scene *scene = &job->session.scene;
     if (cs_overlap_warning_print(scene, job->frames / scene->time.fps, &job->warning, error))

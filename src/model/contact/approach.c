@@ -271,8 +271,8 @@ static double largest_square(const struct cs_system *system, uint32_t body) {
         if (c >= approach->n_bodies)
             most = fmax(most, square_between(approach, a, b, fmin(drop, a->drop)));
         else if (cs_scene_bodies_collide(system->scene, body, c, &friction))
-            most = fmax(most, square_between(approach, a, b,
-                                             fmax(drop, fmax(a->drop, b->drop))));
+            most =
+                fmax(most, square_between(approach, a, b, fmax(drop, fmax(a->drop, b->drop))));
     }
     return most;
 }
@@ -280,8 +280,8 @@ static double largest_square(const struct cs_system *system, uint32_t body) {
 double cs_approach_energy(const struct cs_system *system, uint32_t a, uint32_t b) {
     const struct cs_approach *approach = system->approach;
     const struct surface *first = approach->surfaces + a, *second = approach->surfaces + b;
-    const double squared =
-        b < approach->n_bodies ? fmax(largest_square(system, a), largest_square(system, b))
+    const double squared = b < approach->n_bodies
+                               ? fmax(largest_square(system, a), largest_square(system, b))
                                : square_between(approach, first, second,
                                                 fmax(drop_onto(approach, first, second), 0));
     return 0.5 * fmax(first->mass, second->mass) * squared;

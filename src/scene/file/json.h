@@ -67,7 +67,8 @@ void cs_json_drop_positions(struct cs_json *value);
 bool cs_json_put(struct cs_json *object, const char *key, struct cs_json *value);
 bool cs_json_put_at(struct cs_json *list, uint32_t index, struct cs_json *value);
 
-/* Turns a value into the object {inner: value}, in its place. Returns false if out of memory. */
+/* Turns a value into the object {inner: value}, in its place. Returns false if out of memory.
+ */
 bool cs_json_wrap(struct cs_json *value, const char *inner);
 
 #endif

@@ -46,8 +46,8 @@ const struct cs_option *cs_json_shorthand(const struct cs_table *table,
                                           const struct cs_json *value);
 
 /* Puts value - JSON, or a bare word, which is taken as a text - at the path. Makes missing
- * objects and lists on the way, and of a shorthand of the root's table the object that it stands
- * for; an index is at most the length of its list (which appends). The new value has no
+ * objects and lists on the way, and of a shorthand of the root's table the object that it
+ * stands for; an index is at most the length of its list (which appends). The new value has no
  * position. On failure CS_ERR_USAGE (message: "--set path: ...") or CS_ERR_MEMORY; objects that
  * were made on the way stay. */
 enum cs_status cs_json_override(struct cs_json *root, const struct cs_table *table,

@@ -112,7 +112,8 @@ static enum cs_status apply_overrides(struct cs_json *root, const struct cs_over
         if (integrator && cs_json_kind_of(integrator) == CS_JSON_TEXT &&
             !cs_json_wrap(integrator, "name"))
             return cs_fail(error, CS_ERR_MEMORY, "out of memory for --set");
-        if (cs_json_override(root, &cs_scene_table, overrides[i].path, overrides[i].value, error))
+        if (cs_json_override(root, &cs_scene_table, overrides[i].path, overrides[i].value,
+                             error))
             return error->status;
     }
     return CS_OK;
@@ -201,8 +202,8 @@ static enum cs_status read_integrator(struct cs_json_context *context,
 /* Chooses the law where the scene names none: surfaces that meet are kept apart by a force. */
 static void choose_contact_law(const struct cs_json *root, struct cs_scene *scene) {
     const struct cs_json *contact = cs_json_find(root, "contact");
-    const bool is_named = contact && (cs_json_kind_of(contact) != CS_JSON_OBJECT ||
-                                      cs_json_find(contact, "law"));
+    const bool is_named =
+        contact && (cs_json_kind_of(contact) != CS_JSON_OBJECT || cs_json_find(contact, "law"));
     if (!is_named && cs_scene_has_body_contact(scene))
         scene->contact.law = CS_CONTACT_FORCE;
 }

@@ -186,8 +186,8 @@ void cs_check_contact_energy(const struct cs_conform *card, struct cs_conform_ro
     cs_probe_close(&sheet);
 }
 
-/* True if the step is the user's to choose: the method has a default for dt, and 0 is none. Such
- * a step is made short against the contact, as its user would. */
+/* True if the step is the user's to choose: the method has a default for dt, and 0 is none.
+ * Such a step is made short against the contact, as its user would. */
 static bool takes_given_step(const struct cs_integrator *method) {
     for (uint32_t k = 0; k < method->n_options; k++)
         if (!strcmp(method->options[k].name, "dt"))
