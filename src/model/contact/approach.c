@@ -18,6 +18,7 @@ struct surface {
     double path_speed; /* m/s, largest along its events */
     double mass;       /* kg, heaviest particle; 0: a collider */
     double drop;       /* m to the nearest collider below it */
+    double most;       /* m2/s2, square of the largest speed at which a body meets anything */
     bool tethered;     /* it has pins that no event releases */
     /* a plane: the box is empty, and it is all behind the plane */
     bool endless;
@@ -223,6 +224,32 @@ static void set_drop(struct cs_approach *approach, struct surface *body) {
     body->drop = least < HUGE_VAL ? least : 0;
 }
 
+/* m2/s2, of the speed at which two surfaces may meet after a drop */
+static double square_between(const struct cs_approach *approach, const struct surface *a,
+                             const struct surface *b, double drop) {
+    const double thrown = relative_speed(a, b);
+    const double path = a == b ? a->path_speed : a->path_speed + b->path_speed;
+    return fmax(thrown * thrown + 2 * approach->gravity * drop, path * path);
+}
+
+/* The largest of these of a body and whatever it meets: it meets itself and others as fast
+ * afterwards. */
+static double largest_square(const struct cs_scene *scene, const struct cs_approach *approach,
+                             uint32_t body) {
+    const struct surface *a = approach->surfaces + body;
+    double most = 0, friction;
+    for (uint32_t c = 0; c < approach->n; c++) {
+        const struct surface *b = approach->surfaces + c;
+        const double drop = fmax(fmax(drop_onto(approach, a, b), drop_onto(approach, b, a)), 0);
+        if (c >= approach->n_bodies)
+            most = fmax(most, square_between(approach, a, b, fmin(drop, a->drop)));
+        else if (cs_scene_bodies_collide(scene, body, c, &friction))
+            most =
+                fmax(most, square_between(approach, a, b, fmax(drop, fmax(a->drop, b->drop))));
+    }
+    return most;
+}
+
 enum cs_status cs_approach_build(struct cs_system *system, struct cs_error *error) {
     const struct cs_scene *scene = system->scene;
     const double *g = scene->forces.gravity;
@@ -247,41 +274,18 @@ enum cs_status cs_approach_build(struct cs_system *system, struct cs_error *erro
     add_paths(scene, approach);
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         set_drop(approach, surfaces + b);
+    // once: every pair of bodies asks for it
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        surfaces[b].most = largest_square(scene, approach, b);
     system->approach = approach;
     return CS_OK;
-}
-
-/* m2/s2, of the speed at which two surfaces may meet after a drop */
-static double square_between(const struct cs_approach *approach, const struct surface *a,
-                             const struct surface *b, double drop) {
-    const double thrown = relative_speed(a, b);
-    const double path = a == b ? a->path_speed : a->path_speed + b->path_speed;
-    return fmax(thrown * thrown + 2 * approach->gravity * drop, path * path);
-}
-
-/* The largest of these of a body and whatever it meets: it meets itself and others as fast
- * afterwards. */
-static double largest_square(const struct cs_system *system, uint32_t body) {
-    const struct cs_approach *approach = system->approach;
-    const struct surface *a = approach->surfaces + body;
-    double most = 0, friction;
-    for (uint32_t c = 0; c < approach->n; c++) {
-        const struct surface *b = approach->surfaces + c;
-        const double drop = fmax(fmax(drop_onto(approach, a, b), drop_onto(approach, b, a)), 0);
-        if (c >= approach->n_bodies)
-            most = fmax(most, square_between(approach, a, b, fmin(drop, a->drop)));
-        else if (cs_scene_bodies_collide(system->scene, body, c, &friction))
-            most =
-                fmax(most, square_between(approach, a, b, fmax(drop, fmax(a->drop, b->drop))));
-    }
-    return most;
 }
 
 double cs_approach_energy(const struct cs_system *system, uint32_t a, uint32_t b) {
     const struct cs_approach *approach = system->approach;
     const struct surface *first = approach->surfaces + a, *second = approach->surfaces + b;
     const double squared = b < approach->n_bodies
-                               ? fmax(largest_square(system, a), largest_square(system, b))
+                               ? fmax(first->most, second->most)
                                : square_between(approach, first, second,
                                                 fmax(drop_onto(approach, first, second), 0));
     return 0.5 * fmax(first->mass, second->mass) * squared;
