@@ -39,9 +39,8 @@ TEST(law_is_one_function) {
     ck_assert_double_eq(cs_barrier_at(range, range, k).force, 0);
     ck_assert_double_eq(cs_barrier_energy(1.5 * range, range, k), 0);
     // what it takes to cross: 83 k D^2
-    ck_assert_double_eq_tol(cs_barrier_energy(CS_BARRIER_CORE * range, range, k) /
-                                (k * range * range),
-                            83, 0.005);
+    ck_assert_double_eq_tol(
+        cs_barrier_energy(CS_BARRIER_CORE * range, range, k) / (k * range * range), 83, 0.005);
 }
 
 /* the distance at which the law carries a force, by bisection */

@@ -3,8 +3,8 @@
  * scene, method, frames, crossings, processor time.
  *
  * test_contact_methods METHOD [SCENE ...]: of one method, "all" for every one.
- * test_contact_methods hard [METHOD [SCENE ...]]: the scenes of scenes/hard, all at its default.
- * Without arguments: three of those, coarse. */
+ * test_contact_methods hard [METHOD [SCENE ...]]: the scenes of scenes/hard, all at its
+ * default. Without arguments: three of those, coarse. */
 #include "body_pair_fixture.h"
 #include "fixture.h"
 

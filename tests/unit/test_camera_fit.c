@@ -77,13 +77,11 @@ TEST(extremes_stand_for_all) {
 TEST(the_start_is_in_the_picture) {
     struct cs_collider floor = {.floor = {.present = true, .height = -2}};
     const double low[3] = {4, 0, -1}, high[3] = {6, 2, 1};
-    struct cs_scene scene = {.camera = {.frame = CS_FRAME_START,
-                                        .eye = {1, 2, 3},
-                                        .up = {0, 1, 0},
-                                        .fov = 40},
-                             .render = {.size = {640, 480}},
-                             .forces = {.gravity = {0, -9.81, 0}},
-                             .colliders = {.items = &floor, .n = 0}};
+    struct cs_scene scene = {
+        .camera = {.frame = CS_FRAME_START, .eye = {1, 2, 3}, .up = {0, 1, 0}, .fov = 40},
+        .render = {.size = {640, 480}},
+        .forces = {.gravity = {0, -9.81, 0}},
+        .colliders = {.items = &floor, .n = 0}};
     for (uint32_t n = 0; n < 2; n++) {
         struct cs_camera_fit fit;
         double rows[2];
