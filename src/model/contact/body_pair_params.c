@@ -94,7 +94,7 @@ void cs_body_pair_table_update_friction(const struct cs_system *system,
     for (uint32_t b = n_bodies; b < body_pairs->n_bodies; b++)
         for (uint32_t a = 0; a < n_bodies; a++) {
             const double mu = cs_scene_obstacle(system->scene, b)->friction;
-            body_pairs->friction_version +=
+            body_pairs->params_version +=
                 body_pairs->params[(size_t)a * body_pairs->n_bodies + b].friction != mu;
             body_pairs->params[(size_t)a * body_pairs->n_bodies + b].friction = mu;
             body_pairs->params[(size_t)b * body_pairs->n_bodies + a].friction = mu;

@@ -48,8 +48,8 @@ struct cs_body_pair_table {
     bool *has_partner;
     /* m, largest and smallest range of pairs with contact */
     double range_max, range_min;
-    /* number of changes of friction */
-    uint64_t friction_version;
+    /* number of changes of params after the build */
+    uint64_t params_version;
 };
 
 /* Builds the table from the scene; system->surfaces must exist. CS_ERR_SCENE: a thickness or

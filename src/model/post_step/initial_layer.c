@@ -116,6 +116,8 @@ static void measure_pairs(const struct search *search, struct interface *at) {
         if (k != at->a * n_bodies + at->b && k != at->b * n_bodies + at->a)
             table->params[k].k = 0;
     }
+    // active contacts hold stiffnesses: those that were found with others are void
+    table->params_version++;
     // the pair itself still has its own
     at->range = cs_body_pair_params_of(table, at->a, at->b)->range;
     at->k = cs_body_pair_params_of(table, at->a, at->b)->k;
@@ -125,6 +127,7 @@ static void measure_pairs(const struct search *search, struct interface *at) {
     cs_pairs_add(system->pairs, 0, n, search->f);
     for (size_t k = 0; k < n_bodies * n_bodies; k++)
         table->params[k].k = search->k[k];
+    table->params_version++;
     const struct cs_body_range *body = system->bodies + at->a;
     for (size_t i = body->first; i < (size_t)body->first + body->count; i++) {
         const double *f = search->f + i;
@@ -153,14 +156,17 @@ static double admitted(const struct search *search, const struct interface *at) 
 /* Finds the first two surfaces from (a, b) on that store too much; returns false if none. */
 static bool find(const struct search *search, struct interface *at) {
     const struct cs_scene *scene = search->system->scene;
+    const struct cs_eval start = {.x = search->system->state};
+    // mostly none stores anything, and then none is measured by itself
+    const bool pairs =
+        search->system->pairs && cs_pairs_energy(search->system->pairs, &start) != 0;
     double friction;
     for (uint32_t a = 0; a < scene->bodies.n; a++)
         for (uint32_t b = a + 1; b < scene->bodies.n + scene->colliders.n; b++) {
             const struct cs_collider *collider = cs_scene_obstacle(scene, b);
             if (collider && !collider->mesh.present
                     ? !search->system->collider_params
-                    : !search->system->pairs ||
-                          !cs_scene_bodies_collide(scene, a, b, &friction))
+                    : !pairs || !cs_scene_bodies_collide(scene, a, b, &friction))
                 continue;
             *at = (struct interface){.a = a, .b = b};
             measure(search, at);

@@ -182,7 +182,7 @@ static void find_chunk(void *arg, uint32_t number) {
 
 bool cs_active_contacts_is_there(const struct cs_active_contacts *active) {
     return active->candidates_version == active->candidates->close_count &&
-           active->friction_version == active->candidates->body_pairs->friction_version;
+           active->params_version == active->candidates->body_pairs->params_version;
 }
 
 bool cs_active_contacts_find(struct cs_active_contacts *active, const double *x) {
@@ -196,7 +196,7 @@ bool cs_active_contacts_find(struct cs_active_contacts *active, const double *x)
         failed = failed || active->chunks[l].failed;
     }
     active->candidates_version = failed ? 0 : active->candidates->close_count;
-    active->friction_version = active->candidates->body_pairs->friction_version;
+    active->params_version = active->candidates->body_pairs->params_version;
     return !failed;
 }
 

@@ -44,8 +44,8 @@ struct cs_active_contacts {
     struct cs_active_chunk *chunks;
     /* close_count of the candidates at that time; 0: none were found */
     uint64_t candidates_version;
-    /* friction_version of the body pairs at that time */
-    uint64_t friction_version;
+    /* params_version of the body pairs at that time */
+    uint64_t params_version;
     size_t n;                      /* pairs of all chunks */
     struct cs_gather force_gather; /* with the chunks' numbers */
     bool is_gathered;              /* it is set */
