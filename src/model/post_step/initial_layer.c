@@ -12,8 +12,7 @@
  * because a stack of bodies has a balance at each of its interfaces.
  *
  * contact.start "move-out" moves one of both bodies as a whole along the mean of its contact
- * forces, until the energy is at most W and their sum carries no more than the body's weight.
- */
+ * forces, until the energy is at most W and their sum carries at most the body's weight. */
 #include "model/contact/ccd/crossings.h"
 #include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
@@ -116,9 +115,8 @@ static void measure_pairs(const struct search *search, struct interface *at) {
         if (k != at->a * n_bodies + at->b && k != at->b * n_bodies + at->a)
             table->params[k].k = 0;
     }
-    // active contacts hold stiffnesses: those that were found with others are void
+    // the pair itself still has its own; contacts that were found with others are void
     table->params_version++;
-    // the pair itself still has its own
     at->range = cs_body_pair_params_of(table, at->a, at->b)->range;
     at->k = cs_body_pair_params_of(table, at->a, at->b)->k;
     at->energy = cs_pairs_energy(system->pairs, &eval);
@@ -156,10 +154,10 @@ static double admitted(const struct search *search, const struct interface *at) 
 /* Finds the first two surfaces from (a, b) on that store too much; returns false if none. */
 static bool find(const struct search *search, struct interface *at) {
     const struct cs_scene *scene = search->system->scene;
-    const struct cs_eval start = {.x = search->system->state};
     // mostly none stores anything, and then none is measured by itself
-    const bool pairs =
-        search->system->pairs && cs_pairs_energy(search->system->pairs, &start) != 0;
+    const bool pairs = search->system->pairs &&
+                       cs_pairs_energy(search->system->pairs,
+                                       &(struct cs_eval){.x = search->system->state}) != 0;
     double friction;
     for (uint32_t a = 0; a < scene->bodies.n; a++)
         for (uint32_t b = a + 1; b < scene->bodies.n + scene->colliders.n; b++) {
@@ -250,7 +248,6 @@ static bool find_way(const struct search *search, const struct interface *at, st
     double low = 0, high = at->range / 64;
     if (!choose(search, at, way))
         return false;
-    // doubled until it is enough, then halved between the last two
     while (!is_balanced(search, way, high, at)) {
         low = high;
         high *= 2;
@@ -270,14 +267,13 @@ static bool find_way(const struct search *search, const struct interface *at, st
 
 /* --- messages --- */
 
-/* Reports two surfaces, what they store, and what would do. */
+/* Reports two surfaces, what they store, and the move that would do. */
 static enum cs_status refuse(const struct search *search, const struct interface *at,
                              struct cs_error *error) {
     const struct cs_scene *scene = search->system->scene;
     const bool asked = scene->contact.start == CS_CONTACT_START_MOVE_OUT;
     struct cs_text other = {0}, cure = {0};
     struct way way;
-    // the way is found as for move-out, and not gone
     cs_text_add(&other, at->b < scene->bodies.n ? "bodies[%u]" : "colliders[%u]",
                 at->b < scene->bodies.n ? at->b : at->b - scene->bodies.n);
     if (find_way(search, at, &way))
