@@ -78,6 +78,14 @@ void cs_posed_collider_law_at(const struct cs_system *system, uint32_t collider,
     cs_posed_collider_at(system, collider, t, &near->collider);
 }
 
+bool cs_posed_collider_law_is_plain(const struct cs_posed_collider_law *near) {
+    const struct cs_posed_collider *pose = &near->collider;
+    const double *spin = pose->spin;
+    const enum cs_shape_bounds bounds = pose->shape->bounds;
+    return (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE) && spin[0] == 0 &&
+           spin[1] == 0 && spin[2] == 0 && near->sticking_friction == 0;
+}
+
 /* A bounding test precedes the smooth distance, which costs far more. */
 bool cs_posed_collider_law_in_range(const struct cs_posed_collider_law *near, const double p[3],
                                     const double v[3], struct cs_point_contact *touch) {

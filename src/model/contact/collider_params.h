@@ -45,6 +45,10 @@ struct cs_posed_collider_law {
 void cs_posed_collider_law_at(const struct cs_system *system, uint32_t collider, double t,
                               struct cs_posed_collider_law *near);
 
+/* Returns whether a collider is a plane or sphere without rotation, whose matter moves at one
+ * velocity, and friction on it is smooth. */
+bool cs_posed_collider_law_is_plain(const struct cs_posed_collider_law *near);
+
 /* Sets *contact for a point at p (m) with velocity v (m/s); returns false if it is out of
  * range, and *contact is then unspecified. */
 bool cs_posed_collider_law_in_range(const struct cs_posed_collider_law *near, const double p[3],

@@ -14,20 +14,8 @@
 #include <clothsim/clones.h>
 #include <math.h>
 
-/* Contact force of spheres and planes on rows of particles, vectorised. */
-
 /* particles per row, and per chunk of stored friction */
 enum { ROW = 64, STORED = 1024 };
-
-/* Returns whether a collider is a plane or sphere without rotation, whose matter moves at one
- * velocity, and friction on it is smooth. */
-static bool contact_rows_supported(const struct cs_posed_collider_law *near) {
-    const struct cs_posed_collider *pose = &near->collider;
-    const double *spin = pose->spin;
-    const enum cs_shape_bounds bounds = pose->shape->bounds;
-    return (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE) && spin[0] == 0 &&
-           spin[1] == 0 && spin[2] == 0 && near->sticking_friction == 0;
-}
 
 /* Distances and gradients of one row; a plane's gradient is its normal and is not stored. */
 struct row {
@@ -161,18 +149,10 @@ static CS_CLONES void contact_rows_add_bounds(const struct cs_posed_collider_law
         add_bounds(near, n, at, false, sums);
 }
 
-/* Returns whether a collider is no mesh; meshes have contact by pairs. */
-static bool any_without_mesh(const struct cs_scene *scene) {
-    for (uint32_t c = 0; c < scene->colliders.n; c++)
-        if (!cs_scene_colliders(scene)[c].mesh.present)
-            return true;
-    return false;
-}
-
-/* A scene with contact by projection has no row in the plan. */
+/* A scene with contact by projection has no row in the plan; meshes have contact by pairs. */
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool asked = scene->contact.law == CS_CONTACT_FORCE,
-               built = asked && any_without_mesh(scene);
+               built = cs_rebounds_possible(scene);
     return (struct cs_plan_row){.built = built,
                                 .reason = !asked               ? NULL
                                           : built              ? "contact.law is force"
@@ -216,7 +196,7 @@ static void add_force(const struct cs_system *system, const struct cs_eval *at, 
         const struct cs_posed_collider_law near = near_of(system, c, at->t);
         struct cs_point_contact touch;
         struct cs_bristle bristle;
-        if (contact_rows_supported(&near)) {
+        if (cs_posed_collider_law_is_plain(&near)) {
             contact_rows_add(&near, n, at, parts, f);
             continue;
         }
@@ -352,7 +332,7 @@ static void add_bound_at(const struct cs_system *system, const struct cs_eval *a
         const struct cs_posed_collider_law near = near_of(system, c, at->t);
         struct cs_point_contact touch;
         struct cs_bristle bristle;
-        if (contact_rows_supported(&near)) {
+        if (cs_posed_collider_law_is_plain(&near)) {
             contact_rows_add_bounds(&near, n, at, sums);
             continue;
         }

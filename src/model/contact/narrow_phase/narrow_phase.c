@@ -17,7 +17,6 @@
 
 #include "base/pool.h"
 #include "model/contact/collider_params.h"
-#include "model/contact/friction_chord.h"
 #include "model/contact/lagged_friction.h"
 #include "model/contact/narrow_phase/pair_chord.h"
 #include "model/contact/surface_points.h"
@@ -66,32 +65,6 @@ static void add_turn(const struct work *work, const struct cs_pair_contact *reac
     cs_pair_contact_hessian(reaction, work->narrow->matrix, full + chunk->n - 1);
 }
 
-/* cs_pair_contact_matrix, with friction by its chord if the matrix is to have that. */
-static void matrix_alone(const struct cs_narrow_phase *narrow, const uint32_t at[4],
-                         struct cs_pair_contact *reaction, double gradient[4][3],
-                         struct cs_pair_matrix_terms *share) {
-    const struct cs_system *system = narrow->contacts->candidates->system;
-    const struct cs_matrix *matrix = narrow->matrix;
-    struct cs_point_contact *touch = &reaction->contact;
-    const double mu = touch->friction;
-    struct cs_contact_pull pull = {.h = -matrix->cd};
-    // with the chord the smooth law's own slope is left out
-    touch->friction = matrix->chord ? 0 : mu;
-    cs_pair_contact_matrix(reaction, matrix, gradient, share);
-    for (size_t k = 0; k < 4 && matrix->chord; k++)
-        if (at[k] < system->view.n)
-            cs_contact_pull_add(&pull, matrix, system->view.n, at[k], system->inv_mass[at[k]],
-                                reaction->weight[k]);
-    const struct cs_sliding_contact slides = {
-        .n = {touch->g[0], touch->g[1], touch->g[2]},
-        .v = {touch->v[0], touch->v[1], touch->v[2]},
-        .force = cs_barrier_at(touch->d, touch->range, touch->k).force,
-        .friction = mu,
-        .friction_speed = touch->friction_speed};
-    if (matrix->chord)
-        cs_friction_chord_add(&pull, &slides, share->block);
-}
-
 /* Appends a pair to the exact set: its gradient, matrix terms and Hessian. */
 static void add_alone(const struct work *work, const struct cs_pair_lanes *from, uint32_t lane,
                       const uint32_t at[4]) {
@@ -115,7 +88,7 @@ static void add_alone(const struct work *work, const struct cs_pair_lanes *from,
     read(narrow->v, system->surfaces->n_points, pair->particles, v);
     cs_pair_contact_measure(&reaction, work->chunk->kind, form, params.range, p);
     cs_pair_contact_set(&reaction, &params, &system->scene->contact, v);
-    matrix_alone(narrow, at, &reaction, pair->vectors, &share);
+    cs_pair_contact_chord_matrix(&reaction, system, at, narrow->matrix, pair->vectors, &share);
     part->gradient_weight = share.gradient_weight;
     memcpy(part->weights, share.weight, sizeof share.weight);
     memcpy(part->block, share.block, sizeof share.block);
