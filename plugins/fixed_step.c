@@ -47,6 +47,12 @@ static enum cs_step take(struct fixed_step *self, double t, double h, double *x,
 
 /* The failure of a step that was refused at the shortest length. */
 static enum cs_step fail_at_shortest_part(struct fixed_step *self, double t, double h) {
+    if (h > self->longest)
+        return self->host->fail(self->host->ctx,
+                                "a stable step at t = %.9g s is shorter than %.3g s, which is "
+                                "the step after %d halvings: contact or its friction is too "
+                                "stiff there for an explicit method",
+                                t, h, MOST_CUTS);
     return self->host->fail(self->host->ctx,
                             "a step of %.3g s at t = %.9g s, after %d halvings, still misses "
                             "contact or crosses a surface",
@@ -58,6 +64,7 @@ struct fixed_step fixed_step_of(const struct cs_host *host, double dt,
     return (struct fixed_step){.host = host,
                                .dt = dt > 0 ? dt : HUGE_VAL,
                                .dt_automatic = dt <= 0,
+                               .longest = HUGE_VAL,
                                .step = step,
                                .try_step = take,
                                .report_failure = fail_at_shortest_part,
@@ -150,7 +157,7 @@ static bool is_growth_admissible(const struct fixed_step *self, double t, double
  * max_depth, for the caller to fail. */
 static void choose_cuts(struct fixed_step *self, double t, double h, const double *x,
                         const double *v) {
-    const double longest = longest_at(self, t, x, v);
+    const double longest = self->longest = longest_at(self, t, x, v);
     struct step_subdivision *cuts = &self->subdivision;
     const double twice = 2 * step_subdivision_length(cuts, h);
     bool admitted = !self->saved_state || !self->checks_free_motion;

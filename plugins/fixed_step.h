@@ -51,6 +51,7 @@ struct fixed_step {
      * move a particle into contact and out of it. */
     bool checks_free_motion;
     bool refused_by_contact; /* the last part that was refused passed over contact */
+    double longest; /* s, 0.9 of the longest stable step at the begin of the last part */
     double (*limit)(const struct fixed_step *self, double omega,
                     double delta); /* s; NULL: none */
 };
