@@ -275,7 +275,7 @@ TEST(indefinite_matrix_is_found_out) {
 /* Numbers that are not finite count neither as converged nor as indefinite: in the right-hand
  * side, in the start, in the matrix; so does a right-hand side whose length overflows. */
 TEST(what_is_not_finite_is_no_solution) {
-    static const double bad[] = {NAN, INFINITY, -INFINITY, 1e200};
+    static const double bad[] = {(double)NAN, HUGE_VAL, -HUGE_VAL, 1e200};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
         for (int where = 0; where < 3; where++) {
             struct solver solver;
