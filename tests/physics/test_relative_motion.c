@@ -16,13 +16,15 @@
     " \"contact\": {\"law\": \"force\", \"stiffness\": %g, \"damping\": 1e-4,"                 \
     " \"friction_speed\": 0.05}, \"events\": [%s]}"
 
+#define MESH_BOX                                                                               \
+    "\"mesh\": {\"shape\": \"box\", \"detail\": 3, \"scale\": [0.3, 0.1, 0.3], \"place\": "    \
+    "{\"translate\": [0.01, -0.1, 0.02]}}"
 static const char *const obstacles[] = {
     "\"floor\": {\"height\": -0.03}",
     "\"sphere\": {\"centre\": [0, -0.11, 0], \"radius\": 0.1}",
     "\"box\": {\"centre\": [0.02, -0.08, 0], \"size\": [0.2, 0.1, 0.2], \"radius\": 0.02}",
     "\"capsule\": {\"from\": [-0.06, -0.06, 0], \"to\": [0.08, -0.06, 0.02], \"radius\": 0.05}",
-    "\"mesh\": {\"shape\": \"box\", \"detail\": 3, \"scale\": [0.3, 0.1, 0.3], \"place\": "
-    "{\"translate\": [0.01, -0.1, 0.02]}}",
+    MESH_BOX,
 };
 
 /* The sheet goes at sheet_velocity, the obstacle by way in a second; NULL: it stands still. */
