@@ -350,10 +350,10 @@ static void print_crossing(const struct cs_blocked_step *blocked,
 
 void cs_blocked_step_print(const struct cs_blocked_step *blocked,
                            const struct cs_system *system, struct cs_text *out) {
-    const double *t = blocked->t, *x0 = blocked->x, *x1 = x0 + 3 * (size_t)system->view.n;
-    const double *x[2];
     if (!blocked->is_set)
         return;
+    const double *t = blocked->t, *x0 = blocked->x, *x1 = x0 + 3 * (size_t)system->view.n;
+    const double *x[2];
     if (system->collider_params && t[1] > t[0] && print_point(blocked, system, out))
         return;
     if (!system->surfaces)
