@@ -223,7 +223,6 @@ def main():
     for name, (about, keys) in (scenes() | more()).items():
         scene = {"about": about} | keys
         scene.setdefault("contact", "force")
-        scene["camera"] = {"eye": [0.7, 0.7, 1.1], "target": [0, 0.1, 0]}
         with open(f"scenes/hard/{name}.json", "w") as out:
             out.write("{\n" + ",\n".join(f'  "{k}": {lines(v)}' for k, v in scene.items()) + "\n}\n")
 
