@@ -201,9 +201,8 @@ static enum cs_status check_sticking(const struct cs_check *at, const struct cs_
                 memcpy(path, key, sizeof path);
         }
     return *path ? cs_check_refuse(at, path,
-                                   "contact.friction_law stick is not known between surfaces "
-                                   "that meet in pairs; expected 0 here, or friction_law "
-                                   "smooth")
+                                   "contact.friction_law stick does not act between surfaces "
+                                   "that meet; expected 0 here, or friction_law smooth")
                  : CS_OK;
 }
 

@@ -43,16 +43,6 @@ TEST(law_is_one_function) {
         cs_barrier_energy(CS_BARRIER_CORE * range, range, k) / (k * range * range), 83, 0.005);
 }
 
-/* the distance at which the law carries a force, by bisection */
-static double distance_of(double force, double range, double k) {
-    double low = CS_BARRIER_CORE * range, high = range;
-    for (int i = 0; i < 200; i++) {
-        const double d = (low + high) / 2;
-        *(cs_barrier_at(d, range, k).force > force ? &low : &high) = d;
-    }
-    return low;
-}
-
 /* A square of four particles of 25 g on a slope, or a belt; %g: tangent of the slope, ... */
 #define SLOPE                                                                                  \
     "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"size\": [0.1, 0.1], \"start\": \"flat\","  \
@@ -65,7 +55,7 @@ static double distance_of(double force, double range, double k) {
 static void open_slope(struct fixture *block, const char *integrator, double tangent,
                        const char *events) {
     const double a = atan(tangent), n[2] = {sin(a), cos(a)};
-    const double d = distance_of(0.025 * G * cos(a), 0.02, 1000);
+    const double d = cs_barrier_loaded_distance(0.02, 1000, 0.025 * G * cos(a));
     fixture_open(block, integrator, SLOPE, n[0] * d, n[1] * d, -sin(a / 2), cos(a / 2), n[0],
                  n[1], events);
     fixture_start(block);

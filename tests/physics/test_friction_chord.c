@@ -25,20 +25,10 @@ static const char *const plates[] = {
     "\"mesh\": {\"shape\": \"box\", \"detail\": 3, \"scale\": [2, 2, 2], \"place\": "
     "{\"translate\": [0, -1, 0]}}"};
 
-/* the distance at which the law carries a force, by bisection */
-static double distance_of(double force, double range, double k) {
-    double low = 0.05 * range, high = range;
-    for (int i = 0; i < 200; i++) {
-        const double d = (low + high) / 2;
-        *(cs_barrier_at(d, range, k).force > force ? &low : &high) = d;
-    }
-    return low;
-}
-
 static void open(struct fixture *block, const char *method, size_t plate, double tangent,
                  double ev, const char *events) {
     const double cosine = 1 / sqrt(1 + tangent * tangent);
-    const double d = distance_of(0.025 * G * cosine, 0.02, 1000);
+    const double d = cs_barrier_loaded_distance(0.02, 1000, 0.025 * G * cosine);
     fixture_open(block, method, BLOCK, d, plates[plate], ev, G * tangent * cosine, -G * cosine,
                  events);
     fixture_start(block);

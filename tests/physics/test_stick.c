@@ -15,16 +15,6 @@
 /* anchors follow at each step, so methods with error control get a tolerance */
 #define RTOL 1e-6
 
-/* m, the distance at which the law carries a force, by bisection */
-static double distance_of(double force, double range, double k) {
-    double low = 1e-3 * range, high = range;
-    for (int i = 0; i < 200; i++) {
-        const double d = (low + high) / 2;
-        *(cs_barrier_at(d, range, k).force > force ? &low : &high) = d;
-    }
-    return low;
-}
-
 /* A square of four particles of 25 g at its height of balance on a slope, or a belt; %g: places
  * and directions by the slope, then events. */
 #define CONTACT                                                                                \
@@ -42,7 +32,7 @@ static double distance_of(double force, double range, double k) {
 static void open_slope(struct fixture *block, const char *integrator, double tangent,
                        const char *events) {
     const double a = atan(tangent), n[2] = {sin(a), cos(a)};
-    const double d = distance_of(0.025 * G * cos(a), 0.02, 1000);
+    const double d = cs_barrier_loaded_distance(0.02, 1000, 0.025 * G * cos(a));
     fixture_open(block, integrator, SLOPE, n[0] * d, n[1] * d, -sin(a / 2), cos(a / 2), n[0],
                  n[1], events);
     fixture_start(block);

@@ -81,17 +81,6 @@ static bool takes_contact(const struct cs_conform *card, struct cs_conform_row *
     return cs_probe_can_be_set(card, row);
 }
 
-/* Distance in m at which the contact law carries the force in N, by bisection: the force falls
- * monotonically with the distance. */
-static double height_of(double force) {
-    double low = CS_BARRIER_CORE * RANGE, high = RANGE;
-    for (int k = 0; k < 60; k++) {
-        const double d = (low + high) / 2;
-        *(cs_barrier_at(d, RANGE, STIFF).force > force ? &low : &high) = d;
-    }
-    return low;
-}
-
 /* Mean velocity in m/s down the slope, towards +x. */
 static double sliding(const struct cs_probe *block, double a) {
     double sum = 0;
@@ -103,7 +92,8 @@ static double sliding(const struct cs_probe *block, double a) {
 /* One slope of the given tangent. The first five frames let the start decay; the mean
  * acceleration (t > mu) or the velocity (t < mu) of the next five is compared. */
 static void slide(const struct cs_conform *card, struct cs_conform_row *row, double tangent) {
-    const double a = atan(tangent), d = height_of(MASS * G * cos(a));
+    const double a = atan(tangent),
+                 d = cs_barrier_loaded_distance(RANGE, STIFF, MASS * G * cos(a));
     struct cs_probe block;
     cs_probe_open(&block, card, card->method, BLOCK, sin(a) * d, cos(a) * d, -sin(a / 2),
                   cos(a / 2), sin(a), cos(a));
