@@ -1,5 +1,5 @@
 /* serialise.h - symmetric serialisation: the same calls write a checkpoint and read it back, so
- * the two formats cannot diverge.
+ * the two formats cannot diverge; numbers in little-endian order for files.
  *
  * Values are bytes of this machine and build. io/checkpoint.h checks that a checkpoint fits
  * them before it is read. */
@@ -8,8 +8,11 @@
 
 #include "base/text.h"
 
+#include <endian.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
+#include <string.h>
 
 /* A buffer of serialised values. A zeroed struct is empty, for writing. */
 struct cs_serialiser {
@@ -37,5 +40,27 @@ bool cs_serialiser_is_done(const struct cs_serialiser *record);
 
 /* Frees the buffer; *record is empty afterwards. */
 void cs_serialiser_finish(struct cs_serialiser *record);
+
+/* Bits of a double in little-endian order, to be written as they are. */
+static inline uint64_t cs_double_to_le64(double value) {
+    uint64_t word;
+    memcpy(&word, &value, sizeof word);
+    return htole64(word);
+}
+
+/* Inverse of cs_double_to_le64. */
+static inline double cs_double_from_le64(uint64_t word) {
+    double value;
+    word = le64toh(word);
+    memcpy(&value, &word, sizeof value);
+    return value;
+}
+
+/* The same for a float. */
+static inline uint32_t cs_float_to_le32(float value) {
+    uint32_t word;
+    memcpy(&word, &value, sizeof word);
+    return htole32(word);
+}
 
 #endif

@@ -4,7 +4,7 @@
 #include "draw/collider_mesh.h"
 
 #include "draw/matrix.h"
-#include "draw/scene_extent.h"
+#include "draw/view.h"
 #include "scene/shape_core.h"
 
 /* steps of angle from the middle of a cube's face to its border; lines of its grid, of which

@@ -1,8 +1,8 @@
 /* Chooses position, spacing and colour of the ground. */
 #include "draw/ground.h"
 
-#include "draw/scene_extent.h"
 #include "draw/srgb.h"
+#include "draw/view.h"
 #include "mesh/trimesh.h"
 #include "model/contact/posed_collider.h"
 #include "model/system/particle_system.h"

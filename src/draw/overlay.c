@@ -5,9 +5,8 @@
 #include "draw/matrix.h"
 #include "draw/mesh.h"
 #include "draw/render.h"
-#include "draw/scene_extent.h"
 #include "draw/srgb.h"
-#include "draw/surface_style.h"
+#include "draw/view.h"
 #include "mesh/trimesh.h"
 #include "model/event/event_state.h"
 

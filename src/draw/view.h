@@ -2,6 +2,8 @@
 #ifndef CS_DRAW_VIEW_H
 #define CS_DRAW_VIEW_H
 
+#include "model/contact/posed_collider.h"
+#include "model/system/particle_system.h"
 #include "scene/scene.h"
 
 #include <stdbool.h>
@@ -66,5 +68,14 @@ enum { CS_SHADOW_SIDE = 512 }; /* texels: coarse enough to blur the edges */
  * shadow_params (1 / side; texel size in m at the centre; 1 or 0: shadows on) into the view
  * block. Returns false, with shadows off, if the lamp is within 1.05 radii of the centre. */
 bool cs_light_frustum_fit(const struct cs_bounding_sphere *solid, struct cs_view_block *block);
+
+/* Returns a sphere around the particles at x (3,n) and the visible colliders
+ * (scene->colliders.n) but planes: around their bounding box, with a radius of 1 mm at least.
+ */
+struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, const double *x,
+                                                const struct cs_posed_collider *colliders);
+
+/* The largest distance of neighbours in the bodies at rest, in m; 0 for lone particles. */
+double cs_scene_extent_cell(const struct cs_system *system);
 
 #endif

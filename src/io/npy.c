@@ -10,7 +10,7 @@
 #include "io/npy.h"
 
 #include "base/file.h"
-#include "base/little_endian.h"
+#include "base/serialise.h"
 
 #include <stdio.h>
 #include <string.h>

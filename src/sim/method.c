@@ -10,7 +10,6 @@
  * therefore needs a method with options. */
 #include "sim/method.h"
 
-#include "base/old_name.h"
 #include "base/options.h"
 #include "base/text.h"
 

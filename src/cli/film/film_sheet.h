@@ -1,12 +1,41 @@
-/* film_sheet.h - contact sheets: pictures of a run side by side on one. */
+/* film_sheet.h - contact sheets: pictures of a run side by side on one, and what run.json says
+ * of them. */
 #ifndef CS_FILM_SHEET_H
 #define CS_FILM_SHEET_H
 
 #include "base/image.h"
-#include "cli/film/film_report.h"
+#include "base/status.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
+/* A picture of a run. */
+struct cs_film_picture {
+    uint32_t number; /* of the file frame_NUMBER.png */
+    double frame;    /* of the run */
+    double range[2]; /* of its colours; both 0: they show no value */
+};
+
+/* Contents of run.json about the pictures of its folder. */
+struct cs_film_report {
+    double fps;                       /* of the scene */
+    int32_t look;                     /* enum cs_look */
+    bool clear;                       /* the pictures have alpha */
+    uint32_t n;                       /* at least one */
+    struct cs_film_picture *pictures; /* (n), owned */
+};
+
+/* Reads FOLDER/run.json. CS_ERR_FILE: also where it is of a run that drew no pictures. On
+ * failure *report is empty. */
+enum cs_status cs_film_report_read(const char *folder, struct cs_film_report *report,
+                                   struct cs_error *error);
+/* Frees the list; the report is then empty. */
+void cs_film_report_finish(struct cs_film_report *report);
+
+/* Pictures a second: the scene's frames over those between the first two pictures. */
+double cs_film_rate(const struct cs_film_report *report);
+
+/* Layout of a sheet. */
 struct cs_contact_sheet {
     uint32_t columns, rows; /* at most; then as they came out */
     uint32_t tile;          /* pixels of a picture's width at most */

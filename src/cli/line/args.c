@@ -1,7 +1,7 @@
 /* Parses a command's options and operands by its table of options. */
 #include "cli/line/args.h"
 
-#include "base/old_name.h"
+#include "base/options.h"
 #include "base/text.h"
 #include "cli/line/print.h"
 #include "sim/method.h"

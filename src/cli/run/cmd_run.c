@@ -10,7 +10,6 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
-#include "cli/run/run_range.h"
 #include "model/force/diagnostics.h"
 #include "study/process_pool.h"
 

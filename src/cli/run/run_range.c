@@ -1,5 +1,5 @@
 /* Finds the range of colours in a run before the one that is drawn. */
-#include "cli/run/run_range.h"
+#include "cli/run/job_state.h"
 
 #include "model/force/diagnostics.h"
 #include "study/follow.h"

@@ -3,7 +3,6 @@
 #define CS_CPU_BAND_PASS_H
 
 #include "draw/cpu/thick_lines.h"
-#include "draw/cpu/tile_buffer.h"
 #include "draw/ground.h"
 
 /* Blends the ground over a band: shadows, and lines of a grid. */

@@ -11,7 +11,7 @@
 #include "draw/cpu/collider_geometry.h"
 #include "draw/matrix.h"
 #include "draw/overlay.h"
-#include "draw/scene_extent.h"
+#include "draw/view.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>

@@ -6,7 +6,6 @@
 #ifndef CS_DRAW_RASTER_H
 #define CS_DRAW_RASTER_H
 
-#include "draw/cpu/lanes.h"
 #include "draw/cpu/triangle.h"
 
 enum { CS_ROWS = 16, CS_NOTHING = -1 };

@@ -14,7 +14,7 @@
  * of a choice is not vectorised, so choices are stored before. */
 #include "draw/cpu/shade.h"
 
-#include "draw/cpu/lanes.h"
+#include "draw/cpu/triangle.h"
 
 #include <math.h>
 

@@ -3,9 +3,9 @@
 #define CS_DRAW_SHADE_H
 
 #include "draw/cpu/shadow_map.h"
+#include "draw/look.h"
 #include "draw/mipmap.h"
 #include "draw/srgb.h"
-#include "draw/surface_style.h"
 
 enum { CS_FRAGMENTS = 256 };
 

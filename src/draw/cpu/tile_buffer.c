@@ -1,5 +1,5 @@
 /* tile_buffer.c - memory of a band, and the resolve: the mean of its samples. */
-#include "draw/cpu/tile_buffer.h"
+#include "draw/cpu/thick_lines.h"
 
 static enum cs_status take_samples(struct cs_samples *samples, int width,
                                    struct cs_arena *arena, struct cs_error *error) {

@@ -16,8 +16,6 @@
  */
 #include "draw/cpu/triangle.h"
 
-#include "draw/cpu/lanes.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -10,7 +10,6 @@
 #include "draw/mesh.h"
 #include "draw/overlay.h"
 #include "draw/render.h"
-#include "draw/scene_extent.h"
 #include "draw/view.h"
 
 #include <stdbool.h>

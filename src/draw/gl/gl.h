@@ -7,9 +7,10 @@
 #include "base/status.h"
 #include "draw/glyph.h"
 #include "draw/ground.h"
+#include "draw/look.h"
+#include "draw/mesh.h"
 #include "draw/mipmap.h"
 #include "draw/srgb.h"
-#include "draw/surface_style.h"
 #include "scene/scene.h"
 
 #include <GL/glcorearb.h>

@@ -1,4 +1,4 @@
-/* Uploads, shades and draws triangles through OpenGL. */
+/* Draws triangles, sky and ground, then lines through OpenGL, each with its shader. */
 #include "draw/gl/gl.h"
 #include "draw/mesh.h"
 #include "draw/view.h"
@@ -113,4 +113,112 @@ unsigned cs_texture_make(const struct cs_mipmap *mips) {
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     return name;
+}
+
+static enum cs_status init_ground(struct cs_sky_and_ground *backdrop, struct cs_error *error) {
+    const struct cs_ground *ground = &backdrop->ground;
+    if (cs_shader_make(&cs_shader_ground, &backdrop->program, error) != CS_OK)
+        return error->status;
+    const GLuint program = backdrop->program;
+    backdrop->fade_disc = gl.GetUniformLocation(program, "span");
+    backdrop->box = gl.GetUniformLocation(program, "box");
+    gl.UseProgram(program);
+    gl.Uniform1f(gl.GetUniformLocation(program, "pitch"), ground->line_spacing);
+    gl.Uniform3f(gl.GetUniformLocation(program, "ink"), ground->line_colour[0],
+                 ground->line_colour[1], ground->line_colour[2]);
+    gl.Uniform1f(gl.GetUniformLocation(program, "shadow_ink"), ground->shadow);
+    return CS_OK;
+}
+
+enum cs_status cs_sky_and_ground_init(struct cs_sky_and_ground *backdrop,
+                                      const struct cs_ground *ground, struct cs_error *error) {
+    backdrop->ground = *ground;
+    gl.GenVertexArrays(1, &backdrop->object);
+    if (cs_shader_make(&cs_shader_sky, &backdrop->sky, error) != CS_OK)
+        return error->status;
+    return ground->present ? init_ground(backdrop, error) : CS_OK;
+}
+
+void cs_sky_and_ground_draw_sky(const struct cs_sky_and_ground *backdrop) {
+    gl.Disable(GL_DEPTH_TEST);
+    gl.UseProgram(backdrop->sky);
+    gl.BindVertexArray(backdrop->object);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl.Enable(GL_DEPTH_TEST);
+}
+
+void cs_sky_and_ground_draw_ground(const struct cs_sky_and_ground *backdrop) {
+    const float *span = backdrop->ground.fade_disc, *box = backdrop->ground.box;
+    if (!(box[0] < box[2] && box[1] < box[3]))
+        return;
+    gl.UseProgram(backdrop->program);
+    gl.Uniform4f(backdrop->fade_disc, span[0], span[1], span[2], span[3]);
+    gl.Uniform4f(backdrop->box, box[0], box[1], box[2], box[3]);
+    gl.BindVertexArray(backdrop->object);
+    gl.Enable(GL_BLEND);
+    gl.DepthMask(GL_FALSE);
+    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    gl.DepthMask(GL_TRUE);
+    gl.Disable(GL_BLEND);
+}
+
+/* Draws the collected lines; the shader widens each into a quad. */
+static void draw_lines(struct cs_lines *base, const struct cs_line_style *style) {
+    const struct cs_gl_lines *lines = (const struct cs_gl_lines *)base;
+    gl.UseProgram(lines->program);
+    gl.Uniform4f(lines->colour_location, style->colour[0], style->colour[1], style->colour[2],
+                 (float)style->alpha);
+    gl.Uniform1f(lines->half_width, (float)style->half_width);
+    gl.Uniform1f(lines->depth_offset, (float)style->depth_offset);
+    gl.Uniform1i(lines->flat, style->flat);
+    gl.BindVertexArray(lines->object);
+    gl.BindBuffer(GL_ARRAY_BUFFER, lines->buffer);
+    gl.BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(base->n * sizeof *base->ends), base->ends,
+                  GL_STREAM_DRAW);
+    if (style->on_top || style->flat)
+        gl.Disable(GL_DEPTH_TEST);
+    /* no depth is written: soft edges would cut holes into later lines */
+    gl.Enable(GL_BLEND);
+    gl.DepthMask(GL_FALSE);
+    gl.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)base->n);
+    gl.DepthMask(GL_TRUE);
+    gl.Disable(GL_BLEND);
+    gl.Enable(GL_DEPTH_TEST);
+}
+
+static void draw_ramp(struct cs_lines *base, const double box[4]) {
+    const struct cs_gl_lines *lines = (const struct cs_gl_lines *)base;
+    gl.UseProgram(lines->ramp);
+    gl.Uniform4f(lines->box, (float)box[0], (float)box[1], (float)box[2], (float)box[3]);
+    gl.BindVertexArray(lines->ramp_object);
+    gl.Disable(GL_DEPTH_TEST);
+    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    gl.Enable(GL_DEPTH_TEST);
+}
+
+enum cs_status cs_gl_lines_init(struct cs_gl_lines *lines, struct cs_error *error) {
+    lines->lines.draw = draw_lines;
+    lines->lines.ramp = draw_ramp;
+    if (cs_shader_make(&cs_shader_line, &lines->program, error) != CS_OK ||
+        cs_shader_make(&cs_shader_bar, &lines->ramp, error) != CS_OK)
+        return error->status;
+    lines->box = gl.GetUniformLocation(lines->ramp, "box");
+    /* the bar has no vertex data, but a core context draws nothing without an array object */
+    gl.GenVertexArrays(1, &lines->ramp_object);
+    lines->colour_location = gl.GetUniformLocation(lines->program, "paint");
+    lines->half_width = gl.GetUniformLocation(lines->program, "half_width");
+    lines->depth_offset = gl.GetUniformLocation(lines->program, "lift");
+    lines->flat = gl.GetUniformLocation(lines->program, "flat_");
+    gl.GenVertexArrays(1, &lines->object);
+    gl.BindVertexArray(lines->object);
+    gl.GenBuffers(1, &lines->buffer);
+    gl.BindBuffer(GL_ARRAY_BUFFER, lines->buffer);
+    /* one instance a line: both ends advance by instance, not by vertex */
+    for (GLuint end = 0; end < 2; end++) {
+        gl.EnableVertexAttribArray(end);
+        gl.VertexAttribPointer(end, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float),
+                               (const void *)(end * 3 * sizeof(float)));
+        gl.VertexAttribDivisor(end, 1);
+    }
+    return CS_OK;
 }

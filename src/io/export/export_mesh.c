@@ -2,7 +2,7 @@
  * collider's triangles are made once in its own frame, then posed at every sample. */
 #include "io/export/writer.h"
 
-#include "base/little_endian.h"
+#include "base/serialise.h"
 #include "model/system/surfaces.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
  *
  * Arrays with N samples: times (N), frames (N), positions and other fields (N, n, components),
  * faces, lines, offsets of bodies, uv; the same of colliders with the prefix "collider_". */
-#include "base/little_endian.h"
+#include "base/serialise.h"
 #include "io/export/writer.h"
 #include "io/npy.h"
 

@@ -3,7 +3,7 @@
  * once.
  */
 #include "base/file.h"
-#include "base/little_endian.h"
+#include "base/serialise.h"
 #include "base/text.h"
 #include "io/export/writer.h"
 

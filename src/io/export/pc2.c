@@ -11,7 +11,7 @@
  *
  * The number of samples is written after their positions. A file that a crash cut off therefore
  * never promises a sample that it does not hold. */
-#include "base/little_endian.h"
+#include "base/serialise.h"
 #include "io/export/writer.h"
 
 /* The cache of bodies or of colliders; closed if they have none. */

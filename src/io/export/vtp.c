@@ -7,7 +7,7 @@
  *   constant    body of each point, texture coordinates, connectivity and ends of lines, faces
  * Head and constant part are made once; a sample writes only what changes between them. */
 #include "base/file.h"
-#include "base/little_endian.h"
+#include "base/serialise.h"
 #include "base/text.h"
 #include "io/export/writer.h"
 

@@ -52,7 +52,7 @@ static inline enum cs_status cs_export_number(char path[CS_EXPORT_PATH], const c
 struct cs_export_field {
     const char *name, *plural; /* "velocity", "velocities" */
     uint32_t components;       /* 1 or 3 */
-    uint64_t *words; /* (n, components) little-endian doubles (base/little_endian.h) */
+    uint64_t *words;           /* (n, components) little-endian doubles (base/serialise.h) */
 };
 
 enum { CS_EXPORT_FIELDS = 4 };

@@ -9,9 +9,8 @@
 #include "scene/body_pairs.h"
 #include "scene/file/scene_read.h"
 #include "study/compare/cell_list_parse.h"
-#include "study/compare/compare_measure.h"
 #include "study/compare/compare_results.h"
-#include "study/compare/compare_time.h"
+#include "study/compare/compare_state.h"
 #include "study/provenance_write.h"
 #include "study/reference/compare_reference.h"
 

@@ -1,6 +1,7 @@
 /* Measures one cell by a recorded run, and finds observed orders: slopes of log error against
  * log mean step. */
-#include "study/compare/compare_measure.h"
+
+#include "study/compare/compare_state.h"
 
 #include "study/provenance_write.h"
 #include "study/reference/compare_reference.h"

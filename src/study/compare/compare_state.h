@@ -6,7 +6,7 @@
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_cell.h"
 #include "study/compare/timing_rounds.h"
-#include "study/reference/compare_reference_state.h"
+#include "study/reference/compare_reference.h"
 
 /* The error norms that a comparison can be ranked by. */
 
@@ -92,5 +92,21 @@ struct cs_compare {
     uint32_t n_ended_series,
         n_not_run; /* series that exceeded the budget, and their cells after that */
 };
+
+/* Times every finished cell of this machine that was run only once, and the contenders for the
+ * verdict (ranking.h) in rounds. Ends when the ratios of the contenders are known well enough,
+ * after settings.runs rounds, or when the time for rounds is used up. Updates cpu, cpu_low,
+ * cpu_high, runs and outliers of the cells. CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
+enum cs_status cs_compare_time(struct cs_compare *compare, struct cs_error *error);
+
+/* Runs one cell within compare->budget and fills its errors, counts, outcome and module. cpu is
+ * the time of this one run. A method that fails or blows up is an outcome. CS_ERR_INTERRUPT,
+ * CS_ERR_MEMORY; the cell is then incomplete. */
+enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_cell *cell,
+                                  struct cs_error *error);
+
+/* Fills the orders of n cells, sorted by falling step within a series, where two successive
+ * slopes agree. bar and scale in m: the reference's error, and the motion. */
+void cs_compare_find_orders(struct cs_cell *cells, uint32_t n, double bar, double scale);
 
 #endif

@@ -6,7 +6,7 @@
  *   3. Run each contender once (round 0: each cell of a single run too) and record its time.
  *   4. Update the cells' medians and quartiles, and go to 1.
  * Contenders are chosen again in every round, because better times change the ranking. */
-#include "study/compare/compare_time.h"
+#include "study/compare/compare_state.h"
 
 #include "base/clock.h"
 #include "study/compare/ranking.h"

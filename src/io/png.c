@@ -3,8 +3,8 @@
  * A file is untrusted. Its size, its sides and the memory of its chunks are limited before
  * libpng allocates; stated sides must fit to the length of the file; and the size of converted
  * rows is checked before the first is written. */
-#include "base/file.h"
 #include "io/png.h"
+#include "base/file.h"
 
 #include <png.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* Finds and loads a renderer module; part of the program, and free of OpenGL. */
-#include "base/text.h"
 #include "draw/render.h"
+#include "base/text.h"
 
 #include <dlfcn.h>
 #include <unistd.h>
