@@ -49,7 +49,7 @@ static enum cs_step step_on(struct method *self, double t, double h, double *x, 
     }
     const double g = 2 * h / 3;
     const struct newton_stage stage = {
-        .t = t + h, .s = g, .gx = g, .gv = 1, .xb = xb, .ub = ub};
+        .t = t + h, .s = g, .gx = g, .gv = 1, .xb = xb, .ub = ub, .c = h, .x0 = x, .v0 = v};
     const enum cs_step status = self->linear ? newton_step(newton, &stage, u, accepted)
                                              : newton_solve(newton, &stage, u, accepted);
     memcpy(x, newton->x, n3 * sizeof *x);

@@ -143,7 +143,10 @@ static enum cs_step sweep_once(struct method *self, const struct way *way, struc
                                            .gx = s,
                                            .gv = 1,
                                            .xb = self->xb,
-                                           .ub = self->ub};
+                                           .ub = self->ub,
+                                           .c = self->table.node[i] * h,
+                                           .x0 = way->x,
+                                           .v0 = way->v};
         set_known_terms(self, i, h, way->x, &self->v, self->xb);
         set_known_terms(self, i, h, way->v, &self->k, self->ub);
         memcpy(self->u, self->v.now[i], bytes);

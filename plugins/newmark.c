@@ -89,7 +89,10 @@ static enum cs_step step(struct step_halving *object, double t, double h, double
                                        .gv = 1 - af,
                                        .xb = self->xb,
                                        .ub = self->ub,
-                                       .vb = self->vb};
+                                       .vb = self->vb,
+                                       .c = (1 - af) * h,
+                                       .x0 = x,
+                                       .v0 = v};
     memcpy(u, v, 3 * n * sizeof *u);
     const enum cs_step status = newton_solve(&self->base.newton, &stage, u, accepted);
     if (status != CS_STEP_OK || !*accepted)

@@ -165,18 +165,34 @@ static bool is_limited(const struct newton *newton) {
     return CS_HAS(newton->host, max_step_fraction) && newton->host->max_step_fraction;
 }
 
-/* Shortens the start u until nothing crosses on the way from xb to xb + gx u. Particles on
- * paths keep their velocity. */
+/* True if two vectors of positions (n3) differ by no more than rounding. */
+static bool are_equal(size_t n3, const double *x, const double *y) {
+    double apart = 0, most = 0;
+    for (size_t k = 0; k < n3; k++) {
+        apart = fmax(apart, fabs(x[k] - y[k]));
+        most = fmax(most, fabs(x[k]));
+    }
+    return apart <= 8 * DBL_EPSILON * most;
+}
+
+/* Moves the start u towards the free motion until nothing crosses between the positions of
+ * both. Particles on paths keep their velocity. */
 static void shorten_start(struct newton *newton, const struct newton_stage *stage, double *u) {
     const struct cs_host *host = newton->host;
     const size_t n = host->view->n;
-    host->vector->linear_sum(3 * n, 1, stage->xb, stage->gx, u, newton->f);
+    double *free_motion = newton->rhs, *guess = newton->f;
+    host->vector->linear_sum(3 * n, 1, stage->x0, stage->c, stage->v0, free_motion);
+    host->vector->linear_sum(3 * n, 1, stage->xb, stage->gx, u, guess);
+    newton->line_search_blocked = false;
+    if (are_equal(3 * n, free_motion, guess))
+        return;
     const double share =
-        host->max_step_fraction(host->ctx, stage->t, stage->xb, stage->t, newton->f);
+        host->max_step_fraction(host->ctx, stage->t, free_motion, stage->t, guess);
     newton->line_search_blocked = share < 1;
     for (size_t c = 0; share < 1 && c < 3; c++)
-        for (size_t i = 0; i < n; i++)
-            u[c * n + i] *= host->view->inv_mass[i] > 0 ? share : 1;
+        for (size_t i = 0, k = c * n; i < n; i++, k++)
+            if (host->view->inv_mass[i] > 0)
+                u[k] -= (1 - share) * (guess[k] - free_motion[k]) / stage->gx;
 }
 
 /* The largest a in 0..1 for which u0 + a du carries no surface through another. */

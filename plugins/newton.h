@@ -9,6 +9,12 @@
  * a tenth of the impulse it is the exact one, unless that is indefinite, which gives Newton's
  * convergence back.
  *
+ * Start: the method's guess of u, but no further from the free motion X = x0 + c v0, c s after
+ * the step's begin, than host->max_step_fraction allows with obstacles where they are at t. The
+ * loop over steps has asked about the free motion already (fixed_step.h). Displacements from
+ * the step's begin are no measure for this: an obstacle that comes may be beyond x0 at t, and
+ * the same obstacle at rest, at which the particles are thrown, is not.
+ *
  * Line search: a starts at the fraction of the displacement to X(u + du) that
  * host->max_step_fraction allows, 1 without limits, and is halved until |r| falls at u + a du,
  * or until the incremental potential (Martin et al. 2011; Gast et al. 2015)
@@ -52,6 +58,8 @@ struct newton_stage {
     double t, s, gx, gv;
     const double *xb, *ub; /* (3,n) in m and m/s */
     const double *vb;      /* (3,n) in m/s; NULL: 0 */
+    double c;              /* time since the begin of the step in s */
+    const double *x0, *v0; /* (3,n) in m and m/s: the state at the begin of the step */
 };
 
 /* The solver of a method: its settings, scratch, and the result of the last evaluation. */

@@ -27,7 +27,8 @@ struct method {
 static enum cs_step solve(struct method *self, double t, double s, const double *x,
                           const double *v, bool *accepted) {
     struct newton *newton = &self->base.newton;
-    const struct newton_stage stage = {.t = t + s, .s = s, .gx = s, .gv = 1, .xb = x, .ub = v};
+    const struct newton_stage stage = {
+        .t = t + s, .s = s, .gx = s, .gv = 1, .xb = x, .ub = v, .c = s, .x0 = x, .v0 = v};
     memcpy(self->u, v, 3 * sizeof *v * newton->host->view->n);
     return newton_solve(newton, &stage, self->u, accepted);
 }

@@ -32,7 +32,8 @@ enum cs_step sdirk2_step(struct newton *newton, const struct sdirk2_arrays *arra
     const double c = 1 - 1 / sqrt(2), g = c * h;
     const size_t n3 = 3 * (size_t)newton->host->view->n;
     double *u = arrays->u, *xb = arrays->xb, *ub = arrays->ub;
-    struct newton_stage stage = {.t = t + g, .s = g, .gx = g, .gv = 1, .xb = x, .ub = v};
+    struct newton_stage stage = {
+        .t = t + g, .s = g, .gx = g, .gv = 1, .xb = x, .ub = v, .c = g, .x0 = x, .v0 = v};
     memcpy(u, v, n3 * sizeof *v);
     enum cs_step status = solve(newton, &stage, u, accepted);
     if (status != CS_STEP_OK || !*accepted)
@@ -44,6 +45,7 @@ enum cs_step sdirk2_step(struct newton *newton, const struct sdirk2_arrays *arra
         xb[k] = x[k] + (h - g) * u[k];
     }
     stage.t = t + h;
+    stage.c = h;
     stage.xb = xb;
     stage.ub = ub;
     status = solve(newton, &stage, u, accepted);

@@ -44,7 +44,15 @@ static enum cs_step step(struct step_halving *object, double t, double h, double
             xb[k] = x[k] + g * v[k];
         }
     memcpy(u, v, 3 * n * sizeof *u);
-    struct newton_stage stage = {.t = t + c * h, .s = g, .gx = g, .gv = 1, .xb = xb, .ub = ub};
+    struct newton_stage stage = {.t = t + c * h,
+                                 .s = g,
+                                 .gx = g,
+                                 .gv = 1,
+                                 .xb = xb,
+                                 .ub = ub,
+                                 .c = c * h,
+                                 .x0 = x,
+                                 .v0 = v};
     enum cs_step status = newton_solve(newton, &stage, u, accepted);
     if (status != CS_STEP_OK || !*accepted)
         return status;
@@ -55,6 +63,7 @@ static enum cs_step step(struct step_halving *object, double t, double h, double
         xb[k] = x[k] + share * (newton->x[k] - x[k]);
     }
     stage.t = t + h;
+    stage.c = h;
     status = newton_solve(newton, &stage, u, accepted);
     if (status != CS_STEP_OK || !*accepted)
         return status;
