@@ -350,7 +350,7 @@ static double nearest_triangle(const double *x) {
                     for (size_t c = 0; c < 3; c++)
                         p[k + 1][c] = x[c * ALL + i];
                 }
-                least = fmin(least, cs_exact_distance_squared(CS_PRIMITIVE_POINT_TRIANGLE,
+                least = fmin(least, cs_exact_distance_squared(CS_PAIR_POINT_TRIANGLE,
                                                               (const double(*)[3])p));
             }
     return sqrt(least);

@@ -270,7 +270,8 @@ TEST(derivative_knows_the_moving_mesh) {
  * through each other */
 #define NEEDLE                                                                                 \
     "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"start\": \"flat\", \"place\": "            \
-    "{\"translate\": [0.2, 0.3, 0.1]}}, \"mass\": {\"total\": 1}}], \"colliders\": "           \
+    "{\"translate\": [0.2, 0.3, 0.1]}}, \"mass\": {\"total\": 1}, \"self_contact\": true}], "  \
+    "\"colliders\": "                                                                          \
     "[{\"mesh\": "                                                                             \
     "{\"shape\": \"box\", \"detail\": 3, \"scale\": [0.03, 0.4, 0.03]}, \"thickness\": "       \
     "0.02}, {\"mesh\": {\"shape\": \"box\", \"detail\": 3, \"scale\": [0.5, 0.02, 0.02], "     \
@@ -324,15 +325,15 @@ TEST(what_comes_is_foreseen) {
     ck_assert_msg(share < gap / whole && share > 0.8 * gap / whole, "%.3g", share);
     ck_assert_uint_eq(cs_crossings_count(net.system, 1.0 / 60, net.x).n, 0);
     ck_assert_uint_gt(cs_crossings_count(net.system, 0.5, net.x).n, 0);
-    // the list of contact, which covers the shorter ways, says what the tree says
+    // the list of contact, which covers the shorter ways, says what the search says
     struct cs_system *system = net.system;
     struct cs_pairs *pairs = system->pairs;
     uint32_t cut = 0, covered = 0;
     for (int k = 1; k < 30; k++) {
         const double t = (1.0 + k) / 60;
         system->pairs = pairs;
-        covered += cs_accd_candidates_suffice(
-            system, true, cs_surface_points_positions(system, CS_POINTS_BEGIN, 1.0 / 60, net.x),
+        covered += cs_crossings_list_suffices(
+            system, cs_surface_points_positions(system, CS_POINTS_BEGIN, 1.0 / 60, net.x),
             cs_surface_points_positions(system, CS_POINTS_END, t, net.x));
         const double listed = cs_crossings_safe_fraction(system, 1.0 / 60, net.x, t, net.x);
         system->pairs = NULL;

@@ -210,8 +210,8 @@ static void shake(const struct fixture *cloth, double ranges, uint64_t *seed, do
     }
 }
 
-/* the list has the same share of a move as a tree over all parts, long moves too */
-TEST(list_limits_as_the_tree_does) {
+/* the list has the same share of a move as a search of all primitives, long moves too */
+TEST(list_limits_as_the_search_does) {
     struct fixture cloth;
     static double x[3 * 600];
     uint64_t seed = 1;
@@ -222,7 +222,7 @@ TEST(list_limits_as_the_tree_does) {
     for (uint32_t k = 0; k < 60; k++) {
         struct cs_pairs *pairs = cloth.system->pairs;
         shake(&cloth, 0.05 * (1 + k), &seed, x);
-        listed += cs_accd_candidates_suffice(cloth.system, true, cloth.x, x);
+        listed += cs_crossings_list_suffices(cloth.system, cloth.x, x);
         const double share = cs_crossings_safe_fraction(cloth.system, 0, cloth.x, 0, x);
         cloth.system->pairs = NULL;
         ck_assert_double_eq(cs_crossings_safe_fraction(cloth.system, 0, cloth.x, 0, x), share);

@@ -16,15 +16,15 @@ static void points(uint64_t *state, double size, double p[4][3]) {
             p[k][c] = size * random_real(state);
 }
 
-static double sampled(enum cs_primitive_pair_kind kind, const double p[4][3], int cuts) {
+static double sampled(enum cs_pair_kind kind, const double p[4][3], int cuts) {
     double least = HUGE_VAL;
     for (int i = 0; i <= cuts; i++)
-        for (int j = 0; j <= (kind == CS_PRIMITIVE_POINT_TRIANGLE ? cuts - i : cuts); j++) {
+        for (int j = 0; j <= (kind == CS_PAIR_POINT_TRIANGLE ? cuts - i : cuts); j++) {
             const double s = i / (double)cuts, t = j / (double)cuts;
             double sum = 0;
             for (int c = 0; c < 3; c++) {
                 const double r =
-                    kind == CS_PRIMITIVE_POINT_TRIANGLE
+                    kind == CS_PAIR_POINT_TRIANGLE
                         ? p[0][c] - p[1][c] - s * (p[2][c] - p[1][c]) - t * (p[3][c] - p[1][c])
                         : p[0][c] + s * (p[1][c] - p[0][c]) - p[2][c] - t * (p[3][c] - p[2][c]);
                 sum += r * r;
@@ -38,8 +38,8 @@ static double sampled(enum cs_primitive_pair_kind kind, const double p[4][3], in
 TEST(distances_are_the_least_ones) {
     uint64_t state = 5;
     for (int round = 0; round < 600; round++) {
-        const enum cs_primitive_pair_kind kind =
-            round % 2 ? CS_PRIMITIVE_POINT_TRIANGLE : CS_PRIMITIVE_EDGE_EDGE;
+        const enum cs_pair_kind kind =
+            round % 2 ? CS_PAIR_POINT_TRIANGLE : CS_PAIR_EDGE_EDGE;
         double p[4][3];
         points(&state, 1, p);
         // flat and near parallel ones among them
@@ -57,7 +57,7 @@ TEST(distances_are_the_least_ones) {
 TEST(nearly_parallel_edges_touch) {
     for (double angle = 0.1; angle > 1e-12; angle /= 10) {
         const double p[4][3] = {{-1, 0, 0}, {1, 0, 0}, {-1, -angle, 0}, {1, angle, 0}};
-        ck_assert_double_le(sqrt(cs_exact_distance_squared(CS_PRIMITIVE_EDGE_EDGE, p)),
+        ck_assert_double_le(sqrt(cs_exact_distance_squared(CS_PAIR_EDGE_EDGE, p)),
                             1e-3 * angle);
     }
 }
@@ -75,7 +75,7 @@ TEST(shares_are_below_the_touch) {
                 moves[k][0] += moved;
             const double touch = 0.5 / (0.5 + past);
             const double share =
-                cs_accd_safe_fraction(CS_PRIMITIVE_POINT_TRIANGLE, (const double(*)[3])p,
+                cs_accd_safe_fraction(CS_PAIR_POINT_TRIANGLE, (const double(*)[3])p,
                                       (const double(*)[3])moves, 1);
             ck_assert_double_lt(share, touch);
             ck_assert_double_gt(share, 0.89 * touch);
@@ -83,7 +83,7 @@ TEST(shares_are_below_the_touch) {
             const double towards[4][3] = {
                 {0, 0, 0}, {0, 0, 0}, {0, 0, -0.5 - past}, {0, 0, -0.5 - past}};
             const double other =
-                cs_accd_safe_fraction(CS_PRIMITIVE_EDGE_EDGE, edges, towards, 1);
+                cs_accd_safe_fraction(CS_PAIR_EDGE_EDGE, edges, towards, 1);
             ck_assert_double_lt(other, touch);
             ck_assert_double_gt(other, 0.89 * touch);
         }
@@ -94,8 +94,8 @@ TEST(nothing_is_closed_up_to_the_share) {
     uint64_t state = 11;
     int cut = 0;
     for (int round = 0; round < 4000; round++) {
-        const enum cs_primitive_pair_kind kind =
-            round % 2 ? CS_PRIMITIVE_POINT_TRIANGLE : CS_PRIMITIVE_EDGE_EDGE;
+        const enum cs_pair_kind kind =
+            round % 2 ? CS_PAIR_POINT_TRIANGLE : CS_PAIR_EDGE_EDGE;
         double p[4][3], moves[4][3], at[4][3];
         points(&state, 1, p);
         points(&state, 1.5, moves);
@@ -119,11 +119,11 @@ TEST(touching_pairs_may_not_move) {
     const double p[4][3] = {{0, 0, 0}, {-1, -1, 0}, {1, -1, 0}, {0, 2, 0}};
     double moves[4][3] = {{0, 0, 1}};
     ck_assert_double_eq(
-        cs_accd_safe_fraction(CS_PRIMITIVE_POINT_TRIANGLE, p, (const double(*)[3])moves, 1), 0);
+        cs_accd_safe_fraction(CS_PAIR_POINT_TRIANGLE, p, (const double(*)[3])moves, 1), 0);
     moves[0][2] = 0;
     ck_assert_double_eq(
-        cs_accd_safe_fraction(CS_PRIMITIVE_POINT_TRIANGLE, p, (const double(*)[3])moves, 1), 1);
+        cs_accd_safe_fraction(CS_PAIR_POINT_TRIANGLE, p, (const double(*)[3])moves, 1), 1);
     moves[0][2] = (double)NAN;
     ck_assert_double_eq(
-        cs_accd_safe_fraction(CS_PRIMITIVE_POINT_TRIANGLE, p, (const double(*)[3])moves, 1), 1);
+        cs_accd_safe_fraction(CS_PAIR_POINT_TRIANGLE, p, (const double(*)[3])moves, 1), 1);
 }

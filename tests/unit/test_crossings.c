@@ -54,7 +54,7 @@ static struct cs_crossing_count count_all(const struct sheet *sheet) {
     return count;
 }
 
-static double share_of(const struct sheet *sheet, enum cs_primitive_pair_kind kind,
+static double share_of(const struct sheet *sheet, enum cs_pair_kind kind,
                        const uint32_t items[4], const double *to, double most) {
     double p[4][3], moves[4][3];
     read_points(sheet, sheet->x, items, 4, p);
@@ -74,14 +74,14 @@ static double share_all(const struct sheet *sheet, const double *to) {
             const uint32_t *corners = s->triangles + 3 * t;
             const uint32_t items[4] = {i, corners[0], corners[1], corners[2]};
             if (!share_one(items, 1, corners, 3))
-                share = share_of(sheet, CS_PRIMITIVE_POINT_TRIANGLE, items, to, share);
+                share = share_of(sheet, CS_PAIR_POINT_TRIANGLE, items, to, share);
         }
     for (uint32_t e = 0; e < s->n_edges; e++)
         for (uint32_t f = e + 1; f < s->n_edges; f++) {
             const uint32_t *a = s->edges + 2 * e, *b = s->edges + 2 * f;
             const uint32_t items[4] = {a[0], a[1], b[0], b[1]};
             if (!share_one(a, 2, b, 2))
-                share = share_of(sheet, CS_PRIMITIVE_EDGE_EDGE, items, to, share);
+                share = share_of(sheet, CS_PAIR_EDGE_EDGE, items, to, share);
         }
     return share;
 }

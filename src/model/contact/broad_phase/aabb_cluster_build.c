@@ -36,6 +36,12 @@ static uint32_t block_of(const struct cs_cluster_input *order,
                                 (uint32_t)span.first[1]);
 }
 
+/* grid of a body; NULL: it is none */
+static const struct cs_flat_region *grid_of(const struct cs_cluster_input *order,
+                                            uint32_t body) {
+    return order->flat_regions ? order->flat_regions[body] : NULL;
+}
+
 static uint32_t clusters_of(uint32_t n_items) {
     return (n_items + CS_AABB_CLUSTER - 1) / CS_AABB_CLUSTER;
 }
@@ -99,7 +105,7 @@ static uint32_t last_of(const uint32_t items[CS_AABB_CLUSTER]) {
 static bool count(const struct cs_cluster_input *order, size_t *clusters, size_t *blocks) {
     *clusters = *blocks = 0;
     for (uint32_t b = 0; b < order->n_bodies; b++) {
-        const struct cs_flat_region *grid = order->flat_regions[b];
+        const struct cs_flat_region *grid = grid_of(order, b);
         const size_t own = grid ? (size_t)grid->n_blocks_x * grid->n_blocks_y : 0;
         *clusters += clusters_of(order->first[b + 1] - order->first[b]) + own;
         *blocks = own > *blocks ? own : *blocks;
@@ -132,7 +138,7 @@ enum cs_status cs_cluster_input_build(const struct cs_cluster_input *order,
     memset(clusters->items, 0xff, CS_AABB_CLUSTER * most * sizeof *clusters->items);
     for (uint32_t b = 0; b < order->n_bodies; b++) {
         const uint32_t first = clusters->n;
-        if (order->flat_regions[b])
+        if (grid_of(order, b))
             put_grid(order, b, clusters, at);
         else
             put_body(order, b, clusters);
@@ -140,7 +146,7 @@ enum cs_status cs_cluster_input_build(const struct cs_cluster_input *order,
             clusters->body[k] = b;
             clusters->max_item[k] = last_of(clusters->items + CS_AABB_CLUSTER * (size_t)k);
             if (spans)
-                set_span(order, order->flat_regions[b], clusters, k);
+                set_span(order, grid_of(order, b), clusters, k);
         }
     }
     return error->status;

@@ -77,7 +77,8 @@ struct cs_cluster_input {
     uint32_t vertices_per_item;
     const uint32_t *first; /* (n_bodies + 1) items of each body */
     uint32_t n_bodies;
-    struct cs_flat_region *const *flat_regions; /* (n_bodies) NULL: the body is none */
+    /* (n_bodies) NULL: the body is none; or NULL: none is */
+    struct cs_flat_region *const *flat_regions;
 };
 
 /* Allocates and fills all of the clusters but their boxes. Rectangles exist if one body is a

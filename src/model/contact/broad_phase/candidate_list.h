@@ -3,8 +3,8 @@
 #define CS_BROAD_PHASE_CANDIDATE_LIST_H
 
 #include "model/contact/body_pair_params.h"
-#include "model/contact/broad_phase/aabb_cluster_build.h"
 #include "model/contact/broad_phase/distance_filter.h"
+#include "model/contact/broad_phase/primitive_search.h"
 #include "model/contact/pair_distance.h"
 
 /* Flat blocks of the grids with self-contact. Pairs within a flat block and
@@ -49,9 +49,9 @@ void cs_candidates_flat_find(struct cs_candidates_flat *flat, const double *x, d
  * Otherwise nothing changes. */
 bool cs_candidates_flat_renew(struct cs_candidates_flat *flat, const double *x, double margin);
 
-/* Points or edges per chunk, and clusters per batch: the units of work of threads. The order of
- * sums depends on the chunk size, never on threads. */
-enum { CS_CANDIDATE_CHUNK = 128, CS_CANDIDATE_BATCH = 8 };
+/* Points or edges per chunk, the unit of work of threads. The order of sums depends on the
+ * chunk size, never on threads. */
+enum { CS_CANDIDATE_CHUNK = 128 };
 
 /* Candidates of the points or edges [begin, end). */
 struct cs_candidate_chunk {
@@ -68,15 +68,10 @@ struct cs_candidate_chunk {
     double result;
 };
 
-/* Candidates of the items in the clusters [begin, end), item by item. */
+/* Candidates of a batch of the search, item by item. */
 struct cs_candidate_batch {
-    enum cs_pair_kind kind;
-    uint32_t begin, end;
     uint32_t *pairs; /* (n, 2) */
     size_t n, capacity;
-    bool failed; /* there was no memory */
-    /* work: clusters near the one at hand, of its own body and of others */
-    struct cs_nearby_clusters query[2];
 };
 
 /* Candidates of one item: pairs begin to begin + n - 1 of a batch. */
@@ -96,12 +91,12 @@ struct cs_candidates {
     uint32_t *body;
     /* (3,n_points) m, state of the current list */
     double *x_at_build;
-    struct cs_aabb_clusters points, triangles, edges;
+    struct cs_primitive_search search;
     struct cs_candidates_flat flat_regions;
-    struct cs_candidate_batch *batches;
+    struct cs_candidate_batch *batches; /* (search.n_batches) */
     struct cs_candidate_range *rows[2]; /* of points, and of edges */
     struct cs_candidate_chunk *chunks;  /* points first */
-    uint32_t n_batches, n_chunks;
+    uint32_t n_chunks;
     size_t n_listed; /* pairs in all chunks */
     /* (n_points) positions of the last state that was scaled */
     struct cs_scaled_point *scaled_points;

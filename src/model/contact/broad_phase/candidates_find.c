@@ -12,10 +12,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Bounding boxes of points, edges and triangles, and of their clusters. */
-
 /* Items of one kind at a state; all pointers are borrowed. */
-struct cs_item_boxes {
+struct item_boxes {
     const double *x; /* (3, n) */
     size_t n;
     const uint32_t *vertices; /* (items, each); NULL: an item is a point itself */
@@ -24,19 +22,16 @@ struct cs_item_boxes {
     const bool *is_nonempty; /* of each body: it meets one; else boxes are empty */
 };
 
-static const struct cs_aabb cs_box_none = {{HUGE_VAL, HUGE_VAL, HUGE_VAL},
-                                           {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
-
 /* Box of an item, grown by `grow` in m to all sides; empty for CS_NO_ITEM, and for bodies
  * without contact. */
-static struct cs_aabb item_box(const struct cs_item_boxes *boxes, uint32_t item, double grow) {
+static struct cs_aabb item_box(const struct item_boxes *boxes, uint32_t item, double grow) {
     struct cs_aabb box;
     if (item == CS_NO_ITEM)
-        return cs_box_none;
+        return cs_aabb_empty;
     const uint32_t *at =
         boxes->vertices ? boxes->vertices + (size_t)boxes->vertices_per_item * item : &item;
     if (!boxes->is_nonempty[boxes->body[at[0]]])
-        return cs_box_none;
+        return cs_aabb_empty;
     for (size_t c = 0; c < 3; c++) {
         const double *x = boxes->x + c * boxes->n;
         box.low[c] = box.high[c] = x[at[0]];
@@ -50,118 +45,34 @@ static struct cs_aabb item_box(const struct cs_item_boxes *boxes, uint32_t item,
     return box;
 }
 
-struct filling {
-    const struct cs_item_boxes *boxes;
-    struct cs_aabb_clusters *clusters;
-};
-
-/* clusters per job */
-enum { TOGETHER = 64 };
-
-static void fill_cluster(const struct filling *filling, uint32_t number) {
-    struct cs_aabb_clusters *clusters = filling->clusters;
-    struct cs_aabb all = cs_box_none;
-    for (uint32_t lane = 0; lane < CS_AABB_CLUSTER; lane++) {
-        const struct cs_aabb box = item_box(
-            filling->boxes, clusters->items[CS_AABB_CLUSTER * (size_t)number + lane], 0);
-        cs_aabb_cluster_set(clusters->clusters + number, lane, &box);
-        cs_aabb_merge(&all, &box);
-    }
-    clusters->cluster_boxes[number] = all;
-}
-
-static void fill_some(void *arg, uint32_t block) {
-    const struct filling *filling = arg;
-    for (uint32_t k = TOGETHER * block; k < TOGETHER * (block + 1) && k < filling->clusters->n;
-         k++)
-        fill_cluster(filling, k);
-}
-
-/* Sets the boxes of all clusters and sorts them into cells, with all threads. Returns false if
- * out of memory. */
-static bool item_boxes_fill(const struct cs_item_boxes *boxes,
-                            struct cs_aabb_clusters *clusters) {
-    struct filling filling = {boxes, clusters};
-    cs_pool_run((clusters->n + TOGETHER - 1) / TOGETHER, fill_some, &filling);
-    return cs_aabb_clusters_sort(clusters);
-}
-
 /* --- made once --- */
 
-static enum cs_status alloc_clusters(const struct cs_cluster_input *order,
-                                     struct cs_aabb_clusters *clusters, struct cs_arena *arena,
-                                     struct cs_error *error) {
-    if (cs_cluster_input_build(order, clusters, arena, error))
-        return error->status;
-    clusters->clusters =
-        cs_arena_alloc_array(arena, clusters->n, sizeof *clusters->clusters, error);
-    clusters->cluster_boxes =
-        cs_arena_alloc_array(arena, clusters->n, sizeof *clusters->cluster_boxes, error);
-    return error->status;
-}
-
-/* Clusters of triangles, edges and points; points need no boxes of their own. */
-static enum cs_status order_all(struct cs_candidates *candidates, struct cs_arena *arena,
-                                struct cs_error *error) {
-    const struct cs_surfaces *s = candidates->system->surfaces;
-    const uint32_t n = s->n_bodies;
-    struct cs_flat_region *const *grids = candidates->flat_regions.grids;
-    if (alloc_clusters(&(struct cs_cluster_input){s->triangles, 3, s->first_triangle, n, grids},
-                       &candidates->triangles, arena, error) ||
-        alloc_clusters(&(struct cs_cluster_input){s->edges, 2, s->first_edge, n, grids},
-                       &candidates->edges, arena, error))
-        return error->status;
-    return cs_cluster_input_build(&(struct cs_cluster_input){NULL, 1, s->first_point, n, grids},
-                                  &candidates->points, arena, error);
-}
-
-/* Splits the clusters into batches, and allocates the rows that locate the pairs of each item.
- */
-static enum cs_status alloc_batches(struct cs_candidates *candidates, struct cs_arena *arena,
-                                    struct cs_error *error) {
+enum cs_status cs_candidates_find_init(struct cs_candidates *candidates, struct cs_arena *arena,
+                                       struct cs_error *error) {
     const struct cs_surfaces *surfaces = candidates->system->surfaces;
-    const uint32_t n[2] = {candidates->points.n, candidates->edges.n};
-    const uint32_t count[2] = {(n[0] + CS_CANDIDATE_BATCH - 1) / CS_CANDIDATE_BATCH,
-                               (n[1] + CS_CANDIDATE_BATCH - 1) / CS_CANDIDATE_BATCH};
-    candidates->n_batches = count[0] + count[1];
+    struct cs_primitive_search *search = &candidates->search;
+    if (cs_primitive_search_init(search, surfaces, candidates->flat_regions.grids, arena,
+                                 error))
+        return error->status;
     candidates->batches =
-        cs_arena_alloc_array(arena, candidates->n_batches, sizeof *candidates->batches, error);
+        cs_arena_alloc_array(arena, search->n_batches, sizeof *candidates->batches, error);
     candidates->rows[0] =
         cs_arena_alloc_array(arena, surfaces->n_points, sizeof **candidates->rows, error);
     candidates->rows[1] =
         cs_arena_alloc_array(arena, surfaces->n_edges, sizeof **candidates->rows, error);
-    for (uint32_t b = 0; b < candidates->n_batches && !error->status; b++) {
-        const int kind = b >= count[0];
-        const uint32_t begin = CS_CANDIDATE_BATCH * (kind ? b - count[0] : b);
-        candidates->batches[b] = (struct cs_candidate_batch){
-            .kind = kind,
-            .begin = begin,
-            .end = n[kind] - begin > CS_CANDIDATE_BATCH ? begin + CS_CANDIDATE_BATCH : n[kind]};
-    }
     return error->status;
 }
 
-enum cs_status cs_candidates_find_init(struct cs_candidates *candidates, struct cs_arena *arena,
-                                       struct cs_error *error) {
-    return order_all(candidates, arena, error) ? error->status
-                                               : alloc_batches(candidates, arena, error);
-}
-
 void cs_candidates_find_finish(struct cs_candidates *candidates) {
-    for (uint32_t b = 0; b < candidates->n_batches; b++) {
+    for (uint32_t b = 0; candidates->batches && b < candidates->search.n_batches; b++)
         free(candidates->batches[b].pairs);
-        cs_nearby_clusters_finish(candidates->batches[b].query);
-        cs_nearby_clusters_finish(candidates->batches[b].query + 1);
-    }
-    cs_aabb_clusters_finish(&candidates->triangles);
-    cs_aabb_clusters_finish(&candidates->edges);
 }
 
 /* --- at a state --- */
 
-static struct cs_item_boxes boxes_of(const struct cs_candidates *candidates,
-                                     const uint32_t *corners, uint32_t each) {
-    return (struct cs_item_boxes){
+static struct item_boxes boxes_of(const struct cs_candidates *candidates,
+                                  const uint32_t *corners, uint32_t each) {
+    return (struct item_boxes){
         candidates->x_at_build, candidates->system->surfaces->n_points, corners, each,
         candidates->body,       candidates->body_pairs->has_partner};
 }
@@ -169,15 +80,17 @@ static struct cs_item_boxes boxes_of(const struct cs_candidates *candidates,
 /* A batch at work: pairs whose boxes overlap wait in the distance filter. */
 struct work {
     const struct cs_candidates *search;
+    struct cs_search_batch *of;
     struct cs_candidate_batch *batch;
     struct cs_distance_filter sieve;
 };
 
 /* Appends a pair to its batch. */
-static void store_pairs(struct cs_candidate_batch *batch, const uint32_t pair[2]) {
+static void store_pairs(struct work *work, const uint32_t pair[2]) {
+    struct cs_candidate_batch *batch = work->batch;
     uint32_t *pairs =
         cs_arena_realloc(batch->pairs, &batch->capacity, batch->n + 1, 2 * sizeof *pairs);
-    batch->failed = batch->failed || !pairs;
+    work->of->failed = work->of->failed || !pairs;
     if (!pairs)
         return;
     batch->pairs = pairs;
@@ -188,10 +101,9 @@ static void store_pairs(struct cs_candidate_batch *batch, const uint32_t pair[2]
 
 /* Empties the filter, and keeps the pairs that pass. */
 static void measure(struct work *work) {
-    const uint32_t n =
-        cs_distance_filter_run(&work->sieve, work->batch->kind == CS_PAIR_EDGE_EDGE);
+    const uint32_t n = cs_distance_filter_run(&work->sieve, work->of->edges);
     for (uint32_t l = 0; l < n; l++)
-        store_pairs(work->batch, work->sieve.pairs[l]);
+        store_pairs(work, work->sieve.pairs[l]);
 }
 
 /* Returns whether a pair has a point in common; such pairs have no contact. */
@@ -210,7 +122,7 @@ static double reach_of(const struct cs_candidates *candidates, double range) {
  * listed with its smaller number first, once. */
 static void take(struct work *work, uint32_t item, uint32_t other) {
     const struct cs_candidates *candidates = work->search;
-    const enum cs_pair_kind kind = work->batch->kind;
+    const enum cs_pair_kind kind = work->of->edges ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE;
     const uint32_t pair[2] = {item, other};
     uint32_t at[4];
     if (kind == CS_PAIR_EDGE_EDGE && other <= item)
@@ -243,11 +155,12 @@ static double widest_reach(const struct cs_candidates *candidates, uint32_t body
 /* Box of all items of a cluster, grown by the reach. */
 static struct cs_aabb group_box(const struct cs_candidates *candidates, bool edges,
                                 uint32_t cluster, double reach) {
-    const struct cs_item_boxes points = boxes_of(candidates, NULL, 1);
-    struct cs_aabb all = edges ? candidates->edges.cluster_boxes[cluster] : cs_box_none;
+    const struct item_boxes points = boxes_of(candidates, NULL, 1);
+    struct cs_aabb all =
+        edges ? candidates->search.edges.cluster_boxes[cluster] : cs_aabb_empty;
     for (uint32_t k = 0; k < CS_AABB_CLUSTER && !edges; k++) {
         const struct cs_aabb one = item_box(
-            &points, candidates->points.items[CS_AABB_CLUSTER * (size_t)cluster + k], 0);
+            &points, candidates->search.points.items[CS_AABB_CLUSTER * (size_t)cluster + k], 0);
         cs_aabb_merge(&all, &one);
     }
     for (int c = 0; c < 3; c++) {
@@ -269,8 +182,9 @@ struct group {
 /* Describes a cluster: points are tested against triangles, edges against edges. */
 static struct group group_of(const struct cs_candidates *candidates, bool edges,
                              uint32_t cluster) {
-    struct group group = {.of = edges ? &candidates->edges : &candidates->points,
-                          .others = edges ? &candidates->edges : &candidates->triangles,
+    struct group group = {.of = edges ? &candidates->search.edges : &candidates->search.points,
+                          .others =
+                              edges ? &candidates->search.edges : &candidates->search.triangles,
                           .cluster = cluster,
                           .edges = edges};
     for (int k = 0; k < 2; k++)
@@ -306,11 +220,11 @@ static bool find_clusters(const struct cs_candidates *candidates, const struct g
 /* Tests the box of one item against the items of the clusters found. */
 static void find_item(struct work *work, const struct group *group, uint32_t item) {
     const struct cs_candidates *candidates = work->search;
-    const struct cs_item_boxes boxes =
+    const struct item_boxes boxes =
         group->edges ? boxes_of(candidates, candidates->system->surfaces->edges, 2)
                      : boxes_of(candidates, NULL, 1);
     for (int k = 0; k < 2; k++) {
-        struct cs_nearby_clusters *near = work->batch->query + k;
+        struct cs_nearby_clusters *near = work->of->near + k;
         if (!near->n)
             continue;
         const struct cs_aabb box = item_box(&boxes, item, group->reach[k]);
@@ -323,14 +237,14 @@ static void find_item(struct work *work, const struct group *group, uint32_t ite
 /* Finds all pairs of the items of one cluster. */
 static void query_cluster(struct work *work, uint32_t cluster) {
     const struct cs_candidates *candidates = work->search;
-    struct cs_candidate_batch *batch = work->batch;
-    const struct group group = group_of(candidates, batch->kind == CS_PAIR_EDGE_EDGE, cluster);
+    struct cs_search_batch *batch = work->of;
+    const struct group group = group_of(candidates, batch->edges, cluster);
     const uint32_t *items = group.of->items + CS_AABB_CLUSTER * (size_t)cluster;
     bool there = true;
     for (int k = 0; k < 2; k++)
-        there = there && find_clusters(candidates, &group, k == 0, batch->query + k);
+        there = there && find_clusters(candidates, &group, k == 0, batch->near + k);
     batch->failed = batch->failed || !there;
-    for (uint32_t k = 0; k < CS_AABB_CLUSTER && there && batch->query[0].n + batch->query[1].n;
+    for (uint32_t k = 0; k < CS_AABB_CLUSTER && there && batch->near[0].n + batch->near[1].n;
          k++)
         if (items[k] != CS_NO_ITEM)
             find_item(work, &group, items[k]);
@@ -339,10 +253,11 @@ static void query_cluster(struct work *work, uint32_t cluster) {
 /* Notes where the pairs of each item are in the batch; they are contiguous. */
 static void set_rows(const struct cs_candidates *candidates, const struct cs_aabb_clusters *of,
                      uint32_t number) {
+    const struct cs_search_batch *items = candidates->search.batches + number;
     const struct cs_candidate_batch *batch = candidates->batches + number;
-    struct cs_candidate_range *rows = candidates->rows[batch->kind];
-    for (size_t k = CS_AABB_CLUSTER * (size_t)batch->begin;
-         k < CS_AABB_CLUSTER * (size_t)batch->end; k++)
+    struct cs_candidate_range *rows = candidates->rows[items->edges];
+    for (size_t k = CS_AABB_CLUSTER * (size_t)items->begin;
+         k < CS_AABB_CLUSTER * (size_t)items->end; k++)
         if (of->items[k] != CS_NO_ITEM)
             rows[of->items[k]] = (struct cs_candidate_range){number, 0, 0};
     for (size_t p = 0; p < batch->n; p++) {
@@ -355,35 +270,35 @@ static void set_rows(const struct cs_candidates *candidates, const struct cs_aab
 /* Searches one batch. */
 static void find_batch(void *arg, uint32_t number) {
     const struct cs_candidates *candidates = arg;
-    struct cs_candidate_batch *batch = candidates->batches + number;
-    const struct cs_aabb_clusters *of =
-        batch->kind == CS_PAIR_EDGE_EDGE ? &candidates->edges : &candidates->points;
     struct work work;
     work.search = candidates;
-    work.batch = batch;
+    work.of = candidates->search.batches + number;
+    work.batch = candidates->batches + number;
     work.sieve.n = 0;
-    batch->n = 0;
-    batch->failed = false;
-    for (uint32_t k = batch->begin; k < batch->end; k++)
+    work.batch->n = 0;
+    work.of->failed = false;
+    for (uint32_t k = work.of->begin; k < work.of->end; k++)
         query_cluster(&work, k);
     measure(&work);
-    set_rows(candidates, of, number);
+    set_rows(candidates,
+             work.of->edges ? &candidates->search.edges : &candidates->search.points, number);
 }
 
-/* Sets boxes and cells of one kind of clusters; returns false if out of memory. */
-static bool fill(const struct cs_candidates *candidates, struct cs_aabb_clusters *clusters,
-                 const uint32_t *corners, uint32_t each) {
-    const struct cs_item_boxes boxes = boxes_of(candidates, corners, each);
-    return item_boxes_fill(&boxes, clusters);
+/* Box of an edge or triangle at the state. */
+static struct cs_aabb box_of(const void *arg, uint32_t item) {
+    return item_box(arg, item, 0);
 }
 
 /* Boxes of triangles and edges are set first; then all batches run in parallel. */
 bool cs_candidates_find(struct cs_candidates *candidates) {
     const struct cs_surfaces *surfaces = candidates->system->surfaces;
-    bool failed = !fill(candidates, &candidates->triangles, surfaces->triangles, 3) ||
-                  !fill(candidates, &candidates->edges, surfaces->edges, 2);
-    cs_pool_run(candidates->n_batches, find_batch, candidates);
-    for (uint32_t b = 0; b < candidates->n_batches; b++)
-        failed = failed || candidates->batches[b].failed;
+    struct cs_primitive_search *search = &candidates->search;
+    const struct item_boxes triangles = boxes_of(candidates, surfaces->triangles, 3),
+                            edges = boxes_of(candidates, surfaces->edges, 2);
+    bool failed = !cs_aabb_clusters_fill(&search->triangles, box_of, &triangles) ||
+                  !cs_aabb_clusters_fill(&search->edges, box_of, &edges);
+    cs_pool_run(search->n_batches, find_batch, candidates);
+    for (uint32_t b = 0; b < search->n_batches; b++)
+        failed = failed || search->batches[b].failed;
     return !failed;
 }

@@ -4,8 +4,8 @@
 
 #include "model/contact/approach.h"
 #include "model/contact/barrier_law.h"
-#include "model/contact/broad_phase/swept_aabb.h"
 #include "model/contact/ccd/accd.h"
+#include "model/contact/ccd/crossings.h"
 #include "model/contact/ccd/step_limit.h"
 #include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/pair_step_check.h"
@@ -16,9 +16,6 @@
 
 #include <math.h>
 #include <string.h>
-
-/* points times triangles that are tested in about ten seconds */
-#define PAIRS_MAX 1e9
 
 enum cs_status cs_blocked_step_init(struct cs_blocked_step *blocked,
                                     const struct cs_system *system, struct cs_arena *arena,
@@ -167,7 +164,7 @@ static bool print_point(const struct cs_blocked_step *blocked, const struct cs_s
 
 /* Two primitives during the blocked step: their points, positions at its start in m, moves. */
 struct pair_move {
-    enum cs_primitive_pair_kind kind;
+    enum cs_pair_kind kind;
     uint32_t at[4];
     double p[4][3], moves[4][3];
 };
@@ -192,10 +189,7 @@ static double energy_of(const struct cs_system *system, struct pair_move *pair, 
                         const struct place *at) {
     double weight[4], way[3] = {0}, inverse = 0;
     struct cs_pair_distance distance;
-    cs_pair_distance_set(&distance,
-                         pair->kind == CS_PRIMITIVE_EDGE_EDGE ? CS_PAIR_EDGE_EDGE
-                                                              : CS_PAIR_POINT_TRIANGLE,
-                         at->range, pair->p);
+    cs_pair_distance_set(&distance, pair->kind, at->range, pair->p);
     cs_pair_distance_weights(&distance, weight);
     for (int k = 0; k < 4; k++) {
         inverse += weight[k] * weight[k] * cs_surface_points_inverse_mass(system, pair->at[k]);
@@ -222,7 +216,7 @@ static struct place place_of(const struct cs_system *system, struct pair_move *p
         return at;
     const struct cs_body_pair_params *params =
         cs_body_pair_params_of(&system->pairs->body_pairs, a, b);
-    const bool edges = pair->kind == CS_PRIMITIVE_EDGE_EDGE;
+    const bool edges = pair->kind == CS_PAIR_EDGE_EDGE;
     at.range = cs_body_pair_params_range(params, edges);
     at.k = cs_body_pair_params_stiffness(params, edges);
     at.stiffness = params->k;
@@ -234,7 +228,7 @@ static struct place place_of(const struct cs_system *system, struct pair_move *p
 /* Adds "; there the edge at ... VERB the edge at ...", and the contact there. */
 static void print_pair(const struct cs_blocked_step *blocked, const struct cs_system *system,
                        const char *verb, struct pair_move *pair, struct cs_text *out) {
-    const bool edges = pair->kind == CS_PRIMITIVE_EDGE_EDGE;
+    const bool edges = pair->kind == CS_PAIR_EDGE_EDGE;
     const struct place at = place_of(system, pair, blocked->t[1] - blocked->t[0]);
     cs_text_add(out, edges ? "; there the edge at " : "; there ");
     cs_surfaces_print_point(system, pair->at[0], out);
@@ -247,12 +241,11 @@ static void print_pair(const struct cs_blocked_step *blocked, const struct cs_sy
 static double nearness_of(const struct cs_candidates *candidates, const double *const x[2],
                           struct pair_move *pair) {
     const size_t n = candidates->system->surfaces->n_points;
-    const enum cs_pair_kind kind =
-        pair->kind == CS_PRIMITIVE_EDGE_EDGE ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE;
     read_pair(n, (const double *const[2]){x[1], x[1]}, pair);
     const double end = distance_of(pair);
     read_pair(n, x, pair);
-    return fmin(end, distance_of(pair)) / cs_candidate_range_of(candidates, kind, pair->at);
+    return fmin(end, distance_of(pair)) /
+           cs_candidate_range_of(candidates, pair->kind, pair->at);
 }
 
 /* Adds the nearest of the candidates, in units of their range; returns false if none is in
@@ -264,11 +257,9 @@ static bool print_nearest(const struct cs_blocked_step *blocked, const struct cs
     double least = 1;
     for (uint32_t l = 0; l < candidates->n_chunks; l++)
         for (size_t k = 0; k < candidates->chunks[l].n; k++) {
-            const enum cs_pair_kind kind = candidates->chunks[l].kind;
-            pair.kind = kind == CS_PAIR_EDGE_EDGE ? CS_PRIMITIVE_EDGE_EDGE
-                                                  : CS_PRIMITIVE_POINT_TRIANGLE;
-            cs_candidate_vertices(system->surfaces, kind, candidates->chunks[l].pairs + 2 * k,
-                                  pair.at);
+            pair.kind = candidates->chunks[l].kind;
+            cs_candidate_vertices(system->surfaces, pair.kind,
+                                  candidates->chunks[l].pairs + 2 * k, pair.at);
             // ties go to the first in the order of the list
             const double y = nearness_of(candidates, x, &pair);
             if (y < least) {
@@ -283,69 +274,19 @@ static bool print_nearest(const struct cs_blocked_step *blocked, const struct cs
 
 /* --- crossings --- */
 
-/* Search for the pair that meets first, by a test of all pairs. */
-struct search {
-    const struct cs_surfaces *surfaces;
-    const double *x[2];
-    double share;
-    struct pair_move best; /* valid if share is below 1 */
-};
-
-/* Takes a pair over if it meets earlier than the best one so far. */
-static void try_pair(struct search *search, enum cs_primitive_pair_kind kind,
-                     const uint32_t at[4]) {
-    const size_t n = search->surfaces->n_points,
-                 side = kind == CS_PRIMITIVE_POINT_TRIANGLE ? 1 : 2;
-    struct cs_swept_aabb swept_boxes[2] = {cs_swept_aabb_empty(), cs_swept_aabb_empty()};
-    struct pair_move pair = {.kind = kind};
-    for (size_t k = 0; k < 4; k++)
-        cs_swept_aabb_add_point(swept_boxes + (k >= side), n, at[k], search->x[0],
-                                search->x[1]);
-    if (!cs_swept_aabbs_overlap(swept_boxes, swept_boxes + 1, CS_ACCD_DISTANCE_MIN))
-        return;
-    // primitives with a common point never meet
-    for (size_t k = side; k < 4; k++)
-        for (size_t l = 0; l < side; l++)
-            if (at[k] == at[l])
-                return;
-    memcpy(pair.at, at, sizeof pair.at);
-    read_pair(n, search->x, &pair);
-    const double share = cs_accd_safe_fraction(kind, (const double(*)[3])pair.p,
-                                               (const double(*)[3])pair.moves, search->share);
-    if (!(share < search->share))
-        return;
-    search->share = share;
-    search->best = pair;
-}
-
-/* Tests all pairs of a point and a triangle, and all pairs of edges. */
-static void try_all(struct search *search) {
-    const struct cs_surfaces *s = search->surfaces;
-    for (uint32_t i = 0; i < s->n_points; i++)
-        for (size_t t = 0; t < s->n_triangles; t++) {
-            const uint32_t *c = s->triangles + 3 * t;
-            try_pair(search, CS_PRIMITIVE_POINT_TRIANGLE,
-                     (const uint32_t[4]){i, c[0], c[1], c[2]});
-        }
-    for (size_t e = 0; e < s->n_edges; e++)
-        for (size_t f = e + 1; f < s->n_edges; f++) {
-            const uint32_t *a = s->edges + 2 * e, *b = s->edges + 2 * f;
-            try_pair(search, CS_PRIMITIVE_EDGE_EDGE,
-                     (const uint32_t[4]){a[0], a[1], b[0], b[1]});
-        }
-}
-
-/* Adds the pair that crosses first; nothing if none does, or there are too many to test. */
+/* Adds the pair that crosses first; nothing if none does. */
 static void print_crossing(const struct cs_blocked_step *blocked,
                            const struct cs_system *system, const double *const x[2],
                            struct cs_text *out) {
-    const struct cs_surfaces *s = system->surfaces;
-    struct search search = {.surfaces = s, .x = {x[0], x[1]}, .share = 1};
-    if ((double)s->n_points * s->n_triangles > PAIRS_MAX)
+    const struct cs_first_collision first =
+        cs_crossings_first_collision(system, blocked->t[0], blocked->x, blocked->t[1],
+                                     blocked->x + 3 * (size_t)system->view.n);
+    struct pair_move pair = {.kind = first.kind};
+    if (!(first.fraction < 1))
         return;
-    try_all(&search);
-    if (search.share < 1)
-        print_pair(blocked, system, "would cross", &search.best, out);
+    memcpy(pair.at, first.points, sizeof pair.at);
+    read_pair(system->surfaces->n_points, x, &pair);
+    print_pair(blocked, system, "would cross", &pair, out);
 }
 
 void cs_blocked_step_print(const struct cs_blocked_step *blocked,

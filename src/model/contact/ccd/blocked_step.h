@@ -27,8 +27,7 @@ void cs_blocked_step_store(struct cs_blocked_step *blocked, const struct cs_syst
 /* Asks the questions of cs_step_limit_fraction again and appends what rejected the stored step:
  * "; there ... would cross ..." or "; there ... comes to ...", with the distance, the energy
  * that contact takes up there, the energy that comes, and the stiffness or range that would
- * hold it. Appends nothing if no step is stored, or if the system is too large for a test of
- * all pairs. */
+ * hold it. Appends nothing if no step is stored. */
 void cs_blocked_step_print(const struct cs_blocked_step *blocked,
                            const struct cs_system *system, struct cs_text *out);
 

@@ -1,42 +1,44 @@
-/* Counts crossings, and finds the collision-free fraction of a move, over all pairs of parts
- * that may meet.
+/* Counts crossings, and finds the first collision of a move, over all pairs that may meet.
  *
  * A surface crosses another exactly if an edge of one pierces a triangle of the other, but for
- * degenerate contact. Each pair of an edge and a triangle belongs to one pair of representative
- * triangles, so none is counted twice (representative_triangles.h). During a move two surfaces
- * first meet in a point-triangle or an edge-edge pair; these two kinds therefore suffice.
+ * degenerate contact. During a move two surfaces first meet in a point-triangle or an edge-edge
+ * pair; these two kinds therefore suffice.
  *
- * The jobs of the tree run in parallel, each with its own result. Counts are integers and the
- * fraction is a minimum: both are independent of the order of jobs. The fraction found so far
- * in a job bounds the following pairs, which ends most of them early; a minimum does not change
- * by that. */
+ * Batches of pairs run in parallel, each with its own result. Counts are integers and the
+ * fraction is a minimum: both are independent of the order of pairs. The fraction found so far
+ * in a batch bounds the following pairs, which ends most of them early; a minimum does not
+ * change by that. Every pair is tested by its own swept boxes first, so that a search that
+ * finds more of them changes nothing. */
 #include "model/contact/ccd/crossings.h"
 
 #include "base/pool.h"
 #include "model/contact/ccd/accd.h"
 #include "model/contact/ccd/edge_triangle.h"
+#include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/surface_points.h"
 #include "scene/body_pairs.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Result of one job; results are combined in the order of jobs. */
+/* Result of one batch; results are combined in the order of batches. */
 struct found {
     struct cs_crossing_count count;
-    /* collision-free fraction */
-    double share;
+    struct cs_first_collision collision;
 };
 
 struct cs_crossings {
-    struct cs_representative_triangles parts;
+    /* that of contact between bodies, if there is one */
+    struct cs_primitive_search *search;
     bool *apart;         /* (bodies, bodies) pairs whose moves are limited; NULL: all of them */
-    struct found *found; /* (CS_BVH_PAIRS_MAX) */
+    struct found *found; /* (n_batches) */
+    struct cs_point_motion *motion; /* (n_points) of the last move */
+    bool failed;
 };
 
 /* Marks the pairs of bodies with contact: the limit applies to them alone, others may pass
  * through each other. */
-static void list_nonadjacent(const struct cs_scene *scene, bool *apart) {
+static void list_apart(const struct cs_scene *scene, bool *apart) {
     const uint32_t n = cs_scene_surfaces(scene);
     double friction;
     for (uint32_t a = 0; a < n; a++)
@@ -44,79 +46,94 @@ static void list_nonadjacent(const struct cs_scene *scene, bool *apart) {
             apart[(size_t)a * n + b] = cs_scene_bodies_collide(scene, a, b, &friction);
 }
 
+/* Takes the search and the moves of contact between bodies, or makes them. */
+static enum cs_status find_search(struct cs_system *system, struct cs_crossings *crossings,
+                                  struct cs_error *error) {
+    struct cs_arena *arena = &system->arena;
+    if (system->pairs) {
+        crossings->search = &system->pairs->candidates.search;
+        crossings->motion = system->pairs->point_motion;
+        return CS_OK;
+    }
+    crossings->motion = cs_arena_alloc_array(arena, system->surfaces->n_points,
+                                             sizeof *crossings->motion, error);
+    crossings->search = cs_arena_alloc(arena, sizeof *crossings->search, error);
+    return error->status ? error->status
+                         : cs_primitive_search_init(crossings->search, system->surfaces, NULL,
+                                                    arena, error);
+}
+
 enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *error) {
-    struct cs_crossings *crossings = cs_arena_alloc(&system->arena, sizeof *crossings, error);
-    if (error->status)
+    struct cs_arena *arena = &system->arena;
+    if (cs_surface_points_build(system, error))
         return error->status;
-    crossings->found =
-        cs_arena_alloc_array(&system->arena, CS_BVH_PAIRS_MAX, sizeof *crossings->found, error);
+    struct cs_crossings *crossings = cs_arena_alloc(arena, sizeof *crossings, error);
+    if (!crossings || find_search(system, crossings, error))
+        return error->status;
     const size_t n = cs_scene_surfaces(system->scene);
+    crossings->found = cs_arena_alloc_array(arena, crossings->search->n_batches,
+                                            sizeof *crossings->found, error);
     if (cs_scene_crossings_by_pairs(system->scene) &&
-        (crossings->apart = cs_arena_alloc_array(&system->arena, n * n, sizeof(bool), error)))
-        list_nonadjacent(system->scene, crossings->apart);
-    if (!error->status && !cs_representative_triangles_build(system, &crossings->parts, error))
+        (crossings->apart = cs_arena_alloc_array(arena, n * n, sizeof(bool), error)))
+        list_apart(system->scene, crossings->apart);
+    if (!error->status)
         system->crossings = crossings;
     return error->status;
 }
 
-/* One query over all pairs. The result of each job goes to `found`. */
-struct question {
-    const struct cs_representative_triangles *parts;
-    /* bodies; colliders have higher numbers */
-    uint32_t n_bodies;
-    const double *x0, *x1;
-    /* pairs of bodies that count; NULL: all */
-    const bool *apart;
-    /* scene whose contact pairs alone count; NULL: all pairs */
-    const struct cs_scene *apart_by;
-    /* marks of triangles; NULL: not wanted */
-    uint8_t *marks;
-    struct found *found;
-    cs_bvh_visitor *visit;
-};
-struct asking {
-    const struct question *question;
-    struct found *found;
-};
-
-/* Runs one job of the tree with an empty result. */
-static void run_job(void *arg, uint32_t job) {
-    const struct question *question = arg;
-    struct asking asking = {question, question->found + job};
-    asking.found->count = (struct cs_crossing_count){0};
-    asking.found->share = 1;
-    cs_bvh_visit(&question->parts->bvh, job, question->visit, &asking);
+bool cs_crossings_failed(const struct cs_system *system) {
+    return system->crossings && system->crossings->failed;
 }
 
-static void read_points(const struct cs_representative_triangles *parts, const double *x,
-                        const uint32_t *items, uint32_t n, double p[][3]) {
-    for (uint32_t k = 0; k < n; k++)
-        for (size_t c = 0; c < 3; c++)
-            p[k][c] = x[c * parts->n_points + items[k]];
+/* One question over all pairs. The result of each batch goes to crossings->found. */
+struct question {
+    const struct cs_system *system;
+    const struct cs_crossings *crossings;
+    const double *x; /* (3,n_points) where edges are counted */
+    /* whose contact pairs alone count; NULL: all pairs */
+    const struct cs_scene *scene;
+    /* marks of triangles; NULL: not wanted */
+    uint8_t *marks;
+};
+
+static void clear_found(struct cs_crossings *crossings) {
+    for (uint32_t k = 0; k < crossings->search->n_batches; k++)
+        crossings->found[k] = (struct found){.collision.fraction = 1};
+}
+
+/* Returns whether both bodies are colliders, which may pass through each other. */
+static bool are_obstacles(const struct question *question, uint32_t a, uint32_t b) {
+    const uint32_t n = question->system->scene->bodies.n;
+    return a >= n && b >= n;
 }
 
 /* --- counting --- */
 
 /* Marks a triangle. Several threads may mark the same one, with the same value. */
 static void mark_triangle(uint8_t *marks, uint32_t t) {
-    // several threads may mark the same triangle
     if (t != CS_NO_TRIANGLE)
         __atomic_store_n(marks + t, (uint8_t)1, __ATOMIC_RELAXED);
 }
 
+static void read_points(const struct question *question, const uint32_t *items, uint32_t n,
+                        double p[][3]) {
+    for (uint32_t k = 0; k < n; k++)
+        for (size_t c = 0; c < 3; c++)
+            p[k][c] = question->x[c * question->system->surfaces->n_points + items[k]];
+}
+
 /* Counts edge e against triangle t, unless they have a particle in common. */
-static void count_pair(const struct asking *asking, uint32_t e, uint32_t t) {
-    const struct question *question = asking->question;
-    const struct cs_representative_triangles *parts = question->parts;
-    const uint32_t *ends = cs_edge_vertices(parts, e),
-                   *corners = cs_triangle_vertices(parts, t);
-    struct cs_crossing_count *count = &asking->found->count;
+static void count_pair(const struct question *question, uint32_t e, uint32_t t,
+                       struct cs_crossing_count *count) {
+    const struct cs_surfaces *surfaces = question->system->surfaces;
+    const uint32_t *ends = surfaces->edges + 2 * (size_t)e,
+                   *corners = surfaces->triangles + 3 * (size_t)t;
     double edge[2][3], triangle[3][3];
     for (int k = 0; k < 6; k++)
         if (ends[k / 3] == corners[k % 3])
             return;
-    read_points(parts, question->x0, ends, 2, edge);
-    read_points(parts, question->x0, corners, 3, triangle);
+    read_points(question, ends, 2, edge);
+    read_points(question, corners, 3, triangle);
     if (!cs_edge_crosses_triangle((const double(*)[3])edge, (const double(*)[3])triangle))
         return;
     if (!count->n++ || e < count->edge || (e == count->edge && t < count->triangle)) {
@@ -126,59 +143,41 @@ static void count_pair(const struct asking *asking, uint32_t e, uint32_t t) {
     if (!question->marks)
         return;
     mark_triangle(question->marks, t);
-    mark_triangle(question->marks, parts->surfaces->edge_triangles[2 * (size_t)e]);
-    mark_triangle(question->marks, parts->surfaces->edge_triangles[2 * (size_t)e + 1]);
+    mark_triangle(question->marks, surfaces->edge_triangles[2 * (size_t)e]);
+    mark_triangle(question->marks, surfaces->edge_triangles[2 * (size_t)e + 1]);
 }
 
-/* Tests the edges owned by a part against the triangle of another. */
-static void count_edges(const struct asking *asking, uint32_t part, uint32_t other) {
-    const struct cs_representative_triangles *parts = asking->question->parts;
-    const uint32_t t = parts->triangles[other];
-    if (t == CS_NO_TRIANGLE)
-        return;
-    for (uint32_t k = parts->first_edge[part]; k < parts->first_edge[part + 1]; k++)
-        count_pair(asking, parts->edges[k], t);
+static void count_pairs(void *arg, uint32_t batch, const uint32_t (*pairs)[2], size_t n) {
+    const struct question *question = arg;
+    for (size_t k = 0; k < n; k++)
+        count_pair(question, pairs[k][0], pairs[k][1],
+                   &question->crossings->found[batch].count);
 }
 
-/* Returns whether both parts are of colliders, which may pass through each other. */
-static bool are_obstacles(const struct question *question, uint32_t i, uint32_t j) {
-    const uint32_t *bodies = question->parts->bodies;
-    return bodies[i] >= question->n_bodies && bodies[j] >= question->n_bodies;
-}
-
-/* Returns whether no contact is defined between the bodies of two parts. */
-static bool are_free(const struct question *question, uint32_t i, uint32_t j) {
-    const uint32_t *bodies = question->parts->bodies;
+static bool may_pierce(const void *arg, uint32_t a, uint32_t b) {
+    const struct question *question = arg;
     double friction;
-    return question->apart_by &&
-           !cs_scene_bodies_collide(question->apart_by, bodies[i], bodies[j], &friction);
+    return !are_obstacles(question, a, b) &&
+           (!question->scene || cs_scene_bodies_collide(question->scene, a, b, &friction));
 }
 
-static void count_parts(void *arg, uint32_t i, uint32_t j) {
-    const struct question *question = ((const struct asking *)arg)->question;
-    if (are_obstacles(question, i, j) || are_free(question, i, j))
-        return;
-    count_edges(arg, i, j);
-    count_edges(arg, j, i);
-}
-
-/* Counts at one state; apart_by and marks may be NULL. The first pair is the least by (edge,
- * triangle) of all jobs. */
+/* Counts at one state; scene and marks may be NULL. The first pair is the least by (edge,
+ * triangle) of all batches. */
 static struct cs_crossing_count count(const struct cs_system *system, double t, const double *x,
-                                      const struct cs_scene *apart_by, uint8_t *marks) {
+                                      const struct cs_scene *scene, uint8_t *marks) {
     struct cs_crossings *crossings = system->crossings;
     struct cs_crossing_count all = {0};
-    const double *places = cs_surface_points_positions(system, CS_POINTS_BEGIN, t, x);
-    struct question question = {.parts = &crossings->parts,
-                                .n_bodies = system->scene->bodies.n,
-                                .x0 = places,
-                                .apart_by = apart_by,
-                                .marks = marks,
-                                .found = crossings->found,
-                                .visit = count_parts};
-    cs_representative_triangles_update(&crossings->parts, places, NULL, 0);
-    cs_pool_run(crossings->parts.bvh.n_jobs, run_job, &question);
-    for (uint32_t k = 0; k < crossings->parts.bvh.n_jobs; k++) {
+    struct question question = {system, crossings,
+                                cs_surface_points_positions(system, CS_POINTS_BEGIN, t, x),
+                                scene, marks};
+    const struct cs_move_query query = {.x0 = question.x,
+                                        .pierce = true,
+                                        .may_meet = may_pierce,
+                                        .take = count_pairs,
+                                        .arg = &question};
+    clear_found(crossings);
+    crossings->failed |= !cs_primitive_search_move(crossings->search, &query);
+    for (uint32_t k = 0; k < crossings->search->n_batches; k++) {
         const struct cs_crossing_count *one = &crossings->found[k].count;
         const bool first = one->n && (!all.n || one->edge < all.edge ||
                                       (one->edge == all.edge && one->triangle < all.triangle));
@@ -208,100 +207,172 @@ struct cs_crossing_count cs_crossings_start(const struct cs_system *system) {
 
 void cs_crossings_print(const struct cs_system *system, const struct cs_crossing_count *count,
                         struct cs_text *out) {
-    const struct cs_representative_triangles *parts = &system->crossings->parts;
+    const struct cs_surfaces *surfaces = system->surfaces;
     cs_text_add(out, "%llu edge%s through %s", (unsigned long long)count->n,
                 count->n == 1 ? " goes" : "s go", count->n == 1 ? "a triangle" : "triangles");
     cs_text_add(out, count->n == 1 ? ", from " : ", the first from ");
-    cs_surfaces_print_point(system, cs_edge_vertices(parts, count->edge)[0], out);
+    cs_surfaces_print_point(system, surfaces->edges[2 * (size_t)count->edge], out);
     cs_text_add(out, ", through the triangle at ");
-    cs_surfaces_print_point(system, cs_triangle_vertices(parts, count->triangle)[0], out);
+    cs_surfaces_print_point(system, surfaces->triangles[3 * (size_t)count->triangle], out);
 }
 
 /* --- the first of a move --- */
 
-/* Reduces the fraction of the job if a pair meets. A swept-box test of its own points precedes
- * the search; the boxes of the parts are larger. */
-static void try_pair(const struct asking *asking, enum cs_primitive_pair_kind kind,
-                     const uint32_t particles[4]) {
-    const struct question *question = asking->question;
-    const size_t n = question->parts->n_points,
-                 side = kind == CS_PRIMITIVE_POINT_TRIANGLE ? 1 : 2;
+/* Puts that edge first whose first triangle has the lower number, within a body: the rounding
+ * of the distance depends on the order, which must not depend on the search. */
+static void order_edges(const struct cs_surfaces *surfaces, uint32_t edges[2]) {
+    const uint32_t e = edges[0], f = edges[1];
+    if (surfaces->edge_triangles[2 * (size_t)e] <= surfaces->edge_triangles[2 * (size_t)f] ||
+        cs_surfaces_body(surfaces->first_edge, surfaces->n_bodies, e) !=
+            cs_surfaces_body(surfaces->first_edge, surfaces->n_bodies, f))
+        return;
+    edges[0] = f;
+    edges[1] = e;
+}
+
+/* Returns whether a point is a body of its own, which has no surface to pass through. */
+static bool is_alone(const struct cs_surfaces *surfaces, uint32_t point) {
+    const uint32_t body = cs_surfaces_body(surfaces->first_point, surfaces->n_bodies, point);
+    return surfaces->first_edge[body] == surfaces->first_edge[body + 1];
+}
+
+/* Returns whether the two sides of a pair have a point in common: they never meet. */
+static bool share_point(const uint32_t at[4], enum cs_pair_kind kind) {
+    const bool edges = kind == CS_PAIR_EDGE_EDGE;
+    return at[0] == at[2] || at[0] == at[3] ||
+           (edges ? at[1] == at[2] || at[1] == at[3] : at[0] == at[1]);
+}
+
+/* Takes a pair over if it meets before the first one so far. */
+static void try_pair(const struct question *question, enum cs_pair_kind kind,
+                     const uint32_t pair[2], struct cs_first_collision *first) {
+    const struct cs_surfaces *surfaces = question->system->surfaces;
+    uint32_t items[2] = {pair[0], pair[1]}, at[4];
     double p[4][3], moves[4][3];
-    struct cs_swept_aabb swept_boxes[2] = {cs_swept_aabb_empty(), cs_swept_aabb_empty()};
-    for (size_t k = 0; k < 4; k++)
-        for (size_t l = 0; l < side; l++)
-            if (k >= side && particles[k] == particles[l])
-                return;
-    for (size_t k = 0; k < 4; k++)
-        cs_swept_aabb_add_point(swept_boxes + (k >= side), n, particles[k], question->x0,
-                                question->x1);
-    if (!cs_swept_aabbs_overlap(swept_boxes, swept_boxes + 1, CS_ACCD_DISTANCE_MIN))
+    if (kind == CS_PAIR_EDGE_EDGE)
+        order_edges(surfaces, items);
+    else if (is_alone(surfaces, pair[0]))
         return;
-    for (size_t k = 0; k < 4; k++)
-        for (size_t c = 0; c < 3; c++) {
-            p[k][c] = question->x0[c * n + particles[k]];
-            moves[k][c] = question->x1[c * n + particles[k]] - p[k][c];
-        }
-    asking->found->share = cs_accd_safe_fraction(
-        kind, (const double(*)[3])p, (const double(*)[3])moves, asking->found->share);
+    cs_candidate_vertices(surfaces, kind, items, at);
+    if (share_point(at, kind))
+        return;
+    for (size_t k = 0; k < 4; k++) {
+        const double *move = question->crossings->motion[at[k]].values;
+        memcpy(p[k], move + CS_POINT_MOVE_FROM, sizeof p[k]);
+        memcpy(moves[k], move + CS_POINT_MOVE_BY, sizeof moves[k]);
+    }
+    const double fraction = cs_accd_safe_fraction(kind, (const double(*)[3])p,
+                                                  (const double(*)[3])moves, first->fraction);
+    if (!(fraction < first->fraction))
+        return;
+    first->fraction = fraction;
+    first->kind = kind;
+    memcpy(first->points, at, sizeof first->points);
 }
 
-/* Tests the points owned by a part against the triangle of another. */
-static void try_points(const struct asking *asking, uint32_t part, uint32_t other) {
-    const struct cs_representative_triangles *parts = asking->question->parts;
-    const uint32_t t = parts->triangles[other];
-    if (t == CS_NO_TRIANGLE)
-        return;
-    const uint32_t *corners = cs_triangle_vertices(parts, t);
-    for (uint32_t k = parts->first_point[part]; k < parts->first_point[part + 1]; k++)
-        try_pair(asking, CS_PRIMITIVE_POINT_TRIANGLE,
-                 (const uint32_t[4]){parts->points[k], corners[0], corners[1], corners[2]});
+/* Tries those of n pairs whose swept boxes meet. */
+static void try_pairs(const struct question *question, enum cs_pair_kind kind,
+                      const uint32_t (*pairs)[2], size_t n, struct cs_first_collision *first) {
+    uint32_t some[CS_SEARCH_PAIRS][2];
+    const struct cs_moving_pairs items = {question->system->surfaces, kind == CS_PAIR_EDGE_EDGE,
+                                          pairs[0], n};
+    const size_t near = cs_point_motion_filter(question->crossings->motion, &items,
+                                               CS_ACCD_DISTANCE_MIN, some[0]);
+    for (size_t k = 0; k < near; k++)
+        try_pair(question, kind, some[k], first);
 }
 
-/* Tests the edges owned by two parts against each other. */
-static void try_edges(const struct asking *asking, uint32_t part, uint32_t other) {
-    const struct cs_representative_triangles *parts = asking->question->parts;
-    for (uint32_t k = parts->first_edge[part]; k < parts->first_edge[part + 1]; k++)
-        for (uint32_t l = parts->first_edge[other]; l < parts->first_edge[other + 1]; l++) {
-            const uint32_t *e = cs_edge_vertices(parts, parts->edges[k]);
-            const uint32_t *f = cs_edge_vertices(parts, parts->edges[l]);
-            try_pair(asking, CS_PRIMITIVE_EDGE_EDGE,
-                     (const uint32_t[4]){e[0], e[1], f[0], f[1]});
-        }
+static void try_found(void *arg, uint32_t batch, const uint32_t (*pairs)[2], size_t n) {
+    const struct question *question = arg;
+    const struct cs_crossings *crossings = question->crossings;
+    try_pairs(question,
+              crossings->search->batches[batch].edges ? CS_PAIR_EDGE_EDGE
+                                                      : CS_PAIR_POINT_TRIANGLE,
+              pairs, n, &crossings->found[batch].collision);
 }
 
-/* Tests all primitives of two parts: points and triangles both ways, and edges. */
-static void try_parts(void *arg, uint32_t i, uint32_t j) {
-    const struct question *question = ((const struct asking *)arg)->question;
-    const uint32_t *bodies = question->parts->bodies;
-    if (are_obstacles(question, i, j))
-        return;
-    if (question->apart &&
-        !question->apart[(size_t)bodies[i] * question->parts->surfaces->n_bodies + bodies[j]])
-        return;
-    try_points(arg, i, j);
-    try_points(arg, j, i);
-    try_edges(arg, i, j);
+static bool may_meet(const void *arg, uint32_t a, uint32_t b) {
+    const struct question *question = arg;
+    const bool *apart = question->crossings->apart;
+    return !are_obstacles(question, a, b) &&
+           (!apart || apart[(size_t)a * question->system->surfaces->n_bodies + b]);
+}
+
+/* Sought among all pairs of the move from x0 to x1 (3,n_points), whose motion is set. */
+static struct cs_first_collision search_first(const struct cs_system *system, const double *x0,
+                                              const double *x1) {
+    struct cs_crossings *crossings = system->crossings;
+    struct question question = {system, crossings, x0, NULL, NULL};
+    struct cs_first_collision first = {.fraction = 1};
+    const struct cs_move_query query = {.x0 = x0,
+                                        .x1 = x1,
+                                        .reach = CS_ACCD_DISTANCE_MIN,
+                                        .may_meet = may_meet,
+                                        .take = try_found,
+                                        .arg = &question};
+    clear_found(crossings);
+    crossings->failed |= !cs_primitive_search_move(crossings->search, &query);
+    for (uint32_t k = 0; k < crossings->search->n_batches; k++)
+        if (crossings->found[k].collision.fraction < first.fraction)
+            first = crossings->found[k].collision;
+    return first;
+}
+
+struct cs_first_collision cs_crossings_first_collision(const struct cs_system *system,
+                                                       double t0, const double *x0, double t1,
+                                                       const double *x1) {
+    const double *from = cs_surface_points_positions(system, CS_POINTS_BEGIN, t0, x0);
+    const double *to = cs_surface_points_positions(system, CS_POINTS_END, t1, x1);
+    cs_point_motion_set(system, from, to, system->crossings->motion);
+    return search_first(system, from, to);
+}
+
+/* --- in the list of candidates --- */
+
+/* Returns whether contact is defined between all pairs, colliders with each other excepted. */
+static bool all_bodies_collide(const struct cs_body_pair_table *table, uint32_t n_bodies) {
+    bool all = true;
+    for (uint32_t a = 0; a < n_bodies; a++)
+        for (uint32_t b = 0; b < table->n_bodies; b++)
+            all = all && cs_body_pair_params_of(table, a, b)->range > 0;
+    return all;
+}
+
+/* A list that covers the way has all pairs that come within their range on it, and pairs that
+ * meet are among them (CS_CANDIDATES_ACCD_LIMIT). */
+bool cs_crossings_list_suffices(const struct cs_system *system, const double *x0,
+                                const double *x1) {
+    struct cs_pairs *pairs = system->pairs;
+    return pairs &&
+           (system->crossings->apart ||
+            all_bodies_collide(&pairs->body_pairs, system->scene->bodies.n)) &&
+           cs_candidates_max_motion(&pairs->candidates, x0, x1) <= CS_CANDIDATES_ACCD_LIMIT &&
+           cs_candidates_cover_step(&pairs->candidates, x0, x1);
+}
+
+/* Fraction of one chunk of the list. */
+static void try_chunk(void *arg, uint32_t number) {
+    const struct question *question = arg;
+    struct cs_candidate_chunk *chunk = question->system->pairs->candidates.chunks + number;
+    struct cs_first_collision first = {.fraction = 1};
+    for (size_t p = 0; p < chunk->n; p += CS_SEARCH_PAIRS)
+        try_pairs(question, chunk->kind, (const uint32_t(*)[2])(chunk->pairs + 2 * p),
+                  chunk->n - p < CS_SEARCH_PAIRS ? chunk->n - p : CS_SEARCH_PAIRS, &first);
+    chunk->result = first.fraction;
 }
 
 double cs_crossings_safe_fraction(const struct cs_system *system, double t0, const double *x0,
                                   double t1, const double *x1) {
-    struct cs_crossings *crossings = system->crossings;
-    struct question question = {
-        .parts = &crossings->parts,
-        .n_bodies = system->scene->bodies.n,
-        .x0 = cs_surface_points_positions(system, CS_POINTS_BEGIN, t0, x0),
-        .x1 = cs_surface_points_positions(system, CS_POINTS_END, t1, x1),
-        .apart = crossings->apart,
-        .found = crossings->found,
-        .visit = try_parts};
+    const double *from = cs_surface_points_positions(system, CS_POINTS_BEGIN, t0, x0);
+    const double *to = cs_surface_points_positions(system, CS_POINTS_END, t1, x1);
+    struct question question = {system, system->crossings, from, NULL, NULL};
     double share = 1;
-    if (cs_accd_candidates_suffice(system, crossings->apart, question.x0, question.x1))
-        return cs_accd_candidates_safe_fraction(system, question.x0, question.x1);
-    cs_representative_triangles_update(&crossings->parts, question.x0, question.x1,
-                                       CS_ACCD_DISTANCE_MIN);
-    cs_pool_run(crossings->parts.bvh.n_jobs, run_job, &question);
-    for (uint32_t k = 0; k < crossings->parts.bvh.n_jobs; k++)
-        share = fmin(share, crossings->found[k].share);
+    cs_point_motion_set(system, from, to, system->crossings->motion);
+    if (!cs_crossings_list_suffices(system, from, to))
+        return search_first(system, from, to).fraction;
+    const struct cs_candidates *list = &system->pairs->candidates;
+    cs_pool_run(list->n_chunks, try_chunk, &question);
+    for (uint32_t l = 0; l < list->n_chunks; l++)
+        share = fmin(share, list->chunks[l].result);
     return share;
 }

@@ -1,9 +1,12 @@
 /* crossings.h - crossings of surfaces with each other and themselves: counts edges that pierce
- * triangles, and finds the collision-free fraction of a step. */
+ * triangles, and finds the first pair that meets in a step. Both ask the broad phase for pairs
+ * (broad_phase/primitive_search.h), or its list where that holds all of them. */
 #ifndef CS_CROSSINGS_H
 #define CS_CROSSINGS_H
 
-#include "model/contact/ccd/representative_triangles.h"
+#include "base/text.h"
+#include "model/contact/pair_distance.h"
+#include "model/system/surfaces.h"
 
 /* Number of crossings, and the first pair by (edge, triangle) if n > 0. */
 struct cs_crossing_count {
@@ -36,10 +39,34 @@ struct cs_crossing_count cs_crossings_mark(const struct cs_system *system, doubl
 void cs_crossings_print(const struct cs_system *system, const struct cs_crossing_count *count,
                         struct cs_text *out);
 
-/* Collision-free fraction, 0 to 1, of the straight move from x0 (3,n) at t0 to x1 at t1: no
- * point-triangle and no edge-edge pair without a common particle meets in it (accd.h). 0: a
- * pair touches at x0 and moves. Pairs that cross at x0 already are not detected. */
+/* The first pair that meets in a move. */
+struct cs_first_collision {
+    double fraction; /* 0 to 1, collision-free part of the move; 1: no pair meets */
+    /* the pair, where fraction is below 1 */
+    enum cs_pair_kind kind;
+    uint32_t points[4];
+};
+
+/* Finds the first collision of the straight move from x0 (3,n) at t0 to x1 at t1 among the
+ * pairs of a point and a triangle, and of two edges, without a common particle (accd.h).
+ * Fraction 0: a pair touches at x0 and moves. Pairs that cross at x0 already are not detected.
+ */
+struct cs_first_collision cs_crossings_first_collision(const struct cs_system *system,
+                                                       double t0, const double *x0, double t1,
+                                                       const double *x1);
+
+/* The fraction alone, to the same bit: from the list of contact's candidates if it holds all
+ * pairs that may meet, in about a fifth of the time. */
 double cs_crossings_safe_fraction(const struct cs_system *system, double t0, const double *x0,
                                   double t1, const double *x1);
+
+/* Returns whether that list holds all pairs that may meet on the way from x0 to x1
+ * (3,n_points): contact is defined between all bodies, or the limit is for those with contact
+ * alone, and the move is short. If so, the list covers the whole way afterwards. */
+bool cs_crossings_list_suffices(const struct cs_system *system, const double *x0,
+                                const double *x1);
+
+/* Returns whether a search ran out of memory: pairs are missing, and the run must end. */
+bool cs_crossings_failed(const struct cs_system *system);
 
 #endif

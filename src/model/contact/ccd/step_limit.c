@@ -49,7 +49,8 @@ bool cs_step_limit_failed(const struct cs_system *system) {
     const struct cs_contact_samples *samples = system->contact_samples;
     return (pairs && pairs->failed) ||
            (samples && (samples->current_set.failed || samples->matrix.failed)) ||
-           (system->lagged_friction && system->lagged_friction->set.failed);
+           (system->lagged_friction && system->lagged_friction->set.failed) ||
+           cs_crossings_failed(system);
 }
 
 /* Counts crossings only under the policy that stops a run at the first one. */

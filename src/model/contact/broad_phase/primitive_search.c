@@ -1,0 +1,308 @@
+/* Clusters of all primitives, and the pairs of a move.
+ *
+ * A body that moves as a whole must not find itself on its way. So each body b is searched in a
+ * frame that moves with the middle m of its own displacements: with positions in [p, P] at the
+ * start and displacements in [d, D], the box of a primitive in that frame is
+ *
+ *   [p + min(0, d - m), P + max(0, D - m)]
+ *
+ * Boxes of two primitives in a common frame overlap if their swept boxes do, because
+ * min(0, d - m) + min(0, m - D) <= min(0, d - D). */
+#include "model/contact/broad_phase/primitive_search.h"
+
+#include "base/pool.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* clusters per batch, and clusters whose boxes one job sets */
+enum { BATCH = 8, TOGETHER = 64 };
+
+/* Coordinates from this magnitude in m on count as not finite. */
+#define FAR 1e30
+
+/* Fraction of the largest coordinate by which boxes grow: far more than the rounding of frames.
+ */
+#define ROUNDING 1e-12
+
+const struct cs_aabb cs_aabb_empty = {{HUGE_VAL, HUGE_VAL, HUGE_VAL},
+                                      {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+
+/* --- made once --- */
+
+static void finish(void *object) {
+    struct cs_primitive_search *search = object;
+    for (uint32_t b = 0; b < search->n_batches; b++)
+        for (int k = 0; k < 2; k++)
+            cs_nearby_clusters_finish(search->batches[b].near + k);
+    cs_aabb_clusters_finish(&search->triangles);
+    cs_aabb_clusters_finish(&search->edges);
+}
+
+static enum cs_status alloc_boxes(struct cs_aabb_clusters *clusters, struct cs_arena *arena,
+                                  struct cs_error *error) {
+    clusters->clusters =
+        cs_arena_alloc_array(arena, clusters->n, sizeof *clusters->clusters, error);
+    clusters->cluster_boxes =
+        cs_arena_alloc_array(arena, clusters->n, sizeof *clusters->cluster_boxes, error);
+    return error->status;
+}
+
+static uint32_t count_batches(uint32_t clusters) {
+    return (clusters + BATCH - 1) / BATCH;
+}
+
+/* Splits the clusters into batches. */
+static enum cs_status alloc_batches(struct cs_primitive_search *search, struct cs_arena *arena,
+                                    struct cs_error *error) {
+    search->n_point_batches = count_batches(search->points.n);
+    search->n_batches = search->n_point_batches + count_batches(search->edges.n);
+    search->batches =
+        cs_arena_alloc_array(arena, search->n_batches, sizeof *search->batches, error);
+    for (uint32_t b = 0; b < search->n_batches && !error->status; b++) {
+        const bool edges = b >= search->n_point_batches;
+        const uint32_t n = edges ? search->edges.n : search->points.n;
+        const uint32_t begin = BATCH * (edges ? b - search->n_point_batches : b);
+        search->batches[b] = (struct cs_search_batch){
+            .edges = edges, .begin = begin, .end = n - begin > BATCH ? begin + BATCH : n};
+    }
+    return error->status;
+}
+
+enum cs_status cs_primitive_search_init(struct cs_primitive_search *search,
+                                        const struct cs_surfaces *surfaces,
+                                        struct cs_flat_region *const *flat_regions,
+                                        struct cs_arena *arena, struct cs_error *error) {
+    const struct cs_surfaces *s = surfaces;
+    const uint32_t n = s->n_bodies;
+    const struct cs_cluster_input points = {NULL, 1, s->first_point, n, flat_regions},
+                                  edges = {s->edges, 2, s->first_edge, n, flat_regions},
+                                  triangles = {s->triangles, 3, s->first_triangle, n,
+                                               flat_regions};
+    *search = (struct cs_primitive_search){.surfaces = s};
+    search->body_sweeps = cs_arena_alloc_array(arena, n, sizeof *search->body_sweeps, error);
+    if (error->status || cs_cluster_input_build(&points, &search->points, arena, error) ||
+        cs_cluster_input_build(&edges, &search->edges, arena, error) ||
+        cs_cluster_input_build(&triangles, &search->triangles, arena, error) ||
+        alloc_boxes(&search->edges, arena, error) ||
+        alloc_boxes(&search->triangles, arena, error) || alloc_batches(search, arena, error))
+        return error->status;
+    cs_arena_adopt(arena, finish, search, error);
+    return error->status;
+}
+
+/* --- boxes --- */
+
+struct filling {
+    struct cs_aabb_clusters *clusters;
+    cs_item_box *box_of;
+    const void *arg;
+};
+
+static void fill_some(void *arg, uint32_t block) {
+    const struct filling *filling = arg;
+    struct cs_aabb_clusters *clusters = filling->clusters;
+    for (uint32_t k = TOGETHER * block; k < TOGETHER * (block + 1) && k < clusters->n; k++) {
+        struct cs_aabb all = cs_aabb_empty;
+        for (uint32_t lane = 0; lane < CS_AABB_CLUSTER; lane++) {
+            const uint32_t item = clusters->items[CS_AABB_CLUSTER * (size_t)k + lane];
+            const struct cs_aabb box = filling->box_of(filling->arg, item);
+            cs_aabb_cluster_set(clusters->clusters + k, lane, &box);
+            cs_aabb_merge(&all, &box);
+        }
+        clusters->cluster_boxes[k] = all;
+    }
+}
+
+bool cs_aabb_clusters_fill(struct cs_aabb_clusters *clusters, cs_item_box *box_of,
+                           const void *arg) {
+    struct filling filling = {clusters, box_of, arg};
+    cs_pool_run((clusters->n + TOGETHER - 1) / TOGETHER, fill_some, &filling);
+    return cs_aabb_clusters_sort(clusters);
+}
+
+/* --- the pairs of a move --- */
+
+/* One query, and a batch at work. */
+struct move {
+    struct cs_primitive_search *search;
+    const struct cs_move_query *query;
+    double grow; /* m, of one box of a pair */
+    uint32_t first_batch;
+};
+struct work {
+    const struct move *move;
+    struct cs_search_batch *batch;
+    uint32_t number;
+    uint32_t pairs[CS_SEARCH_PAIRS][2];
+    size_t n;
+};
+
+/* Swept box of an item by its one to three vertices; empty for CS_NO_ITEM, and if a vertex is
+ * not finite. */
+static struct cs_swept_aabb sweep_item(const struct move *move, uint32_t each, uint32_t item) {
+    const struct cs_surfaces *surfaces = move->search->surfaces;
+    const size_t n = surfaces->n_points;
+    const double *x0 = move->query->x0, *x1 = move->query->x1;
+    const uint32_t *points = each == 1   ? &item
+                             : each == 2 ? surfaces->edges + 2 * (size_t)item
+                                         : surfaces->triangles + 3 * (size_t)item;
+    struct cs_swept_aabb swept = cs_swept_aabb_empty();
+    for (uint32_t k = 0; k < each && item != CS_NO_ITEM; k++) {
+        for (size_t i = points[k]; i < 3 * n; i += n)
+            if (!(fabs(x0[i]) < FAR && (!x1 || fabs(x1[i]) < FAR)))
+                return cs_swept_aabb_empty();
+        cs_swept_aabb_add_point(&swept, n, points[k], x0, x1);
+    }
+    return swept;
+}
+
+static void sweep_body(void *arg, uint32_t body) {
+    const struct move *move = arg;
+    const uint32_t *first = move->search->surfaces->first_point;
+    struct cs_swept_aabb all = cs_swept_aabb_empty();
+    for (uint32_t i = first[body]; i < first[body + 1]; i++) {
+        const struct cs_swept_aabb one = sweep_item(move, 1, i);
+        cs_swept_aabb_merge(&all, &one);
+    }
+    move->search->body_sweeps[body] = all;
+}
+
+/* Box of a swept box in the frame of a body, grown. */
+static struct cs_aabb box_in_frame(const struct move *move, const struct cs_swept_aabb *swept,
+                                   uint32_t body) {
+    const struct cs_swept_aabb *all = move->search->body_sweeps + body;
+    struct cs_aabb box;
+    for (int c = 0; c < 3; c++) {
+        if (!(swept->position_max[c] >= swept->position_min[c]))
+            return cs_aabb_empty;
+        const double middle = 0.5 * (all->motion_min[c] + all->motion_max[c]);
+        const double back = swept->motion_min[c] - middle, on = swept->motion_max[c] - middle;
+        box.low[c] = swept->position_min[c] + (back < 0 ? back : 0) - move->grow;
+        box.high[c] = swept->position_max[c] + (on > 0 ? on : 0) + move->grow;
+    }
+    return box;
+}
+
+/* Boxes of edges and triangles are in the frames of their own bodies. */
+static struct cs_aabb edge_box(const void *arg, uint32_t item) {
+    const struct move *move = arg;
+    const struct cs_surfaces *s = move->search->surfaces;
+    const struct cs_swept_aabb swept = sweep_item(move, 2, item);
+    return item == CS_NO_ITEM
+               ? cs_aabb_empty
+               : box_in_frame(move, &swept, cs_surfaces_body(s->first_edge, s->n_bodies, item));
+}
+
+static struct cs_aabb triangle_box(const void *arg, uint32_t item) {
+    const struct move *move = arg;
+    const struct cs_surfaces *s = move->search->surfaces;
+    const struct cs_swept_aabb swept = sweep_item(move, 3, item);
+    return item == CS_NO_ITEM
+               ? cs_aabb_empty
+               : box_in_frame(move, &swept,
+                              cs_surfaces_body(s->first_triangle, s->n_bodies, item));
+}
+
+/* Hands over the pairs that were collected. */
+static void hand_over(struct work *work) {
+    const struct cs_move_query *query = work->move->query;
+    if (work->n)
+        query->take(query->arg, work->number, (const uint32_t(*)[2])work->pairs, work->n);
+    work->n = 0;
+}
+
+/* Collects the pairs of an item with those found near it; of two edges once. */
+static void collect(struct work *work, uint32_t item, const uint32_t *others, uint32_t n,
+                    bool once) {
+    for (uint32_t l = 0; l < n; l++) {
+        if (once && others[l] <= item)
+            continue;
+        work->pairs[work->n][0] = item;
+        work->pairs[work->n][1] = others[l];
+        if (++work->n == CS_SEARCH_PAIRS)
+            hand_over(work);
+    }
+}
+
+/* Finds the pairs of one cluster with the primitives of one body. */
+static void find_in_body(struct work *work, const uint32_t *items,
+                         const struct cs_swept_aabb *sweeps, const struct cs_swept_aabb *all,
+                         uint32_t body) {
+    const struct move *move = work->move;
+    const bool once = work->batch->edges && !move->query->pierce;
+    const struct cs_aabb_clusters *others =
+        once ? &move->search->edges : &move->search->triangles;
+    struct cs_nearby_clusters *near = work->batch->near;
+    near->same_body_only = true;
+    near->body = body;
+    near->first_item = once ? items[0] : 0;
+    const struct cs_aabb box = box_in_frame(move, all, body);
+    if (!cs_nearby_clusters_find(near, others, &box, NULL)) {
+        work->batch->failed = true;
+        return;
+    }
+    for (uint32_t k = 0; k < CS_AABB_CLUSTER && near->n; k++) {
+        const struct cs_aabb one = box_in_frame(move, sweeps + k, body);
+        if (one.low[0] <= one.high[0])
+            collect(work, items[k], near->items, cs_nearby_clusters_items(near, others, &one),
+                    once);
+    }
+}
+
+/* Finds all pairs of one cluster. Bodies that stay away from it are passed over. */
+static void find_cluster(struct work *work, uint32_t cluster) {
+    const struct move *move = work->move;
+    const bool edges = work->batch->edges;
+    const struct cs_aabb_clusters *of = edges ? &move->search->edges : &move->search->points;
+    const uint32_t *items = of->items + CS_AABB_CLUSTER * (size_t)cluster;
+    const uint32_t own = of->body[cluster];
+    struct cs_swept_aabb sweeps[CS_AABB_CLUSTER], all = cs_swept_aabb_empty();
+    for (uint32_t k = 0; k < CS_AABB_CLUSTER; k++) {
+        sweeps[k] = sweep_item(move, edges ? 2 : 1, items[k]);
+        cs_swept_aabb_merge(&all, sweeps + k);
+    }
+    for (uint32_t body = edges && !move->query->pierce ? own : 0;
+         body < move->search->surfaces->n_bodies; body++)
+        if (move->query->may_meet(move->query->arg, own, body) &&
+            cs_swept_aabbs_overlap(&all, move->search->body_sweeps + body, 2 * move->grow))
+            find_in_body(work, items, sweeps, &all, body);
+}
+
+static void find_batch(void *arg, uint32_t job) {
+    const struct move *move = arg;
+    const uint32_t number = move->first_batch + job;
+    struct work work = {
+        .move = move, .batch = move->search->batches + number, .number = number};
+    work.batch->failed = false;
+    for (uint32_t k = work.batch->begin; k < work.batch->end; k++)
+        find_cluster(&work, k);
+    hand_over(&work);
+}
+
+/* m, largest coordinate or displacement of all bodies */
+static double largest(const struct cs_primitive_search *search) {
+    double most = 0;
+    for (uint32_t b = 0; b < search->surfaces->n_bodies; b++) {
+        const struct cs_swept_aabb *all = search->body_sweeps + b;
+        for (int c = 0; c < 3 && all->position_max[c] >= all->position_min[c]; c++)
+            most = fmax(most, fmax(fmax(fabs(all->position_min[c]), fabs(all->position_max[c])),
+                                   fmax(fabs(all->motion_min[c]), fabs(all->motion_max[c]))));
+    }
+    return most;
+}
+
+bool cs_primitive_search_move(struct cs_primitive_search *search,
+                              const struct cs_move_query *query) {
+    struct move move = {.search = search,
+                        .query = query,
+                        .first_batch = query->pierce ? search->n_point_batches : 0};
+    cs_pool_run(search->surfaces->n_bodies, sweep_body, &move);
+    move.grow = query->reach + ROUNDING * largest(search);
+    bool failed = !cs_aabb_clusters_fill(&search->triangles, triangle_box, &move) ||
+                  (!query->pierce && !cs_aabb_clusters_fill(&search->edges, edge_box, &move));
+    cs_pool_run(search->n_batches - move.first_batch, find_batch, &move);
+    for (uint32_t b = move.first_batch; b < search->n_batches; b++)
+        failed = failed || search->batches[b].failed;
+    return !failed;
+}
