@@ -323,7 +323,8 @@ struct cs_time {
 
 /* An option of the integrator as text; checked when the integrator is known. */
 struct cs_setting {
-    const char *name, *value; /* borrowed from the scene's arena */
+    const char *name, *value, *place; /* of the scene's arena; place: "FILE:line:column: " */
+    bool is_text;                     /* value was in quotes */
 };
 
 /* A scene. cs_scene_finish releases it. */
@@ -383,8 +384,7 @@ static inline const struct cs_event *cs_scene_events(const struct cs_scene *scen
 /* largest number of particles, 4096 x 4096: about 10 GB with springs and solver */
 #define CS_PARTICLES_MAX 16777216.0
 
-/* Returns true if a file named in a scene lies in the scene's folder or below. A scene from
- * elsewhere must not open other files. */
+/* Returns true for a file in the scene's folder or below: a scene must not open others. */
 bool cs_scene_is_below(const char *file);
 
 /* Checks conditions that single ranges cannot express: pins exist, one kind of mass, a size

@@ -249,6 +249,37 @@ static const char *find_left_out(struct cs_registry *registry, const char *name,
     return library;
 }
 
+/* The methods that another name of the literature stands for, or NULL. */
+static const char *translate_name(const char *name) {
+    static const char *const names[][2] = {
+        {"euler", "explicit-euler\", \"symplectic-euler\" or \"backward-euler"},
+        {"forward-euler", "explicit-euler"},
+        {"implicit-euler", "implicit-linearised\" or \"backward-euler"},
+        {"semi-implicit-euler", "symplectic-euler"},
+        {"baraff-witkin", "implicit-linearised"},
+        {"implicit", "implicit-linearised\" or \"backward-euler"},
+        {"verlet", "velocity-verlet\" or \"position-verlet"},
+        {"stoermer-verlet", "position-verlet"},
+        {"leapfrog", "velocity-verlet"},
+        {"midpoint", "implicit-midpoint"},
+        {"trapezoidal", "newmark"},
+        {"crank-nicolson", "newmark"},
+        {"rk", "rk4"},
+        {"runge-kutta", "rk4"},
+        {"rk45", "dopri5"},
+        {"ode45", "dopri5"},
+        {"bdf", "bdf2\" or \"cvode-bdf"},
+        {"pbd", "xpbd"},
+        {"projective-dynamics", "fast-mass-spring"},
+        {"hht", "newmark"},
+        {"generalised-alpha", "newmark"},
+        {"generalized-alpha", "newmark"}};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        if (!strcmp(name, names[k][0]))
+            return names[k][1];
+    return NULL;
+}
+
 /* The error for a name that no module has: the missing library, else the nearest name. */
 static enum cs_status unknown_name(struct cs_registry *registry, const char *name,
                                    struct cs_error *error) {
@@ -256,7 +287,8 @@ static enum cs_status unknown_name(struct cs_registry *registry, const char *nam
     const char *const *names = cs_registry_names(registry, true, &n, error);
     if (!names)
         return error->status;
-    const char *nearest = cs_nearest_word(name, names);
+    const char *other = translate_name(name);
+    const char *nearest = other ? other : cs_nearest_word(name, names);
     const char *library = find_left_out(registry, name, error);
     if (library)
         return cs_fail(error, CS_ERR_USAGE,

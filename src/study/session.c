@@ -1,6 +1,7 @@
 /* Takes a scene to a running method: the only path, for every command and study. */
 #include "study/session.h"
 
+#include "base/options.h"
 #include "base/pool.h"
 #include "model/plan.h"
 #include "scene/body_pairs.h"
@@ -26,6 +27,17 @@ static enum cs_status read_scene(struct cs_session *session, struct cs_error *er
                               settings->n_overrides, error);
 }
 
+/* Refuses a number or a switch in quotes. */
+static enum cs_status check_quotes(const struct cs_method *method,
+                                   const struct cs_setting *option, struct cs_error *error) {
+    const struct cs_option *row = cs_option_find(&method->table, option->name);
+    if (!option->is_text || !row || row->type == CS_CHOICE)
+        return CS_OK;
+    return cs_fail(error, CS_ERR_SCENE, "%s%s: found the text \"%.60s\", expected %s",
+                   option->place, option->name, option->value,
+                   row->type == CS_BOOL ? "true or false" : "a number");
+}
+
 /* Sets the method's options from the scene. Conflicts are only checked if all options are the
  * scene's: an option that the command line makes idle is no mistake. */
 static enum cs_status set_options_of_scene(struct cs_session *session, const char *pairs,
@@ -34,7 +46,8 @@ static enum cs_status set_options_of_scene(struct cs_session *session, const cha
     char place[512];
     snprintf(place, sizeof place, "%s: integrator.", session->scene.path);
     for (uint32_t k = 0; k < session->scene.integrator_settings.n; k++)
-        if (cs_method_set(&session->method, options[k].name, options[k].value, place,
+        if (check_quotes(&session->method, options + k, error) ||
+            cs_method_set(&session->method, options[k].name, options[k].value, options[k].place,
                           CS_ERR_SCENE, error))
             return error->status;
     // what the command line gives may make an option of the scene idle: that is no mistake

@@ -123,7 +123,7 @@ static void assert_refused(const char *text, const struct cs_override *overrides
 TEST(messages_name_the_place) {
     static const char *const rows[][2] = {
         {"{\n  \"time\": {\"fps\": 60,}\n}",
-         "s.json:2:22: found '}', expected a key in quotes"},
+         "s.json:2:22: found '}' after ',': JSON has no trailing comma"},
         {"[1, 2]", "s.json:1:1: found a list of 2, expected an object"},
         {"{\"bodies\": [" BODY "],\n \"time\": {\"fps\": \"60\"}}",
          "s.json:2:18: time.fps: found string \"60\", expected a number (0.001..1000000 1/s)"},

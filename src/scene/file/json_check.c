@@ -31,9 +31,19 @@ __attribute__((format(printf, 3, 4))) static bool fail_at(struct check *check, s
     return false;
 }
 
+/* Names a part of other formats, missing in JSON, by its first character; or NULL. */
+static const char *foreign(char found) {
+    return found == '/' || found == '#' ? "comments; a key that begins with \"x-\" is free"
+           : found == '\''              ? "single quotes"
+                                        : NULL;
+}
+
 /* Sets the fault "found ..., expected ..." at the current position. */
 static bool fail_expected(struct check *check, const char *expected) {
     const unsigned char found = (unsigned char)check->text[check->at];
+    const char *other = foreign(check->text[check->at]);
+    if (other)
+        return fail_at(check, check->at, "found '%c': JSON has no %s", found, other);
     if (check->at >= check->length)
         return fail_at(check, check->at, "found the end of the text, expected %s", expected);
     if (isprint(found))
@@ -206,6 +216,10 @@ static bool check_members(struct check *check, char close) {
         if (!more && check->text[check->at] != close)
             return fail_expected(check, close == '}' ? "',' or '}'" : "',' or ']'");
         check->at += more;
+        skip_blank(check);
+        if (more && check->text[check->at] == close)
+            return fail_at(check, check->at, "found '%c' after ',': JSON has no trailing comma",
+                           close);
     }
     check->at++;
     check->depth--;
@@ -243,6 +257,8 @@ bool cs_json_check(const char *text, size_t length, struct cs_json_fault *fault)
     if (length > CS_JSON_BYTES_MAX)
         return fail_at(&check, 0, "found %zu bytes, expected at most %d", length,
                        CS_JSON_BYTES_MAX);
+    if (!strncmp(text, "\xff\xfe", 2) || !strncmp(text, "\xfe\xff", 2))
+        return fail_at(&check, 0, "found UTF-16, expected UTF-8");
     if (!strncmp(text, "\xef\xbb\xbf", 3))
         return fail_at(&check, 0, "found a byte-order mark, expected UTF-8 without one");
     if (!check_value(&check))

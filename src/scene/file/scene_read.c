@@ -133,6 +133,19 @@ static enum cs_status read_name(struct cs_json_context *context, const struct cs
     return CS_OK;
 }
 
+/* "FILE:line:column: integrator.", or "--set integrator." */
+static const char *copy_place(struct cs_json_context *context, const struct cs_json *value) {
+    char place[512];
+    size_t offset;
+    uint32_t line, column;
+    snprintf(place, sizeof place, "--set " INTEGRATOR ".");
+    if (cs_json_position(value, context->text, false, &offset)) {
+        cs_json_locate(context->text, offset, &line, &column);
+        snprintf(place, sizeof place, "%s:%u:%u: " INTEGRATOR ".", context->name, line, column);
+    }
+    return cs_arena_copy_text(context->arena, place, context->error);
+}
+
 /* Stores an option as text: only the integrator knows its type. */
 static enum cs_status read_setting(struct cs_json_context *context, const struct cs_json *value,
                                    struct cs_setting *setting) {
@@ -152,6 +165,8 @@ static enum cs_status read_setting(struct cs_json_context *context, const struct
         return cs_json_context_fail_type(context, value, "a number, true, false or a string");
     }
     setting->name = cs_arena_copy_text(context->arena, cs_json_key(value), context->error);
+    setting->place = copy_place(context, value);
+    setting->is_text = cs_json_kind_of(value) == CS_JSON_TEXT;
     setting->value = cs_arena_copy_text(context->arena, cs_text_get(&text), context->error);
     if (text.failed)
         cs_fail(context->error, CS_ERR_MEMORY, "out of memory for an integrator option");

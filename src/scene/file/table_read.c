@@ -2,7 +2,9 @@
 #include "scene/file/table_read.h"
 
 #include "base/options.h"
+#include "scene/scene.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* The field of a row in a struct. */
@@ -148,6 +150,71 @@ static const char *nearest_key(const struct cs_table *table, const char *apart,
     return cs_nearest_word(key, names);
 }
 
+/* Keys of other programs: the key of this table, else of another one, or NULL. */
+static const char *translate_key(const char *key, const struct cs_table *table) {
+    static const char *const keys[][2] = {
+        {"name", "about"},           {"title", "about"},        {"description", "about"},
+        {"dt", "integrator.dt"},     {"step", "integrator.dt"}, {"timestep", "integrator.dt"},
+        {"method", "integrator"},    {"solver", "integrator"},  {"structural", "stretch"},
+        {"flexion", "bend"},         {"diagonal", "shear"},     {"pinned", "pins"},
+        {"fixed", "pins"},           {"position", "eye"},       {"position", "centre"},
+        {"position", "place"},       {"look_at", "target"},     {"width", "size"},
+        {"height", "size"},          {"resolution", "size"},    {"restitution", "absorption"},
+        {"density", "areal_density"}};
+    const char *other = NULL;
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+        if (strcmp(key, keys[i][0]))
+            continue;
+        other = keys[i][1];
+        if (cs_option_find(table, other))
+            return other;
+    }
+    return other;
+}
+
+/* Adds the paths of a key, so many tables below a table: "forces.gravity". */
+static void add_paths(const struct cs_table *table, const char *path, const char *key,
+                      uint32_t below, struct cs_text *out) {
+    if (!below) {
+        if (cs_option_find(table, key))
+            cs_text_add(out, "%s%s%s", out->length ? " or " : "", path, key);
+        return;
+    }
+    for (uint32_t r = 0; r < table->n; r++) {
+        const struct cs_option *row = table->rows + r;
+        char inner[CS_TEXT_MAX];
+        snprintf(inner, sizeof inner, "%s%s%s.", path, row->name,
+                 row->type == CS_LIST ? "[0]" : "");
+        if (row->table)
+            add_paths(row->table, inner, key, below - 1, out);
+    }
+}
+
+/* Adds the paths of a key below this table, else in the whole scene, of the least depth. */
+static void add_nearest_paths(const struct cs_table *table, const char *key,
+                              struct cs_text *out) {
+    enum { DEPTH = 3 };
+    for (uint32_t below = 1; below < DEPTH && !out->length; below++)
+        add_paths(table, "", key, below, out);
+    for (uint32_t below = 0; below < DEPTH && !out->length; below++)
+        add_paths(&cs_scene_table, "", key, below, out);
+}
+
+/* Adds the name or the paths that an unknown key most probably stands for. */
+static void suggest_key(const struct cs_table *table, const char *apart, const char *key,
+                        struct cs_text *out) {
+    const char *other = translate_key(key, table);
+    if (!other || !cs_option_find(table, other)) {
+        add_nearest_paths(table, key, out);
+        if (other && !out->length)
+            add_nearest_paths(table, other, out);
+    }
+    other = other ? other : nearest_key(table, apart, key);
+    // the keys of an integrator are in no table
+    if (other && !out->length)
+        cs_text_add(out, "%s", other);
+}
+
 /* The present name of a renamed key, if the table has it; or NULL. */
 static const char *new_name(const struct cs_table *table, const char *key) {
     static const char *const names[][2] = {{"prod", "viewpoint_force"},
@@ -156,6 +223,19 @@ static const char *new_name(const struct cs_table *table, const char *key) {
         if (!strcmp(key, names[i][0]) && cs_option_find(table, names[i][1]))
             return names[i][1];
     return NULL;
+}
+
+/* Fails with what the key may stand for. */
+static enum cs_status fail_unknown(struct cs_json_context *context,
+                                   const struct cs_json *member, const struct cs_table *table,
+                                   const char *apart) {
+    struct cs_text other = {0};
+    suggest_key(table, apart, cs_json_key(member), &other);
+    const bool any = other.length && !other.failed;
+    cs_json_context_fail(context, member, true, "unknown key%s%s%s",
+                         any ? "; did you mean \"" : "", cs_text_get(&other), any ? "\"?" : "");
+    cs_text_finish(&other);
+    return context->error->status;
 }
 
 /* Reads a member of an object by its key; passes over the user's own keys. On failure the path
@@ -173,10 +253,7 @@ static enum cs_status read_member(struct cs_json_context *context, const struct 
         if (renamed)
             return cs_json_context_fail(context, member, true, "this key is now called \"%s\"",
                                         renamed);
-        const char *nearest = nearest_key(table, apart, key);
-        return nearest ? cs_json_context_fail(context, member, true,
-                                              "unknown key; did you mean \"%s\"?", nearest)
-                       : cs_json_context_fail(context, member, true, "unknown key");
+        return fail_unknown(context, member, table, apart);
     }
     const enum cs_status status = read_row(context, member, row, object);
     if (!status)
