@@ -200,7 +200,7 @@ static enum cs_status open_bed(struct bed *bed, const struct bench_settings *set
 
 static uint64_t count(const struct bed *bed, int by) {
     const struct cs_pairs *pairs = bed->session.system.pairs;
-    uint64_t n = by == BY_PAIR ? pairs->solver_psd.contacts->n : 0;
+    uint64_t n = by == BY_PAIR ? pairs->solver_matrix.contacts->n : 0;
     for (uint32_t l = 0; by == BY_CANDIDATE && l < pairs->candidates.n_chunks; l++)
         n += pairs->candidates.chunks[l].n;
     return n;

@@ -218,7 +218,6 @@ enum cs_status cs_contact_samples_build(struct cs_system *system, struct cs_erro
         list_all(system, samples, error);
     cs_contact_set_init(&samples->current_set, system->view.n, samples->n_chunks, arena, error);
     cs_contact_set_init(&samples->matrix, system->view.n, samples->n_chunks, arena, error);
-    samples->current_set.no_gradients = samples->matrix.no_gradients = true;
     if (!error->status)
         system->contact_samples = samples;
     return error->status;

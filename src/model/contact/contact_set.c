@@ -2,7 +2,6 @@
 #include "model/contact/contact_set.h"
 
 #include "base/pool.h"
-#include "base/vec3.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -11,58 +10,21 @@
 
 /* Matrix of contacts: diagonal blocks, products with vectors, and bounds.
  *
- * A contact has the matrix A = c g g^T + (w w^T) x B + F, by its n <= 4 points, with the 12 x
- * 12 part F = ck F H present only in an exact matrix. Its product is evaluated without forming
- * A:
+ * A contact has the matrix A = (w w^T) x B by its n <= 4 points, and its product is evaluated
+ * without forming A: (A p)_k = w_k B (sum w_j p_j).
  *
- *   (A p)_k = c (sum g_j.p_j) g_k + w_k B (sum w_j p_j) + sum F_kj p_j
- *
- * The solver applies the diagonal blocks A_kk itself, and cs_contact_set_multiply subtracts
- * them from each row. Products are computed contact by contact, stored, and then gathered by
+ * The solver applies the diagonal blocks A_kk itself, and cs_contact_set_multiply leaves them
+ * out of each row. Products are computed contact by contact, stored, and then gathered by
  * particles in a second pass: no two threads write the same number. */
 
-/* A contact with its matrix terms. */
-struct whole {
-    const struct cs_contact_entry *pair;
-    struct cs_contact_matrix_part *part;
-    const struct cs_contact_hessian *full; /* NULL: the set is not exact */
-};
-
-/* Contact `number` of a chunk with its terms. */
-static struct whole whole_of(const struct cs_contact_set *set, uint32_t chunk, size_t number) {
-    const struct cs_contact_chunk *of = set->chunks + chunk;
-    return (struct whole){of->pairs + number, of->parts + number,
-                          set->has_hessians ? of->hessians + number : NULL};
-}
-
-/* block += A_kk, with c g g^T times factor[0] and w^2 B times factor[1]. */
-static void add_own(const struct whole *whole, uint32_t k, const double factor[2],
-                    double block[6]) {
-    static const uint32_t row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
-    const struct cs_contact_matrix_part *part = whole->part;
-    const double *g = whole->pair->vectors[k], w = part->weights[k];
-    const double along = factor[0] * part->gradient_weight, rub = factor[1] * w * w;
-    for (int e = 0; e < 6; e++) {
-        block[e] += along * (g[row[e]] * g[column[e]]) + rub * part->block[e];
-        if (whole->full)
-            block[e] += whole->full->m[3 * k + row[e]][3 * k + column[e]];
-    }
-}
-
-/* Factors by which the blocks of point k grow, so that they bound the matrix of the contact:
- * sum |g_j| / |g_k| and sum |w_j| / |w_k| (proof: find_growth of pair_lanes.c). F is not
- * bounded by them. */
-static void find_growth(const struct whole *whole, uint32_t k, double factor[2]) {
-    const struct cs_contact_entry *pair = whole->pair;
-    const double *share = whole->part->weights;
-    double length[4], sum = 0, shares = 0;
-    for (uint32_t j = 0; j < pair->n; j++) {
-        length[j] = sqrt(cs_vec3_dot(pair->vectors[j], pair->vectors[j]));
-        sum += length[j];
-        shares += fabs(share[j]);
-    }
-    factor[0] = length[k] > 0 ? sum / length[k] : 1;
-    factor[1] = share[k] != 0 ? shares / fabs(share[k]) : 1;
+/* Factor by which the block of point k grows, so that the blocks bound the matrix of the
+ * contact: sum |w_j| / |w_k| (proof: find_growth of pair_lanes.c). */
+static double growth_of(const struct cs_contact_entry *pair,
+                        const struct cs_contact_matrix_part *part, uint32_t k) {
+    double sum = 0;
+    for (uint32_t j = 0; j < pair->n; j++)
+        sum += fabs(part->weights[j]);
+    return part->weights[k] != 0 ? sum / fabs(part->weights[k]) : 1;
 }
 
 /* index of a contact in its chunk */
@@ -77,13 +39,14 @@ void cs_contact_set_add_blocks(const struct cs_contact_set *set, size_t begin, s
     for (size_t i = begin; i < end && set->n; i++)
         for (uint32_t e = set->starts[i]; e < set->starts[i + 1]; e++) {
             const struct cs_contact_vertex *at = set->particle_vertices + e;
-            const struct whole whole = whole_of(set, at->chunk, number_of(set, at));
-            double block[6] = {0}, factor[2] = {1, 1};
-            if (set->diagonal_bound)
-                find_growth(&whole, at->vertex, factor);
-            add_own(&whole, at->vertex, factor, block);
+            const struct cs_contact_matrix_part *part =
+                set->chunks[at->chunk].parts + number_of(set, at);
+            const double w = part->weights[at->vertex];
+            const double factor =
+                set->diagonal_bound ? growth_of(at->pair, part, at->vertex) : 1;
+            const double rub = factor * w * w;
             for (size_t c = 0; c < 6; c++)
-                blocks[c * n + i] += block[c];
+                blocks[c * n + i] += rub * part->block[c];
         }
 }
 
@@ -103,40 +66,14 @@ static void turn(const double s[6], const double p[3], double out[3]) {
     out[2] = s[2] * p[0] + s[4] * p[1] + s[5] * p[2];
 }
 
-/* Stores the product of one contact, without its diagonal blocks. */
-static void multiply_pair(const struct whole *whole, double p[4][3]) {
-    const struct cs_contact_entry *pair = whole->pair;
-    struct cs_contact_matrix_part *part = whole->part;
-    double along = 0, v[3] = {0};
-    for (uint32_t k = 0; k < pair->n; k++) {
-        along += cs_vec3_dot(pair->vectors[k], p[k]);
-        for (int c = 0; c < 3; c++)
-            v[c] += part->weights[k] * p[k][c];
-    }
-    double rub[3];
-    turn(part->block, v, rub);
-    for (uint32_t k = 0; k < pair->n; k++) {
-        double b[6] = {0}, own[3];
-        add_own(whole, k, (double[2]){1, 1}, b);
-        turn(b, p[k], own);
-        for (int c = 0; c < 3; c++) {
-            double turned = 0;
-            for (int j = 0; whole->full && j < 12; j++)
-                turned += whole->full->m[3 * k + (uint32_t)c][j] * p[j / 3][j % 3];
-            part->product[k][c] = part->gradient_weight * along * pair->vectors[k][c] +
-                                  part->weights[k] * rub[c] + turned - own[c];
-        }
-    }
-}
-
-/* The same without gradient and Hessian: w_k B (sum w_j p_j - w_k p_k). */
-static void multiply_point(const struct whole *whole, double p[4][3]) {
-    struct cs_contact_matrix_part *part = whole->part;
+/* Stores the product of one contact without its diagonal: w_k B (sum w_j p_j - w_k p_k). */
+static void multiply_contact(const struct cs_contact_entry *pair,
+                             struct cs_contact_matrix_part *part, double p[4][3]) {
     double all[3] = {0};
-    for (uint32_t k = 0; k < whole->pair->n; k++)
+    for (uint32_t k = 0; k < pair->n; k++)
         for (int c = 0; c < 3; c++)
             all[c] += part->weights[k] * p[k][c];
-    for (uint32_t k = 0; k < whole->pair->n; k++) {
+    for (uint32_t k = 0; k < pair->n; k++) {
         double others[3];
         for (int c = 0; c < 3; c++)
             others[c] = part->weights[k] * (all[c] - part->weights[k] * p[k][c]);
@@ -152,17 +89,13 @@ static void multiply_chunk(void *arg, uint32_t number) {
     const size_t n = set->n_particles;
     for (size_t l = 0; l < chunk->n; l++) {
         const struct cs_contact_entry *pair = chunk->pairs + l;
-        const struct whole whole = whole_of(set, number, l);
         double p[4][3];
         for (uint32_t k = 0; k < pair->n; k++)
             for (size_t c = 0; c < 3; c++)
                 p[k][c] = cs_contact_set_has(set, pair->particles[k])
                               ? product->p[c * n + pair->particles[k]]
                               : 0;
-        if (set->no_gradients)
-            multiply_point(&whole, p);
-        else
-            multiply_pair(&whole, p);
+        multiply_contact(pair, chunk->parts + l, p);
     }
 }
 
@@ -209,7 +142,7 @@ void cs_contact_set_add_bound(const struct cs_contact_set *set, double *stiffnes
 static void finish(void *object) {
     struct cs_contact_set *set = object;
     for (uint32_t l = 0; l < set->n_chunks; l++)
-        free(set->chunks[l].pairs), free(set->chunks[l].parts), free(set->chunks[l].hessians);
+        free(set->chunks[l].pairs), free(set->chunks[l].parts);
     free(set->vertices);
     free(set->particle_vertices);
 }

@@ -16,27 +16,20 @@ struct cs_contact_entry {
     /* number of points, 2 to 4, and the points; from n_particles on they are points of
      * colliders */
     uint32_t n, particles[4];
-    /* force or its change in N; for a matrix the gradient g (1) */
+    /* force or its change in N */
     double vectors[4][3];
 };
 
-/* Terms of a contact in a matrix, c g g^T + (w w^T) x B + Hessian, or its bounds. They are
- * stored apart from struct cs_contact_entry, so that forces read no more memory than they need.
+/* Terms of a contact in a matrix, (w w^T) x B, or its bounds. They are stored apart from struct
+ * cs_contact_entry, so that forces read no more memory than they need.
  */
 struct cs_contact_matrix_part {
     /* weights w of the points; of bounds: N s/m of each point */
     double weights[4];
-    /* c */
-    double gradient_weight;
     /* B: xx, xy, xz, yy, yz, zz; of bounds: N/m of each point */
     double block[6];
     /* result of cs_contact_set_multiply at each point */
     double product[4][3];
-};
-
-/* ck F H of a pair by its four points: 12 x 12, symmetric. */
-struct cs_contact_hessian {
-    double m[12][12];
 };
 
 /* Contacts of one chunk; one thread at a time writes it. */
@@ -46,8 +39,6 @@ struct cs_contact_chunk {
     size_t pair_offset;                   /* pairs of the chunks before it */
     struct cs_contact_matrix_part *parts; /* (n) of a matrix or of bounds */
     size_t parts_capacity;
-    struct cs_contact_hessian *hessians; /* (n) of a matrix whose set is exact */
-    size_t hessians_capacity;
     /* energy in J */
     double energy;
     /* out of memory: contacts are missing */
@@ -68,10 +59,6 @@ struct cs_contact_set {
     size_t n; /* pairs in all chunks */
     /* matrix: diagonal blocks are enlarged to bound the whole matrix */
     bool diagonal_bound;
-    /* matrix: it is exact, and chunks have Hessians */
-    bool has_hessians;
-    /* matrix: c and g are 0 for all contacts, B alone counts */
-    bool no_gradients;
     /* out of memory: contacts are missing, and the run must end */
     bool failed;
     uint32_t *vertices; /* (4 n) points of all pairs; UINT32_MAX: it has fewer */
@@ -113,7 +100,7 @@ void cs_contact_set_add(const struct cs_contact_set *set, size_t begin, size_t e
 
 /* blocks (6,n) += the diagonal blocks of the matrix at the particles [begin, end). With
  * set->diagonal_bound they bound the whole matrix, by (sum a_i)^2 <= sum |a_i| sum a_i^2/|a_i|
- * of the weights or the gradient (proof: find_growth of pair_lanes.c). */
+ * of the weights (proof: find_growth of pair_lanes.c). */
 void cs_contact_set_add_blocks(const struct cs_contact_set *set, size_t begin, size_t end,
                                double *blocks);
 

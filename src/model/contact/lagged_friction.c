@@ -86,7 +86,6 @@ static void find_block(const struct pass *pass, uint32_t chunk, size_t number) {
     const double load = pass->matrix->psd && contact->load < 0 ? 0 : contact->load;
     const double rub = -pass->matrix->cd * load / to.speed;
     const double turn = pass->matrix->bound ? 0 : 1 / (to.speed * to.speed);
-    part->gradient_weight = 0;
     for (int e = 0; e < 6; e++)
         part->block[e] = rub * ((row[e] == column[e]) - n[row[e]] * n[column[e]] -
                                 turn * to.t[row[e]] * to.t[column[e]]);
@@ -260,7 +259,6 @@ enum cs_status cs_lagged_friction_build(struct cs_system *system, struct cs_aren
     if (!lagged || cs_contact_set_init(&lagged->set, system->view.n, n_chunks, arena, error))
         return error->status;
     lagged->system = system;
-    lagged->set.no_gradients = true;
     lagged->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *lagged->chunks, error);
     if (!error->status)
         cs_arena_adopt(arena, finish, lagged, error);

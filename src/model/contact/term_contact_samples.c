@@ -54,13 +54,11 @@ static void bound(const struct cs_point_contact *contact, const struct cs_bristl
 static void fill_matrix(const struct job *job, const struct cs_point_contact *contact,
                         const struct cs_bristle *bristle,
                         const struct cs_contact_sample_point *point,
-                        struct cs_contact_entry *place, struct cs_contact_matrix_part *part) {
+                        struct cs_contact_matrix_part *part) {
     const struct cs_system *system = job->covers->system;
     struct cs_contact_pull pull = {.h = -job->matrix->cd};
-    memset(place->vectors, 0, sizeof place->vectors);
     memset(part->block, 0, sizeof part->block);
     memcpy(part->weights, point->w, sizeof point->w);
-    part->gradient_weight = 0;
     for (uint32_t k = 0; k < point->n && job->matrix->chord; k++)
         cs_contact_pull_add(&pull, job->matrix, system->view.n, point->particles[k],
                             system->inv_mass[point->particles[k]], point->w[k]);
@@ -75,11 +73,10 @@ static void fill_matrix(const struct job *job, const struct cs_point_contact *co
 /* Matrix terms or bounds of one sample. */
 static void answer_part(const struct job *job, const struct cs_contact_sample_point *point,
                         const struct cs_point_contact *contact,
-                        const struct cs_bristle *bristle, struct cs_contact_chunk *chunk,
-                        struct cs_contact_entry *place) {
+                        const struct cs_bristle *bristle, struct cs_contact_chunk *chunk) {
     struct cs_contact_matrix_part *part = cs_contact_chunk_part(chunk);
     if (part && job->ask == ASK_MATRIX)
-        fill_matrix(job, contact, bristle, point, place, part);
+        fill_matrix(job, contact, bristle, point, part);
     else if (part)
         bound(contact, bristle, point, part);
 }
@@ -142,7 +139,7 @@ static void meet(const struct job *job, const struct cs_posed_collider_law *near
         bristle = &found;
     memcpy(place->particles, point->particles, sizeof point->particles);
     if (job->ask == ASK_MATRIX || job->ask == ASK_BOUND)
-        answer_part(job, point, &contact, bristle, chunk, place);
+        answer_part(job, point, &contact, bristle, chunk);
     else
         answer_force(job, near, point, &contact, bristle, place);
 }

@@ -205,8 +205,7 @@ bool cs_coupling_coarsen(const struct cs_level *fine, struct cs_level *coarse) {
            cs_extra_springs_make(coarse->extra_springs, sum_links, &coarsening);
 }
 
-/* Indexes the stored contact matrix by particle and reads its blocks, for both kinds of matrix:
- * the positive semi-definite operator (solver_psd) and the exact one (solver_exact). */
+/* Indexes the solver's contact matrix by particle and reads its blocks. */
 
 /* Frees the arrays, which outgrow the arena. */
 static void finish(void *object) {
@@ -223,21 +222,14 @@ enum cs_status cs_pair_vertices_init(struct cs_pair_vertices *corners, struct cs
 }
 
 size_t cs_pair_vertices_count(const struct cs_pairs *pairs) {
-    return pairs->solver_psd.contacts ? pairs->solver_psd.contacts->n : pairs->solver_exact.n;
+    return pairs->solver_matrix.contacts->n;
 }
 
 /* --- by particles --- */
 
-/* Number of pairs in a chunk. */
-static size_t vertices_count_in(const struct cs_pairs *pairs, uint32_t chunk) {
-    return pairs->solver_psd.contacts ? pairs->solver_psd.contacts->chunks[chunk].n
-                                      : pairs->solver_exact.chunks[chunk].n;
-}
-
 /* The four points of a pair; numbers from view.n on belong to colliders. */
 static const uint32_t *points_of(const struct cs_pairs *pairs, uint32_t chunk, size_t pair) {
-    return pairs->solver_psd.contacts ? pairs->solver_psd.contacts->chunks[chunk].points[pair]
-                                      : pairs->solver_exact.chunks[chunk].pairs[pair].particles;
+    return pairs->solver_matrix.contacts->chunks[chunk].points[pair];
 }
 
 /* Makes room for all vertices and zeroes the starts. Returns false if out of memory. */
@@ -258,7 +250,7 @@ static bool reserve(struct cs_pair_vertices *corners, const struct cs_pairs *pai
  * points. */
 static void visit(const struct cs_pairs *pairs, uint32_t *to, struct cs_pair_vertex *of) {
     for (uint32_t chunk = 0; chunk < pairs->candidates.n_chunks; chunk++)
-        for (size_t pair = 0; pair < vertices_count_in(pairs, chunk); pair++) {
+        for (size_t pair = 0; pair < pairs->solver_matrix.contacts->chunks[chunk].n; pair++) {
             const uint32_t *at = points_of(pairs, chunk, pair);
             for (uint32_t k = 0; k < 4; k++) {
                 // colliders are not unknowns of the matrix
@@ -319,37 +311,24 @@ static void set_blocks(double g[4][3], const struct cs_pair_matrix_terms *part,
 
 /* Adds the second derivative of the distance, which an exact matrix has, to the diagonal block.
  */
-static void add_turn(const struct cs_contact_hessian *full,
-                     struct cs_pair_vertex_terms *share) {
+static void add_turn(const struct cs_pair_hessian *full, struct cs_pair_vertex_terms *share) {
     static const uint32_t row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const uint32_t first = 3 * share->vertex;
     for (int e = 0; e < 6; e++)
         share->diagonal_block[e] += full->m[first + row[e]][first + column[e]];
 }
 
-/* Reads a pair of the exact matrix. */
-static void read_exact(const struct cs_contact_chunk *chunk, size_t pair,
-                       struct cs_pair_vertex_terms *share) {
-    struct cs_pair_matrix_terms part = {.gradient_weight = chunk->parts[pair].gradient_weight};
-    memcpy(part.weight, chunk->parts[pair].weights, sizeof part.weight);
-    memcpy(part.block, chunk->parts[pair].block, sizeof part.block);
-    set_blocks(chunk->pairs[pair].vectors, &part, share);
-    add_turn(chunk->hessians + pair, share);
-}
-
 void cs_pair_vertices_read(const struct cs_pairs *pairs, const struct cs_pair_vertex *corner,
                            struct cs_pair_vertex_terms *share) {
-    const struct cs_psd_operator *kept = &pairs->solver_psd;
+    const struct cs_pair_matrix *kept = &pairs->solver_matrix;
     struct cs_pair_matrix_terms part;
     double g[4][3];
     memcpy(share->points, points_of(pairs, corner->chunk, corner->pair), sizeof share->points);
     share->vertex = corner->vertex;
-    if (!kept->contacts) {
-        read_exact(pairs->solver_exact.chunks + corner->chunk, corner->pair, share);
-        return;
-    }
     cs_pair_factors_read(kept->contacts->chunks[corner->chunk].kind,
                          kept->chunks[corner->chunk].factors + corner->pair / CS_PAIR_LANES,
                          (int)(corner->pair % CS_PAIR_LANES), g, &part);
     set_blocks(g, &part, share);
+    if (kept->exact)
+        add_turn(kept->chunks[corner->chunk].hessians + corner->pair, share);
 }

@@ -45,19 +45,17 @@ static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error 
     return CS_OK;
 }
 
-/* Prepares both lists of active contacts and the four matrices. */
+/* Prepares both lists of active contacts and both matrices. */
 static enum cs_status init_answers(struct cs_pairs *pairs, struct cs_arena *arena,
                                    struct cs_error *error) {
-    const uint32_t n = pairs->system->view.n, n_chunks = pairs->candidates.n_chunks;
+    const uint32_t n_chunks = pairs->candidates.n_chunks;
     for (int k = 0; k < 2; k++)
         if (cs_active_contacts_init(pairs->lists + k, &pairs->candidates,
                                     &pairs->feature_weights, arena, error))
             return error->status;
-    if (cs_psd_operator_init(&pairs->solver_psd, n_chunks, arena, error) ||
-        cs_psd_operator_init(&pairs->other_psd, n_chunks, arena, error) ||
-        cs_contact_set_init(&pairs->solver_exact, n, n_chunks, arena, error))
-        return error->status;
-    return cs_contact_set_init(&pairs->other_exact, n, n_chunks, arena, error);
+    return cs_pair_matrix_init(&pairs->solver_matrix, n_chunks, arena, error)
+               ? error->status
+               : cs_pair_matrix_init(&pairs->other_matrix, n_chunks, arena, error);
 }
 
 /* Order: surfaces, parameters of pairs, candidate list, features, queries; then the first list,
@@ -94,7 +92,7 @@ static struct cs_active_contacts *find(struct cs_pairs *pairs, const double *x) 
         if (cs_active_contacts_is_there(pairs->lists + k))
             return pairs->lists + k;
     struct cs_active_contacts *active =
-        pairs->lists + (pairs->solver_psd.contacts == pairs->lists);
+        pairs->lists + (pairs->solver_matrix.contacts == pairs->lists);
     return cs_active_contacts_find(active, x) ? active : NULL;
 }
 
@@ -112,9 +110,9 @@ static bool answer(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
         narrow->query != CS_CONTACT_QUERY_LAGGED_FRICTION &&
         !cs_active_contacts_gather(pairs->current_contacts))
         return false;
-    if (narrow->psd &&
-        !cs_psd_operator_begin(narrow->psd, pairs->current_contacts,
-                               narrow->psd == &pairs->other_psd && narrow->matrix->bound))
+    if (narrow->result &&
+        !cs_pair_matrix_begin(narrow->result, pairs->current_contacts, !narrow->matrix->psd,
+                              narrow->result == &pairs->other_matrix && narrow->matrix->bound))
         return false;
     return cs_narrow_phase_run(narrow);
 }
@@ -160,80 +158,36 @@ void cs_pairs_store_friction(struct cs_pairs *pairs, double t, const double *x,
 
 /* --- matrices --- */
 
-/* Set of an exact matrix: the solver's, or another. */
-static struct cs_contact_set *set_of(struct cs_pairs *pairs, const struct cs_matrix *matrix,
-                                     bool kept) {
-    struct cs_contact_set *set = kept ? &pairs->solver_exact : &pairs->other_exact;
-    set->has_hessians = true;
-    set->diagonal_bound = !kept && matrix->bound;
-    return set;
-}
-
 /* A new solver matrix first releases the list of active contacts that the old one used. */
 void cs_pairs_set_matrix(struct cs_pairs *pairs, const struct cs_matrix *matrix, bool kept) {
+    struct cs_pair_matrix *result = kept ? &pairs->solver_matrix : &pairs->other_matrix;
     struct cs_narrow_phase narrow = {
         .query = CS_CONTACT_QUERY_MATRIX,
         .eval = {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_ALL},
-        .matrix = matrix};
-    if (matrix->psd)
-        narrow.psd = kept ? &pairs->solver_psd : &pairs->other_psd;
-    else
-        narrow.exact_set = set_of(pairs, matrix, kept);
+        .matrix = matrix,
+        .result = result};
     if (kept)
-        pairs->solver_psd.contacts = NULL;
+        result->contacts = NULL;
     run(pairs, &narrow);
-    if (kept)
-        pairs->blocks = matrix->psd ? CS_PAIRS_SOLVER_PSD : CS_PAIRS_SOLVER_EXACT;
-    else
-        pairs->blocks = matrix->psd ? CS_PAIRS_OTHER_PSD : CS_PAIRS_OTHER_EXACT;
+    pairs->blocks = result;
 }
 
 void cs_pairs_add_blocks(const struct cs_pairs *pairs, size_t begin, size_t end,
                          double *blocks) {
-    if (pairs->failed)
-        return;
-    if (pairs->blocks == CS_PAIRS_SOLVER_EXACT || pairs->blocks == CS_PAIRS_OTHER_EXACT)
-        cs_contact_set_add_blocks(pairs->blocks == CS_PAIRS_SOLVER_EXACT ? &pairs->solver_exact
-                                                                         : &pairs->other_exact,
-                                  begin, end, blocks);
-    else
-        cs_psd_operator_add_blocks(pairs->blocks == CS_PAIRS_SOLVER_PSD ? &pairs->solver_psd
-                                                                        : &pairs->other_psd,
-                                   begin, end, blocks);
+    if (!pairs->failed)
+        cs_pair_matrix_add_blocks(pairs->blocks, begin, end, blocks);
 }
 
-/* solver_psd.contacts is NULL while the solver's matrix is exact. */
 void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y) {
-    if (pairs->failed)
-        return;
-    if (pairs->solver_psd.contacts)
-        cs_psd_operator_apply(&pairs->solver_psd, p, y);
-    else
-        cs_contact_set_multiply(&pairs->solver_exact, p, y);
+    if (!pairs->failed)
+        cs_pair_matrix_apply(&pairs->solver_matrix, p, y);
 }
 
-/* The elastic part of an exact matrix times the velocities is a Jacobian product. */
 void cs_pairs_add_approach(struct cs_pairs *pairs, const struct cs_matrix *matrix, double *y) {
     const struct cs_system *system = pairs->system;
-    const size_t n = system->view.n;
-    struct cs_narrow_phase narrow = {
-        .query = CS_CONTACT_QUERY_JVP,
-        .eval = {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_POTENTIAL},
-        .along_velocities = true};
-    if (pairs->failed)
-        return;
-    // the factors that the matrix has stored, or a pass over the pairs
-    if (matrix->psd) {
-        cs_psd_operator_approach(&pairs->solver_psd, system->surfaces->n_points,
-                                 cs_surface_points_velocities(system, matrix->t, matrix->v), y);
-        return;
-    }
-    run(pairs, &narrow);
-    const struct cs_gather *gather = &pairs->current_contacts->force_gather;
-    for (size_t row = 0; row < 3 * (size_t)gather->n_rows; row++)
-        gather->row_sums[row] *= matrix->ck;
-    if (pairs->current_contacts->n)
-        cs_gather_add(gather, gather->row_sums, 3, 0, n, y);
+    if (!pairs->failed)
+        cs_pair_matrix_approach(&pairs->solver_matrix, system->surfaces->n_points,
+                                cs_surface_points_velocities(system, matrix->t, matrix->v), y);
 }
 
 /* Damping follows stiffness in the same array, n_rows numbers later. */

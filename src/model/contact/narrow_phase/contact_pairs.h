@@ -15,7 +15,7 @@
 #define CS_NARROW_PHASE_CONTACT_PAIRS_H
 
 #include "model/contact/narrow_phase/active_contacts.h"
-#include "model/contact/narrow_phase/psd_operator.h"
+#include "model/contact/narrow_phase/pair_matrix.h"
 #include "model/system/surfaces.h"
 
 /* Start, displacement and inverse mass of every surface point, one cache line
@@ -63,20 +63,9 @@ struct cs_pairs {
         lists[2]; /* in range at two states: of `kept`, and of the last question */
     /* the list that the last query used */
     struct cs_active_contacts *current_contacts;
-    /* the solver's matrix if it is positive semi-definite; else its contacts are NULL */
-    struct cs_psd_operator solver_psd;
-    /* the solver's matrix if it is exact */
-    struct cs_contact_set solver_exact;
-    /* a matrix whose blocks alone are wanted, positive semi-definite */
-    struct cs_psd_operator other_psd;
-    /* the same, exact */
-    struct cs_contact_set other_exact;
-    enum {
-        CS_PAIRS_SOLVER_PSD,
-        CS_PAIRS_SOLVER_EXACT,
-        CS_PAIRS_OTHER_PSD,
-        CS_PAIRS_OTHER_EXACT
-    } blocks;
+    struct cs_pair_matrix solver_matrix; /* for products and blocks */
+    struct cs_pair_matrix other_matrix;  /* another, whose blocks alone are wanted */
+    const struct cs_pair_matrix *blocks; /* the one that was made last */
     /* (n_points) of the last step that was checked */
     struct cs_point_motion *point_motion;
     /* chunk that rejected the last step */

@@ -1,5 +1,5 @@
-/* Evaluates the pairs in range of each chunk: forces, Jacobian products, energies and positive
- * semi-definite matrices in lanes, exact matrices pair by pair.
+/* Evaluates the pairs in range of each chunk in lanes; Hessians of exact matrices and lagged
+ * friction pair by pair.
  *
  * Order of one chunk: gather x, v and directions of its points into rows; fill four blocks of
  * eight pairs; evaluate them; add their results to the rows of the chunk in the order of pairs.
@@ -52,48 +52,6 @@ static void read_lane(const double *rows, size_t width, const uint32_t to[4], ui
 }
 
 /* --- one by one --- */
-
-/* Appends ck F H of the pair that was put last. Pairs and Hessians have the same index. */
-static void add_turn(const struct work *work, const struct cs_pair_contact *reaction) {
-    struct cs_contact_chunk *chunk = work->narrow->exact_set->chunks + work->number;
-    struct cs_contact_hessian *full =
-        cs_arena_realloc(chunk->hessians, &chunk->hessians_capacity, chunk->n, sizeof *full);
-    chunk->failed = chunk->failed || !full;
-    if (!full)
-        return;
-    chunk->hessians = full;
-    cs_pair_contact_hessian(reaction, work->narrow->matrix, full + chunk->n - 1);
-}
-
-/* Appends a pair to the exact set: its gradient, matrix terms and Hessian. */
-static void add_alone(const struct work *work, const struct cs_pair_lanes *from, uint32_t lane,
-                      const uint32_t at[4]) {
-    const struct cs_narrow_phase *narrow = work->narrow;
-    const struct cs_system *system = narrow->contacts->candidates->system;
-    const struct cs_body_pair_params params = {from->range[lane], from->k[lane],
-                                               from->friction[lane]};
-    struct cs_pair_contact reaction;
-    struct cs_pair_matrix_terms share;
-    const struct cs_feature_kind form = {from->is_edge[lane], from->is_off_plane[lane],
-                                         from->blend_radius[lane]};
-    double p[4][3], v[4][3];
-    struct cs_contact_chunk *chunk = narrow->exact_set->chunks + work->number;
-    struct cs_contact_entry *pair = cs_contact_chunk_next(chunk);
-    struct cs_contact_matrix_part *part = pair ? cs_contact_chunk_part(chunk) : NULL;
-    if (!part)
-        return;
-    pair->n = 4;
-    memcpy(pair->particles, at, sizeof pair->particles);
-    read(narrow->x, system->surfaces->n_points, pair->particles, p);
-    read(narrow->v, system->surfaces->n_points, pair->particles, v);
-    cs_pair_contact_measure(&reaction, work->chunk->kind, form, params.range, p);
-    cs_pair_contact_set(&reaction, &params, &system->scene->contact, v);
-    cs_pair_contact_chord_matrix(&reaction, system, at, narrow->matrix, pair->vectors, &share);
-    part->gradient_weight = share.gradient_weight;
-    memcpy(part->weights, share.weight, sizeof share.weight);
-    memcpy(part->block, share.block, sizeof share.block);
-    add_turn(work, &reaction);
-}
 
 /* Stores the friction of a pair. Only points of colliders move: V without the particles. */
 static void store_lagged(const struct work *work, const struct cs_pair_lanes *from,
@@ -178,12 +136,31 @@ static void read_pulls(const struct work *work, size_t first, uint32_t n,
     }
 }
 
-/* Stores the matrix factors of a block, which the operator multiplies with later. */
+/* Sets ck F H of each pair of a block. */
+static void set_hessians(const struct work *work, const struct cs_pair_lanes *lanes,
+                         struct cs_pair_hessian *hessians) {
+    const struct cs_narrow_phase *narrow = work->narrow;
+    for (uint32_t l = 0; l < lanes->n; l++) {
+        const struct cs_body_pair_params params = {lanes->range[l], lanes->k[l], 0};
+        const struct cs_feature_kind form = {lanes->is_edge[l], lanes->is_off_plane[l],
+                                             lanes->blend_radius[l]};
+        struct cs_pair_contact reaction;
+        double p[4][3], rest[4][3] = {{0}};
+        for (int k = 0; k < 12; k++)
+            p[k / 3][k % 3] = lanes->p[k / 3][k % 3][l];
+        cs_pair_contact_measure(&reaction, work->chunk->kind, form, params.range, p);
+        cs_pair_contact_set(&reaction, &params,
+                            &narrow->contacts->candidates->system->scene->contact, rest);
+        cs_pair_matrix_set_hessian(&reaction, narrow->matrix, hessians + l);
+    }
+}
+
+/* Stores the matrix terms of a block, which the operator multiplies with later. */
 static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     const struct cs_narrow_phase *narrow = work->narrow;
     const struct cs_contact_keys *keys = &narrow->contacts->candidates->system->scene->contact;
-    struct cs_pair_factors *factors =
-        narrow->psd->chunks[work->number].factors + first / CS_PAIR_LANES;
+    const struct cs_pair_matrix_chunk *terms = narrow->result->chunks + work->number;
+    struct cs_pair_factors *factors = terms->factors + first / CS_PAIR_LANES;
     if (narrow->matrix->chord) {
         struct cs_pair_pulls pulls;
         read_pulls(work, first, lanes->n, &pulls);
@@ -191,6 +168,8 @@ static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t f
                                    factors);
     } else
         cs_pair_lanes_matrix(work->chunk->kind, lanes, keys, narrow->matrix, factors);
+    if (narrow->result->exact)
+        set_hessians(work, lanes, terms->hessians + first);
 }
 
 /* Adds bounds to rows: stiffness in row_sums[row], damping in row_sums[n_rows + row]. */
@@ -213,21 +192,15 @@ static bool is_force(const struct cs_narrow_phase *narrow) {
     return narrow->query == CS_CONTACT_QUERY_FORCE || narrow->query == CS_CONTACT_QUERY_JVP;
 }
 
-/* an exact matrix, whose pairs go into a set */
-static bool is_in_set(const struct cs_narrow_phase *narrow) {
-    return narrow->query == CS_CONTACT_QUERY_MATRIX && !narrow->matrix->psd;
-}
-
-/* a matrix with friction by its chord, in lanes */
+/* a matrix with friction by its chord */
 static bool has_chord(const struct cs_narrow_phase *narrow) {
-    return narrow->query == CS_CONTACT_QUERY_MATRIX && narrow->matrix->psd &&
-           narrow->matrix->chord;
+    return narrow->query == CS_CONTACT_QUERY_MATRIX && narrow->matrix->chord;
 }
 
 /* points are gathered for all queries but energies and those that go pair by pair */
 static bool has_rows(const struct cs_narrow_phase *narrow) {
     return narrow->query != CS_CONTACT_QUERY_ENERGY &&
-           narrow->query != CS_CONTACT_QUERY_LAGGED_FRICTION && !is_in_set(narrow);
+           narrow->query != CS_CONTACT_QUERY_LAGGED_FRICTION;
 }
 
 /* Evaluates a block whose pairs begin at `first`. */
@@ -241,11 +214,8 @@ static void evaluate_block(const struct work *work, struct cs_pair_lanes *lanes,
     else if (work->narrow->query == CS_CONTACT_QUERY_LAGGED_FRICTION)
         for (uint32_t l = 0; l < lanes->n; l++)
             store_lagged(work, lanes, l, work->chunk->points[first + l]);
-    else if (!is_in_set(work->narrow))
-        share(work, lanes, first);
     else
-        for (uint32_t l = 0; l < lanes->n; l++)
-            add_alone(work, lanes, l, work->chunk->points[first + l]);
+        share(work, lanes, first);
 }
 
 /* --- active contacts of a chunk --- */
@@ -333,26 +303,22 @@ static bool begin(const struct work *work) {
     const struct cs_gather *gather = &narrow->contacts->force_gather;
     const struct cs_gather_chunk *rows = gather->chunks + work->number;
     work->chunk->energy = 0;
-    if (is_in_set(narrow))
-        cs_contact_chunk_clear(narrow->exact_set->chunks + work->number);
     if (!work->chunk->n)
         return false;
     clear_sums(narrow, rows);
-    return narrow->query != CS_CONTACT_QUERY_MATRIX || is_in_set(narrow) ||
-           cs_psd_operator_chunk_begin(narrow->psd, work->number);
+    return narrow->query != CS_CONTACT_QUERY_MATRIX ||
+           cs_pair_matrix_chunk_begin(narrow->result, work->number);
 }
 
-/* Gathers x, v, and for a Jacobian product dx and dv, of the points of a chunk. Directions but
- * the velocities exist for particles only: points of colliders have 0. */
+/* Gathers x, v, and for a Jacobian product dx and dv, of the points of a chunk. Directions
+ * exist for particles only: points of colliders have 0. */
 static const double *read_rows(const struct cs_narrow_phase *narrow, uint32_t number) {
     const struct cs_system *system = narrow->contacts->candidates->system;
     const struct cs_gather *gather = &narrow->contacts->force_gather;
     const size_t n = system->view.n, n_points = system->surfaces->n_points;
     cs_gather_read(gather, number, 3, narrow->v, n_points);
     if (narrow->query == CS_CONTACT_QUERY_JVP) {
-        const bool along = narrow->along_velocities;
-        cs_gather_read(gather, number, 6, along ? narrow->v : narrow->eval.dx,
-                       along ? n_points : n);
+        cs_gather_read(gather, number, 6, narrow->eval.dx, n);
         cs_gather_read(gather, number, 9, narrow->eval.dv, n);
     }
     if (has_chord(narrow)) {
@@ -371,21 +337,15 @@ static void do_chunk(void *arg, uint32_t number) {
         work.rows = read_rows(narrow, number);
     for (size_t p = 0; p < work.chunk->n; p += TOGETHER * CS_PAIR_LANES)
         do_some(&work, p);
-    if (narrow->query == CS_CONTACT_QUERY_MATRIX && !is_in_set(narrow))
-        cs_psd_operator_chunk_end(narrow->psd, number);
+    if (narrow->query == CS_CONTACT_QUERY_MATRIX)
+        cs_pair_matrix_chunk_end(narrow->result, number);
 }
 
-/* A row has 6 columns, or 12 for a Jacobian product and friction by its chord. Exact sets are
- * gathered by particles. */
+/* A row has 6 columns, or 12 for a Jacobian product and friction by its chord. */
 bool cs_narrow_phase_run(struct cs_narrow_phase *narrow) {
     const size_t width = narrow->query == CS_CONTACT_QUERY_JVP || has_chord(narrow) ? 12 : 6;
     if (has_rows(narrow) && !cs_gather_reserve(&narrow->contacts->force_gather, width))
         return false;
     cs_pool_run(narrow->contacts->candidates->n_chunks, do_chunk, narrow);
-    if (is_in_set(narrow)) {
-        cs_contact_set_count(narrow->exact_set);
-        cs_contact_set_gather(narrow->exact_set);
-        return !narrow->exact_set->failed;
-    }
-    return narrow->query != CS_CONTACT_QUERY_MATRIX || cs_psd_operator_end(narrow->psd);
+    return narrow->query != CS_CONTACT_QUERY_MATRIX || cs_pair_matrix_end(narrow->result);
 }

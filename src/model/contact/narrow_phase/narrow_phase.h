@@ -4,7 +4,7 @@
 #define CS_NARROW_PHASE_NARROW_PHASE_H
 
 #include "model/contact/narrow_phase/active_contacts.h"
-#include "model/contact/narrow_phase/psd_operator.h"
+#include "model/contact/narrow_phase/pair_matrix.h"
 
 /* Quantity that is evaluated. */
 enum cs_contact_query {
@@ -24,13 +24,8 @@ struct cs_narrow_phase {
     const double *x, *v;
     enum cs_contact_query query;
     struct cs_eval eval;
-    /* the direction of a Jacobian product is v, for points of colliders too, and dv is 0 */
-    bool along_velocities;
     const struct cs_matrix *matrix; /* of CS_CONTACT_QUERY_MATRIX */
-    /* receives a positive semi-definite matrix */
-    struct cs_psd_operator *psd;
-    /* receives an exact matrix */
-    struct cs_contact_set *exact_set;
+    struct cs_pair_matrix *result;  /* receives it */
     /* chunk of lagged friction that the first chunk goes to */
     uint32_t first_lagged;
 };
@@ -40,7 +35,7 @@ struct cs_narrow_phase {
  * - contacts->force_gather.row_sums: forces (n_rows, 3), or bounds (2, n_rows), stiffness
  *   before damping; rows must exist, except for energies;
  * - contacts->chunks[].energy for energies;
- * - psd or exact_set for a matrix;
+ * - result for a matrix;
  * - the store of the system for lagged friction.
  *
  * Returns false if out of memory; results are then incomplete and the run must end. */

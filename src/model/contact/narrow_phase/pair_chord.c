@@ -86,27 +86,3 @@ void cs_pair_lanes_chord_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *la
     else
         chord_of_triangles(lanes, *keys, -matrix->cd, pulls, factors);
 }
-
-void cs_pair_contact_chord_matrix(struct cs_pair_contact *reaction,
-                                  const struct cs_system *system, const uint32_t at[4],
-                                  const struct cs_matrix *matrix, double gradient[4][3],
-                                  struct cs_pair_matrix_terms *share) {
-    struct cs_point_contact *touch = &reaction->contact;
-    const double mu = touch->friction;
-    struct cs_contact_pull pull = {.h = -matrix->cd};
-    // with the chord the smooth law's own slope is left out
-    touch->friction = matrix->chord ? 0 : mu;
-    cs_pair_contact_matrix(reaction, matrix, gradient, share);
-    for (size_t k = 0; k < 4 && matrix->chord; k++)
-        if (at[k] < system->view.n)
-            cs_contact_pull_add(&pull, matrix, system->view.n, at[k], system->inv_mass[at[k]],
-                                reaction->weight[k]);
-    const struct cs_sliding_contact slides = {
-        .n = {touch->g[0], touch->g[1], touch->g[2]},
-        .v = {touch->v[0], touch->v[1], touch->v[2]},
-        .force = cs_barrier_at(touch->d, touch->range, touch->k).force,
-        .friction = mu,
-        .friction_speed = touch->friction_speed};
-    if (matrix->chord)
-        cs_friction_chord_add(&pull, &slides, share->block);
-}

@@ -19,11 +19,4 @@ void cs_pair_lanes_chord_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *la
                                 const struct cs_matrix *matrix, struct cs_pair_pulls *pulls,
                                 struct cs_pair_factors *factors);
 
-/* cs_pair_contact_matrix of one pair with the points `at`, but for friction if matrix->chord is
- * set. Friction of *reaction is then 0 afterwards. */
-void cs_pair_contact_chord_matrix(struct cs_pair_contact *reaction,
-                                  const struct cs_system *system, const uint32_t at[4],
-                                  const struct cs_matrix *matrix, double gradient[4][3],
-                                  struct cs_pair_matrix_terms *share);
-
 #endif

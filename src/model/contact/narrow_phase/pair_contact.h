@@ -4,12 +4,10 @@
 #define CS_NARROW_PHASE_PAIR_CONTACT_H
 
 #include "model/contact/body_pair_params.h"
-#include "model/contact/contact_set.h"
 #include "model/contact/narrow_phase/mesh_feature.h"
 #include "model/contact/point_contact.h"
 
-/* Terms of a pair's matrix P = c g g^T + (w w^T) x B besides the gradient g, as in struct
- * cs_contact_entry. */
+/* Terms of a pair's matrix P = c g g^T + (w w^T) x B besides the gradient g. */
 struct cs_pair_matrix_terms {
     /* w of the four points */
     double weight[4];
@@ -144,7 +142,7 @@ CS_INLINE void cs_pair_contact_jvp(const struct cs_pair_contact *reaction,
 }
 
 /* Matrix terms of the pair, and its gradient in to[4][3]. ck F H is not among them
- * (cs_pair_contact_hessian), nor is the change of the weights. */
+ * (pair_matrix.h), nor is the change of the weights. */
 CS_INLINE void cs_pair_contact_matrix(const struct cs_pair_contact *reaction,
                                       const struct cs_matrix *matrix, double to[4][3],
                                       struct cs_pair_matrix_terms *share) {
@@ -163,11 +161,6 @@ CS_INLINE void cs_pair_contact_matrix(const struct cs_pair_contact *reaction,
         share->block[e] = 0;
     cs_point_contact_add_block(touch, &rubbing, share->block);
 }
-/* Sets turn to ck F H, with H the Hessian of the distance, which has eigenvalues of both signs.
- */
-void cs_pair_contact_hessian(const struct cs_pair_contact *reaction,
-                             const struct cs_matrix *matrix, struct cs_contact_hessian *turn);
-
 /* Gershgorin bounds in N/m and N s/m. The block of df/dx at points k and j is -K g_k g_j^T, of
  * norm K |g_k| |g_j|, so the row of k sums to K |g_k| sum |g_j|; likewise |w_k| sum |w_j| for
  * damping. F H is left out. */

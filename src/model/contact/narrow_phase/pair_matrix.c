@@ -1,10 +1,10 @@
-/* The positive semi-definite contact matrix: factors per chunk, diagonal blocks and products.
+/* The contact matrix of pairs: factors per chunk, diagonal blocks and products.
  *
- * Why P >= 0: a pair contributes p^T P p = c (sum g_j.p_j)^2 + V^T B V with V = sum w_j p_j,
- * and neither term is negative for c >= 0 and B >= 0.
+ * Why P >= 0, the matrix without Hessians: a pair contributes p^T P p = c (sum g_j.p_j)^2 + V^T
+ * B V with V = sum w_j p_j, and neither term is negative for c >= 0 and B >= 0.
  *
- * Bound of the diagonal, for a preconditioner or a decoupled solve that sees the blocks alone.
- * Cauchy's inequality gives
+ * Bound of the diagonal of P, for a preconditioner or a decoupled solve that sees the blocks
+ * alone. Cauchy's inequality gives
  *
  *   (sum g_j.p_j)^2 <= (sum |g_j|) sum (g_j.p_j)^2 / |g_j|
  *   V^T B V <= (sum |w_j|) sum |w_j| p_j^T B p_j
@@ -12,7 +12,7 @@
  * so that P <= diag(blocks) with each gradient block times (sum |g_j|) / |g_k| and each B block
  * w_k^2 B times (sum |w_j|) / |w_k|: find_growth of pair_lanes.c. The product uses exact
  * blocks; diagonal_bound is for matrices whose blocks alone are wanted. */
-#include "model/contact/narrow_phase/psd_operator.h"
+#include "model/contact/narrow_phase/pair_matrix.h"
 
 #include "base/pool.h"
 #include "base/vector.h"
@@ -21,15 +21,15 @@
 #include <string.h>
 
 static void finish(void *object) {
-    struct cs_psd_operator *product = object;
+    struct cs_pair_matrix *product = object;
     for (uint32_t l = 0; l < product->n_chunks; l++)
-        free(product->chunks[l].factors);
+        free(product->chunks[l].factors), free(product->chunks[l].hessians);
     free(product->diagonal);
 }
 
-enum cs_status cs_psd_operator_init(struct cs_psd_operator *product, uint32_t n_chunks,
-                                    struct cs_arena *arena, struct cs_error *error) {
-    *product = (struct cs_psd_operator){.n_chunks = n_chunks};
+enum cs_status cs_pair_matrix_init(struct cs_pair_matrix *product, uint32_t n_chunks,
+                                   struct cs_arena *arena, struct cs_error *error) {
+    *product = (struct cs_pair_matrix){.n_chunks = n_chunks};
     product->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *product->chunks, error);
     if (!error->status)
         cs_arena_adopt(arena, finish, product, error);
@@ -49,9 +49,10 @@ static size_t blocks_of(const struct cs_active_chunk *chunk) {
 
 /* --- the matrix --- */
 
-bool cs_psd_operator_begin(struct cs_psd_operator *product, struct cs_active_contacts *active,
-                           bool alone) {
+bool cs_pair_matrix_begin(struct cs_pair_matrix *product, struct cs_active_contacts *active,
+                          bool exact, bool alone) {
     product->contacts = active;
+    product->exact = exact;
     product->diagonal_bound = alone;
     double *own = cs_arena_realloc(product->diagonal, &product->diagonal_capacity,
                                    6 * (size_t)active->force_gather.n_rows, sizeof *own);
@@ -59,24 +60,45 @@ bool cs_psd_operator_begin(struct cs_psd_operator *product, struct cs_active_con
     return own || !active->force_gather.n_rows;
 }
 
-struct cs_pair_factors *cs_psd_operator_chunk_begin(struct cs_psd_operator *product,
-                                                    uint32_t number) {
-    struct cs_psd_chunk *chunk = product->chunks + number;
+bool cs_pair_matrix_chunk_begin(struct cs_pair_matrix *product, uint32_t number) {
+    struct cs_pair_matrix_chunk *chunk = product->chunks + number;
+    const struct cs_active_chunk *pairs = product->contacts->chunks + number;
     struct cs_pair_factors *factors =
-        cs_arena_realloc(chunk->factors, &chunk->capacity,
-                         blocks_of(product->contacts->chunks + number), sizeof *factors);
+        cs_arena_realloc(chunk->factors, &chunk->capacity, blocks_of(pairs), sizeof *factors);
+    chunk->factors = factors ? factors : chunk->factors;
     chunk->failed = !factors;
-    if (!factors)
-        return NULL;
-    chunk->factors = factors;
-    return factors;
+    if (!product->exact)
+        return factors;
+    struct cs_pair_hessian *hessians = cs_arena_realloc(
+        chunk->hessians, &chunk->hessians_capacity, pairs->n, sizeof *hessians);
+    chunk->hessians = hessians ? hessians : chunk->hessians;
+    chunk->failed = !factors || !hessians;
+    return !chunk->failed;
+}
+
+/* Column j is the tangent of the gradient along unit vector j. The upper triangle is used for
+ * both halves, so that rounding leaves it symmetric. */
+void cs_pair_matrix_set_hessian(const struct cs_pair_contact *contact,
+                                const struct cs_matrix *of, struct cs_pair_hessian *hessian) {
+    const struct cs_point_contact *touch = &contact->contact;
+    const double push = of->ck * cs_barrier_at(touch->d, touch->range, touch->k).force;
+    for (int j = 0; j < 12; j++) {
+        double unit[4][3] = {{0}}, column[4][3], dw[4];
+        unit[j / 3][j % 3] = 1;
+        cs_pair_contact_tangent(contact, unit, column, dw);
+        for (int i = 0; i <= j; i++)
+            hessian->m[i][j] = hessian->m[j][i] = push * column[i / 3][i % 3];
+    }
 }
 
 /* Adds the diagonal blocks of eight pairs to the rows of their points. */
-static void add_own(struct cs_psd_operator *product, uint32_t number, size_t block,
+static void add_own(struct cs_pair_matrix *product, uint32_t number, size_t block,
                     double *rows) {
     const struct cs_active_chunk *chunk = product->contacts->chunks + number;
     uint32_t(*to)[4] = chunk->rows + block * CS_PAIR_LANES;
+    const struct cs_pair_hessian *full =
+        product->exact ? product->chunks[number].hessians + block * CS_PAIR_LANES : NULL;
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const uint32_t n = count_at(chunk, block);
     double own[4][6][CS_PAIR_LANES];
     cs_pair_lanes_diagonal(chunk->kind, product->chunks[number].factors + block,
@@ -84,10 +106,11 @@ static void add_own(struct cs_psd_operator *product, uint32_t number, size_t blo
     for (uint32_t l = 0; l < n; l++)
         for (int k = 0; k < 4; k++)
             for (int e = 0; e < 6; e++)
-                rows[6 * (size_t)to[l][k] + (size_t)e] += own[k][e][l];
+                rows[6 * (size_t)to[l][k] + (size_t)e] +=
+                    own[k][e][l] + (full ? full[l].m[3 * k + row[e]][3 * k + column[e]] : 0);
 }
 
-void cs_psd_operator_chunk_end(struct cs_psd_operator *product, uint32_t number) {
+void cs_pair_matrix_chunk_end(struct cs_pair_matrix *product, uint32_t number) {
     const struct cs_gather_chunk *rows = product->contacts->force_gather.chunks + number;
     const size_t blocks = blocks_of(product->contacts->chunks + number);
     double *own = cs_gather_of(rows, product->diagonal, 6);
@@ -96,24 +119,24 @@ void cs_psd_operator_chunk_end(struct cs_psd_operator *product, uint32_t number)
         add_own(product, number, b, own);
 }
 
-bool cs_psd_operator_end(struct cs_psd_operator *product) {
+bool cs_pair_matrix_end(struct cs_pair_matrix *product) {
     bool failed = false;
     for (uint32_t l = 0; l < product->n_chunks; l++)
         failed = failed || product->chunks[l].failed;
     return !failed;
 }
 
-void cs_psd_operator_add_blocks(const struct cs_psd_operator *product, size_t begin, size_t end,
-                                double *blocks) {
+void cs_pair_matrix_add_blocks(const struct cs_pair_matrix *product, size_t begin, size_t end,
+                               double *blocks) {
     cs_gather_add(&product->contacts->force_gather, product->diagonal, 6, begin, end, blocks);
 }
 
 /* --- times a vector --- */
 
-/* One product: y += (P - diagonal) p for n points; or, for an approach, the elastic part of P
+/* One product: y += (A - diagonal) p for n points; or, for an approach, the elastic part of A
  * times p. */
 struct job {
-    const struct cs_psd_operator *product;
+    const struct cs_pair_matrix *product;
     const double *p;
     size_t n;
     bool approach;
@@ -140,11 +163,33 @@ static void add_lanes(vectors by, uint32_t (*to)[4], uint32_t count, double *sum
                 sums[3 * (size_t)to[l][k] + c] += by[k][c][l];
 }
 
-/* The product without B. */
-static void approach(enum cs_pair_kind kind, const struct cs_pair_factors *factors, vectors p) {
-    struct cs_pair_factors elastic = *factors;
-    memset(elastic.block, 0, sizeof elastic.block);
-    cs_pair_lanes_multiply(kind, &elastic, p);
+/* out += H p for each pair of a block */
+static void add_hessians(const struct cs_pair_hessian *full, uint32_t n, vectors p,
+                         vectors out) {
+    for (uint32_t l = 0; l < n; l++)
+        for (int i = 0; i < 12; i++) {
+            double sum = 0;
+            for (int j = 0; j < 12; j++)
+                sum += full[l].m[i][j] * p[j / 3][j % 3][l];
+            out[i / 3][i % 3][l] += sum;
+        }
+}
+
+/* Replaces p by the product of one block, for an approach without B. */
+static void multiply_block(const struct job *job, uint32_t number, size_t block, vectors p) {
+    const struct cs_active_chunk *chunk = job->product->contacts->chunks + number;
+    const struct cs_pair_matrix_chunk *terms = job->product->chunks + number;
+    struct cs_pair_factors elastic;
+    vectors at;
+    if (job->product->exact)
+        memcpy(at, p, sizeof at);
+    if (job->approach) {
+        elastic = terms->factors[block];
+        memset(elastic.block, 0, sizeof elastic.block);
+    }
+    cs_pair_lanes_multiply(chunk->kind, job->approach ? &elastic : terms->factors + block, p);
+    if (job->product->exact)
+        add_hessians(terms->hessians + block * CS_PAIR_LANES, count_at(chunk, block), at, p);
 }
 
 /* Multiplies up to TOGETHER blocks: loads all, multiplies all, adds all. A vector load directly
@@ -152,16 +197,13 @@ static void approach(enum cs_pair_kind kind, const struct cs_pair_factors *facto
 static void multiply_some(const struct job *job, uint32_t number, size_t first, const double *p,
                           double *sums) {
     const struct cs_active_chunk *chunk = job->product->contacts->chunks + number;
-    struct cs_pair_factors *factors = job->product->chunks[number].factors + first;
     uint32_t(*to)[4] = chunk->rows + first * CS_PAIR_LANES;
     const size_t left = blocks_of(chunk) - first, n = left < TOGETHER ? left : TOGETHER;
     vectors by[TOGETHER];
     for (size_t b = 0; b < n; b++)
         read_lanes(p, to + b * CS_PAIR_LANES, count_at(chunk, first + b), by[b]);
-    for (size_t b = 0; b < n && !job->approach; b++)
-        cs_pair_lanes_multiply(chunk->kind, factors + b, by[b]);
-    for (size_t b = 0; b < n && job->approach; b++)
-        approach(chunk->kind, factors + b, by[b]);
+    for (size_t b = 0; b < n; b++)
+        multiply_block(job, number, first + b, by[b]);
     for (size_t b = 0; b < n; b++)
         add_lanes(by[b], to + b * CS_PAIR_LANES, count_at(chunk, first + b), sums);
 }
@@ -202,7 +244,7 @@ static void add_part(void *arg, size_t begin, size_t end) {
 }
 
 static void run(struct job *job) {
-    const struct cs_psd_operator *product = job->product;
+    const struct cs_pair_matrix *product = job->product;
     // Never fails: the rows were at least 6 wide when the matrix was made.
     if (!product->contacts->n || !cs_gather_reserve(&product->contacts->force_gather, 3))
         return;
@@ -211,11 +253,11 @@ static void run(struct job *job) {
 }
 
 /* Points of colliders have p = 0 and do not move. */
-void cs_psd_operator_apply(const struct cs_psd_operator *product, const double *p, double *y) {
+void cs_pair_matrix_apply(const struct cs_pair_matrix *product, const double *p, double *y) {
     run(&(struct job){product, p, product->contacts->force_gather.n_particles, false, y});
 }
 
-void cs_psd_operator_approach(const struct cs_psd_operator *product, size_t n_points,
-                              const double *v, double *y) {
+void cs_pair_matrix_approach(const struct cs_pair_matrix *product, size_t n_points,
+                             const double *v, double *y) {
     run(&(struct job){product, v, n_points, true, y});
 }
