@@ -157,7 +157,9 @@ static void plan_needs(struct cs_plan *plan, const struct cs_scene *scene, uint3
            lags ? "no contact by force with friction" : idle);
     decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE,
            cs_multigrid_is_used(scene) ? "the integrator asks for it; multigrid for stiff steps"
-                                       : "the integrator asks for it",
+           : cs_multigrid_is_in_reserve(scene)
+               ? "the integrator asks for it; multigrid for solves that are slow with blocks"
+               : "the integrator asks for it",
            idle);
     const bool rebounds = needs & CS_NEED_REBOUNDS && needs & CS_NEED_SOLVE;
     decide(plan, CS_FEATURE_REBOUNDS, rebounds && cs_rebounds_possible(scene),

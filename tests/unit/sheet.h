@@ -20,7 +20,7 @@ struct sheet {
 /* Reads the scene and builds its system for a method with these needs (enum cs_need). */
 __attribute__((format(printf, 3, 4))) static inline void
 sheet_open(struct sheet *sheet, uint32_t needs, const char *format, ...) {
-    char text[4096];
+    char text[16384];
     struct cs_error error = {0};
     struct cs_plan plan;
     va_list args;

@@ -93,6 +93,127 @@ TEST(a_fold_takes_at_most_twice_the_iterations) {
     }
 }
 
+/* --- several bodies --- */
+
+#define BODY                                                                                   \
+    "{\"cloth\": {\"grid\": [%d, %d], \"size\": [1, 1]}, \"mass\": "                           \
+    "{\"areal_density\": 0.2}, \"springs\": {\"stretch\": 60, \"shear\": 20, \"bend\": 0.5, "  \
+    "\"damping\": 0.01}, \"self_contact\": true, \"friction\": 0.3}"
+
+/* Sheets of r x r particles, each 0.9 ranges above the last one, with waves. */
+static void open_stack(struct crumple *crumple, size_t r, uint32_t n_sheets) {
+    char text[16384], body[320];
+    snprintf(body, sizeof body, BODY, (int)r, (int)r);
+    int at = snprintf(text, sizeof text,
+                      "{\"pairs\": {\"among\": \"all\", \"friction\": 0.3}, "
+                      "\"contact\": {\"law\": \"force\"}, \"bodies\": [");
+    for (uint32_t k = 0; k < n_sheets; k++)
+        at += snprintf(text + at, sizeof text - (size_t)at, "%s%s", k ? ", " : "", body);
+    snprintf(text + at, sizeof text - (size_t)at, "]}");
+    sheet_open(&crumple->sheet, CS_NEED_SOLVE, "%s", text);
+    crumple_start(crumple, 0);
+    const double edge = 1 / ((double)r - 1), gap = 0.9 * 0.4 * edge;
+    const size_t n = crumple->sheet.n;
+    for (size_t i = 0; i < n; i++) {
+        const size_t layer = i / (r * r), row = i / r % r;
+        const double wave = sin(0.4 * (double)row + 2.1 * (double)layer);
+        crumple->sheet.x[i] += 0.3 * edge * (double)(layer % 2);
+        crumple->sheet.x[2 * n + i] = gap * ((double)layer + 0.2 * wave);
+        crumple->sheet.v[i] = 0.02 * sin(9 * crumple->sheet.x[n + i] + (double)layer);
+    }
+}
+
+static bool set_up_stack(struct crumple *crumple) {
+    const double h = 0.004;
+    const struct sheet *sheet = &crumple->sheet;
+    return cs_linear_setup(
+        &crumple->linear,
+        &(struct cs_matrix){
+            .x = sheet->x, .v = sheet->v, .cm = 1, .cd = -h, .ck = -h * h, .psd = true});
+}
+
+/* One sheet takes 5 iterations, two take 9 and four 12. With diagonal blocks between bodies two
+ * took 49. */
+TEST(bodies_take_few_iterations_more_than_one) {
+    uint64_t one = 0;
+    for (uint32_t n_sheets = 1; n_sheets <= 4; n_sheets *= 2) {
+        struct crumple crumple;
+        open_stack(&crumple, 32, n_sheets);
+        ck_assert(set_up_stack(&crumple) && crumple.linear.stiff);
+        ck_assert_int_eq(crumple_solve(&crumple, 1e-6), CS_LINEAR_DONE);
+        one = n_sheets == 1 ? crumple.iterations : one;
+        ck_assert_msg(crumple.iterations <= one + 3 * (uint64_t)n_sheets,
+                      "%u sheets: %llu iterations, one: %llu", n_sheets,
+                      (unsigned long long)crumple.iterations, (unsigned long long)one);
+        crumple_shut(&crumple);
+    }
+}
+
+/* z.r' = z'.r and z.r > 0, with a last level that is solved exactly (4 bodies) and one that is
+ * smoothed (40), and with the same bits by any number of threads. */
+static void check_stack(size_t r, uint32_t n_sheets, bool solved) {
+    struct cs_error error = {0};
+    double *alone = NULL;
+    for (uint32_t threads = 1; threads <= 3; threads++) {
+        struct crumple crumple;
+        ck_assert_int_eq(cs_pool_start(threads, &error), CS_OK);
+        open_stack(&crumple, r, n_sheets);
+        ck_assert(set_up_stack(&crumple) && crumple.linear.stiff);
+        ck_assert_int_eq(crumple.linear.multigrid.coarsest.n > 0, solved);
+        const size_t n3 = 3 * crumple.sheet.n;
+        double *z = calloc(n3, sizeof *z), *y = calloc(n3, sizeof *y),
+               *b = calloc(n3, sizeof *b);
+        uint32_t seed = 3;
+        for (size_t i = 0; i < n3; i++)
+            b[i] = crumple_random(&seed);
+        cs_linear_precondition(&crumple.linear, b, 1, z);
+        cs_linear_precondition(&crumple.linear, crumple.b, 1, y);
+        const double bz = cs_vector_dot(n3, b, z), yb = cs_vector_dot(n3, y, crumple.b);
+        ck_assert(bz > 0 && yb > 0);
+        ck_assert_double_le(fabs(cs_vector_dot(n3, b, y) - cs_vector_dot(n3, crumple.b, z)),
+                            1e-5 * sqrt(bz * yb));
+        if (alone)
+            ck_assert_int_eq(memcmp(alone, z, n3 * sizeof *z), 0);
+        free(alone);
+        alone = z;
+        free(y), free(b);
+        crumple_shut(&crumple);
+        cs_pool_stop();
+    }
+    free(alone);
+}
+
+TEST(a_cycle_of_bodies_is_symmetric_and_positive) {
+    check_stack(27, 4, true);
+}
+
+TEST(many_bodies_have_no_exact_last_level) {
+    check_stack(25, 40, false);
+}
+
+/* Ribbons below the size for multigrid in stiff steps: blocks begin, and levels end the solve.
+ * A second solve repeats the first to the bit. */
+TEST(levels_in_reserve_end_slow_solves) {
+    struct crumple crumple;
+    open_stack(&crumple, 20, 2);
+    ck_assert(set_up_stack(&crumple) && !crumple.linear.stiff);
+    ck_assert(!cs_multigrid_is_used(&crumple.sheet.scene));
+    const size_t bytes = 3 * crumple.sheet.n * sizeof(double);
+    double *first = calloc(1, bytes);
+    for (int k = 0; k < 2; k++) {
+        memset(crumple.u, 0, bytes);
+        ck_assert_int_eq(crumple_solve(&crumple, 1e-6), CS_LINEAR_DONE);
+        ck_assert_uint_gt(crumple.iterations, CS_LINEAR_SLOW_ITERATIONS);
+        ck_assert_uint_le(crumple.iterations, CS_LINEAR_SLOW_ITERATIONS + 15);
+        ck_assert(!crumple.linear.stiff);
+        if (k)
+            ck_assert_int_eq(memcmp(first, crumple.u, bytes), 0);
+        memcpy(first, crumple.u, bytes);
+    }
+    free(first);
+    crumple_shut(&crumple);
+}
+
 /* --- the springs themselves --- */
 
 static const struct cs_level *first_level(const struct folded *folded) {

@@ -1,5 +1,5 @@
-/* Extra springs of a body with self-contact: from contact pairs to the first level, and from
- * level to level. */
+/* Extra springs of bodies in contact: from contact pairs to the first level, and from level to
+ * level. */
 #include "model/solver/contact_coupling.h"
 
 #include "model/contact/narrow_phase/contact_pairs.h"
@@ -10,43 +10,42 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Sets the next level's cell of each cell of a grid; CS_GRAPH_NONE in the padding. A mesh has
- * them from its matching. */
+/* The padding of a grid has no parents: CS_GRAPH_NONE. A mesh has its own from its matching. */
 static void find_parents(struct cs_level *fine, const struct cs_level *coarse) {
-    memset(fine->parents, 0xff, fine->n * sizeof *fine->parents);
+    uint32_t *parents = fine->joint_parents + fine->first;
+    memset(parents, 0xff, fine->n * sizeof *parents);
+    for (uint32_t i = 0; fine->form == CS_LEVEL_MESH && i < fine->n; i++)
+        parents[i] = coarse->first + fine->parents[i];
     for (uint32_t row = 0; row < fine->rows; row++)
         for (uint32_t column = 0; column < fine->columns; column++)
-            fine->parents[fine->begin + row * fine->pitch + column] =
-                coarse->begin + row / 2 * coarse->pitch + column / 2;
+            parents[fine->begin + row * fine->pitch + column] =
+                coarse->first + coarse->begin + row / 2 * coarse->pitch + column / 2;
 }
 
 /* Lists the cells of each parent: a counting sort. Counts are stored two places further on, so
  * that filling moves the starts to where they belong. */
 static void find_children(struct cs_level *fine, const struct cs_level *coarse) {
+    const uint32_t *parents = fine->joint_parents + fine->first;
     uint32_t *starts = fine->children_begin;
     for (uint32_t i = 0; i < fine->n; i++)
-        if (fine->parents[i] != CS_GRAPH_NONE)
-            starts[fine->parents[i] + 2]++;
+        if (parents[i] != CS_GRAPH_NONE)
+            starts[parents[i] - coarse->first + 2]++;
     for (uint32_t i = 2; i < coarse->n + 2; i++)
         starts[i] += starts[i - 1];
     for (uint32_t i = 0; i < fine->n; i++)
-        if (fine->parents[i] != CS_GRAPH_NONE)
-            fine->children[starts[fine->parents[i] + 1]++] = i;
+        if (parents[i] != CS_GRAPH_NONE)
+            fine->children[starts[parents[i] - coarse->first + 1]++] = i;
 }
 
-/* Allocates and fills parents (of a grid) and children of a level. */
+/* Fills the parents and children of a level. */
 static void add_pair_springs(struct cs_level *fine, const struct cs_level *coarse,
                              struct cs_arena *arena, struct cs_error *error) {
-    const bool grid = fine->form != CS_LEVEL_MESH;
-    if (grid)
-        fine->parents = cs_arena_alloc_array(arena, fine->n, sizeof *fine->parents, error);
     fine->children = cs_arena_alloc_array(arena, fine->n, sizeof *fine->children, error);
     fine->children_begin =
         cs_arena_alloc_array(arena, coarse->n + (size_t)2, sizeof *fine->children_begin, error);
     if (error->status)
         return;
-    if (grid)
-        find_parents(fine, coarse);
+    find_parents(fine, coarse);
     find_children(fine, coarse);
 }
 
@@ -58,7 +57,8 @@ enum cs_status cs_coupling_init(struct cs_hierarchy *hierarchy, struct cs_arena 
         level->extra_springs =
             cs_arena_alloc_array(arena, 1, sizeof *level->extra_springs, error);
         if (!error->status &&
-            !cs_extra_springs_init(level->extra_springs, level->n, arena, error) &&
+            !cs_extra_springs_init(level->extra_springs, level->first, level->n, arena,
+                                   error) &&
             k + 1 < hierarchy->n_levels)
             add_pair_springs(level, level + 1, arena, error);
     }
@@ -67,26 +67,24 @@ enum cs_status cs_coupling_init(struct cs_hierarchy *hierarchy, struct cs_arena 
 
 /* --- from pairs --- */
 
-/* Tells whether a point is a particle of this body. */
-static bool is_own(const struct cs_hierarchy *hierarchy, uint32_t point) {
-    return point >= hierarchy->first && point - hierarchy->first < hierarchy->count;
-}
-
-/* Tells whether all four points of a pair are particles of this body. */
-static bool is_inner(const struct cs_hierarchy *hierarchy, const uint32_t at[4]) {
+/* Tells whether all four points of a pair are particles, not vertices of a collider. */
+static bool is_inner(const struct cs_pairs *pairs, const uint32_t at[4]) {
     bool inner = true;
     for (uint32_t k = 0; k < 4; k++)
-        inner = inner && is_own(hierarchy, at[k]);
+        inner = inner && at[k] < pairs->system->view.n;
     return inner;
 }
 
-/* The first level's cell of a particle. */
-static uint32_t cell_of(const struct cs_hierarchy *hierarchy, uint32_t particle) {
+/* The joint number of the first level's cell of a particle. */
+static uint32_t cell_of(const struct cs_coupling *coupling, uint32_t particle) {
+    const struct cs_hierarchy *hierarchy =
+        coupling->bodies + coupling->pairs->candidates.body[particle];
     const uint32_t i = particle - hierarchy->first, row = i / hierarchy->columns;
-    return hierarchy->levels->begin + row * hierarchy->levels->pitch + i % hierarchy->columns;
+    return hierarchy->levels->first + hierarchy->levels->begin +
+           row * hierarchy->levels->pitch + i % hierarchy->columns;
 }
 
-/* The particle of a cell; UINT32_MAX in the padding. Inverse of cell_of. */
+/* The particle of a body's cell; UINT32_MAX in the padding. */
 static uint32_t particle_of(const struct cs_hierarchy *hierarchy, uint32_t cell) {
     const struct cs_level *level = hierarchy->levels;
     if (cell < level->begin || cell >= level->end)
@@ -121,8 +119,7 @@ static void add_springs(const struct cs_coupling *coupling,
         const double stiff = -share->weight[share->vertex] * share->weight[k];
         const uint32_t other = share->points[k];
         if (k != share->vertex && coupling->inv_mass[other] > 0)
-            cs_extra_springs_add(piece, cell_of(coupling->hierarchy, other), block,
-                                 (float)stiff);
+            cs_extra_springs_add(piece, cell_of(coupling, other), block, (float)stiff);
         else if (stiff * (whole[0] + whole[3] + whole[5]) > 0 && k != share->vertex)
             count_in(coupling, share->points[share->vertex], whole, -stiff);
     }
@@ -137,8 +134,7 @@ static void add_corner(const struct cs_coupling *coupling, struct cs_extra_sprin
     cs_pair_vertices_read(coupling->pairs, corner, &share);
     const double trace =
         share.unit_weight_block[0] + share.unit_weight_block[3] + share.unit_weight_block[5];
-    if (!is_inner(coupling->hierarchy, share.points) ||
-        (trace >= 0 && trace < coupling->trace_min))
+    if (!is_inner(coupling->pairs, share.points) || (trace >= 0 && trace < coupling->trace_min))
         return;
     count_in(coupling, share.points[share.vertex], share.diagonal_block, 1);
     add_springs(coupling, piece, &share);
@@ -179,7 +175,7 @@ struct coarsening {
  */
 static void sum_links(void *arg, struct cs_extra_springs_chunk *piece, uint32_t cell) {
     const struct coarsening *coarsening = arg;
-    const struct cs_level *fine = coarsening->fine;
+    const struct cs_level *fine = coarsening->fine, *coarse = coarsening->coarse;
     const uint32_t begin = fine->children_begin[cell], end = fine->children_begin[cell + 1];
     for (const uint32_t *child = fine->children + begin; child < fine->children + end;
          child++) {
@@ -191,8 +187,8 @@ static void sum_links(void *arg, struct cs_extra_springs_chunk *piece, uint32_t 
             float block[6];
             for (size_t c = 0; c < 6; c++)
                 block[c] = slots.springs[(6 * k + c) * CS_LANES + lane];
-            if (to != *child && fine->parents[to] != cell)
-                cs_extra_springs_add(piece, fine->parents[to], block, 1);
+            if (to != fine->first + *child && fine->joint_parents[to] != coarse->first + cell)
+                cs_extra_springs_add(piece, fine->joint_parents[to], block, 1);
         }
     }
 }

@@ -1,5 +1,5 @@
-/* contact_coupling.h - contact of a body with itself in its multigrid, as extra springs between
- * cells.
+/* contact_coupling.h - contact between surfaces in the multigrid, as extra springs between
+ * cells: of a body with itself, and of two bodies.
  *
  * A contact pair is a point and a triangle, or two edges. Its points x_i have weights w_i with
  * the sum 0. With a block C its energy in the matrix is
@@ -20,7 +20,12 @@
  * contact. With the pairs' diagonal blocks alone it took 1.5 to 1.7 times, and tight layers six
  * times: diagonal blocks hold two layers in contact as if each lay on ground.
  *
- * A pair with another body or a collider is not here. It only has its diagonal blocks. */
+ * Pairs of two bodies join cells of their two hierarchies on the same level. These have joint
+ * vectors and equally many levels, and are smoothed together. On the last level a body is one
+ * cell or a few, without springs of its own: the extra springs between the bodies are solved
+ * there by Cholesky's factors of all of them, up to CS_COARSEST_CELLS cells, else smoothed.
+ *
+ * A pair with a collider is not here. It only has its diagonal blocks. */
 #ifndef CS_CONTACT_COUPLING_H
 #define CS_CONTACT_COUPLING_H
 
@@ -74,14 +79,15 @@ struct cs_pair_vertex_terms {
 void cs_pair_vertices_read(const struct cs_pairs *pairs, const struct cs_pair_vertex *corner,
                            struct cs_pair_vertex_terms *share);
 
-/* Gives all levels of a hierarchy the arrays that extra springs need. Returns CS_ERR_MEMORY if
- * out of memory. */
+/* Gives all levels of a hierarchy the arrays that extra springs need, but for joint_parents,
+ * which it fills for its own cells. Returns CS_ERR_MEMORY if out of memory. */
 enum cs_status cs_coupling_init(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
                                 struct cs_error *error);
 
 /* A matrix of pairs on its way into the first level. All pointers are borrowed. */
 struct cs_coupling {
-    struct cs_hierarchy *hierarchy;
+    struct cs_hierarchy *hierarchy;    /* the body that is loaded */
+    const struct cs_hierarchy *bodies; /* all of them */
     const struct cs_pairs *pairs;
     const struct cs_pair_vertices *pair_vertices; /* the pairs indexed by particle */
     const double *inv_mass;                       /* (n) of all particles; 0: pinned */
@@ -96,5 +102,27 @@ struct cs_coupling {
  * Return false if out of memory; the level then has none. */
 bool cs_coupling_load(struct cs_coupling *coupling);
 bool cs_coupling_coarsen(const struct cs_level *fine, struct cs_level *coarse);
+
+/* Most living cells of a last level that is solved exactly. Its factors take 74 kB, and 0.3 ms
+ * per matrix. */
+enum { CS_COARSEST_CELLS = 32 };
+
+/* The last level of bodies in contact. */
+struct cs_coarsest {
+    uint32_t n;      /* living cells; 0: not factored */
+    uint32_t *cells; /* (CS_COARSEST_CELLS) their joint numbers */
+    double *factors; /* (3 CS_COARSEST_CELLS)^2, lower triangle by rows */
+};
+
+/* Allocates it. Returns CS_ERR_MEMORY if out of memory. */
+enum cs_status cs_coarsest_init(struct cs_coarsest *coarsest, struct cs_arena *arena,
+                                struct cs_error *error);
+
+/* Factors the matrix of the last level. n is 0 if it has too many living cells or, by rounding,
+ * no factors. */
+void cs_coarsest_factor(struct cs_coarsest *coarsest, const struct cs_level_group *last);
+
+/* Sets the solution for the residual of the last level: exactly, or by two smoothings. */
+void cs_coarsest_solve(const struct cs_coarsest *coarsest, const struct cs_level_group *last);
 
 #endif

@@ -17,14 +17,16 @@ static void finish(void *object) {
     struct cs_extra_springs *links = object;
     for (uint32_t p = 0; p < links->n_pieces; p++) {
         free(links->chunks[p].list);
+        free(links->chunks[p].partners);
         free(links->chunks[p].cells);
         free(links->chunks[p].springs);
     }
 }
 
-enum cs_status cs_extra_springs_init(struct cs_extra_springs *links, uint32_t n_cells,
-                                     struct cs_arena *arena, struct cs_error *error) {
-    *links = (struct cs_extra_springs){.n_blocks = n_cells / LANES};
+enum cs_status cs_extra_springs_init(struct cs_extra_springs *links, uint32_t first,
+                                     uint32_t n_cells, struct cs_arena *arena,
+                                     struct cs_error *error) {
+    *links = (struct cs_extra_springs){.n_blocks = n_cells / LANES, .first = first};
     const uint32_t n_pieces =
         (links->n_blocks + CS_EXTRA_SPRINGS_CHUNK - 1) / CS_EXTRA_SPRINGS_CHUNK;
     links->chunks = cs_arena_alloc_array(arena, n_pieces, sizeof *links->chunks, error);
@@ -41,19 +43,23 @@ enum cs_status cs_extra_springs_init(struct cs_extra_springs *links, uint32_t n_
 /* Finds the spring to a cell in the list, or appends one. A linear search, because a cell has
  * few partners. Returns NULL if out of memory. */
 static struct cs_extra_spring *link_to(struct cs_extra_springs_chunk *piece, uint32_t to) {
-    uint32_t k = 0;
-    while (k < piece->n_list && piece->list[k].cell != to)
-        k++;
-    if (k < piece->n_list)
-        return piece->list + k;
+    const size_t n = piece->n_list;
+    for (size_t k = 0; k < n; k++)
+        if (piece->partners[k] == to)
+            return piece->list + k;
     struct cs_extra_spring *list =
-        cs_arena_realloc(piece->list, &piece->list_capacity, (size_t)k + 1, sizeof *list);
-    piece->failed = piece->failed || !list;
-    if (!list)
+        cs_arena_realloc(piece->list, &piece->list_capacity, n + 1, sizeof *list);
+    piece->list = list ? list : piece->list;
+    uint32_t *partners =
+        cs_arena_realloc(piece->partners, &piece->partners_capacity, n + 1, sizeof *partners);
+    piece->partners = partners ? partners : piece->partners;
+    piece->failed = piece->failed || !list || !partners;
+    if (piece->failed)
         return NULL;
-    piece->list = list;
-    list[piece->n_list++] = (struct cs_extra_spring){.cell = to};
-    return list + k;
+    partners[n] = to;
+    list[n] = (struct cs_extra_spring){0};
+    piece->n_list++;
+    return list + n;
 }
 
 /* The sign of the trace decides. Blocks of contact pairs have eigenvalues of one sign only. */
@@ -79,9 +85,9 @@ static bool is_positive(const float block[6]) {
     return cs_sym3_is_definite(sum, cofactors, determinant);
 }
 
-/* Appends an empty slot for a block of 16 cells: each cell is its own neighbour, with the block
- * 0. Returns false if out of memory, now or before. */
-static bool open_slot(struct cs_extra_springs_chunk *piece, uint32_t block) {
+/* Appends an empty slot for 16 cells with joint numbers from `first` on: each cell is its own
+ * neighbour, with the block 0. Returns false if out of memory, now or before. */
+static bool open_slot(struct cs_extra_springs_chunk *piece, uint32_t first) {
     const size_t n = (size_t)piece->slots_used + 1, slot = piece->slots_used;
     uint32_t *cells =
         cs_arena_realloc(piece->cells, &piece->cells_capacity, LANES * n, sizeof *cells);
@@ -93,7 +99,7 @@ static bool open_slot(struct cs_extra_springs_chunk *piece, uint32_t block) {
     if (piece->failed)
         return false;
     for (uint32_t l = 0; l < LANES; l++)
-        cells[LANES * slot + l] = LANES * block + l;
+        cells[LANES * slot + l] = first + l;
     memset(springs + 6 * LANES * slot, 0, 6 * LANES * sizeof *springs);
     piece->slots_used++;
     return true;
@@ -103,14 +109,16 @@ static bool open_slot(struct cs_extra_springs_chunk *piece, uint32_t block) {
  * positive semi-definite is its own part. If it is indefinite with a positive trace, the sum of
  * the positive contributions is taken instead. A sum of negative trace adds nothing. */
 static void put_link(struct cs_extra_springs *links, struct cs_extra_springs_chunk *piece,
-                     uint32_t cell, const struct cs_extra_spring *link, size_t slot) {
+                     uint32_t cell, uint32_t k, size_t slot) {
+    const struct cs_extra_spring *link = piece->list + k;
     const size_t n = (size_t)links->n_blocks * LANES;
     float sum[6];
     for (int c = 0; c < 6; c++)
         sum[c] = link->positive[c] + link->negative[c];
     const bool above = sum[0] + sum[3] + sum[5] > 0;
-    const float *held = is_positive(sum) ? sum : link->positive;
-    piece->cells[LANES * slot + cell % LANES] = link->cell;
+    const bool mixed = link->negative[0] + link->negative[3] + link->negative[5] < 0;
+    const float *held = mixed && above && is_positive(sum) ? sum : link->positive;
+    piece->cells[LANES * slot + cell % LANES] = piece->partners[k];
     for (size_t c = 0; c < 6; c++) {
         piece->springs[LANES * (6 * slot + c) + cell % LANES] = sum[c];
         links->diagonal_share[c * n + cell] += above ? held[c] : 0;
@@ -125,8 +133,8 @@ static void put_list(struct cs_extra_springs *links, struct cs_extra_springs_chu
     for (size_t c = 0; c < 6; c++)
         links->diagonal_share[c * n + cell] = 0;
     for (uint32_t k = 0; k < piece->n_list; k++, slot++)
-        if (slot < piece->slots_used || open_slot(piece, cell / LANES))
-            put_link(links, piece, cell, piece->list + k, slot);
+        if (slot < piece->slots_used || open_slot(piece, links->first + cell / LANES * LANES))
+            put_link(links, piece, cell, k, slot);
 }
 
 /* Arguments of the loop over chunks. */

@@ -1,5 +1,5 @@
-/* extra_springs.h - extra couplings of a multigrid level (self-contact) that are not in its
- * grid or mesh; rebuilt for every matrix.
+/* extra_springs.h - extra couplings of a multigrid level (contact between surfaces) that are
+ * not in its grid or mesh; rebuilt for every matrix.
  *
  * They lie like the slots of a mesh's springs: 16 cells have a range of slots. A slot is one
  * spring for each of them, with the other ends beside it. A cell with fewer springs is its own
@@ -23,17 +23,18 @@ enum { CS_EXTRA_SPRINGS_LANES = 16, CS_EXTRA_SPRINGS_CHUNK = 64 };
 /* A spring of the cell at work. Contributions with a positive and with a negative trace are
  * summed apart, so that their difference does not hide how large the positive part is. */
 struct cs_extra_spring {
-    uint32_t cell;
     float positive[6], negative[6];
 };
 
 /* The lists of CS_EXTRA_SPRINGS_CHUNK blocks of cells, built by one thread. It owns its arrays,
  * which grow and are kept for the next matrix. */
 struct cs_extra_springs_chunk {
-    struct cs_extra_spring *list;                           /* (n_list) of the cell at work */
-    uint32_t *cells;                                        /* (n_slots, 16) other ends */
-    float *springs;                                         /* (n_slots, 6, 16) */
-    size_t list_capacity, cells_capacity, springs_capacity; /* in numbers of the arrays */
+    struct cs_extra_spring *list; /* (n_list) of the cell at work */
+    uint32_t *partners;           /* (n_list) their other ends */
+    uint32_t *cells;              /* (n_slots, 16) other ends */
+    float *springs;               /* (n_slots, 6, 16) */
+    size_t list_capacity, partners_capacity, cells_capacity,
+        springs_capacity; /* in numbers of the arrays */
     uint32_t n_list, slots_used;
     bool failed; /* out of memory: the lists are incomplete */
 };
@@ -42,15 +43,18 @@ struct cs_extra_springs_chunk {
 struct cs_extra_springs {
     struct cs_extra_springs_chunk *chunks; /* (n_pieces) */
     uint32_t n_blocks, n_pieces;           /* blocks of 16 cells; chunks of blocks */
-    uint32_t *begins, *ends;               /* (n_blocks) slots of a block within its chunk */
-    float *diagonal_share;                 /* (6, n_cells) their part of the smoother's D */
-    bool is_nonempty;                      /* there is a slot; false after failure */
+    uint32_t first; /* joint number of cell 0: other ends have joint numbers, so that they may
+                       be cells of other bodies */
+    uint32_t *begins, *ends; /* (n_blocks) slots of a block within its chunk */
+    float *diagonal_share;   /* (6, n_cells) their part of the smoother's D */
+    bool is_nonempty;        /* there is a slot; false after failure */
 };
 
-/* Makes empty lists for n_cells cells, a multiple of 16. The arena owns them, and frees what
- * grows. Returns CS_ERR_MEMORY if out of memory. */
-enum cs_status cs_extra_springs_init(struct cs_extra_springs *links, uint32_t n_cells,
-                                     struct cs_arena *arena, struct cs_error *error);
+/* Makes empty lists for n_cells cells, a multiple of 16, with joint numbers from `first` on.
+ * The arena owns them, and frees what grows. Returns CS_ERR_MEMORY if out of memory. */
+enum cs_status cs_extra_springs_init(struct cs_extra_springs *links, uint32_t first,
+                                     uint32_t n_cells, struct cs_arena *arena,
+                                     struct cs_error *error);
 
 /* Replaces all lists. find adds the springs of one cell by cs_extra_springs_add; several
  * threads call it for different cells. Returns false if out of memory; there are no extra

@@ -104,10 +104,9 @@ static double mean_mass(const struct cs_system *system) {
  * Chosen by trial. */
 #define LEAST 0.1
 
-/* Computes the levels' numbers. stiffness is the bound of stiffness over mass, with the unit of
- * cm: mass (cm + stiffness) is about the largest entry of A, and the scale for single
- * precision. Lack of memory is noted in the pairs, whose owner reports it. */
-static void set_multigrid(struct cs_linear *linear, double stiffness) {
+/* Computes the levels' numbers. mass (cm + stiffness) is about the largest entry of A, and the
+ * scale for single precision. Lack of memory is noted in the pairs, whose owner reports it. */
+static void set_multigrid(struct cs_linear *linear) {
     struct cs_pairs *pairs = linear->system->pairs;
     const double mass = mean_mass(linear->system), cm = linear->matrix.cm;
     const struct cs_multigrid_matrix matrix = {.factors = linear->factors,
@@ -115,7 +114,7 @@ static void set_multigrid(struct cs_linear *linear, double stiffness) {
                                                .blocks = linear->blocks,
                                                .pairs = pairs,
                                                .trace_min = LEAST * mass * cm,
-                                               .scale = mass * (cm + stiffness)};
+                                               .scale = mass * (cm + linear->stiffness)};
     if (!cs_multigrid_setup(&linear->multigrid, &matrix))
         pairs->failed = true;
 }
@@ -130,12 +129,16 @@ bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix) {
     const double stiffness =
         -matrix->ck * view->omega * view->omega - 2 * matrix->cd * view->delta;
     linear->matrix = *matrix;
-    linear->stiff = linear->multigrid.n > 0 && stiffness > CS_LINEAR_STIFF * matrix->cm;
+    linear->stiffness = stiffness;
+    linear->stiff = cs_multigrid_is_used(system->scene) && linear->multigrid.n > 0 &&
+                    stiffness > CS_LINEAR_STIFF * matrix->cm;
+    linear->levels_are_set = linear->stiff;
+    linear->levels_failed = false;
     cs_springs_factor(&system->springs, view->n, matrix, linear->factors);
     cs_terms_prepare_matrix(system, matrix, true);
     cs_vector_parallel_for(view->n, set_mass, linear);
     if (linear->stiff)
-        set_multigrid(linear, stiffness);
+        set_multigrid(linear);
     /* An exact matrix that is indefinite mostly has an indefinite block, so test the blocks
      * even if multigrid makes them unnecessary. */
     return (linear->stiff && matrix->psd) || invert_blocks(linear);
@@ -233,20 +236,37 @@ void cs_linear_precondition(struct cs_linear *linear, const double *r, double no
  * without psd setup tested them. */
 static void give_up_multigrid(struct cs_linear *linear) {
     linear->stiff = false;
+    linear->levels_failed = true;
     invert_blocks(linear);
+}
+
+/* Replaces blocks by multigrid for the rest of a solve. Every solve begins with what setup
+ * chose: it does not depend on the solves before it, and a resumed run repeats it. */
+static void begin_multigrid(struct cs_linear *linear) {
+    if (!linear->levels_are_set)
+        set_multigrid(linear);
+    linear->levels_are_set = linear->stiff = true;
+}
+
+/* Tells whether blocks have had their share of iterations, and levels exist that may replace
+ * them. */
+static bool are_blocks_slow(const struct cs_linear *linear, uint64_t iterations) {
+    return !linear->stiff && !linear->levels_failed && linear->multigrid.n > 0 &&
+           iterations == CS_LINEAR_SLOW_ITERATIONS;
 }
 
 /* Ways out of the loop, in the order of the tests:
  *   1. norm <= goal: done. The residual is the recurrence's, not recomputed from u.
  *   2. The iteration limit: rounding or the condition number prevents convergence.
  *   3. r.z <= 0 with multigrid, or 500 iterations with it: fall back to blocks and restart.
- *   4. p.A p <= 0: A is indefinite.
- *   5. |b|, |r| or p.A p is not finite: b, A or the start is not, or a product overflowed. All
+ *   4. 25 iterations with blocks, where levels exist: multigrid takes over, with a restart.
+ *   5. p.A p <= 0: A is indefinite.
+ *   6. |b|, |r| or p.A p is not finite: b, A or the start is not, or a product overflowed. All
  *      comparisons are written so that a NaN never counts as converged.
  *
  * The start u counts: Newton and multistep methods pass a good guess and save iterations. */
-enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, double rtol,
-                                   double *u, uint64_t *iterations, double *residual) {
+static enum cs_linear_end iterate(struct cs_linear *linear, const double *b, double rtol,
+                                  double *u, uint64_t *iterations, double *residual) {
     const size_t n3 = 3 * (size_t)linear->system->view.n;
     const uint64_t limit = 10 * (uint64_t)linear->system->view.n + 100;
     double *r = linear->r, *z = linear->z, *p = linear->p, *q = linear->q;
@@ -277,6 +297,10 @@ enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, do
             *residual = norm / size;
             return CS_LINEAR_LIMIT;
         }
+        if (are_blocks_slow(linear, *iterations)) {
+            begin_multigrid(linear);
+            fresh = true;
+        }
         cs_linear_precondition(linear, r, norm, z);
         const double next = cs_vector_dot(n3, r, z);
         if (linear->stiff && (*iterations == CS_LINEAR_STALL_ITERATIONS || !(next > 0))) {
@@ -304,4 +328,12 @@ enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, do
     }
     *residual = norm / size;
     return CS_LINEAR_DONE;
+}
+
+enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, double rtol,
+                                   double *u, uint64_t *iterations, double *residual) {
+    const bool chosen = linear->stiff;
+    const enum cs_linear_end end = iterate(linear, b, rtol, u, iterations, residual);
+    linear->stiff = chosen && !linear->levels_failed;
+    return end;
 }

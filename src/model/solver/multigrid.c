@@ -1,4 +1,5 @@
-/* Aggregation multigrid as a preconditioner: one V-cycle for each body, in single precision.
+/* Aggregation multigrid as a preconditioner: one V-cycle for each body, or for all that
+ * touch each other, in single precision.
  *
  * Setup copies the matrix over `scale` into the first level and coarsens level by level. An
  * application scales the residual by its norm, runs the cycle and scales back:
@@ -22,18 +23,39 @@
  * its own; a mesh has no rows, so it is cut into artificial ones to share the loops below. */
 enum { ROW = 4096 };
 
-bool cs_multigrid_is_used(const struct cs_scene *scene) {
+static bool any_body_above(const struct cs_scene *scene, uint32_t particles) {
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        if (cs_shape_count(cs_scene_bodies(scene) + b) > CS_MULTIGRID_PARTICLES)
+        if (cs_shape_count(cs_scene_bodies(scene) + b) > particles)
             return true;
     return false;
 }
 
-/* Tells whether contact by force acts between parts of this body. The friction is not needed
- * here. */
-static bool meets_itself(const struct cs_scene *scene, uint32_t body) {
+bool cs_multigrid_is_used(const struct cs_scene *scene) {
+    return any_body_above(scene, CS_MULTIGRID_PARTICLES);
+}
+
+bool cs_multigrid_is_in_reserve(const struct cs_scene *scene) {
+    return cs_scene_has_body_contact(scene) &&
+           any_body_above(scene, CS_MULTIGRID_RESERVE_PARTICLES);
+}
+
+/* Tells whether contact by force acts between a body and one of the bodies [begin, end). The
+ * friction is not needed here. */
+static bool meets_any(const struct cs_scene *scene, uint32_t body, uint32_t begin,
+                      uint32_t end) {
     double friction;
-    return cs_scene_bodies_collide(scene, body, body, &friction);
+    for (uint32_t b = begin; b < end; b++)
+        if (cs_scene_bodies_collide(scene, body, b, &friction))
+            return true;
+    return false;
+}
+
+/* Tells whether two different bodies may touch. */
+static bool is_joint(const struct cs_scene *scene) {
+    for (uint32_t b = 1; b < scene->bodies.n; b++)
+        if (meets_any(scene, b, 0, b))
+            return true;
+    return false;
 }
 
 /* Describes a body to its hierarchy: its range of particles and its range of runs of springs.
@@ -47,16 +69,17 @@ static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t
     uint32_t end = begin;
     while (end < springs->n_runs && springs->runs[end].body == body)
         end++;
-    return (struct cs_hierarchy){.first = range->first,
-                                 .count = range->count,
-                                 .columns = range->mesh ? ROW : range->columns,
-                                 .runs = springs->runs + begin,
-                                 .n_runs = end - begin,
-                                 .has_particle_blocks = cs_terms_have_blocks(system),
-                                 .has_self_contact = meets_itself(system->scene, body)};
+    return (struct cs_hierarchy){
+        .first = range->first,
+        .count = range->count,
+        .columns = range->mesh ? ROW : range->columns,
+        .runs = springs->runs + begin,
+        .n_runs = end - begin,
+        .has_particle_blocks = cs_terms_have_blocks(system),
+        .has_body_contact = meets_any(system->scene, body, 0, system->scene->bodies.n)};
 }
 
-/* Allocates what self-contact needs: arrays shared by all bodies, once, and those of this
+/* Allocates what contact needs: arrays shared by all bodies, once, and those of this
  * body's levels. */
 static void load_contact(struct cs_multigrid *multigrid, struct cs_hierarchy *hierarchy,
                          struct cs_arena *arena, struct cs_error *error) {
@@ -70,10 +93,51 @@ static void load_contact(struct cs_multigrid *multigrid, struct cs_hierarchy *hi
         cs_coupling_init(hierarchy, arena, error);
 }
 
+/* Lists the levels of all bodies, gives them joint vectors, and numbers their parents. */
+static void join_levels(struct cs_multigrid *multigrid, struct cs_arena *arena,
+                        struct cs_error *error) {
+    const uint32_t n = multigrid->n;
+    cs_hierarchies_make_equally_deep(multigrid->hierarchies, n, arena, error);
+    const uint32_t n_levels = multigrid->hierarchies->n_levels;
+    multigrid->joint_levels = cs_arena_alloc_array(arena, (size_t)n_levels * n,
+                                                   sizeof *multigrid->joint_levels, error);
+    for (uint32_t k = 0; k < n_levels && !error->status; k++) {
+        struct cs_level **levels = multigrid->joint_levels + (size_t)k * n;
+        for (uint32_t b = 0; b < n; b++)
+            levels[b] = multigrid->hierarchies[b].levels + k;
+        cs_level_alloc_vectors(&(struct cs_level_group){levels, n}, arena, error);
+    }
+    if (!error->status)
+        cs_coarsest_init(&multigrid->coarsest, arena, error);
+}
+
+/* Gives every level of a body its own vectors. */
+static void separate_levels(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
+                            struct cs_error *error) {
+    for (uint32_t k = 0; k < hierarchy->n_levels && !error->status; k++) {
+        struct cs_level *level = hierarchy->levels + k;
+        cs_level_alloc_vectors(&(struct cs_level_group){&level, 1}, arena, error);
+    }
+}
+
+/* Allocates the parents' joint numbers of all cells of the vectors of a level that begins at
+ * cell 0 of them, and gives them to the other bodies' levels. */
+static void add_joint_parents(struct cs_multigrid *multigrid, struct cs_arena *arena,
+                              struct cs_error *error) {
+    for (uint32_t b = 0; b < multigrid->n; b++)
+        for (uint32_t k = 0; k < multigrid->hierarchies[b].n_levels && !error->status; k++) {
+            struct cs_level *level = multigrid->hierarchies[b].levels + k;
+            level->joint_parents =
+                level->first ? multigrid->hierarchies->levels[k].joint_parents
+                             : cs_arena_alloc_array(arena, level->stride,
+                                                    sizeof *level->joint_parents, error);
+        }
+}
+
 enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs_system *system,
                                  struct cs_arena *arena, struct cs_error *error) {
     *multigrid = (struct cs_multigrid){.system = system};
-    if (!cs_multigrid_is_used(system->scene))
+    if (!cs_multigrid_is_used(system->scene) && !cs_multigrid_is_in_reserve(system->scene))
         return CS_OK;
     const uint32_t n = system->scene->bodies.n;
     multigrid->hierarchies =
@@ -83,9 +147,16 @@ enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs
         *hierarchy = hierarchy_of(system, b);
         (system->bodies[b].mesh ? cs_hierarchy_of_mesh : cs_hierarchy_of_grid)(hierarchy, arena,
                                                                                error);
-        if (hierarchy->has_self_contact && !error->status)
-            load_contact(multigrid, hierarchy, arena, error);
     }
+    if (!error->status && is_joint(system->scene))
+        join_levels(multigrid, arena, error);
+    for (uint32_t b = 0; b < n && !multigrid->joint_levels && !error->status; b++)
+        separate_levels(multigrid->hierarchies + b, arena, error);
+    if (cs_scene_has_body_contact(system->scene))
+        add_joint_parents(multigrid, arena, error);
+    for (uint32_t b = 0; b < n && !error->status; b++)
+        if (multigrid->hierarchies[b].has_body_contact)
+            load_contact(multigrid, multigrid->hierarchies + b, arena, error);
     return error->status;
 }
 
@@ -172,7 +243,7 @@ CS_CLONES static void load_r(void *arg, uint32_t block) {
         const struct row row = row_of(hierarchy, block, k);
         for (size_t c = 0; c < 3; c++) {
             const double *from = exchange->from + c * n + row.particle;
-            float *to = hierarchy->levels->residual + c * hierarchy->levels->n + row.cell;
+            float *to = hierarchy->levels->residual + c * hierarchy->levels->stride + row.cell;
             for (size_t i = 0; i < row.count; i++)
                 to[i] = (float)(exchange->gain * from[i]);
         }
@@ -188,7 +259,7 @@ CS_CLONES static void store_x(void *arg, uint32_t block) {
         const struct row row = row_of(hierarchy, block, k);
         for (size_t c = 0; c < 3; c++) {
             const float *from =
-                hierarchy->levels->solution + c * hierarchy->levels->n + row.cell;
+                hierarchy->levels->solution + c * hierarchy->levels->stride + row.cell;
             double *to = exchange->to + c * n + row.particle;
             for (size_t i = 0; i < row.count; i++)
                 to[i] = exchange->gain * (double)from[i];
@@ -196,20 +267,21 @@ CS_CLONES static void store_x(void *arg, uint32_t block) {
     }
 }
 
-/* Makes the first level's extra springs from the stored contact pairs, if the body has
- * self-contact. Sets loading->inner to the blocks that they replace. Returns false if out of
+/* Makes the first level's extra springs from the stored contact pairs, if the body is in
+ * contact. Sets loading->inner to the blocks that they replace. Returns false if out of
  * memory. */
 static bool load_links(struct loading *loading, struct cs_hierarchy *hierarchy) {
     const struct cs_multigrid *multigrid = loading->exchange.multigrid;
     const struct cs_pairs *pairs = loading->matrix->pairs;
     struct cs_coupling coupling = {hierarchy,
+                                   multigrid->hierarchies,
                                    pairs,
                                    &multigrid->pair_vertices,
                                    multigrid->system->inv_mass,
                                    loading->exchange.gain,
                                    loading->matrix->trace_min,
                                    multigrid->internal_blocks};
-    if (!hierarchy->has_self_contact)
+    if (!hierarchy->has_body_contact)
         return true;
     hierarchy->levels->extra_springs->is_nonempty = false;
     if (!pairs || !cs_pair_vertices_count(pairs))
@@ -228,11 +300,23 @@ static bool load_levels(struct loading *loading, struct cs_hierarchy *hierarchy)
     cs_level_invert(level);
     for (; level < hierarchy->levels + hierarchy->n_levels - 1; level++) {
         hierarchy->kind->coarsen(level, level + 1);
-        if (hierarchy->has_self_contact)
+        if (hierarchy->has_body_contact)
             done = cs_coupling_coarsen(level, level + 1) && done;
         cs_level_invert(level + 1);
     }
     return done;
+}
+
+/* Level k of a body, or of all bodies if they touch each other. *one is the level of the body.
+ */
+static struct cs_level_group group_of(const struct cs_multigrid *multigrid,
+                                      struct cs_hierarchy *hierarchy, uint32_t k,
+                                      struct cs_level **one) {
+    if (multigrid->joint_levels)
+        return (struct cs_level_group){multigrid->joint_levels + (size_t)k * multigrid->n,
+                                       multigrid->n};
+    *one = hierarchy->levels + k;
+    return (struct cs_level_group){one, 1};
 }
 
 /* Lists the pairs by particle once, for all bodies, and then loads body by body. */
@@ -248,38 +332,63 @@ bool cs_multigrid_setup(struct cs_multigrid *multigrid,
             {multigrid, hierarchy, NULL, NULL, 1 / matrix->scale}, matrix, NULL};
         done = load_levels(&loading, hierarchy) && done;
     }
+    if (multigrid->joint_levels) {
+        const struct cs_level_group last = group_of(multigrid, multigrid->hierarchies,
+                                                    multigrid->hierarchies->n_levels - 1, NULL);
+        cs_coarsest_factor(&multigrid->coarsest, &last);
+    }
     return done;
 }
 
 /* One V-cycle: sets the first level's solution for its residual.
  *   1. Down: smooth from 0, compute the residual, sum it over aggregates.
- *   2. On the last level, which has no springs, D^-1 is the exact solution.
+ *   2. On the last level D^-1 is the exact solution, because it has no springs, except between
+ *      bodies that touch: then they are solved together.
  *   3. Up: add the aggregates' solution to their cells, and smooth again.
  *
  * The smoother is the same symmetric map both times, which makes the cycle symmetric. */
-static void cycle(struct cs_hierarchy *hierarchy) {
-    struct cs_level *first = hierarchy->levels, *last = first + hierarchy->n_levels - 1;
-    for (struct cs_level *level = first; level < last; level++) {
-        cs_level_smooth_down(level);
-        hierarchy->kind->restrict_r(level, level + 1);
+static void cycle(struct cs_multigrid *multigrid, struct cs_hierarchy *bodies, uint32_t n) {
+    const uint32_t last = bodies->n_levels - 1;
+    struct cs_level *one;
+    for (uint32_t k = 0; k < last; k++) {
+        const struct cs_level_group group = group_of(multigrid, bodies, k, &one);
+        cs_level_smooth_down(&group);
+        for (uint32_t b = 0; b < n; b++)
+            bodies[b].kind->restrict_r(bodies[b].levels + k, bodies[b].levels + k + 1);
     }
-    cs_level_solve_diagonal(last);
-    for (struct cs_level *level = last; level-- > first;) {
-        hierarchy->kind->prolong_x(level + 1, level);
-        cs_level_smooth_up(level);
+    const struct cs_level_group coarsest = group_of(multigrid, bodies, last, &one);
+    if (cs_level_is_coupled(&coarsest))
+        cs_coarsest_solve(&multigrid->coarsest, &coarsest);
+    for (uint32_t b = 0; b < n && !cs_level_is_coupled(&coarsest); b++)
+        cs_level_solve_diagonal(coarsest.levels[b]);
+    for (uint32_t k = last; k-- > 0;) {
+        const struct cs_level_group group = group_of(multigrid, bodies, k, &one);
+        for (uint32_t b = 0; b < n; b++)
+            bodies[b].kind->prolong_x(bodies[b].levels + k + 1, bodies[b].levels + k);
+        cs_level_smooth_up(&group);
     }
 }
 
-/* Bodies are independent: springs never join two of them, and contact between bodies is
- * diagonal. */
-void cs_multigrid_apply(struct cs_multigrid *multigrid, const double *r, double size,
-                        double *z) {
-    for (uint32_t k = 0; k < multigrid->n; k++) {
-        struct cs_hierarchy *hierarchy = multigrid->hierarchies + k;
-        struct exchange in = {multigrid, hierarchy, r, NULL, 1 / size};
+/* Preconditions n bodies that are smoothed together. */
+static void apply_to(struct cs_multigrid *multigrid, struct cs_hierarchy *bodies, uint32_t n,
+                     const struct exchange *exchange, double size) {
+    for (uint32_t b = 0; b < n; b++) {
+        struct exchange in = {multigrid, bodies + b, exchange->from, NULL, 1 / size};
         run(&in, load_r);
-        cycle(hierarchy);
-        struct exchange out = {multigrid, hierarchy, NULL, z, size / multigrid->scale};
+    }
+    cycle(multigrid, bodies, n);
+    for (uint32_t b = 0; b < n; b++) {
+        struct exchange out = {multigrid, bodies + b, NULL, exchange->to,
+                               size / multigrid->scale};
         run(&out, store_x);
     }
+}
+
+/* Bodies that never touch are independent, because springs never join two of them. */
+void cs_multigrid_apply(struct cs_multigrid *multigrid, const double *r, double size,
+                        double *z) {
+    const struct exchange exchange = {.from = r, .to = z};
+    const uint32_t together = multigrid->joint_levels ? multigrid->n : 1;
+    for (uint32_t k = 0; k < multigrid->n; k += together)
+        apply_to(multigrid, multigrid->hierarchies + k, together, &exchange, size);
 }

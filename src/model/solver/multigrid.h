@@ -1,5 +1,5 @@
 /* multigrid.h - the preconditioner of stiff steps: aggregation multigrid in single precision,
- * one V-cycle per application, body by body.
+ * one V-cycle per application, body by body, or for all bodies together that touch each other.
  *
  * The cycle is symmetric and positive definite for any coarse levels. Let S be the smoother's
  * linear map from residual to correction and C >= 0 that of the coarse levels. Smoothing before
@@ -11,8 +11,8 @@
  * S A has its eigenvalues in (0, 2), see multigrid_level.h, so 2 S - S A S = S (2 S^-1 - A) S
  * is positive definite. The last term is symmetric and not negative.
  *
- * Aggregates and their halved springs: multigrid_hierarchy.h. Contact of a body with itself:
- * contact_coupling.h. Contact with other bodies and with colliders is in the diagonal blocks
+ * Aggregates and their halved springs: multigrid_hierarchy.h. Contact of a body with itself and
+ * with other bodies: contact_coupling.h. Contact with colliders is in the diagonal blocks
  * alone.
  *
  * Gain: on a sheet of 64 x 64 particles and for a residual of 1e-3, conjugate gradients take 4
@@ -24,17 +24,23 @@
 #include "model/solver/multigrid_hierarchy.h"
 #include "model/system/particle_system.h"
 
-/* A scene has levels if one of its bodies has more particles than this. On smaller sheets
- * coarse levels do not pay: block Jacobi took about as long (measured with square sheets). */
-enum { CS_MULTIGRID_PARTICLES = 24 * 24 };
+/* Multigrid preconditions stiff steps if one body has more particles than the first number. On
+ * smaller sheets coarse levels do not pay: block Jacobi took about as long (measured with
+ * square sheets). It has levels in reserve, for solves in which blocks are slow, above the
+ * second. */
+enum { CS_MULTIGRID_PARTICLES = 24 * 24, CS_MULTIGRID_RESERVE_PARTICLES = 8 * 8 };
 
 /* The levels of all bodies. The arena of init owns the arrays. */
 struct cs_multigrid {
     const struct cs_system *system;   /* borrowed */
     struct cs_hierarchy *hierarchies; /* (n) one per body; NULL: no body is large enough */
     uint32_t n;
+    /* (n_levels, n) level k of body b, if bodies touch each other: these have equally many
+     * levels with joint vectors, and are smoothed together. NULL: each body is alone. */
+    struct cs_level **joint_levels;
+    struct cs_coarsest coarsest; /* of these */
     double *internal_blocks; /* (6, particles) diagonal blocks of the pairs that extra springs
-                                represent (contact_coupling.h); NULL: no self-contact */
+                                represent (contact_coupling.h); NULL: no such contact */
     struct cs_pair_vertices pair_vertices; /* those pairs, indexed by particle */
     double scale;                          /* divides the matrix, to fit single precision */
 };
@@ -44,8 +50,10 @@ struct cs_multigrid {
 enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs_system *system,
                                  struct cs_arena *arena, struct cs_error *error);
 
-/* Tells whether a body is large enough. If none is, init allocates nothing and n stays 0. */
+/* Tells whether a body is large enough for stiff steps, or to have levels in reserve. If none
+ * is large enough for that, init allocates nothing and n stays 0. */
 bool cs_multigrid_is_used(const struct cs_scene *scene);
+bool cs_multigrid_is_in_reserve(const struct cs_scene *scene);
 
 /* The matrix to approximate: the springs' factors, and a mass and a block per particle. */
 struct cs_multigrid_matrix {

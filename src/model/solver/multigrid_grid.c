@@ -249,9 +249,10 @@ CS_CLONES static void restrict_rows(void *arg, uint32_t block) {
         for (size_t c = 0; c < 3; c++) {
             const size_t from = cell(fine, 2 * (size_t)row, 0), columns = coarse->columns;
             /* the row below the last one is padding */
-            const float *r = fine->residual + c * fine->n + from, *own = fine->diagonal + from;
+            const float *r = fine->residual + c * fine->stride + from,
+                        *own = fine->diagonal + from;
             const float *r2 = r + fine->pitch, *own2 = own + fine->pitch;
-            float *restrict sum = coarse->residual + c * coarse->n + cell(coarse, row, 0);
+            float *restrict sum = coarse->residual + c * coarse->stride + cell(coarse, row, 0);
             for (size_t j = 0; j < columns; j++)
                 sum[j] = ((own[2 * j] > 0 ? r[2 * j] : 0) +
                           (own[2 * j + 1] > 0 ? r[2 * j + 1] : 0)) +
@@ -273,10 +274,11 @@ CS_CLONES static void prolong_rows(void *arg, uint32_t block) {
     for (uint32_t row = 2 * block * transfer->rows; row < end && row < fine->rows; row++)
         for (size_t c = 0; c < 3; c++) {
             const size_t at = cell(fine, row, 0);
-            const float *from = coarse->solution + c * coarse->n + cell(coarse, row / 2, 0);
+            const float *from =
+                coarse->solution + c * coarse->stride + cell(coarse, row / 2, 0);
             const float *own = fine->diagonal + at;
-            float *restrict d = fine->correction + c * fine->n + at;
-            float *restrict x = fine->solution + c * fine->n + at;
+            float *restrict d = fine->correction + c * fine->stride + at;
+            float *restrict x = fine->solution + c * fine->stride + at;
             // an odd row's last pair ends in padding, which is dead
             for (size_t j = 0; j < coarse->columns; j++) {
                 const float left = own[2 * j] > 0 ? from[j] : 0;
@@ -292,8 +294,6 @@ CS_CLONES static void prolong_rows(void *arg, uint32_t block) {
 static void prolong_x(const struct cs_level *coarse, struct cs_level *fine) {
     run_rows(fine, coarse, prolong_rows);
 }
-
-static const struct cs_hierarchy_kind grid = {load, coarsen, restrict_r, prolong_x};
 
 /* Lays out the next level: half the cells per axis, rounded up, and up to four steps to forward
  * neighbours. */
@@ -311,6 +311,17 @@ static struct cs_level next_of(const struct cs_level *fine) {
     return level;
 }
 
+/* Adds a level of half the cells per axis after the last one. */
+static void extend(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
+                   struct cs_error *error) {
+    struct cs_level *level = hierarchy->levels + hierarchy->n_levels;
+    *level = next_of(level - 1);
+    if (!cs_level_alloc(level, 6 * (size_t)level->n_neighbour_offsets * level->n, arena, error))
+        hierarchy->n_levels++;
+}
+
+static const struct cs_hierarchy_kind grid = {load, coarsen, restrict_r, prolong_x, extend};
+
 enum cs_status cs_hierarchy_of_grid(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
                                     struct cs_error *error) {
     struct cs_level *level = hierarchy->levels;
@@ -322,12 +333,9 @@ enum cs_status cs_hierarchy_of_grid(struct cs_hierarchy *hierarchy, struct cs_ar
     for (uint32_t r = 0; r < hierarchy->n_runs; r++)
         run_step(hierarchy, hierarchy->runs + r);
     cs_level_alloc(level, 4 * (size_t)level->n_neighbour_offsets * level->n, arena, error);
+    hierarchy->n_levels = 1;
     /* coarsen until one cell is left, or none has a spring */
-    for (; !error->status && level->n_neighbour_offsets; level++) {
-        level[1] = next_of(level);
-        cs_level_alloc(level + 1, 6 * (size_t)level[1].n_neighbour_offsets * level[1].n, arena,
-                       error);
-    }
-    hierarchy->n_levels = (uint32_t)(level - hierarchy->levels) + 1;
+    while (!error->status && level[hierarchy->n_levels - 1].n_neighbour_offsets)
+        extend(hierarchy, arena, error);
     return error->status;
 }

@@ -49,7 +49,7 @@ struct cs_hierarchy {
     const struct cs_spring_run *runs; /* (n_runs) the body's, borrowed */
     uint32_t n_runs;
     bool has_particle_blocks; /* the matrix has 3x3 blocks at particles, not only numbers */
-    bool has_self_contact;    /* contact acts between parts of the body */
+    bool has_body_contact;    /* contact acts between parts of the body, or with other bodies */
     const struct cs_hierarchy_kind *kind;
     uint32_t n_levels;
     struct cs_level levels[CS_HIERARCHY_LEVELS_MAX];
@@ -66,14 +66,22 @@ struct cs_hierarchy_kind {
     void (*restrict_r)(const struct cs_level *fine, struct cs_level *coarse);
     /* correction of the living cells: P times the coarse solution; added to the solution */
     void (*prolong_x)(const struct cs_level *coarse, struct cs_level *fine);
+    /* adds a level after the last one, which has no springs: bodies in contact have equally
+     * many levels */
+    void (*extend)(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
+                   struct cs_error *error);
 };
 
-/* Make the structure of all levels. The members above `kind` are set by the caller. Return
- * CS_ERR_MEMORY if out of memory. */
+/* Make the structure of all levels, without vectors (cs_level_alloc_vectors). The members above
+ * `kind` are set by the caller. Return CS_ERR_MEMORY if out of memory. */
 enum cs_status cs_hierarchy_of_grid(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
                                     struct cs_error *error);
 enum cs_status cs_hierarchy_of_mesh(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
                                     struct cs_error *error);
+
+/* Gives n bodies as many levels as the one that has most. */
+void cs_hierarchies_make_equally_deep(struct cs_hierarchy *bodies, uint32_t n,
+                                      struct cs_arena *arena, struct cs_error *error);
 
 /* Reads s and w of one spring from the solver's factors, whose rows have `count` numbers.
  * Divides its block B = s I + w w^T by the scale; root is 1 / sqrt(scale).

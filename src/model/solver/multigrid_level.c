@@ -26,17 +26,12 @@ enum {
     BIG = 1 << 14    /* levels with more cells do not fit that cache, and prefetch */
 };
 
-/* Vectors and numbers are zeroed by the arena; dead cells stay 0 ever after. */
 enum cs_status cs_level_alloc(struct cs_level *level, size_t n_numbers, struct cs_arena *arena,
                               struct cs_error *error) {
     const size_t n = level->n, own = level->form == CS_LEVEL_FACTORED ? 1 : 6;
-    float **vectors[4] = {&level->residual, &level->solution, &level->correction,
-                          &level->correction_next};
     level->springs = cs_arena_alloc_array(arena, n_numbers, sizeof(float), error);
     level->diagonal = cs_arena_alloc_array(arena, own * n, sizeof(float), error);
     level->inverse = cs_arena_alloc_array(arena, 6 * n, sizeof(float), error);
-    for (int k = 0; k < 4; k++)
-        *vectors[k] = cs_arena_alloc_array(arena, 3 * n, sizeof(float), error);
     return error->status;
 }
 
@@ -89,22 +84,54 @@ static bool has_neighbours_anywhere(const struct cs_level *level) {
            (level->extra_springs && level->extra_springs->is_nonempty);
 }
 
-/* Runs the loops as a wavefront if springs are short, else one after the other. */
-static void run(struct loops *loops) {
+/* Sets the cells per block, and returns the number of blocks. */
+static uint32_t cut(struct loops *loops) {
     const struct cs_level *level = loops->loops->level;
     loops->cells = cells_of_block(level);
-    const uint32_t blocks =
-        (uint32_t)((level->end - level->begin + loops->cells - 1) / loops->cells);
-    if (!has_neighbours_anywhere(level))
-        cs_wavefront_run(&(struct cs_wavefront){loops->n, blocks, run_block, loops});
+    return (uint32_t)((level->end - level->begin + loops->cells - 1) / loops->cells);
+}
+
+/* Runs one of the loops. */
+static void run_number(struct loops *loops, uint32_t number) {
+    loops->at = number;
+    cs_pool_run(cut(loops), run_block_of_one, loops);
+}
+
+/* Runs the loops as a wavefront if springs are short, else one after the other. */
+static void run(struct loops *loops) {
+    if (has_neighbours_anywhere(loops->loops->level))
+        for (uint32_t k = 0; k < loops->n; k++)
+            run_number(loops, k);
     else
-        for (loops->at = 0; loops->at < loops->n; loops->at++)
-            cs_pool_run(blocks, run_block_of_one, loops);
+        cs_wavefront_run(&(struct cs_wavefront){loops->n, cut(loops), run_block, loops});
 }
 
 /* Runs a single loop over all blocks. */
 static void run_one(struct loop loop) {
     run(&(struct loops){.loops = {loop}, .n = 1});
+}
+
+bool cs_level_is_coupled(const struct cs_level_group *group) {
+    bool coupled = false;
+    for (uint32_t b = 0; b < group->n && group->n > 1; b++)
+        coupled = coupled || (group->levels[b]->extra_springs &&
+                              group->levels[b]->extra_springs->is_nonempty);
+    return coupled;
+}
+
+/* Runs the loops of all bodies: body after body, or, if these are coupled, loop after loop. */
+static void run_group(const struct cs_level_group *group,
+                      struct loops (*loops_of)(struct cs_level *level)) {
+    struct loops loops = loops_of(group->levels[0]);
+    const uint32_t rounds = cs_level_is_coupled(group) ? loops.n : 1;
+    for (uint32_t round = 0; round < rounds; round++)
+        for (uint32_t b = 0; b < group->n; b++) {
+            loops = loops_of(group->levels[b]);
+            if (rounds == 1)
+                run(&loops);
+            else
+                run_number(&loops, round);
+        }
 }
 
 /* (s I + w w^T) p for 16 springs, whose numbers lie n floats apart. */
@@ -121,7 +148,8 @@ CS_INLINE struct vectors add_lists(const struct cs_level *level, size_t i, const
                                    struct vectors here, struct vectors y) {
     const uint32_t *starts = level->starts + i / CS_LANES;
     for (size_t k = starts[0]; k < starts[1]; k++) {
-        const struct vectors there = gather3(p, level->n, level->neighbours + k * CS_LANES);
+        const struct vectors there =
+            gather3(p, level->stride, level->neighbours + k * CS_LANES);
         const struct lane_blocks b = get6(level->springs + k * 6 * CS_LANES, CS_LANES);
         y = plus(y, times(b, minus(here, there)));
     }
@@ -147,8 +175,8 @@ CS_INLINE struct vectors add_steps(const struct cs_level *level, const bool fact
     const float *spring = level->springs + i;
     for (uint32_t s = 0; s < level->n_neighbour_offsets; s++) {
         const size_t step = level->neighbour_offsets[s];
-        const struct vectors ahead = minus(here, get3(p + i + step, n));
-        const struct vectors back = minus(here, get3(p + i - step, n));
+        const struct vectors ahead = minus(here, get3(p + i + step, level->stride));
+        const struct vectors back = minus(here, get3(p + i - step, level->stride));
         if (factored) {
             y = plus(y, factored_times(spring, n, ahead));
             y = plus(y, factored_times(spring - step, n, back));
@@ -181,21 +209,21 @@ CS_INLINE struct vectors product(const struct cs_level *level, const enum cs_lev
 CS_INLINE void sweep_form(const struct loop *loop, const enum cs_level_form form, size_t begin,
                           size_t end) {
     struct cs_level *level = loop->level;
-    const size_t n = level->n;
+    const size_t n = level->n, stride = level->stride;
     const bool fetches = loop->fetches && form != CS_LEVEL_MESH && n > BIG;
     for (size_t i = begin; i < end; i += CS_LANES) {
         if (fetches)
             fetch_springs(level, i);
-        const struct vectors d = get3(loop->d + i, n);
+        const struct vectors d = get3(loop->d + i, stride);
         const struct vectors r =
-            minus(get3(level->residual + i, n), product(level, form, i, loop->d, d));
-        put3(level->residual + i, n, r);
+            minus(get3(level->residual + i, stride), product(level, form, i, loop->d, d));
+        put3(level->residual + i, stride, r);
         if (!loop->e)
             continue;
         const struct vectors z = times(get6(level->inverse + i, n), r);
         const struct vectors e = plus(scaled(loop->a, d), scaled(loop->b, z));
-        put3(loop->e + i, n, e);
-        put3(level->solution + i, n, plus(get3(level->solution + i, n), e));
+        put3(loop->e + i, stride, e);
+        put3(level->solution + i, stride, plus(get3(level->solution + i, stride), e));
     }
 }
 
@@ -204,7 +232,8 @@ CS_INLINE void sweep_form(const struct loop *loop, const enum cs_level_form form
  */
 CS_INLINE void alloc_links(const struct loop *loop, size_t begin, size_t end) {
     struct cs_level *level = loop->level;
-    const size_t n = level->n;
+    const size_t n = level->stride;
+    const float *joint = loop->d - level->first;
     for (size_t i = begin; i < end; i += CS_LANES) {
         const struct cs_extra_springs_slots slots =
             cs_extra_springs_of(level->extra_springs, i / CS_LANES);
@@ -213,7 +242,7 @@ CS_INLINE void alloc_links(const struct loop *loop, size_t begin, size_t end) {
         const struct vectors here = get3(loop->d + i, n);
         struct vectors r = get3(level->residual + i, n);
         for (size_t k = 0; k < slots.n; k++) {
-            const struct vectors there = gather3(loop->d, n, slots.cells + k * CS_LANES);
+            const struct vectors there = gather3(joint, n, slots.cells + k * CS_LANES);
             const struct lane_blocks b = get6(slots.springs + k * 6 * CS_LANES, CS_LANES);
             r = minus(r, times(b, minus(here, there)));
         }
@@ -244,12 +273,12 @@ void cs_level_subtract_product(struct cs_level *level) {
 /* The first move of a smoother from 0: solution = e = b D^-1 residual. No product is needed. */
 CS_CLONES static void start(const struct loop *loop, size_t begin, size_t end) {
     struct cs_level *level = loop->level;
-    const size_t n = level->n;
+    const size_t n = level->n, stride = level->stride;
     for (size_t i = begin; i < end; i += CS_LANES) {
         const struct vectors z =
-            times(get6(level->inverse + i, n), get3(level->residual + i, n));
-        put3(loop->e + i, n, scaled(loop->b, z));
-        put3(level->solution + i, n, scaled(loop->b, z));
+            times(get6(level->inverse + i, n), get3(level->residual + i, stride));
+        put3(loop->e + i, stride, scaled(loop->b, z));
+        put3(level->solution + i, stride, scaled(loop->b, z));
     }
 }
 
@@ -267,23 +296,31 @@ static const struct {
 } gains[2] = {{25 / 73.0F, 84 / 73.0F}, {350 / 1694.0F, 1752 / 1694.0F}};
 
 /* Three moves from the start 0, and the product that makes the residual for the next level. */
-void cs_level_smooth_down(struct cs_level *level) {
+static struct loops loops_down(struct cs_level *level) {
     float *d = level->correction, *e = level->correction_next;
-    run(&(struct loops){.loops = {{level, start, NULL, d, 0, first_gain, false},
-                                  {level, sweep, d, e, gains[0].a, gains[0].b, true},
-                                  {level, sweep, e, d, gains[1].a, gains[1].b, false},
-                                  {level, sweep, d, NULL, 0, 0, false}},
-                        .n = 4});
+    return (struct loops){.loops = {{level, start, NULL, d, 0, first_gain, false},
+                                    {level, sweep, d, e, gains[0].a, gains[0].b, true},
+                                    {level, sweep, e, d, gains[1].a, gains[1].b, false},
+                                    {level, sweep, d, NULL, 0, 0, false}},
+                          .n = 4};
+}
+
+void cs_level_smooth_down(const struct cs_level_group *group) {
+    run_group(group, loops_down);
 }
 
 /* The first sweep subtracts the product with the coarse correction and makes the first move (a
  * = 0: Chebyshev's iteration starts again). The last residual is not needed. */
-void cs_level_smooth_up(struct cs_level *level) {
+static struct loops loops_up(struct cs_level *level) {
     float *d = level->correction, *e = level->correction_next;
-    run(&(struct loops){.loops = {{level, sweep, d, e, 0, first_gain, true},
-                                  {level, sweep, e, d, gains[0].a, gains[0].b, false},
-                                  {level, sweep, d, e, gains[1].a, gains[1].b, false}},
-                        .n = 3});
+    return (struct loops){.loops = {{level, sweep, d, e, 0, first_gain, true},
+                                    {level, sweep, e, d, gains[0].a, gains[0].b, false},
+                                    {level, sweep, d, e, gains[1].a, gains[1].b, false}},
+                          .n = 3};
+}
+
+void cs_level_smooth_up(const struct cs_level_group *group) {
+    run_group(group, loops_up);
 }
 
 /* `start` with the gain 1. */

@@ -70,25 +70,43 @@ struct cs_level {
     uint32_t *coarse_springs; /* (n_springs) springs of the next level; CS_GRAPH_NONE: inside an
                                  aggregate */
 
-    /* a mesh, or a body with self-contact */
+    /* a mesh */
     uint32_t *parents; /* (n) cells of the next level; CS_GRAPH_NONE: padding */
 
-    /* A body with self-contact: more springs, else NULL. Cell i of the next level is the
-     * aggregate of children[children_begin[i]..children_begin[i + 1]). */
+    /* A body in contact with itself or others: more springs, else NULL. Cell i of the next
+     * level is the aggregate of children[children_begin[i]..children_begin[i + 1]).
+     * joint_parents (stride) are the joint numbers of the parents, of all cells of the joint
+     * vectors. */
     struct cs_extra_springs *extra_springs;
-    uint32_t *children, *children_begin;
+    uint32_t *children, *children_begin, *joint_parents;
+
+    /* Levels of bodies that touch each other have joint vectors: `stride` cells, of which this
+     * level has those from `first` on. Extra springs name cells by their joint numbers. A level
+     * for itself has first = 0 and stride = n. */
+    uint32_t first, stride;
 
     float *springs;  /* layout: above */
     float *diagonal; /* D0. FACTORED: (n) masses; else (6,n): xx, xy, xz, yy, yz, zz */
     float *inverse;  /* (6,n) inverses of the blocks of D; 0 in dead cells */
     float *residual, *solution, *correction,
-        *correction_next; /* (3,n); corrections of the smoother's last move and of the next */
+        *correction_next; /* (3,stride); corrections of the smoother's last move and of the next
+                           */
+};
+
+/* The same level of several bodies: smoothed together if they touch each other. */
+struct cs_level_group {
+    struct cs_level *const *levels; /* (n) */
+    uint32_t n;
 };
 
 /* Allocates the numbers of a level whose form and n are set, with n_numbers floats for springs.
  * Returns CS_ERR_MEMORY if out of memory. */
 enum cs_status cs_level_alloc(struct cs_level *level, size_t n_numbers, struct cs_arena *arena,
                               struct cs_error *error);
+
+/* Allocates joint vectors for the levels of a group. Returns CS_ERR_MEMORY if out of memory. */
+enum cs_status cs_level_alloc_vectors(const struct cs_level_group *group,
+                                      struct cs_arena *arena, struct cs_error *error);
 
 /* Tells whether springs have 4 numbers (s, w), not 6. */
 static inline bool cs_level_is_factored(const struct cs_level *level) {
@@ -107,12 +125,15 @@ static inline bool cs_level_is_alive(const struct cs_level *level, size_t i) {
  * otherwise take for a large error. A larger D is allowed, see above. */
 void cs_level_invert(struct cs_level *level);
 
+/* Tells whether extra springs may join the bodies of a group. */
+bool cs_level_is_coupled(const struct cs_level_group *group);
+
 /* Smooths from the start 0: solution = S r, and then residual -= A solution. */
-void cs_level_smooth_down(struct cs_level *level);
+void cs_level_smooth_down(const struct cs_level_group *group);
 
 /* Smooths after solution += correction, the coarse correction d: residual -= A d, and then
  * solution += S residual. The residual is not valid afterwards. */
-void cs_level_smooth_up(struct cs_level *level);
+void cs_level_smooth_up(const struct cs_level_group *group);
 
 /* solution = D^-1 residual, the exact solution of a level without springs. */
 void cs_level_solve_diagonal(struct cs_level *level);

@@ -173,11 +173,12 @@ static void coarsen(const struct cs_level *fine, struct cs_level *coarse) {
 
 /* Sums the residual of the living cells of each aggregate. */
 static void restrict_r(const struct cs_level *fine, struct cs_level *coarse) {
-    memset(coarse->residual, 0, 3 * sizeof(float) * coarse->n);
+    for (size_t c = 0; c < 3; c++)
+        memset(coarse->residual + c * coarse->stride, 0, sizeof(float) * coarse->n);
     for (size_t i = 0; i < fine->n; i++)
         for (size_t c = 0; c < 3 && cs_level_is_alive(fine, i); c++)
-            coarse->residual[c * coarse->n + fine->parents[i]] +=
-                fine->residual[c * fine->n + i];
+            coarse->residual[c * coarse->stride + fine->parents[i]] +=
+                fine->residual[c * fine->stride + i];
 }
 
 /* Gives the coarse solution to the living cells of each aggregate, as correction and on top of
@@ -185,13 +186,11 @@ static void restrict_r(const struct cs_level *fine, struct cs_level *coarse) {
 static void prolong_x(const struct cs_level *coarse, struct cs_level *fine) {
     for (size_t i = 0; i < fine->n; i++)
         for (size_t c = 0; c < 3 && cs_level_is_alive(fine, i); c++) {
-            fine->correction[c * fine->n + i] =
-                coarse->solution[c * coarse->n + fine->parents[i]];
-            fine->solution[c * fine->n + i] += fine->correction[c * fine->n + i];
+            fine->correction[c * fine->stride + i] =
+                coarse->solution[c * coarse->stride + fine->parents[i]];
+            fine->solution[c * fine->stride + i] += fine->correction[c * fine->stride + i];
         }
 }
-
-static const struct cs_hierarchy_kind mesh = {load, coarsen, restrict_r, prolong_x};
 
 /* Coarsens by two matchings: sets the parents and coarse springs of a level, and replaces the
  * graph by the next level's. n and n_edges of *graph are 0 after failure. */
@@ -211,6 +210,20 @@ static void aggregate(struct cs_graph *graph, struct cs_level *level, struct cs_
     }
     *graph = fours;
 }
+
+/* Adds a level of the same cells: no spring joins them. */
+static void extend(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
+                   struct cs_error *error) {
+    struct cs_arena work = {0};
+    struct cs_level *level = hierarchy->levels + hierarchy->n_levels - 1;
+    struct cs_graph graph = {.n = level->n};
+    aggregate(&graph, level, arena, &work, error);
+    if (!error->status && !level_of(&graph, hierarchy->columns, level + 1, arena, &work, error))
+        hierarchy->n_levels++;
+    cs_arena_finish(&work);
+}
+
+static const struct cs_hierarchy_kind mesh = {load, coarsen, restrict_r, prolong_x, extend};
 
 enum cs_status cs_hierarchy_of_mesh(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
                                     struct cs_error *error) {
