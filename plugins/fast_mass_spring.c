@@ -161,7 +161,9 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         !(self->y = host->alloc(host->ctx, bytes)) ||
         !(self->b = host->alloc(host->ctx, bytes / 3 * 4)))
         return CS_STEP_FAIL;
-    return constant_matrix_init(&self->matrix, host);
+    if (constant_matrix_init(&self->matrix, host) != CS_STEP_OK)
+        return CS_STEP_FAIL;
+    return fixed_step_guard(&self->loop, NULL);
 }
 
 static void stats(const void *object, struct cs_stats *out) {

@@ -8,11 +8,13 @@
  *   5. Crossings, and events with the bounds on frequencies. */
 #include "model/plan.h"
 
+#include "model/contact/approach.h"
 #include "model/contact/ccd/crossings.h"
 #include "model/contact/friction_anchors.h"
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
+#include "model/post_step/tunnelling.h"
 #include "model/system/shape_clusters.h"
 #include "scene/shape.h"
 
@@ -234,6 +236,9 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
     choose_terms(system, error);
     if (!error->status && begin(system, CS_FEATURE_FRICTION_ANCHORS))
         cs_friction_anchors_build(system, error);
+    if (!error->status && begin(system, CS_FEATURE_CONTACT) &&
+        cs_tunnelling_is_possible(system->scene))
+        cs_approach_build(system, error);
     if (!error->status && begin(system, CS_FEATURE_CROSSINGS))
         cs_crossings_build(system, error);
     if (error->status)

@@ -197,7 +197,9 @@ static double host_max_step_fraction(void *ctx, double t0, const double *x0, dou
                                      const double *x1) {
     struct cs_run_host *host = ctx;
     const double begin = cs_stage_begin(host);
-    const double share = cs_step_limit_fraction(host->run->system, t0, x0, t1, x1);
+    double share = cs_step_limit_fraction(host->run->system, t0, x0, t1, x1);
+    if (share == 1 && host->contact.limits_steps)
+        share = cs_contact_projection_fraction(&host->contact, t0, x0, t1, x1);
     host->run->counts.subdivided_steps += share < 1;
     cs_blocked_step_store(&host->blocked_step, host->run->system, (const double[2]){t0, t1},
                           (const double *const[2]){x0, x1}, share);
@@ -232,7 +234,7 @@ static bool begin(struct cs_run_host *host, enum cs_feature feature) {
  * tells a method to leave them out. A scene with max_step_fraction has bounds_at too. */
 static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error) {
     const struct cs_system *system = host->run->system;
-    const bool judged = cs_step_limit_applies(system);
+    const bool judged = cs_step_limit_applies(system) || host->contact.limits_steps;
     if (judged)
         host->table.max_step_fraction = host_max_step_fraction;
     begin(host, CS_FEATURE_CROSSINGS);
@@ -356,7 +358,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .euler_setup = cs_host_euler_setup,
     };
     cs_blow_up_check_set(&host->blow_up, system, 0);
-    if (add_rate(host, error) || add_contact(host, error) || add_lagged_friction(host, error))
+    if (add_contact(host, error) || add_rate(host, error) || add_lagged_friction(host, error))
         return error->status;
     // only methods with CS_NEED_SOLVE pay for the solver's memory and the copies of the state
     if (!begin(host, CS_FEATURE_SOLVER))

@@ -281,14 +281,21 @@ enum cs_status cs_approach_build(struct cs_system *system, struct cs_error *erro
     return CS_OK;
 }
 
-double cs_approach_energy(const struct cs_system *system, uint32_t a, uint32_t b) {
-    const struct cs_approach *approach = system->approach;
+/* m2/s2, of the speed at which body a meets body or collider b */
+static double square_of(const struct cs_approach *approach, uint32_t a, uint32_t b) {
     const struct surface *first = approach->surfaces + a, *second = approach->surfaces + b;
-    const double squared = b < approach->n_bodies
-                               ? fmax(first->most, second->most)
-                               : square_between(approach, first, second,
-                                                fmax(drop_onto(approach, first, second), 0));
-    return 0.5 * fmax(first->mass, second->mass) * squared;
+    return b < approach->n_bodies ? fmax(first->most, second->most)
+                                  : square_between(approach, first, second,
+                                                   fmax(drop_onto(approach, first, second), 0));
+}
+
+double cs_approach_speed(const struct cs_system *system, uint32_t a, uint32_t b) {
+    return sqrt(square_of(system->approach, a, b));
+}
+
+double cs_approach_energy(const struct cs_system *system, uint32_t a, uint32_t b) {
+    const struct surface *surfaces = system->approach->surfaces;
+    return 0.5 * fmax(surfaces[a].mass, surfaces[b].mass) * square_of(system->approach, a, b);
 }
 
 double cs_approach_stiffness(const struct cs_system *system, double softest, double energy,

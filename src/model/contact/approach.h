@@ -42,6 +42,9 @@ enum cs_status cs_approach_build(struct cs_system *system, struct cs_error *erro
  * collider b - n_bodies of the scene. 0 where nothing comes. */
 double cs_approach_energy(const struct cs_system *system, uint32_t a, uint32_t b);
 
+/* m/s, the speed at which they meet. */
+double cs_approach_speed(const struct cs_system *system, uint32_t a, uint32_t b);
+
 /* N/m: contact.stiffness if the scene gives it, else the larger of the softest stretch spring
  * and 80 E/D^2. E in J, range in m. */
 double cs_approach_stiffness(const struct cs_system *system, double softest, double energy,

@@ -9,7 +9,9 @@
 
 #include "base/vec3.h"
 #include "base/vector.h"
+#include "model/contact/approach.h"
 #include "model/contact/posed_collider.h"
+#include "model/post_step/tunnelling.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -71,13 +73,16 @@ static bool absorb(const struct cs_collider *collider, const double n[3], double
  *
  * with T_v, T_x the tangential parts of v and of the displacement since `last`. A negative
  * absorption reflects the normal velocity, times |ka|. Position and velocity are corrected
- * alike, so that a particle that friction holds stays in its place. */
-static enum cs_project_result project_particle(const struct cs_posed_collider *obstacle,
+ * alike, so that a particle that friction holds stays in its place. If it passes the collider,
+ * n and d are those of the half-space at its entry. */
+static enum cs_project_result project_particle(const struct cs_posed_collider *before,
+                                               const struct cs_posed_collider *obstacle,
                                                double dt, const double last[3], double p[3],
                                                double v[3]) {
     const struct cs_collider *collider = obstacle->collider;
-    double n[3], provenance[3], from[3], move[3];
-    const double gap = cs_posed_collider_signed_distance(obstacle, p, n);
+    double n[3], provenance[3], from[3], move[3], gap;
+    if (!cs_tunnelling_find(before, obstacle, last, p, &gap, n))
+        gap = cs_posed_collider_signed_distance(obstacle, p, n);
     if (!(gap < 0))
         return CS_PROJECT_NONE;
 
@@ -124,11 +129,30 @@ static void put(const double value[3], size_t n, size_t i, double *to) {
         to[c * n + i] = value[c];
 }
 
-/* Returns whether particle i is behind a collider. Most particles are not, and of these only
- * the position is read. */
+/* Returns whether a particle moves far enough to pass a collider. Colliders that move are
+ * asked one by one. */
+static bool may_pass(const struct cs_contact_projection *contact, const double from[3],
+                     const double to[3]) {
+    const double way[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+    return contact->colliders_before != contact->colliders ||
+           cs_vec3_dot(way, way) > contact->shortest_tunnel * contact->shortest_tunnel;
+}
+
+/* Returns whether a particle passes a collider on its way. */
+static bool passes_any(const struct cs_contact_projection *contact, const double from[3],
+                       const double to[3]) {
+    double gap, normal[3];
+    for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++)
+        if (cs_tunnelling_find(contact->colliders_before + k, contact->colliders + k, from, to,
+                               &gap, normal))
+            return true;
+    return false;
+}
+
+/* Returns whether particle i is behind a collider, or passes one. Most do neither. */
 static bool is_behind_any(const struct step *step, size_t i) {
     const struct cs_contact_projection *contact = step->contact;
-    double p[3], normal[3];
+    double p[3], last[3], normal[3];
     take(step->x, count_of(contact), i, p);
     for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
         const struct cs_posed_collider *obstacle = contact->colliders + k;
@@ -136,7 +160,10 @@ static bool is_behind_any(const struct step *step, size_t i) {
             cs_posed_collider_signed_distance(obstacle, p, normal) < 0)
             return true;
     }
-    return false;
+    if (contact->shortest_tunnel == HUGE_VAL)
+        return false;
+    take(contact->state_before, count_of(contact), i, last);
+    return may_pass(contact, last, p) && passes_any(contact, last, p);
 }
 
 /* Projects particle i against all colliders, each after the one before, into state_after.
@@ -150,8 +177,8 @@ static unsigned project_against_all(const struct step *step, size_t i) {
     take(step->v, n, i, v);
     take(contact->state_before, n, i, last);
     for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
-        const enum cs_project_result touch =
-            project_particle(contact->colliders + k, step->dt, last, p, v);
+        const enum cs_project_result touch = project_particle(
+            contact->colliders_before + k, contact->colliders + k, step->dt, last, p, v);
         if (touch == CS_PROJECT_NONE)
             continue;
         pushed++;
@@ -204,6 +231,7 @@ static void push(const struct step *step) {
     const struct cs_projection_step blow = {.t = step->t,
                                             .dt = step->dt,
                                             .colliders = contact->colliders,
+                                            .colliders_before = contact->colliders_before,
                                             .before_step = contact->state_before,
                                             .x = step->x,
                                             .v = step->v,
@@ -217,7 +245,14 @@ static void push(const struct step *step) {
     memcpy(step->v, contact->state_after + n3, n3 * sizeof *step->v);
 }
 
-/* Colliders are posed at the end of the step. Without a push the last energy is unknown to the
+/* Poses the colliders at both ends of a step; they were posed once if none moves. */
+static void pose_step(struct cs_contact_projection *contact, double t0, double t1) {
+    if (contact->colliders_before != contact->colliders)
+        cs_posed_colliders_at(contact->system, t0, contact->colliders_before);
+    cs_posed_colliders_at(contact->system, t1, contact->colliders);
+}
+
+/* Without a push the last energy is unknown to the
  * next commit, and contact ends unless particles stick. */
 bool cs_contact_projection_resolve(struct cs_contact_projection *contact, double t, double dt,
                                    double *x, double *v) {
@@ -225,7 +260,7 @@ bool cs_contact_projection_resolve(struct cs_contact_projection *contact, double
     struct step step = {.contact = contact, .t = t, .dt = dt, .x = x, .v = v};
     const bool restored =
         cs_static_friction_restore(&contact->static_friction, dt, contact->state_before, x, v);
-    cs_posed_colliders_at(contact->system, t, contact->colliders);
+    pose_step(contact, t - dt, t);
     cs_vector_parallel_for(n, project_block, &step);
     contact->counts.tests += step.tests;
     contact->counts.projected += step.pushed;
@@ -251,6 +286,25 @@ void cs_contact_projection_store(struct cs_contact_projection *contact, const do
     contact->energy_limit.has_last_energy &= resolved;
 }
 
+double cs_contact_projection_fraction(struct cs_contact_projection *contact, double t0,
+                                      const double *x0, double t1, const double *x1) {
+    const size_t n = count_of(contact);
+    if (!(t1 > t0))
+        return 1;
+    pose_step(contact, t0, t1);
+    for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++)
+        for (size_t i = 0; i < n; i++) {
+            double from[3], to[3];
+            take(x0, n, i, from);
+            take(x1, n, i, to);
+            if (contact->system->inv_mass[i] > 0 &&
+                cs_tunnelling_is_deep(contact->colliders_before + k, contact->colliders + k,
+                                      from, to))
+                return 0.5;
+        }
+    return 1;
+}
+
 void cs_contact_projection_serialise(struct cs_contact_projection *contact,
                                      struct cs_serialiser *record) {
     cs_serialiser_bytes(record, contact->state_before,
@@ -270,6 +324,24 @@ void cs_contact_start(struct cs_contact_projection *contact, double t, const dou
                              contact->state_after);
 }
 
+/* Finds the least inner radius, and whether something may pass a collider in a frame, the
+ * longest step of a method by default. */
+static void init_tunnelling(struct cs_contact_projection *contact) {
+    const struct cs_system *system = contact->system;
+    const uint32_t n_bodies = system->scene->bodies.n;
+    contact->shortest_tunnel = HUGE_VAL;
+    if (!cs_tunnelling_is_possible(system->scene))
+        return;
+    cs_posed_colliders_at(system, 0, contact->colliders);
+    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
+        const double inner = cs_tunnelling_inner_radius(contact->colliders + k);
+        contact->shortest_tunnel = fmin(contact->shortest_tunnel, inner);
+        for (uint32_t b = 0; b < n_bodies; b++)
+            contact->limits_steps |=
+                cs_approach_speed(system, b, n_bodies + k) > inner * system->scene->time.fps;
+    }
+}
+
 enum cs_status cs_contact_projection_init(struct cs_contact_projection *contact,
                                           struct cs_system *system, struct cs_arena *arena,
                                           struct cs_error *error) {
@@ -277,11 +349,16 @@ enum cs_status cs_contact_projection_init(struct cs_contact_projection *contact,
     *contact = (struct cs_contact_projection){.system = system};
     contact->colliders = cs_arena_alloc_array(arena, system->scene->colliders.n,
                                               sizeof *contact->colliders, error);
+    contact->colliders_before = contact->colliders;
+    if (system->motions)
+        contact->colliders_before = cs_arena_alloc_array(arena, system->scene->colliders.n,
+                                                         sizeof *contact->colliders, error);
     contact->state_before = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
     contact->state_after = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
     contact->is_pushed = cs_arena_alloc_array(arena, n, sizeof(bool), error);
     if (error->status ||
         cs_static_friction_init(&contact->static_friction, system, arena, error))
         return error->status;
+    init_tunnelling(contact);
     return cs_projection_energy_init(&contact->energy_limit, system, arena, error);
 }

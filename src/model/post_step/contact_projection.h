@@ -27,8 +27,13 @@ struct cs_projection_counts {
 /* State of contact by projection between commits, and work arrays. */
 struct cs_contact_projection {
     const struct cs_system *system; /* borrowed */
-    /* (scene->colliders.n) poses at the time of the commit */
-    struct cs_posed_collider *colliders;
+    /* (scene->colliders.n) poses at the time of the commit, and at the start of its step; the
+     * same array if no collider moves */
+    struct cs_posed_collider *colliders, *colliders_before;
+    /* m, the least inner radius of a collider: a shorter way passes none */
+    double shortest_tunnel;
+    /* steps may be so long that particles pass a collider */
+    bool limits_steps;
     struct cs_projection_energy energy_limit;
     struct cs_static_friction static_friction;
     /* (6,n) x and v that the last commit left, in m and m/s */
@@ -68,6 +73,11 @@ bool cs_contact_projection_update_sticking(struct cs_contact_projection *contact
  * whether the state was changed. */
 bool cs_contact_projection_resolve(struct cs_contact_projection *contact, double t, double dt,
                                    double *x, double *v);
+
+/* Admissible fraction of a step from x0 (3,n) at t0 to x1 at t1: 0.5 if a free particle passes
+ * a collider, else 1. Poses of the colliders are overwritten. */
+double cs_contact_projection_fraction(struct cs_contact_projection *contact, double t0,
+                                      const double *x0, double t1, const double *x1);
 
 /* Longest step for which projection stays a small correction. */
 

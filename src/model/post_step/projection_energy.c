@@ -4,6 +4,7 @@
 
 #include "base/vector.h"
 #include "model/force/diagnostics.h"
+#include "model/post_step/tunnelling.h"
 
 #include <math.h>
 #include <string.h>
@@ -40,13 +41,16 @@ static double energy_with_collider_work(struct cs_projection_energy *balance,
     memcpy(balance->work, blow->x, 3 * n * sizeof(double));
     for (uint32_t k = 0; k < balance->system->scene->colliders.n; k++)
         for (size_t i = 0; i < n; i++) {
-            double p[3], normal[3], provenance[3];
-            for (size_t c = 0; c < 3; c++)
-                p[c] = balance->work[c * n + i];
+            double p[3], from[3], normal[3], provenance[3], gap;
             if (!blow->is_pushed[i])
                 continue;
-            const double gap =
-                cs_posed_collider_signed_distance(blow->colliders + k, p, normal);
+            for (size_t c = 0; c < 3; c++) {
+                p[c] = balance->work[c * n + i];
+                from[c] = blow->before_step[c * n + i];
+            }
+            if (!cs_tunnelling_find(blow->colliders_before + k, blow->colliders + k, from, p,
+                                    &gap, normal))
+                gap = cs_posed_collider_signed_distance(blow->colliders + k, p, normal);
             cs_posed_collider_velocity(blow->colliders + k, p, provenance);
             const double along =
                 blow->dt * (provenance[0] * normal[0] + provenance[1] * normal[1] +

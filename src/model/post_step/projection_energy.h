@@ -86,7 +86,7 @@ struct cs_projection_energy {
 /* One commit with a push; all is borrowed. */
 struct cs_projection_step {
     double t, dt;
-    const struct cs_posed_collider *colliders;
+    const struct cs_posed_collider *colliders, *colliders_before;
     const double *before_step; /* (6,n) the state before the step */
     const double *x, *v;       /* (3,n) as the step has left them */
     double *corrected;         /* (6,n) as the pushes leave them */

@@ -6,7 +6,8 @@
 #include "base/text.h"
 #include "model/system/particle_system.h"
 
-/* Returns whether the scene limits steps; otherwise the other functions must not be called. */
+/* Returns whether contact by force or crossings limit steps; otherwise every step may be whole.
+ */
 bool cs_step_limit_applies(const struct cs_system *system);
 
 /* Admissible fraction of the step from x0 (3,n) at t0 to x1 at t1: 1, or less if it must be
