@@ -3,10 +3,8 @@
  * blocks only. Colliders come in the scene's order, which is the order of the sums. */
 #include "base/pool.h"
 #include "base/vector.h"
-#include "model/contact/collider_params.h"
-#include "model/contact/friction_anchors.h"
-#include "model/contact/friction_chord.h"
 #include "model/contact/lagged_friction.h"
+#include "model/contact/point_query.h"
 #include "model/contact/rebound.h"
 #include "model/force/term.h"
 #include "model/force/terms.h"
@@ -169,18 +167,11 @@ static struct cs_posed_collider_law near_of(const struct cs_system *system, uint
     return near;
 }
 
-static void read(const double *from, size_t n, size_t i, double to[3]) {
-    for (size_t c = 0; c < 3; c++)
-        to[c] = from ? from[c * n + i] : 0;
-}
-
-/* Sets *touch for particle i; returns false if it is out of range. v NULL: at rest. */
-static bool touch_of(const struct cs_posed_collider_law *near, size_t n, const double *x,
-                     const double *v, size_t i, struct cs_point_contact *touch) {
-    double p[3], w[3];
-    read(x, n, i, p);
-    read(v, n, i, w);
-    return cs_posed_collider_law_in_range(near, p, w, touch);
+/* Answers for particle i, as a sample of one vertex; false if it is out of range. */
+static bool evaluate(const struct cs_point_query *job, const struct cs_posed_collider_law *near,
+                     uint32_t collider, size_t i, struct cs_point_answer *answer) {
+    const struct cs_contact_sample_point point = {.n = 1, .particles = {(uint32_t)i}, .w = {1}};
+    return cs_point_evaluate(job, near, collider, &point, answer);
 }
 
 static void add_at(double *f, size_t n, size_t i, const double a[3]) {
@@ -188,170 +179,136 @@ static void add_at(double *f, size_t n, size_t i, const double a[3]) {
         f[c * n + i] += a[c];
 }
 
+/* Adds forces or their changes of the particles of a block near one collider. */
+static void add_vectors(const struct cs_point_query *job,
+                        const struct cs_posed_collider_law *near, uint32_t collider,
+                        double *f) {
+    const struct cs_block *block = job->eval.block;
+    struct cs_point_answer answer;
+    for (size_t i = block->begin; i < block->end; i++)
+        if (evaluate(job, near, collider, i, &answer))
+            add_at(f, job->system->view.n, i, answer.vector);
+}
+
 /* Spheres and planes have a vectorised path with the same formulas. */
 static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
-    const size_t n = system->view.n;
     const struct cs_contact_force_parts parts = cs_force_parts_of(at->parts);
+    const struct cs_point_query job = {system, CS_POINT_FORCE, *at, NULL};
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_posed_collider_law near = near_of(system, c, at->t);
-        struct cs_point_contact touch;
-        struct cs_bristle bristle;
-        if (cs_posed_collider_law_is_plain(&near)) {
-            contact_rows_add(&near, n, at, parts, f);
-            continue;
-        }
-        for (size_t i = at->block->begin; i < at->block->end; i++)
-            if (touch_of(&near, n, at->x, at->v, i, &touch)) {
-                double a[3];
-                cs_point_contact_force(&touch, parts, a);
-                if (parts.friction > 0 &&
-                    cs_bristle_of_particle(system, c, &near, at->x, i, &bristle))
-                    cs_bristle_add_force(&touch, &bristle, a);
-                add_at(f, n, i, a);
-            }
+        if (cs_posed_collider_law_is_plain(&near))
+            contact_rows_add(&near, system->view.n, at, parts, f);
+        else
+            add_vectors(&job, &near, c, f);
     }
 }
 
-/* Motion of a particle relative to the collider along the direction of a Jacobian product. */
-static struct cs_point_contact_motion move_of(const struct cs_posed_collider_law *near,
-                                              size_t n, const struct cs_eval *at, size_t i) {
-    double dp[3], dv[3];
-    read(at->dx, n, i, dp);
-    read(at->dv, n, i, dv);
-    return cs_posed_collider_law_motion(near, dp, dv);
-}
-
 static void add_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
-    const size_t n = system->view.n;
-    const struct cs_contact_force_parts parts = cs_force_parts_of(at->parts);
+    const struct cs_point_query job = {system, CS_POINT_JVP, *at, NULL};
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_posed_collider_law near = near_of(system, c, at->t);
-        struct cs_point_contact touch;
-        struct cs_bristle bristle;
-        for (size_t i = at->block->begin; i < at->block->end; i++)
-            if (touch_of(&near, n, at->x, at->v, i, &touch)) {
-                const struct cs_point_contact_motion move = move_of(&near, n, at, i);
-                double a[3];
-                cs_point_contact_jvp(&touch, parts, &move, a);
-                if (parts.friction > 0 &&
-                    cs_bristle_of_particle(system, c, &near, at->x, i, &bristle))
-                    cs_bristle_add_jvp(&touch, &bristle, &move, a);
-                add_at(df, n, i, a);
-            }
+        add_vectors(&job, &near, c, df);
     }
 }
 
 /* Energy of the barrier law over the free particles. */
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
-    const size_t n = system->view.n;
+    const struct cs_point_query job = {system, CS_POINT_ENERGY, *at, NULL};
+    struct cs_point_answer answer;
     double sum = 0;
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_posed_collider_law near = near_of(system, c, at->t);
-        struct cs_point_contact touch;
-        for (size_t i = 0; i < n; i++)
-            if (system->inv_mass[i] > 0 && touch_of(&near, n, at->x, NULL, i, &touch))
-                sum += cs_barrier_energy(touch.d, touch.range, touch.k);
+        for (size_t i = 0; i < system->view.n; i++)
+            if (evaluate(&job, &near, c, i, &answer))
+                sum += answer.energy;
     }
     return sum;
+}
+
+/* A query for the matrix or the approach of a step. */
+static struct cs_point_query matrix_job(const struct cs_system *system,
+                                        enum cs_point_quantity quantity,
+                                        const struct cs_matrix *matrix) {
+    return (struct cs_point_query){
+        system,
+        quantity,
+        {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_ALL},
+        matrix};
 }
 
 static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
                        size_t begin, size_t end, double *blocks) {
     const size_t n = system->view.n;
+    const struct cs_point_query job = matrix_job(system, CS_POINT_MATRIX, matrix);
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_posed_collider_law near = near_of(system, c, matrix->t);
-        struct cs_point_contact touch;
-        struct cs_bristle bristle;
         for (size_t i = begin; i < end; i++) {
             const struct cs_rebound *rebound = cs_rebound_of(system, matrix, c, i);
-            struct cs_contact_pull pull = {.h = -matrix->cd};
-            double b[6] = {0};
+            struct cs_point_answer answer = {.block = {0}};
             if (rebound)
-                cs_rebound_add_block(rebound, matrix, b);
-            else if (touch_of(&near, n, matrix->x, matrix->v, i, &touch)) {
-                if (matrix->chord) {
-                    cs_contact_pull_add(&pull, matrix, n, i, system->inv_mass[i], 1);
-                    cs_friction_chord_add_block(&touch, matrix, &pull, b);
-                } else
-                    cs_point_contact_add_block(&touch, matrix, b);
-                if (cs_bristle_of_particle(system, c, &near, matrix->x, i, &bristle))
-                    cs_bristle_add_matrix(&touch, &bristle, matrix, &pull, b);
-            } else
+                cs_rebound_add_block(rebound, matrix, answer.block);
+            else if (!evaluate(&job, &near, c, i, &answer))
                 continue;
             for (size_t e = 0; e < 6; e++)
-                blocks[e * n + i] += b[e];
+                blocks[e * n + i] += answer.block[e];
         }
     }
 }
 
 /* One collider of add_approach. */
 struct approach {
-    const struct cs_system *system;
+    struct cs_point_query job;
     uint32_t collider;
     struct cs_posed_collider_law near;
-    const struct cs_matrix *matrix;
     double *y;
 };
 
 /* b loses y: an impact puts into b what it gives. */
 static void add_approaches(void *arg, size_t begin, size_t end) {
     const struct approach *to = arg;
-    const size_t n = to->system->view.n;
-    struct cs_point_contact touch;
-    struct cs_bristle bristle;
+    const struct cs_system *system = to->job.system;
     for (size_t i = begin; i < end; i++) {
         const struct cs_rebound *rebound =
-            cs_rebound_of(to->system, to->matrix, to->collider, i);
-        double a[3] = {0};
-        if (rebound)
-            for (int c = 0; c < 3; c++)
-                a[c] = -rebound->impulse[c];
-        else if (touch_of(&to->near, n, to->matrix->x, to->matrix->v, i, &touch)) {
-            cs_point_contact_approach(&touch, to->matrix, a);
-            if (cs_bristle_of_particle(to->system, to->collider, &to->near, to->matrix->x, i,
-                                       &bristle))
-                cs_bristle_add_approach(&touch, &bristle, to->matrix, a);
-        } else
+            cs_rebound_of(system, to->job.matrix, to->collider, i);
+        struct cs_point_answer answer;
+        if (!rebound && !evaluate(&to->job, &to->near, to->collider, i, &answer))
             continue;
-        add_at(to->y, n, i, a);
+        for (int c = 0; c < 3 && rebound; c++)
+            answer.vector[c] = -rebound->impulse[c];
+        add_at(to->y, system->view.n, i, answer.vector);
     }
 }
 
 static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
                          double *y) {
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        struct approach to = {system, c, near_of(system, c, matrix->t), matrix, y};
+        struct approach to = {matrix_job(system, CS_POINT_APPROACH, matrix), c,
+                              near_of(system, c, matrix->t), y};
         cs_vector_parallel_for(system->view.n, add_approaches, &to);
     }
 }
 
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
                          const struct cs_gershgorin *sums) {
-    const size_t n = system->view.n;
+    const struct cs_point_query job = {system, CS_POINT_BOUND, *at, NULL};
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_posed_collider_law near = near_of(system, c, at->t);
-        struct cs_point_contact touch;
-        struct cs_bristle bristle;
+        struct cs_point_answer answer;
         if (cs_posed_collider_law_is_plain(&near)) {
-            contact_rows_add_bounds(&near, n, at, sums);
+            contact_rows_add_bounds(&near, system->view.n, at, sums);
             continue;
         }
-        for (size_t i = 0; i < n; i++)
-            if (touch_of(&near, n, at->x, at->v, i, &touch)) {
-                double stiffness, damping;
-                cs_point_contact_bound(&touch, &stiffness, &damping);
-                if (cs_bristle_of_particle(system, c, &near, at->x, i, &bristle))
-                    cs_bristle_raise_bound(&bristle, &stiffness, &damping);
-                sums->stiffness[i] += stiffness;
-                sums->damping[i] += damping;
+        for (size_t i = 0; i < system->view.n; i++)
+            if (evaluate(&job, &near, c, i, &answer)) {
+                sums->stiffness[i] += answer.stiffness;
+                sums->damping[i] += answer.damping;
             }
     }
 }
 
 /* One call of store_friction. */
 struct storing {
-    const struct cs_system *system;
-    const double t, *x;
+    struct cs_point_query job;
     uint32_t first;
 };
 
@@ -361,21 +318,21 @@ static uint32_t friction_chunks(const struct cs_system *system) {
 
 static void store_chunk(void *arg, uint32_t chunk) {
     const struct storing *storing = arg;
-    const struct cs_system *system = storing->system;
+    const struct cs_system *system = storing->job.system;
     const uint32_t n = system->view.n, first = chunk * STORED;
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        const struct cs_posed_collider_law near = near_of(system, c, storing->t);
-        struct cs_point_contact touch;
+        const struct cs_posed_collider_law near = near_of(system, c, storing->job.eval.t);
+        struct cs_point_answer answer;
         for (uint32_t i = first; i < n && i < first + STORED; i++)
-            if (system->inv_mass[i] > 0 && touch_of(&near, n, storing->x, NULL, i, &touch))
+            if (evaluate(&storing->job, &near, c, i, &answer))
                 cs_lagged_friction_store(system->lagged_friction, storing->first + chunk,
-                                         &touch, 1, &i, &(double){1});
+                                         &answer.contact, 1, &i, &(double){1});
     }
 }
 
 static void store_friction(const struct cs_system *system, double t, const double *x,
                            uint32_t first) {
-    struct storing storing = {system, t, x, first};
+    struct storing storing = {{system, CS_POINT_LAGGED, {.t = t, .x = x}, NULL}, first};
     cs_pool_run(friction_chunks(system), store_chunk, &storing);
 }
 

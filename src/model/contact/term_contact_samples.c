@@ -1,147 +1,65 @@
 /* The force term of contact samples (contact_samples.h). Particles themselves have contact by
  * term_contact.c. */
 #include "base/pool.h"
-#include "base/vec3.h"
-#include "model/contact/contact_samples.h"
-#include "model/contact/friction_anchors.h"
-#include "model/contact/friction_chord.h"
 #include "model/contact/lagged_friction.h"
+#include "model/contact/point_query.h"
 #include "model/force/term.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Forces, energies, matrices and bounds of contact samples on the
- * vertices of their edges and triangles. All functions use all threads. */
-
-/* quantity that is evaluated */
-enum ask { ASK_FORCE, ASK_CHANGE, ASK_APPROACH, ASK_ENERGY, ASK_MATRIX, ASK_BOUND, ASK_LAGGED };
-
 /* One query for all chunks. */
 struct job {
-    struct cs_contact_samples *covers;
+    struct cs_point_query query;
+    struct cs_contact_samples *samples;
     struct cs_contact_set *set;
-    enum ask ask;
-    struct cs_eval eval;
-    const struct cs_matrix *matrix;
     uint32_t first; /* chunk of lagged friction that the first chunk goes to */
 };
 
-/* w_i f at each vertex */
-static void set_contact(const double f[3], const struct cs_contact_sample_point *point,
-                        struct cs_contact_entry *place) {
-    for (uint32_t k = 0; k < place->n; k++)
-        for (int c = 0; c < 3; c++)
-            place->vectors[k][c] = point->w[k] * f[c];
-}
-
-/* Bounds of one sample. Row i of its matrix has w_i w_j times one block, and the weights sum to
- * 1, so that the row sum is w_i times the bound of the point. */
-static void bound(const struct cs_point_contact *contact, const struct cs_bristle *bristle,
-                  const struct cs_contact_sample_point *point,
-                  struct cs_contact_matrix_part *part) {
-    double stiffness, damping;
-    cs_point_contact_bound(contact, &stiffness, &damping);
-    if (bristle)
-        cs_bristle_raise_bound(bristle, &stiffness, &damping);
-    for (uint32_t k = 0; k < point->n; k++) {
-        part->block[k] = stiffness * point->w[k];
-        part->weights[k] = point->w[k] * damping;
-    }
-}
-
-/* Matrix terms of one sample: (w w^T) x B, without a gradient. */
-static void fill_matrix(const struct job *job, const struct cs_point_contact *contact,
-                        const struct cs_bristle *bristle,
-                        const struct cs_contact_sample_point *point,
-                        struct cs_contact_matrix_part *part) {
-    const struct cs_system *system = job->covers->system;
-    struct cs_contact_pull pull = {.h = -job->matrix->cd};
-    memset(part->block, 0, sizeof part->block);
-    memcpy(part->weights, point->w, sizeof point->w);
-    for (uint32_t k = 0; k < point->n && job->matrix->chord; k++)
-        cs_contact_pull_add(&pull, job->matrix, system->view.n, point->particles[k],
-                            system->inv_mass[point->particles[k]], point->w[k]);
-    if (job->matrix->chord)
-        cs_friction_chord_add_block(contact, job->matrix, &pull, part->block);
-    else
-        cs_point_contact_add_block(contact, job->matrix, part->block);
-    if (bristle)
-        cs_bristle_add_matrix(contact, bristle, job->matrix, &pull, part->block);
-}
-
-/* Matrix terms or bounds of one sample. */
-static void answer_part(const struct job *job, const struct cs_contact_sample_point *point,
-                        const struct cs_point_contact *contact,
-                        const struct cs_bristle *bristle, struct cs_contact_chunk *chunk) {
+/* Appends a matrix block or bounds. Row i of the matrix has w_i w_j times one block, and the
+ * weights sum to 1, so that the row sum is w_i times the bound of the point. */
+static void store_part(const struct job *job, const struct cs_contact_sample_point *point,
+                       const struct cs_point_answer *answer, struct cs_contact_chunk *chunk) {
     struct cs_contact_matrix_part *part = cs_contact_chunk_part(chunk);
-    if (part && job->ask == ASK_MATRIX)
-        fill_matrix(job, contact, bristle, point, part);
-    else if (part)
-        bound(contact, bristle, point, part);
-}
-
-/* Force of one sample, its change, or its approach. */
-static void answer_force(const struct job *job, const struct cs_posed_collider_law *near,
-                         const struct cs_contact_sample_point *point,
-                         const struct cs_point_contact *contact,
-                         const struct cs_bristle *bristle, struct cs_contact_entry *place) {
-    const size_t n = job->covers->system->view.n;
-    const struct cs_contact_force_parts parts = cs_force_parts_of(job->eval.parts);
-    double f[3];
-    if (job->ask == ASK_CHANGE) {
-        double dp[3], dv[3];
-        cs_contact_sample_interpolate(point, n, job->eval.dx, dp);
-        cs_contact_sample_interpolate(point, n, job->eval.dv, dv);
-        const struct cs_point_contact_motion move = cs_posed_collider_law_motion(near, dp, dv);
-        cs_point_contact_jvp(contact, parts, &move, f);
-        if (bristle && parts.friction > 0)
-            cs_bristle_add_jvp(contact, bristle, &move, f);
-    } else if (job->ask == ASK_APPROACH) {
-        cs_point_contact_approach(contact, job->matrix, f);
-        if (bristle)
-            cs_bristle_add_approach(contact, bristle, job->matrix, f);
-    } else {
-        cs_point_contact_force(contact, parts, f);
-        if (bristle && parts.friction > 0)
-            cs_bristle_add_force(contact, bristle, f);
+    if (!part)
+        return;
+    memcpy(part->block, answer->block, sizeof part->block);
+    memcpy(part->weights, point->w, sizeof point->w);
+    for (uint32_t k = 0; k < point->n && job->query.quantity == CS_POINT_BOUND; k++) {
+        part->block[k] = answer->stiffness * point->w[k];
+        part->weights[k] = point->w[k] * answer->damping;
     }
-    set_contact(f, point, place);
 }
 
 /* Evaluates one sample if it is in range and can move. */
 static void meet(const struct job *job, const struct cs_posed_collider_law *near,
                  const struct cs_contact_sample_point *point, uint32_t number) {
     struct cs_contact_chunk *chunk = job->set->chunks + number;
-    const struct cs_system *system = job->covers->system;
-    struct cs_point_contact contact;
-    struct cs_bristle found, *bristle = NULL;
-    double p[3], v[3];
-    cs_contact_sample_interpolate(point, system->view.n, job->eval.x, p);
-    cs_contact_sample_interpolate(point, system->view.n, job->eval.v, v);
-    if (!cs_posed_collider_law_in_range(near, p, v, &contact) ||
+    const struct cs_system *system = job->query.system;
+    const enum cs_point_quantity quantity = job->query.quantity;
+    struct cs_point_answer answer;
+    if (!cs_point_evaluate(&job->query, near, job->samples->chunks[number].collider, point,
+                           &answer) ||
         cs_contact_sample_mass(system, point) == HUGE_VAL)
         return;
-    if (job->ask == ASK_ENERGY) {
-        chunk->energy += cs_barrier_energy(contact.d, contact.range, contact.k);
-        return;
-    }
-    if (job->ask == ASK_LAGGED) {
-        cs_lagged_friction_store(system->lagged_friction, job->first + number, &contact,
+    if (quantity == CS_POINT_ENERGY)
+        chunk->energy += answer.energy;
+    else if (quantity == CS_POINT_LAGGED)
+        cs_lagged_friction_store(system->lagged_friction, job->first + number, &answer.contact,
                                  point->n, point->particles, point->w);
+    if (quantity == CS_POINT_ENERGY || quantity == CS_POINT_LAGGED)
         return;
-    }
     struct cs_contact_entry *place = cs_contact_chunk_next(chunk);
     if (!place)
         return;
     place->n = point->n;
-    if (cs_bristle_of_sample(system, near, point, p, &found))
-        bristle = &found;
     memcpy(place->particles, point->particles, sizeof point->particles);
-    if (job->ask == ASK_MATRIX || job->ask == ASK_BOUND)
-        answer_part(job, point, &contact, bristle, chunk);
+    if (quantity == CS_POINT_MATRIX || quantity == CS_POINT_BOUND)
+        store_part(job, point, &answer, chunk);
     else
-        answer_force(job, near, point, &contact, bristle, place);
+        for (uint32_t k = 0; k < place->n; k++)
+            for (int c = 0; c < 3; c++)
+                place->vectors[k][c] = point->w[k] * answer.vector[c];
 }
 
 /* Middle of the box of particles [first, last]; returns half its diagonal in m. */
@@ -182,19 +100,20 @@ static double reach_of(const struct cs_contact_sample_chunk *chunk, uint32_t ite
 /* Evaluates one chunk. Boxes of the chunk and of each item come before single samples. */
 static void do_chunk(void *arg, uint32_t number) {
     const struct job *job = arg;
-    const struct cs_contact_sample_chunk *chunk = job->covers->chunks + number;
-    const struct cs_posed_collider_law *near = job->covers->colliders + chunk->collider;
-    const size_t n = job->covers->system->view.n;
+    const struct cs_contact_sample_chunk *chunk = job->samples->chunks + number;
+    const struct cs_posed_collider_law *near = job->samples->colliders + chunk->collider;
+    const size_t n = job->query.system->view.n;
     double middle[3];
     cs_contact_chunk_clear(job->set->chunks + number);
-    const double all = box_of(job->eval.x, n, chunk->first, chunk->last, middle);
+    const double all = box_of(job->query.eval.x, n, chunk->first, chunk->last, middle);
     if (!cs_posed_collider_is_near(&near->collider, near->params.range + all, middle))
         return;
     for (uint32_t i = chunk->begin; i < chunk->end; i++) {
         struct cs_contact_sample_point point;
         if (!chunk->subdivisions[i - chunk->begin])
             continue;
-        const double reach = near->params.range + reach_of(chunk, i, n, job->eval.x, middle);
+        const double reach =
+            near->params.range + reach_of(chunk, i, n, job->query.eval.x, middle);
         if (cs_posed_collider_is_near(&near->collider, reach, middle))
             for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
                 meet(job, near, &point, number);
@@ -203,60 +122,21 @@ static void do_chunk(void *arg, uint32_t number) {
 
 /* Poses all colliders, evaluates all chunks and counts their contacts. */
 static void do_chunks(struct job *job) {
-    const struct cs_system *system = job->covers->system;
+    const struct cs_system *system = job->query.system;
     for (uint32_t c = 0; c < system->scene->colliders.n; c++)
-        cs_posed_collider_law_at(system, c, job->eval.t, job->covers->colliders + c);
-    cs_pool_run(job->covers->n_chunks, do_chunk, job);
+        cs_posed_collider_law_at(system, c, job->query.eval.t, job->samples->colliders + c);
+    cs_pool_run(job->samples->n_chunks, do_chunk, job);
     cs_contact_set_count(job->set);
 }
 
-/* Sets samples->current_set to the forces at a state, or to their change if at->dx or at->dv is
- * set. */
-static void contact_samples_set(struct cs_contact_samples *samples, const struct cs_eval *at) {
-    struct job job = {.covers = samples,
-                      .set = &samples->current_set,
-                      .ask = at->dx || at->dv ? ASK_CHANGE : ASK_FORCE,
-                      .eval = *at};
+/* Runs a query over all samples, into current_set. */
+static struct cs_contact_set *run(const struct cs_system *system,
+                                  enum cs_point_quantity quantity, const struct cs_eval *at,
+                                  const struct cs_matrix *matrix) {
+    struct cs_contact_samples *samples = system->contact_samples;
+    struct job job = {{system, quantity, *at, matrix}, samples, &samples->current_set, 0};
     do_chunks(&job);
-    cs_contact_set_gather(&samples->current_set);
-}
-
-/* Elastic energy in J. */
-static double contact_samples_energy(struct cs_contact_samples *samples,
-                                     const struct cs_eval *at) {
-    struct job job = {
-        .covers = samples, .set = &samples->current_set, .ask = ASK_ENERGY, .eval = *at};
-    do_chunks(&job);
-    return cs_contact_set_energy(&samples->current_set);
-}
-
-/* Sets samples->blocks to the matrix. kept: samples->matrix, for products; otherwise
- * current_set, for blocks alone, which bound the whole matrix if matrix->bound is set. */
-/* Bounds of the diagonal are only for matrices that are not kept: products need the exact
- * blocks. */
-static void contact_samples_set_matrix(struct cs_contact_samples *samples,
-                                       const struct cs_matrix *matrix, bool kept) {
-    struct cs_contact_set *set = kept ? &samples->matrix : &samples->current_set;
-    struct job job = {
-        .covers = samples,
-        .set = set,
-        .ask = ASK_MATRIX,
-        .eval = {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_ALL},
-        .matrix = matrix};
-    set->diagonal_bound = !kept && matrix->bound;
-    do_chunks(&job);
-    cs_contact_set_gather(set);
-    samples->blocks = set;
-}
-
-/* Adds the Gershgorin row sums of df/dx (N/m) and df/dv (N s/m) at a state. */
-static void contact_samples_add_bound(struct cs_contact_samples *samples,
-                                      const struct cs_eval *at, double *stiffness,
-                                      double *damping) {
-    struct job job = {
-        .covers = samples, .set = &samples->current_set, .ask = ASK_BOUND, .eval = *at};
-    do_chunks(&job);
-    cs_contact_set_add_bound(&samples->current_set, stiffness, damping);
+    return job.set;
 }
 
 static uint32_t friction_chunks(const struct cs_system *system) {
@@ -265,11 +145,11 @@ static uint32_t friction_chunks(const struct cs_system *system) {
 
 static void store_friction(const struct cs_system *system, double t, const double *x,
                            uint32_t first) {
-    struct job job = {.covers = system->contact_samples,
-                      .set = &system->contact_samples->current_set,
-                      .ask = ASK_LAGGED,
-                      .eval = {.t = t, .x = x},
-                      .first = first};
+    struct cs_contact_samples *samples = system->contact_samples;
+    struct job job = {{system, CS_POINT_LAGGED, {.t = t, .x = x}, NULL},
+                      samples,
+                      &samples->current_set,
+                      first};
     do_chunks(&job);
 }
 
@@ -296,8 +176,10 @@ static const char *idle_why(const struct cs_system *system) {
     return system->contact_samples ? NULL : "edges are short enough for every collider";
 }
 
+/* Forces at a state, or their change if a direction is set. */
 static void prepare(const struct cs_system *system, const struct cs_eval *at) {
-    contact_samples_set(system->contact_samples, at);
+    cs_contact_set_gather(
+        run(system, at->dx || at->dv ? CS_POINT_JVP : CS_POINT_FORCE, at, NULL));
 }
 
 static void add(const struct cs_system *system, const struct cs_eval *at, double *f) {
@@ -306,12 +188,26 @@ static void add(const struct cs_system *system, const struct cs_eval *at, double
 }
 
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
-    return contact_samples_energy(system->contact_samples, at);
+    return cs_contact_set_energy(run(system, CS_POINT_ENERGY, at, NULL));
 }
 
+/* Into samples->matrix for products, else into current_set, for blocks alone, which bound the
+ * whole matrix if matrix->bound is set: products need the exact blocks. */
 static void prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
                            bool kept) {
-    contact_samples_set_matrix(system->contact_samples, matrix, kept);
+    struct cs_contact_samples *samples = system->contact_samples;
+    struct cs_contact_set *set = kept ? &samples->matrix : &samples->current_set;
+    struct job job = {{system,
+                       CS_POINT_MATRIX,
+                       {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_ALL},
+                       matrix},
+                      samples,
+                      set,
+                      0};
+    set->diagonal_bound = !kept && matrix->bound;
+    do_chunks(&job);
+    cs_contact_set_gather(set);
+    samples->blocks = set;
 }
 
 static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
@@ -327,21 +223,17 @@ static void add_product(const struct cs_system *system, const double *p, double 
 /* into the set that the matrix does not use */
 static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
                          double *y) {
-    struct cs_contact_samples *samples = system->contact_samples;
-    struct job job = {
-        .covers = samples,
-        .set = &samples->current_set,
-        .ask = ASK_APPROACH,
-        .eval = {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_POTENTIAL},
-        .matrix = matrix};
-    do_chunks(&job);
-    cs_contact_set_gather(&samples->current_set);
-    cs_contact_set_add(&samples->current_set, 0, system->view.n, y);
+    const struct cs_eval at = {
+        .t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_POTENTIAL};
+    struct cs_contact_set *set = run(system, CS_POINT_APPROACH, &at, matrix);
+    cs_contact_set_gather(set);
+    cs_contact_set_add(set, 0, system->view.n, y);
 }
 
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
                          const struct cs_gershgorin *sums) {
-    contact_samples_add_bound(system->contact_samples, at, sums->stiffness, sums->damping);
+    cs_contact_set_add_bound(run(system, CS_POINT_BOUND, at, NULL), sums->stiffness,
+                             sums->damping);
 }
 
 static const char *const ramps[] = {"colliders.friction", NULL};

@@ -1,0 +1,90 @@
+/* The law of point_contact.h with friction that sticks (friction_anchors.h) or acts by its
+ * chord (friction_chord.h), at one point. */
+#include "model/contact/point_query.h"
+
+#include "model/contact/friction_anchors.h"
+#include "model/contact/friction_chord.h"
+
+#include <math.h>
+
+static void find_vector(const struct cs_point_query *job,
+                        const struct cs_posed_collider_law *near,
+                        const struct cs_contact_sample_point *point,
+                        const struct cs_bristle *bristle, struct cs_point_answer *answer) {
+    const struct cs_contact_force_parts parts = cs_force_parts_of(job->eval.parts);
+    const struct cs_point_contact *contact = &answer->contact;
+    const bool rubs = bristle && parts.friction > 0;
+    double *f = answer->vector;
+    if (job->quantity == CS_POINT_JVP) {
+        double dp[3], dv[3];
+        cs_contact_sample_interpolate(point, job->system->view.n, job->eval.dx, dp);
+        cs_contact_sample_interpolate(point, job->system->view.n, job->eval.dv, dv);
+        const struct cs_point_contact_motion move = cs_posed_collider_law_motion(near, dp, dv);
+        cs_point_contact_jvp(contact, parts, &move, f);
+        if (rubs)
+            cs_bristle_add_jvp(contact, bristle, &move, f);
+    } else if (job->quantity == CS_POINT_APPROACH) {
+        cs_point_contact_approach(contact, job->matrix, f);
+        if (bristle)
+            cs_bristle_add_approach(contact, bristle, job->matrix, f);
+    } else {
+        cs_point_contact_force(contact, parts, f);
+        if (rubs)
+            cs_bristle_add_force(contact, bristle, f);
+    }
+}
+
+static void find_matrix(const struct cs_point_query *job,
+                        const struct cs_contact_sample_point *point,
+                        const struct cs_bristle *bristle, struct cs_point_answer *answer) {
+    const struct cs_system *system = job->system;
+    struct cs_contact_pull pull = {.h = -job->matrix->cd};
+    for (int e = 0; e < 6; e++)
+        answer->block[e] = 0;
+    for (uint32_t k = 0; k < point->n && job->matrix->chord; k++)
+        cs_contact_pull_add(&pull, job->matrix, system->view.n, point->particles[k],
+                            system->inv_mass[point->particles[k]], point->w[k]);
+    if (job->matrix->chord)
+        cs_friction_chord_add_block(&answer->contact, job->matrix, &pull, answer->block);
+    else
+        cs_point_contact_add_block(&answer->contact, job->matrix, answer->block);
+    if (bristle)
+        cs_bristle_add_matrix(&answer->contact, bristle, job->matrix, &pull, answer->block);
+}
+
+static void find_bound(const struct cs_bristle *bristle, struct cs_point_answer *answer) {
+    cs_point_contact_bound(&answer->contact, &answer->stiffness, &answer->damping);
+    if (bristle)
+        cs_bristle_raise_bound(bristle, &answer->stiffness, &answer->damping);
+}
+
+bool cs_point_evaluate(const struct cs_point_query *job,
+                       const struct cs_posed_collider_law *near, uint32_t number,
+                       const struct cs_contact_sample_point *point,
+                       struct cs_point_answer *answer) {
+    const struct cs_system *system = job->system;
+    const bool stored = job->quantity == CS_POINT_ENERGY || job->quantity == CS_POINT_LAGGED;
+    struct cs_bristle found;
+    double p[3], v[3];
+    cs_contact_sample_interpolate(point, system->view.n, job->eval.x, p);
+    cs_contact_sample_interpolate(point, system->view.n, stored ? NULL : job->eval.v, v);
+    if (!cs_posed_collider_law_in_range(near, p, v, &answer->contact))
+        return false;
+    if (stored) {
+        const struct cs_point_contact *contact = &answer->contact;
+        answer->energy = cs_barrier_energy(contact->d, contact->range, contact->k);
+        return cs_contact_sample_mass(system, point) < HUGE_VAL;
+    }
+    const bool sticks = point->n == 1
+                            ? cs_bristle_of_particle(system, number, near, job->eval.x,
+                                                     point->particles[0], &found)
+                            : cs_bristle_of_sample(system, near, point, p, &found);
+    const struct cs_bristle *bristle = sticks ? &found : NULL;
+    if (job->quantity == CS_POINT_MATRIX)
+        find_matrix(job, point, bristle, answer);
+    else if (job->quantity == CS_POINT_BOUND)
+        find_bound(bristle, answer);
+    else
+        find_vector(job, near, point, bristle, answer);
+    return true;
+}
