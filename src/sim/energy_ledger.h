@@ -13,7 +13,8 @@
  * Quadrature. Over a step the state follows the quintic through position, velocity and
  * acceleration at both ends. Work is the integral of force times velocity along it by Gauss's
  * rule of three points, which is exact for polynomials of degree 5. The rule has order 6: the
- * remainder is the method's error wherever that is larger.
+ * remainder is the method's error wherever that is larger. A particle whose accelerations the
+ * step does not resolve follows the cubic through positions and velocities instead.
  *
  * Order of the calls in one commit: book_step with the state that the method left,
  * book_correction after each correction, store_state with the state that the next step starts
