@@ -1,4 +1,4 @@
-/* Judges by energy alone whether a run is sound; the header derives the limits. */
+/* Judges by the balance of energy whether a run is sound; the header derives the bounds. */
 #include "study/energy_monitor.h"
 
 #include "base/table.h"
@@ -9,13 +9,35 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Safety factors of the limits of energy and speed. */
-#define ENERGY_FACTOR 2
-#define SPEED_FACTOR  3
+/* Limit of a particle's speed over what it may reach. */
+#define SPEED_FACTOR 5
 /* Ratio of the fastest particle to the root mean square speed of all in sound motions. */
 #define SPEED_SPREAD 4
 #define LEAST_ENERGY 1e-12
 #define LEAST_SPEED  1e-6
+/* A growth counts from so many samples on, else only beyond so many times the bound. */
+enum { SAMPLES_MIN = 8, FAR_BEYOND = 100 };
+
+static const struct {
+    const char *word, *help;
+    char letter;
+} verdicts[] = {
+#define X(name, word, letter, help) [name] = {word, help, letter},
+    CS_STABILITY_LIST(X)
+#undef X
+};
+
+const char *cs_stability_word(enum cs_stability_verdict verdict) {
+    return verdicts[verdict].word;
+}
+
+const char *cs_stability_help(enum cs_stability_verdict verdict) {
+    return verdicts[verdict].help;
+}
+
+char cs_stability_letter(enum cs_stability_verdict verdict) {
+    return verdicts[verdict].letter;
+}
 
 /* Length of a vector. */
 static double length_of(const double a[3]) {
@@ -73,41 +95,54 @@ static double visible_force(const struct cs_system *system, size_t i) {
                : 0;
 }
 
-/* Restarts the account from the present state. wind_mass is sum m a^2 in kg m2/s4: half of it
- * times t^2 is the energy B of the header. */
-static void start(struct cs_energy_monitor *monitor, const struct cs_run *run) {
+/* Restarts the limit of speed from the present state. wind_mass is sum m a^2 in kg m2/s4. */
+static void start_speeds(struct cs_energy_monitor *monitor, const struct cs_run *run) {
     const struct cs_system *system = run->system;
-    const struct cs_energy energy = cs_diagnostics_energy(system, run->t, run->x, run->v);
     uint32_t particle, count;
+    double falls = 0, pushes = 0;
     monitor->t_begin = run->t;
-    monitor->start_energy = cs_energy_without_gravity(&energy);
-    monitor->gravity = energy.gravity;
-    monitor->gravity_released = 0;
     monitor->start_speed = fmax(monitor->start_speed,
                                 cs_measure_speed(system, run->v, HUGE_VAL, &particle, &count));
-    monitor->gravity_acceleration = monitor->force_acceleration = monitor->mass =
-        monitor->wind_mass = 0;
+    monitor->mass = monitor->wind_mass = 0;
     for (size_t i = 0; i < system->view.n; i++) {
         /* pinned particles do not move, whatever pushes them */
         if (system->inv_mass[i] <= 0)
             continue;
         const double push = force_acceleration(system, i, false) + visible_force(system, i);
-        monitor->gravity_acceleration =
-            fmax(monitor->gravity_acceleration, force_acceleration(system, i, true));
-        monitor->force_acceleration = fmax(monitor->force_acceleration, push);
+        falls = fmax(falls, force_acceleration(system, i, true));
+        pushes = fmax(pushes, push);
         monitor->mass += system->mass[i];
         monitor->wind_mass += system->mass[i] * push * push;
     }
+    monitor->acceleration = falls + pushes;
+}
+
+/* True if a sample shows all that can put energy in: no outer forces, no events, no correction
+ * after steps but those that only lose. */
+static bool is_closed(const struct cs_system *system) {
+    const struct cs_plan_row *rows = system->plan.rows;
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (system->terms[k]->part_bits & (CS_PART_WIND | CS_PART_EXTERNAL))
+            return false;
+    return !system->events && !rows[CS_FEATURE_CONTACT].built &&
+           !rows[CS_FEATURE_STRAIN_LIMIT].built && !rows[CS_FEATURE_CROSSINGS].built;
 }
 
 enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
                                        const struct cs_run *run, struct cs_error *error) {
+    const struct cs_energy energy =
+        cs_diagnostics_energy(run->system, run->t, run->x, run->v);
     double speed = 0;
-    *monitor = (struct cs_energy_monitor){0};
+    *monitor = (struct cs_energy_monitor){.stride = 1, .is_closed = is_closed(run->system)};
     if (spring_speed(run, &speed, error))
         return error->status;
-    start(monitor, run);
+    start_speeds(monitor, run);
     monitor->start_speed += speed;
+    monitor->last_sample = run->t;
+    monitor->last_total = cs_energy_total(&energy);
+    monitor->last_kinetic = energy.kinetic;
+    monitor->start_energy = cs_energy_without_gravity(&energy);
+    monitor->gravity = energy.gravity;
     return CS_OK;
 }
 
@@ -118,77 +153,156 @@ static bool has_event_since(const struct cs_energy_monitor *monitor, const struc
                       cs_events_speed(run->system) > 0);
 }
 
-/* Available kinetic and elastic energy in J at t seconds after the restart. */
-static double available(const struct cs_energy_monitor *monitor, double t) {
-    /* the wind's work, were it to push all the way in free flight */
-    const double blown = monitor->wind_mass * t * t / 2;
-    return monitor->start_energy + monitor->gravity_released + blown +
-           sqrt(2 * blown * 2 * (monitor->start_energy + monitor->gravity_released));
+/* S of the head, in J. */
+static double bound_of(const struct cs_energy_monitor *monitor) {
+    return fmax(monitor->start_energy + monitor->released + monitor->input, LEAST_ENERGY);
 }
 
-void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs_run *run,
-                              struct cs_energy_monitor_row *row) {
-    const struct cs_system *system = run->system;
-    *row = (struct cs_energy_monitor_row){.t = run->t};
-    row->energy = cs_diagnostics_energy(system, run->t, run->x, run->v);
-    row->strain = cs_diagnostics_strain(system, run->x);
-    /* no bound holds after an event has added energy: restart */
-    if (has_event_since(monitor, run))
-        start(monitor, run);
+/* W in J since the last sample, by the ledger: what each column gave, and both of projection
+ * together. Dampers and the velocity loss give nothing. */
+static double find_input(struct cs_energy_monitor *monitor,
+                         const struct cs_energy_ledger *ledger) {
+    double input = 0, gave[CS_WORKS_MAX];
+    for (int k = 0; k < CS_WORKS_MAX; k++) {
+        gave[k] = ledger->work[k] - monitor->last_ledger[k];
+        monitor->last_ledger[k] = ledger->work[k];
+    }
+    gave[CS_WORK_PROJECTION] += gave[CS_WORK_ABSORPTION];
+    gave[CS_WORK_INTEGRATOR] = gave[CS_WORK_ABSORPTION] = 0;
+    for (int k = 0; k < CS_WORKS_MAX; k++)
+        input += fmax(gave[k], 0);
+    return input;
+}
+
+/* W in J since the last sample, without a ledger: what rose with an event, and what outer forces
+ * can have given at most. */
+static double estimate_input(const struct cs_energy_monitor *monitor, const struct cs_run *run,
+                             const struct cs_energy_monitor_row *row, bool with_event) {
+    const double passed = run->t - monitor->last_sample;
+    const double rose = cs_energy_total(&row->energy) - monitor->last_total;
+    if (with_event)
+        return fmin(fmax(rose, 0), bound_of(monitor));
+    const double push = sqrt(monitor->wind_mass);
+    return push * passed *
+           (sqrt(2 * fmax(monitor->last_kinetic, row->energy.kinetic)) + push * passed);
+}
+
+/* Adds the interval since the last sample to the balance. */
+static void balance(struct cs_energy_monitor *monitor, const struct cs_run *run,
+                    const struct cs_energy_ledger *ledger, bool with_event,
+                    struct cs_energy_monitor_row *row) {
+    const double total = cs_energy_total(&row->energy);
+    monitor->released = fmax(monitor->released, monitor->gravity - row->energy.gravity);
+    const double input = ledger ? find_input(monitor, ledger)
+                                : estimate_input(monitor, run, row, with_event);
+    monitor->input += input;
+    monitor->balance += total - monitor->last_total - input;
+    monitor->lowest = fmin(monitor->lowest, monitor->balance);
+    row->made = monitor->balance - monitor->lowest;
+    row->bound = bound_of(monitor);
+    row->ledger_made = (double)NAN;
+    if (ledger) {
+        const double made = ledger->work[CS_WORK_INTEGRATOR];
+        monitor->ledger_lowest = fmin(monitor->ledger_lowest, made);
+        row->ledger_made = made - monitor->ledger_lowest;
+    }
     monitor->last_sample = run->t;
-    monitor->gravity_released =
-        fmax(monitor->gravity_released, monitor->gravity - row->energy.gravity);
-    const double passed = run->t - monitor->t_begin;
-    const double energy = fmax(available(monitor, passed), LEAST_ENERGY);
-    const double mean = monitor->mass > 0 ? sqrt(2 * energy / monitor->mass) : 0;
-    /* what the forces can have added, at most a few times the mean that the energy allows */
+    monitor->last_total = total;
+    monitor->last_kinetic = row->energy.kinetic;
+}
+
+/* Stores what was made; halves the resolution if the array is full. Returns whether it is half
+ * more than ever in the first half of the samples. */
+static bool is_growing(struct cs_energy_monitor *monitor, double made) {
+    double *peaks = monitor->peaks, before = 0;
+    if (monitor->n_samples / monitor->stride == CS_MONITOR_PEAKS) {
+        for (uint32_t k = 0; k < CS_MONITOR_PEAKS / 2; k++) {
+            peaks[k] = fmax(peaks[2 * k], peaks[2 * k + 1]);
+            peaks[CS_MONITOR_PEAKS / 2 + k] = 0;
+        }
+        monitor->stride *= 2;
+    }
+    const uint32_t now = monitor->n_samples++ / monitor->stride;
+    peaks[now] = fmax(peaks[now], made);
+    for (uint32_t k = 0; k < now / 2; k++)
+        before = fmax(before, peaks[k]);
+    return monitor->n_samples >= SAMPLES_MIN && made > 1.5 * before;
+}
+
+/* Largest speed in m/s that counts as sound: what gravity and outer forces can have added is at
+ * most a few times the mean that the energy allows. */
+static double limit_of_speed(const struct cs_energy_monitor *monitor, const struct cs_run *run) {
+    const double mean =
+        monitor->mass > 0 ? sqrt(2 * bound_of(monitor) / monitor->mass) : 0;
     const double fall =
-        fmin((monitor->gravity_acceleration + monitor->force_acceleration) * passed,
-             SPEED_SPREAD * mean);
-    row->energy_limit = ENERGY_FACTOR * energy;
-    row->speed_limit = SPEED_FACTOR * fmax(monitor->start_speed + fall, LEAST_SPEED);
-    row->speed =
-        cs_measure_speed(system, run->v, row->speed_limit, &row->particle, &row->particles);
-    const double held = cs_energy_without_gravity(&row->energy);
+        fmin(monitor->acceleration * (run->t - monitor->t_begin), SPEED_SPREAD * mean);
+    return SPEED_FACTOR * fmax(monitor->start_speed + fall, LEAST_SPEED);
+}
+
+static void judge(struct cs_energy_monitor *monitor, const struct cs_energy_ledger *ledger,
+                  struct cs_energy_monitor_row *row) {
+    const bool grows = is_growing(monitor, row->made);
     /* first, because no comparison with NAN is true */
-    if (!isfinite(held + row->speed + row->strain))
+    if (!isfinite(cs_energy_total(&row->energy) + row->speed + row->strain))
         row->verdict = CS_STABILITY_NOT_FINITE;
-    else if (held > row->energy_limit)
+    else if (row->made > row->bound && (grows || row->made > FAR_BEYOND * row->bound))
         row->verdict = CS_STABILITY_GLOBAL;
     else if (row->particles)
         row->verdict = CS_STABILITY_LOCAL;
-    if (row->verdict > monitor->worst_verdict)
+    row->in_doubt = row->verdict == CS_STABILITY_LOCAL ||
+                    (row->verdict == CS_STABILITY_GLOBAL && !ledger && !monitor->is_closed);
+    if (row->verdict > monitor->worst_verdict) {
         monitor->worst_verdict = row->verdict;
-    if (row->verdict >= CS_STABILITY_LOCAL && !monitor->has_local_instability) {
-        monitor->has_local_instability = true;
-        monitor->first = *row;
+        /* a verdict without doubt needs no earlier one with it */
+        if (monitor->first.verdict == CS_STABILITY_BOUNDED ||
+            (monitor->first.in_doubt && !row->in_doubt))
+            monitor->first = *row;
+        monitor->in_doubt = row->in_doubt;
     }
+}
+
+void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs_run *run,
+                              const struct cs_energy_ledger *ledger,
+                              struct cs_energy_monitor_row *row) {
+    const struct cs_system *system = run->system;
+    const bool with_event = has_event_since(monitor, run);
+    *row = (struct cs_energy_monitor_row){.t = run->t};
+    row->energy = cs_diagnostics_energy(system, run->t, run->x, run->v);
+    row->strain = cs_diagnostics_strain(system, run->x);
+    balance(monitor, run, ledger, with_event, row);
+    /* no bound of speed holds after an event has added energy */
+    if (with_event)
+        start_speeds(monitor, run);
+    row->speed_limit = limit_of_speed(monitor, run);
+    row->speed =
+        cs_measure_speed(system, run->v, row->speed_limit, &row->particle, &row->particles);
+    judge(monitor, ledger, row);
 }
 
 void cs_energy_monitor_print(const struct cs_energy_monitor *monitor,
                              const struct cs_system *system, struct cs_text *out) {
     const struct cs_energy_monitor_row *first = &monitor->first;
-    if (!monitor->has_local_instability)
+    if (first->verdict == CS_STABILITY_BOUNDED)
         return;
     cs_text_add(out, "%s from t = %.6g s on: ", cs_stability_word(first->verdict), first->t);
     if (first->verdict == CS_STABILITY_GLOBAL)
-        cs_text_add(out, "kinetic + elastic energy %.3g J exceeds the possible %.3g J",
-                    cs_energy_without_gravity(&first->energy),
-                    first->energy_limit / ENERGY_FACTOR);
-    else {
+        cs_text_add(out, "the integrator made %.3g J, the scene held and gave %.3g J; fastest ",
+                    first->made, first->bound);
+    else
         cs_text_add(out, "%u particle%s, the fastest ", first->particles,
                     first->particles == 1 ? "" : "s");
-        cs_system_print_particle(system, first->particle, out);
-        cs_text_add(out, " at %.3g m/s, above the limit of %.3g m/s", first->speed,
+    cs_system_print_particle(system, first->particle, out);
+    cs_text_add(out, " at %.3g m/s", first->speed);
+    if (first->verdict == CS_STABILITY_LOCAL)
+        cs_text_add(out, ", above the limit of %.3g m/s, which at half the step none exceeds",
                     first->speed_limit);
-    }
     if (monitor->worst_verdict > first->verdict)
         cs_text_add(out, "; later %s", cs_stability_word(monitor->worst_verdict));
 }
 
 void cs_energy_monitor_print_head(struct cs_text *out) {
     cs_text_add(out, "frame,t,kinetic,elastic,gravity,energy,largest_strain,largest_velocity,"
-                     "particle,fast_particles,verdict\n");
+                     "particle,fast_particles,verdict,made,bound\n");
 }
 
 void cs_energy_monitor_print_row(const struct cs_energy_monitor_row *row, uint32_t frame,
@@ -200,6 +314,9 @@ void cs_energy_monitor_print_row(const struct cs_energy_monitor_row *row, uint32
     cs_text_add(out, "%u", frame);
     for (size_t k = 0; k < sizeof values / sizeof *values; k++)
         cs_csv_add_number(out, values[k]);
-    cs_text_add(out, ",%u,%u,%s\n", row->particle, row->particles,
-                cs_stability_word(row->verdict));
+    cs_text_add(out, ",%u,%u,%s", row->particle, row->particles,
+                row->in_doubt ? "in doubt" : cs_stability_word(row->verdict));
+    cs_csv_add_number(out, row->made);
+    cs_csv_add_number(out, row->bound);
+    cs_text_add(out, "\n");
 }

@@ -1,21 +1,77 @@
-/* energy_monitor.h - instability monitor based on energy alone, without a reference run.
+/* energy_monitor.h - the judge of stability, the same in run, stability, advise and compare:
+ * has the integrator made energy?
  *
- * Kinetic and elastic energy cannot exceed the available energy: that of the start E0, the
- * potential energy G that gravity has released, and the work of the wind. That work is largest
- * if every particle flies freely along the force. A particle of mass m under a force of at most
- * m a then gains the velocity a t. With B = sum m (a t)^2 / 2 and the Cauchy-Schwarz inequality
- *   E(t) <= sum m (v + a t)^2 / 2 <= E0 + G + B + 2 sqrt((E0 + G) B).
- * The speed of a particle is limited by its speed at the start, the energy of the springs at
- * it, and a fall over the time passed, which is a heuristic. Both limits have a safety factor,
- * because an instability exceeds any factor soon.
+ * Balance. At each sample, with the total energy E = T + U and the energy W that the scene has
+ * put in since the start,
+ *   R(t) = E(t) - W(t),  made(t) = R(t) - min of R until t.
+ * Dampers, friction, drag and corrections that lose energy only lower R. For the exact solution
+ * R therefore never rises: a rise is energy of the integrator, and at least as much as the
+ * ledger's column (energy_ledger.h) has less what was lost meanwhile. A run whose energy falls
+ * is never called unstable.
  *
- * Events (releases, ramps, paths) add energy without such a bound. After a frame with one, the
- * monitor restarts from the present state. */
+ * Bound. S(t) = energy but gravity's at the start + most that gravity has released + W(t): all
+ * that the scene held and gave. A run is globally unstable if made > S, and still grows: made is
+ * half more than ever in the first half of the run until then, or 100 S. The second condition is
+ * for symplectic methods. Near their limit they conserve
+ *   w^2 + square (1 - h^2 square / 4) s^2
+ * (velocity-verlet on s'' = -square s, w = s'), so energy swings by (h w)^2/4 / (1 - (h w)^2/4)
+ * of itself, without bound as h approaches its limit, and comes back.
+ *
+ * W without a ledger, between two samples D apart: of wind and other outer forces of at most m_i
+ * a_i on particle i, by the Cauchy-Schwarz inequality D sqrt(sum m a^2) sqrt(sum m v^2); of
+ * events, ramps and moving things all that E rose by, up to S. Corrections after steps are not
+ * known. Where any of these act, the verdict of a sample is in doubt until a run with a ledger
+ * confirms it (cs_stability_confirm), which takes W from its columns.
+ *
+ * Local instability: a particle is faster than five times its speed at the start, what the
+ * energy of its springs could give it, and a fall over the time passed. A whip does that too:
+ * it is in doubt until the same run at half the step has no such particle, and the ledger says
+ * that the integrator made half of the particle's energy. */
 #ifndef CS_ENERGY_MONITOR_H
 #define CS_ENERGY_MONITOR_H
 
+#include "sim/energy_ledger.h"
 #include "sim/run.h"
-#include "study/stability_verdict.h"
+
+#include "model/force/diagnostics.h"
+
+/* X(name, word, letter of maps, what it means) from best to worst */
+#define CS_STABILITY_LIST(X)                                                                   \
+    X(CS_STABILITY_BOUNDED, "bounded", '.', "no sign of instability")                          \
+    X(CS_STABILITY_DAMPED, "over-damped", 'd',                                                 \
+      "stable, but the mean kinetic energy is below half of the reference's")                  \
+    X(CS_STABILITY_SHORT, "not run to the end", '>',                                           \
+      "no sign of instability in the steps that a cell may take, fewer than its time needs")   \
+    X(CS_STABILITY_LOCAL, "local instability", 'l',                                            \
+      "particles too fast, by energy of the integrator; at half the step there are none")      \
+    X(CS_STABILITY_GLOBAL, "global instability", 'G',                                          \
+      "the integrator made more energy than the scene held and gave")                          \
+    X(CS_STABILITY_NOT_FINITE, "not finite", 'X', "a number of the state is not finite")       \
+    X(CS_STABILITY_FAILED, "solver failed", 'F', "the method failed and reported a reason")    \
+    X(CS_STABILITY_OVER_BUDGET, "over budget", 'b', "the time allowed for a cell ran out")     \
+    X(CS_STABILITY_UNJUDGED, "not judged", '?', "there is no reference run to compare with")
+
+enum cs_stability_verdict {
+#define X(name, word, letter, help) name,
+    CS_STABILITY_LIST(X)
+#undef X
+        CS_STABILITY_VERDICTS
+};
+
+/* Word, explanation and letter of a verdict. */
+const char *cs_stability_word(enum cs_stability_verdict verdict);
+const char *cs_stability_help(enum cs_stability_verdict verdict);
+char cs_stability_letter(enum cs_stability_verdict verdict);
+
+/* True if the run shows no sign of instability. */
+static inline bool cs_stability_is_stable(enum cs_stability_verdict verdict) {
+    return verdict == CS_STABILITY_BOUNDED || verdict == CS_STABILITY_DAMPED;
+}
+
+/* True for a stable run, and for one that was too short to be called stable. */
+static inline bool cs_stability_is_sound(enum cs_stability_verdict verdict) {
+    return cs_stability_is_stable(verdict) || verdict == CS_STABILITY_SHORT;
+}
 
 /* Figures and verdict of one sample. */
 struct cs_energy_monitor_row {
@@ -25,32 +81,44 @@ struct cs_energy_monitor_row {
     uint32_t particle;       /* the fastest */
     uint32_t particles;      /* faster than the limit */
     double speed_limit;      /* m/s */
-    double energy_limit;     /* J, of kinetic + elastic */
+    double made, bound;      /* J: by the integrator, and S of the head */
+    double ledger_made;      /* J, rise of the ledger's column; NAN without a ledger */
     /* BOUNDED, LOCAL, GLOBAL or NOT_FINITE, of this time alone */
     enum cs_stability_verdict verdict;
+    bool in_doubt; /* until it is confirmed */
 };
 
-/* State of the monitor since its last restart. */
+enum { CS_MONITOR_PEAKS = 64 };
+
+/* State of the monitor. */
 struct cs_energy_monitor {
-    double t_begin, last_sample;  /* s: the start, and the last look */
-    double start_energy, gravity; /* J at the start: kinetic + elastic, of gravity */
-    double gravity_released;      /* J, most that gravity gave until now */
+    /* the balance, in J */
+    double last_sample, last_total, last_kinetic, last_ledger[CS_WORKS_MAX];
+    double balance, lowest;                 /* R, and its least value */
+    double ledger_lowest;                   /* of the column of the integrator */
+    double start_energy, gravity, released; /* at the start; most that gravity gave since */
+    double input;                           /* W */
+    /* largest `made` in each of the CS_MONITOR_PEAKS or fewer spans of `stride` samples */
+    double peaks[CS_MONITOR_PEAKS];
+    uint32_t n_samples, stride;
+    bool is_closed; /* nothing can put energy in but what a sample shows */
+    /* the speeds; they restart after a frame with an event */
+    double t_begin;     /* s */
     double start_speed; /* m/s: largest, and what the springs at one particle could give it */
-    double gravity_acceleration,
-        force_acceleration; /* m/s2, of gravity, and of wind and viewpoint forces at most */
-    double mass,
-        wind_mass; /* kg that can move; sum of m a^2 in kg m2/s4, for the wind's work */
-    bool has_local_instability;         /* a local instability was seen */
-    struct cs_energy_monitor_row first; /* when it began */
+    double acceleration; /* m/s2, the largest by gravity, wind and viewpoint forces */
+    double mass, wind_mass; /* kg that can move; sum of m a^2 in kg m2/s4, of outer forces */
+    struct cs_energy_monitor_row first; /* when an instability began; verdict BOUNDED: none */
     enum cs_stability_verdict worst_verdict;
+    bool in_doubt; /* the worst verdict or the first one is */
 };
 
 /* Begins at the start of a run, before its first frame. CS_ERR_MEMORY. */
 enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
                                        const struct cs_run *run, struct cs_error *error);
-/* Samples the run after a frame and fills *row. Updates the worst verdict and the first
- * instability. */
+/* Samples the run after a frame and fills *row. ledger: of this run from its start on; NULL:
+ * none. Updates the worst verdict and the first instability. */
 void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs_run *run,
+                              const struct cs_energy_ledger *ledger,
                               struct cs_energy_monitor_row *row);
 
 /* Adds "local instability from t = 0.35 s on: ..."; nothing if the run was sound. */

@@ -67,12 +67,14 @@ enum cs_status cs_recorded_run_open(struct cs_recorded_run *recording,
     return error->status;
 }
 
-/* Stores the state of the current frame and counts its crossings. */
+/* Stores the state of the current frame, judges it and counts its crossings. */
 static void store_state(struct cs_trajectory *track, const struct cs_run *run,
-                        struct cs_crossing_stats *crossings) {
+                        struct cs_recorded_run_result *end) {
+    struct cs_energy_monitor_row row;
     if (!track)
         return;
-    cs_crossing_stats_add(crossings, run);
+    cs_crossing_stats_add(&end->crossings, run);
+    cs_energy_monitor_sample(&end->monitor, run, NULL, &row);
     memcpy(cs_trajectory_state(track, run->frame), run->x, 6 * track->n * sizeof *run->x);
     track->n_recorded = run->frame;
 }
@@ -83,12 +85,14 @@ static void step_frames(struct cs_recorded_run *recording, struct cs_trajectory 
                         struct cs_recorded_run_result *end, struct cs_error *error) {
     struct cs_run *run = &recording->session.run;
     struct cs_follow follow = {.run = run, .last = recording->frames, .every = track ? 1 : 0};
+    if (track && cs_energy_monitor_begin(&end->monitor, run, error))
+        return;
     do
-        store_state(track, run, &end->crossings);
+        store_state(track, run, end);
     while (cs_follow_next(&follow, error));
     // a state between two frames, at which the run ended, counts as well
     if (run->outcome != CS_RUNNING && !error->status)
-        store_state(track, run, &end->crossings);
+        store_state(track, run, end);
     end->cpu = follow.cpu;
     end->wall = follow.wall;
 }

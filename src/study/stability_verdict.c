@@ -1,67 +1,127 @@
-/* Derives the verdict on a run by comparison with a trusted run of the same scene. */
+/* Confirms verdicts in doubt, samples runs, and compares sound ones with a trusted run. */
 #include "study/stability_verdict.h"
 
 #include <math.h>
 
-/* J and m/s; below these the reference counts as motionless. Otherwise rounding errors alone
- * would exceed every multiple of its energy. */
+/* J; below it the reference counts as motionless. Otherwise rounding errors alone would exceed
+ * every multiple of its energy. */
 #define LEAST_ENERGY 1e-15
-#define LEAST_SPEED  1e-9
+/* Budget of a run that confirms, over that of the run in doubt: a ledger takes some ten
+ * evaluations of the forces per step. */
+#define BUDGETS 10
 
-static const struct {
-    const char *word, *help;
-    char letter;
-} verdicts[] = {
-#define X(name, word, letter, help) [name] = {word, help, letter},
-    CS_STABILITY_LIST(X)
-#undef X
+/* A run that confirms: its request, and what its monitor found. */
+struct check {
+    struct cs_session_settings settings;
+    double seconds;   /* to the sample at this time */
+    bool with_ledger; /* ends once the ledger shows a global instability */
+    struct cs_energy_monitor monitor;
+    struct cs_energy_monitor_row row; /* the last */
+    bool takes_dt;                    /* the method has fixed steps */
+    uint32_t particle;
+    double mass; /* kg, of that particle */
 };
 
-const char *cs_stability_word(enum cs_stability_verdict verdict) {
-    return verdicts[verdict].word;
+static void follow_check(struct check *check, struct cs_run *run,
+                         const struct cs_energy_ledger *ledger, struct cs_error *error) {
+    struct cs_follow follow = {.run = run,
+                               .last = cs_follow_frames(run->system->scene, check->seconds),
+                               .every = 1};
+    struct cs_run_result result;
+    if (!cs_energy_monitor_begin(&check->monitor, run, error))
+        do
+            cs_energy_monitor_sample(&check->monitor, run, ledger, &check->row);
+        while (check->monitor.worst_verdict < CS_STABILITY_GLOBAL &&
+               cs_follow_next(&follow, error));
+    cs_follow_result(run, "", &result, error);
 }
 
-const char *cs_stability_help(enum cs_stability_verdict verdict) {
-    return verdicts[verdict].help;
+static enum cs_status run_check(struct check *check, struct cs_error *error) {
+    struct cs_session session;
+    struct cs_energy_ledger ledger = {0};
+    check->settings.run.ledger = check->with_ledger ? &ledger : NULL;
+    if (cs_session_open_system(&session, &check->settings, error))
+        return error->status;
+    check->takes_dt = cs_method_takes_dt(session.method.integrator);
+    check->mass = session.system.mass[check->particle];
+    if (!(check->with_ledger &&
+          cs_energy_ledger_open(&ledger, &session.system, 0, error)) &&
+        !cs_session_begin(&session, NULL, error))
+        follow_check(check, &session.run, check->with_ledger ? &ledger : NULL, error);
+    cs_energy_ledger_close(&ledger);
+    cs_session_close(&session);
+    return error->status;
 }
 
-char cs_stability_letter(enum cs_stability_verdict verdict) {
-    return verdicts[verdict].letter;
+/* True if the particle that was too fast is by the integrator: at half the step none is, and the
+ * ledger's column rose by half of its energy. */
+static enum cs_status check_local(const struct check *asked, double half_step,
+                                  const struct cs_energy_monitor_row *first, bool *found,
+                                  struct cs_error *error) {
+    struct check check = *asked;
+    *found = false;
+    check.seconds = first->t;
+    check.particle = first->particle;
+    if (run_check(&check, error) || !check.takes_dt ||
+        !(check.row.ledger_made > 0.25 * check.mass * first->speed * first->speed))
+        return error->status;
+    check.with_ledger = false;
+    check.settings.dt = half_step;
+    if (!run_check(&check, error))
+        *found = check.monitor.worst_verdict == CS_STABILITY_BOUNDED;
+    return error->status;
 }
 
-struct cs_sampled_run_limits cs_stability_limits(const struct cs_sampled_run *reference) {
-    const double held = fmax(reference->energy_max, LEAST_ENERGY);
-    return (struct cs_sampled_run_limits){
-        .speed = 5 * fmax(reference->speed_max, LEAST_SPEED),
-        .energy = 2 * held,
-        .energy_gain = reference->energy_gain_max + held / 2,
-    };
-}
-
-/* True if the energy grows between the halves of the run, or is far above the reference. */
-static bool is_growing(const struct cs_sampled_run *trial,
-                       const struct cs_sampled_run *reference) {
-    return trial->energy_max_second_half > 1.5 * trial->energy_max_first_half ||
-           trial->mean_kinetic > 10 * fmax(reference->mean_kinetic, LEAST_ENERGY);
+enum cs_status cs_stability_confirm(struct cs_energy_monitor *monitor,
+                                    const struct cs_session_settings *settings,
+                                    double seconds, uint64_t steps, struct cs_error *error) {
+    const struct cs_energy_monitor_row first = monitor->first;
+    const enum cs_stability_verdict worst = monitor->worst_verdict;
+    struct check check = {.settings = *settings, .seconds = seconds, .with_ledger = true};
+    if (!monitor->in_doubt || !steps)
+        return CS_OK;
+    check.settings.threads = 0;
+    check.settings.render = false;
+    check.settings.run.trace = NULL;
+    check.settings.run.budget *= BUDGETS;
+    monitor->first = (struct cs_energy_monitor_row){0};
+    monitor->worst_verdict = CS_STABILITY_BOUNDED;
+    monitor->in_doubt = false;
+    if (worst == CS_STABILITY_GLOBAL && run_check(&check, error))
+        return error->status;
+    bool found = check.monitor.worst_verdict >= CS_STABILITY_GLOBAL;
+    if (found)
+        monitor->first = check.row;
+    else if (first.verdict == CS_STABILITY_LOCAL) {
+        if (check_local(&check, 0.5 * seconds / (double)steps, &first, &found, error))
+            return error->status;
+        monitor->first = first;
+    }
+    if (!found)
+        monitor->first = (struct cs_energy_monitor_row){0};
+    monitor->first.in_doubt = false;
+    monitor->worst_verdict = monitor->first.verdict;
+    return CS_OK;
 }
 
 enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *trial,
                                              const struct cs_sampled_run *reference,
-                                             bool whole) {
-    if (trial->result.outcome == CS_NOT_FINITE)
+                                             bool is_full_length) {
+    const enum cs_outcome outcome = trial->result.outcome;
+    const enum cs_stability_verdict verdict = trial->monitor.worst_verdict;
+    if (outcome == CS_NOT_FINITE || verdict == CS_STABILITY_NOT_FINITE)
         return CS_STABILITY_NOT_FINITE;
-    if (trial->result.outcome == CS_UNBOUNDED ||
-        (trial->exceeded_limit && is_growing(trial, reference)))
+    if (outcome == CS_UNBOUNDED || verdict == CS_STABILITY_GLOBAL)
         return CS_STABILITY_GLOBAL;
-    if (trial->result.outcome == CS_FAILED)
+    if (outcome == CS_FAILED)
         return CS_STABILITY_FAILED;
-    if (trial->speed_excess.exists)
+    if (verdict == CS_STABILITY_LOCAL)
         return CS_STABILITY_LOCAL;
-    if (trial->result.outcome == CS_OVER_BUDGET)
+    if (outcome == CS_OVER_BUDGET)
         return CS_STABILITY_OVER_BUDGET;
-    if (!whole)
+    if (!is_full_length)
         return CS_STABILITY_SHORT;
-    if (reference->kinetic > LEAST_ENERGY &&
+    if (reference && reference->kinetic > LEAST_ENERGY &&
         trial->mean_kinetic < 0.5 * reference->mean_kinetic)
         return CS_STABILITY_DAMPED;
     return CS_STABILITY_BOUNDED;
@@ -73,49 +133,20 @@ double cs_stability_drift(const struct cs_sampled_run *trial,
            fmax(reference->energy_max, LEAST_ENERGY);
 }
 
-/* Runs a scene once for a study and samples scalar figures. */
-
-/* Records the largest speed, and the first time and largest number of particles above the
- * limit. */
-static void note_excess(struct cs_sampled_run *trial, const struct cs_run *run, double limit) {
-    struct cs_speed_excess *excess = &trial->speed_excess;
-    uint32_t fastest, count;
-    const double speed = cs_measure_speed(run->system, run->v, limit, &fastest, &count);
-    trial->speed_max = fmax(trial->speed_max, speed);
-    if (count && !excess->exists) {
-        excess->exists = true;
-        excess->time = run->t;
-    }
-    excess->particles = count > excess->particles ? count : excess->particles;
-}
-
 /* Updates all figures with the state of one sample. */
 static void take_sample(struct cs_sampled_run *trial,
                         const struct cs_sampled_run_settings *settings,
                         const struct cs_run *run) {
-    const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
-    const double whole = cs_energy_total(&energy);
-    if (run->frame == 0)
-        trial->start_energy = whole;
-    trial->end_energy = whole;
-    trial->kinetic = fmax(trial->kinetic, energy.kinetic);
-    trial->energy_max = fmax(trial->energy_max, cs_energy_without_gravity(&energy));
-    /* energy that keeps growing from one half to the next marks an instability */
-    double *half = run->t < settings->seconds / 2 ? &trial->energy_max_first_half
-                                                  : &trial->energy_max_second_half;
-    *half = fmax(*half, cs_energy_without_gravity(&energy));
-    trial->energy_gain_max = fmax(trial->energy_gain_max, whole - trial->start_energy);
-    trial->mean_kinetic += energy.kinetic;
-    note_excess(trial, run, settings->limits.speed);
+    struct cs_energy_monitor_row row;
+    cs_energy_monitor_sample(&trial->monitor, run, settings->session.run.ledger, &row);
+    trial->end_energy = cs_energy_total(&row.energy);
+    trial->kinetic = fmax(trial->kinetic, row.energy.kinetic);
+    trial->energy_max = fmax(trial->energy_max, cs_energy_without_gravity(&row.energy));
+    trial->mean_kinetic += row.energy.kinetic;
+    trial->speed_max = fmax(trial->speed_max, row.speed);
     cs_crossing_stats_add(&trial->crossings, run);
-    /* only the first crossing counts: its time is reported */
-    if (!trial->exceeded_limit && (trial->energy_max > settings->limits.energy ||
-                                   trial->energy_gain_max > settings->limits.energy_gain)) {
-        trial->exceeded_limit = true;
-        trial->exceeded_time = run->t;
-    }
     if (settings->on_sample)
-        settings->on_sample(settings->ctx, run, &energy);
+        settings->on_sample(settings->ctx, run, &row.energy);
 }
 
 /* Frame rate of the samples: a whole number of steps between two samples, so dt is not
@@ -136,6 +167,8 @@ static void run_samples(struct cs_sampled_run *trial,
     struct cs_follow follow = {.run = run,
                                .last = cs_follow_frames(run->system->scene, settings->seconds),
                                .every = 1};
+    if (cs_energy_monitor_begin(&trial->monitor, run, error))
+        return;
     do
         take_sample(trial, settings, run);
     while (cs_follow_next(&follow, error));
@@ -158,7 +191,9 @@ enum cs_status cs_sampled_run_execute(struct cs_sampled_run *trial,
         return error->status;
     if (!cs_session_begin(&session, NULL, error))
         run_samples(trial, settings, &session.run, error);
-    cs_follow_result(&session.run, "", &trial->result, error);
+    if (!cs_follow_result(&session.run, "", &trial->result, error))
+        cs_stability_confirm(&trial->monitor, &asked, session.run.t, session.run.counts.steps,
+                             error);
     cs_session_close(&session);
     return error->status;
 }

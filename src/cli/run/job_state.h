@@ -11,10 +11,10 @@
 #include "io/frame_writer.h"
 #include "sim/energy_ledger.h"
 #include "sim/run_record.h"
-#include "study/energy_monitor.h"
 #include "study/frame_picture.h"
 #include "study/recorded_run.h"
 #include "study/session.h"
+#include "study/stability_verdict.h"
 
 #include <math.h>
 

@@ -31,7 +31,8 @@ static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
 static void look(struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
     cs_run_hash(run, job->hash);
-    cs_energy_monitor_sample(&job->monitor, run, &job->sound);
+    cs_energy_monitor_sample(&job->monitor, run, job->settings->ledger ? &job->ledger : NULL,
+                             &job->sound);
     cs_crossing_stats_add(&job->crossings, run);
 }
 
@@ -178,6 +179,9 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     if (warn(job, error) || begin(job, error))
         return error->status;
     job->failure = run_frames(job, error) == CS_ERR_MODULE ? error->message : NULL;
+    if (!error->status && job->session.run.outcome != CS_INTERRUPTED)
+        cs_stability_confirm(&job->monitor, &settings->session, job->session.run.t,
+                             job->session.run.counts.steps, error);
     finish_files(job, error);
     job->wall_seconds = cs_clock_wall() - start;
     return error->status;

@@ -48,7 +48,7 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
                       run->blow_up.time, run->blow_up.particle, run->blow_up.energy,
                       run->blow_up.bound);
     cs_json_write(out, ",\n  'verdict': %s", cs_stability_word(job->monitor.worst_verdict));
-    if (job->monitor.has_local_instability)
+    if (job->monitor.first.verdict != CS_STABILITY_BOUNDED)
         cs_json_write(
             out, ",\n  'unstable_from': {'time': %g, 'particle': %u, 'particles': %u}",
             job->monitor.first.t, job->monitor.first.particle, job->monitor.first.particles);

@@ -27,7 +27,6 @@ static enum cs_status try_safe(struct cs_advice *row,
     struct cs_sampled_run trial;
     asked.session.dt = row->safe;
     asked.seconds = reference->seconds;
-    asked.limits = cs_stability_limits(&reference->run);
     if (cs_sampled_run_execute(&trial, &asked, error))
         return error->status;
     row->verdict = cs_stability_judge(&trial, &reference->run, true);
@@ -168,13 +167,11 @@ static enum cs_status measure_growth(struct cs_advice *row, const struct cs_meth
     return CS_OK;
 }
 
-/* Advice for a method that chooses its steps: no reference and no limits, so only a blow-up, a
- * failure or the budget can show. */
+/* Advice for a method that chooses its steps: a probe run without a reference. */
 static enum cs_status advise_adaptive(struct cs_advice *row,
                                       const struct cs_sampled_run_settings *settings,
                                       double frame, struct cs_error *error) {
-    struct cs_reference none = {.seconds = settings->seconds,
-                                .run = {.speed_max = 1e100, .energy_max = 1e100}};
+    const struct cs_reference none = {.seconds = settings->seconds};
     row->kind = CS_ADVICE_ADAPTIVE;
     return try_safe(row, settings, &none, frame, error);
 }

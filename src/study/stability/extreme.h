@@ -17,7 +17,6 @@
 #ifndef CS_EXTREME_H
 #define CS_EXTREME_H
 
-#include "study/energy_monitor.h"
 #include "study/stability/stability_state.h"
 
 /* Result of one scene with one method. Lives in memory shared with the workers; texts are those

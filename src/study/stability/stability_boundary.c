@@ -10,8 +10,7 @@ enum { MOST_SEARCHES = 12, BISECTIONS = 14 };
 /* s; a step that is longer says nothing about cloth */
 #define LONGEST_DT 10
 
-/* Runs and judges one step, over the time of the reference but at most most_seconds (s). The
- * limits are relative to the reference, so the same criterion holds for all steps. */
+/* Runs and judges one step, over the time of the reference but at most most_seconds (s). */
 static enum cs_status try_step(const struct cs_sampled_run_settings *settings,
                                const struct cs_reference *reference, double dt,
                                double most_seconds, struct cs_stability_cell *cell,
@@ -20,7 +19,6 @@ static enum cs_status try_step(const struct cs_sampled_run_settings *settings,
     struct cs_sampled_run trial;
     asked.session.dt = dt;
     asked.seconds = fmin(reference->seconds, most_seconds);
-    asked.limits = cs_stability_limits(&reference->run);
     if (cs_sampled_run_execute(&trial, &asked, error))
         return error->status;
     *cell = (struct cs_stability_cell){
@@ -29,7 +27,7 @@ static enum cs_status try_step(const struct cs_sampled_run_settings *settings,
             cs_stability_judge(&trial, &reference->run, asked.seconds >= reference->seconds),
         .drift = (double)NAN,
         .time = trial.result.time,
-        .particles = trial.speed_excess.particles,
+        .particles = trial.monitor.first.particles,
         .crossings =
             trial.crossings.is_counted ? (double)trial.crossings.max_count : (double)NAN,
     };
@@ -37,10 +35,8 @@ static enum cs_status try_step(const struct cs_sampled_run_settings *settings,
     if (trial.result.outcome == CS_RUNNING && asked.seconds >= reference->seconds)
         cell->drift = cs_stability_drift(&trial, &reference->run);
     /* the reported time is that of the first sign, not that of the end */
-    if (cell->verdict == CS_STABILITY_GLOBAL && trial.exceeded_limit)
-        cell->time = trial.exceeded_time;
-    else if (cell->verdict == CS_STABILITY_LOCAL)
-        cell->time = trial.speed_excess.time;
+    if (trial.monitor.worst_verdict != CS_STABILITY_BOUNDED)
+        cell->time = trial.monitor.first.t;
     return CS_OK;
 }
 

@@ -45,23 +45,22 @@ static void sample_theory(void *ctx, const struct cs_run *run, const struct cs_e
                              way->error);
 }
 
-/* Runs once with the step dt in s, without limits on energy or speed: there is no reference yet
- * to derive them from. Returns false if the run blew up, failed or had an error. The limits
- * that a failed run collected are discarded. */
+/* Runs once with the step dt in s. Returns false if the run blew up, was unstable, failed or had
+ * an error. The limits that a failed run collected are discarded. */
 static bool run_once(struct cs_reference *reference,
                      const struct cs_sampled_run_settings *settings, double dt, struct way *way,
                      struct cs_error *error) {
     struct cs_sampled_run_settings asked = *settings;
     asked.session.integrator = "velocity-verlet";
     asked.session.dt = dt;
-    asked.limits = (struct cs_sampled_run_limits){HUGE_VAL, HUGE_VAL, HUGE_VAL};
     asked.on_sample = sample_theory;
     asked.ctx = way;
     // limits along a failed run do not count
     reference->smallest_limit = reference->start_limit;
     reference->gershgorin_limit = way->gershgorin;
     return !cs_sampled_run_execute(&reference->run, &asked, error) && !way->error->status &&
-           reference->run.result.outcome == CS_RUNNING;
+           reference->run.result.outcome == CS_RUNNING &&
+           cs_stability_is_sound(reference->run.monitor.worst_verdict);
 }
 
 /* Halves the step until a run succeeds. A run out of budget ends the attempts, because a
