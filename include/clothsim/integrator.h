@@ -12,7 +12,9 @@
  * Pinned particles need no special case: their inv_mass is 0, and their rows of f and df are 0
  * too. Their v is 0, or the velocity of the path along which the scene moves them. v is
  * constant between restarts: after a step h such a particle is at x + h v. commit enforces this
- * exactly, and does not set *changed for it.
+ * exactly, and does not set *changed for it. Where the scene turns particles that it holds, x +
+ * h v is the tangent of their arc: all calls of the host that take t then take their x and v
+ * from the arc at t instead, and commit sets both. Forces depend on t in this way.
  *
  * The scene's events happen between two calls of advance. There x, v, view->mass,
  * view->inv_mass and the springs' constants may change in place, and then restart is called.
@@ -202,12 +204,13 @@ struct cs_host {
      * longest in s from (x, v) at t that leaves contact little to undo. HUGE_VAL: any does. */
     double (*longest_step)(void *ctx, double t, const double *x, const double *v);
 
-    /* [advance] Only where contact is a force, else NULL; and not in hosts whose size ends
-     * before it. What contact adds to the mass of each particle in an implicit Euler step of
-     * length h: contact_blocks (6,n) in kg = -h df/dv - h h df/dx of CS_PART_POTENTIAL and
-     * CS_PART_DISSIPATIVE at (t, x, v), each as CS_SOLVE_PSD and CS_SOLVE_BOUND have it: xx,
-     * xy, xz, yy, yz, zz. For methods that move particles one after the other: with h h f they
-     * make a step towards where contact and the rest are in balance. */
+    /* [advance] Only where contact is a force or bodies are sewn, else NULL; and not in hosts
+     * whose size ends before it. What both add to the mass of each particle in an implicit
+     * Euler step of length h: contact_blocks (6,n) in kg = -h df/dv - h h df/dx of
+     * CS_PART_POTENTIAL and CS_PART_DISSIPATIVE at (t, x, v), each as CS_SOLVE_PSD and
+     * CS_SOLVE_BOUND have it: xx, xy, xz, yy, yz, zz. For methods that move particles one after
+     * the other: with h h f they make a step towards where contact and the rest are in balance.
+     */
     void (*contact_blocks)(void *ctx, double t, const double *x, const double *v, double h,
                            double *contact_blocks);
 

@@ -204,6 +204,11 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
                        "contact.law: force is too stiff for integrator \"%s\", which treats "
                        "contact explicitly; use %sanother integrator",
                        method->name, cs_scene_has_body_contact(scene) ? "" : "project, or ");
+    if (scene->seams.n && method->traits & CS_EXPLICIT_OUTER)
+        return cs_fail(error, CS_ERR_SCENE,
+                       "seams: integrator \"%s\" treats all forces but springs explicitly, for "
+                       "which stitches are too stiff; use another integrator",
+                       method->name);
     return CS_OK;
 }
 

@@ -26,6 +26,9 @@ enum cs_status cs_check_unit(const struct cs_check *at, const char *path, double
 enum cs_status cs_check_pose(const struct cs_check *at, const char *body, const char *shape,
                              struct cs_pose *place);
 
+/* Checks that bodies, particles, weights and lengths of the scene's seams are possible. */
+enum cs_status cs_seams_check(const struct cs_check *at, const struct cs_scene *scene);
+
 /* Checks of a scene's events that ranges cannot express. */
 
 /* Checks that times are in order, particles exist and keys can change; normalises directions

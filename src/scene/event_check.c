@@ -77,6 +77,8 @@ static enum cs_status check_particles(const struct look *at, const char *part,
         if (cs_shape_pin_fault(cs_scene_bodies(at->scene) + body, pins + p, fault,
                                sizeof fault))
             return refuse(at, place, "body %u: %s", body, fault);
+        if (pins[p].to.present)
+            return refuse(at, place, "found to, which only pins of a body and a grab have");
     }
     return CS_OK;
 }
@@ -212,10 +214,20 @@ static enum cs_status check_path(const struct look *at, const char *key,
     return CS_OK;
 }
 
-/* Checks path and target of a grab. */
+/* Checks what a grab follows, and its target: a collider, or a path or a spin of its own. */
 static enum cs_status check_grab(const struct look *at, const struct cs_grab *grab) {
-    if (grab->path.n == 0)
-        return refuse(at, ".grab.path", "found no point, expected at least one");
+    const bool spins = cs_check_length(grab->spin, 3) > 0;
+    char fault[160];
+    if (grab->to.present && (grab->path.n || spins))
+        return refuse(at, ".grab.to", "found %s too, but the collider leads; expected either",
+                      grab->path.n ? "path" : "spin");
+    if (grab->to.present && cs_holder_fault(at->scene, &grab->to, fault, sizeof fault))
+        return refuse(at, ".grab.to", "%s", fault);
+    if (!isnan(grab->centre[0]) && !spins)
+        return refuse(at, ".grab.centre", "without spin it has no effect");
+    if (grab->path.n == 0 && !spins && !grab->to.present)
+        return refuse(at, ".grab.path",
+                      "found no point, expected at least one, or spin, or to");
     return check_path(at, "grab", &grab->path) ? at->error->status
                                                : check_aim(at, ".grab", &grab->target);
 }

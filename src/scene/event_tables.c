@@ -14,7 +14,17 @@ static const struct cs_option box_rows[] = {
 static const struct cs_table box_table = {ROWS(box_rows), .size = sizeof(struct cs_box),
                                           .optional = true};
 
+static const struct cs_option holder_rows[] = {
+    INT(struct cs_holder, collider, "", -1, 0, 4294967295.0,
+        "number of the collider from 0; must be given"),
+};
+
+static const struct cs_table holder_table = {
+    ROWS(holder_rows), .size = sizeof(struct cs_holder), .optional = true};
+
 static const struct cs_option pin_rows[] = {
+    TABLE(struct cs_pin, to, holder_table,
+          "of a body's pins: what carries the particles, wherever it moves and turns"),
     CHOICE(struct cs_pin, at, cs_pin_names, -1,
            "a corner or an edge of the grid; a plain string means this"),
     INT(struct cs_pin, index, "", -1, 0, 4294967295.0,
@@ -24,11 +34,11 @@ static const struct cs_option pin_rows[] = {
     TABLE(struct cs_pin, box, box_table, "every particle that starts inside"),
 };
 
-const struct cs_table cs_pin_table = {ROWS(pin_rows), .size = sizeof(struct cs_pin),
-                                      .one_of = true, .shorthand_text = "at",
-                                      .shorthand_number = "index"};
+const struct cs_table cs_pin_table = {ROWS(pin_rows),         .size = sizeof(struct cs_pin),
+                                      .one_of = true,         .n_always_optional = 1,
+                                      .shorthand_text = "at", .shorthand_number = "index"};
 
-static const double absent3[3] = {ABSENT, ABSENT, ABSENT};
+static const double absent3[3] = {ABSENT, ABSENT, ABSENT}, zero3[3] = {0, 0, 0};
 
 /* what an event acts on: the same two keys in each that acts on particles */
 #define AIM_ROWS(s)                                                                            \
@@ -136,6 +146,12 @@ static const struct cs_option grab_rows[] = {
            "followed in 16 chords"),
     BOOL(struct cs_grab, relative, 0,
          "points are displacements from the position where each particle was grabbed"),
+    TABLE(struct cs_grab, to, holder_table,
+          "instead of a path: what carries the particles from where it is then"),
+    VECTOR(struct cs_grab, spin, 3, "rad/s", zero3, -BIG, BIG,
+           "angular velocity of the particles about the centre, which follows the path"),
+    VECTOR(struct cs_grab, centre, 3, "m", absent3, -BIG, BIG,
+           "of the spin, when the grab begins; absent: the mean of the particles"),
 };
 
 static const struct cs_table grab_table = {ROWS(grab_rows), .size = sizeof(struct cs_grab),
@@ -145,8 +161,6 @@ static const struct cs_option hold_rows[] = {AIM_ROWS(struct cs_pin_change)};
 
 static const struct cs_table hold_table = {
     ROWS(hold_rows), .size = sizeof(struct cs_pin_change), .optional = true};
-
-static const double zero3[3] = {0, 0, 0};
 
 static const struct cs_option shift_rows[] = {
     REAL(struct cs_path_point, at, "s", ABSENT, 0, BIG,

@@ -15,6 +15,7 @@
 #include "mesh/spring_network.h"
 #include "scene/pair_keys.h"
 #include "scene/picture_keys.h"
+#include "scene/pin_keys.h"
 
 #include <clothsim/option.h>
 
@@ -88,32 +89,6 @@ struct cs_spring_law {
     double damping;         /* N s/m per spring */
     int32_t damping_model;  /* enum cs_damping_model */
     int32_t stiffness_unit; /* enum cs_stiffness_unit */
-};
-
-/* An axis-parallel box that selects the particles in it. */
-struct cs_box {
-    bool present;
-    double min[3], max[3]; /* m, at the start */
-};
-
-/* Corners, then edges of a cloth, in the order of cs_pin_names. */
-enum cs_pin_name {
-    CS_PIN_TOP_LEFT,
-    CS_PIN_TOP_RIGHT,
-    CS_PIN_BOTTOM_LEFT,
-    CS_PIN_BOTTOM_RIGHT,
-    CS_PIN_TOP,
-    CS_PIN_BOTTOM,
-    CS_PIN_LEFT,
-    CS_PIN_RIGHT,
-    CS_PIN_EDGES
-};
-
-/* Selects pinned particles; one of: a named corner or edge, a particle index, a box. */
-struct cs_pin {
-    int32_t at;    /* enum cs_pin_name, -1: not given */
-    int64_t index; /* particle within the body, -1: not given */
-    struct cs_box box;
 };
 
 enum cs_shading { CS_SHADING_SMOOTH, CS_SHADING_FLAT };
@@ -289,6 +264,9 @@ struct cs_grab {
     struct cs_list path; /* struct cs_path_point, at least one */
     int32_t motion;      /* enum cs_motion */
     bool relative;       /* points are shifts from where it was grabbed */
+    struct cs_holder to; /* instead of a path */
+    double spin[3];      /* rad/s, about the centre, which follows the path */
+    double centre[3];    /* m, at the beginning; first component NAN: the particles' mean */
 };
 /* Pins particles, or releases them. */
 struct cs_pin_change {
@@ -335,6 +313,7 @@ struct cs_scene {
     struct cs_contact_keys contact;
     int32_t crossings; /* enum cs_crossings_policy, -1: absent: see body_pairs.h */
     struct cs_body_pairs_keys pairs;
+    struct cs_list seams; /* struct cs_seam */
     struct cs_forces forces;
     struct cs_list events; /* struct cs_event */
     struct cs_time time;
@@ -353,7 +332,7 @@ struct cs_scene {
 };
 
 /* The root of the scene's tables, and names of its choices. */
-extern const struct cs_table cs_scene_table, cs_pin_table, cs_event_table;
+extern const struct cs_table cs_scene_table, cs_pin_table, cs_event_table, cs_seam_table;
 extern const char *const cs_pin_names[];
 extern const char *const cs_mesh_shape_names[];
 #define CS_INTEGRATOR_DEFAULT "implicit-linearised"

@@ -10,13 +10,16 @@
 #include <string.h>
 
 /* Checks that the body has all pinned particles. */
-static enum cs_status check_pins(const struct cs_check *at, const char *body,
-                                 const struct cs_body *of) {
+static enum cs_status check_pins(const struct cs_check *at, const struct cs_scene *scene,
+                                 const char *body, const struct cs_body *of) {
     char path[128], fault[160];
     const struct cs_pin *pins = of->pins.items;
     for (uint32_t p = 0; p < of->pins.n; p++) {
         snprintf(path, sizeof path, "%s.pins[%u]", body, p);
         if (cs_shape_pin_fault(of, pins + p, fault, sizeof fault))
+            return cs_check_refuse(at, path, "%s", fault);
+        snprintf(path, sizeof path, "%s.pins[%u].to", body, p);
+        if (pins[p].to.present && cs_holder_fault(scene, &pins[p].to, fault, sizeof fault))
             return cs_check_refuse(at, path, "%s", fault);
     }
     return CS_OK;
@@ -74,7 +77,8 @@ static enum cs_status check_matching(const struct cs_check *at, const char *body
 }
 
 /* Checks one body: a shape, then all that depends on it. */
-static enum cs_status check_body(const struct cs_check *at, uint32_t b, struct cs_body *body) {
+static enum cs_status check_body(const struct cs_check *at, const struct cs_scene *scene,
+                                 uint32_t b, struct cs_body *body) {
     char path[64];
     snprintf(path, sizeof path, "bodies[%u]", b);
     if (body->cloth.present == body->mesh.present)
@@ -83,7 +87,7 @@ static enum cs_status check_body(const struct cs_check *at, uint32_t b, struct c
     if (check_network(at, path, body) || check_matching(at, path, body) ||
         cs_check_pose(at, path, "cloth", &body->cloth.place) ||
         cs_check_pose(at, path, "mesh", &body->mesh.place) || check_mass(at, path, body) ||
-        check_pins(at, path, body) || check_texture(at, path, body->material.texture))
+        check_pins(at, scene, path, body) || check_texture(at, path, body->material.texture))
         return at->error->status;
     return CS_OK;
 }
@@ -95,7 +99,7 @@ static enum cs_status check_bodies(const struct cs_check *at, struct cs_scene *s
     if (scene->bodies.n == 0)
         return cs_check_refuse(at, "bodies", "found none, expected at least one body");
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
-        if (check_body(at, b, bodies + b))
+        if (check_body(at, scene, b, bodies + b))
             return at->error->status;
         particles += (double)cs_shape_count(bodies + b);
     }
@@ -266,7 +270,7 @@ enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_
     const struct cs_check at = {path_out, error};
     path_out[0] = 0;
     if (check_bodies(&at, scene) || check_colliders(&at, scene) || check_meetings(&at, scene) ||
-        check_sticking(&at, scene) ||
+        check_sticking(&at, scene) || cs_seams_check(&at, scene) ||
         (scene->forces.wind.present &&
          cs_check_unit(&at, "forces.wind.direction", scene->forces.wind.direction, 3)) ||
         check_camera(&at, &scene->camera) || check_light(&at, &scene->light) ||

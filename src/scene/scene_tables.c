@@ -295,6 +295,8 @@ static const struct cs_option scene_rows[] = {
         "ends the run"),
     TABLE(struct cs_scene, pairs, pairs_table,
           "bodies that do not pass through each other; for contact.law force"),
+    LIST(struct cs_scene, seams, cs_seam_table,
+         "stitches between particles and bodies, or within one body"),
     TABLE(struct cs_scene, forces, force_table, "from outside, on every particle"),
     LIST(struct cs_scene, events, cs_event_table, "changes at a time or over an interval"),
     TABLE(struct cs_scene, time, time_table, "frames"),

@@ -141,19 +141,35 @@ static bool is_inside(const struct cs_box *box, uint32_t n, size_t at, const dou
     return true;
 }
 
-void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,
-                  bool *pinned) {
+bool cs_shape_pin_selects(const struct cs_body *body, const struct cs_pin *pin, uint32_t n,
+                          uint32_t first, uint32_t i, const double *x) {
     const uint32_t columns = (uint32_t)body->cloth.grid[0],
                    rows = (uint32_t)body->cloth.grid[1];
+    return (pin->at >= 0 &&
+            is_named((enum cs_pin_name)pin->at, i / columns, i % columns, rows, columns)) ||
+           pin->index == (int64_t)i ||
+           (pin->box.present && is_inside(&pin->box, n, (size_t)first + i, x));
+}
+
+void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,
+                  bool *pinned) {
     const uint32_t count = (uint32_t)cs_shape_count(body);
     const struct cs_pin *pins = body->pins.items;
     for (uint32_t p = 0; p < body->pins.n; p++)
         for (uint32_t at = 0; at < count; at++)
-            if ((pins[p].at >= 0 && is_named((enum cs_pin_name)pins[p].at, at / columns,
-                                             at % columns, rows, columns)) ||
-                pins[p].index == (int64_t)at ||
-                (pins[p].box.present && is_inside(&pins[p].box, n, (size_t)first + at, x)))
+            if (cs_shape_pin_selects(body, pins + p, n, first, at, x))
                 pinned[at] = true;
+}
+
+bool cs_holder_fault(const struct cs_scene *scene, const struct cs_holder *holder, char *text,
+                     size_t size) {
+    const uint32_t n = scene->colliders.n;
+    if (holder->collider < 0)
+        return snprintf(text, size, "missing key \"collider\", expected its number");
+    if (n == 0)
+        return snprintf(text, size, "the scene has no colliders");
+    return holder->collider >= n && snprintf(text, size, "collider %lld does not exist (0..%u)",
+                                             (long long)holder->collider, n - 1);
 }
 
 bool cs_shape_pin_fault(const struct cs_body *body, const struct cs_pin *pin, char *text,

@@ -22,6 +22,14 @@ void cs_shape_position(const struct cs_body *body, uint32_t n, uint32_t first, d
  * third of each triangle. */
 double cs_shape_area(const struct cs_body *body, uint32_t i);
 
+/* Returns true if a pin selects particle i of the body; x as from cs_shape_position. */
+bool cs_shape_pin_selects(const struct cs_body *body, const struct cs_pin *pin, uint32_t n,
+                          uint32_t first, uint32_t i, const double *x);
+
+/* Returns true if a holder names no collider of the scene. text (size bytes) then says so. */
+bool cs_holder_fault(const struct cs_scene *scene, const struct cs_holder *holder, char *text,
+                     size_t size);
+
 /* Marks the body's pinned particles: pinned[0..count) = true, others unchanged. x as from
  * cs_shape_position. The pins have passed cs_shape_pin_fault. */
 void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,

@@ -19,6 +19,7 @@
 #include "model/contact/friction_anchors.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/post_step/contact_projection.h"
+#include "model/system/seams.h"
 #include "sim/energy_ledger.h"
 #include "sim/trace.h"
 
@@ -162,10 +163,12 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
     cs_move_values(host, t);
     cs_host_pin(host, false);
     cs_trace_state(host, "step", t, x, v);
+    cs_events_apply_arcs(host->run->system, t, x, v);
     if (settings->ledger)
         cs_energy_ledger_book_step(settings->ledger, t, x, v);
     correct(host, t, dt, x, v, changed);
     cs_friction_anchors_commit(host->run->system, t, x, v);
+    *changed |= cs_seams_break(host->run->system, x);
     if (cs_step_limit_failed(host->run->system))
         return host->table.fail(ctx, "out of memory for the contact pairs");
     enum cs_step step = judge(host, t, x, v);

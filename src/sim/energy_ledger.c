@@ -22,7 +22,8 @@ static const double points[POINTS] = {0.11270166537925831, 0.5, 0.88729833462074
 static const double weights[POINTS] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
 /* Squared distance of the accelerations from the cubic's, over the squares of those, beyond
- * which a step does not resolve them. A step of backward Euler along a resolved motion has 0.9. */
+ * which a step does not resolve them. A step of backward Euler along a resolved motion has 0.9.
+ */
 #define UNRESOLVED 4
 
 static const char *const holdings[] = {
@@ -182,13 +183,12 @@ struct step {
     const double *x, *v;
 };
 
-/* Replaces the accelerations of particles whose step does not resolve them by those of the cubic
- * through positions and velocities, per particle:
- *   h a0 = 6 dx/h - 4 v0 - 2 v1,  h a1 = -6 dx/h + 2 v0 + 4 v1
- * Along a resolved motion both pairs agree to O(h^2). An implicit step, or a correction that
- * moved a particle before it, leaves accelerations of stiff springs that the particle never
- * followed. A quintic through them swings far out of the step, and dampers along it do work
- * that no one did: on scenes/sphere_rest.json 1296 J, of the 6 J there are. */
+/* Replaces the accelerations of particles whose step does not resolve them by those of the
+ * cubic through positions and velocities, per particle: h a0 = 6 dx/h - 4 v0 - 2 v1,  h a1 = -6
+ * dx/h + 2 v0 + 4 v1 Along a resolved motion both pairs agree to O(h^2). An implicit step, or a
+ * correction that moved a particle before it, leaves accelerations of stiff springs that the
+ * particle never followed. A quintic through them swings far out of the step, and dampers along
+ * it do work that no one did: on scenes/sphere_rest.json 1296 J, of the 6 J there are. */
 static void limit_accelerations(struct cs_energy_ledger *ledger, const struct step *step) {
     const size_t n3 = length_of(ledger), n = n3 / 3;
     for (size_t i = 0; i < n; i++) {
@@ -199,7 +199,8 @@ static void limit_accelerations(struct cs_energy_ledger *ledger, const struct st
             const double v0 = ledger->state[n3 + k], v1 = step->v[k];
             cubic[c] = (6 * mean - 4 * v0 - 2 * v1) / step->h;
             cubic[3 + c] = (-6 * mean + 2 * v0 + 4 * v1) / step->h;
-            const double a = ledger->acceleration[k] - cubic[c], b = ledger->b[k] - cubic[3 + c];
+            const double a = ledger->acceleration[k] - cubic[c],
+                         b = ledger->b[k] - cubic[3 + c];
             off += a * a + b * b;
             size += cubic[c] * cubic[c] + cubic[3 + c] * cubic[3 + c];
         }
@@ -290,7 +291,9 @@ static void add_forces(struct cs_energy_ledger *ledger, double t, double time) {
 /* Adds all works at one node of the quadrature, at time t and with weight `time` in s. Pins
  * and values can do work only with events. */
 static void add_works(struct cs_energy_ledger *ledger, double t, double time, double h) {
+    double *x = ledger->trial_state;
     move_values(ledger, t);
+    cs_events_apply_arcs(ledger->system, t, x, x + length_of(ledger));
     add_forces(ledger, t, time);
     if (!ledger->system->events)
         return;
@@ -314,6 +317,8 @@ void cs_energy_ledger_book_step(struct cs_energy_ledger *ledger, double t, const
     const double before = cs_energy_ledger_sum(ledger), worked = sum_forces(ledger);
     find_acceleration(ledger, t, x, v, ledger->b);
     limit_accelerations(ledger, &step);
+    ledger->work[CS_WORK_PINS] +=
+        cs_events_turning_work(ledger->system, ledger->state + length_of(ledger), v);
     for (int k = 0; k < POINTS; k++) {
         quintic_at(ledger, &step, points[k]);
         add_works(ledger, ledger->t + points[k] * step.h, weights[k] * step.h, step.h);

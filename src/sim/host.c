@@ -76,7 +76,7 @@ static void update_normals(struct cs_run_host *host, const double *x, uint32_t p
 static void host_force(void *ctx, double t, const double *x, const double *v, uint32_t parts,
                        double *f) {
     struct cs_run_host *host = ctx;
-    cs_move_values(host, t);
+    cs_host_state_at(host, t, &x, &v);
     update_normals(host, x, parts);
     const double begin = cs_stage_begin(host);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts};
@@ -90,7 +90,7 @@ static void host_force(void *ctx, double t, const double *x, const double *v, ui
 /* Kinetic and potential energy in J at (t, x, v). */
 static double host_energy(void *ctx, double t, const double *x, const double *v) {
     struct cs_run_host *host = ctx;
-    cs_move_values(host, t);
+    cs_host_state_at(host, t, &x, &v);
     host->run->counts.energies++;
     const struct cs_energy energy = cs_diagnostics_energy(host->run->system, t, x, v);
     cs_trace_state(host, "energy", t, x, v);
@@ -102,7 +102,7 @@ static double host_energy(void *ctx, double t, const double *x, const double *v)
 static void host_jvp(void *ctx, double t, const double *x, const double *v, uint32_t parts,
                      const double *dx, const double *dv, double *df) {
     struct cs_run_host *host = ctx;
-    cs_move_values(host, t);
+    cs_host_state_at(host, t, &x, &v);
     update_normals(host, x, parts);
     const double begin = cs_stage_begin(host);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts, .dx = dx, .dv = dv};
@@ -118,7 +118,7 @@ static void host_jvp(void *ctx, double t, const double *x, const double *v, uint
 static void host_diagonal(void *ctx, double t, const double *x, const double *v, double *kxx,
                           double *dvv) {
     struct cs_run_host *host = ctx;
-    cs_move_values(host, t);
+    cs_host_state_at(host, t, &x, &v);
     const double begin = cs_stage_begin(host);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_LINEARISED};
     cs_terms_diagonal(host->run->system, &at, kxx, dvv);
@@ -131,7 +131,7 @@ static void host_diagonal(void *ctx, double t, const double *x, const double *v,
 static void host_force_diagonal(void *ctx, double t, const double *x, const double *v,
                                 double *f, double *blocks) {
     struct cs_run_host *host = ctx;
-    cs_move_values(host, t);
+    cs_host_state_at(host, t, &x, &v);
     update_normals(host, x, CS_PART_ALL);
     const double begin = cs_stage_begin(host);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
@@ -185,8 +185,8 @@ static void host_matrix_product(void *ctx, const double *p, double *y) {
 static void host_bounds_at(void *ctx, double t, const double *x, const double *v, double *omega,
                            double *delta) {
     struct cs_run_host *host = ctx;
+    cs_host_state_at(host, t, &x, &v);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
-    cs_move_values(host, t);
     const double begin = cs_stage_begin(host);
     cs_spectral_bounds_rate(host->run->system, &at, host->bounds_work, omega, delta);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
@@ -196,6 +196,8 @@ static void host_bounds_at(void *ctx, double t, const double *x, const double *v
 static double host_max_step_fraction(void *ctx, double t0, const double *x0, double t1,
                                      const double *x1) {
     struct cs_run_host *host = ctx;
+    cs_host_held_at(host, 0, t0, &x0, NULL);
+    cs_host_held_at(host, 1, t1, &x1, NULL);
     const double begin = cs_stage_begin(host);
     double share = cs_step_limit_fraction(host->run->system, t0, x0, t1, x1);
     if (share == 1 && host->contact.limits_steps)
@@ -213,9 +215,9 @@ static double host_max_step_fraction(void *ctx, double t0, const double *x0, dou
 static void host_contact_blocks(void *ctx, double t, const double *x, const double *v, double h,
                                 double *blocks) {
     struct cs_run_host *host = ctx;
+    cs_host_state_at(host, t, &x, &v);
     const struct cs_matrix matrix = {
         .t = t, .x = x, .v = v, .cd = -h, .ck = -h * h, .psd = true, .bound = true};
-    cs_move_values(host, t);
     const double begin = cs_stage_begin(host);
     cs_terms_blocks(host->run->system, &matrix, CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
                     blocks);
@@ -241,14 +243,14 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
     if (cs_blocked_step_init(&host->blocked_step, system, &host->arena, error))
         return error->status;
     host->arena.part = &host->run->plan.state_bytes;
+    if (system->collider_params || system->pairs || system->seams)
+        host->table.contact_blocks = host_contact_blocks;
     // who asks for one may ask for the other
     if (!judged && !cs_spectral_bounds_depend_on_state(system))
         return CS_OK;
     host->bounds_work =
         cs_arena_alloc_array(&host->arena, 2 * (size_t)system->view.n, sizeof(double), error);
     host->table.bounds_at = host_bounds_at;
-    if (system->collider_params || system->pairs)
-        host->table.contact_blocks = host_contact_blocks;
     return error->status;
 }
 
@@ -257,9 +259,10 @@ static void host_lag_friction(void *ctx, double t, const double *x) {
     struct cs_run_host *host = ctx;
     struct cs_lagged_friction *lagged = host->run->system->lagged_friction;
     const double begin = cs_stage_begin(host);
-    if (x)
-        cs_move_values(host, t), cs_lagged_friction_begin(lagged, t, x);
-    else
+    if (x) {
+        cs_host_state_at(host, host->lag_time = t, &x, NULL);
+        cs_lagged_friction_begin(lagged, t, x);
+    } else
         cs_lagged_friction_end(lagged);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
     cs_trace_vector(host, "lagged friction", "x", t, x);
@@ -267,6 +270,8 @@ static void host_lag_friction(void *ctx, double t, const double *x) {
 
 static double host_friction_potential(void *ctx, const double *v, double *f) {
     struct cs_run_host *host = ctx;
+    const double *x = host->run->x;
+    cs_host_held_at(host, 0, host->lag_time, &x, &v);
     const double begin = cs_stage_begin(host);
     const double sum = cs_lagged_friction_potential(host->run->system->lagged_friction, v, f);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
@@ -357,8 +362,12 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .may_overstep = may_pass(system),
         .euler_setup = cs_host_euler_setup,
     };
+    if (system->events && cs_events_turn_particles(system->scene))
+        host->held = cs_arena_alloc_array(&host->arena, 12 * (size_t)system->view.n,
+                                          sizeof *host->held, error);
     cs_blow_up_check_set(&host->blow_up, system, 0);
-    if (add_contact(host, error) || add_rate(host, error) || add_lagged_friction(host, error))
+    if (error->status || add_contact(host, error) || add_rate(host, error) ||
+        add_lagged_friction(host, error))
         return error->status;
     // only methods with CS_NEED_SOLVE pay for the solver's memory and the copies of the state
     if (!begin(host, CS_FEATURE_SOLVER))
@@ -372,16 +381,6 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         return error->status;
     host->table.euler_finish = cs_host_euler_finish;
     return cs_rebounds_init(system, &host->arena, error);
-}
-
-/* The replacement of host_solve by cs_run_host_fail_solves. */
-static enum cs_step failing_solve(void *ctx, const double *b, double rtol, double *u) {
-    (void)b, (void)rtol, (void)u;
-    return host_fail(ctx, "the linear solver was told to fail");
-}
-
-void cs_run_host_fail_solves(struct cs_run_host *host) {
-    host->table.solve = failing_solve;
 }
 
 /* An event also updates the blow-up bound, the ledger, the trace and static friction. */

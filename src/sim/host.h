@@ -9,9 +9,6 @@
 enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
                                 struct cs_error *error);
 
-/* Replaces the call solve by one that always fails, to test what a method does then. */
-void cs_run_host_fail_solves(struct cs_run_host *host);
-
 /* Applies the events at time t to the state, the pins and the values, and sets the blow-up
  * bound for them. Returns true if anything changed: the method must be restarted. */
 bool cs_run_host_apply_events(struct cs_run_host *host, double t);

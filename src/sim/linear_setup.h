@@ -19,4 +19,7 @@ void cs_host_euler_finish(void *ctx, double *x, double *v);
  * Returns false if both are already set. */
 bool cs_host_clamp(struct cs_run_host *host, const double *b);
 
+/* Replaces the call solve by one that always fails, to test what a method does then. */
+void cs_run_host_fail_solves(struct cs_run_host *host);
+
 #endif

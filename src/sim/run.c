@@ -3,9 +3,11 @@
 
 #include "base/clock.h"
 #include "model/contact/friction_anchors.h"
+#include "model/system/seams.h"
 #include "sim/commit.h"
 #include "sim/crash.h"
 #include "sim/host.h"
+#include "sim/linear_setup.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -222,11 +224,17 @@ void cs_run_hash(const struct cs_run *run, char digits[CS_HASH_DIGITS]) {
     const struct cs_friction_anchors *anchors = run->system->friction_anchors;
     char both[2][CS_HASH_DIGITS];
     cs_hash_doubles(run->x, 6 * (size_t)run->system->view.n, digits);
-    if (!anchors)
-        return;
-    memcpy(both[0], digits, CS_HASH_DIGITS);
-    cs_hash_doubles(anchors->values, anchors->n_values, both[1]);
-    cs_hash_bytes(both, sizeof both, digits);
+    const struct cs_seams *seams = run->system->seams;
+    for (int k = 0; k < 2; k++) {
+        if (k ? !seams || !seams->n_broken : !anchors)
+            continue;
+        memcpy(both[0], digits, CS_HASH_DIGITS);
+        if (k)
+            cs_hash_bytes(seams->broken, seams->n * sizeof *seams->broken, both[1]);
+        else
+            cs_hash_doubles(anchors->values, anchors->n_values, both[1]);
+        cs_hash_bytes(both, sizeof both, digits);
+    }
 }
 
 void cs_run_note(struct cs_run *run, const char *format, ...) {

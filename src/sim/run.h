@@ -53,7 +53,8 @@ void cs_run_goals(const struct cs_run *run, double *g);
 size_t cs_run_bytes(const struct cs_run *run);
 
 /* Hash of the state, as 32 hexadecimal digits: that of x and v, and in a scene with friction
- * that sticks the hash of that hash and the one of all anchors. */
+ * that sticks the hash of that hash and the one of all anchors; if stitches broke the hash of
+ * that one and the one of the broken. */
 void cs_run_hash(const struct cs_run *run, char digits[CS_HASH_DIGITS]);
 
 /* Adds a remark to the report, as the method does by host->note. */

@@ -14,6 +14,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 /* Detects a blow-up: numbers that are not finite, or more kinetic energy
  * than the scene can give. */
@@ -122,6 +123,8 @@ struct cs_run_host {
     struct cs_blow_up_check blow_up;
     struct cs_blocked_step blocked_step; /* the last step that crossings refused */
     struct cs_advance_check advance_check;
+    double *held;    /* two copies (6,n) of a state, for cs_host_held_at; NULL: nothing turns */
+    double lag_time; /* s, of the friction that is lagged */
     struct cs_arena arena; /* memory of the method and of the solver */
 };
 
@@ -141,10 +144,36 @@ static inline void cs_stage_end(struct cs_run_host *host, enum cs_stage stage, d
         host->run->stage_seconds[stage] += cs_clock_wall() - begin;
 }
 
+/* Replaces x and v at t by a copy if held particles turn: there they are on their arc, which
+ * x + h v of a stage is not. v may be NULL. copy: 0 or 1, which of the two copies; it stays
+ * until the next call with that number. */
+static inline void cs_host_held_at(struct cs_run_host *host, int copy, double t,
+                                   const double **x, const double **v) {
+    const struct cs_system *system = host->run->system;
+    const size_t n3 = 3 * (size_t)system->view.n;
+    if (!host->held || !system->events->has_turns)
+        return;
+    double *at = host->held + (size_t)copy * 2 * n3;
+    memcpy(at, *x, n3 * sizeof *at);
+    if (v)
+        memcpy(at + n3, *v, n3 * sizeof *at);
+    cs_events_apply_paths(system, t, at, at + n3);
+    *x = at;
+    if (v)
+        *v = at + n3;
+}
+
 /* Sets ramped values to those at t, the time that the method asks about. */
 static inline void cs_move_values(struct cs_run_host *host, double t) {
     if (host->run->system->events)
         cs_events_move_values(host->run->system, t);
+}
+
+/* Both, for a call of the method about (t, x, v). */
+static inline void cs_host_state_at(struct cs_run_host *host, double t, const double **x,
+                                    const double **v) {
+    cs_move_values(host, t);
+    cs_host_held_at(host, 0, t, x, v);
 }
 
 #endif

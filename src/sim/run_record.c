@@ -8,6 +8,7 @@
 
 #include "model/contact/friction_anchors.h"
 #include "model/event/event_state.h"
+#include "model/system/seams.h"
 #include "sim/host.h"
 
 #include <string.h>
@@ -35,7 +36,7 @@ static struct cs_archive archive_of(struct cs_serialiser *record) {
 }
 
 /* Everything that the model has changed since the run began: state, time, blow-up bound,
- * events, contact, anchors of friction. */
+ * events, contact, anchors of friction, broken stitches. */
 static void record_system(struct cs_run *run, struct cs_serialiser *record) {
     struct cs_run_host *host = run->host;
     struct cs_system *system = run->system;
@@ -49,6 +50,11 @@ static void record_system(struct cs_run *run, struct cs_serialiser *record) {
     if (system->friction_anchors)
         cs_serialiser_bytes(record, system->friction_anchors->values,
                             system->friction_anchors->n_values * sizeof(double));
+    if (system->seams) {
+        cs_serialiser_bytes(record, system->seams->broken,
+                            system->seams->n * sizeof *system->seams->broken);
+        CS_SERIALISER(record, system->seams->n_broken);
+    }
 }
 
 /* Counts and remarks, which only reports show. A damaged number of remarks fails the record. */

@@ -34,7 +34,10 @@
     "{\"centre\": [0.1, 0.05, -0.06], \"radius\": 0.02}, \"thickness\": 0.12, \"friction\": "  \
     "0.5}],"                                                                                   \
     " \"contact\": {\"law\": \"force\", \"stiffness\": 50, \"damping\": 0.01,"                 \
-    " \"friction_speed\": 0.3},"                                                               \
+    " \"friction_speed\": 0.3}, \"seams\": [{\"body\": 0, \"particles\": [19], \"to\": {"        \
+    "\"body\": 0, \"particles\": [5]}, \"stiffness\": 30, \"damping\": 0.5, \"length\": 0.9},"   \
+    " {\"body\": 0, \"particles\": [16], \"to\": {\"body\": 0, \"particles\": [1, 2, 8],"        \
+    " \"weights\": [0.2, 0.3, 0.5]}, \"stiffness\": 40, \"damping\": 0.4}],"                   \
     " \"forces\": {" FORCES "%s}}"
 
 enum { N = 20, VALUES = 3 * N };

@@ -152,7 +152,8 @@ static void add_paths(const struct cs_scene *scene, struct cs_approach *approach
             if (event->grab.target.body < 0 || event->grab.target.body == b)
                 at->path_speed =
                     fmax(at->path_speed,
-                         speed_along(&event->grab.path, event->grab.motion, middle, begin));
+                         speed_along(&event->grab.path, event->grab.motion, middle, begin) +
+                             2 * length_of(event->grab.spin) * half_diagonal(at));
         }
     }
 }

@@ -90,26 +90,6 @@ static void unpin(struct cs_system *system, uint32_t i) {
     system->inv_mass[i] = 1 / system->mass[i];
 }
 
-/* Pins the particles of a grab and stores their offsets from its path. The path starts at the
- * first of them, or for a relative one at the origin: its points are then shifts. */
-static void begin_grab(struct cs_system *system, uint32_t event) {
-    struct cs_events *events = system->events;
-    struct cs_event_state *state = events->states + event;
-    const struct cs_grab *grab = &cs_scene_events(&events->scene)[event].grab;
-    const size_t n = system->view.n;
-    mark(system, &grab->target);
-    pin_marked(system, event);
-    const bool *first = memchr(events->work, true, n);
-    for (size_t c = 0; c < 3; c++) {
-        const double *x = system->state + c * n;
-        state->chord_to[c] = first && !grab->relative ? x[first - events->work] : 0;
-        for (size_t i = 0; i < n; i++)
-            if (events->work[i])
-                events->offsets[c * n + i] = x[i] - state->chord_to[c];
-    }
-    cs_event_begin_path(state, events->begin);
-}
-
 /* Stores strength and direction of the wind before and after a gust. A number that the gust
  * does not give (NaN) stays. */
 static void begin_gust(const struct cs_events *events, const struct cs_wind_change *gust,
@@ -182,8 +162,11 @@ void cs_event_start(struct cs_system *system, uint32_t event) {
                     system->state + 3 * (size_t)system->view.n);
     if (of->viewpoint_force.present)
         cs_viewpoint_force_start(system, event);
-    if (of->grab.present)
-        begin_grab(system, event);
+    if (of->grab.present) {
+        mark(system, &of->grab.target);
+        pin_marked(system, event);
+        cs_event_begin_grab(system, event);
+    }
     if (of->move.present)
         cs_event_begin_move(system, event, events->begin);
     if (of->pin.present) {

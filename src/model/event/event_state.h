@@ -72,6 +72,8 @@ struct cs_event_state {
     double leg_start[3];
     /* Move: m, the shift of the collider at its begin; the path is relative to it. */
     double origin[3];
+    /* Grab: m, from the point of the path to the centre of its spin. */
+    double pivot[3];
 };
 
 struct cs_viewpoint_forces;
@@ -88,17 +90,22 @@ struct cs_events {
     double begin, end;
     /* (scene.events.n) in the scene's order */
     struct cs_event_state *states;
-    /* (n) number of the event that holds the particle, plus 1; 0: none */
+    /* (n) number of the event that holds the particle, plus 1; 0: none. Behind the events come
+     * colliders that hold pins. */
     uint32_t *held_by;
     /* (n) scratch: the particles that an event selects */
     bool *work;
-    /* (3,n) m, from the point of the path to each grabbed particle; NULL without grabs */
+    /* (3,n) m, of each particle that is grabbed or carried in its holder's frame
+     * (held_particles.c); NULL: none ever is */
     double *offsets;
     /* NULL without viewpoint forces */
     struct cs_viewpoint_forces *viewpoint_forces;
     double next_test;          /* s, of the next visibility test; HUGE_VAL: none */
     double values_time;        /* s, of the ramps' values */
-    bool has_ramps, has_grabs; /* some are active in the segment; gusts count as ramps */
+    bool has_ramps, has_grabs; /* some are active in the segment; gusts count as ramps, and
+                                  particles that colliders carry as grabs */
+    bool has_turns;            /* some of these particles turn with their holder */
+    double held_speed;         /* m/s, largest speed of theirs by turning */
 };
 
 /* Starts and ends single events; for events.c. */
@@ -110,6 +117,36 @@ void cs_event_start(struct cs_system *system, uint32_t event);
 /* Ends an event over an interval: values get their last number exactly, particles that it
  * holds become free, a moved collider stops. */
 void cs_event_finish(struct cs_system *system, uint32_t event);
+
+/* Stores the place of the marked particles (events->work) in the frame of a grab that begins,
+ * and starts its path. */
+void cs_event_begin_grab(struct cs_system *system, uint32_t event);
+
+/* True if a scene may turn particles that it holds. They then move on arcs, and at a stage of a
+ * method, whose x + h v is off the arc, cs_events_apply_paths gives their state. */
+bool cs_events_turn_particles(const struct cs_scene *scene);
+
+/* Sets position and velocity of the particles that are grabbed or that a collider carries in
+ * (x, v), both (3,n), to those of their path at t. */
+void cs_events_apply_paths(const struct cs_system *system, double t, double *x, double *v);
+
+/* The same in a segment where held particles turn; else nothing. */
+void cs_events_apply_arcs(const struct cs_system *system, double t, double *x, double *v);
+
+/* Change in J of the kinetic energy of pinned particles from v0 to v1, both (3,n), where held
+ * ones turn, whose holder may change it within a segment; else 0. */
+double cs_events_turning_work(const struct cs_system *system, const double *v0,
+                              const double *v1);
+
+/* True if a pin of a body holds to a collider. */
+bool cs_event_attaches_any(const struct cs_scene *scene);
+
+/* Lets colliders carry the particles of such pins, at time 0. Fails with CS_ERR_SCENE if two
+ * pins hold a particle to different things. */
+enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *error);
+
+/* Sets has_grabs, has_turns and held_speed for the segment that begins at t. */
+void cs_event_find_held(struct cs_system *system, double t);
 
 /* Sets the value of an active ramp or gust to the one at t. The caller refreshes the springs.
  */

@@ -42,6 +42,8 @@ static void record_marks(struct cs_events *events, struct cs_serialiser *record)
     CS_SERIALISER(record, events->values_time);
     CS_SERIALISER(record, events->has_ramps);
     CS_SERIALISER(record, events->has_grabs);
+    CS_SERIALISER(record, events->has_turns);
+    CS_SERIALISER(record, events->held_speed);
     CS_SERIALISER(record, events->scene.forces.wind);
     for (uint32_t e = 0; e < events->scene.events.n; e++)
         record_event(events->states + e, record);
@@ -127,7 +129,7 @@ static void alloc_arrays(struct cs_system *system, struct cs_events *events,
     events->work = cs_arena_alloc_array(arena, n, sizeof(bool), error);
     if (any(scene, pushes))
         system->event_force = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
-    if (any(scene, grabs))
+    if (any(scene, grabs) || (cs_event_moves_any(scene) && cs_event_attaches_any(scene)))
         events->offsets = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
     if (cs_event_moves_any(scene))
         cs_event_moves_build(system, error);
@@ -164,6 +166,10 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
     events->next_test = HUGE_VAL;
     system->events = events;
     system->scene = &events->scene;
+    // pins to colliders that all rest are pins
+    if (system->motions && cs_event_attaches_any(system->scene) &&
+        cs_event_attach_pins(system, error))
+        return error->status;
     return cs_viewpoint_forces_any(system->scene) ? cs_viewpoint_forces_build(system, error)
                                                   : CS_OK;
 }
@@ -241,7 +247,7 @@ static void end_segment(struct cs_system *system, double t) {
             cs_event_start(system, e);
 
     /* the ramps, grabs and moves that are active in the segment that begins */
-    events->has_ramps = events->has_grabs = false;
+    events->has_ramps = false;
     for (uint32_t e = 0; e < n; e++) {
         const struct cs_event *event = cs_scene_events(&events->scene) + e;
         events->has_ramps |=
@@ -252,11 +258,7 @@ static void end_segment(struct cs_system *system, double t) {
             cs_event_follow_move(system, e, t);
     }
     cs_event_show_moves(system);
-    for (uint32_t i = 0; i < system->view.n; i++) {
-        const uint32_t holder = events->held_by[i];
-        events->has_grabs |=
-            holder > 0 && cs_scene_events(&events->scene)[holder - 1].grab.present;
-    }
+    cs_event_find_held(system, t);
     list_pinned(system);
     refresh(system);
     cs_events_apply_paths(system, t, system->state, system->state + 3 * (size_t)system->view.n);
@@ -289,29 +291,6 @@ void cs_events_move_values(struct cs_system *system, double t) {
     cs_event_refresh_springs(system);
 }
 
-/* Position = offset + point of the path: chord_from + rate (t - chord_begin), and exactly
- * chord_to at its end. Offsets are constant, so that grabbed particles move as a rigid whole.
- */
-void cs_events_apply_paths(const struct cs_system *system, double t, double *x, double *v) {
-    const struct cs_events *events = system->events;
-    const size_t n = system->view.n;
-    for (uint32_t p = 0; events->has_grabs && p < system->n_pinned; p++) {
-        const size_t i = system->pinned[p];
-        const uint32_t holder = events->held_by[i];
-        if (!holder || !cs_scene_events(&events->scene)[holder - 1].grab.present)
-            continue;
-        const struct cs_event_state *state = events->states + holder - 1;
-        for (size_t c = 0; c < 3; c++) {
-            const double point =
-                t >= state->chord_end
-                    ? state->chord_to[c]
-                    : state->chord_from[c] + state->rate[c] * (t - state->chord_begin);
-            x[c * n + i] = events->offsets[c * n + i] + point;
-            v[c * n + i] = state->rate[c];
-        }
-    }
-}
-
 double cs_events_speed(const struct cs_system *system) {
     const struct cs_events *events = system->events;
     double squared = 0;
@@ -319,5 +298,5 @@ double cs_events_speed(const struct cs_system *system) {
         const double *rate = events->states[e].rate;
         squared = fmax(squared, rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]);
     }
-    return sqrt(squared) + cs_event_angular_speed(system);
+    return sqrt(squared) + fmax(cs_event_angular_speed(system), events->held_speed);
 }

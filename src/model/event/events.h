@@ -50,8 +50,4 @@ void cs_events_move_values(struct cs_system *system, double t);
  * plus the fastest point of a turning collider. */
 double cs_events_speed(const struct cs_system *system);
 
-/* Sets position and velocity of the grabbed particles in (x, v), both (3,n), to those of
- * their path at t. */
-void cs_events_apply_paths(const struct cs_system *system, double t, double *x, double *v);
-
 #endif

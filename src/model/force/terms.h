@@ -4,14 +4,16 @@
 
 #include "model/force/term.h"
 
-/* X(name of the struct behind cs_term_) in the order in which forces are summed. A test may
- * define CS_TERM_LIST_MORE where it compiles terms.c, to plant forces of its own. */
+/* X(name of the struct behind cs_term_) in the order in which forces are summed. Seams are
+ * built before contact, which takes sewn particles for one. A test may define CS_TERM_LIST_MORE
+ * where it compiles terms.c, to plant forces of its own. */
 #ifndef CS_TERM_LIST_MORE
 #define CS_TERM_LIST_MORE(X)
 #endif
 #define CS_TERM_LIST(X)                                                                        \
     X(springs)                                                                                 \
-    X(gravity) X(drag) X(wind) X(push) X(contact) X(pairs) X(cover) CS_TERM_LIST_MORE(X)
+    X(gravity)                                                                                 \
+    X(drag) X(wind) X(push) X(seams) X(contact) X(pairs) X(cover) CS_TERM_LIST_MORE(X)
 
 #define X(name) extern const struct cs_term cs_term_##name;
 CS_TERM_LIST(X)

@@ -30,6 +30,7 @@ struct cs_friction_anchors;
 struct cs_lagged_friction;
 struct cs_collider_motion;
 struct cs_surfaces;
+struct cs_seams;
 struct cs_points;
 struct cs_crossings;
 
@@ -68,6 +69,7 @@ struct cs_system {
     const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
     struct cs_points *points;       /* NULL unless colliders are meshes (surface_points.h) */
     struct cs_crossings *crossings; /* NULL unless asked for (body_pairs.h) */
+    struct cs_seams *seams;         /* stitches between particles; NULL: none (seams.h) */
     struct cs_events *events;       /* NULL without events; it owns the scene's changed copy */
     struct cs_arena arena;          /* owns the arrays */
 };

@@ -8,6 +8,7 @@
 
 #include "base/pool.h"
 #include "model/contact/broad_phase/aabb_clusters.h"
+#include "model/system/seams.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -106,13 +107,6 @@ static void measure(struct work *work) {
         store_pairs(work, work->sieve.pairs[l]);
 }
 
-/* Returns whether a pair has a point in common; such pairs have no contact. */
-static bool share_corner(const uint32_t at[4], enum cs_pair_kind kind) {
-    if (kind == CS_PAIR_POINT_TRIANGLE)
-        return at[0] == at[1] || at[0] == at[2] || at[0] == at[3];
-    return at[0] == at[2] || at[0] == at[3] || at[1] == at[2] || at[1] == at[3];
-}
-
 /* m, distance up to which pairs are listed; the factor exceeds the rounding of boxes */
 static double reach_of(const struct cs_candidates *candidates, double range) {
     return (range + 2 * candidates->margin_now) * (1 + 1e-9);
@@ -132,7 +126,7 @@ static void take(struct work *work, uint32_t item, uint32_t other) {
         cs_body_pair_params_of(candidates->body_pairs, candidates->body[at[0]],
                                candidates->body[at[2]]),
         kind == CS_PAIR_EDGE_EDGE);
-    if (share_corner(at, kind) || !(range > 0))
+    if (cs_seams_join_pair(candidates->system, at, kind == CS_PAIR_EDGE_EDGE) || !(range > 0))
         return;
     const double reach = reach_of(candidates, range) * candidates->inverse_unit;
     if (cs_distance_filter_add(&work->sieve, candidates->scaled_points, at, reach, pair))

@@ -16,6 +16,7 @@
 #include "model/contact/ccd/edge_triangle.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/surface_points.h"
+#include "model/system/seams.h"
 #include "scene/body_pairs.h"
 
 #include <math.h>
@@ -122,7 +123,8 @@ static void read_points(const struct question *question, const uint32_t *items, 
             p[k][c] = question->x[c * question->system->surfaces->n_points + items[k]];
 }
 
-/* Counts edge e against triangle t, unless they have a particle in common. */
+/* Counts edge e against triangle t, unless they have a particle in common, or two that are sewn
+ * together. */
 static void count_pair(const struct question *question, uint32_t e, uint32_t t,
                        struct cs_crossing_count *count) {
     const struct cs_surfaces *surfaces = question->system->surfaces;
@@ -130,7 +132,8 @@ static void count_pair(const struct question *question, uint32_t e, uint32_t t,
                    *corners = surfaces->triangles + 3 * (size_t)t;
     double edge[2][3], triangle[3][3];
     for (int k = 0; k < 6; k++)
-        if (ends[k / 3] == corners[k % 3])
+        if (cs_seams_merged(question->system, ends[k / 3]) ==
+            cs_seams_merged(question->system, corners[k % 3]))
             return;
     read_points(question, ends, 2, edge);
     read_points(question, corners, 3, triangle);
@@ -236,13 +239,6 @@ static bool is_alone(const struct cs_surfaces *surfaces, uint32_t point) {
     return surfaces->first_edge[body] == surfaces->first_edge[body + 1];
 }
 
-/* Returns whether the two sides of a pair have a point in common: they never meet. */
-static bool share_point(const uint32_t at[4], enum cs_pair_kind kind) {
-    const bool edges = kind == CS_PAIR_EDGE_EDGE;
-    return at[0] == at[2] || at[0] == at[3] ||
-           (edges ? at[1] == at[2] || at[1] == at[3] : at[0] == at[1]);
-}
-
 /* Takes a pair over if it meets before the first one so far. */
 static void try_pair(const struct question *question, enum cs_pair_kind kind,
                      const uint32_t pair[2], struct cs_first_collision *first) {
@@ -254,7 +250,8 @@ static void try_pair(const struct question *question, enum cs_pair_kind kind,
     else if (is_alone(surfaces, pair[0]))
         return;
     cs_candidate_vertices(surfaces, kind, items, at);
-    if (share_point(at, kind))
+    // such a pair never meets
+    if (cs_seams_join_pair(question->system, at, kind == CS_PAIR_EDGE_EDGE))
         return;
     for (size_t k = 0; k < 4; k++) {
         const double *move = question->crossings->motion[at[k]].values;

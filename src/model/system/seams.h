@@ -1,0 +1,80 @@
+/* seams.h - stitches between particles and points of bodies, as a part of the system.
+ *
+ * A stitch joins a particle p to a particle or a point of a triangle q: with weights 1 of p and
+ * -w of the corners of q, d = sum weight x = x_p - x_q. It is a spring of rest length L with a
+ * damper, a stiff spring and no constraint, so that it is in the equation of motion of every
+ * method, at that method's order (force/term_seams.c). The same weights give the force on each
+ * of its particles: momentum is conserved, and angular momentum by the spring.
+ *
+ * A stitch that is longer than its breaking length after an accepted step is broken from then
+ * on. That is judged in commit; the broken ones are in checkpoints and in the hash of a state.
+ */
+#ifndef CS_SEAMS_H
+#define CS_SEAMS_H
+
+#include "model/system/particle_system.h"
+
+struct cs_stitch {
+    uint32_t at[4], n;                                  /* particles: p, then 1 or 3 of q */
+    double weight[4];                                   /* 1 of p, those of q times -1 */
+    double stiffness, damping, length, breaking_length; /* N/m, N s/m, m, m or NAN */
+};
+
+/* Part of a stitch at one of its particles. */
+struct cs_stitch_end {
+    uint32_t particle, stitch;
+    double weight;
+};
+
+/* The system's arena owns all arrays. */
+struct cs_seams {
+    uint32_t n, n_ends, n_broken;
+    struct cs_stitch *stitches; /* (n) in the order of the scene's seams */
+    struct cs_stitch_end *ends; /* (n_ends) ascending by particle, then by stitch */
+    bool *broken;               /* (n) */
+    bool breaks;                /* some may break */
+    double *forces;             /* (3 n) scratch: N, on p, of each stitch at work */
+    bool is_kept;               /* the matrix that was prepared last has products */
+    double
+        *blocks; /* (12 n) of each stitch in the matrix kept last: by places, by velocities */
+    /* (view.n) particle with which contact takes a particle for one: the first of those that
+     * are stitched together, of a triangle the corner of largest weight */
+    uint32_t *merged;
+};
+
+/* Builds system->seams from the scene's seams, at the start positions. Fails with CS_ERR_SCENE
+ * if sides have different numbers of particles or a particle is sewn to itself. */
+enum cs_status cs_seams_build(struct cs_system *system, struct cs_error *error);
+
+/* x_p - x_q in m of a stitch, or of other (3,n) vectors. */
+static inline void cs_stitch_difference(const struct cs_stitch *stitch, size_t n,
+                                        const double *x, double d[3]) {
+    for (size_t c = 0; c < 3; c++) {
+        d[c] = x[c * n + stitch->at[0]];
+        for (uint32_t k = 1; k < stitch->n; k++)
+            d[c] += stitch->weight[k] * x[c * n + stitch->at[k]];
+    }
+}
+
+/* Breaks the stitches that are too long at x (3,n), after an accepted step. Returns true if one
+ * did. Nothing without seams. */
+bool cs_seams_break(const struct cs_system *system, const double *x);
+
+/* The particle that stands for a point in tests for common points: sewn particles are one. */
+static inline uint32_t cs_seams_merged(const struct cs_system *system, uint32_t point) {
+    return system->seams && point < system->view.n ? system->seams->merged[point] : point;
+}
+
+/* Returns whether a point and a triangle, or two edges, have a point in common, or two that are
+ * sewn together. Such pairs have no contact. at: points, then corners; or ends of both edges.
+ */
+static inline bool cs_seams_join_pair(const struct cs_system *system, const uint32_t points[4],
+                                      bool edges) {
+    uint32_t at[4];
+    for (int k = 0; k < 4; k++)
+        at[k] = cs_seams_merged(system, points[k]);
+    return at[0] == at[2] || at[0] == at[3] ||
+           (edges ? at[1] == at[2] || at[1] == at[3] : at[0] == at[1]);
+}
+
+#endif
