@@ -99,7 +99,8 @@ struct cs_view {
     /* (n_clusters) s: the step that alpha is meant for; 0: alpha is for any step. */
     const double *cluster_step;
 
-    /* The scene's colliders, where an event moves one; else n_colliders is 0: all stand still.
+    /* The scene's colliders, where an event or key frames move one; else n_colliders is 0: all
+     * stand still. A mesh with key frames deforms besides, about a centre that moves so.
      * Each is on a straight line between restarts: at time t its centre (of a plane: the point
      * that the scene gives) is at origin + t velocity, and its matter at p moves with velocity
      * + spin x (p - centre). Later than the first release: ask CS_HAS(view, collider_spin). */

@@ -49,9 +49,12 @@ enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *solids,
 
 bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now) {
     const struct cs_posed_collider *at = &solid->at;
-    const bool moved = memcmp(at->centre, now->centre, sizeof at->centre) ||
+    const bool deformed = memcmp(&at->path.t, &now->path.t, sizeof at->path.t);
+    const bool moved = deformed || memcmp(at->centre, now->centre, sizeof at->centre) ||
                        memcmp(at->axes, now->axes, sizeof at->axes);
     solid->at = *now;
+    if (deformed && solid->n > 0)
+        cs_collider_mesh_vertices(now, solid->mesh.positions);
     return moved;
 }
 

@@ -213,12 +213,11 @@ static void grow_by(double low[3], double high[3], const struct cs_posed_collide
 
 static void grow_by_mesh(double low[3], double high[3],
                          const struct cs_posed_collider *obstacle) {
-    const struct cs_trimesh *mesh = obstacle->collider->mesh.geometry;
-    for (size_t v = 0; v < mesh->n; v++) {
-        const double *own = mesh->positions + v;
-        double place[3];
-        cs_collider_to_world(
-            obstacle, (double[3]){own[0], own[mesh->n], own[2 * (size_t)mesh->n]}, place);
+    const uint32_t n = obstacle->collider->mesh.geometry->n;
+    for (uint32_t i = 0; i < n; i++) {
+        double own[3], place[3];
+        cs_collider_mesh_vertex(obstacle, i, own);
+        cs_collider_to_world(obstacle, own, place);
         grow(low, high, place);
     }
 }

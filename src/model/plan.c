@@ -59,6 +59,16 @@ static size_t mesh_bytes(const struct cs_scene *scene) {
     return bytes;
 }
 
+/* Bytes of key frames, which belong to the scene too. */
+static size_t key_frame_bytes(const struct cs_scene *scene) {
+    size_t bytes = 0;
+    for (uint32_t c = 0; c < scene->colliders.n; c++) {
+        const struct cs_vertex_paths *paths = cs_scene_colliders(scene)[c].mesh.paths;
+        bytes += paths ? paths->bytes : 0;
+    }
+    return bytes;
+}
+
 /* Tells whether a body has a property. */
 static bool any_body(const struct cs_scene *scene, bool (*has)(const struct cs_body *body)) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
@@ -175,6 +185,9 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     decide(plan, CS_FEATURE_MESHES, bodies_are || cs_scene_surfaces(scene) > scene->bodies.n,
            bodies_are ? "bodies are meshes" : "colliders are meshes", "every body is a grid");
     plan->rows[CS_FEATURE_MESHES].bytes = mesh_bytes(scene);
+    decide(plan, CS_FEATURE_KEY_FRAMES, cs_scene_has_key_frames(scene),
+           "a collider has key_frames", "no collider has key_frames");
+    plan->rows[CS_FEATURE_KEY_FRAMES].bytes = key_frame_bytes(scene);
     plan_forces(plan, scene);
     plan_contact(plan, scene, render);
     plan_needs(plan, scene, needs);

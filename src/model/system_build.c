@@ -11,11 +11,13 @@
 #include "model/contact/approach.h"
 #include "model/contact/ccd/crossings.h"
 #include "model/contact/friction_anchors.h"
+#include "model/event/event_state.h"
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "model/post_step/tunnelling.h"
 #include "model/system/shape_clusters.h"
+#include "scene/body_pairs.h"
 #include "scene/shape.h"
 
 #include <stdlib.h>
@@ -243,10 +245,15 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
         cs_crossings_build(system, error);
     if (error->status)
         return;
-    if (!begin(system, CS_FEATURE_EVENTS))
-        cs_spectral_bounds_set(system, work);
-    else if (!cs_events_build(system, error))
-        cs_events_set_bounds(system, work);
+    if (begin(system, CS_FEATURE_EVENTS)) {
+        if (!cs_events_build(system, error))
+            cs_events_set_bounds(system, work);
+        return;
+    }
+    cs_spectral_bounds_set(system, work);
+    system->arena.part = &system->plan.state_bytes;
+    if (cs_scene_has_key_frames(system->scene))
+        cs_event_moves_build(system, error);
 }
 
 enum cs_status cs_system_build(struct cs_system *system, const struct cs_scene *scene,

@@ -11,6 +11,22 @@ uint32_t cs_scene_surfaces(const struct cs_scene *scene) {
     return scene->bodies.n;
 }
 
+bool cs_scene_has_key_frames(const struct cs_scene *scene) {
+    bool any = false;
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        any = any || cs_scene_colliders(scene)[c].mesh.paths;
+    return any;
+}
+
+double cs_scene_key_frame_speed(const struct cs_scene *scene) {
+    double most = 0;
+    for (uint32_t c = 0; c < scene->colliders.n; c++) {
+        const struct cs_vertex_paths *paths = cs_scene_colliders(scene)[c].mesh.paths;
+        most = paths && paths->speed > most ? paths->speed : most;
+    }
+    return most;
+}
+
 const struct cs_collider *cs_scene_obstacle(const struct cs_scene *scene, uint32_t surface) {
     return surface < scene->bodies.n ? NULL
                                      : cs_scene_colliders(scene) + (surface - scene->bodies.n);

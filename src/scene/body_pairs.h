@@ -13,6 +13,11 @@ uint32_t cs_scene_surfaces(const struct cs_scene *scene);
 /* Returns the collider of a surface; NULL if it is a body. */
 const struct cs_collider *cs_scene_obstacle(const struct cs_scene *scene, uint32_t surface);
 
+/* Returns true if a collider has key frames, and the largest speed in m/s of a vertex on any of
+ * them; 0 if none has. */
+bool cs_scene_has_key_frames(const struct cs_scene *scene);
+double cs_scene_key_frame_speed(const struct cs_scene *scene);
+
 /* Returns true if two surfaces, or one with itself, may be in contact; *friction is then the
  * coefficient of the pair. */
 bool cs_scene_bodies_collide(const struct cs_scene *scene, uint32_t a, uint32_t b,

@@ -28,6 +28,7 @@ struct cs_posed_collider {
     double velocity[3];   /* m/s, of the pivot */
     double spin[3];       /* rad/s */
     double rotation_centre[3]; /* m, what it turns about: the centre */
+    struct cs_path_weights path; /* of a mesh with key frames: at its time; else 0 */
 };
 
 /* Simple bound of a shape, which hot loops test first. */
@@ -113,6 +114,30 @@ static inline void cs_collider_to_local(const struct cs_posed_collider *obstacle
                             p[2] - obstacle->centre[2]};
     for (int k = 0; k < 3; k++)
         x[k] = cs_vec3_dot(obstacle->axes[k], from);
+}
+
+/* Sets own = position in m of vertex i of a mesh in its own frame, at its time if it has key
+ * frames. */
+static inline void cs_collider_mesh_vertex(const struct cs_posed_collider *obstacle, uint32_t i,
+                                           double own[3]) {
+    const struct cs_mesh_source *mesh = &obstacle->collider->mesh;
+    const struct cs_trimesh *geometry = mesh->geometry;
+    for (size_t c = 0; c < 3 && !mesh->paths; c++)
+        own[c] = geometry->positions[c * geometry->n + i];
+    if (mesh->paths)
+        cs_vertex_paths_sum(mesh->paths, &obstacle->path, obstacle->path.position, i, own);
+}
+
+/* Sets positions (3,n) of all vertices likewise. */
+static inline void cs_collider_mesh_vertices(const struct cs_posed_collider *obstacle,
+                                             double *positions) {
+    const uint32_t n = obstacle->collider->mesh.geometry->n;
+    for (uint32_t i = 0; i < n; i++) {
+        double own[3];
+        cs_collider_mesh_vertex(obstacle, i, own);
+        for (size_t c = 0; c < 3; c++)
+            positions[c * n + i] = own[c];
+    }
 }
 
 /* Sets out = a point of the collider's own frame in the world, in m. */

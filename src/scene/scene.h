@@ -4,8 +4,7 @@
  * structs by them, and no other code knows the JSON. cs_scene_check adds conditions that ranges
  * cannot express.
  *
- * Absent values: an optional table has `present` false, a number is NAN, a choice or an index
- * is -1.
+ * Absent: an optional table has `present` false, a number is NAN, a choice or an index is -1.
  */
 #ifndef CS_SCENE_H
 #define CS_SCENE_H
@@ -13,6 +12,7 @@
 #include "base/arena.h"
 #include "base/status.h"
 #include "mesh/spring_network.h"
+#include "mesh/vertex_paths.h"
 #include "scene/pair_keys.h"
 #include "scene/picture_keys.h"
 #include "scene/pin_keys.h"
@@ -52,9 +52,10 @@ struct cs_mesh_source {
     struct cs_pose place;
     double velocity[3]; /* m/s, of every free particle at time 0 */
     double spin[3];     /* rad/s, about place.translate */
-
+    struct cs_key_frames key_frames; /* of a collider */
     /* not in the tables: made by the reader, owned by the scene's arena; shared and constant */
     const struct cs_trimesh *geometry;
+    const struct cs_vertex_paths *paths; /* NULL without key frames */
 };
 
 struct cs_shape_clusters;
@@ -67,7 +68,6 @@ struct cs_shape_matching {
     int64_t clusters;  /* parts that each keep their shape */
     double overlap;    /* of neighbouring parts, as a fraction of a part's longest side */
     bool springs;      /* the body's springs act too */
-
     /* not in the tables: made by the reader, owned by the scene's arena */
     const struct cs_shape_clusters *parts;
 };
@@ -159,7 +159,7 @@ struct cs_capsule {
     X(mesh, cs_mesh_source,                                                                    \
       "triangles, in contact with points, edges and triangles; for contact.law force")
 
-/* A rigid obstacle, at rest or moved by events. */
+/* An obstacle, at rest or moved by events, and by key frames if it is a mesh. */
 struct cs_collider {
 #define X(name, keys, text) struct keys name; /* exactly one is present */
     CS_SHAPE_LIST(X)

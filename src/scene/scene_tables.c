@@ -45,7 +45,30 @@ static const struct cs_table cloth_table = {ROWS(cloth_rows), .size = sizeof(str
 
 const char *const cs_mesh_shape_names[] = {"box", "sphere", "torus", "limbs", NULL};
 static const double one3[3] = {1, 1, 1};
+static const char *const paths_end_names[] = {"hold", "loop", "continue", NULL};
+static const struct cs_option key_frames_rows[] = {
+    TEXT(struct cs_key_frames, file,
+         "relative to the scene file, with the vertices of the mesh in its order: a PC2 file, "
+         "an NPZ file of numpy.savez, or OBJ files with the faces of the mesh, named with one "
+         "# for each digit of their number (walk_###.obj)"),
+    TEXT(struct cs_key_frames, array,
+         "name of the array (key frames, vertices, 3) in an NPZ file; positions if absent"),
+    INT(struct cs_key_frames, first, "", 0, 0, 1e9, "number of the first OBJ file"),
+    INT(struct cs_key_frames, count, "", 0, 0, 1e6, "of OBJ files: how many there are"),
+    REAL(struct cs_key_frames, rate, "1/s", 24, 1e-3, 1e6, "key frames per second"),
+    REAL(struct cs_key_frames, start, "s", 0, -BIG, BIG, "time of the first key frame"),
+    CHOICE(struct cs_key_frames, end, paths_end_names, CS_PATHS_HOLD,
+           "before the first and after the last key frame. hold: at rest; loop: the first "
+           "follows the last; continue: on with the velocities of the end"),
+};
+static const struct cs_table key_frames_table = {
+    ROWS(key_frames_rows), .size = sizeof(struct cs_key_frames), .optional = true};
+
+/* the first row is of colliders alone, the last two are of bodies alone */
 static const struct cs_option mesh_rows[] = {
+    TABLE(struct cs_mesh_source, key_frames, key_frames_table,
+          "positions of the vertices at equal intervals of time, instead of those of file or "
+          "shape; between them, a cubic spline"),
     TEXT(struct cs_mesh_source, file, "OBJ file, relative to the scene file"),
     CHOICE(
         struct cs_mesh_source, shape, cs_mesh_shape_names, -1,
@@ -62,14 +85,19 @@ static const struct cs_option mesh_rows[] = {
     VECTOR(struct cs_mesh_source, spin, 3, "rad/s", zero3, -BIG, BIG,
            "about place.translate, added to the velocity"),
 };
-static const struct cs_table mesh_table = {
-    ROWS(mesh_rows), .size = sizeof(struct cs_mesh_source), .optional = true, .one_of = true};
-/* a collider's has the same rows but for the last two: an event moves it */
+enum { N_MESH_ROWS = sizeof mesh_rows / sizeof *mesh_rows };
+static const struct cs_table mesh_table = {.rows = mesh_rows + 1,
+                                           .n = N_MESH_ROWS - 1,
+                                           .size = sizeof(struct cs_mesh_source),
+                                           .optional = true,
+                                           .one_of = true};
+/* events and key frames move a collider */
 const struct cs_table cs_mesh_keys = {.rows = mesh_rows,
-                                      .n = sizeof mesh_rows / sizeof *mesh_rows - 2,
+                                      .n = N_MESH_ROWS - 2,
                                       .size = sizeof(struct cs_mesh_source),
                                       .optional = true,
-                                      .one_of = true};
+                                      .one_of = true,
+                                      .n_always_optional = 1};
 
 static const char *const placement_names[] = {"random", "opposed-normals", "nearest", NULL};
 static const struct cs_option network_rows[] = {

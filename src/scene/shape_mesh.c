@@ -43,15 +43,16 @@ static double smooth(const struct cs_posed_collider *mesh, const double p[3], do
 }
 
 /* Returns true if a line in the mesh's own frame goes through triangle t, edges included. */
-static bool meets_triangle(const struct cs_trimesh *mesh, uint32_t t, const double from[3],
-                           const double way[3], double share) {
-    const uint32_t *corners = mesh->triangles + 3 * (size_t)t;
-    double u[3], v[3], to[3], across[3], turned[3];
+static bool meets_triangle(const struct cs_posed_collider *obstacle, uint32_t t,
+                           const double from[3], const double way[3], double share) {
+    const uint32_t *vertices = obstacle->collider->mesh.geometry->triangles + 3 * (size_t)t;
+    double corners[3][3], u[3], v[3], to[3], across[3], turned[3];
+    for (size_t k = 0; k < 3; k++)
+        cs_collider_mesh_vertex(obstacle, vertices[k], corners[k]);
     for (size_t c = 0; c < 3; c++) {
-        const double *places = mesh->positions + c * mesh->n;
-        u[c] = places[corners[1]] - places[corners[0]];
-        v[c] = places[corners[2]] - places[corners[0]];
-        to[c] = from[c] - places[corners[0]];
+        u[c] = corners[1][c] - corners[0][c];
+        v[c] = corners[2][c] - corners[0][c];
+        to[c] = from[c] - corners[0][c];
     }
     cs_vec3_cross(way, v, across);
     cs_vec3_cross(to, u, turned);
@@ -71,17 +72,21 @@ static bool meets_line(const struct cs_posed_collider *obstacle, const double fr
     for (int k = 0; k < 3; k++)
         own_way[k] = cs_vec3_dot(obstacle->axes[k], way);
     for (uint32_t t = 0; t < mesh->n_triangles && !meets; t++)
-        meets = meets_triangle(mesh, t, own, own_way, share);
+        meets = meets_triangle(obstacle, t, own, own_way, share);
     return meets;
 }
 
-/* Copies the struct; its arrays stay those of the scene. */
+/* Copies the struct; its arrays stay those of the scene, but for positions that change. */
 static enum cs_status triangles(const struct cs_posed_collider *obstacle,
                                 struct cs_trimesh *mesh, struct cs_arena *arena,
                                 struct cs_error *error) {
-    (void)arena, (void)error;
     *mesh = *obstacle->collider->mesh.geometry;
-    return CS_OK;
+    if (!obstacle->collider->mesh.paths)
+        return CS_OK;
+    mesh->positions = cs_arena_alloc_array(arena, mesh->n, 3 * sizeof *mesh->positions, error);
+    if (mesh->positions)
+        cs_collider_mesh_vertices(obstacle, mesh->positions);
+    return error->status;
 }
 
 const struct cs_shape cs_shape_mesh = {

@@ -289,13 +289,13 @@ static void add_forces(struct cs_energy_ledger *ledger, double t, double time) {
 }
 
 /* Adds all works at one node of the quadrature, at time t and with weight `time` in s. Pins
- * and values can do work only with events. */
+ * and values can do work only with events or key frames. */
 static void add_works(struct cs_energy_ledger *ledger, double t, double time, double h) {
     double *x = ledger->trial_state;
     move_values(ledger, t);
     cs_events_apply_arcs(ledger->system, t, x, x + length_of(ledger));
     add_forces(ledger, t, time);
-    if (!ledger->system->events)
+    if (!ledger->system->events && !ledger->system->motions)
         return;
     ledger->work[CS_WORK_PINS] += time * find_pins(ledger, t);
     ledger->work[CS_WORK_VALUES] += time * find_drift(ledger, t, h);

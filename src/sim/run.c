@@ -217,7 +217,7 @@ void cs_run_goals(const struct cs_run *run, double *g) {
 size_t cs_run_bytes(const struct cs_run *run) {
     const struct cs_system *system = run->system;
     return system->arena.used + system->plan.rows[CS_FEATURE_MESHES].bytes +
-           run->host->arena.used;
+           system->plan.rows[CS_FEATURE_KEY_FRAMES].bytes + run->host->arena.used;
 }
 
 void cs_run_hash(const struct cs_run *run, char digits[CS_HASH_DIGITS]) {

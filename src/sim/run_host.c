@@ -9,6 +9,7 @@
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "model/system/shape_clusters.h"
+#include "scene/body_pairs.h"
 
 #include <math.h>
 #include <string.h>
@@ -162,6 +163,7 @@ void cs_blow_up_check_set(struct cs_blow_up_check *bound, const struct cs_system
                           double t) {
     const double *x = system->state, *v = x + 3 * (size_t)system->view.n;
     const struct cs_energy energy = cs_diagnostics_energy(system, t, x, v);
+    const double speed = cs_scene_key_frame_speed(system->scene);
     *bound = (struct cs_blow_up_check){
         .start_energy = energy.elastic + energy.other +
                         cs_springs_energy_at_twice(&system->springs) +
@@ -170,6 +172,8 @@ void cs_blow_up_check_set(struct cs_blow_up_check *bound, const struct cs_system
         .force_rate = force_power_bound(system),
         .t_forces = t,
     };
+    for (size_t i = 0; speed > 0 && i < system->view.n; i++)
+        bound->speed += 2 * system->mass[i] * speed * speed;
 }
 
 /* Continues the bound from t on with other forces: closes the piece before t, and takes the

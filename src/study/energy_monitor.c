@@ -5,6 +5,7 @@
 #include "model/event/event_state.h"
 #include "model/event/events.h"
 #include "model/force/terms.h"
+#include "scene/body_pairs.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -149,6 +150,8 @@ enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
 /* True if an event since the last sample may have added energy. */
 static bool has_event_since(const struct cs_energy_monitor *monitor, const struct cs_run *run) {
     const struct cs_events *events = run->system->events;
+    if (cs_scene_has_key_frames(run->system->scene))
+        return true;
     return events && (events->begin >= monitor->last_sample || events->has_ramps ||
                       cs_events_speed(run->system) > 0);
 }

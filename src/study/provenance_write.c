@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "base/json_writer.h"
+#include "scene/file/key_frames_read.h"
 #include "sim/module.h"
 
 #include <stdio.h>
@@ -38,8 +39,13 @@ void cs_scene_each_file(const struct cs_scene *scene,
         add_referenced_file(&walk, body->mesh.file, "a mesh");
         add_referenced_file(&walk, body->material.texture, "a texture");
     }
-    for (uint32_t c = 0; c < scene->colliders.n; c++)
-        add_referenced_file(&walk, cs_scene_colliders(scene)[c].mesh.file, "a mesh");
+    for (uint32_t c = 0; c < scene->colliders.n; c++) {
+        const struct cs_mesh_source *mesh = &cs_scene_colliders(scene)[c].mesh;
+        char file[CS_TEXT_MAX];
+        add_referenced_file(&walk, mesh->file, "a mesh");
+        for (uint32_t k = 0; cs_key_frames_file(&mesh->key_frames, k, file); k++)
+            add_referenced_file(&walk, file, "key frames");
+    }
 }
 
 struct list {

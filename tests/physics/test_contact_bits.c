@@ -22,6 +22,7 @@ static const struct meeting scenes[] = {
     {.scene = "ribbon", .frames = 200},
     {.scene = "needles", .frames = 40, .overrides = {MEETING_GRID(13, 13)}},
     {.scene = "bear_drape", .frames = 30, .overrides = {MEETING_GRID(15, 15)}},
+    {.scene = "walking_bear", .frames = 30, .overrides = {MEETING_GRID(15, 15)}},
     {.scene = "winding", .frames = 80, .overrides = {MEETING_GRID(11, 11)}},
     {.scene = "funnel",
      .frames = 40,

@@ -33,6 +33,7 @@ static const struct meeting scenes[] = {
     {.scene = "fold", .frames = 60},
     {.scene = "needles", .frames = 125},
     {.scene = "bear_drape", .frames = 60},
+    {.scene = "walking_bear", .frames = 90},
     {.scene = "layers", .frames = 60},
     {.scene = "bear_heap", .frames = 120},
     {.scene = "winding", .frames = 240, .overrides = {MEETING_GRID(15, 15)}},

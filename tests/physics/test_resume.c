@@ -95,6 +95,8 @@ TEST(scenes_go_on) {
         {SCENES "/rip.json", "newmark", 45, {20, 36, 40}},
         {SCENES "/sphere_rest.json", "implicit-linearised", 10, {1, 4, 7}},
         {SCENES "/layers.json", NULL, 6, {2, 4, 5}},
+        {SCENES "/walking_bear.json", "implicit-linearised", 20, {7, 13, 18}},
+        {SCENES "/walking_bear.json", "newmark", 20, {7, 13, 18}},
         {SCENES "/funnel.json", "implicit-linearised", 4, {1, 2, 3}},
         {SCENES "/self_compare.json", "newmark", 60, {20, 35, 50}},
         {SCENES "/self_compare.json", "dopri5", 60, {20, 35, 50}},

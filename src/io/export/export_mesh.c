@@ -1,5 +1,6 @@
 /* Joins the particles of all bodies to triangles and lines, and makes triangles of colliders. A
- * collider's triangles are made once in its own frame, then posed at every sample. */
+ * collider's triangles are made once in its own frame, then posed at every sample, where key
+ * frames change its points. */
 #include "io/export/writer.h"
 
 #include "base/serialise.h"
@@ -197,6 +198,9 @@ void cs_export_mesh_pose_colliders(struct cs_export_mesh *skin, const struct cs_
         cs_posed_collider_at(system, skin->items[item], t, &at);
         for (size_t i = skin->first_point[item]; i < skin->first_point[item + 1]; i++) {
             double place[3];
+            if (at.collider->mesh.paths)
+                cs_collider_mesh_vertex(&at, (uint32_t)(i - skin->first_point[item]),
+                                        skin->local_positions + 3 * i);
             cs_collider_to_world(&at, skin->local_positions + 3 * i, place);
             for (size_t c = 0; c < 3; c++)
                 out[3 * i + c] = cs_double_to_le64(place[c]);

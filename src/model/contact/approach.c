@@ -93,8 +93,9 @@ static void set_collider(const struct cs_system *system, uint32_t collider,
     for (size_t i = 0; i < (mesh ? mesh->n : 8) && !out->endless; i++) {
         double p[3], own[3];
         for (size_t k = 0; k < 3; k++)
-            own[k] = mesh ? mesh->positions[k * mesh->n + i]
-                          : (i >> k & 1 ? 1 : -1) * at.half_sizes[k];
+            own[k] = (i >> k & 1 ? 1 : -1) * at.half_sizes[k];
+        if (mesh)
+            cs_collider_mesh_vertex(&at, (uint32_t)i, own);
         for (int c = 0; c < 3; c++)
             p[c] = at.centre[c] + own[0] * at.axes[0][c] + own[1] * at.axes[1][c] +
                    own[2] * at.axes[2][c];
@@ -131,7 +132,7 @@ static double half_diagonal(const struct surface *surface) {
     return isfinite(length) ? length : 0;
 }
 
-/* Adds the events that move bodies and colliders along paths. */
+/* Adds the events that move bodies and colliders along paths, and key frames. */
 static void add_paths(const struct cs_scene *scene, struct cs_approach *approach) {
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_event *event = cs_scene_events(scene) + e;
@@ -155,6 +156,10 @@ static void add_paths(const struct cs_scene *scene, struct cs_approach *approach
                          speed_along(&event->grab.path, event->grab.motion, middle, begin) +
                              2 * length_of(event->grab.spin) * half_diagonal(at));
         }
+    }
+    for (uint32_t c = 0; c < scene->colliders.n; c++) {
+        const struct cs_vertex_paths *paths = cs_scene_colliders(scene)[c].mesh.paths;
+        approach->surfaces[approach->n_bodies + c].path_speed += paths ? paths->speed : 0;
     }
 }
 

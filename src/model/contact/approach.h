@@ -4,7 +4,8 @@
  * The speed at which bodies a and b, or a body and a collider, may meet is the larger of
  *
  *   sqrt(|v_a - v_b|^2 + 2 g h)   the fastest initial velocities, spin included, and the drop h
- *   u_a + u_b                     speeds of grabs and moved colliders along their paths
+ *   u_a + u_b                     speeds of grabs and moved colliders along their paths, and
+ *                                 the largest speed of a vertex on key frames
  *
  * and for two bodies, or a body and itself, the largest of these with whatever either of them
  * meets, since a body that is struck meets others, and itself, as fast as that.

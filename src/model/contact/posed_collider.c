@@ -92,6 +92,8 @@ void cs_posed_collider_at(const struct cs_system *system, uint32_t k, double t,
     pose(out, cs_scene_colliders(system->scene) + k);
     if (system->motions)
         move(out, system->motions + k, t);
+    if (out->collider->mesh.paths)
+        out->path = cs_vertex_paths_weights(out->collider->mesh.paths, t);
     memcpy(out->rotation_centre, out->centre, sizeof out->rotation_centre);
 }
 
@@ -111,4 +113,22 @@ void cs_posed_collider_velocity(const struct cs_posed_collider *obstacle, const 
     cs_vec3_cross(w, arm, turned);
     for (int c = 0; c < 3; c++)
         v[c] = obstacle->velocity[c] + turned[c];
+}
+
+void cs_posed_collider_vertex(const struct cs_posed_collider *obstacle, uint32_t i, double p[3],
+                              double v[3]) {
+    const struct cs_vertex_paths *paths = obstacle->collider->mesh.paths;
+    double own[3], own_velocity[3], turned[3];
+    cs_collider_mesh_vertex(obstacle, i, own);
+    for (int c = 0; c < 3; c++)
+        p[c] = obstacle->axes[0][c] * own[0] + obstacle->axes[1][c] * own[1] +
+               obstacle->axes[2][c] * own[2] + obstacle->centre[c];
+    if (v)
+        cs_posed_collider_velocity(obstacle, p, v);
+    if (!v || !paths)
+        return;
+    cs_vertex_paths_sum(paths, &obstacle->path, obstacle->path.velocity, i, own_velocity);
+    cs_collider_rotate(obstacle, own_velocity, turned);
+    for (int c = 0; c < 3; c++)
+        v[c] += turned[c];
 }

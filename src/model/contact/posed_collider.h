@@ -103,4 +103,9 @@ static inline bool cs_posed_collider_hits_segment(const struct cs_posed_collider
 void cs_posed_collider_velocity(const struct cs_posed_collider *obstacle, const double p[3],
                                 double v[3]);
 
+/* Position in m of vertex i of a mesh, and its velocity in m/s, by its pose, its motion and its
+ * key frames; v may be NULL. */
+void cs_posed_collider_vertex(const struct cs_posed_collider *obstacle, uint32_t i, double p[3],
+                              double v[3]);
+
 #endif

@@ -12,6 +12,7 @@ enum { VELOCITIES = 2, ARRAYS };
 /* Pose and motion of a collider, as one array has it. */
 struct pose {
     double centre[3], axes[3][3], velocity[3], spin[3], pivot[3];
+    double t; /* s, of the key frames; 0 without them */
 };
 
 struct cs_points {
@@ -51,16 +52,6 @@ static void copy_particles(const struct cs_system *system, const double *from, d
     }
 }
 
-/* Position of vertex i of a collider: its axes times the coordinates in the mesh. */
-static void pose_vertex(const struct cs_posed_collider *obstacle, size_t i, double p[3]) {
-    const struct cs_trimesh *mesh = obstacle->collider->mesh.geometry;
-    const double *own = mesh->positions + i;
-    const size_t n = mesh->n;
-    for (int c = 0; c < 3; c++)
-        p[c] = obstacle->axes[0][c] * own[0] + obstacle->axes[1][c] * own[n] +
-               obstacle->axes[2][c] * own[2 * n] + obstacle->centre[c];
-}
-
 /* Returns whether an array has this pose already, and records it. */
 static bool is_posed(const struct cs_posed_collider *obstacle, struct pose *posed) {
     struct pose pose;
@@ -69,6 +60,7 @@ static bool is_posed(const struct cs_posed_collider *obstacle, struct pose *pose
     memcpy(pose.velocity, obstacle->velocity, sizeof pose.velocity);
     memcpy(pose.spin, obstacle->spin, sizeof pose.spin);
     memcpy(pose.pivot, obstacle->rotation_centre, sizeof pose.pivot);
+    pose.t = obstacle->path.t;
     const bool same = !memcmp(posed, &pose, sizeof pose);
     *posed = pose;
     return same;
@@ -82,9 +74,7 @@ static void set_vertices(const struct cs_surfaces *surfaces, uint32_t surface,
     const size_t n_points = surfaces->n_points;
     for (uint32_t i = first; i < surfaces->first_point[surface + 1]; i++) {
         double p[3], v[3];
-        pose_vertex(obstacle, i - first, p);
-        if (velocities)
-            cs_posed_collider_velocity(obstacle, p, v);
+        cs_posed_collider_vertex(obstacle, i - first, p, velocities ? v : NULL);
         for (size_t c = 0; c < 3; c++)
             to[c * n_points + i] = velocities ? v[c] : p[c];
     }

@@ -7,6 +7,7 @@
 #include "model/event/event_state.h"
 
 #include "model/contact/posed_collider.h"
+#include "scene/body_pairs.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,6 +17,8 @@ static const struct cs_collider_motion at_rest = {.t_end = HUGE_VAL,
                                                   .rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 
 bool cs_event_moves_any(const struct cs_scene *scene) {
+    if (cs_scene_has_key_frames(scene))
+        return true;
     for (uint32_t e = 0; e < scene->events.n; e++)
         if (cs_scene_events(scene)[e].move.present && scene->colliders.n > 0)
             return true;

@@ -162,7 +162,7 @@ void cs_event_refresh_springs(struct cs_system *system);
 
 /* Events that move colliders; for events.c and event_apply.c. */
 
-/* True if an event of the scene moves a collider. */
+/* True if an event of the scene or key frames move a collider. */
 bool cs_event_moves_any(const struct cs_scene *scene);
 
 /* Takes system->motions, with every collider at rest, and the arrays of the view that show

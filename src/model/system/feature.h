@@ -11,6 +11,7 @@
  * have rows of their own, which are printed before AREA. */
 #define CS_FEATURE_LIST(X)                                                                     \
     X(MESHES, "meshes")                                                                        \
+    X(KEY_FRAMES, "key frames")                                                                \
     X(SPRINGS, "springs")                                                                      \
     X(DAMPING, "spring damping")                                                               \
     X(AREA, "area shares")                                                                     \

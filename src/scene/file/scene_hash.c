@@ -66,6 +66,9 @@ static void add_file(const struct cs_mesh_source *mesh, const char *list, uint32
                      struct cs_text *out) {
     if (mesh->present && *mesh->file)
         cs_text_add(out, "%s[%u].mesh.file is %s\n", list, number, mesh->geometry->file_hash);
+    if (mesh->present && mesh->paths)
+        cs_text_add(out, "%s[%u].mesh.key_frames.file is %s\n", list, number,
+                    mesh->paths->file_hash);
 }
 
 static void add_files(const struct cs_scene *scene, struct cs_text *out) {

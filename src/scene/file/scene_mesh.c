@@ -5,6 +5,7 @@
 #include "mesh/spring_network.h"
 #include "model/system/shape_clusters.h"
 #include "scene/file/json_context.h"
+#include "scene/file/key_frames_read.h"
 #include "scene/file/mesh_read.h"
 #include "scene/shape.h"
 
@@ -132,6 +133,24 @@ static enum cs_status split_body(const struct item *item, struct cs_body *body) 
     return cs_shape_clusters_make(body, parts, context->arena, context->error);
 }
 
+/* Reads the key frames of a mesh that is there, if it has any. */
+static enum cs_status read_key_frames(const struct item *item, const struct cs_scene *scene,
+                                      struct cs_mesh_source *source) {
+    struct cs_arena *arena = item->reader->arena;
+    const size_t before = arena->used;
+    struct cs_error said = {0};
+    if (!source->key_frames.present)
+        return CS_OK;
+    struct cs_vertex_paths *paths = cs_arena_alloc(arena, sizeof *paths, item->reader->error);
+    if (!paths)
+        return item->reader->error->status;
+    if (cs_key_frames_read(scene->folder, source, paths, arena, &said))
+        return refuse(item, "mesh.key_frames.file", said.status, said.message);
+    paths->bytes = arena->used - before;
+    source->paths = paths;
+    return CS_OK;
+}
+
 /* Makes the mesh of an item, and its spring network unless that is NULL or absent; records the
  * memory of both. */
 static enum cs_status read_mesh(const struct item *item, const struct cs_scene *scene,
@@ -147,7 +166,7 @@ static enum cs_status read_mesh(const struct item *item, const struct cs_scene *
     if (!status && network && network->present)
         status = make_network(item, network, mesh);
     mesh->bytes = arena->used - before;
-    return status;
+    return status ? status : read_key_frames(item, scene, source);
 }
 
 /* Makes mesh and clusters of a body; *particles: of the meshes so far, to refuse too many
