@@ -118,9 +118,11 @@ static void add_springs(const struct cs_coupling *coupling,
     for (uint32_t k = 0; k < 4; k++) {
         const double stiff = -share->weight[share->vertex] * share->weight[k];
         const uint32_t other = share->points[k];
-        if (k != share->vertex && coupling->inv_mass[other] > 0)
+        if (k == share->vertex || stiff == 0)
+            continue;
+        if (coupling->inv_mass[other] > 0)
             cs_extra_springs_add(piece, cell_of(coupling, other), block, (float)stiff);
-        else if (stiff * (whole[0] + whole[3] + whole[5]) > 0 && k != share->vertex)
+        else if (stiff * (whole[0] + whole[3] + whole[5]) > 0)
             count_in(coupling, share->points[share->vertex], whole, -stiff);
     }
 }
