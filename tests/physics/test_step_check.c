@@ -2,8 +2,10 @@
  * there are, one after the other, whatever the list is that answers. */
 #include "fixture.h"
 
+#include "model/contact/broad_phase/candidates.h"
 #include "model/contact/broad_phase/swept_aabb.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
+#include "model/contact/narrow_phase/exact_distance.h"
 #include "model/contact/narrow_phase/pair_step_check.h"
 #include "model/contact/step_check.h"
 
@@ -143,8 +145,8 @@ static bool all_are_seen(const struct fixture *cloth, const double *x) {
     return seen;
 }
 
-/* A list that was never made, one of another place and one that covers the way give the same.
- */
+/* A list that was never made, one of another place, one that covers the way, and pairs nearby
+ * the start or the end give the same. */
 TEST(steps_are_seen_as_by_all_pairs) {
     struct fixture cloth;
     static double x[MOST], away[MOST];
@@ -173,6 +175,46 @@ TEST(steps_are_seen_as_by_all_pairs) {
     fixture_close(&cloth);
 }
 
+/* Finds the pairs nearby at a state, as a force after a short step does. Returns whether the
+ * step to x is short enough for them. */
+static bool find_nearby(const struct fixture *cloth, const double *at, const double *x) {
+    struct cs_candidates *candidates = &cloth->system->pairs->candidates;
+    candidates->collects_nearby = true;
+    candidates->has_close_pairs = false;
+    ck_assert(cs_candidates_find_in_range(candidates, at));
+    return cs_candidates_max_motion(candidates, cloth->x, x) < 0.99 * CS_CANDIDATES_NEARBY;
+}
+
+/* Pairs nearby the start, the end or beyond it give the same as all pairs, where sheets are so
+ * close that short steps are refused too. */
+TEST(pairs_nearby_suffice_for_short_steps) {
+    struct fixture cloth;
+    static double x[MOST], away[MOST];
+    uint64_t seed = 5;
+    uint32_t refused = 0, taken = 0;
+    fixture_open(&cloth, "implicit-linearised:dt=0.02", "%s", sheets);
+    struct cs_pairs *pairs = cloth.system->pairs;
+    for (int k = 0; k < 60; k++) {
+        for (size_t i = cloth.system->bodies[1].first; i < cloth.n; i++)
+            cloth.x[cloth.n + i] -= 0.0015;
+        shake(&cloth, 0.0004 * (1 + k % 8), &seed, x);
+        for (size_t i = 0; i < 3 * cloth.n; i++)
+            away[i] = 1.5 * x[i] - 0.5 * cloth.x[i];
+        const bool expected = all_are_seen(&cloth, x);
+        const double *const places[] = {cloth.x, x, away};
+        for (int place = 0; place < 3; place++) {
+            const bool is_short = find_nearby(&cloth, places[place], x);
+            ck_assert_msg(cs_contact_pairs_resolve_step(pairs, 0, cloth.x, STEP, x) == expected,
+                          "move %d, place %d: expected %d", k, place, expected);
+            refused += is_short && !expected;
+            taken += is_short && expected;
+        }
+    }
+    ck_assert_uint_gt(refused, 15);
+    ck_assert_uint_gt(taken, 15);
+    fixture_close(&cloth);
+}
+
 /* the sheet above goes down, slowly, from out of range until more is unseen than may be */
 TEST(steps_that_come_into_range_are_asked) {
     struct fixture cloth;
@@ -192,6 +234,10 @@ TEST(steps_that_come_into_range_are_asked) {
         pairs->candidates.is_built = false;
         ck_assert_msg(cs_contact_pairs_resolve_step(pairs, 0, cloth.x, STEP, x) == expected,
                       "down %g", down);
+        // none is nearby at the start, which must not be taken for none at all
+        find_nearby(&cloth, cloth.x, x);
+        ck_assert_msg(cs_contact_pairs_resolve_step(pairs, 0, cloth.x, STEP, x) == expected,
+                      "down %g, with pairs nearby", down);
         least = down;
     }
     ck_assert_double_gt(least, 0.07);

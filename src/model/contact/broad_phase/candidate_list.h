@@ -64,6 +64,9 @@ struct cs_candidate_chunk {
         /* (n_in_range, 2) pairs in range, of cs_candidates_find_in_range */
         *in_range;
     size_t n_in_range, close_capacity;
+    /* (n_nearby, 2) those within CS_CANDIDATES_NEARBY ranges more, and perhaps some beyond */
+    uint32_t *nearby;
+    size_t n_nearby, nearby_capacity;
     /* answer of one chunk to a query over all candidates; the query defines it */
     double result;
 };
@@ -78,6 +81,9 @@ struct cs_candidate_batch {
 struct cs_candidate_range {
     uint32_t batch, begin, n;
 };
+
+/* Ranges beyond the own one up to which candidates are nearby: explicit steps move less. */
+#define CS_CANDIDATES_NEARBY 0.25
 
 /* The candidate list of a system, its validity and the data of the search. */
 struct cs_candidates {
@@ -107,8 +113,12 @@ struct cs_candidates {
     bool is_built;    /* the list was made */
     /* (3,n_points) m, state of the pairs in range */
     double *x_at_close;
-    /* pairs in range belong to x_at_close */
+    /* pairs in range and nearby belong to x_at_close */
     bool has_close_pairs;
+    /* The last step was short enough for pairs nearby, so that the next search collects them;
+     * the last search did, and n_builds of its list. Only time depends on it. */
+    bool collects_nearby, has_nearby;
+    uint64_t close_build;
     /* number of times that pairs in range were found: a version */
     uint64_t close_count;
     /* number of lists built */

@@ -18,6 +18,7 @@ static void finish(void *object) {
     for (uint32_t l = 0; l < candidates->n_chunks; l++) {
         free(candidates->chunks[l].pairs);
         free(candidates->chunks[l].in_range);
+        free(candidates->chunks[l].nearby);
     }
     cs_candidates_find_finish(candidates);
 }

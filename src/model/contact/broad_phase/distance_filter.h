@@ -77,6 +77,14 @@ static inline bool cs_distance_filter_add(struct cs_distance_filter *filter,
     return filter->n == CS_DISTANCE_FILTER;
 }
 
+/* Sets `ratio` of all lanes. */
+void cs_distance_filter_measure(struct cs_distance_filter *filter, bool edges);
+
+/* R^2 of the inequality above with its factor, to change the reach after measuring. */
+static inline float cs_distance_filter_reach(float reach) {
+    return 1.02f * reach * reach;
+}
+
 /* Empties the filter and returns how many pairs pass. These come first in filter->pairs, in the
  * order in which they were added. Pairs with positions that are not finite pass. */
 uint32_t cs_distance_filter_run(struct cs_distance_filter *filter, bool edges);

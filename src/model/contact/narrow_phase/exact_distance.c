@@ -103,7 +103,12 @@ enum { TOGETHER = 4, WAITING = TOGETHER * CS_PAIR_LANES };
 struct work {
     const struct cs_candidates *search;
     struct cs_candidate_chunk *chunk;
-    struct cs_distance_filter sieve; /* first: most are held back there */
+    bool collects;                    /* nearby pairs, or those in range alone */
+    bool has_one_range;               /* of all pairs */
+    double reach;                     /* of nearby pairs, in units */
+    struct cs_distance_filter sieve;  /* first: most are held back there */
+    float excess[CS_DISTANCE_FILTER]; /* of the reach of nearby pairs over that of pairs in
+                                         range */
     struct cs_pair_lanes lanes[TOGETHER];
     uint32_t pairs[WAITING][2], waiting;
 };
@@ -154,22 +159,64 @@ static void take(struct work *work, const uint32_t pair[2]) {
         range_measure(work);
 }
 
-/* Runs the filter on the pairs it holds. */
+/* Runs the filter on the pairs it holds: appends those nearby, and takes those that may be in
+ * range. Without a branch: a removed pair is overwritten by the next. */
 static void filter_chunk(struct work *work) {
-    const uint32_t n =
-        cs_distance_filter_run(&work->sieve, work->chunk->kind == CS_PAIR_EDGE_EDGE);
-    for (uint32_t l = 0; l < n; l++)
-        take(work, work->sieve.pairs[l]);
+    struct cs_distance_filter *sieve = &work->sieve;
+    struct cs_candidate_chunk *chunk = work->chunk;
+    uint32_t taken[CS_DISTANCE_FILTER], n_taken = 0;
+    if (sieve->n)
+        cs_distance_filter_measure(sieve, chunk->kind == CS_PAIR_EDGE_EDGE);
+    for (uint32_t l = 0; l < sieve->n; l++) {
+        taken[n_taken] = l;
+        n_taken += !(sieve->ratio[l] + work->excess[l] > 0);
+    }
+    for (uint32_t l = 0; work->collects && l < sieve->n; l++) {
+        memcpy(chunk->nearby + 2 * chunk->n_nearby, sieve->pairs[l], sizeof *sieve->pairs);
+        chunk->n_nearby += !(sieve->ratio[l] > 0);
+    }
+    sieve->n = 0;
+    for (uint32_t k = 0; k < n_taken; k++)
+        take(work, sieve->pairs[taken[k]]);
+}
+
+/* Sets the reach of nearby pairs, and its excess over that of pairs in range, for the pair that
+ * is added next. Motions are bounded in ranges of triangles, those of edges are shorter. */
+static void set_reach(struct work *work, const uint32_t at[4]) {
+    const struct cs_candidates *candidates = work->search;
+    const double unit = candidates->inverse_unit;
+    const double range = unit * cs_candidate_range_of(candidates, work->chunk->kind, at);
+    work->reach = range;
+    if (work->collects)
+        work->reach += CS_CANDIDATES_NEARBY * unit *
+                       cs_candidate_range_of(candidates, CS_PAIR_POINT_TRIANGLE, at);
+    work->excess[work->sieve.n] =
+        cs_distance_filter_reach((float)work->reach) - cs_distance_filter_reach((float)range);
 }
 
 static void put(struct work *work, const uint32_t pair[2]) {
     const struct cs_candidates *candidates = work->search;
     uint32_t at[4];
     cs_candidate_vertices(candidates->system->surfaces, work->chunk->kind, pair, at);
-    const double reach =
-        candidates->inverse_unit * cs_candidate_range_of(candidates, work->chunk->kind, at);
-    if (cs_distance_filter_add(&work->sieve, candidates->scaled_points, at, reach, pair))
+    if (!work->has_one_range)
+        set_reach(work, at);
+    if (cs_distance_filter_add(&work->sieve, candidates->scaled_points, at, work->reach, pair))
         filter_chunk(work);
+}
+
+/* If all ranges are equal, they are set once. The points of the first pair stand for all. */
+static void begin_work(struct work *work) {
+    const struct cs_candidates *candidates = work->search;
+    const uint32_t any[4] = {0};
+    work->has_one_range =
+        candidates->body_pairs->range_min == candidates->body_pairs->range_max;
+    work->collects = candidates->collects_nearby;
+    work->waiting = 0;
+    for (work->sieve.n = CS_DISTANCE_FILTER; work->has_one_range && work->sieve.n;) {
+        work->sieve.n--;
+        set_reach(work, any);
+    }
+    work->sieve.n = 0;
 }
 
 static void find_chunk(void *arg, uint32_t number) {
@@ -178,14 +225,18 @@ static void find_chunk(void *arg, uint32_t number) {
     struct work work;
     work.search = candidates;
     work.chunk = chunk;
-    work.waiting = work.sieve.n = 0;
     uint32_t *close = cs_arena_realloc(chunk->in_range, &chunk->close_capacity, chunk->n,
                                        2 * sizeof *chunk->in_range);
-    chunk->n_in_range = 0;
-    chunk->failed = chunk->n && !close;
-    if (chunk->failed)
+    chunk->in_range = close ? close : chunk->in_range;
+    uint32_t *nearby =
+        cs_arena_realloc(chunk->nearby, &chunk->nearby_capacity,
+                         candidates->collects_nearby ? chunk->n : 0, 2 * sizeof *chunk->nearby);
+    chunk->nearby = nearby ? nearby : chunk->nearby;
+    chunk->n_in_range = chunk->n_nearby = 0;
+    chunk->failed = chunk->n && (!close || (candidates->collects_nearby && !nearby));
+    if (chunk->failed || !chunk->n)
         return;
-    chunk->in_range = close;
+    begin_work(&work);
     for (size_t k = 0; k < chunk->n; k++)
         put(&work, chunk->pairs + 2 * k);
     filter_chunk(&work);
@@ -208,5 +259,7 @@ bool cs_candidates_find_in_range(struct cs_candidates *candidates, const double 
         failed = failed || candidates->chunks[l].failed;
     candidates->has_close_pairs = !failed;
     candidates->close_count++;
+    candidates->close_build = candidates->n_builds;
+    candidates->has_nearby = candidates->collects_nearby;
     return !failed;
 }

@@ -180,7 +180,8 @@ enum { SOME = 256 };
 
 struct job {
     struct cs_pairs *pairs;
-    double h; /* s */
+    double h;    /* s */
+    bool nearby; /* the pairs nearby suffice */
     /* a chunk with an unresolved pair; NONE */
     uint32_t unseen;
 };
@@ -235,12 +236,10 @@ static bool is_unresolved(const struct job *job, struct cs_pair_motion *way, dou
     return unseen > CS_UNRESOLVED_ENERGY_MAX * start.total_energy;
 }
 
-/* Uses the result of a lane, or samples the pair if its step is long. */
+/* Samples the pair of a lane, whose step is long. */
 static bool is_lane_unresolved(const struct work *work, uint32_t l) {
     const struct cs_pair_motion_lanes *lanes = &work->lanes;
     struct cs_pair_motion way = {.kind = work->kind};
-    if (lanes->result[l] < 2)
-        return lanes->result[l] > 0;
     for (int k = 0; k < 4; k++) {
         way.inverse_mass[k] = lanes->inverse_mass[k][l];
         for (int c = 0; c < 3; c++) {
@@ -255,8 +254,9 @@ static bool is_lane_unresolved(const struct work *work, uint32_t l) {
 static void ask(struct work *work) {
     if (work->waiting)
         pair_motion_lanes_check(work->kind, &work->lanes, work->job->h);
-    for (uint32_t l = 0; l < work->waiting; l++)
-        work->unseen = work->unseen || is_lane_unresolved(work, l);
+    for (uint32_t l = 0; l < work->waiting && !work->unseen; l++)
+        work->unseen =
+            work->lanes.result[l] < 2 ? work->lanes.result[l] > 0 : is_lane_unresolved(work, l);
     work->waiting = 0;
 }
 
@@ -284,7 +284,7 @@ static void take(struct work *work, const uint32_t pair[2]) {
         ask(work);
 }
 
-/* Checks those pairs of a chunk whose swept boxes come within the range. */
+/* Checks those candidates of a chunk whose swept boxes come within the range. */
 static void check_chunk(struct work *work, const struct cs_candidate_chunk *chunk) {
     const struct cs_pairs *pairs = work->job->pairs;
     const bool edges = chunk->kind == CS_PAIR_EDGE_EDGE;
@@ -292,9 +292,11 @@ static void check_chunk(struct work *work, const struct cs_candidate_chunk *chun
     const double reach = cs_body_pair_params_range(&widest, edges) * (1 + 1e-9);
     uint32_t some[SOME][2];
     struct cs_moving_pairs items = {.surfaces = pairs->system->surfaces, .edges = edges};
-    for (size_t p = 0; p < chunk->n && !work->unseen; p += SOME) {
-        items.items = chunk->pairs + 2 * p;
-        items.n = chunk->n - p < SOME ? chunk->n - p : SOME;
+    const uint32_t *all = work->job->nearby ? chunk->nearby : chunk->pairs;
+    const size_t n_all = work->job->nearby ? chunk->n_nearby : chunk->n;
+    for (size_t p = 0; p < n_all && !work->unseen; p += SOME) {
+        items.items = all + 2 * p;
+        items.n = n_all - p < SOME ? n_all - p : SOME;
         const size_t n = cs_point_motion_filter(pairs->point_motion, &items, reach, some[0]);
         for (size_t k = 0; k < n && !work->unseen; k++)
             take(work, some[k]);
@@ -318,12 +320,25 @@ static void find_unresolved(void *arg, uint32_t number) {
 }
 
 /* Checks `chunks` chunks of the list as it is, from the last rejected one on. */
-static bool are_seen(struct cs_pairs *pairs, uint32_t chunks, double h) {
-    struct job job = {pairs, h, NONE};
+static bool are_seen(struct cs_pairs *pairs, uint32_t chunks, double h, bool nearby) {
+    struct job job = {pairs, h, nearby, NONE};
     cs_pool_run(chunks, find_unresolved, &job);
     if (job.unseen != NONE)
         pairs->unresolved_chunk = job.unseen;
     return job.unseen == NONE;
+}
+
+/* Tells whether every pair that comes into range in the step is among those nearby, which the
+ * last force found at its state. A pair in range anywhere on the way is further apart there by
+ * its relative motion from that state, which is largest at an end of the way, at most. */
+static bool are_nearby_enough(struct cs_candidates *search, const double *from,
+                              const double *to) {
+    const double limit = CS_CANDIDATES_NEARBY * (1 - 1e-6);
+    search->collects_nearby = cs_candidates_max_motion(search, from, to) <= limit;
+    return search->collects_nearby && search->has_close_pairs && search->has_nearby &&
+           search->close_build == search->n_builds &&
+           cs_candidates_max_motion(search, search->x_at_close, from) <= limit &&
+           cs_candidates_max_motion(search, search->x_at_close, to) <= limit;
 }
 
 bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const double *x0,
@@ -333,8 +348,10 @@ bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const doub
     const double *to = cs_surface_points_positions(pairs->system, CS_POINTS_END, t1, x1);
     cs_point_motion_set(pairs->system, from, to, pairs->point_motion);
     // A pair that rejects the step again makes a list that covers the step unnecessary.
-    if (search->is_built && !are_seen(pairs, 1, t1 - t0))
+    const bool nearby = are_nearby_enough(search, from, to);
+    if (search->is_built && !are_seen(pairs, 1, t1 - t0, nearby))
         return false;
     return cs_candidates_cover_step(search, from, to) &&
-           are_seen(pairs, search->n_chunks, t1 - t0);
+           are_seen(pairs, search->n_chunks, t1 - t0,
+                    nearby && search->close_build == search->n_builds);
 }
