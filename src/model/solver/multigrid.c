@@ -148,6 +148,7 @@ enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs
         (system->bodies[b].mesh ? cs_hierarchy_of_mesh : cs_hierarchy_of_grid)(hierarchy, arena,
                                                                                error);
     }
+    // vectors need the sizes of all levels, lists their joint numbers
     if (!error->status && is_joint(system->scene))
         join_levels(multigrid, arena, error);
     for (uint32_t b = 0; b < n && !multigrid->joint_levels && !error->status; b++)
@@ -356,6 +357,7 @@ static void cycle(struct cs_multigrid *multigrid, struct cs_hierarchy *bodies, u
         for (uint32_t b = 0; b < n; b++)
             bodies[b].kind->restrict_r(bodies[b].levels + k, bodies[b].levels + k + 1);
     }
+    // bodies apart have no extra springs there, which leaves the diagonal
     const struct cs_level_group coarsest = group_of(multigrid, bodies, last, &one);
     if (cs_level_is_coupled(&coarsest))
         cs_coarsest_solve(&multigrid->coarsest, &coarsest);

@@ -33,6 +33,7 @@ enum cs_status cs_level_alloc_vectors(const struct cs_level_group *group,
         group->levels[b]->first = stride;
         stride += group->levels[b]->n;
     }
+    // one array for all: a body then reads those of the others by joint numbers
     for (int k = 0; k < 4; k++)
         vectors[k] = cs_arena_alloc_array(arena, 3 * (size_t)stride, sizeof(float), error);
     for (uint32_t b = 0; b < group->n && !error->status; b++) {
@@ -65,6 +66,7 @@ static bool list_cells(struct cs_coarsest *coarsest, const struct cs_level_group
         for (uint32_t i = level->begin; i < level->end; i++) {
             if (!cs_level_is_alive(level, i))
                 continue;
+            // the rest is smoothed instead
             if (coarsest->n == CS_COARSEST_CELLS)
                 return false;
             coarsest->cells[coarsest->n++] = level->first + i;
@@ -94,6 +96,7 @@ static void add_springs(struct cs_coarsest *coarsest, const struct cs_level *lev
         const uint32_t to = slots.cells[k * LANES + lane];
         uint32_t j = 0;
         double block[6];
+        // few cells: no map is worth its memory
         while (j < coarsest->n && coarsest->cells[j] != to)
             j++;
         for (uint32_t c = 0; c < 6; c++)
@@ -117,6 +120,7 @@ static void set_matrix(struct cs_coarsest *coarsest, const struct cs_level_group
         const struct cs_level *level = last->levels[b];
         for (; i < coarsest->n && coarsest->cells[i] < level->first + level->n; i++) {
             const size_t cell = coarsest->cells[i] - level->first;
+            // a first level may be the last one too, and have one mass per cell
             const bool numbers = level->form == CS_LEVEL_FACTORED;
             double block[6] = {0};
             for (size_t c = 0; c < 6; c++)

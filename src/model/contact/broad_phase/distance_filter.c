@@ -113,7 +113,7 @@ CS_INLINE void measure(struct cs_distance_filter *restrict filter, bool edges) {
         const float squared = edges ? from_edge(s) : from_triangle(s);
         const float reach = filter->max_distance[l];
         filter->ratio[l] =
-            squared - (cs_distance_filter_reach(reach) + PLACE * dot(p[0], p[0]) +
+            squared - (cs_distance_filter_bound(reach) + PLACE * dot(p[0], p[0]) +
                        LENGTH * (s.a + s.c + dot(w, w)));
     }
 }

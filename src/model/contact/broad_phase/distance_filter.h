@@ -81,7 +81,7 @@ static inline bool cs_distance_filter_add(struct cs_distance_filter *filter,
 void cs_distance_filter_measure(struct cs_distance_filter *filter, bool edges);
 
 /* R^2 of the inequality above with its factor, to change the reach after measuring. */
-static inline float cs_distance_filter_reach(float reach) {
+static inline float cs_distance_filter_bound(float reach) {
     return 1.02f * reach * reach;
 }
 

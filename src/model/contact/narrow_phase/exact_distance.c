@@ -171,6 +171,7 @@ static void filter_chunk(struct work *work) {
         taken[n_taken] = l;
         n_taken += !(sieve->ratio[l] + work->excess[l] > 0);
     }
+    // long steps have no use for these
     for (uint32_t l = 0; work->collects && l < sieve->n; l++) {
         memcpy(chunk->nearby + 2 * chunk->n_nearby, sieve->pairs[l], sizeof *sieve->pairs);
         chunk->n_nearby += !(sieve->ratio[l] > 0);
@@ -191,7 +192,7 @@ static void set_reach(struct work *work, const uint32_t at[4]) {
         work->reach += CS_CANDIDATES_NEARBY * unit *
                        cs_candidate_range_of(candidates, CS_PAIR_POINT_TRIANGLE, at);
     work->excess[work->sieve.n] =
-        cs_distance_filter_reach((float)work->reach) - cs_distance_filter_reach((float)range);
+        cs_distance_filter_bound((float)work->reach) - cs_distance_filter_bound((float)range);
 }
 
 static void put(struct work *work, const uint32_t pair[2]) {
