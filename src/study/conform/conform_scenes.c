@@ -77,6 +77,29 @@
     "}, \"contact\": {\"law\": \"force\", \"start\": \"allow\", \"stiffness\": 1,"             \
     " \"damping\": 0.02, \"friction_speed\": 0.2}, " FIVE_FRAMES "}"
 
+/* Two sheets that fly apart, sewn at an edge and to a point of a triangle. */
+#define SEAMS(length)                                                                          \
+    "{\"bodies\": [{" CLOTH ", " FREE_OF_SPRINGS "}, {\"cloth\": {\"grid\": [3, 3],"           \
+    " \"velocity\": [0.3, 0.1, 0.4], \"place\": {\"translate\": [1.2, 0, 0.1]}}, \"mass\":"    \
+    " {\"particle\": 0.1}, " FREE_OF_SPRINGS "}], \"seams\": [{\"body\": 0,"                   \
+    " \"particles\": [2, 5], \"to\": {\"body\": 1, \"particles\": [0, 3]}, \"stiffness\": 1,"  \
+    " \"damping\": 0.05, \"length\": " length "}, {\"body\": 0, \"particles\": [8], \"to\":"   \
+    " {\"body\": 1, \"particles\": [3, 4, 6], \"weights\": [0.2, 0.3, 0.5]}, \"stiffness\": "  \
+    "1}],"                                                                                     \
+    " \"forces\": {" NO_GRAVITY "}, " FIVE_FRAMES "}"
+
+/* A sheet that hangs from a sphere which moves and turns. */
+#define CARRIED                                                                                \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3]}, \"mass\": {\"particle\": 0.1}, "            \
+    "\"springs\":"                                                                             \
+    " {\"stretch\": 1, \"damping\": 0.05}, \"pins\": [{\"at\": \"top\", \"to\": "              \
+    "{\"collider\":"                                                                           \
+    " 0}}]}], \"colliders\": [{\"sphere\": {\"centre\": [0.1, 2, 0], \"radius\": 0.1}}],"      \
+    " \"forces\": {" NO_GRAVITY "}, \"events\": [{\"from\": 0.05, \"to\": 0.45, \"move\": {"   \
+    "\"collider\": 0, \"spin\": [0, 2, 0], \"path\": [{\"at\": 0.45, \"point\": [0.2, 0, "     \
+    "0]}]}}"                                                                                   \
+    "], " FIVE_FRAMES "}"
+
 // ends of ramps lie between frames
 #define RAMP(key, value)                                                                       \
     "\"from\": 0.05, \"to\": 0.45, \"ramp\": {\"key\": \"" key "\", \"value\": " value "}"
@@ -124,6 +147,9 @@ const struct cs_force_scene cs_force_scenes[] = {
     {"force-contact", "edges on a pole", POLE, 9, true, true},
     {"force-contact", "two sheets in contact by force", PAIRS("0.3"), 12, true, true},
 
+    {"force-contact", "stitches without length", SEAMS("0"), 12, true, true},
+    {"force-contact", "stitches with a length", SEAMS("0.15"), 12, true, true},
+
     {"unequal-masses", "two sheets in gravity, wind and drag",
      "{" SHEETS_OF("0.1", "0.3") ", \"forces\": {\"gravity\": [1, -3, 2], \"drag\": 0.4, "
      WIND("0.5", "N") "}, " FIVE_FRAMES "}", 4, true, false},
@@ -152,6 +178,7 @@ const struct cs_force_scene cs_force_scenes[] = {
      "{" RAMP("bodies[0].springs.stretch", "1") "}, {" RAMP("bodies[0].springs.shear", "0.1") "},"
      " {" RAMP("bodies[0].springs.bend", "0.4") "}, {" RAMP("bodies[0].springs.damping", "0") "}], "
      FIVE_FRAMES "}", 9, true, true},
+    {"time-dependence", "a sheet held to a collider that turns", CARRIED, 12, true, true},
 };
 // clang-format on
 
