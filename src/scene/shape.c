@@ -168,8 +168,12 @@ bool cs_holder_fault(const struct cs_scene *scene, const struct cs_holder *holde
         return snprintf(text, size, "missing key \"collider\", expected its number");
     if (n == 0)
         return snprintf(text, size, "the scene has no colliders");
-    return holder->collider >= n && snprintf(text, size, "collider %lld does not exist (0..%u)",
-                                             (long long)holder->collider, n - 1);
+    if (holder->collider >= n)
+        return snprintf(text, size, "collider %lld does not exist (0..%u)",
+                        (long long)holder->collider, n - 1);
+    return cs_scene_colliders(scene)[holder->collider].mesh.key_frames.present &&
+           snprintf(text, size, "collider %lld deforms by key_frames, expected a rigid one",
+                    (long long)holder->collider);
 }
 
 bool cs_shape_pin_fault(const struct cs_body *body, const struct cs_pin *pin, char *text,

@@ -218,6 +218,7 @@ enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *e
                     hold(system, b, p, i, error))
                     return error->status;
     }
+    // the offsets need a collider's frame, one collider after the other
     for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
         for (uint32_t i = 0; i < n; i++)
             events->work[i] = events->held_by[i] == first + k;
@@ -264,6 +265,7 @@ void cs_event_find_held(struct cs_system *system, double t) {
             frame = frame_at(system, last = holder, t);
         const double spin = sqrt(cs_vec3_dot(frame.spin, frame.spin));
         arm_of(system, &frame, i, arm);
+        // of the turning alone: the rates of paths are bounded elsewhere
         events->has_grabs = true;
         events->has_turns |= spin > 0;
         events->held_speed = fmax(events->held_speed, spin * sqrt(cs_vec3_dot(arm, arm)));

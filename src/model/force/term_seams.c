@@ -69,6 +69,7 @@ static void prepare(const struct cs_system *system, const struct cs_eval *at) {
     struct cs_seams *seams = system->seams;
     const size_t n = system->view.n;
     for (uint32_t s = 0; s < seams->n; s++) {
+        // a broken stitch has the constants 0, and so the force 0
         const struct cs_stitch stitch = chosen(seams, s, at->parts);
         double d[3], e[3], dd[3] = {0}, de[3] = {0}, *to = seams->forces + 3 * (size_t)s;
         cs_stitch_difference(&stitch, n, at->x, d);
@@ -188,6 +189,7 @@ static void add_products(const struct cs_system *system, const double *p, bool b
             sum[m] = seams->blocks[12 * (size_t)s + m] +
                      (both ? seams->blocks[12 * (size_t)s + 6 + m] : 0);
         cs_stitch_difference(stitch, n, p, d);
+        // the diagonal blocks are elsewhere: each particle leaves itself out of the sum
         for (uint32_t k = 0; k < stitch->n; k++) {
             double rest[3];
             for (size_t c = 0; c < 3; c++)

@@ -21,6 +21,7 @@ static uint32_t list_side(const struct cs_system *system, const struct cs_seam_s
                 !cs_shape_pin_selects(body, pins + p, system->view.n, range->first, i,
                                       system->start))
                 continue;
+            // a corner may belong to two entries
             marks[range->first + i] = true;
             if (out)
                 out[n] = range->first + i;
@@ -64,6 +65,7 @@ static enum cs_status add_seam(struct cs_seams *seams, uint32_t number,
                                      .length = seam->length,
                                      .breaking_length = seam->breaking_length};
         seams->breaks |= !isnan(seam->breaking_length);
+        // weights add up to 0, so that a translation stretches nothing
         for (uint32_t k = 1; k < stitch->n; k++) {
             stitch->at[k] = sides[1][triangle ? k - 1 : s];
             stitch->weight[k] = triangle ? -seam->to.weights[k - 1] : -1;
