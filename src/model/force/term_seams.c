@@ -69,7 +69,7 @@ static void prepare(const struct cs_system *system, const struct cs_eval *at) {
     struct cs_seams *seams = system->seams;
     const size_t n = system->view.n;
     for (uint32_t s = 0; s < seams->n; s++) {
-        // a broken stitch has the constants 0, and so the force 0
+        // a broken stitch has the constants 0, thus no force
         const struct cs_stitch stitch = chosen(seams, s, at->parts);
         double d[3], e[3], dd[3] = {0}, de[3] = {0}, *to = seams->forces + 3 * (size_t)s;
         cs_stitch_difference(&stitch, n, at->x, d);
