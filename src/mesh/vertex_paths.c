@@ -77,6 +77,7 @@ static void find_velocities(const struct cs_vertex_paths *paths, double *work) {
     const size_t keys = paths->n_keys, last = keys - 1, length = 3 * (size_t)paths->n;
     double *diagonal = work + 2 * keys;
     set_right_sides(paths);
+    // the ends differ: rows of their own, a ring, or half the diagonal
     for (size_t k = 0; k < keys; k++)
         diagonal[k] = 4;
     switch (paths->end) {
@@ -105,6 +106,7 @@ static double largest_square(const struct cs_vertex_paths *paths, size_t k, size
         const size_t at = i + c * paths->n;
         const double *p = paths->positions + at, *v = paths->velocities + at;
         const size_t length = 3 * (size_t)paths->n;
+        // the three Bezier points, component by component
         const double ends[2] = {v[k * length], v[next * length]};
         const double middle =
             3 * (p[next * length] - p[k * length]) / paths->interval - ends[0] - ends[1];

@@ -31,6 +31,7 @@ static const struct kept kept_apart[] = {
     {{"walking_bear", NULL, {MEETING_GRID(9, 9)}, 30}, false},
     {{"walking_bear", "velocity-verlet", {MEETING_GRID(9, 9)}, 30}, false},
     {{"walking_bear", "newmark:dt=0.004", {MEETING_GRID(9, 9)}, 30}, false},
+    {{"carried_bear", NULL, {MEETING_GRID(13, 13)}, 60}, false},
     {{"reef_knot", "implicit-linearised:dt=0.008", {{NULL, NULL}}, 12}, false},
     {{"needles", NULL, {{NULL, NULL}}, 125}, true},
     {{"needles", "velocity-verlet", {MEETING_GRID(13, 13)}, 90}, true},
@@ -137,6 +138,53 @@ TEST(knot_is_tight) {
         ck_assert_msg(fabs(pull - first) < (suite_all ? 0.02 : 0.05) * first, "%.4g, %.4g N",
                       first, pull);
         ck_assert_msg(fabs(odds) < 1e-3 * pull, "%.4g of %.4g N", odds, pull);
+    }
+}
+
+/* kg m/s along each axis, of the particles [begin, end) */
+static void momentum_of(const struct cs_session *session, uint32_t begin, uint32_t end,
+                        double p[3]) {
+    const struct cs_system *system = &session->system;
+    for (size_t c = 0; c < 3; c++) {
+        p[c] = 0;
+        for (size_t i = begin; i < end; i++)
+            p[c] += system->mass[i] * session->run.v[c * system->view.n + i];
+    }
+}
+
+/* A bear of springs that is thrown at a loose sheet, at 2 and 10 m/s: the sheet takes up what
+ * the bear loses, and nothing crosses. */
+TEST(sheet_takes_up_what_a_body_loses) {
+    static const char *const velocities[] = {"[0.3,-2,0]", "[0.5,-10,0]"};
+    static const char *const all[] = {"implicit-linearised:rtol=1e-10", "velocity-verlet",
+                                      "newmark:rtol=1e-10"};
+    for (size_t k = 0; k < LENGTH(all) * LENGTH(velocities); k++) {
+        const struct meeting of = {"carried_bear",
+                                   all[k / 2],
+                                   {MEETING_GRID(13, 13),
+                                    {"events", "[]"},
+                                    {"bodies[0].pins", "[]"},
+                                    {"forces.gravity", "[0,0,0]"},
+                                    {"bodies[1].mesh.velocity", velocities[k % 2]},
+                                    {"bodies[1].mesh.place.translate", "[0.05,0.3,0]"}},
+                                   15};
+        double start[3], bear[3], sheet[3];
+        struct cs_session session;
+        meeting_open(&session, &of);
+        const uint32_t first = session.system.bodies[1].first, n = session.system.view.n;
+        momentum_of(&session, 0, n, start);
+        for (uint32_t frame = 0; frame < of.frames; frame++) {
+            meeting_frame(&session, &of);
+            ck_assert_uint_eq(meeting_crossings(&session), 0);
+        }
+        momentum_of(&session, first, n, bear);
+        momentum_of(&session, 0, first, sheet);
+        ck_assert_msg(sheet[1] < 0.2 * start[1], "%s: %.3g of %.3g kg m/s", of.method, sheet[1],
+                      start[1]);
+        for (int c = 0; c < 3; c++)
+            ck_assert_msg(fabs(bear[c] + sheet[c] - start[c]) < 1e-6 * fabs(start[1]),
+                          "%s: %.9g, not %.9g kg m/s", of.method, bear[c] + sheet[c], start[c]);
+        cs_session_close(&session);
     }
 }
 

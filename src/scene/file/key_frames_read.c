@@ -106,6 +106,7 @@ static enum cs_status read_pc2(const struct input *in) {
     if (get_32(in->bytes + 12) != 1)
         return fail(in, "found version %u, expected 1", get_32(in->bytes + 12));
     const uint32_t n_keys = get_32(in->bytes + 28);
+    // the size must be exact, or a file cut off would pass
     if (check_vertices(in, get_32(in->bytes + 16)))
         return in->error->status;
     const uint64_t expected = HEADER + 12 * (uint64_t)in->paths->n * n_keys;
@@ -153,6 +154,7 @@ static bool next_member(const struct input *in, size_t *at, struct member *out) 
                            .crc = get_32(header + 14),
                            .data = header + HEADER + name_bytes + extra_bytes,
                            .bytes = get_32(header + 18)};
+    // no offset leaves the file
     rest -= HEADER;
     if (rest < name_bytes + extra_bytes ||
         (out->bytes == UINT32_MAX &&
@@ -206,6 +208,7 @@ static enum cs_status read_npz(const struct input *in) {
     array = *array ? array : "positions";
     if (find_member(in, array, &npy))
         return in->error->status;
+    // the header is a Python dictionary, as numpy writes it
     const size_t begin = npy_text(&npy, text);
     const char *axes = begin ? strstr(text, "'shape': (") : NULL;
     if (!axes ||
@@ -256,6 +259,7 @@ static enum cs_status read_obj(const struct input *in, const char *path, size_t 
     const size_t numbers = 3 * (size_t)expected->n;
     if (!cs_mesh_read(path, in->name, in->source->scale, &mesh, &reading, in->error) &&
         !check_vertices(in, mesh.n)) {
+        // the surface is one and the same in all key frames
         if (mesh.n_triangles != expected->n_triangles ||
             memcmp(mesh.triangles, expected->triangles,
                    3 * (size_t)mesh.n_triangles * sizeof *mesh.triangles) != 0)
@@ -296,6 +300,7 @@ static enum cs_status read_sequence(struct input *in, const char *folder) {
                        (long long)keys->count);
     if (begin_keys(in, (uint64_t)keys->count))
         return in->error->status;
+    // messages name the file at hand
     for (uint32_t k = 0; !in->error->status && cs_key_frames_file(keys, k, file); k++) {
         char path[4096];
         in->name = file;
