@@ -9,6 +9,7 @@
 #include "draw/view.h"
 #include "mesh/trimesh.h"
 #include "model/event/event_state.h"
+#include "model/system/seams.h"
 
 #include <math.h>
 
@@ -126,6 +127,7 @@ void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *fr
         cs_wireframe_draw_edges(net, lines, frame->x);
     if (look->springs) {
         cs_wireframe_draw_springs(net, lines, frame->x);
+        cs_wireframe_draw_seams(net, lines, frame->x);
         cs_wireframe_draw_pins(net, lines, frame->x, frame->inv_mass);
     }
     if (look->goals && frame->goals)
@@ -151,7 +153,7 @@ uint32_t cs_wireframe_capacity(const struct cs_system *system) {
         const uint32_t edges = edges_of(system->bodies + b);
         most = edges > most ? edges : most;
     }
-    return most;
+    return system->seams && system->seams->n_ends > most ? system->seams->n_ends : most;
 }
 
 /* Adds a line between particles a and b of the system; a dot if they are one. */
@@ -232,6 +234,19 @@ void cs_wireframe_draw_springs(const struct cs_wireframe *net, struct cs_lines *
         }
         cs_lines_draw(lines, &style);
     }
+}
+
+void cs_wireframe_draw_seams(const struct cs_wireframe *net, struct cs_lines *lines,
+                             const double *x) {
+    const struct cs_seams *seams = net->system->seams;
+    struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * net->depth_offset};
+    cs_colour_linear(0x6a2fa8, style.colour);
+    style.half_width = cs_wireframe_width(net, 0.14, 0.8, 2);
+    for (uint32_t s = 0; seams && s < seams->n; s++)
+        for (uint32_t k = 1; k < seams->stitches[s].n && !seams->broken[s]; k++)
+            add(net, lines, x, seams->stitches[s].at[0], seams->stitches[s].at[k]);
+    if (seams)
+        cs_lines_draw(lines, &style);
 }
 
 void cs_wireframe_draw_pins(const struct cs_wireframe *net, struct cs_lines *lines,

@@ -30,6 +30,8 @@ void cs_wireframe_draw_edges(const struct cs_wireframe *net, struct cs_lines *li
                              const double *x);
 void cs_wireframe_draw_springs(const struct cs_wireframe *net, struct cs_lines *lines,
                                const double *x);
+void cs_wireframe_draw_seams(const struct cs_wireframe *net, struct cs_lines *lines,
+                             const double *x); /* stitches that are not broken */
 void cs_wireframe_draw_pins(const struct cs_wireframe *net, struct cs_lines *lines,
                             const double *x, const double *inv_mass);
 
