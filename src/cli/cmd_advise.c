@@ -62,16 +62,25 @@ static void add_binding(const struct cs_system *system, const struct cs_mode *mo
                     kinds[spring.kind], spring.stiffness);
 }
 
+/* When something hit, and the limit at the end, if that is clearly longer. */
+static void add_times(const struct cs_advice *row, struct cs_text *out) {
+    if (row->end_limit < 1e100 && row->theory < 0.95 * row->end_limit)
+        cs_text_add(out, "; while something hits, at t = %.4g s: at rest, at %.4g s, %.4g s",
+                    row->time, row->seconds, row->end_limit);
+}
+
 /* The reason of an advised step, and remarks on its probe run. */
 static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
                     struct cs_text *out) {
     switch (row->kind) {
     case CS_ADVICE_THEORY:
         add_binding(&advise->was_opened.system, &row->mode, out);
+        add_times(row, out);
         break;
     case CS_ADVICE_LOWERED:
         add_binding(&advise->was_opened.system, &row->mode, out);
         cs_text_add(out, "; bisected, linear theory allows %.4g s", row->theory);
+        add_times(row, out);
         break;
     case CS_ADVICE_MEASURED:
         cs_text_add(out, "no limit in linear theory; bisected, large motions set it");

@@ -137,6 +137,9 @@ static enum cs_status advise_fixed(struct cs_advice *row,
     row->speed = reference.run.speed_max;
     row->limit = row->theory = reference.smallest_limit.dt;
     row->mode = reference.smallest_limit.mode;
+    row->time = reference.smallest_time;
+    row->end_limit = reference.end_limit.dt;
+    row->seconds = reference.seconds;
     /* theory knows no limit */
     if (row->limit > 1e100)
         return try_frame(row, settings, &reference, frame, error);

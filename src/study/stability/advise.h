@@ -31,6 +31,8 @@ struct cs_advice {
     double limit, safe;                /* s: largest stable step, and the one advised */
     double theory;                     /* s, limit of linear theory; HUGE_VAL: none */
     struct cs_mode mode;               /* that limits it, where theory has a limit */
+    /* s: when theory's limit was smallest; the limit at the end and when, HUGE_VAL: none */
+    double time, end_limit, seconds;
     enum cs_stability_verdict verdict; /* of a run with the safe step */
     double checked_seconds;            /* s, that this run lasted */
     double mode_growth;       /* 1/s, of the worst mode at the safe step; 0: it does not grow */

@@ -5,7 +5,8 @@
  *    the limit 2/omega, because an instability near the border grows slowly.
  *   2. Limits at the unperturbed start: worst mode, and Gershgorin bounds.
  *   3. Run velocity-verlet at half of its Gershgorin limit from the perturbed start. At each
- *    sample: tighten the limit of the worst mode, and the bounds that depend on the state.
+ *    step: bounds that depend on the state, by rate. Where they are tightest so far, and at times
+ *    of a fixed grid: tighten the limit of the worst mode, and the Gershgorin limit.
  *   4. If the run is not stable, reset the limits to those of the start and halve the step. */
 #include "study/stability/stability_state.h"
 
@@ -20,29 +21,97 @@ enum { MOST_HALVINGS = 4 };
 /* Steps at the limit 2/omega that the run lasts at least. */
 enum { STEPS = 200 };
 
-/* Context of the samples of one run. */
+/* s; theory looks at the run every GRID, later every t / GRID_RATIO: times that do not depend on
+ * the length of the run, so that the limit of a longer run is never larger. */
+#define GRID       (1.0 / 64)
+#define GRID_RATIO 32
+/* Fraction of the smallest limit by rate so far below which a step is looked at too. */
+#define TIGHTER 0.95
+
+/* Context of the steps of one run. */
 struct way {
     struct cs_theory *theory; /* NULL: no limits are asked for */
     struct cs_reference *reference;
-    double gershgorin; /* s, at the start */
+    const struct cs_system *system; /* of the run: its colliders move, and its ramps continue */
+    bool is_explicit;
+    double gershgorin;    /* s, at the start */
+    double next;          /* s, time of the next look */
+    double smallest_rate; /* s, smallest limit by rate so far */
     struct cs_error *error;
 };
 
-/* Tightens the limits at one sample. Bounds other than those of contact hold for the whole run,
- * so only state-dependent bounds are evaluated again. */
-static void sample_theory(void *ctx, const struct cs_run *run, const struct cs_energy *energy) {
+/* Limit in s by rate of a symplectic step with explicit damping, at most 2/w. With square = w^2
+ * and rate = r it has trace 2 - h r - (h w)^2 and determinant 1 - h r, and is stable while |trace|
+ * <= 1 + determinant: (h w)^2 + 2 h r <= 4. The positive root is h = 4 / (r + sqrt(r^2 + 4 w^2)). */
+static double limit_by_rate(double w, double r) {
+    return 4 / (r + sqrt(r * r + 4 * w * w));
+}
+
+/* True if the stiffness of contact at the state leaves a clearly smaller step than any before. The
+ * bounds cost about an evaluation of the force, a search for the mode fifty and more. Friction is
+ * left to the looks of the grid: it counts as of what rests, not under the load of a blow. */
+static bool is_tightest(struct way *way, const struct cs_eval *at) {
+    double w, delta;
+    if (!cs_spectral_bounds_depend_on_state(way->system))
+        return false;
+    cs_spectral_bounds_rate(way->system, at, way->theory->modes.dx, &w, &delta);
+    const double limit = limit_by_rate(w, 2 * way->system->view.delta);
+    if (!(limit < TIGHTER * way->smallest_rate))
+        return false;
+    way->smallest_rate = limit;
+    return true;
+}
+
+/* Tightens the limits at a state, and notes the time of the smallest. Without a limit at the
+ * start contact may bring one. */
+static void tighten(struct way *way, double t, const double *x, bool with_friction) {
+    struct cs_reference *reference = way->reference;
+    struct cs_theory_limit *smallest = &reference->smallest_limit;
+    const double before = smallest->dt;
+    if (smallest->dt < HUGE_VAL)
+        cs_theory_tighten(way->theory, x, with_friction, smallest, way->error);
+    else if (way->is_explicit && cs_spectral_bounds_depend_on_state(way->system))
+        cs_theory_at(way->theory, x, smallest, way->error);
+    if (smallest->dt < before)
+        reference->smallest_time = t;
+    /* bounds other than those of contact hold for the whole run */
+    if (!way->error->status && cs_spectral_bounds_depend_on_state(way->system))
+        cs_theory_gershgorin(way->theory, x, &reference->gershgorin_limit, way->error);
+}
+
+/* Called after every step of the run: looks at it if its bounds are the tightest so far, or if a
+ * look is due. Moves nothing. */
+static bool look_at_step(void *ctx, double t, double dt, double *x, double *v) {
+    struct way *way = ctx;
+    (void)dt;
+    if (!way->theory || !way->system || way->error->status)
+        return false;
+    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
+    way->theory->modes.system = way->system;
+    way->theory->modes.t = t;
+    const bool tightest = is_tightest(way, &at);
+    if (!tightest && t < way->next)
+        return false;
+    const bool due = t >= way->next;
+    if (due)
+        way->next = t + fmax(GRID, t / GRID_RATIO);
+    tighten(way, t, x, due);
+    return false;
+}
+
+/* The first sample gives the system of the run. The last one is at rest, or as near as the run
+ * comes: its limit stands beside the smallest. */
+static void take_sample(void *ctx, const struct cs_run *run, const struct cs_energy *energy) {
     struct way *way = ctx;
     (void)energy;
-    if (!way->theory || way->error->status)
-        return;
-    // of the run: its colliders move, and its ramps continue
-    way->theory->modes.system = run->system;
-    way->theory->modes.t = run->t;
-    cs_theory_tighten(way->theory, run->x, &way->reference->smallest_limit, way->error);
-    // bounds other than those of contact hold for the whole run
-    if (!way->error->status && cs_spectral_bounds_depend_on_state(run->system))
-        cs_theory_gershgorin(way->theory, run->x, &way->reference->gershgorin_limit,
-                             way->error);
+    way->system = run->system;
+    if (way->theory && !way->error->status && run->t >= way->reference->seconds * (1 - 1e-9) &&
+        way->reference->smallest_limit.dt < HUGE_VAL &&
+        cs_spectral_bounds_depend_on_state(run->system)) {
+        way->theory->modes.system = run->system;
+        way->theory->modes.t = run->t;
+        cs_theory_at(way->theory, run->x, &way->reference->end_limit, way->error);
+    }
 }
 
 /* Runs once with the step dt in s. Returns false if the run blew up, was unstable, failed or had
@@ -53,8 +122,14 @@ static bool run_once(struct cs_reference *reference,
     struct cs_sampled_run_settings asked = *settings;
     asked.session.integrator = "velocity-verlet";
     asked.session.dt = dt;
-    asked.on_sample = sample_theory;
+    asked.on_sample = take_sample;
     asked.ctx = way;
+    asked.session.run.after_commit = look_at_step;
+    asked.session.run.ctx = way;
+    way->system = NULL;
+    way->next = 0;
+    way->smallest_rate = HUGE_VAL;
+    reference->smallest_time = 0;
     // limits along a failed run do not count
     reference->smallest_limit = reference->start_limit;
     reference->gershgorin_limit = way->gershgorin;
@@ -93,18 +168,12 @@ static double growth_of(const struct cs_system *system,
                : 0;
 }
 
-/* Step of the reference in s: half of the Gershgorin limit, at most one sample (`space`) and 10
- * s.
- *
- * With square = w^2 and rate = r, a symplectic step with explicit damping has trace 2 - h r -
- * (h w)^2 and determinant 1 - h r. It is stable while |trace| <= 1 + determinant: (h w)^2 + 2 h
- * r <= 4. The positive root is h = 4 / (r + sqrt(r^2 + 4 w^2)), 2/w without damping. Half of it
- * also satisfies the condition of velocity-verlet, whose damping uses a predicted velocity: (h
- * w)^2 + 4 h r <= 4. */
+/* Step of the reference in s: half of the Gershgorin limit, at most one sample (`space`) or look
+ * of theory, and 10 s. Half of the limit by rate also satisfies the condition of velocity-verlet,
+ * whose damping uses a predicted velocity: (h w)^2 + 4 h r <= 4. */
 static double choose_dt(const struct cs_system *system, double space) {
-    const double w = system->view.omega, r = 2 * system->view.delta;
-    const double limit = 4 / (r + sqrt(r * r + 4 * w * w));
-    return fmin(fmin(0.5 * limit, space), 10);
+    const double limit = limit_by_rate(system->view.omega, 2 * system->view.delta);
+    return fmin(fmin(0.5 * limit, fmax(space, GRID)), 10);
 }
 
 /* Limits at the start, then the run. theory stays empty for a method without option dt. */
@@ -114,7 +183,8 @@ static enum cs_status run_with(struct cs_reference *reference, struct cs_session
     struct cs_theory theory = {0};
     struct way way = {.reference = reference, .gershgorin = HUGE_VAL, .error = error};
     reference->gershgorin_limit = reference->start_limit.dt = reference->smallest_limit.dt =
-        HUGE_VAL;
+        reference->end_limit.dt = HUGE_VAL;
+    way.is_explicit = !(session->method.integrator->traits & CS_IMPLICIT);
     if (cs_method_takes_dt(session->method.integrator)) {
         way.theory = &theory;
         if (cs_theory_init(&theory, &session->system, session->method.integrator,

@@ -44,8 +44,9 @@ struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis)
  * linear theory along its trajectory.
  *
  * Linear theory holds at one state. A spring that stretches, turns or meets a collider changes
- * K and C, so the limit at the start can be too long for the rest of the run. The limit is
- * therefore evaluated at each sample of the reference, and the smallest one counts. */
+ * K and C, so the limit at the start can be too long for the rest of the run. The bounds of
+ * contact are therefore evaluated at each step of the reference, the limit wherever they are the
+ * tightest so far and at times of a fixed grid, and the smallest one counts. */
 
 /* Reference run and the limits of one method. Contains no pointers: it is stored in the journal
  * of a map as it is. */
@@ -57,6 +58,8 @@ struct cs_reference {
     double gershgorin_limit;   /* s, limit by Gershgorin bounds, of contact along the way */
     struct cs_theory_limit start_limit;    /* before the start is perturbed */
     struct cs_theory_limit smallest_limit; /* along the way */
+    double smallest_time;                  /* s, when that was */
+    struct cs_theory_limit end_limit; /* at the end, where contact has a part; dt HUGE_VAL: none */
 };
 
 /* Runs the scene of `settings` by velocity-verlet, and finds the limits of the method of

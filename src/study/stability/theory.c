@@ -41,13 +41,21 @@ enum cs_status cs_theory_gershgorin(struct cs_theory *theory, const double *x, d
     return CS_OK;
 }
 
-/* The limit of one motion replaces a larger one. A motion that pushes itself away is
+static enum cs_status is_growing(const struct cs_amplification *amplify, double h,
+                                 double square, double rate, bool *out, struct cs_error *error);
+
+/* The limit of one motion replaces a larger one, and is searched only if the motion grows at the
+ * limit there is. A motion that pushes itself away is
  * physically unstable: it limits no step, but what its damping does counts. */
 static enum cs_status consider(struct cs_theory *theory, const struct cs_mode *mode,
                                struct cs_theory_limit *limit, struct cs_error *error) {
     struct cs_theory_limit found = {HUGE_VAL, *mode};
     const double square = mode->omega_squared > 0 ? mode->omega_squared : 0;
     const double rate = mode->damping_rate > 0 ? mode->damping_rate : 0;
+    bool grows = true;
+    if (limit->dt > 0 && limit->dt < HUGE_VAL &&
+        (is_growing(&theory->amplification, limit->dt, square, rate, &grows, error) || !grows))
+        return error->status;
     if (cs_amplification_limit(&theory->amplification, square, rate, &found.dt, error))
         return error->status;
     if (found.dt < limit->dt)
@@ -135,7 +143,7 @@ static enum cs_status consider_friction(struct cs_theory *theory, const double *
     return consider(theory, &mode, limit, error);
 }
 
-enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x,
+enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x, bool with_friction,
                                  struct cs_theory_limit *limit, struct cs_error *error) {
     if (!has_limit(limit))
         return CS_OK;
@@ -145,7 +153,8 @@ enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x,
     const double before = limit->dt;
     if (!consider(theory, &mode, limit, error) && limit->dt < 0.98 * before)
         update_search_direction(theory, limit, error);
-    return error->status ? error->status : consider_friction(theory, x, limit, error);
+    return error->status || !with_friction ? error->status
+                                           : consider_friction(theory, x, limit, error);
 }
 
 /* Measures the amplification matrix of a method's step on a damped oscillator. */

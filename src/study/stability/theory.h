@@ -122,9 +122,9 @@ enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
                             struct cs_theory_limit *limit, struct cs_error *error);
 
 /* Lowers *limit if a motion at x has a smaller one. Costs one search, from the direction and
- * mode of the last one: meant for successive states of a trajectory. Without a finite limit
- * nothing happens. */
-enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x,
+ * mode of the last one: meant for successive states of a trajectory. with_friction: friction by
+ * itself is searched too. Without a finite limit nothing happens. */
+enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x, bool with_friction,
                                  struct cs_theory_limit *limit, struct cs_error *error);
 
 #endif
