@@ -17,6 +17,11 @@
  * compliance 1/(k h^2) with k the law's stiffness; friction and damping come along as functions
  * of x.
  *
+ * An error of the passes is energy: ten passes over a sheet of 32 x 32 in a step of 1/60 s let
+ * it stretch by 130 %, with a hundred times the energy that it has, whatever g. Short substeps
+ * leave less of it than passes of the same number (Macklin et al. 2019); `substeps` 0 chooses
+ * them by the springs.
+ *
  * As the iterations grow the result settles, but not on implicit Euler: the directions that the
  * multipliers l belong to are those at which they were found. The difference vanishes with h.
  * Mode pbd forgets the multipliers after every iteration, so that each corrects the same
@@ -28,10 +33,16 @@
 
 #include <clothsim/small.h>
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 /* The parts that contact by force consists of, in scenes that have it. */
 #define CONTACT (CS_PART_POTENTIAL | CS_PART_DISSIPATIVE)
+
+/* Largest h omega of chosen substeps, with omega the bound on the angular frequency. By trial
+ * with one pass: at 2 shipped scenes without contact by force gain at most a fifth of the
+ * energy that they have; at 4 some gain more than that, and at 8 many do. */
+#define RESOLVED 2.0
 
 enum mode { XPBD, PBD };
 static const char *const modes[] = {"xpbd", "pbd", NULL};
@@ -46,9 +57,10 @@ static const struct cs_option rows[] = {
     CS_OPTION(struct xpbd_options, dt, "s", 0, 0, 10, "maximum step; 0: one step per frame"),
     CS_OPTION(struct xpbd_options, iterations, "", 10, 1, 1e6,
               "passes over the springs in a step"),
-    CS_OPTION(struct xpbd_options, substeps, "", 1, 1, 1e6,
+    CS_OPTION(struct xpbd_options, substeps, "", 1, 0, 1e6,
               "equal substeps of each step of dt, each with all its iterations: many substeps "
-              "with one iteration beat one substep with many (Macklin et al. 2019)"),
+              "with one iteration beat one substep with many (Macklin et al. 2019); 0: as many "
+              "as the springs need, so that energy does not grow with one iteration"),
     CS_OPTION_CHOICE(struct xpbd_options, mode, modes, XPBD,
                      "xpbd keeps the multipliers over the iterations of a step; pbd forgets "
                      "them, so that stiffness grows with the iterations"),
@@ -207,6 +219,12 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
     return CS_STEP_OK;
 }
 
+/* Length in s of the equal substeps of a step of h. */
+static double substep_of(const struct xpbd *self, double h) {
+    const double needed = ceil(h * self->loop.host->view->omega / RESOLVED);
+    return h / (self->substeps > 0 ? (double)self->substeps : fmax(needed, 1));
+}
+
 /* The loop with each of its steps cut into equal parts. */
 static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
     struct xpbd *self = object;
@@ -217,7 +235,7 @@ static enum cs_step advance(void *object, double t0, double t1, double *x, doubl
     if (status != CS_STEP_OK)
         return status;
     // the reduced dt is noted once above, and substeps are no reduction
-    self->loop.dt = (t1 - t0) / n / (double)self->substeps;
+    self->loop.dt = substep_of(self, (t1 - t0) / n);
     self->loop.dt_automatic = true;
     status = fixed_step_advance(self, t0, t1, x, v);
     self->loop.dt = dt;
@@ -285,14 +303,15 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
 static const struct cs_integrator xpbd = {
     .size = sizeof(struct cs_integrator),
     .name = "xpbd",
-    .summary = "springs as constraints, one after the other; stable and cheap, damps, settles "
-               "beside implicit Euler",
+    .summary =
+        "springs as constraints, one after the other; cheap, damps, settles beside implicit "
+        "Euler; makes energy before it has, little with substeps=0,iterations=1",
     .source = "Macklin, Mueller, Chentanez 2016; small steps: Macklin et al. 2019; pbd: "
               "Mueller et al. 2007",
     .order = 1,
     .order_damped = 1,
     .needs = CS_NEED_SPRINGS,
-    .traits = CS_IMPLICIT,
+    .traits = CS_IMPLICIT | CS_MAKES_ENERGY,
     .fidelity = CS_FIDELITY_CONSISTENT,
     .options = rows,
     .n_options = sizeof rows / sizeof rows[0],

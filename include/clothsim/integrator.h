@@ -86,7 +86,10 @@ enum cs_trait {
     CS_NOT_GALILEAN = 1u << 5,
     /* All forces but the springs are evaluated at the begin of a step only, whatever its
      * length: scenes with stiff ones, such as contact by force, are refused. */
-    CS_EXPLICIT_OUTER = 1u << 6
+    CS_EXPLICIT_OUTER = 1u << 6,
+    /* Its steps make energy where they are long against the springs, although it is implicit:
+     * its default step holds on soft scenes only. */
+    CS_MAKES_ENERGY = 1u << 7
 };
 
 /* The limit of the method's result, however small its own tolerances are. */

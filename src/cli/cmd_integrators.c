@@ -31,6 +31,7 @@ static const struct {
     {CS_LIBRARY_BITS, "bit pattern depends on a library"},
     {CS_NOT_GALILEAN, "not Galilean"},
     {CS_EXPLICIT_OUTER, "forces other than springs explicit"},
+    {CS_MAKES_ENERGY, "makes energy at long steps"},
 };
 
 /* The fidelity of a method in the words of clothsim-integrator(7). */

@@ -32,7 +32,8 @@ void cs_check_abi(const struct cs_conform *card, struct cs_conform_row *row) {
                            CS_NEED_SOLVE | CS_NEED_CLUSTERS | CS_NEED_REBOUNDS |
                            CS_NEED_LAGGED_FRICTION,
                    traits = CS_IMPLICIT | CS_ADAPTIVE | CS_MULTISTEP | CS_SYMPLECTIC |
-                            CS_LIBRARY_BITS | CS_NOT_GALILEAN | CS_EXPLICIT_OUTER;
+                            CS_LIBRARY_BITS | CS_NOT_GALILEAN | CS_EXPLICIT_OUTER |
+                            CS_MAKES_ENERGY;
     bool falls_off = false;
     /* a run ignores bits that it does not know, so that a slip would go unnoticed */
     if (method->needs & ~needs)
