@@ -8,7 +8,6 @@
 
 #include "base/vector.h"
 #include "model/force/diagnostics.h"
-#include "model/force/normals.h"
 #include "model/force/terms.h"
 #include "model/post_step/contact_projection.h"
 #include "model/solver/linear.h"

@@ -11,8 +11,8 @@
 #include "timing.h"
 
 #include "model/contact/ccd/crossings.h"
-#include "model/contact/narrow_phase/exact_distance.h"
-#include "model/contact/narrow_phase/pair_step_check.h"
+#include "model/contact/narrow_phase/active_contacts.h"
+#include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/force/terms.h"
 #include "study/perturb.h"
 

@@ -4,7 +4,6 @@
 #define CS_PLAN_H
 
 #include "base/text.h"
-#include "model/system/feature.h"
 #include "model/system/particle_system.h"
 #include "scene/scene.h"
 

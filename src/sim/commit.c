@@ -12,7 +12,7 @@
  * 6. The observer, which may move the state.
  * 7. The ledger and contact store the state that the next step starts from; static friction
  *    decides again which particles it holds, and pins them. */
-#include "sim/commit.h"
+#include "sim/run_host.h"
 
 #include "base/vector.h"
 #include "model/contact/ccd/step_limit.h"
@@ -21,7 +21,6 @@
 #include "model/post_step/contact_projection.h"
 #include "model/system/seams.h"
 #include "sim/energy_ledger.h"
-#include "sim/trace.h"
 
 /* Shortens springs that are longer than the scene allows; counts them. */
 static void limit_strain(struct cs_run_host *host, double dt, double *x, double *v,

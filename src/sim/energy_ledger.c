@@ -9,7 +9,6 @@
 #include "base/table.h"
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"
-#include "model/force/normals.h"
 #include "model/force/terms.h"
 
 #include <math.h>

@@ -3,19 +3,15 @@
  * Every call follows one pattern: move ramped values to the time asked for, start the clock
  * of its stage, call the model, count, stop the clock, trace arguments and results. Neither
  * clock nor trace reaches a number that the method sees. */
-#include "sim/host.h"
 
 #include "base/vector.h"
 #include "model/contact/ccd/step_limit.h"
 #include "model/contact/lagged_friction.h"
 #include "model/contact/rebound.h"
 #include "model/force/diagnostics.h"
-#include "model/force/normals.h"
 #include "model/force/terms.h"
-#include "sim/commit.h"
 #include "sim/energy_ledger.h"
-#include "sim/linear_setup.h"
-#include "sim/trace.h"
+#include "sim/run_host.h"
 
 #include <math.h>
 #include <stdarg.h>

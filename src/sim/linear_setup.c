@@ -20,12 +20,11 @@
  * Forces whose part of A is a number, and springs, are in b by h^2 K v = M v - h D v - A v.
  * Forces with blocks give h^2 K (v - w) themselves (add_approach of term.h), so that no D that
  * is only near the derivative, as that of clamped friction, gets into b. */
-#include "sim/linear_setup.h"
+#include "sim/run_host.h"
 
 #include "model/contact/rebound.h"
 #include "model/force/terms.h"
 #include "scene/body_pairs.h"
-#include "sim/trace.h"
 
 #include <clothsim/clones.h>
 #include <string.h>

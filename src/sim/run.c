@@ -4,10 +4,8 @@
 #include "base/clock.h"
 #include "model/contact/friction_anchors.h"
 #include "model/system/seams.h"
-#include "sim/commit.h"
 #include "sim/crash.h"
-#include "sim/host.h"
-#include "sim/linear_setup.h"
+#include "sim/run_host.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -279,3 +279,17 @@ bool cs_blow_up_check_step(const struct cs_blow_up_check *bound, struct cs_run *
     run->blow_up = (struct cs_blow_up){t, worst, energy, most};
     return true;
 }
+
+/* --- trace points --- */
+
+void cs_trace_emit(const struct cs_run_host *host, const struct cs_trace_record *named,
+                   double t, const double *values, size_t n) {
+    const struct cs_trace *trace = host->settings.trace;
+    struct cs_trace_record point = *named;
+    point.frame = host->run->frame + 1;
+    point.step = host->run->counts.steps;
+    point.t = t;
+    point.values = values;
+    point.n = n;
+    trace->emit(trace->ctx, &point);
+}

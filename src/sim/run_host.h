@@ -4,7 +4,8 @@
 #define CS_RUN_HOST_H
 
 #include "base/clock.h"
-#include "model/contact/ccd/blocked_step.h"
+#include "base/trace_stream.h"
+#include "model/contact/ccd/step_limit.h"
 #include "model/event/events.h"
 #include "model/post_step/contact_projection.h"
 #include "model/solver/linear.h"
@@ -174,6 +175,86 @@ static inline void cs_host_state_at(struct cs_run_host *host, double t, const do
                                     const double **v) {
     cs_move_values(host, t);
     cs_host_held_at(host, 0, t, x, v);
+}
+
+/* host->commit. Corrects the state (x, v) that a step of length dt left at time t, books the
+ * corrections in the energy ledger, and decides if the run continues. *changed: the state or
+ * the pins differ from those that the method left, other than by its own paths. Returns
+ * CS_STEP_HALT after a blow-up, an interrupt or the end of the budget, with run->outcome set;
+ * CS_STEP_FAIL with a message. */
+enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v,
+                            bool *changed);
+
+/* Pins the particles that static friction holds, or releases them. They are pinned during the
+ * method's calls only: corrections, the ledger and outputs see them as free. */
+void cs_host_pin(struct cs_run_host *host, bool held);
+
+/* --- linear systems: linear_setup.c sets them up, host.c solves them --- */
+
+/* The calls solve_setup and euler_setup of a method. */
+enum cs_step cs_host_solve_setup(void *ctx, double t, const double *x, const double *v,
+                                 double cm, double cd, double ck, uint32_t flags);
+enum cs_step cs_host_euler_setup(void *ctx, double t, double h, const double *x,
+                                 const double *v, uint32_t flags, double *b);
+/* The call euler_finish. */
+void cs_host_euler_finish(void *ctx, double *x, double *v);
+
+/* Sets the last system up again with a matrix that is closer to positive definite: first
+ * CS_SOLVE_PSD, which drops the transverse part of compressed springs, then CS_SOLVE_BOUND
+ * for friction on curved surfaces too. If b is that of the last euler_setup, it follows.
+ * Returns false if both are already set. */
+bool cs_host_clamp(struct cs_run_host *host, const double *b);
+
+/* --- the host of a run --- */
+
+/* Fills host->table for a run over run->system, and takes the memory of contact and of the
+ * linear solver. host is zeroed but for its settings. CS_ERR_MEMORY. */
+enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
+                                struct cs_error *error);
+
+/* Replaces the call solve by one that always fails, to test what a method does then. */
+void cs_run_host_fail_solves(struct cs_run_host *host);
+
+/* Applies the events at time t to the state, the pins and the values, and sets the blow-up
+ * bound for them. Returns true if anything changed: the method must be restarted. */
+bool cs_run_host_apply_events(struct cs_run_host *host, double t);
+
+/* --- trace points: the arguments and results of the method's calls, and the state after each
+ * correction. `clothsim bisect` compares two such streams to find the first number that
+ * differs. Tracing changes no bit of the run, and costs one test per call when it is off. ---
+ */
+
+/* Sends n numbers at time t to the trace of the run, which must be on. named gives phase and
+ * name; frame and step are those that are running. values is borrowed during the call. */
+void cs_trace_emit(const struct cs_run_host *host, const struct cs_trace_record *named,
+                   double t, const double *values, size_t n);
+
+/* True if the run has a trace and it is enabled. */
+static inline bool cs_trace_is_on(const struct cs_run_host *host) {
+    return host->settings.trace && host->settings.trace->enabled;
+}
+
+/* Traces an array (3,n); values NULL: none. */
+static inline void cs_trace_vector(const struct cs_run_host *host, const char *phase,
+                                   const char *name, double t, const double *values) {
+    if (cs_trace_is_on(host) && values)
+        cs_trace_emit(host, &(struct cs_trace_record){.phase = phase, .name = name}, t, values,
+                      3 * (size_t)host->run->system->view.n);
+}
+
+/* Traces one number. */
+static inline void cs_trace_number(const struct cs_run_host *host, const char *phase,
+                                   const char *name, double t, double value) {
+    if (cs_trace_is_on(host))
+        cs_trace_emit(host, &(struct cs_trace_record){.phase = phase, .name = name}, t, &value,
+                      1);
+}
+
+/* Traces positions and velocities, both (3,n). */
+static inline void cs_trace_state(const struct cs_run_host *host, const char *phase, double t,
+                                  const double *x, const double *v) {
+    cs_trace_vector(host, phase, "x", t, x);
+    cs_trace_vector(host, phase, "v", t, v);
 }
 
 #endif

@@ -4,12 +4,12 @@
  * system, counts, history of the method. On reading, the method is restarted on the restored
  * system first, and then loads its history. Counts are restored last, because these calls
  * count too. */
-#include "sim/run_record.h"
+#include "sim/run.h"
 
 #include "model/contact/friction_anchors.h"
 #include "model/event/event_state.h"
 #include "model/system/seams.h"
-#include "sim/host.h"
+#include "sim/run_host.h"
 
 #include <string.h>
 

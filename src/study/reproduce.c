@@ -4,7 +4,7 @@
 #include "base/hash.h"
 #include "draw/image_diff.h"
 #include "io/png.h"
-#include "sim/run_record.h"
+#include "sim/run.h"
 #include "study/follow.h"
 #include "study/frame_picture.h"
 

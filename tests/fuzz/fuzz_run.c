@@ -6,7 +6,7 @@
 #include "model/plan.h"
 #include "scene/shape.h"
 #include "sim/crash.h"
-#include "sim/run_record.h"
+#include "sim/run.h"
 #include "study/session.h"
 
 #include <math.h>

@@ -2,7 +2,6 @@
 #include "body_pair_fixture.h"
 #include "fixture.h"
 
-#include "model/force/normals.h"
 #include "model/force/terms.h"
 #include "sim/energy_ledger.h"
 

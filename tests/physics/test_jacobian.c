@@ -7,7 +7,6 @@
 #include "fixture.h"
 
 #include "model/force/diagnostics.h"
-#include "model/force/normals.h"
 #include "model/force/terms.h"
 #include "model/solver/linear.h"
 

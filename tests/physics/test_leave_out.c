@@ -4,7 +4,7 @@
 #include "fixture.h"
 
 #include "mesh/trimesh.h"
-#include "sim/host.h"
+#include "sim/run_host.h"
 
 #include <string.h>
 

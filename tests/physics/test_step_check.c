@@ -5,8 +5,6 @@
 #include "model/contact/broad_phase/candidates.h"
 #include "model/contact/broad_phase/swept_aabb.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
-#include "model/contact/narrow_phase/exact_distance.h"
-#include "model/contact/narrow_phase/pair_step_check.h"
 #include "model/contact/step_check.h"
 
 #include <math.h>

@@ -6,7 +6,7 @@
 #include "base/pool.h"
 #include "model/contact/barrier_law.h"
 #include "model/contact/friction_anchors.h"
-#include "sim/run_record.h"
+#include "sim/run.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,6 @@
 #include "methods.h"
 
 #include "base/pool.h"
-#include "model/force/normals.h"
 #include "model/force/terms.h"
 #include "model/solver/linear.h"
 

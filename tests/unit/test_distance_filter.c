@@ -1,7 +1,7 @@
 /* The distance filter of single precision: it holds nothing back that is near, however bad the
  * shapes are, and lets little through that is far. */
 #include "model/contact/broad_phase/distance_filter.h"
-#include "model/contact/narrow_phase/exact_distance.h"
+#include "model/contact/narrow_phase/active_contacts.h"
 #include "unit.h"
 
 #include <math.h>

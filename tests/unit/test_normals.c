@@ -1,5 +1,5 @@
 /* Particle normals of grids. */
-#include "model/force/normals.h"
+#include "model/force/terms.h"
 #include "sheet.h"
 
 #define WIND "\"forces\": {\"wind\": {\"direction\": [1, 0, 0], \"strength\": 1}}"

@@ -1,5 +1,4 @@
 /* The outer forces against closed forms, and the parts of the sum. */
-#include "model/force/normals.h"
 #include "model/force/terms.h"
 #include "sheet.h"
 

@@ -10,7 +10,7 @@
 #include "io/export/export.h"
 #include "io/frame_writer.h"
 #include "sim/energy_ledger.h"
-#include "sim/run_record.h"
+#include "sim/run.h"
 #include "study/frame_picture.h"
 #include "study/recorded_run.h"
 #include "study/session.h"

@@ -3,7 +3,7 @@
 
 #include "base/clock.h"
 #include "sim/module.h"
-#include "sim/run_record.h"
+#include "sim/run.h"
 
 #include <stdio.h>
 #include <string.h>

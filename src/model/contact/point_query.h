@@ -1,5 +1,5 @@
 /* point_query.h - force, derivative, matrix and bound of contact at one point. A particle is a
- * sample point of of one vertex with the weight 1, so that both have one evaluation. */
+ * sample point of one vertex with the weight 1, so that both have one evaluation. */
 #ifndef CS_CONTACT_POINT_QUERY_H
 #define CS_CONTACT_POINT_QUERY_H
 

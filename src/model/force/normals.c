@@ -4,7 +4,7 @@
  * With N the vector product (or sum of products) and n = N / |N|, the derivative along dx is
  *
  *   dn = (I - n n^T) dN / |N|,   d(a x b) = da x b + a x db */
-#include "model/force/normals.h"
+#include "model/force/terms.h"
 
 #include "base/vector.h"
 #include "mesh/trimesh.h"

@@ -4,8 +4,8 @@
  *
  * Drag is linear in v and in the solver's matrix. Wind depends on x through n; its derivative
  * is exact in add_jvp but not symmetric, so the matrix leaves it out. */
-#include "model/force/normals.h"
 #include "model/force/term.h"
+#include "model/force/terms.h"
 #include "scene/event_key.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
 #define CS_TERMS_H
 
 #include "model/force/term.h"
+#include "model/system/particle_system.h"
 
 /* X(name of the struct behind cs_term_) in the order in which forces are summed. Seams are
  * built before contact, which takes sewn particles for one. A test may define CS_TERM_LIST_MORE
@@ -71,5 +72,17 @@ bool cs_terms_need_normals(const struct cs_system *system, uint32_t parts);
 /* Arrays (set of enum cs_term_use) that the forces of a scene read, by a plan whose rows of
  * forces are set. */
 uint32_t cs_terms_use(const struct cs_scene *scene, const struct cs_plan *plan);
+
+/* --- normals of particles, for the wind --- */
+
+/* Writes system->normals (3,n), by all threads: at each particle the unit vector along (right -
+ * left) x (up - down), where the particle itself replaces a missing neighbour (cloth thesis,
+ * eq. 4.6-4.9). On a mesh, along the sum of the normals of its triangles, each as long as its
+ * triangle is large. Where that vector is 0 the normal is 0. */
+void cs_normals_update(const struct cs_system *system, const double *x);
+
+/* Change dn of the unit normal of particle i of a body when at->x changes along at->dx. */
+void cs_normal_derivative(const struct cs_system *system, const struct cs_body_range *body,
+                          uint32_t i, const struct cs_eval *at, double dn[3]);
 
 #endif

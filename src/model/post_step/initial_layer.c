@@ -15,8 +15,8 @@
  * forces, until the energy is at most W and their sum carries at most the body's weight. */
 #include "model/contact/ccd/crossings.h"
 #include "model/contact/contact_samples.h"
+#include "model/contact/narrow_phase/active_contacts.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
-#include "model/contact/narrow_phase/exact_distance.h"
 #include "model/contact/surface_points.h"
 #include "model/force/diagnostics.h"
 #include "model/post_step/contact_projection.h"

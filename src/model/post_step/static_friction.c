@@ -3,7 +3,6 @@
 #include "model/post_step/static_friction.h"
 
 #include "base/vec3.h"
-#include "model/force/normals.h"
 #include "model/force/terms.h"
 #include "scene/scene.h"
 

@@ -1,5 +1,5 @@
 /* Checks that a run resumed from a checkpoint has the bits of the unbroken run. */
-#include "sim/run_record.h"
+#include "sim/run.h"
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 

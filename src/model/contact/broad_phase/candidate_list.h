@@ -159,4 +159,16 @@ static inline void cs_candidate_vertices(const struct cs_surfaces *surfaces,
         at[1 + k] = surfaces->triangles[3 * (size_t)pair[1] + k];
 }
 
+/* Allocates clusters, batches and rows. flat_regions, body_pairs and body must be set.
+ * CS_ERR_MEMORY. */
+enum cs_status cs_candidates_find_init(struct cs_candidates *candidates, struct cs_arena *arena,
+                                       struct cs_error *error);
+
+/* Fills batches and rows for the state x_at_build, which scaled_points must hold too, and the
+ * margin margin_now, with all threads. Returns false if out of memory. */
+bool cs_candidates_find(struct cs_candidates *candidates);
+
+/* Frees the memory that does not belong to the arena. */
+void cs_candidates_find_finish(struct cs_candidates *candidates);
+
 #endif

@@ -6,7 +6,7 @@
  * of bodies with contact, a = b included. */
 #include "model/contact/broad_phase/candidates.h"
 
-#include "model/contact/broad_phase/candidates_find.h"
+#include "model/contact/broad_phase/candidate_list.h"
 
 #include <clothsim/clones.h>
 #include <math.h>

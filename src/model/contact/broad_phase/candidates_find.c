@@ -4,7 +4,7 @@
  *
  * A batch of clusters is one thread's. Batches follow the order of clusters, which is spatial;
  * candidate_list.c brings their pairs into the order of keys afterwards. */
-#include "model/contact/broad_phase/candidates_find.h"
+#include "model/contact/broad_phase/candidate_list.h"
 
 #include "base/pool.h"
 #include "model/contact/broad_phase/aabb_clusters.h"

@@ -1,6 +1,5 @@
 /* Finds the primitives that blocked a step, once, where a run ends: by the questions of
  * step_limit.c in their order, particle by particle and pair by pair. */
-#include "model/contact/ccd/blocked_step.h"
 
 #include "model/contact/approach.h"
 #include "model/contact/barrier_law.h"
@@ -8,7 +7,7 @@
 #include "model/contact/ccd/crossings.h"
 #include "model/contact/ccd/step_limit.h"
 #include "model/contact/contact_samples.h"
-#include "model/contact/narrow_phase/pair_step_check.h"
+#include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/step_check.h"
 #include "model/contact/surface_points.h"
 #include "model/system/surfaces.h"

@@ -5,7 +5,7 @@
 #include "model/contact/ccd/crossings.h"
 #include "model/contact/contact_samples.h"
 #include "model/contact/lagged_friction.h"
-#include "model/contact/narrow_phase/pair_step_check.h"
+#include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/rebound.h"
 #include "model/contact/step_check.h"
 #include "scene/body_pairs.h"

@@ -6,7 +6,7 @@
 #include "model/contact/narrow_phase/contact_pairs.h"
 
 #include "base/vector.h"
-#include "model/contact/narrow_phase/exact_distance.h"
+#include "model/contact/narrow_phase/active_contacts.h"
 #include "model/contact/narrow_phase/narrow_phase.h"
 #include "model/contact/surface_points.h"
 

@@ -1,7 +1,7 @@
 /* True distances by cases (Ericson 2005, sec. 5.1): the common perpendicular if it meets the
  * inside of both primitives, else the least distance between an end or edge of one and the
  * other. */
-#include "model/contact/narrow_phase/exact_distance.h"
+#include "model/contact/narrow_phase/active_contacts.h"
 
 #include "base/arena.h"
 #include "base/pool.h"

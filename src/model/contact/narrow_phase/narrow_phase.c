@@ -18,7 +18,7 @@
 #include "base/pool.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/lagged_friction.h"
-#include "model/contact/narrow_phase/pair_chord.h"
+#include "model/contact/narrow_phase/pair_lanes.h"
 #include "model/contact/surface_points.h"
 
 #include <string.h>

@@ -2,7 +2,7 @@
  *
  * The factors have the weights of the contact points already: with them come the vector
  * between these points, its direction n, and their relative velocity and acceleration. */
-#include "model/contact/narrow_phase/pair_chord.h"
+#include "model/contact/narrow_phase/pair_lanes.h"
 
 #include "base/vector.h"
 #include "model/contact/friction_chord.h"

@@ -11,6 +11,7 @@
 #define CS_NARROW_PHASE_PAIR_LANES_H
 
 #include "model/contact/narrow_phase/pair_contact.h"
+#include "model/system/particle_system.h"
 
 enum { CS_PAIR_LANES = 8 };
 
@@ -90,5 +91,20 @@ void cs_pair_lanes_multiply(enum cs_pair_kind kind, struct cs_pair_factors *fact
  * the block-diagonal matrix bounds P from above, as in cs_contact_set_add_blocks. */
 void cs_pair_lanes_diagonal(enum cs_pair_kind kind, struct cs_pair_factors *factors, bool alone,
                             double own[4][6][CS_PAIR_LANES]);
+
+/* --- friction by its chord (contact/friction_chord.h) --- */
+
+/* Forces on the four points of eight pairs in N, as in struct cs_chord_forces, and
+ * inverse masses in 1/kg, 0 for points that are held or belong to a collider. */
+struct cs_pair_pulls {
+    double all[4][3][CS_PAIR_LANES], contact[4][3][CS_PAIR_LANES];
+    double inverse_mass[4][CS_PAIR_LANES];
+};
+
+/* Sets the factors as cs_pair_lanes_matrix, but for friction. matrix->chord is set. */
+void cs_pair_lanes_chord_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
+                                const struct cs_contact_keys *keys,
+                                const struct cs_matrix *matrix, struct cs_pair_pulls *pulls,
+                                struct cs_pair_factors *factors);
 
 #endif

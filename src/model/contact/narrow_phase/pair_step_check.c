@@ -3,7 +3,7 @@
  * Three filters come in turn: swept boxes; the end of short steps in lanes; all samples of long
  * steps, one pair at a time. The chunk that rejected the last step is asked first, because a
  * step that is halved is often rejected by the same pair again. */
-#include "model/contact/narrow_phase/pair_step_check.h"
+#include "model/contact/narrow_phase/contact_pairs.h"
 
 #include "base/pool.h"
 #include "base/vector.h"
