@@ -1,14 +1,13 @@
 /* clothsim scene: checks a scene file and prints its plan, its values or the schema.
  *
- * A scene with contact is built, not only planned, because bodies that start inside colliders
- * or through each other only show in a system. */
+ * The scene is built, not only planned, because bodies that start inside colliders or through
+ * each other only show in a system, as do the findings of scene_doctor.h. */
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "model/plan.h"
-#include "scene/body_pairs.h"
 #include "scene/file/scene_read.h"
 #include "study/contact_capacity.h"
-#include "study/overlap_warning.h"
+#include "study/scene_doctor.h"
 #include "study/session.h"
 
 #include <string.h>
@@ -68,16 +67,12 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
     add_count(out, ", ", scene->colliders.n, "collider");
     cs_text_add(out, ", %s\n", session->method.integrator->name);
     add_contact(session, out);
-    struct cs_text warning = {0};
-    if (!cs_overlap_warning_print(scene, 1, &warning, error) && !warning.length)
-        cs_sampling_warning_print(&session->system, &warning);
-    if (!error->status && !warning.length)
-        cs_containment_warning_print(&session->system, &warning);
-    if (!error->status && !warning.length)
-        cs_contact_capacity_warn(&session->system, &warning);
-    if (!error->status && warning.length)
-        cs_text_add(out, "warning: %s\n", cs_text_get(&warning));
-    cs_text_finish(&warning);
+    struct cs_scene_findings findings;
+    if (!cs_scene_doctor_check(session, 1, &findings, error)) {
+        cs_print_lines("warning: ", cs_text_get(&findings.warnings), out);
+        cs_print_lines("hint: ", cs_text_get(&findings.hints), out);
+    }
+    cs_scene_findings_finish(&findings);
     return error->status;
 }
 
@@ -116,8 +111,7 @@ static enum cs_status open_scene(struct options *options, struct cs_error *error
         options->plan ? cs_session_open : cs_session_open_plan;
     /* what starts inside a collider, or through or inside a body, shows in a system alone */
     if (!open(&session, &options->session, error) &&
-        ((session.scene.colliders.n == 0 && !cs_scene_has_body_contact(&session.scene)) ||
-         session.system.arena.used || !cs_session_build(&session, error)))
+        (session.system.arena.used || !cs_session_build(&session, error)))
         print_scene(options, &session, error);
     cs_session_close(&session);
     return error->status;

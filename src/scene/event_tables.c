@@ -166,7 +166,8 @@ static const struct cs_option shift_rows[] = {
     REAL(struct cs_path_point, at, "s", ABSENT, 0, BIG,
          "when the point is reached; must be given"),
     VECTOR(struct cs_path_point, point, 3, "m", NULL, -BIG, BIG,
-           "displacement then, from the position at the start of the event"),
+           "displacement then, from the position at the start of the event; a position without "
+           "relative"),
 };
 
 static const struct cs_table shift_table = {ROWS(shift_rows),
@@ -178,6 +179,8 @@ static const struct cs_option move_rows[] = {
     LIST(struct cs_move, path, shift_table,
          "displacements in order of time; it stays at the last"),
     CHOICE(struct cs_move, motion, motion_names, CS_MOTION_LINEAR, "as in grab"),
+    BOOL(struct cs_move, relative, 1,
+         "points are displacements; false: positions of the collider's centre"),
     VECTOR(struct cs_move, spin, 3, "rad/s", zero3, -BIG, BIG,
            "angular velocity about its centre, a plane's point or a floor's x = z = 0"),
 };

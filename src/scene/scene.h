@@ -276,11 +276,11 @@ struct cs_pin_change {
 
 /* Moves a collider along a path, or turns it. */
 struct cs_move {
-    bool present;
-    int64_t collider;    /* -1: not given, refused */
-    struct cs_list path; /* struct cs_path_point: shifts from where it was at the beginning */
-    int32_t motion;      /* enum cs_motion */
-    double spin[3];      /* rad/s, about its centre */
+    bool present, relative; /* relative: points are shifts from where it was at the beginning */
+    int64_t collider;       /* -1: not given, refused */
+    struct cs_list path;    /* struct cs_path_point */
+    int32_t motion;         /* enum cs_motion */
+    double spin[3];         /* rad/s, about its centre */
 };
 
 /* An event: exactly one of impact ... move; with `at`, or with `from` and `to`. */

@@ -92,3 +92,43 @@ void cs_contact_capacity_warn(const struct cs_system *system, struct cs_text *ou
                 at.holds, at.comes, at.k_needed,
                 CS_APPROACH_STIFFNESS * at.comes / (at.range * at.range));
 }
+
+/* Ranges of contact per step that are reported: the step check cuts a step to about one. */
+#define RANGES_MAX 10.0
+
+/* m/s with which a particle of a meets b. */
+static double approach_speed(const struct cs_system *system, uint32_t a, uint32_t b) {
+    const uint32_t bodies[2] = {a, b < system->scene->bodies.n ? b : a};
+    double mass = 0;
+    for (int k = 0; k < 2; k++)
+        for (uint32_t i = 0; i < system->bodies[bodies[k]].count; i++)
+            mass = fmax(mass, system->mass[system->bodies[bodies[k]].first + i]);
+    return mass > 0 ? sqrt(2 * cs_approach_energy(system, a, b) / mass) : 0;
+}
+
+void cs_contact_ranges_print(const struct cs_system *system, double dt, struct cs_text *out) {
+    const struct cs_scene *scene = system->scene;
+    struct cs_contact_capacity worst = {0};
+    double most = RANGES_MAX, speed = 0;
+    for (uint32_t a = 0; a < scene->bodies.n && system->approach && dt > 0; a++)
+        for (uint32_t b = a; b < scene->bodies.n + scene->colliders.n; b++) {
+            struct cs_contact_capacity at;
+            if (!params_of(system, a, b, &at) || !(at.range > 0))
+                continue;
+            const double v = approach_speed(system, a, b);
+            if (v * dt > most * at.range) {
+                most = v * dt / at.range;
+                speed = v;
+                worst = at;
+            }
+        }
+    if (!(speed > 0))
+        return;
+    print_surfaces(system, &worst, out);
+    cs_text_add(out,
+                " may meet at %.3g m/s, %.3g m per step of %.3g s, with a range of contact of "
+                "%.3g m: steps are cut there; dt = %.2g s, or a thickness of %.2g m, needs "
+                "fewer cuts\n",
+                speed, speed * dt, dt, worst.range, dt / most * RANGES_MAX,
+                worst.range * most / RANGES_MAX);
+}

@@ -28,4 +28,8 @@ void cs_contact_capacity_print(const struct cs_system *system,
 /* Adds a warning about the scene's contact.stiffness if it holds too little. */
 void cs_contact_capacity_warn(const struct cs_system *system, struct cs_text *out);
 
+/* Adds a line about the two surfaces that approach by most ranges of contact per step of dt in
+ * s, if that is many; dt 0: nothing. */
+void cs_contact_ranges_print(const struct cs_system *system, double dt, struct cs_text *out);
+
 #endif

@@ -135,7 +135,8 @@ enum cs_status cs_overlap_warning_print(const struct cs_scene *scene, double sec
                                         struct cs_text *out, struct cs_error *error) {
     const uint32_t n = scene->bodies.n;
     uint32_t first = 0, second = 0;
-    if (n < 2)
+    // limit and stop let no edge through a triangle
+    if (n < 2 || cs_scene_crossings(scene) >= CS_CROSSINGS_LIMIT)
         return CS_OK;
     struct body *bodies = calloc(n, sizeof *bodies);
     if (!bodies)

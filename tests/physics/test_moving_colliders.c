@@ -68,6 +68,27 @@ TEST(path_is_exact) {
     }
 }
 
+/* Positions instead of shifts: the same way, also after an earlier move. */
+TEST(positions_are_exact) {
+    struct fixture far;
+    fixture_open(
+        &far, "velocity-verlet", FAR,
+        "{\"from\": 0.05, \"to\": 0.3, \"move\": {\"collider\": 0, \"path\": ["
+        "{\"at\": 0.15, \"point\": [1, 0, 0]}]}},"
+        "{\"at\": 0.4, \"move\": {\"collider\": 0, \"relative\": false, \"path\": ["
+        "{\"at\": 0.5, \"point\": [10, 3, -2]}, {\"at\": 0.6, \"point\": [9, 1, 2]}]}}");
+    fixture_start(&far);
+    fixture_frames(&far, 24); /* 0.4 s */
+    check_centre(&far, 0, 0.4, 10, 1, 2);
+    fixture_frames(&far, 3); /* 0.45 s */
+    check_centre(&far, 0, 0.45, 10, 2, 0);
+    fixture_frames(&far, 3); /* 0.5 s */
+    check_centre(&far, 0, 0.5, 10, 3, -2);
+    fixture_frames(&far, 9); /* 0.65 s: where the scene has it */
+    check_centre(&far, 0, 0.65, 9, 1, 2);
+    fixture_close(&far);
+}
+
 /* A quarter turn about y in 0.5 s, from the way that the scene has turned the box. */
 TEST(turn_is_exact) {
     struct fixture far;

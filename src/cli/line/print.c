@@ -60,6 +60,13 @@ void cs_print_message(const char *message) {
     fputc('\n', stderr);
 }
 
+void cs_print_lines(const char *before, const char *lines, struct cs_text *out) {
+    for (size_t length; *lines; lines += length + (lines[length] == '\n')) {
+        length = strcspn(lines, "\n");
+        cs_text_add(out, "%s%.*s\n", before, (int)length, lines);
+    }
+}
+
 bool cs_print_is_stdout(const char *path) {
     return path && !strcmp(path, "-");
 }

@@ -24,6 +24,9 @@ enum cs_status cs_print_file(const char *path, struct cs_text *text, struct cs_e
 /* Writes "clothsim: message" to stderr in one line; control characters become "?". */
 void cs_print_message(const char *message);
 
+/* Adds each line of a text after a word: "hint: ". */
+void cs_print_lines(const char *before, const char *lines, struct cs_text *out);
+
 /* True for "-", which means standard output; path may be NULL. */
 bool cs_print_is_stdout(const char *path);
 

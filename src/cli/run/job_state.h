@@ -125,7 +125,6 @@ struct cs_job {
     struct cs_energy_ledger ledger;     /* open where it is asked for */
     struct cs_text ledger_rows;         /* CSV of it */
     struct cs_text scene;               /* the resolved scene, indented by two */
-    struct cs_text warning;            /* about bodies that nothing keeps apart; mostly empty */
     struct cs_text method;             /* "NAME:key=value,..." with every option */
     struct cs_text provenance;         /* see study/provenance_write.h */
     struct cs_text picture_provenance; /* what each picture carries */

@@ -4,10 +4,9 @@
 #include "base/clock.h"
 #include "cli/line/print.h"
 #include "scene/file/scene_read.h"
-#include "study/contact_capacity.h"
 #include "study/follow.h"
-#include "study/overlap_warning.h"
 #include "study/provenance_write.h"
+#include "study/scene_doctor.h"
 
 #include <stdlib.h>
 
@@ -137,19 +136,20 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     return cs_run_outputs_at(job, CS_RUN_BEGIN, error);
 }
 
-/* Warns of bodies whose contact is not effective, or too weak: the first of four checks that
- * finds something. */
+/* Prints what the scene's start says about the run; quiet: warnings only. */
 static enum cs_status warn(struct cs_job *job, struct cs_error *error) {
-    const struct cs_scene *scene = &job->session.scene;
-    if (cs_overlap_warning_print(scene, job->frames / scene->time.fps, &job->warning, error))
-        return error->status;
-    if (!job->warning.length)
-        cs_sampling_warning_print(&job->session.system, &job->warning);
-    if (!job->warning.length)
-        cs_containment_warning_print(&job->session.system, &job->warning);
-    if (!job->warning.length)
-        cs_contact_capacity_warn(&job->session.system, &job->warning);
-    return CS_OK;
+    const struct cs_session *session = &job->session;
+    struct cs_scene_findings findings;
+    struct cs_text out = {0};
+    if (!cs_scene_doctor_check(session, job->frames / session->scene.time.fps, &findings,
+                               error)) {
+        cs_print_lines("clothsim: warning: ", cs_text_get(&findings.warnings), &out);
+        if (!job->settings->quiet)
+            cs_print_lines("clothsim: hint: ", cs_text_get(&findings.hints), &out);
+        cs_print_out(stderr, &out, error);
+    }
+    cs_scene_findings_finish(&findings);
+    return error->status;
 }
 
 /* Opens the session with ledger, trace and automatic camera. */
@@ -196,7 +196,6 @@ void cs_job_finish(struct cs_job *job) {
         cs_output_unlock_folders(&job->folders[k]);
     cs_session_close(&job->session);
     cs_text_finish(&job->scene);
-    cs_text_finish(&job->warning);
     cs_text_finish(&job->method);
     cs_text_finish(&job->provenance);
     cs_text_finish(&job->picture_provenance);

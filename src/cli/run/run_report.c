@@ -168,8 +168,6 @@ void cs_report_print_table(const struct cs_job *job, struct cs_text *out) {
         add_row(out, "threads", "%u", cs_pool_threads());
         add_stages(job, out);
     }
-    if (job->warning.length)
-        cs_print_hanging("warning", cs_text_get(&job->warning), VALUE_COLUMN, out);
     for (uint32_t i = 0; i < run->n_notes; i++)
         cs_print_hanging("note", run->notes[i], VALUE_COLUMN, out);
     add_files(job, out);

@@ -136,12 +136,15 @@ static double half_diagonal(const struct surface *surface) {
 static void add_paths(const struct cs_scene *scene, struct cs_approach *approach) {
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_event *event = cs_scene_events(scene) + e;
-        const double begin = isnan(event->at) ? event->from : event->at, still[3] = {0};
+        const double begin = isnan(event->at) ? event->from : event->at;
         if (event->move.present) {
             struct surface *at = approach->surfaces + approach->n_bodies + event->move.collider;
+            double centre[3];
+            for (int c = 0; c < 3; c++)
+                centre[c] = event->move.relative ? 0 : at->point[c];
             at->path_speed =
                 fmax(at->path_speed,
-                     speed_along(&event->move.path, event->move.motion, still, begin) +
+                     speed_along(&event->move.path, event->move.motion, centre, begin) +
                          length_of(event->move.spin) * half_diagonal(at));
         }
         // a grab without a body acts on all

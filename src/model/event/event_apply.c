@@ -11,9 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Marks in events->work the particles that an event selects: a body or all, and of it the
- * particles that a pin of the same description would hold. */
-static void mark(const struct cs_system *system, const struct cs_event_target *aim) {
+void cs_event_mark(const struct cs_system *system, const struct cs_event_target *aim) {
     bool *marks = system->events->work;
     memset(marks, 0, system->view.n * sizeof *marks);
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
@@ -44,7 +42,7 @@ static double free_mass(const struct cs_system *system) {
 static void add_impulse(const struct cs_system *system, const struct cs_impact *impact,
                         double momentum, double *out) {
     const size_t n = system->view.n;
-    mark(system, &impact->target);
+    cs_event_mark(system, &impact->target);
     const double mass = free_mass(system);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
@@ -163,18 +161,18 @@ void cs_event_start(struct cs_system *system, uint32_t event) {
     if (of->viewpoint_force.present)
         cs_viewpoint_force_start(system, event);
     if (of->grab.present) {
-        mark(system, &of->grab.target);
+        cs_event_mark(system, &of->grab.target);
         pin_marked(system, event);
         cs_event_begin_grab(system, event);
     }
     if (of->move.present)
         cs_event_begin_move(system, event, events->begin);
     if (of->pin.present) {
-        mark(system, &of->pin.target);
+        cs_event_mark(system, &of->pin.target);
         pin_marked(system, event);
     }
     if (of->release.present) {
-        mark(system, &of->release.target);
+        cs_event_mark(system, &of->release.target);
         for (uint32_t i = 0; i < system->view.n; i++)
             if (events->work[i])
                 unpin(system, i);

@@ -78,6 +78,23 @@ static void stop(struct cs_collider_motion *motion, double t) {
     *motion = stopped;
 }
 
+/* Sets where a path begins and the shift of its origin: of a relative one the present position,
+ * else the centre of the scene's own collider at the world's origin. */
+static void begin_path_at(const struct cs_system *system, const struct cs_move *move, double t,
+                          const struct cs_collider_motion *motion,
+                          struct cs_event_state *state) {
+    struct cs_posed_collider at;
+    memcpy(state->origin, motion->shift_begin, sizeof state->origin);
+    memset(state->chord_to, 0, sizeof state->chord_to);
+    if (move->relative)
+        return;
+    cs_posed_collider_at(system, (uint32_t)move->collider, t, &at);
+    for (int c = 0; c < 3; c++) {
+        state->origin[c] = motion->shift_begin[c] - at.centre[c];
+        state->chord_to[c] = at.centre[c];
+    }
+}
+
 void cs_event_begin_move(struct cs_system *system, uint32_t event, double t) {
     struct cs_event_state *state = system->events->states + event;
     struct cs_collider_motion *motion = motion_of(system, event);
@@ -86,8 +103,7 @@ void cs_event_begin_move(struct cs_system *system, uint32_t event, double t) {
     stop(motion, t);
     motion->event = event + 1;
     memcpy(motion->spin, move_of(system, event)->spin, sizeof motion->spin);
-    memcpy(state->origin, motion->shift_begin, sizeof state->origin);
-    memset(state->chord_to, 0, sizeof state->chord_to);
+    begin_path_at(system, move_of(system, event), t, motion, state);
     cs_event_begin_path(state, t);
 }
 

@@ -299,4 +299,8 @@ double cs_viewpoint_forces_force(const struct cs_viewpoint_forces *viewpoint_for
  */
 uint32_t cs_viewpoint_forces_cuts(const struct cs_scene *scene, double t);
 
+/* Marks in events->work (n) the particles that an event selects: of a body or of all, those
+ * that a pin of the same description would hold. */
+void cs_event_mark(const struct cs_system *system, const struct cs_event_target *aim);
+
 #endif

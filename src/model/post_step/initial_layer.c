@@ -239,7 +239,7 @@ static bool choose(const struct search *search, const struct interface *at, stru
     const bool second = held[0] || (!held[1] && up <= 0);
     way->body = second ? at->b : at->a;
     for (int c = 0; c < 3; c++)
-        way->along[c] = (second ? -1 : 1) * f[c] / length;
+        way->along[c] = fabs(f[c]) > 1e-9 * length ? (second ? -1 : 1) * f[c] / length : 0;
     return true;
 }
 

@@ -1,0 +1,339 @@
+/* Looks at the start of a scene for what will go wrong. Each check adds lines to the text of
+ * its weight, or none; all of them are run. */
+#include "study/scene_doctor.h"
+
+#include "base/options.h"
+#include "base/vec3.h"
+#include "model/contact/posed_collider.h"
+#include "model/force/diagnostics.h"
+#include "scene/body_pairs.h"
+#include "study/contact_capacity.h"
+#include "study/idle_keys.h"
+#include "study/overlap_warning.h"
+#include "study/path_findings.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Energy at the start over all that can come later, from which on it is reported: a factor of 3
+ * in speed. */
+#define STORED_MAX 10.0
+/* Static strain of the springs at pins that is reported, and that the proposed stiffness has.
+ */
+#define STRAIN_MAX    0.2
+#define STRAIN_WANTED 0.1
+/* Distance from a plane over the size, below which a body is flat. */
+#define FLAT 1e-12
+
+static double length_of(const double a[3]) {
+    return sqrt(cs_vec3_dot(a, a));
+}
+
+static double gravity_of(const struct cs_system *system) {
+    return length_of(system->scene->forces.gravity);
+}
+
+/* --- stored energy --- */
+
+/* m, diagonal of the box of all particles and bounded colliders at the start. */
+static double size_of(const struct cs_system *system) {
+    const size_t n = system->view.n;
+    double low[3], high[3], squared = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double *x = system->state + c * n;
+        low[c] = high[c] = x[0];
+        for (size_t i = 0; i < n; i++) {
+            low[c] = fmin(low[c], x[i]);
+            high[c] = fmax(high[c], x[i]);
+        }
+    }
+    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
+        struct cs_posed_collider at;
+        cs_posed_collider_at(system, k, 0, &at);
+        for (int c = 0; c < 3; c++) {
+            low[c] = fmin(low[c], at.centre[c]);
+            high[c] = fmax(high[c], at.centre[c]);
+        }
+    }
+    for (int c = 0; c < 3; c++)
+        squared += (high[c] - low[c]) * (high[c] - low[c]);
+    return sqrt(squared);
+}
+
+/* J that impacts give the whole scene if it is at rest; HUGE_VAL where work has no bound. */
+static double event_energy(const struct cs_system *system, double mass) {
+    const struct cs_scene *scene = system->scene;
+    double energy = scene->forces.wind.present ? HUGE_VAL : 0;
+    for (uint32_t e = 0; e < scene->events.n; e++) {
+        const struct cs_event *event = cs_scene_events(scene) + e;
+        if (event->impact.present)
+            energy += event->impact.impulse * event->impact.impulse / (2 * mass);
+        else if (!event->pin.present && !event->release.present)
+            energy = HUGE_VAL;
+    }
+    return energy;
+}
+
+/* J that motion, gravity and events can give within the scene's size. */
+static double energy_to_come(const struct cs_system *system, const struct cs_energy *start) {
+    double mass = 0;
+    for (uint32_t i = 0; i < system->view.n; i++)
+        mass += system->inv_mass[i] > 0 ? system->mass[i] : 0;
+    return start->kinetic + mass * gravity_of(system) * size_of(system) +
+           event_energy(system, mass);
+}
+
+/* J that springs release at once: where forces balance, as in a stretched drum, nothing. Each
+ * particle by itself yields |f|^2/(2 k) with k the sum of its springs. */
+static double released_energy(const struct cs_system *system) {
+    const size_t n = system->view.n;
+    const double *x = system->state;
+    double energy = 0;
+    double *f = calloc(4 * n + 1, sizeof *f); // (3,n) forces, (n) stiffnesses
+    for (uint32_t r = 0; f && r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *s = system->springs.runs + r;
+        for (uint32_t i = 0; i < s->count; i++) {
+            const uint32_t a = cs_spring_a(s, i), b = cs_spring_b(s, i);
+            const double d[3] = {x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]};
+            const double l = length_of(d), k = cs_spring_stiffness(s, i);
+            for (size_t c = 0; c < 3 && l > 0; c++) {
+                const double push = k * (l - cs_spring_length(s, i)) * d[c] / l;
+                f[c * n + a] += push;
+                f[c * n + b] -= push;
+            }
+            f[3 * n + a] += k;
+            f[3 * n + b] += k;
+        }
+    }
+    for (size_t i = 0; f && i < n; i++)
+        if (system->inv_mass[i] > 0 && f[3 * n + i] > 0)
+            energy += (f[i] * f[i] + f[n + i] * f[n + i] + f[2 * n + i] * f[2 * n + i]) /
+                      (2 * f[3 * n + i]);
+    free(f);
+    return energy;
+}
+
+/* Springs that are far from their rest length, and contact that is far inside its range. */
+static void check_energy(const struct cs_system *system, struct cs_text *out) {
+    const struct cs_energy start =
+        cs_diagnostics_energy(system, 0, system->state, system->state + 3 * system->view.n);
+    const double most = STORED_MAX * energy_to_come(system, &start);
+    // without gravity and motion the stored energy is all that there is, and meant
+    if (!(most > 0))
+        return;
+    if (start.elastic > most && released_energy(system) > most)
+        cs_text_add(out,
+                    "springs store %.3g J at the start, gravity and events give %.3g J: check "
+                    "cloth.size and cloth.stretch; springs.stretch %.2g times smaller stores "
+                    "as little\n",
+                    start.elastic, most / STORED_MAX, STORED_MAX * start.elastic / most);
+    if (start.other > most)
+        cs_text_add(out,
+                    "contact stores %.3g J at the start, gravity and events give %.3g J: "
+                    "bodies are thrown apart; contact.start \"move-out\" moves them to "
+                    "balance\n",
+                    start.other, most / STORED_MAX);
+}
+
+/* --- springs at pins --- */
+
+/* The least strain of the springs between a body's pins and its free particles under the
+ * weight of the latter: |sum of forces| <= strain * sum of k L. */
+static double pin_strain(const struct cs_system *system, uint32_t body) {
+    const struct cs_body_range *range = system->bodies + body;
+    double mass = 0, strength = 0;
+    for (size_t i = range->first; i < (size_t)range->first + range->count; i++)
+        mass += system->inv_mass[i] > 0 ? system->mass[i] : 0;
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *s = system->springs.runs + r;
+        for (uint32_t i = 0; i < s->count; i++) {
+            const uint32_t a = cs_spring_a(s, i), b = cs_spring_b(s, i);
+            if (a - range->first < range->count &&
+                (system->inv_mass[a] > 0) != (system->inv_mass[b] > 0))
+                strength += cs_spring_stiffness(s, i) * cs_spring_length(s, i);
+        }
+    }
+    return strength > 0 ? mass * gravity_of(system) / strength : 0;
+}
+
+/* Where obstacles may carry a part of the weight nothing is said. */
+static void check_load(const struct cs_system *system, struct cs_text *out) {
+    const struct cs_scene *scene = system->scene;
+    if (scene->colliders.n || cs_scene_has_body_contact(scene))
+        return;
+    for (uint32_t b = 0; b < scene->bodies.n; b++) {
+        const struct cs_body *body = cs_scene_bodies(scene) + b;
+        const double strain = pin_strain(system, b);
+        if (strain > STRAIN_MAX && isnan(body->strain_limit))
+            cs_text_add(out,
+                        "bodies[%u]: its weight stretches the springs at its pins by at least "
+                        "%.3g %%: springs %.2g times as stiff, or strain_limit %.2g, keep it "
+                        "below %.3g %%\n",
+                        b, 100 * strain, strain / STRAIN_WANTED, 1 + STRAIN_WANTED,
+                        100 * STRAIN_WANTED);
+    }
+}
+
+/* --- symmetry --- */
+
+/* Sets the unit normal of the plane that a grid lies in; returns false if there is none. */
+static bool find_plane(const struct cs_system *system, const struct cs_body_range *range,
+                       double normal[3]) {
+    const size_t n = system->view.n, first = range->first,
+                 ends[3] = {0, range->columns - 1, (size_t)range->columns * (range->rows - 1)};
+    double side[2][3], most = 0;
+    if (range->columns < 2 || range->rows < 2)
+        return false;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t k = 0; k < 2; k++)
+            side[k][c] =
+                system->state[c * n + first + ends[k + 1]] - system->state[c * n + first];
+    cs_vec3_cross(side[0], side[1], normal);
+    if (cs_vec3_is_zero(normal))
+        return false;
+    cs_vec3_normalise(normal);
+    for (size_t i = first; i < first + range->count; i++) {
+        double d[3], v[3];
+        for (size_t c = 0; c < 3; c++) {
+            d[c] = system->state[c * n + i] - system->state[c * n + first];
+            v[c] = system->state[(3 + c) * n + i];
+        }
+        most = fmax(most, fmax(fabs(cs_vec3_dot(d, normal)), fabs(cs_vec3_dot(v, normal))));
+    }
+    return most <= FLAT * (length_of(side[0]) + length_of(side[1]));
+}
+
+/* True if only pins, releases and ramps happen, and no obstacle or wind is there. */
+static bool is_undisturbed(const struct cs_scene *scene) {
+    bool calm =
+        !scene->colliders.n && !scene->forces.wind.present && !cs_scene_has_body_contact(scene);
+    for (uint32_t e = 0; e < scene->events.n; e++) {
+        const struct cs_event *event = cs_scene_events(scene) + e;
+        calm = calm && (event->pin.present || event->release.present || event->ramp.present);
+    }
+    return calm;
+}
+
+/* A flat sheet in whose plane all forces act stays flat, although cloth would fold: held at
+ * single points, or shorter than at rest. */
+static void check_symmetry(const struct cs_system *system, struct cs_text *out) {
+    const struct cs_scene *scene = system->scene;
+    const double *g = scene->forces.gravity;
+    for (uint32_t b = 0; b < scene->bodies.n && is_undisturbed(scene); b++) {
+        const struct cs_body_range *range = system->bodies + b;
+        const struct cs_body *body = cs_scene_bodies(scene) + b;
+        double normal[3];
+        uint32_t pinned = 0;
+        for (uint32_t p = 0; p < system->n_pinned; p++)
+            pinned += system->pinned[p] - range->first < range->count;
+        const bool hangs =
+            pinned && pinned < range->columns && pinned < range->rows && !cs_vec3_is_zero(g);
+        const bool is_short = body->cloth.stretch[0] < 1 || body->cloth.stretch[1] < 1;
+        if ((hangs || is_short) && pinned < range->count && find_plane(system, range, normal) &&
+            fabs(cs_vec3_dot(g, normal)) <= FLAT * length_of(g))
+            cs_text_add(
+                out,
+                "bodies[%u] lies in a plane that no force leaves: it cannot buckle out of "
+                "it; cloth.bump %.1g breaks the symmetry\n",
+                b, 1e-3 * fmin(body->cloth.size[0], body->cloth.size[1]));
+    }
+}
+
+/* --- steps and obstacles --- */
+
+/* s, the step of the method, if it is known beforehand; else 0. */
+static double step_of(const struct cs_session *session) {
+    const struct cs_integrator *integrator = session->method.integrator;
+    const struct cs_option *row = cs_option_find(&session->method.table, "dt");
+    const double frame = 1 / session->scene.time.fps;
+    double dt = 0;
+    if (!row || row->type != CS_REAL || integrator->traits & CS_ADAPTIVE)
+        return 0;
+    memcpy(&dt, (const char *)session->method.options + row->offset, sizeof dt);
+    return dt > 0 ? fmin(dt, frame) : integrator->traits & CS_IMPLICIT ? frame : 0;
+}
+
+/* m, distance of neighbours in a grid; 0 for a mesh. */
+static double spacing_of(const struct cs_body *body) {
+    const struct cs_cloth *cloth = &body->cloth;
+    double most = 0;
+    for (int c = 0; c < 2 && cloth->present; c++)
+        if (cloth->grid[c] > 1)
+            most = fmax(most, cloth->size[c] / (double)(cloth->grid[c] - 1));
+    return most;
+}
+
+/* m, smallest square hole that an obstacle does not pass: its second largest side. */
+static double width_of(const struct cs_posed_collider *at) {
+    const double *h = at->half_sizes;
+    const double second = fmax(fmin(h[0], h[1]), fmin(fmax(h[0], h[1]), h[2]));
+    return 2 * (second + at->radius + at->collider->thickness);
+}
+
+/* Obstacles that fit between the particles: projection sees particles only. */
+static void check_gaps(const struct cs_system *system, struct cs_text *out) {
+    const struct cs_scene *scene = system->scene;
+    for (uint32_t k = 0; k < scene->colliders.n && scene->contact.law == CS_CONTACT_PROJECT;
+         k++) {
+        struct cs_posed_collider at;
+        double gap = 0;
+        cs_posed_collider_at(system, k, 0, &at);
+        for (uint32_t b = 0; b < scene->bodies.n; b++)
+            gap = fmax(gap, spacing_of(cs_scene_bodies(scene) + b));
+        if (!cs_shape_is_endless(at.shape) && width_of(&at) < gap)
+            cs_text_add(out,
+                        "colliders[%u] is %.3g m wide, particles are %.3g m apart: contact by "
+                        "projection lets it through between them; contact.law \"force\" does "
+                        "not, nor a grid with cells below %.3g m\n",
+                        k, width_of(&at), gap, width_of(&at));
+    }
+}
+
+/* --- all checks --- */
+
+/* Adds a line, if the text of a single one is there. */
+static void add_line(struct cs_text *line, struct cs_text *out) {
+    if (line->length)
+        cs_text_add(out, "%s\n", cs_text_get(line));
+    out->failed |= line->failed;
+    cs_text_finish(line);
+}
+
+/* Surfaces that contact does not keep apart. */
+static enum cs_status check_surfaces(const struct cs_system *system, double seconds,
+                                     struct cs_text *out, struct cs_error *error) {
+    struct cs_text line = {0};
+    cs_overlap_warning_print(system->scene, seconds, &line, error);
+    add_line(&line, out);
+    cs_sampling_warning_print(system, &line);
+    add_line(&line, out);
+    cs_containment_warning_print(system, &line);
+    add_line(&line, out);
+    cs_contact_capacity_warn(system, &line);
+    add_line(&line, out);
+    return error->status;
+}
+
+enum cs_status cs_scene_doctor_check(const struct cs_session *session, double seconds,
+                                     struct cs_scene_findings *out, struct cs_error *error) {
+    const struct cs_system *system = &session->system;
+    *out = (struct cs_scene_findings){0};
+    if (check_surfaces(system, seconds, &out->warnings, error))
+        return error->status;
+    check_energy(system, &out->warnings);
+    check_gaps(system, &out->hints);
+    cs_contact_ranges_print(system, step_of(session), &out->hints);
+    check_load(system, &out->hints);
+    check_symmetry(system, &out->hints);
+    cs_path_findings_print(system, &out->hints);
+    cs_idle_keys_print(system->scene, &out->hints);
+    return out->warnings.failed || out->hints.failed
+               ? cs_fail(error, CS_ERR_MEMORY, "out of memory for the checks of the scene")
+               : CS_OK;
+}
+
+void cs_scene_findings_finish(struct cs_scene_findings *findings) {
+    cs_text_finish(&findings->warnings);
+    cs_text_finish(&findings->hints);
+}

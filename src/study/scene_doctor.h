@@ -1,0 +1,20 @@
+/* scene_doctor.h - tells before the first step of a run where a scene will go wrong, with the
+ * value that would do. */
+#ifndef CS_SCENE_DOCTOR_H
+#define CS_SCENE_DOCTOR_H
+
+#include "study/session.h"
+
+/* Findings about a scene, one per line. A warning is about a result that cannot be right, a
+ * hint about one that may surprise. Zeroed: none. */
+struct cs_scene_findings {
+    struct cs_text warnings, hints;
+};
+
+/* Checks a session whose system is built, over the given time in s. Changes nothing, and reads
+ * the state of the start only. CS_ERR_MEMORY. */
+enum cs_status cs_scene_doctor_check(const struct cs_session *session, double seconds,
+                                     struct cs_scene_findings *out, struct cs_error *error);
+void cs_scene_findings_finish(struct cs_scene_findings *findings);
+
+#endif
