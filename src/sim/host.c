@@ -139,32 +139,23 @@ static void host_force_diagonal(void *ctx, double t, const double *x, const doub
     cs_trace_vector(host, "force", "f", t, f);
 }
 
-/* Solves A u = b by conjugate gradients. If these meet p.Ap <= 0, A is clamped, the b of
- * euler_setup with it, u starts again from 0, and all iterations count. Fails at the iteration
- * limit, if a clamped A is still indefinite, or if a number is not finite. */
+/* The solver that methods call. Fails at the iteration limit, if a clamped A is still
+ * indefinite, or if a number is not finite. */
 static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *u) {
     struct cs_run_host *host = ctx;
-    uint64_t iterations;
-    double residual = 0;
+    struct cs_solve_result result = {0};
     if (!host->linear.system)
         return host_fail(ctx, "solve was used without CS_NEED_SOLVE");
     const double begin = cs_stage_begin(host);
     host->run->counts.solves++;
-    enum cs_linear_end end = cs_linear_solve(&host->linear, b, rtol, u, &iterations, &residual);
-    host->run->counts.solve_iterations += iterations;
-    // set-up tests diagonal blocks alone: an indefinite matrix may show only here
-    while (end == CS_LINEAR_INDEFINITE && cs_host_clamp(host, b)) {
-        memset(u, 0, 3 * sizeof *u * host->run->system->view.n);
-        end = cs_linear_solve(&host->linear, b, rtol, u, &iterations, &residual);
-        host->run->counts.solve_iterations += iterations;
-    }
+    const enum cs_linear_end end = cs_host_solve_settled(host, b, rtol, u, &result);
     cs_stage_end(host, CS_STAGE_SOLVE, begin);
     cs_trace_vector(host, "solve", "b", host->advance_check.last_commit, b);
     cs_trace_vector(host, "solve", "u", host->advance_check.last_commit, u);
     if (end != CS_LINEAR_DONE && host->solve_may_fail)
         return CS_STEP_FAIL;
     if (end != CS_LINEAR_DONE)
-        return cs_run_host_fail_solve(host, end, b, iterations, residual);
+        return cs_run_host_fail_solve(host, end, b, result.iterations, result.residual);
     return CS_STEP_OK;
 }
 

@@ -97,6 +97,8 @@ struct cs_euler_step {
     const double *x, *v; /* (3,n) in m and m/s */
     double *b;           /* (3,n) in N s; NULL: solve_setup came last */
     bool tangent;        /* friction by its derivative in A: CS_SOLVE_TANGENT */
+    const double *dv;    /* (3,n) in m/s: a solution, to whose end friction has its chord; NULL:
+                            none yet */
 };
 
 /* One per run, owned by struct cs_run; ctx of the method's calls. */
@@ -256,5 +258,18 @@ static inline void cs_trace_state(const struct cs_run_host *host, const char *ph
     cs_trace_vector(host, phase, "x", t, x);
     cs_trace_vector(host, phase, "v", t, v);
 }
+
+/* How a linear solve ended, and what it took. */
+struct cs_solve_result {
+    enum cs_linear_end end;
+    uint64_t iterations;
+    double residual;
+};
+
+/* Solves the last system, clamped where it is indefinite. One of euler_setup is solved again
+ * with friction by its chord to the end of the solution, until that solves the new system too.
+ * Contacts of surfaces with a small friction_speed alone need it (contact/friction_chord.h). */
+enum cs_linear_end cs_host_solve_settled(struct cs_run_host *host, const double *b, double rtol,
+                                         double *u, struct cs_solve_result *result);
 
 #endif

@@ -16,7 +16,12 @@
  *   c = L (u/s(u) - along/s(T)) / (u - along),   p = max(c, L/max(s(T), s(u)))
  *
  * c is L ev^2/s^3 where u and `along` agree. Several contacts of a point are taken as one with
- * the sum of their loads, of whose slope each has its fraction. Inlined and without branches,
+ * the sum of their loads, of whose slope each has its fraction.
+ *
+ * F has the friction of other contacts as it is at the begin of the step. In a stack, where it
+ * turns too, that is a wrong guess. After a solve the velocity at the end is known instead
+ * (is_end_known): u e is the tangential part of T + h F/m with the F of the whole step, and the
+ * chord goes there. Inlined and without branches,
  * because loops over lanes are hot. */
 #ifndef CS_CONTACT_FRICTION_CHORD_H
 #define CS_CONTACT_FRICTION_CHORD_H
@@ -28,10 +33,11 @@
 
 /* Accelerations of a contact point in a step. */
 struct cs_contact_pull {
-    double h;         /* s, of the step */
-    double inverse;   /* 1/kg: 1/m = sum w_k^2/m_k over the particles behind the point */
-    double motion[3]; /* m/s2: F/m = sum w_k F_k/m_k of all forces F_k */
-    double push[3];   /* m/s2: the same of the elastic forces of contact alone */
+    double h;          /* s, of the step */
+    double inverse;    /* 1/kg: 1/m = sum w_k^2/m_k over the particles behind the point */
+    double motion[3];  /* m/s2: F/m = sum w_k F_k/m_k of all forces F_k */
+    double push[3];    /* m/s2: the same of the elastic forces of contact alone */
+    bool is_end_known; /* motion is that of the whole step */
 };
 
 /* Newton's iterations for the velocity: from the start below 5 are enough for all digits, for
@@ -98,12 +104,14 @@ CS_INLINE void cs_friction_chord_add(const struct cs_contact_pull *pull,
     double free[3], e[3];
     CS_UNROLLED
     for (int c = 0; c < 3; c++)
-        free[c] = t[c] + pull->h * (pull->motion[c] - n[c] * off) + a * t[c] / speed;
+        free[c] = t[c] + pull->h * (pull->motion[c] - n[c] * off) +
+                  (pull->is_end_known ? 0 : a * t[c] / speed);
     const double length = sqrt(cs_point_contact_dot(free, free));
     CS_UNROLLED
     for (int c = 0; c < 3; c++)
         e[c] = free[c] / (length + DBL_MIN);
-    const double u = cs_friction_chord_speed(a, ev, length), s = sqrt(u * u + ev * ev);
+    const double u = pull->is_end_known ? length : cs_friction_chord_speed(a, ev, length);
+    const double s = sqrt(u * u + ev * ev);
     const double along = cs_point_contact_dot(t, e), way = u - along;
     const double size = 1e-9 * (s + speed);
     const bool apart = way > size || way < -size;
@@ -134,6 +142,12 @@ CS_INLINE void cs_friction_chord_add_block(const struct cs_point_contact *contac
     frictionless.friction = 0;
     cs_point_contact_add_block(&frictionless, matrix, b);
     cs_friction_chord_add(pull, &slides, b);
+}
+
+/* The pull of a point without particles yet; cd = -h. */
+CS_INLINE struct cs_contact_pull cs_contact_pull_begin(const struct cs_matrix *matrix) {
+    return (struct cs_contact_pull){
+        .h = -matrix->cd, .is_end_known = matrix->chord && matrix->chord->is_end_known};
 }
 
 /* Adds what a particle with weight w contributes to the point. */

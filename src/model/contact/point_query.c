@@ -38,7 +38,7 @@ static void find_matrix(const struct cs_point_query *job,
                         const struct cs_contact_sample_point *point,
                         const struct cs_bristle *bristle, struct cs_point_answer *answer) {
     const struct cs_system *system = job->system;
-    struct cs_contact_pull pull = {.h = -job->matrix->cd};
+    struct cs_contact_pull pull = cs_contact_pull_begin(job->matrix);
     for (int e = 0; e < 6; e++)
         answer->block[e] = 0;
     for (uint32_t k = 0; k < point->n && job->matrix->chord; k++)
