@@ -131,8 +131,7 @@ static bool is_closed(const struct cs_system *system) {
 
 enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
                                        const struct cs_run *run, struct cs_error *error) {
-    const struct cs_energy energy =
-        cs_diagnostics_energy(run->system, run->t, run->x, run->v);
+    const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
     double speed = 0;
     *monitor = (struct cs_energy_monitor){.stride = 1, .is_closed = is_closed(run->system)};
     if (spring_speed(run, &speed, error))
@@ -177,14 +176,16 @@ static double find_input(struct cs_energy_monitor *monitor,
     return input;
 }
 
-/* W in J since the last sample, without a ledger: what rose with an event, and what outer forces
- * can have given at most. */
+/* W in J since the last sample, without a ledger: what rose with an event, and what outer
+ * forces can have given at most. */
 static double estimate_input(const struct cs_energy_monitor *monitor, const struct cs_run *run,
                              const struct cs_energy_monitor_row *row, bool with_event) {
     const double passed = run->t - monitor->last_sample;
     const double rose = cs_energy_total(&row->energy) - monitor->last_total;
-    if (with_event)
-        return fmin(fmax(rose, 0), bound_of(monitor));
+    if (with_event) {
+        const double speed = run->system->events ? cs_events_speed(run->system) : 0;
+        return fmin(fmax(rose, 0), bound_of(monitor) + 0.5 * monitor->mass * speed * speed);
+    }
     const double push = sqrt(monitor->wind_mass);
     return push * passed *
            (sqrt(2 * fmax(monitor->last_kinetic, row->energy.kinetic)) + push * passed);
@@ -196,8 +197,8 @@ static void balance(struct cs_energy_monitor *monitor, const struct cs_run *run,
                     struct cs_energy_monitor_row *row) {
     const double total = cs_energy_total(&row->energy);
     monitor->released = fmax(monitor->released, monitor->gravity - row->energy.gravity);
-    const double input = ledger ? find_input(monitor, ledger)
-                                : estimate_input(monitor, run, row, with_event);
+    const double input =
+        ledger ? find_input(monitor, ledger) : estimate_input(monitor, run, row, with_event);
     monitor->input += input;
     monitor->balance += total - monitor->last_total - input;
     monitor->lowest = fmin(monitor->lowest, monitor->balance);
@@ -234,9 +235,9 @@ static bool is_growing(struct cs_energy_monitor *monitor, double made) {
 
 /* Largest speed in m/s that counts as sound: what gravity and outer forces can have added is at
  * most a few times the mean that the energy allows. */
-static double limit_of_speed(const struct cs_energy_monitor *monitor, const struct cs_run *run) {
-    const double mean =
-        monitor->mass > 0 ? sqrt(2 * bound_of(monitor) / monitor->mass) : 0;
+static double limit_of_speed(const struct cs_energy_monitor *monitor,
+                             const struct cs_run *run) {
+    const double mean = monitor->mass > 0 ? sqrt(2 * bound_of(monitor) / monitor->mass) : 0;
     const double fall =
         fmin(monitor->acceleration * (run->t - monitor->t_begin), SPEED_SPREAD * mean);
     return SPEED_FACTOR * fmax(monitor->start_speed + fall, LEAST_SPEED);
@@ -285,8 +286,17 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
 void cs_energy_monitor_print(const struct cs_energy_monitor *monitor,
                              const struct cs_system *system, struct cs_text *out) {
     const struct cs_energy_monitor_row *first = &monitor->first;
-    if (first->verdict == CS_STABILITY_BOUNDED)
+    if (first->verdict == CS_STABILITY_BOUNDED ||
+        (first->in_doubt && first->verdict == CS_STABILITY_LOCAL))
         return;
+    if (first->in_doubt) {
+        cs_text_add(
+            out,
+            "in doubt from t = %.6g s on: energy rose by %.3g J, and the scene held and "
+            "gave %.3g J as far as frames show; --ledger tells who made it",
+            first->t, first->made, first->bound);
+        return;
+    }
     cs_text_add(out, "%s from t = %.6g s on: ", cs_stability_word(first->verdict), first->t);
     if (first->verdict == CS_STABILITY_GLOBAL)
         cs_text_add(out, "the integrator made %.3g J, the scene held and gave %.3g J; fastest ",

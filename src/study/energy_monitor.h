@@ -19,9 +19,9 @@
  *
  * W without a ledger, between two samples D apart: of wind and other outer forces of at most m_i
  * a_i on particle i, by the Cauchy-Schwarz inequality D sqrt(sum m a^2) sqrt(sum m v^2); of
- * events, ramps and moving things all that E rose by, up to S. Corrections after steps are not
- * known. Where any of these act, the verdict of a sample is in doubt until a run with a ledger
- * confirms it (cs_stability_confirm), which takes W from its columns.
+ * events, ramps and moving things of speed u all that E rose by, up to S + M u^2/2. Corrections
+ * after steps are not known. Where any of these act, the verdict of a sample is in doubt until a
+ * run with a ledger confirms it (cs_stability_confirm), which takes W from its columns.
  *
  * Local instability: a particle is faster than five times its speed at the start, what the
  * energy of its springs could give it, and a fall over the time passed. A whip does that too:

@@ -133,7 +133,7 @@ TEST(structure_is_strict) {
         {"{\"a\": [1}]", 8, "found '}', expected ',' or ']'"},
         {"[1] // one", 4,
          "found '/': JSON has no comments; a key that begins with \"x-\" is free"},
-        {"/* */ 1", 0, "found '/', expected a value"},
+        {"/* */ 1", 0, "found '/': JSON has no comments"},
         {"True", 0, "found 'T', expected a value"},
         {"truth", 0, "found 't', expected a value"},
         {"nullx", 4, "expected the end of the text"},

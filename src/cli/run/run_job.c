@@ -179,9 +179,6 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     if (warn(job, error) || begin(job, error))
         return error->status;
     job->failure = run_frames(job, error) == CS_ERR_MODULE ? error->message : NULL;
-    if (!error->status && job->session.run.outcome != CS_INTERRUPTED)
-        cs_stability_confirm(&job->monitor, &settings->session, job->session.run.t,
-                             job->session.run.counts.steps, error);
     finish_files(job, error);
     job->wall_seconds = cs_clock_wall() - start;
     return error->status;

@@ -47,7 +47,9 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
                       "'bound': %g}",
                       run->blow_up.time, run->blow_up.particle, run->blow_up.energy,
                       run->blow_up.bound);
-    cs_json_write(out, ",\n  'verdict': %s", cs_stability_word(job->monitor.worst_verdict));
+    cs_json_write(out, ",\n  'verdict': %s",
+                  job->monitor.in_doubt ? "in doubt"
+                                        : cs_stability_word(job->monitor.worst_verdict));
     if (job->monitor.first.verdict != CS_STABILITY_BOUNDED)
         cs_json_write(
             out, ",\n  'unstable_from': {'time': %g, 'particle': %u, 'particles': %u}",
