@@ -253,15 +253,6 @@ bool cs_contact_sample_next(struct cs_contact_sample_point *point) {
     return true;
 }
 
-void cs_contact_sample_interpolate(const struct cs_contact_sample_point *point, size_t n,
-                                   const double *x, double out[3]) {
-    for (size_t c = 0; c < 3; c++) {
-        out[c] = 0;
-        for (uint32_t k = 0; x && k < point->n; k++)
-            out[c] += point->w[k] * x[c * n + point->particles[k]];
-    }
-}
-
 double cs_contact_sample_mass(const struct cs_system *system,
                               const struct cs_contact_sample_point *point) {
     double inverse = 0;

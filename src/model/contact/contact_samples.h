@@ -89,9 +89,15 @@ void cs_contact_sample_first(const struct cs_contact_sample_chunk *chunk, uint32
                              struct cs_contact_sample_point *point);
 bool cs_contact_sample_next(struct cs_contact_sample_point *point);
 
-/* out = sum w_i x_i for x (3,n); 0 if x is NULL. */
-void cs_contact_sample_interpolate(const struct cs_contact_sample_point *point, size_t n,
-                                   const double *x, double out[3]);
+/* out = sum w_i x_i for x (3,n); 0 if x is NULL. Inlined: each particle is a sample of one. */
+static inline void cs_contact_sample_interpolate(const struct cs_contact_sample_point *point,
+                                                 size_t n, const double *x, double out[3]) {
+    for (size_t c = 0; c < 3; c++)
+        out[c] = x ? 0 + point->w[0] * x[c * n + point->particles[0]] : 0;
+    for (uint32_t k = 1; x && k < point->n; k++)
+        for (size_t c = 0; c < 3; c++)
+            out[c] += point->w[k] * x[c * n + point->particles[k]];
+}
 
 /* Effective mass in kg of a sample against a force: 1 / sum (w_i^2 / m_i); HUGE_VAL if all its
  * vertices are pinned. */

@@ -167,9 +167,14 @@ static struct cs_posed_collider_law near_of(const struct cs_system *system, uint
     return near;
 }
 
-/* Answers for particle i, as a sample of one vertex; false if it is out of range. */
+/* Answers for particle i, as a sample of one vertex; false if it is out of range. Most are:
+ * they are told by the bounding test alone. */
 static bool evaluate(const struct cs_point_query *job, const struct cs_posed_collider_law *near,
                      uint32_t collider, size_t i, struct cs_point_answer *answer) {
+    const size_t n = job->system->view.n;
+    const double *x = job->eval.x, p[3] = {x[i], x[n + i], x[2 * n + i]};
+    if (!cs_posed_collider_is_near(&near->collider, near->params.range, p))
+        return false;
     const struct cs_contact_sample_point point = {.n = 1, .particles = {(uint32_t)i}, .w = {1}};
     return cs_point_evaluate(job, near, collider, &point, answer);
 }
