@@ -125,14 +125,14 @@ struct cs_job {
     struct cs_energy_ledger ledger;     /* open where it is asked for */
     struct cs_text ledger_rows;         /* CSV of it */
     struct cs_text scene;               /* the resolved scene, indented by two */
-    struct cs_text method;             /* "NAME:key=value,..." with every option */
-    struct cs_text provenance;         /* see study/provenance_write.h */
-    struct cs_text picture_provenance; /* what each picture carries */
-    struct cs_text renderer;           /* description; empty unless pictures are drawn */
-    char scene_hash[CS_HASH_DIGITS];   /* see scene/file/scene_hash.h */
-    char hash[CS_HASH_DIGITS];         /* of the last frame's state */
-    struct cs_job_picture has_begun;   /* not yet written */
-    uint32_t n_drawn;                  /* pictures written */
+    struct cs_text method;              /* "NAME:key=value,..." with every option */
+    struct cs_text provenance;          /* see study/provenance_write.h */
+    struct cs_text picture_provenance;  /* what each picture carries */
+    struct cs_text renderer;            /* description; empty unless pictures are drawn */
+    char scene_hash[CS_HASH_DIGITS];    /* see scene/file/scene_hash.h */
+    char hash[CS_HASH_DIGITS];          /* of the last frame's state */
+    struct cs_job_picture has_begun;    /* not yet written */
+    uint32_t n_drawn;                   /* pictures written */
     struct cs_export export;
     struct cs_text outputs; /* which there are, as far as checkpoints depend on it */
     struct cs_output folders[CS_RUN_OUTPUTS_MAX]; /* by output; owned while the run lasts */

@@ -92,8 +92,8 @@ struct cs_eval {
  * (contact/friction_chord.h): (3,n) in N. */
 struct cs_chord_forces {
     const double *all, *contact; /* the sum of all forces, and of the elastic ones of contact */
-    bool is_end_known; /* `all` is the force of the whole step, M (v' - v)/h, friction of its end
-                          included; `contact` is not read */
+    bool is_end_known; /* `all` is the force of the whole step, M (v' - v)/h, friction of its
+                          end included; `contact` is not read */
 };
 
 /* The matrix of a linear solver, A = cm M + cd df/dv + ck df/dx at a state. cd and ck are at

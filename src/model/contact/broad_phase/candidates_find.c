@@ -81,7 +81,7 @@ static struct item_boxes boxes_of(const struct cs_candidates *candidates,
 /* A batch at work: pairs whose boxes overlap wait in the distance filter. */
 struct work {
     const struct cs_candidates *search;
-    struct cs_search_batch *of;
+    struct cs_primitive_batch *of;
     struct cs_candidate_batch *batch;
     struct cs_distance_filter sieve;
 };
@@ -231,7 +231,7 @@ static void find_item(struct work *work, const struct group *group, uint32_t ite
 /* Finds all pairs of the items of one cluster. */
 static void query_cluster(struct work *work, uint32_t cluster) {
     const struct cs_candidates *candidates = work->search;
-    struct cs_search_batch *batch = work->of;
+    struct cs_primitive_batch *batch = work->of;
     const struct group group = group_of(candidates, batch->edges, cluster);
     const uint32_t *items = group.of->items + CS_AABB_CLUSTER * (size_t)cluster;
     bool there = true;
@@ -247,7 +247,7 @@ static void query_cluster(struct work *work, uint32_t cluster) {
 /* Notes where the pairs of each item are in the batch; they are contiguous. */
 static void set_rows(const struct cs_candidates *candidates, const struct cs_aabb_clusters *of,
                      uint32_t number) {
-    const struct cs_search_batch *items = candidates->search.batches + number;
+    const struct cs_primitive_batch *items = candidates->search.batches + number;
     const struct cs_candidate_batch *batch = candidates->batches + number;
     struct cs_candidate_range *rows = candidates->rows[items->edges];
     for (size_t k = CS_AABB_CLUSTER * (size_t)items->begin;

@@ -63,7 +63,7 @@ static enum cs_status alloc_batches(struct cs_primitive_search *search, struct c
         const bool edges = b >= search->n_point_batches;
         const uint32_t n = edges ? search->edges.n : search->points.n;
         const uint32_t begin = BATCH * (edges ? b - search->n_point_batches : b);
-        search->batches[b] = (struct cs_search_batch){
+        search->batches[b] = (struct cs_primitive_batch){
             .edges = edges, .begin = begin, .end = n - begin > BATCH ? begin + BATCH : n};
     }
     return error->status;
@@ -132,7 +132,7 @@ struct move {
 };
 struct work {
     const struct move *move;
-    struct cs_search_batch *batch;
+    struct cs_primitive_batch *batch;
     uint32_t number;
     uint32_t pairs[CS_SEARCH_PAIRS][2];
     size_t n;

@@ -13,7 +13,7 @@
 
 /* The points or edges in the clusters [begin, end), and the work of the thread that has them.
  */
-struct cs_search_batch {
+struct cs_primitive_batch {
     bool edges;
     uint32_t begin, end;
     /* clusters near the one at hand: of its own body and of others */
@@ -27,7 +27,7 @@ struct cs_primitive_search {
     /* points have no boxes of their own */
     struct cs_aabb_clusters points, edges, triangles;
     /* (n_batches) those of points first */
-    struct cs_search_batch *batches;
+    struct cs_primitive_batch *batches;
     uint32_t n_batches, n_point_batches;
     /* (n_bodies) of the last move */
     struct cs_swept_aabb *body_sweeps;
