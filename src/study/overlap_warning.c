@@ -110,15 +110,26 @@ done:
     return error->status;
 }
 
-/* Counts the pairs without contact whose boxes overlap, at the start or at any time; *first and
- * *second belong to the first pair. */
+/* True if a seam joins two bodies. */
+static bool are_sewn(const struct cs_scene *scene, uint32_t a, uint32_t b) {
+    const struct cs_seam *seams = scene->seams.items;
+    bool sewn = false;
+    for (uint32_t k = 0; k < scene->seams.n; k++) {
+        const int64_t one = seams[k].side.body, other = seams[k].to.side.body;
+        sewn |= (one == a && other == b) || (one == b && other == a);
+    }
+    return sewn;
+}
+
+/* Counts the pairs without contact or seam whose boxes overlap, at the start or at any time;
+ * *first and *second belong to the first pair. */
 static uint32_t count_pairs(const struct cs_scene *scene, const struct body *bodies, bool start,
                             uint32_t *first, uint32_t *second) {
     uint32_t pairs = 0;
     double friction;
     for (uint32_t a = 0; a < scene->bodies.n; a++)
         for (uint32_t b = a + 1; b < scene->bodies.n; b++) {
-            if (cs_scene_bodies_collide(scene, a, b, &friction))
+            if (cs_scene_bodies_collide(scene, a, b, &friction) || are_sewn(scene, a, b))
                 continue;
             if (start ? !overlap(&bodies[a].start, &bodies[b].start)
                       : !overlap(&bodies[a].reach, &bodies[b].reach))
