@@ -65,6 +65,7 @@ static void build(void *object) {
 static void candidates(void *object) {
     struct bed *bed = object;
     bed->session.system.pairs->candidates.has_close_pairs = false;
+    bed->session.system.pairs->candidates.has_nearby = false;
     cs_candidates_find_in_range(&bed->session.system.pairs->candidates, bed->at);
 }
 

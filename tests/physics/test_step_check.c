@@ -177,10 +177,14 @@ TEST(steps_are_seen_as_by_all_pairs) {
  * step to x is short enough for them. */
 static bool find_nearby(const struct fixture *cloth, const double *at, const double *x) {
     struct cs_candidates *candidates = &cloth->system->pairs->candidates;
-    candidates->collects_nearby = true;
-    candidates->has_close_pairs = false;
+    static double before[MOST];
+    memcpy(before, at, 3 * cloth->n * sizeof *at);
+    before[0] += 1e-9;
+    candidates->has_nearby = false;
+    ck_assert(cs_candidates_find_in_range(candidates, before));
     ck_assert(cs_candidates_find_in_range(candidates, at));
-    return cs_candidates_max_motion(candidates, cloth->x, x) < 0.99 * CS_CANDIDATES_NEARBY;
+    return candidates->has_nearby &&
+           cs_candidates_max_motion(candidates, cloth->x, x) < 0.99 * CS_CANDIDATES_NEARBY;
 }
 
 /* Pairs nearby the start, the end or beyond it give the same as all pairs, where sheets are so

@@ -113,12 +113,13 @@ struct cs_candidates {
     bool is_built;    /* the list was made */
     /* (3,n_points) m, state of the pairs in range */
     double *x_at_close;
-    /* pairs in range and nearby belong to x_at_close */
+    /* pairs in range belong to x_at_close */
     bool has_close_pairs;
-    /* The last step was short enough for pairs nearby, so that the next search collects them;
-     * the last search did, and n_builds of its list. Only time depends on it. */
-    bool collects_nearby, has_nearby;
-    uint64_t close_build;
+    /* A search of the whole list collects pairs nearby if states follow each other closely. One
+     * has, at x_at_nearby (3,n_points), and n_builds of its list. Only time depends on it. */
+    bool has_nearby;
+    double *x_at_nearby;
+    uint64_t nearby_build;
     /* number of times that pairs in range were found: a version */
     uint64_t close_count;
     /* number of lists built */

@@ -53,6 +53,8 @@ enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_sy
         cs_arena_alloc_array(arena, 3 * (size_t)n, sizeof *candidates->x_at_build, error);
     candidates->x_at_close =
         cs_arena_alloc_array(arena, 3 * (size_t)n, sizeof *candidates->x_at_build, error);
+    candidates->x_at_nearby =
+        cs_arena_alloc_array(arena, 3 * (size_t)n, sizeof *candidates->x_at_build, error);
     candidates->scaled_points =
         cs_arena_alloc_array(arena, n, sizeof *candidates->scaled_points, error);
     candidates->chunks =
@@ -278,6 +280,12 @@ bool cs_candidates_cover_step(struct cs_candidates *candidates, const double *x0
         candidates->x_at_build[i] = x0[i] + along * (x1[i] - x0[i]);
     return build(candidates, margin,
                  fmax(flat_margin(candidates, candidates->margin), 0.5 * along * move));
+}
+
+bool cs_candidates_is_nearby(const struct cs_candidates *candidates, const double *x) {
+    return candidates->has_nearby && candidates->nearby_build == candidates->n_builds &&
+           cs_candidates_max_motion(candidates, candidates->x_at_nearby, x) <=
+               CS_CANDIDATES_NEARBY * (1 - 1e-6);
 }
 
 /* Comparisons are written so that NaN wins and stays. */

@@ -43,6 +43,10 @@ bool cs_candidates_cover_step(struct cs_candidates *candidates, const double *x0
 double cs_candidates_max_motion(const struct cs_candidates *candidates, const double *x0,
                                 const double *x1);
 
+/* Returns whether all pairs of the current list that are in range at x are among those nearby:
+ * such a pair was further apart where these were collected by at most its relative motion. */
+bool cs_candidates_is_nearby(const struct cs_candidates *candidates, const double *x);
+
 /* Largest motion, in ranges, up to which a list that covers the way contains all pairs that
  * ACCD can stop. ACCD stops a pair whose gap g has fallen to a tenth of its start s. With the
  * motion m, s <= g + m and g <= s/10 give g <= m/9. That must be below the range of edges; 8.9

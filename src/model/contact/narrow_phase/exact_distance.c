@@ -103,7 +103,7 @@ enum { TOGETHER = 4, WAITING = TOGETHER * CS_PAIR_LANES };
 struct work {
     const struct cs_candidates *search;
     struct cs_candidate_chunk *chunk;
-    bool collects;                    /* nearby pairs, or those in range alone */
+    bool collects;                    /* pairs nearby, from the whole list */
     bool has_one_range;               /* of all pairs */
     double reach;                     /* of nearby pairs, in units */
     struct cs_distance_filter sieve;  /* first: most are held back there */
@@ -211,7 +211,6 @@ static void begin_work(struct work *work) {
     const uint32_t any[4] = {0};
     work->has_one_range =
         candidates->body_pairs->range_min == candidates->body_pairs->range_max;
-    work->collects = candidates->collects_nearby;
     work->waiting = 0;
     for (work->sieve.n = CS_DISTANCE_FILTER; work->has_one_range && work->sieve.n;) {
         work->sieve.n--;
@@ -220,26 +219,40 @@ static void begin_work(struct work *work) {
     work->sieve.n = 0;
 }
 
-static void find_chunk(void *arg, uint32_t number) {
-    const struct cs_candidates *candidates = arg;
-    struct cs_candidate_chunk *chunk = candidates->chunks + number;
-    struct work work;
-    work.search = candidates;
-    work.chunk = chunk;
+/* Makes room for all pairs of a chunk in its results; sets `failed` if out of memory. */
+static void reserve(struct cs_candidate_chunk *chunk, bool collects) {
     uint32_t *close = cs_arena_realloc(chunk->in_range, &chunk->close_capacity, chunk->n,
                                        2 * sizeof *chunk->in_range);
     chunk->in_range = close ? close : chunk->in_range;
-    uint32_t *nearby =
-        cs_arena_realloc(chunk->nearby, &chunk->nearby_capacity,
-                         candidates->collects_nearby ? chunk->n : 0, 2 * sizeof *chunk->nearby);
+    uint32_t *nearby = cs_arena_realloc(chunk->nearby, &chunk->nearby_capacity,
+                                        collects ? chunk->n : 0, 2 * sizeof *chunk->nearby);
     chunk->nearby = nearby ? nearby : chunk->nearby;
-    chunk->n_in_range = chunk->n_nearby = 0;
-    chunk->failed = chunk->n && (!close || (candidates->collects_nearby && !nearby));
-    if (chunk->failed || !chunk->n)
+    chunk->failed = chunk->n && (!close || (collects && !nearby));
+}
+
+/* One search of all chunks: of the pairs nearby, or of the whole list. */
+struct job {
+    const struct cs_candidates *candidates;
+    bool searches_nearby, collects;
+};
+
+static void find_chunk(void *arg, uint32_t number) {
+    const struct job *job = arg;
+    struct cs_candidate_chunk *chunk = job->candidates->chunks + number;
+    struct work work;
+    work.search = job->candidates;
+    work.chunk = chunk;
+    const uint32_t *pairs = job->searches_nearby ? chunk->nearby : chunk->pairs;
+    const size_t n = job->searches_nearby ? chunk->n_nearby : chunk->n;
+    reserve(chunk, job->collects);
+    chunk->n_in_range = 0;
+    chunk->n_nearby = job->collects ? 0 : chunk->n_nearby;
+    if (chunk->failed || !n)
         return;
+    work.collects = job->collects;
     begin_work(&work);
-    for (size_t k = 0; k < chunk->n; k++)
-        put(&work, chunk->pairs + 2 * k);
+    for (size_t k = 0; k < n; k++)
+        put(&work, pairs + 2 * k);
     filter_chunk(&work);
     range_measure(&work);
 }
@@ -248,19 +261,30 @@ bool cs_candidates_find_in_range(struct cs_candidates *candidates, const double 
     const size_t bytes = 3 * sizeof *x * candidates->system->surfaces->n_points;
     if (candidates->has_close_pairs && !memcmp(candidates->x_at_close, x, bytes))
         return true;
-    candidates->has_close_pairs = false;
-    if (!cs_candidates_update(candidates, x))
+    struct job job = {.candidates = candidates};
+    if (!cs_candidates_update(candidates, x)) {
+        candidates->has_close_pairs = false;
         return false;
+    }
+    // measuring motions costs about a quarter of a candidate per point
+    const bool has_many = candidates->n_listed > candidates->system->surfaces->n_points;
+    job.searches_nearby = has_many && cs_candidates_is_nearby(candidates, x);
+    job.collects =
+        has_many && !job.searches_nearby && candidates->has_close_pairs &&
+        cs_candidates_max_motion(candidates, candidates->x_at_close, x) <= CS_CANDIDATES_NEARBY;
     memcpy(candidates->x_at_close, x, bytes);
     if (candidates->n_listed)
         cs_candidates_scale_points(candidates, x);
-    cs_pool_run(candidates->n_chunks, find_chunk, candidates);
+    cs_pool_run(candidates->n_chunks, find_chunk, &job);
     bool failed = false;
     for (uint32_t l = 0; l < candidates->n_chunks; l++)
         failed = failed || candidates->chunks[l].failed;
     candidates->has_close_pairs = !failed;
     candidates->close_count++;
-    candidates->close_build = candidates->n_builds;
-    candidates->has_nearby = candidates->collects_nearby;
+    candidates->has_nearby = (job.searches_nearby || job.collects) && !failed;
+    if (job.collects) {
+        candidates->nearby_build = candidates->n_builds;
+        memcpy(candidates->x_at_nearby, x, bytes);
+    }
     return !failed;
 }

@@ -328,30 +328,20 @@ static bool are_seen(struct cs_pairs *pairs, uint32_t chunks, double h, bool nea
     return job.unseen == NONE;
 }
 
-/* Tells whether every pair that comes into range in the step is among those nearby, which the
- * last force found at its state. A pair in range anywhere on the way is further apart there by
- * its relative motion from that state, which is largest at an end of the way, at most. */
-static bool are_nearby_enough(struct cs_candidates *search, const double *from,
-                              const double *to) {
-    const double limit = CS_CANDIDATES_NEARBY * (1 - 1e-6);
-    search->collects_nearby = cs_candidates_max_motion(search, from, to) <= limit;
-    return search->collects_nearby && search->has_close_pairs && search->has_nearby &&
-           search->close_build == search->n_builds &&
-           cs_candidates_max_motion(search, search->x_at_close, from) <= limit &&
-           cs_candidates_max_motion(search, search->x_at_close, to) <= limit;
-}
-
 bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const double *x0,
                                    double t1, const double *x1) {
     struct cs_candidates *search = &pairs->candidates;
     const double *from = cs_surface_points_positions(pairs->system, CS_POINTS_BEGIN, t0, x0);
     const double *to = cs_surface_points_positions(pairs->system, CS_POINTS_END, t1, x1);
     cs_point_motion_set(pairs->system, from, to, pairs->point_motion);
-    // A pair that rejects the step again makes a list that covers the step unnecessary.
-    const bool nearby = are_nearby_enough(search, from, to);
+    // Pairs in range anywhere on the way are nearby, because the motion from where these were
+    // collected is largest at one of its ends. A pair that rejects the step again makes a list
+    // that covers the step unnecessary.
+    const bool nearby =
+        cs_candidates_is_nearby(search, from) && cs_candidates_is_nearby(search, to);
     if (search->is_built && !are_seen(pairs, 1, t1 - t0, nearby))
         return false;
     return cs_candidates_cover_step(search, from, to) &&
            are_seen(pairs, search->n_chunks, t1 - t0,
-                    nearby && search->close_build == search->n_builds);
+                    nearby && search->nearby_build == search->n_builds);
 }
