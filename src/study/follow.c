@@ -11,6 +11,10 @@ bool cs_follow_next(struct cs_follow *follow, struct cs_error *error) {
     const uint32_t from = run->frame, every = follow->every;
     const uint64_t stop = every ? ((uint64_t)(from / every) + 1) * every : UINT64_MAX;
     const double cpu = cs_clock_cpu(), wall = cs_clock_wall();
+    if (follow->at_start) {
+        follow->at_start = false;
+        return true;
+    }
     while (run->frame < stop && run->frame < follow->last && run->outcome == CS_RUNNING &&
            !error->status)
         cs_run_frame(run, error);

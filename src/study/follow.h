@@ -15,6 +15,7 @@ struct cs_follow {
     struct cs_run *run; /* borrowed */
     double last;        /* the frame to stop at */
     uint32_t every;     /* stops at multiples of it on the way; 0: at none */
+    bool at_start;      /* stops first where the run is */
     double cpu, wall;   /* s, out: of all steps, without what is done between them */
 };
 

@@ -126,7 +126,9 @@ static enum cs_status compare_frames(struct work *work, struct cs_error *error) 
     const struct cs_json *frame = cs_json_first(frames);
     uint32_t equal = 0;
     for (; frame && !has_differed(work) && !error->status; frame = cs_json_next(frame)) {
-        if (!step(work, total, error)) {
+        const struct cs_json *number = cs_json_find(frame, "number");
+        const bool is_start = number && cs_json_number(number) == 0;
+        if (!is_start && !step(work, total, error)) {
             describe_early_end(work, error);
             break;
         }
@@ -252,7 +254,7 @@ enum cs_status cs_reproduction_of_picture(struct cs_reproduction *again,
         return error->status;
     for (int k = 0; k < TEXTS && !error->status; k++)
         if (!texts[k] ||
-            (k == FRAME && (!cs_parse_real(texts[k], &frame) || !(frame >= 1) || frame > 1e9)))
+            (k == FRAME && (!cs_parse_real(texts[k], &frame) || !(frame >= 0) || frame > 1e9)))
             cs_fail(error, CS_ERR_FILE,
                     "%s: expected a picture of clothsim run, with a text %s", settings->file,
                     keys[k]);

@@ -39,7 +39,7 @@ static bool read_picture(const struct cs_json *frame, struct cs_film_picture *pi
     *picture = (struct cs_film_picture){.frame = number_of(frame, "number")};
     const double given = number_of(frame, "picture");
     const double number = given > 0 ? given : picture->frame;
-    if (!(number >= 1 && number <= MOST_PICTURES))
+    if (!(number >= 0 && number <= MOST_PICTURES))
         return false;
     picture->number = (uint32_t)number;
     for (uint32_t k = 0; range && k < 2 && cs_json_count(range) == 2; k++) {

@@ -26,13 +26,15 @@ struct options {
 };
 static const struct options defaults = {
     .job = {.session = {.render = true, .threads = CS_THREADS_AUTO},
+            .frames = CS_FRAMES_DEFAULT,
             .frame_interval = 1,
             .folder = "out",
             .level = 1}};
 
 static const struct cs_arg rows[] = {
-    {"frames", 'n', "N", "simulate frames 1 to N (default: one second of frames)",
-     CS_ARG_INTO(struct options, job.frames), .min = 1, .max = MOST_FRAMES},
+    {"frames", 'n', "N",
+     "simulate frames 1 to N; 0: the start alone (default: one second of frames)",
+     CS_ARG_INTO(struct options, job.frames), .min = 0, .max = MOST_FRAMES},
     {"integrator", 'i', "NAME[:KEY=VALUE,...]",
      "method and its options, instead of the scene's (see: clothsim integrators)",
      CS_ARG_INTO(struct options, job.session.integrator)},

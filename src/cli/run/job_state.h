@@ -25,10 +25,12 @@ struct cs_run_trace {
     struct cs_trace trace; /* of the run's settings */
 };
 
+#define CS_FRAMES_DEFAULT UINT32_MAX
+
 /* Request for a run; texts are borrowed. */
 struct cs_job_settings {
     struct cs_session_settings session;
-    uint32_t frames;           /* 0: one second of them */
+    uint32_t frames;           /* 0: the start alone; CS_FRAMES_DEFAULT: one second of them */
     uint32_t frame_interval;   /* draw every n-th frame */
     const char *folder;        /* of pictures, checkpoints, exports; NULL: none */
     const char *states, *json; /* json "-": stdout; NULL: none */
@@ -47,7 +49,9 @@ struct cs_job_settings {
 static inline uint32_t cs_job_frames(const struct cs_job_settings *settings,
                                      const struct cs_scene *scene) {
     const double second = floor(scene->time.fps + 0.5);
-    return settings->frames ? settings->frames : second < 1 ? 1 : (uint32_t)second;
+    return settings->frames != CS_FRAMES_DEFAULT ? settings->frames
+           : second < 1                          ? 1
+                                                 : (uint32_t)second;
 }
 
 /* True if the report is written as JSON: beside pictures, or on request. */
@@ -94,18 +98,18 @@ struct cs_job_frame {
 
 /* Facts of all frames so far; zeroed: none. */
 struct cs_frame_log {
-    struct cs_job_frame *frames; /* owned */
+    struct cs_job_frame *frames; /* owned; of frame 1 on, or of the start alone */
     size_t capacity;
 };
 
 /* The picture that is drawn while the run goes on. */
 struct cs_job_picture {
-    uint32_t number; /* of the picture, from 1; 0: none */
+    uint32_t number; /* of the picture */
     uint32_t frame;
     double time; /* s */
     char hash[CS_HASH_DIGITS];
     double range[2];
-    const struct cs_image *image; /* of the writer */
+    const struct cs_image *image; /* of the writer; NULL: none is drawn */
 };
 
 enum { CS_RUN_OUTPUTS_MAX = 16 };
@@ -116,7 +120,7 @@ struct cs_job {
     struct cs_session session;
     struct cs_picture picture;
     struct cs_frame_writer *writer;
-    uint32_t frames;                    /* asked for */
+    uint32_t frames;                    /* asked for; 0: the start is the only result */
     struct cs_frame_log frame_log;      /* a row a frame; only where JSON is written */
     struct cs_energy_monitor monitor;   /* is it still sound */
     struct cs_energy_monitor_row sound; /* of the last frame */
@@ -148,6 +152,7 @@ struct cs_job {
 enum cs_run_stage {
     CS_RUN_OPEN,   /* before any file is touched: for what may be missing on the machine */
     CS_RUN_BEGIN,  /* before the first frame, or, with settings->resume, before the next one */
+    CS_RUN_START,  /* in place of frames, where the start is the only result */
     CS_RUN_FRAME,  /* after a finished frame */
     CS_RUN_SETTLE, /* before a checkpoint and at the end: waits for its files of all frames */
     CS_RUN_END,    /* after the last frame, also of a run that failed: *error may be set */
@@ -166,6 +171,11 @@ struct cs_run_output {
     /* Stores its state between frames in a checkpoint, or loads it. */
     void (*record)(struct cs_job *job, struct cs_serialiser *record);
 };
+
+/* Rows of the log that are filled. */
+static inline uint32_t cs_job_rows(const struct cs_job *job) {
+    return job->frames ? job->session.run.frame : 1;
+}
 
 extern const struct cs_run_output cs_run_output_export, cs_run_output_hash, cs_run_output_json,
     cs_run_output_ledger, cs_run_output_pictures, cs_run_output_states, cs_run_output_trace,

@@ -32,7 +32,7 @@ static const double *positions_of(const struct motion *motion, uint32_t k) {
 static enum cs_status record(struct cs_session *session, uint32_t frames, uint32_t every,
                              struct motion *motion, struct cs_error *error) {
     struct cs_run *run = &session->run;
-    struct cs_follow follow = {.run = run, .last = frames, .every = every};
+    struct cs_follow follow = {.run = run, .last = frames, .every = every, .at_start = !frames};
     while (cs_follow_next(&follow, error)) {
         motion->keys[motion->n].at = run->t;
         cs_camera_fit_extremes(&motion->fit, session->system.view.n, run->x,

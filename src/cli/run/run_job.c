@@ -133,7 +133,9 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
         return error->status;
     if (!job->settings->resume)
         look(job);
-    return cs_run_outputs_at(job, CS_RUN_BEGIN, error);
+    return cs_run_outputs_at(job, CS_RUN_BEGIN, error) || job->frames
+               ? error->status
+               : cs_run_outputs_at(job, CS_RUN_START, error);
 }
 
 /* Prints what the scene's start says about the run; quiet: warnings only. */

@@ -152,12 +152,13 @@ static void add_seconds(const struct cs_job *job, struct cs_text *out) {
 static void add_frames(const struct cs_job *job, struct cs_text *out) {
     const bool coloured = cs_picture_is_coloured(&job->session.scene);
     cs_json_write(out, "  'frames': [");
-    for (uint32_t i = 0; i < job->session.run.frame; i++) {
+    for (uint32_t i = 0; i < cs_job_rows(job); i++) {
         const struct cs_job_frame *frame = job->frame_log.frames + i;
-        cs_json_write(out, ",\n    {'number': %u, 'hash': %s, 'drawn': %d", i + 1, frame->hash,
+        const uint32_t number = job->frames ? i + 1 : 0;
+        cs_json_write(out, ",\n    {'number': %u, 'hash': %s, 'drawn': %d", number, frame->hash,
                       frame->drawn);
         if (frame->drawn)
-            cs_json_write(out, ", 'picture': %u", (i + 1) / job->settings->frame_interval);
+            cs_json_write(out, ", 'picture': %u", number / job->settings->frame_interval);
         if (job->crossings.is_counted)
             cs_json_write(out, ", 'crossings': %llu", (unsigned long long)frame->crossings);
         if (coloured && frame->drawn)
@@ -200,13 +201,12 @@ static bool has_room(struct cs_frame_log *kept, size_t frames) {
 
 /* The row of a frame; its picture is noted there once it is begun. */
 static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
-    const uint32_t number = job->session.run.frame;
+    const uint32_t n = cs_job_rows(job);
     if (!cs_job_wants_json(job->settings))
         return CS_OK;
-    if (!has_room(&job->frame_log, number))
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the hashes of %u frames",
-                       number);
-    struct cs_job_frame *kept = job->frame_log.frames + number - 1;
+    if (!has_room(&job->frame_log, n))
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the hashes of %u frames", n);
+    struct cs_job_frame *kept = job->frame_log.frames + n - 1;
     *kept = (struct cs_job_frame){.crossings = job->crossings.last_count};
     memcpy(kept->hash, job->hash, sizeof kept->hash);
     return CS_OK;
@@ -223,7 +223,8 @@ static void record_rows(struct cs_job *job, struct cs_serialiser *record) {
         cs_serialiser_bytes(record, kept->frames, (size_t)n * sizeof *kept->frames);
 }
 
-const struct cs_run_output cs_run_output_json = {.option = "--json",
-                                                 .path = offsetof(struct cs_job_settings, json),
-                                                 .at = {[CS_RUN_FRAME] = frame},
-                                                 .record = record_rows};
+const struct cs_run_output cs_run_output_json = {
+    .option = "--json",
+    .path = offsetof(struct cs_job_settings, json),
+    .at = {[CS_RUN_START] = frame, [CS_RUN_FRAME] = frame},
+    .record = record_rows};

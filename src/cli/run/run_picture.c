@@ -96,13 +96,13 @@ static enum cs_status give(struct cs_job *job, struct cs_error *error) {
 /* Waits for the picture in progress and submits it. */
 static enum cs_status end_picture(struct cs_job *job, struct cs_error *error) {
     const double start = cs_clock_wall();
-    if (!job->has_begun.number)
+    if (!job->has_begun.image)
         return CS_OK;
     const enum cs_status status = cs_picture_end(&job->picture, error);
     job->wait_seconds += cs_clock_wall() - start;
     if (!status && !give(job, error))
         job->n_drawn++;
-    job->has_begun.number = 0;
+    job->has_begun.image = NULL;
     return error->status;
 }
 
@@ -120,7 +120,7 @@ static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
                                 .frame = run->frame,
                                 .time = run->t,
                                 .image = image};
-    struct cs_job_frame *row = job->frame_log.frames + run->frame - 1;
+    struct cs_job_frame *row = job->frame_log.frames + cs_job_rows(job) - 1;
     memcpy(job->has_begun.hash, job->hash, sizeof job->hash);
     memcpy(job->has_begun.range, job->picture.range, sizeof job->has_begun.range);
     memcpy(row->range, job->picture.range, sizeof row->range);
@@ -145,5 +145,6 @@ const struct cs_run_output cs_run_output_pictures = {
     .is_ours = cs_output_is_result,
     .at = {[CS_RUN_OPEN] = open_renderer,
            [CS_RUN_BEGIN] = begin,
+           [CS_RUN_START] = frame,
            [CS_RUN_FRAME] = frame,
            [CS_RUN_SETTLE] = settle}};

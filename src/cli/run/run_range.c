@@ -31,7 +31,7 @@ static enum cs_status take(struct search *search, uint32_t frames, struct cs_err
 static enum cs_status sample_frame(struct search *search, uint32_t frames, uint32_t every,
                                    struct cs_error *error) {
     struct cs_run *run = &search->session.run;
-    struct cs_follow follow = {.run = run, .last = frames, .every = every};
+    struct cs_follow follow = {.run = run, .last = frames, .every = every, .at_start = !frames};
     while (cs_follow_next(&follow, error)) {
         cs_picture_values(&search->session.system, run, search->scalar, search->work);
         search->most[search->n++] =

@@ -199,4 +199,5 @@ static enum cs_status hash_frame(struct cs_job *job, struct cs_error *error) {
     return cs_print_out(stdout, &line, error);
 }
 
-const struct cs_run_output cs_run_output_hash = {.at = {[CS_RUN_FRAME] = hash_frame}};
+const struct cs_run_output cs_run_output_hash = {
+    .at = {[CS_RUN_START] = hash_frame, [CS_RUN_FRAME] = hash_frame}};
