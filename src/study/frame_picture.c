@@ -105,7 +105,7 @@ static void make_canvas(void *object) {
                                                 .fast_render = picture->fast_render,
                                                 .threads = cs_pool_threads(),
                                                 .parallel_for = cs_pool_run};
-    cs_posed_colliders_at(picture->system, 0, picture->colliders);
+    cs_posed_colliders_at_start(picture->system, picture->colliders);
     watch(picture->renderer->name, "while it was opened");
     picture->renderer->create(&settings, &picture->canvas, &picture->error);
     forget(&picture->error);

@@ -126,7 +126,7 @@ static enum cs_status compare_frames(struct work *work, struct cs_error *error) 
     const struct cs_json *frame = cs_json_first(frames);
     uint32_t equal = 0;
     for (; frame && !has_differed(work) && !error->status; frame = cs_json_next(frame)) {
-        const struct cs_json *number = cs_json_find(frame, "number");
+        const struct cs_json *number = cs_json_find_kind(frame, "number", CS_JSON_NUMBER);
         const bool is_start = number && cs_json_number(number) == 0;
         if (!is_start && !step(work, total, error)) {
             describe_early_end(work, error);

@@ -87,14 +87,27 @@ static void move(struct cs_posed_collider *out, const struct cs_collider_motion 
     }
 }
 
+/* Pose at t of a collider that has moved by motion; NULL: not at all. */
+static void pose_at(const struct cs_collider *collider, const struct cs_collider_motion *motion,
+                    double t, struct cs_posed_collider *out) {
+    pose(out, collider);
+    if (motion)
+        move(out, motion, t);
+    if (collider->mesh.paths)
+        out->path = cs_vertex_paths_weights(collider->mesh.paths, t);
+    memcpy(out->rotation_centre, out->centre, sizeof out->rotation_centre);
+}
+
 void cs_posed_collider_at(const struct cs_system *system, uint32_t k, double t,
                           struct cs_posed_collider *out) {
-    pose(out, cs_scene_colliders(system->scene) + k);
-    if (system->motions)
-        move(out, system->motions + k, t);
-    if (out->collider->mesh.paths)
-        out->path = cs_vertex_paths_weights(out->collider->mesh.paths, t);
-    memcpy(out->rotation_centre, out->centre, sizeof out->rotation_centre);
+    pose_at(cs_scene_colliders(system->scene) + k, system->motions ? system->motions + k : NULL,
+            t, out);
+}
+
+void cs_posed_colliders_at_start(const struct cs_system *system,
+                                 struct cs_posed_collider *out) {
+    for (uint32_t k = 0; k < system->scene->colliders.n; k++)
+        pose_at(cs_scene_colliders(system->scene) + k, NULL, 0, out + k);
 }
 
 void cs_posed_colliders_at(const struct cs_system *system, double t,

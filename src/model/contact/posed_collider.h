@@ -26,6 +26,9 @@ void cs_posed_colliders_at(const struct cs_system *system, double t,
 void cs_posed_collider_at(const struct cs_system *system, uint32_t k, double t,
                           struct cs_posed_collider *out);
 
+/* Poses at time 0, wherever events have moved the colliders since. */
+void cs_posed_colliders_at_start(const struct cs_system *system, struct cs_posed_collider *out);
+
 /* Shift in m and rotation (by rows) of a motion at t. */
 void cs_posed_collider_translate(const struct cs_collider_motion *motion, double t,
                                  double shift[3]);
