@@ -3,6 +3,8 @@
 
 #include "draw/matrix.h"
 
+enum { MOST_POINTS = 200 }; // particles whose view is tested
+
 void cs_camera_fit_begin(struct cs_camera_fit *fit, const struct cs_camera *camera,
                          const int64_t size[2]) {
     double look[16];
@@ -13,6 +15,7 @@ void cs_camera_fit_begin(struct cs_camera_fit *fit, const struct cs_camera *came
     fit->camera = *camera;
     fit->slope = cs_tangent(camera->fov * (3.14159265358979323846 / 360));
     fit->aspect = (double)size[0] / (double)size[1];
+    fit->has_corners = false;
 }
 
 // coordinate of point i along an axis of the picture
@@ -43,6 +46,16 @@ static double reach(const double way[3], size_t n, const double *x, size_t *foun
     return most;
 }
 
+/* maximum of way . x over the finite points and the corners of the fit */
+static double bound(const struct cs_camera_fit *fit, const double way[3], size_t n,
+                    const double *x) {
+    size_t which;
+    const double most = reach(way, n, x, &which);
+    return fit->has_corners
+               ? fmax(most, reach(way, CS_CAMERA_FIT_CORNERS, fit->corners, &which))
+               : most;
+}
+
 // a camera's coordinate along one axis (cx or cy), and its distance back (cz)
 struct stand {
     double middle, back;
@@ -54,11 +67,10 @@ static struct stand camera_position(const struct cs_camera_fit *fit, int axis, d
                                     size_t n, const double *x) {
     const bool leans = fit->camera.projection == CS_PROJECTION_PERSPECTIVE;
     double way[3];
-    size_t which;
     bounding_direction(fit, axis, 1, leans ? slope : 0, way);
-    const double high = reach(way, n, x, &which);
+    const double high = bound(fit, way, n, x);
     bounding_direction(fit, axis, -1, leans ? slope : 0, way);
-    const double low = reach(way, n, x, &which);
+    const double low = bound(fit, way, n, x);
     return (struct stand){(high - low) / 2, (high + low) / 2 / slope};
 }
 
@@ -67,10 +79,9 @@ void cs_camera_fit_solve(const struct cs_camera_fit *fit, size_t n, const double
     const struct stand wide = camera_position(fit, 0, 0.96 * fit->slope * fit->aspect, n, x);
     const struct stand tall = camera_position(fit, 1, share * fit->slope, n, x);
     double front[3], behind[3];
-    size_t which;
     bounding_direction(fit, 0, 0, 1, front);
     bounding_direction(fit, 0, 0, -1, behind);
-    const double nearest = reach(front, n, x, &which), far = -reach(behind, n, x, &which);
+    const double nearest = bound(fit, front, n, x), far = -bound(fit, behind, n, x);
     const double depth = (nearest + far) / 2;
     *camera = fit->camera;
     double eye = fmax(tall.back, wide.back);
@@ -138,17 +149,96 @@ static double depth_below(const struct cs_scene *scene, const double low[3],
     return depth;
 }
 
-struct cs_camera cs_camera_fit_start(const struct cs_scene *scene, const double low[3],
-                                     const double high[3]) {
-    struct cs_camera_fit fit;
-    struct cs_camera camera;
-    double corners[3 * 8];
-    for (int k = 0; k < 8; k++)
+static void set_corners(struct cs_camera_fit *fit, double depth, const double low[3],
+                        const double high[3]) {
+    for (int k = 0; k < CS_CAMERA_FIT_CORNERS; k++)
         for (int i = 0; i < 3; i++)
-            corners[8 * i + k] = k >> i & 1 ? high[i] : low[i];
-    for (int k = 0; k < 8; k++)
-        corners[8 + k] -= k >> 1 & 1 ? 0 : depth_below(scene, low, high);
-    cs_camera_fit_begin(&fit, &scene->camera, scene->render.size);
-    cs_camera_fit_solve(&fit, 8, corners, 0.9, &camera);
-    return camera;
+            fit->corners[CS_CAMERA_FIT_CORNERS * i + k] =
+                k >> i & 1 ? high[i] : low[i] - (i == 1 ? depth : 0);
+    fit->has_corners = true;
+}
+
+/* True if the collider, moved by `shift`, hides a point from the eye. */
+static bool hides(const struct cs_posed_collider *collider, const double shift[3],
+                  const double eye[3], const double point[3]) {
+    double from[3], way[3];
+    cs_subtract(eye, shift, from);
+    cs_subtract(point, eye, way);
+    return cs_posed_collider_hits_segment(collider, from, way, 1 - 1e-3);
+}
+
+/* Number of thinned particles of the start that a collider hides with this shift. */
+static uint32_t count_behind(const struct cs_system *system,
+                             const struct cs_posed_collider *collider, const double shift[3],
+                             const double eye[3]) {
+    const double *x = system->view.start;
+    const size_t n = system->view.n;
+    uint32_t hidden = 0;
+    for (size_t i = 0; i < n; i += n / MOST_POINTS + 1) {
+        const double point[3] = {x[i], x[n + i], x[2 * n + i]};
+        hidden += hides(collider, shift, eye, point);
+    }
+    return hidden;
+}
+
+/* The most thinned particles that collider k hides at the start or at a point of its paths. */
+static uint32_t most_behind(const struct cs_system *system,
+                            const struct cs_posed_collider *collider, uint32_t k,
+                            const double eye[3]) {
+    const struct cs_scene *scene = system->scene;
+    double shift[3] = {0, 0, 0}, begin[3];
+    uint32_t most = count_behind(system, collider, shift, eye);
+    for (uint32_t e = 0; e < scene->events.n; e++) {
+        const struct cs_move *move = &cs_scene_events(scene)[e].move;
+        const struct cs_path_point *points = move->path.items;
+        if (!move->present || move->collider != k)
+            continue;
+        memcpy(begin, shift, sizeof begin);
+        for (uint32_t p = 0; p < move->path.n; p++) {
+            for (int i = 0; i < 3; i++)
+                shift[i] =
+                    points[p].point[i] + (move->relative ? begin[i] : -collider->centre[i]);
+            const uint32_t hidden = count_behind(system, collider, shift, eye);
+            most = hidden > most ? hidden : most;
+        }
+    }
+    return most;
+}
+
+/* Thinned particles of the start that visible colliders hide from the fit's camera. */
+static uint32_t count_hidden(const struct cs_camera_fit *fit, const struct cs_system *system,
+                             const struct cs_posed_collider *colliders) {
+    struct cs_camera camera;
+    uint32_t hidden = 0;
+    cs_camera_fit_picture(fit, 0, NULL, &camera);
+    for (uint32_t k = 0; k < system->scene->colliders.n; k++)
+        if (colliders[k].collider->visible)
+            hidden += most_behind(system, colliders + k, k, camera.eye);
+    return hidden;
+}
+
+void cs_camera_fit_start(struct cs_camera_fit *fit, const struct cs_system *system,
+                         const struct cs_posed_collider *colliders, const double low[3],
+                         const double high[3]) {
+    /* the first is the default of the key */
+    static const double eyes[][3] = {{1.2, 0.7, 2.2}, {-1.2, 0.7, 2.2}, {0, 0.7, 2.5},
+                                     {1.2, 2, 1.7},   {-1.2, 2, 1.7},   {0, 2.5, 1}};
+    const struct cs_scene *scene = system->scene;
+    struct cs_camera camera = scene->camera;
+    const bool is_free = !memcmp(camera.eye, eyes[0], sizeof camera.eye) &&
+                         !(cs_dot(camera.target, camera.target) > 0);
+    uint32_t least = UINT32_MAX;
+    for (size_t k = 0; k < (is_free ? sizeof eyes / sizeof *eyes : 1) && least > 0; k++) {
+        struct cs_camera_fit tried;
+        if (k > 0)
+            memcpy(camera.eye, eyes[k], sizeof camera.eye);
+        cs_camera_fit_begin(&tried, &camera, scene->render.size);
+        set_corners(&tried, depth_below(scene, low, high), low, high);
+        const uint32_t hidden = count_hidden(&tried, system, colliders);
+        // a direction further down the list must show clearly more
+        if (k == 0 || hidden + MOST_POINTS / 50 < least) {
+            least = hidden;
+            *fit = tried;
+        }
+    }
 }

@@ -10,13 +10,18 @@
 #ifndef CS_DRAW_CAMERA_FIT_H
 #define CS_DRAW_CAMERA_FIT_H
 
-#include "scene/scene.h"
+#include "model/contact/posed_collider.h"
+
+enum { CS_CAMERA_FIT_CORNERS = 8 };
 
 /* View direction and field of view, prepared; zeroed: not begun. */
 struct cs_camera_fit {
     struct cs_camera camera; /* the one given: direction, field of view, up */
     double axes[3][3];       /* right, up, back: unit vectors */
     double slope, aspect;    /* tangent of half the field of view; width over height */
+    /* (3, CS_CAMERA_FIT_CORNERS) points in m that each picture shows beside those given */
+    double corners[3 * CS_CAMERA_FIT_CORNERS];
+    bool has_corners;
 };
 
 /* Prepares fits of cameras with the direction of `camera`, for a picture of size[0] x
@@ -41,9 +46,20 @@ enum { CS_CAMERA_FIT_STEPS = 8, CS_CAMERA_FIT_EXTREMES = 4 * (CS_CAMERA_FIT_STEP
 void cs_camera_fit_extremes(const struct cs_camera_fit *fit, size_t n, const double *x,
                             double *out);
 
-/* The camera of CS_FRAME_START: it shows the box from low to high of all that there is at the
- * start, and what is below it as far as a near floor, else by half the box's width. */
-struct cs_camera cs_camera_fit_start(const struct cs_scene *scene, const double low[3],
-                                     const double high[3]);
+/* The fit of CS_FRAME_START. Its corners are those of the box from low to high of all that
+ * there is at the start, extended downwards to a near floor, else by half the box's width.
+ * Where the scene leaves eye and target at their defaults, five more directions are tried in
+ * turn: one is taken if fewer of the start's particles, by 2 % at least, are hidden by
+ * colliders (scene->colliders.n, at the start), there or moved to any point of their paths. */
+void cs_camera_fit_start(struct cs_camera_fit *fit, const struct cs_system *system,
+                         const struct cs_posed_collider *colliders, const double low[3],
+                         const double high[3]);
+
+/* The camera of a picture that shows the corners and the points x (3,n), each side with a
+ * margin of a twentieth at least: it stands still as long as the points are in the picture. */
+static inline void cs_camera_fit_picture(const struct cs_camera_fit *fit, size_t n,
+                                         const double *x, struct cs_camera *camera) {
+    cs_camera_fit_solve(fit, n, x, 0.9, camera);
+}
 
 #endif

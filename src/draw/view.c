@@ -1,7 +1,6 @@
 /* Sets up the camera, light, background and colour map that all shaders share. */
 #include "draw/view.h"
 
-#include "draw/camera_fit.h"
 #include "draw/matrix.h"
 #include "draw/mesh.h"
 #include "draw/srgb.h"
@@ -80,8 +79,10 @@ static void set_camera(struct cs_view_state *view, const struct cs_render *rende
 void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_bounding_sphere *extent, double t, size_t n,
                   const double *x) {
-    struct cs_camera_fit fit = {.slope = 0};
+    struct cs_camera_fit fit;
     view->camera = camera_at(&scene->camera, t);
+    if (scene->camera.frame == CS_FRAME_START)
+        cs_camera_fit_picture(&view->fit, n, x, &view->camera);
     if (scene->camera.frame == CS_FRAME_AUTO) {
         cs_camera_fit_begin(&fit, &scene->camera, scene->render.size);
         cs_camera_fit_solve(&fit, n, x, 0.62, &view->camera);
@@ -128,12 +129,16 @@ static void set_background(struct cs_view_block *block,
     copy3(below, background->kind != CS_BACKGROUND_NONE, block->bottom_colour);
 }
 
-void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
+void cs_view_init(struct cs_view_state *view, const struct cs_system *system,
+                  const struct cs_posed_collider *colliders,
                   const struct cs_bounding_sphere *extent) {
+    const struct cs_scene *scene = system->scene;
     memset(view, 0, sizeof *view);
-    view->camera = scene->camera.frame == CS_FRAME_START
-                       ? cs_camera_fit_start(scene, extent->low, extent->high)
-                       : camera_at(&scene->camera, 0);
+    view->camera = camera_at(&scene->camera, 0);
+    if (scene->camera.frame == CS_FRAME_START) {
+        cs_camera_fit_start(&view->fit, system, colliders, extent->low, extent->high);
+        cs_camera_fit_picture(&view->fit, 0, NULL, &view->camera);
+    }
     set_camera(view, &scene->render, extent);
     set_light(&view->block, &scene->light);
     set_background(&view->block, &scene->render.background);

@@ -2,6 +2,7 @@
 #ifndef CS_DRAW_VIEW_H
 #define CS_DRAW_VIEW_H
 
+#include "draw/camera_fit.h"
 #include "model/contact/posed_collider.h"
 #include "model/system/particle_system.h"
 #include "scene/scene.h"
@@ -29,10 +30,11 @@ struct cs_view_block {
 /* View of the current frame. */
 struct cs_view_state {
     struct cs_view_block block;
-    unsigned buffer;         /* of OpenGL, made by the first upload */
-    double pixels_per_m;     /* at the camera's target */
-    struct cs_camera camera; /* of this frame */
-    double depth[2];         /* m along the view of the near and the far plane */
+    unsigned buffer;          /* of OpenGL, made by the first upload */
+    double pixels_per_m;      /* at the camera's target */
+    struct cs_camera camera;  /* of this frame */
+    double depth[2];          /* m along the view of the near and the far plane */
+    struct cs_camera_fit fit; /* of CS_FRAME_START */
 };
 
 /* A sphere around everything that is drawn. */
@@ -41,14 +43,16 @@ struct cs_bounding_sphere {
     double low[3], high[3]; /* m: the box that it encloses */
 };
 
-/* Fills the state from the scene at time 0; `extent` lies between near and far plane. */
-void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
+/* Fills the state from the scene at time 0, with its colliders (scene->colliders.n) there;
+ * `extent` lies between near and far plane. */
+void cs_view_init(struct cs_view_state *view, const struct cs_system *system,
+                  const struct cs_posed_collider *colliders,
                   const struct cs_bounding_sphere *extent);
 
 /* Returns true if the camera may change from frame to frame: it follows a path, or fits itself
  * to the bodies. */
 static inline bool cs_view_varies(const struct cs_scene *scene) {
-    return scene->camera.path.n > 0 || scene->camera.frame == CS_FRAME_AUTO;
+    return scene->camera.path.n > 0 || scene->camera.frame != CS_FRAME_GIVEN;
 }
 
 /* Moves a camera that varies to time t in s: along its path, or fitted to the positions x (3,n)

@@ -82,12 +82,15 @@ TEST(the_start_is_in_the_picture) {
         .render = {.size = {640, 480}},
         .forces = {.gravity = {0, -9.81, 0}},
         .colliders = {.items = &floor, .n = 0}};
+    const struct cs_system system = {.scene = &scene};
+    const struct cs_posed_collider posed = {.collider = &floor};
     for (uint32_t n = 0; n < 2; n++) {
         struct cs_camera_fit fit;
+        struct cs_camera camera;
         double rows[2];
         scene.colliders.n = n;
-        const struct cs_camera camera = cs_camera_fit_start(&scene, low, high);
-        cs_camera_fit_begin(&fit, &camera, scene.render.size);
+        cs_camera_fit_start(&fit, &system, &posed, low, high);
+        cs_camera_fit_picture(&fit, 0, NULL, &camera);
         for (int k = 0; k < 8; k++) {
             const double corner[3] = {k & 1 ? 4 : 6, k & 2 ? 2 : n ? -2 : -1, k & 4 ? -1 : 1};
             cs_camera_fit_rows(&fit, &camera, 1, corner, rows);

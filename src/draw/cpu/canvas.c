@@ -82,7 +82,7 @@ static void init_view(struct cs_canvas *canvas) {
     const struct cs_bounding_sphere extent =
         cs_scene_extent_solid(system, system->view.start, canvas->settings.colliders);
     struct cs_band_pass *drawing = &canvas->drawing;
-    cs_view_init(&canvas->view, scene, &extent);
+    cs_view_init(&canvas->view, system, canvas->settings.colliders, &extent);
     aim_camera(canvas);
     cs_srgb_make(&canvas->tone);
     drawing->shading.width = width;

@@ -268,7 +268,7 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
     const struct cs_bounding_sphere extent =
         cs_scene_extent_solid(canvas->system, canvas->system->view.start, settings->colliders);
     struct cs_ground ground = {.present = false};
-    cs_view_init(&canvas->view, canvas->scene, &extent);
+    cs_view_init(&canvas->view, canvas->system, settings->colliders, &extent);
     cs_ground_make(&ground, canvas->system, settings->colliders, &extent);
     if (cs_framebuffer_init(&canvas->target, render, &canvas->arena, error) != CS_OK ||
         cs_sky_and_ground_init(&canvas->backdrop, &ground, error) != CS_OK ||
