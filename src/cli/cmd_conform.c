@@ -2,7 +2,9 @@
  *
  *   operands (NAME:options or module files) -> registry -> per method: cs_conform_check
  *   -> a line per check as it ends -> counts -> exit status
- * Expected failures pass; failed claims and stale declarations make the command fail. */
+ * Expected failures pass; failed claims and stale declarations make the command fail. Foreign
+ * modules run in a process of their own. Where a check ends it, the check fails, and the next
+ * process goes on behind it. */
 #include "base/json_writer.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
@@ -11,14 +13,21 @@
 #include "study/conform/conform_checks.h"
 #include "study/process_pool.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { NOTE_COLUMN = 55, METHODS_MAX = 64, PATIENCE_SECONDS = 60 };
+enum {
+    NOTE_COLUMN = 55,
+    METHODS_MAX = 64,
+    PATIENCE_SECONDS = 60,
+    SECOND_PATIENCE_SECONDS = 10
+};
 
 struct options {
     const char *json, *only;
+    double isolate; /* s; 0: PATIENCE_SECONDS, and only for foreign modules */
     bool list, quiet;
     const char *const *plugins; /* (n_plugins) */
     uint32_t n_plugins;
@@ -26,25 +35,40 @@ struct options {
 static const struct options defaults = {.json = NULL};
 
 static const struct cs_arg rows[] = {
+    {"isolate", 0, "SECONDS",
+     "run in a separate process, and end it if one call of the method takes longer (default: "
+     "60, for modules that were not installed with the program)",
+     CS_ARG_INTO(struct options, isolate)},
     {"json", 0, "FILE", "write the card as JSON too; -: instead of the text",
      CS_ARG_INTO(struct options, json)},
     {"list", 0, NULL, "list the checks", CS_ARG_INTO(struct options, list)},
-    {"only", 0, "CHECK", "run only this check", CS_ARG_INTO(struct options, only)},
+    {"only", 0, "CHECK[,...]", "run only these checks", CS_ARG_INTO(struct options, only)},
     {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
      CS_ARG_LIST(struct options, plugins, n_plugins)},
     {"quiet", 'q', NULL, "print only claims that failed, and the count",
      CS_ARG_INTO(struct options, quiet)},
 };
 
-/* Destination of the card; each row is printed when its check is done. */
+/* The rows so far. With a process for the modules both have it in memory that they share; where
+ * that process dies, the next one skips what is done. */
+struct progress {
+    uint32_t n_done;      /* rows that were reported, over all cards */
+    uint32_t heads, ends; /* cards that were begun and finished */
+    bool in_list;         /* the JSON of this card has a row */
+    const char *check;    /* under way: a constant text; NULL: none */
+    uint32_t counts[CS_VERDICTS];
+};
+
+/* Destination of the cards; each row is printed when its check is done. */
 struct output {
+    const struct cs_args *args;
     const struct options *options;
     const struct cs_conform *card; /* that is being made */
     const char *settings;          /* options as given after the method's name */
-    bool text, first;              /* first: no row is in the JSON yet */
-    struct cs_text json;
-    struct cs_conform_cache cache; /* shared by all cards */
-    uint32_t counts[CS_VERDICTS];  /* over all methods */
+    struct progress *progress;
+    uint32_t n_rows, n_cards;      /* met by this process */
+    FILE *json;                    /* a file without a name; NULL: none was asked for */
+    struct cs_conform_cache cache; /* shared by all cards of a process */
     struct cs_error error;         /* of printing rows */
 };
 
@@ -78,14 +102,15 @@ static void add_number(struct cs_text *json, const char *key, double value) {
         cs_text_add(json, "null");
 }
 
-static void add_json(struct output *output, const struct cs_conform_row *row) {
-    struct cs_text *json = &output->json;
-    cs_json_write(json, ",\n    {'check': %s, 'verdict': %s", row->check,
-                  cs_verdict_text(row->verdict));
-    add_number(json, "figure", row->figure);
-    add_number(json, "bound", row->bound);
-    cs_json_write(json, ", 'note': %s}", row->note);
-    output->first = false;
+/* Appends to the JSON, whichever process writes, and frees the text. */
+static void append(struct output *output, struct cs_text *json) {
+    if (output->json && !json->failed) {
+        fseek(output->json, 0, SEEK_END);
+        fputs(cs_text_get(json), output->json);
+    }
+    if (output->json && (json->failed || fflush(output->json)))
+        cs_fail(&output->error, CS_ERR_FILE, "cannot store the card as JSON");
+    cs_text_finish(json);
 }
 
 static const char *fidelity_text(uint32_t fidelity) {
@@ -94,22 +119,57 @@ static const char *fidelity_text(uint32_t fidelity) {
     return fidelity < sizeof texts / sizeof *texts ? texts[fidelity] : "unknown";
 }
 
+/* True where rows are printed: JSON on standard output takes the place of the text. */
+static bool has_text(const struct output *output) {
+    return !cs_print_is_stdout(output->options->json);
+}
+
 /* Name, options, order and fidelity of a method, before its first row. */
-static void print_head(const struct output *output) {
+static void print_head(struct output *output) {
     const struct cs_integrator *method = output->card->method;
-    printf("%s%s%s: order %u (%u with damping), fidelity: %s\n", method->name,
-           *output->settings ? ":" : "", output->settings, method->order, method->order_damped,
-           fidelity_text(method->fidelity));
+    struct cs_text json = {0};
+    cs_text_add(&json, output->n_cards > 1 ? ",\n" : "\n");
+    cs_json_write(&json, "  {'integrator': %s, 'settings': %s, 'checks': [", method->name,
+                  output->settings);
+    append(output, &json);
+    output->progress->heads++;
+    output->progress->in_list = false;
+    if (has_text(output))
+        printf("%s%s%s: order %u (%u with damping), fidelity: %s\n", method->name,
+               *output->settings ? ":" : "", output->settings, method->order,
+               method->order_damped, fidelity_text(method->fidelity));
+    fflush(stdout);
+}
+
+/* Called before each check: false for one that an earlier process has reported. */
+static bool begin(void *ctx, const char *check) {
+    struct output *output = ctx;
+    if (output->n_rows++ < output->progress->n_done)
+        return false;
+    if (output->progress->heads < output->n_cards)
+        print_head(output);
+    output->progress->check = check;
+    return true;
 }
 
 /* Called after each check. */
 static void report(void *ctx, const struct cs_conform_row *row) {
     struct output *output = ctx;
-    if (output->text && output->first)
-        print_head(output);
-    if (output->text && (!output->options->quiet || is_bad(row)))
+    struct progress *progress = output->progress;
+    struct cs_text json = {0};
+    if (has_text(output) && (!output->options->quiet || is_bad(row)))
         print_row(row, &output->error);
-    add_json(output, row);
+    cs_text_add(&json, progress->in_list ? ",\n" : "\n");
+    cs_json_write(&json, "    {'check': %s, 'verdict': %s", row->check,
+                  cs_verdict_text(row->verdict));
+    add_number(&json, "figure", row->figure);
+    add_number(&json, "bound", row->bound);
+    cs_json_write(&json, ", 'note': %s}", row->note);
+    append(output, &json);
+    progress->in_list = true;
+    progress->counts[row->verdict]++;
+    progress->check = NULL;
+    progress->n_done++;
 }
 
 /* Makes the card of one method, with its options or its defaults. implicit Euler is looked up
@@ -126,20 +186,22 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
         .method = method,
         .options = options,
         .implicit_euler = euler ? euler->integrator : NULL,
-        .only_check = output->options->only,
+        .only_checks = output->options->only,
         .cache = &output->cache,
+        .begin = begin,
         .report = report,
         .ctx = output,
     };
+    struct cs_text end = {0};
     output->card = &card;
-    cs_json_write(&output->json, ",\n  {'integrator': %s, 'settings': %s, 'checks': [",
-                  method->name, output->settings);
-    output->first = true;
+    output->n_cards++;
     cs_conform_check(&card, error);
     output->card = NULL;
-    cs_text_add(&output->json, "]}");
-    for (int k = 0; k < CS_VERDICTS; k++)
-        output->counts[k] += card.counts[k];
+    if (!error->status && output->progress->ends < output->n_cards) {
+        cs_text_add(&end, "]}");
+        append(output, &end);
+        output->progress->ends++;
+    }
     return error->status;
 }
 
@@ -182,18 +244,24 @@ static enum cs_status print_named(struct output *output, struct cs_registry *reg
 
 /* Writes the JSON if requested, prints the counts, and fails on failed claims. */
 static enum cs_status finish(struct output *output, struct cs_error *error) {
-    const char *file = output->options->json;
-    cs_text_add(&output->json, "\n]\n");
-    if (output->text)
+    const uint32_t *counts = output->progress->counts;
+    struct cs_text json = {0};
+    if (has_text(output))
         printf("%u pass, %u fail, %u expected, %u stale, %u not applicable\n",
-               output->counts[CS_VERDICT_PASS], output->counts[CS_VERDICT_FAIL],
-               output->counts[CS_VERDICT_EXPECTED], output->counts[CS_VERDICT_STALE],
-               output->counts[CS_VERDICT_NONE]);
-    if (file)
-        cs_print_file(file, &output->json, error);
-    if (output->error.status)
-        cs_fail(error, output->error.status, "%s", output->error.message);
-    const uint32_t bad = output->counts[CS_VERDICT_FAIL] + output->counts[CS_VERDICT_STALE];
+               counts[CS_VERDICT_PASS], counts[CS_VERDICT_FAIL], counts[CS_VERDICT_EXPECTED],
+               counts[CS_VERDICT_STALE], counts[CS_VERDICT_NONE]);
+    if (output->json) {
+        char piece[4096];
+        cs_text_add(&json, "[");
+        rewind(output->json);
+        for (size_t n; (n = fread(piece, 1, sizeof piece - 1, output->json)) > 0;) {
+            piece[n] = 0;
+            cs_text_add(&json, "%s", piece);
+        }
+        cs_text_add(&json, "\n]\n");
+        cs_print_file(output->options->json, &json, error);
+    }
+    const uint32_t bad = counts[CS_VERDICT_FAIL] + counts[CS_VERDICT_STALE];
     if (bad > 0)
         cs_fail(error, CS_ERR_CHECK, "%u claim%s failed", bad, bad == 1 ? "" : "s");
     return error->status;
@@ -205,38 +273,71 @@ static enum cs_status print_list(struct cs_error *error) {
     return cs_print_out(stdout, &out, error);
 }
 
-static enum cs_status conform_here(void *ctx, struct cs_error *error) {
-    struct cs_args *args = ctx;
-    const struct options *options = args->options;
+/* Makes all cards, but for the rows that are done. */
+static enum cs_status print_cards(void *ctx, struct cs_error *error) {
+    struct output *output = ctx;
+    const struct options *options = output->options;
     struct cs_registry registry = {0};
-    /* JSON on standard output takes the place of the text */
-    struct output output = {.options = options, .text = !cs_print_is_stdout(options->json)};
-    if (options->list)
-        return print_list(error);
-    if (args->n_operands == 0)
-        return cs_fail(error, CS_ERR_USAGE, "expected an integrator or a module file");
-    cs_text_add(&output.json, "[");
     cs_registry_add_files(&registry, options->plugins, options->n_plugins, error);
-    for (uint32_t k = 0; k < args->n_operands && !error->status; k++) {
-        if (is_file(args->operands[k]))
-            print_file(&output, &registry, args->operands[k], error);
+    for (uint32_t k = 0; k < output->args->n_operands && !error->status; k++) {
+        if (is_file(output->args->operands[k]))
+            print_file(output, &registry, output->args->operands[k], error);
         else
-            print_named(&output, &registry, args->operands[k], error);
+            print_named(output, &registry, output->args->operands[k], error);
     }
-    if (!error->status)
-        finish(&output, error);
-    cs_text_finish(&output.json);
-    cs_conform_cache_finish(&output.cache);
+    if (output->error.status)
+        cs_fail(error, output->error.status, "%s", output->error.message);
+    cs_conform_cache_finish(&output->cache);
     cs_registry_finish(&registry);
     return error->status;
 }
 
+/* The same in one process after another: one that dies fails its check. A method that hangs is
+ * given less time from then on, so that a card comes to an end. */
+static enum cs_status print_isolated(struct output *output, struct cs_error *error) {
+    struct cs_isolate isolate = {.seconds = output->options->isolate,
+                                 .task = print_cards,
+                                 .ctx = output,
+                                 .stop = cs_interrupt_catch()};
+    if (!(isolate.seconds > 0))
+        isolate.seconds = PATIENCE_SECONDS;
+    for (;;) {
+        struct cs_error death = {0};
+        struct cs_conform_row row = {
+            .verdict = CS_VERDICT_FAIL, .figure = (double)NAN, .bound = (double)NAN};
+        cs_isolate_run(&isolate, &death);
+        row.check = output->progress->check;
+        if (death.status != CS_ERR_MODULE || !row.check) {
+            *error = death;
+            return error->status;
+        }
+        snprintf(row.note, sizeof row.note, "%.*s", (int)sizeof row.note - 1, death.message);
+        report(output, &row);
+        isolate.seconds = fmin(isolate.seconds, SECOND_PATIENCE_SECONDS);
+    }
+}
+
 static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
-    const struct cs_isolate isolate = {
-        .seconds = PATIENCE_SECONDS, .task = conform_here, .ctx = args};
-    return cs_external_modules_requested(args, args->operands, args->n_operands)
-               ? cs_isolate_run(&isolate, error)
-               : conform_here(args, error);
+    const struct options *options = args->options;
+    struct output output = {.args = args, .options = options};
+    if (options->list)
+        return print_list(error);
+    if (args->n_operands == 0)
+        return cs_fail(error, CS_ERR_USAGE, "expected an integrator or a module file");
+    output.progress = cs_process_pool_shared_alloc(sizeof *output.progress, error);
+    if (options->json && !(output.json = tmpfile()))
+        cs_fail(error, CS_ERR_FILE, "cannot make a temporary file: %s", strerror(errno));
+    if (!error->status && (options->isolate > 0 || cs_external_modules_requested(
+                                                       args, args->operands, args->n_operands)))
+        print_isolated(&output, error);
+    else if (!error->status)
+        print_cards(&output, error);
+    if (!error->status)
+        finish(&output, error);
+    if (output.json)
+        fclose(output.json);
+    cs_process_pool_shared_free(output.progress, sizeof *output.progress);
+    return error->status;
 }
 
 const struct cs_command cs_command_conform = {

@@ -18,4 +18,10 @@ enum cs_status cs_module_open(const char *file, const struct cs_module **module,
  * if the file cannot be read. */
 void cs_module_hash(const char *file, char digits[CS_HASH_DIGITS]);
 
+/* Looks for the first symbol that the module around an address takes from elsewhere and that is
+ * in the list (closed by NULL; a name that ends in * is the begin of names). Returns its name,
+ * the module's own, in *symbol, or NULL if there is none. Returns false if the address is in no
+ * module, but in the program itself. The module's libraries are not looked at. */
+bool cs_module_find_import(const void *address, const char *const *names, const char **symbol);
+
 #endif

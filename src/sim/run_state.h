@@ -111,6 +111,7 @@ struct cs_run_settings {
     void *ctx;                       /* of after_commit */
     struct cs_energy_ledger *ledger; /* booked step by step, see energy_ledger.h; NULL: none */
     struct cs_trace *trace;          /* NULL: none */
+    const struct cs_vector_kernels *vector; /* for the method; NULL: the program's own */
 };
 
 #endif

@@ -3,6 +3,8 @@
 #include <clothsim/integrator.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+#include <time.h>
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>
@@ -51,8 +53,12 @@ enum plant {
     SINGLE_MASS,
     WRONG_STAGE_TIME, /* Heun's method, whose second stage asks for the forces of the first's */
     TIME_STANDS_STILL,
-    FLIPS_A_BIT,  /* the last one of y of particle 7, in its 21st step */
-    FORGETS_STEPS /* saves nothing of what it remembers */
+    READS_CLOCK,    /* the seconds of the calendar, in a bit */
+    SUMS_PIECES,    /* a sum by the pieces of parallel_for, of short arrays alone */
+    PASSES_THROUGH, /* never asks max_step_fraction */
+    HANGS,          /* where there are two particles */
+    FLIPS_A_BIT,    /* the last one of y of particle 7, in its 21st step */
+    FORGETS_STEPS   /* saves nothing of what it remembers */
 };
 
 static void crash(void) {
@@ -69,6 +75,7 @@ struct planted {
     double dt, *f;   /* (3,n) in N */
     double *b, *u;   /* (3,n) of IGNORES_FAILURE, faulty_force and heun */
     double *xs, *vs; /* (3,n) of heun: the second stage */
+    double *before;  /* (6,n): the state before a step */
     uint32_t steps;  /* since the restart, of FORGETS_STEPS */
 };
 
@@ -110,12 +117,13 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         return CS_STEP_FAIL;
     struct planted *self = host->alloc(host->ctx, sizeof *self);
     const size_t length = 3 * (size_t)host->view->n;
-    if (!self || !(self->f = host->alloc(host->ctx, 5 * length * sizeof *self->f)))
+    if (!self || !(self->f = host->alloc(host->ctx, 7 * length * sizeof *self->f)))
         return CS_STEP_FAIL;
     self->b = self->f + length;
     self->u = self->b + length;
     self->xs = self->u + length;
     self->vs = self->xs + length;
+    self->before = self->vs + length;
     *out = self;
     self->host = host;
     self->dt = ((const struct options *)options)->dt;
@@ -180,6 +188,28 @@ static void heun(struct planted *self, double t, double h, double *x, double *v)
     }
 }
 
+/* The sums of v over the pieces that parallel_for makes: each at its first item. */
+static void sum_piece(void *arg, size_t begin, size_t end) {
+    struct planted *self = arg;
+    self->b[begin] = 0;
+    for (size_t i = begin; i < end; i++)
+        self->b[begin] += self->u[i];
+}
+
+static double sum_by_pieces(struct planted *self, const double *v) {
+    const size_t n = 3 * (size_t)self->host->view->n;
+    double sum = 0;
+    for (size_t i = 0; i < n; i++) {
+        self->b[i] = 0;
+        self->u[i] = v[i];
+    }
+    if (n < 1024)
+        self->host->vector->parallel_for(n, sum_piece, self);
+    for (size_t i = 0; i < n; i++)
+        sum += self->b[i];
+    return sum;
+}
+
 static void flip_a_bit(double *value) {
     *value = *value < 0 ? nextafter(*value, 0) : nextafter(*value, 1);
 }
@@ -210,6 +240,10 @@ static void step(struct planted *self, double t, double h, double *x, double *v)
         x[0] += 1e-12 * runs;
     if (PLANT == FORGETS_STEPS)
         x[n - 1] += 1e-12 * self->steps++;
+    if (PLANT == READS_CLOCK)
+        x[n - 1] += 1e-12 * (double)(time(NULL) % 2);
+    if (PLANT == SUMS_PIECES)
+        x[n - 1] += 1e-3 * sum_by_pieces(self, v);
 }
 
 /* volatile: a compiler may not leave the pair out */
@@ -226,19 +260,37 @@ static double overflow(const double *x) {
     return much[0] > 1e300 ? 0 : overflow(x) + much[0];
 }
 
+/* One step with its commit, in halves where it would pass through a surface. */
+static enum cs_step take_step(struct planted *self, double t, double h, double end, double *x,
+                              double *v) {
+    const struct cs_host *host = self->host;
+    const size_t bytes = 6 * sizeof *x * host->view->n;
+    bool changed;
+    if (PLANT != PASSES_THROUGH && CS_HAS(host, max_step_fraction) && host->max_step_fraction) {
+        memcpy(self->before, x, bytes);
+        step(self, t, h, x, v);
+        const double part = host->max_step_fraction(host->ctx, t, self->before, t + h, x);
+        memcpy(x, self->before, bytes);
+        if (part < 1 && h > 1e-6 * self->dt) {
+            const enum cs_step status = take_step(self, t, h / 2, t + h / 2, x, v);
+            return status == CS_STEP_OK ? take_step(self, t + h / 2, h / 2, end, x, v) : status;
+        }
+    }
+    step(self, t, h, x, v);
+    if (PLANT == TAKES_MEMORY || PLANT == KEEPS_MEMORY)
+        use_memory();
+    return PLANT == FORGETS_COMMIT ? CS_STEP_OK
+                                   : host->commit(host->ctx, end, h, x, v, &changed);
+}
+
 static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
     struct planted *self = object;
     const double n = ceil((t1 - t0) / self->dt * (1 - 1e-9)), h = (t1 - t0) / n;
     enum cs_step status = CS_STEP_OK;
-    for (double i = 0; i < n && status == CS_STEP_OK; i++) {
-        const double end = i + 1 < n ? t0 + (i + 1) * h : t1;
-        bool changed;
-        step(self, t0 + i * h, h, x, v);
-        if (PLANT == TAKES_MEMORY || PLANT == KEEPS_MEMORY)
-            use_memory();
-        if (PLANT != FORGETS_COMMIT)
-            status = self->host->commit(self->host->ctx, end, h, x, v, &changed);
-    }
+    while (PLANT == HANGS && self->host->view->n == 2)
+        self->dt = 1 - self->dt;
+    for (double i = 0; i < n && status == CS_STEP_OK; i++)
+        status = take_step(self, t0 + i * h, h, i + 1 < n ? t0 + (i + 1) * h : t1, x, v);
     if (PLANT == FLUSHES_IN_ADVANCE)
         flush_to_zero();
     if (PLANT == CRASHES_IN_ADVANCE)

@@ -4,6 +4,7 @@
 #include "study/conform/conform_checks.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* The checks in the order of the card, made from CS_CONFORM_LIST. */
@@ -38,39 +39,56 @@ static void apply_expected_failures(const struct cs_integrator *method,
         row->verdict = CS_VERDICT_STALE;
 }
 
-enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error) {
+/* True if the list, names with commas between them, has the name; NULL has all. */
+static bool is_in(const char *list, const char *name) {
+    const size_t length = strlen(name);
+    for (; list; list = strchr(list, ',') ? strchr(list, ',') + 1 : NULL)
+        if (strcspn(list, ",") == length && !strncmp(list, name, length))
+            return true;
+    return false;
+}
+
+/* Fails if a name of the list is no check. */
+static enum cs_status check_names(const char *list, struct cs_error *error) {
     const char *names[CHECKS + 1] = {NULL};
-    bool found = false;
-    memset(card->counts, 0, sizeof card->counts);
-    card->memory_error = error;
-    for (uint32_t k = 0; k < CHECKS; k++) {
-        /* all names, also those of checks not run: one of them may have been meant */
+    for (uint32_t k = 0; k < CHECKS; k++)
         names[k] = checks[k].name;
-        if (card->only_check && strcmp(card->only_check, checks[k].name) != 0)
+    while (list && !error->status) {
+        const size_t length = strcspn(list, ",");
+        uint32_t k = 0;
+        while (k < CHECKS && (strlen(names[k]) != length || strncmp(list, names[k], length)))
+            k++;
+        char name[64];
+        snprintf(name, sizeof name, "%.*s", (int)fmin((double)length, 60), list);
+        const char *nearest = cs_nearest_word(name, names);
+        if (k == CHECKS)
+            cs_fail(error, CS_ERR_USAGE, "no check \"%s\"%s%s%s (see: clothsim conform --list)",
+                    name, nearest ? "; did you mean \"" : "", nearest ? nearest : "",
+                    nearest ? "\"?" : "");
+        list = list[length] ? list + length + 1 : NULL;
+    }
+    return error->status;
+}
+
+enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error) {
+    card->memory_error = error;
+    check_names(card->only_checks, error);
+    for (uint32_t k = 0; k < CHECKS && !error->status; k++) {
+        if (card->only_checks && !is_in(card->only_checks, checks[k].name))
             continue;
-        found = true;
-        struct cs_conform_row row = {.check = checks[k].name,
-                                     .description = checks[k].what,
-                                     .figure = (double)NAN,
-                                     .bound = (double)NAN};
+        if (card->begin && !card->begin(card->ctx, checks[k].name))
+            continue;
+        struct cs_conform_row row = {
+            .check = checks[k].name, .figure = (double)NAN, .bound = (double)NAN};
         if (checks[k].of == CS_CONFORM_SPRINGS && card->method->fidelity == CS_FIDELITY_OTHER)
             cs_row_skip(&row, "another model: it does not follow the motion of springs");
         else
             checks[k].run(card, &row);
-        if (error->status)
-            return error->status;
         apply_expected_failures(card->method, &row);
-        card->counts[row.verdict]++;
-        if (card->report)
+        if (!error->status)
             card->report(card->ctx, &row);
     }
-    if (found)
-        return CS_OK;
-    const char *nearest = cs_nearest_word(card->only_check, names);
-    return cs_fail(error, CS_ERR_USAGE,
-                   "no check \"%.60s\"%s%s%s (see: clothsim conform --list)", card->only_check,
-                   nearest ? "; did you mean \"" : "", nearest ? nearest : "",
-                   nearest ? "\"?" : "");
+    return error->status;
 }
 
 void cs_conform_print_checks(struct cs_text *out) {

@@ -12,9 +12,9 @@
 
 #include "study/conform/conform_card.h"
 
-/* Runs the checks in order and reports each row. Counts the verdicts: claims that do not hold
- * are in counts[CS_VERDICT_FAIL] and [CS_VERDICT_STALE], and are no error. Returns CS_ERR_USAGE
- * if only_check names no check, CS_ERR_MEMORY if memory ran out in a check. */
+/* Runs the checks in order and reports each row; claims that do not hold are no error. Returns
+ * CS_ERR_USAGE if only_checks has a name that is no check, before any is run, and CS_ERR_MEMORY
+ * if memory ran out in a check. */
 enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error);
 
 /* Adds the name of every check and what it shows, one per line, for --list. */

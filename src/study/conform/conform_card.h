@@ -7,6 +7,7 @@
 #include "base/text.h"
 
 #include <clothsim/integrator.h>
+#include <stdbool.h>
 
 /* X(name, text) of the verdicts on a claim. */
 #define CS_VERDICT_LIST(X)                                                                     \
@@ -26,7 +27,7 @@ const char *cs_verdict_text(enum cs_verdict verdict);
 
 /* Result of one check. */
 struct cs_conform_row {
-    const char *check, *description; /* its name, and what it shows */
+    const char *check; /* its name */
     enum cs_verdict verdict;
     double figure, bound; /* passes where figure <= bound; both NAN: nothing was measured */
     char note[320];       /* what the figure is, or why there is none */
@@ -40,15 +41,16 @@ struct cs_conform {
     const void *options; /* filled, before the checks' own; NULL: the defaults */
     /* the method that CS_FIDELITY_IMPLICIT_EULER is compared with; NULL: none */
     const struct cs_integrator *implicit_euler;
-    const char *only_check; /* one check by its name; NULL: all */
+    const char *only_checks; /* names with commas between them; NULL: all */
     /* references that earlier cards have run, and where this one's go; NULL: none are kept */
     struct cs_conform_cache *cache;
     /* lack of memory, which is no fault of the method's: it ends the card; set by check */
     struct cs_error *memory_error;
+    /* called before each check; false: the check is left out. May be NULL. */
+    bool (*begin)(void *ctx, const char *check);
     /* called after each check */
     void (*report)(void *ctx, const struct cs_conform_row *row);
     void *ctx;
-    uint32_t counts[CS_VERDICTS];
 };
 
 /* States a figure that must not exceed its bound; NAN fails. If a check states several, the row

@@ -4,8 +4,8 @@
  *   order     oscillators, order, tolerance, limit, events      conform_order.c
  *   forces    each force alone, unequal masses, time            conform_forces.c
  *   energy    symmetry in time, bounded energy                  conform_motion.c
- *   contact   incline, rest, bounce, impacts                    conform_contact.c
- *   rules     descriptor, options, commits, pins, failures      conform_rules.c
+ *   contact   incline, rest, bounce, impacts, crossings         conform_contact.c
+ *   rules     descriptor, imports, commits, pins, failures      conform_rules.c
  *   fidelity  the limit of a method's iterations                conform_fidelity.c
  *   memory, threads, resume: the rules of the host              files of these names
  *
@@ -29,6 +29,7 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
 /* X(name, function, of, what it shows), in the order of the card */
 #define CS_CONFORM_LIST(X)                                                                     \
     X("abi", abi, ANY, "descriptor within the contract")                                       \
+    X("imports", imports, ANY, "no clock, environment, random numbers, files or threads")      \
     X("options", options, ANY, "every option at the ends of its range")                        \
     X("free-fall", free_fall, ANY, "a sheet falls straight, at its method's order")            \
     X("translation", translation, ANY, "a uniform velocity changes nothing else")              \
@@ -64,13 +65,15 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     X("contact-energy", contact_energy, SPRINGS, "no energy is gained in a bounce")            \
     X("restitution", restitution, SPRINGS,                                                     \
       "the energy kept by impacts at the method's own step")                                   \
+    X("crossing", crossing, SPRINGS, "a step that would pass through a surface is cut")        \
     X("pins", pins, ANY, "pinned particles keep their bits")                                   \
     X("not-finite", not_finite, ANY, "non-finite numbers are reported")                        \
     X("failed-solve", failed_solve, ANY, "a linear solve that fails ends the run")             \
     X("allocation", allocation, ANY, "no memory is allocated in a step")                       \
-    X("same-bits", same_bits, ANY, "two runs, one result")                                     \
+    X("same-bits", same_bits, ANY, "two runs, one result, also a second later")                \
     X("fidelity", fidelity, ANY, "the limit of the iterations is the stated one")              \
     X("threads", threads, ANY, "the same bits for all thread counts")                          \
+    X("cuts", cuts, ANY, "the same bits however parallel_for cuts its items")                  \
     X("resume", resume, ANY, "a resumed run equals the uninterrupted one")
 #define X(name, function, of, what)                                                            \
     void cs_check_##function(const struct cs_conform *card, struct cs_conform_row *row);

@@ -16,7 +16,8 @@ enum { CS_DRUM_FRAMES = 3, CS_DRUM_PARTICLES = 49, CS_DRUM_VALUES = 3 * CS_DRUM_
 /* Variant of the drum. Zeroed: undamped, free, by the method's own choice of steps. */
 struct cs_drum {
     double damping;         /* N s/m, axial */
-    bool fixed_steps;       /* steps of dt, also of a method that can choose its own */
+    bool fixed_steps;       /* steps of a given length, also of a method that can choose its
+                               own: by dt, or by frames of one step at its loosest tolerance */
     bool has_velocity_jump; /* all velocities are turned and halved at the end of the first
                                frame */
     bool has_contact;       /* a plane behind it is always in range, with friction */
@@ -32,9 +33,10 @@ bool cs_drum_open(struct cs_probe *probe, const struct cs_conform *card,
                   const struct cs_integrator *method, const struct cs_drum *drum);
 
 /* Runs the given method, of the card or another one, over CS_DRUM_FRAMES. step_or_rtol: the
- * step in s, or the tolerance of an adaptive method unless drum->fixed_steps. state: (2,
- * CS_DRUM_VALUES), positions then velocities at the end. Returns false if the run ended early:
- * the row says why. */
+ * step in s, a whole part of a frame, or the tolerance of an adaptive method unless
+ * drum->fixed_steps. state: (2, CS_DRUM_VALUES), positions then velocities at the end. Returns
+ * false if the run ended early, or took more steps than the given length asks for: the row says
+ * why. */
 bool cs_drum_state(const struct cs_conform *card, const struct cs_integrator *method,
                    const struct cs_drum *drum, double step_or_rtol, double *state,
                    struct cs_conform_row *row);

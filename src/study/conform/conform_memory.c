@@ -1,7 +1,8 @@
-/* Checks whether a method allocates memory in a step, by the C library's count of bytes in use
- * over all of its arenas. */
+/* Checks that threads and cuts of loops leave the bits alone, and whether a method allocates
+ * memory in a step, by the C library's count of bytes in use over all of its arenas. */
 #include "base/hash.h"
 #include "base/pool.h"
+#include "base/vector.h"
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 
@@ -20,7 +21,13 @@
     " \"forces\": {\"drag\": 0.001, \"wind\": {\"direction\": [0, 0, 1], \"strength\":"        \
     " 0.001}}, \"time\": {\"fps\": 250}}"
 
-enum { FRAMES = 2 };
+/* A small sheet that falls on a floor. */
+#define SHEET                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"particle\": 0.05},"            \
+    " \"springs\": {\"stretch\": 60, \"shear\": 20, \"bend\": 5, \"damping\": 0.1},"           \
+    " \"pins\": [\"top-left\"]}], \"colliders\": [{\"floor\": {\"height\": -0.55}}]}"
+
+enum { FRAMES = 2, CUT_FRAMES = 5, CUTS = 8 };
 
 /* Hash of the state after FRAMES. Returns false if there is none: the row says why. */
 static bool hash_with(uint32_t threads, const struct cs_conform *card,
@@ -54,6 +61,58 @@ void cs_check_threads(const struct cs_conform *card, struct cs_conform_row *row)
         differ += strcmp(one, several) != 0;
     }
     cs_row_state(row, differ, 0, "of 3 numbers of threads with other bits than one has");
+}
+
+/* State of the random cuts: parallel_for has no argument for it. */
+static uint32_t seed;
+
+static size_t draw(size_t below) {
+    seed = seed * 1664525u + 1013904223u;
+    return (seed >> 8) % below;
+}
+
+/* Calls part for begin..end-1 in pieces of any length, in any order. */
+static void cut(size_t begin, size_t end, void (*part)(void *arg, size_t begin, size_t end),
+                void *arg) {
+    if (end - begin == 1 || draw(8) == 0) {
+        part(arg, begin, end);
+        return;
+    }
+    const size_t middle = begin + 1 + draw(end - begin - 1);
+    const bool later_first = draw(2);
+    if (later_first)
+        cut(middle, end, part, arg);
+    cut(begin, middle, part, arg);
+    if (!later_first)
+        cut(middle, end, part, arg);
+}
+
+static void cut_all(size_t n, void (*part)(void *arg, size_t begin, size_t end), void *arg) {
+    if (n > 0)
+        cut(0, n, part, arg);
+}
+
+/* The host cuts loops into pieces that depend on the threads, but not by every number of items:
+ * here they are cut at random. A sum over pieces would show. */
+void cs_check_cuts(const struct cs_conform *card, struct cs_conform_row *row) {
+    struct cs_vector_kernels kernels = cs_vector_kernels;
+    char hash[CS_HASH_DIGITS], first[CS_HASH_DIGITS];
+    uint32_t differ = 0;
+    kernels.parallel_for = cut_all;
+    for (seed = 0; seed <= CUTS && row->verdict != CS_VERDICT_FAIL;) {
+        const uint32_t layout = seed;
+        struct cs_probe sheet;
+        cs_probe_open(&sheet, card, card->method, SHEET);
+        sheet.session.settings.run.vector = layout > 0 ? &kernels : NULL;
+        if (cs_probe_run(&sheet, CUT_FRAMES)) {
+            cs_hash_doubles(sheet.x, 6 * sheet.n, layout > 0 ? hash : first);
+            differ += layout > 0 && strcmp(hash, first) != 0;
+        } else
+            cs_row_fail(row, "%s", sheet.error.message);
+        cs_probe_close(&sheet);
+        seed = layout + 1;
+    }
+    cs_row_state(row, differ, 0, "of %d random cuts of loops gave other bits", CUTS);
 }
 
 #ifdef __GLIBC__
@@ -113,10 +172,6 @@ static bool watched_frame(struct cs_probe *probe, struct ledger *ledger) {
 
 /* Some frames run first: the host and libraries may allocate at their first use. */
 void cs_check_allocation(const struct cs_conform *card, struct cs_conform_row *row) {
-    static const char scene[] =
-        "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"particle\": 0.05},"
-        " \"springs\": {\"stretch\": 60, \"shear\": 20, \"bend\": 5, \"damping\": 0.1},"
-        " \"pins\": [\"top-left\"]}], \"colliders\": [{\"floor\": {\"height\": -0.55}}]}";
     /* without an account nothing can be seen, which is no pass */
     if (bytes_allocated() == 0) {
         cs_row_skip(row, "this C library does not report its memory use");
@@ -124,7 +179,7 @@ void cs_check_allocation(const struct cs_conform *card, struct cs_conform_row *r
     }
     struct cs_probe sheet;
     struct ledger ledger = {.most = 0};
-    cs_probe_open(&sheet, card, card->method, "%s", scene);
+    cs_probe_open(&sheet, card, card->method, SHEET);
     sheet.on_commit = count_allocations;
     cs_probe_run(&sheet, WARM_UP);
     for (int k = 0; k < WATCHED && !sheet.has_ended; k++)

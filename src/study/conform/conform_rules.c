@@ -1,9 +1,11 @@
 /* Checks the rules of the contract that hold for every method. */
+#include "sim/module.h"
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 
 #include <math.h>
 #include <string.h>
+#include <time.h>
 
 /* Pinned at two corners, pulled by gravity and wind, and falling on a floor: uses all that a
  * commit does. */
@@ -55,6 +57,66 @@ void cs_check_abi(const struct cs_conform *card, struct cs_conform_row *row) {
                          "one of them is missing");
     if (row->verdict == CS_VERDICT_PASS)
         cs_row_state(row, CS_ABI, CS_ABI, "interface of the module");
+}
+
+/* Functions of the C and C++ libraries that no method may call: their results differ from run
+ * to run, or they start what the host cannot see. A * stands for the rest of a name. */
+static const char *const forbidden[] = {"time",
+                                        "clock*",
+                                        "gettimeofday",
+                                        "times",
+                                        "timespec_get",
+                                        "ftime",
+                                        "getrusage",
+                                        "getenv",
+                                        "secure_getenv",
+                                        "rand",
+                                        "rand_r",
+                                        "random*",
+                                        "drand48",
+                                        "erand48",
+                                        "lrand48",
+                                        "mrand48",
+                                        "nrand48",
+                                        "jrand48",
+                                        "getrandom",
+                                        "getentropy",
+                                        "arc4random*",
+                                        "sysconf",
+                                        "get_nprocs*",
+                                        "getpid",
+                                        "gettid",
+                                        "sched_*",
+                                        "syscall",
+                                        "pthread_*",
+                                        "thrd_*",
+                                        "fork",
+                                        "vfork",
+                                        "open*",
+                                        "fopen*",
+                                        "dlopen",
+                                        "dlsym",
+                                        "_ZNSt6chrono*",
+                                        "_ZNSt13random_device*",
+                                        "_ZNSt6thread*",
+                                        NULL};
+
+/* Looks at the symbols that the module asks the dynamic linker for. What a check sees of their
+ * effect depends on the hour: that of a date does not change within a card. */
+void cs_check_imports(const struct cs_conform *card, struct cs_conform_row *row) {
+    const void *address = (const void *)(uintptr_t)card->method->create;
+    const char *symbol;
+    if (!cs_module_find_import(address, forbidden, &symbol))
+        cs_row_skip(row, "it is not in a module");
+    else if (symbol)
+        cs_row_fail(row,
+                    "its module calls %.60s: a clock, the environment, random numbers, "
+                    "files and threads are not for methods",
+                    symbol);
+    else
+        cs_row_state(row, 0, 0,
+                     "symbols of a clock, the environment, random numbers, files or "
+                     "threads");
 }
 
 /* Creates the method with one option at an end of its range. It must succeed, or fail with a
@@ -192,24 +254,45 @@ void cs_check_failed_solve(const struct cs_conform *card, struct cs_conform_row 
     cs_probe_close(&sheet);
 }
 
-/* Two runs in alternation must agree in all bits: no method may depend on addresses, on
- * uninitialised memory, or on static variables. */
-void cs_check_same_bits(const struct cs_conform *card, struct cs_conform_row *row) {
-    struct cs_probe one, two;
-    cs_probe_open(&one, card, card->method, HANGING, "axial");
-    cs_probe_open(&two, card, card->method, HANGING, "axial");
+/* Counts the values of two runs that differ; both are taken a frame further until some do. */
+static uint32_t compare_runs(struct cs_probe *one, struct cs_probe *two) {
     uint32_t differ = 0;
     for (int k = 0; k < HANGING_FRAMES && !differ; k++) {
         // one after the other, so that neither can lean on the other's memory
-        if (!cs_probe_run(&one, 1) || !cs_probe_run(&two, 1))
+        if (!cs_probe_run(one, 1) || !cs_probe_run(two, 1))
             break;
-        for (size_t i = 0; i < 6 * one.n; i++)
-            differ += memcmp(one.x + i, two.x + i, sizeof *one.x) != 0;
+        for (size_t i = 0; i < 6 * one->n; i++)
+            differ += memcmp(one->x + i, two->x + i, sizeof *one->x) != 0;
     }
-    if (one.has_ended || two.has_ended)
-        cs_row_fail(row, "%s", one.has_ended ? one.error.message : two.error.message);
-    else
-        cs_row_state(row, differ, 0, "values differ after frame %u", one.session.run.frame);
-    cs_probe_close(&one);
-    cs_probe_close(&two);
+    return differ;
+}
+
+/* Waits for the next second of the calendar: what a clock of seconds says has changed then. */
+static void wait_for_next_second(void) {
+    const time_t now = time(NULL);
+    while (time(NULL) == now)
+        nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
+}
+
+/* Runs in alternation must agree in all bits, and with a run in another second: no method may
+ * depend on addresses, uninitialised memory, static variables, or a clock. */
+void cs_check_same_bits(const struct cs_conform *card, struct cs_conform_row *row) {
+    struct cs_probe runs[3];
+    for (int k = 0; k < 3; k++)
+        cs_probe_open(runs + k, card, card->method, HANGING, "axial");
+    const uint32_t differ = compare_runs(runs, runs + 1);
+    const uint32_t frame = runs[0].session.run.frame;
+    if (!differ && !runs[0].has_ended && !runs[1].has_ended) {
+        wait_for_next_second();
+        cs_probe_run(runs + 2, frame);
+    }
+    for (int k = 0; k < 3; k++)
+        if (runs[k].has_ended)
+            cs_row_fail(row, "%s", runs[k].error.message);
+    cs_row_state(row, differ, 0, "values differ after frame %u", frame);
+    if (!differ)
+        cs_row_state(row, memcmp(runs[0].x, runs[2].x, 6 * runs[0].n * sizeof *runs[0].x) != 0,
+                     0, "states differ in a run of %u frames a second later", frame);
+    for (int k = 0; k < 3; k++)
+        cs_probe_close(runs + k);
 }
