@@ -1,6 +1,8 @@
 /* Runs a method on a scene without post-step corrections, and records its trajectory. */
 #include "study/recorded_run.h"
 
+#include "model/event/events.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,13 +45,39 @@ enum cs_status cs_recorded_run_count_frames(struct cs_recorded_run_settings *set
 
 /* Copies the state at time 0, which every run begins with. */
 static enum cs_status store_start(struct cs_recorded_run *recording, struct cs_error *error) {
-    const size_t values = 6 * (size_t)recording->session.system.view.n;
-    recording->initial_state = malloc(values * sizeof *recording->initial_state);
+    const size_t n = recording->session.system.view.n;
+    recording->initial_state = malloc(7 * n * sizeof *recording->initial_state);
     if (!recording->initial_state)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the start of a run");
+    recording->free_from = recording->initial_state + 6 * n;
     memcpy(recording->initial_state, recording->session.system.state,
-           values * sizeof *recording->initial_state);
+           6 * n * sizeof *recording->initial_state);
     return CS_OK;
+}
+
+/* Rebuilds a system with events: a run leaves pins, masses and constants as they were at its
+ * end, and the next run needs those of the start. */
+static enum cs_status renew(struct cs_recorded_run *recording, struct cs_error *error) {
+    return recording->session.system.events ? cs_session_build(&recording->session, error)
+                                            : CS_OK;
+}
+
+/* Finds when particles that are pinned can move first: applies the events without a run. */
+static enum cs_status find_releases(struct cs_recorded_run *recording, struct cs_error *error) {
+    struct cs_system *system = &recording->session.system;
+    const double end = recording->frames / recording->session.scene.time.fps;
+    double *free_from = recording->free_from, t = 0;
+    for (uint32_t i = 0; i < system->view.n; i++)
+        free_from[i] = system->inv_mass[i] > 0 ? 0 : HUGE_VAL;
+    if (!system->events || system->n_pinned == 0)
+        return CS_OK;
+    while ((t = cs_events_next(system->events)) <= end) {
+        cs_events_apply(system, t);
+        for (uint32_t i = 0; i < system->view.n; i++)
+            if (system->inv_mass[i] > 0)
+                free_from[i] = fmin(free_from[i], t);
+    }
+    return renew(recording, error);
 }
 
 enum cs_status cs_recorded_run_open(struct cs_recorded_run *recording,
@@ -62,7 +90,7 @@ enum cs_status cs_recorded_run_open(struct cs_recorded_run *recording,
     // a crossing is a property of a method at its step
     asked.count_crossings_only = true;
     if (!cs_session_open_system(&recording->session, &asked, error) &&
-        store_start(recording, error))
+        (store_start(recording, error) || find_releases(recording, error)))
         cs_recorded_run_close(recording);
     return error->status;
 }
@@ -95,13 +123,6 @@ static void step_frames(struct cs_recorded_run *recording, struct cs_trajectory 
         store_state(track, run, end);
     end->cpu = follow.cpu;
     end->wall = follow.wall;
-}
-
-/* Rebuilds a system with events: a run leaves pins, masses and constants as they were at its
- * end, and the next run needs those of the start. */
-static enum cs_status renew(struct cs_recorded_run *recording, struct cs_error *error) {
-    return recording->session.system.events ? cs_session_build(&recording->session, error)
-                                            : CS_OK;
 }
 
 /* Joins the notes of the run. */
@@ -145,9 +166,12 @@ enum cs_status cs_trajectory_init(struct cs_trajectory *track,
     *track = (struct cs_trajectory){.n = recording->session.system.view.n,
                                     .frames = recording->frames,
                                     .fps = recording->session.scene.time.fps};
-    track->states = calloc((size_t)track->frames + 1, 6 * (size_t)track->n * sizeof(double));
+    const size_t n = track->n, values = ((size_t)track->frames + 1) * 6 * n;
+    track->states = calloc(values + n, sizeof *track->states);
     if (!track->states)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u states", track->frames + 1);
+    memcpy(track->states + values, recording->free_from, n * sizeof *track->states);
+    track->free_from = track->states + values;
     return CS_OK;
 }
 

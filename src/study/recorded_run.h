@@ -44,14 +44,17 @@ struct cs_recorded_run_settings {
 /* An open scene with one method; zeroed: closed. Must not move in memory while open. */
 struct cs_recorded_run {
     struct cs_session session; /* system built; the run is not begun */
-    double *initial_state;     /* (6n) the state at time 0, owned */
+    double *initial_state;     /* (6n) the state at time 0, then free_from; owned */
+    double
+        *free_from; /* (n) s, when an event lets the particle move; 0: it can from the start */
     uint32_t frames;
 };
 
 /* States of the frames 0..frames of one run; frames beyond n_recorded are 0. */
 struct cs_trajectory {
-    double *states; /* (frames + 1, 6n), owned */
-    uint32_t n;     /* particles */
+    double *states;          /* (frames + 1, 6n), then free_from; owned */
+    const double *free_from; /* (n) s: as in the recorded run */
+    uint32_t n;              /* particles */
     uint32_t frames, n_recorded;
     double fps;
 };
@@ -62,10 +65,10 @@ struct cs_recorded_run_result {
     double cpu, wall; /* s, of stepping only */
     struct cs_counts counts;
     struct cs_crossing_stats
-        crossings;             /* of the frames of a track, where the scene counts them */
+        crossings; /* of the frames of a track, where the scene counts them */
     struct cs_energy_monitor monitor; /* of the frames of a track; not confirmed */
-    char note[240];            /* the method's remarks, or why it failed */
-    char hash[CS_HASH_DIGITS]; /* of the last state */
+    char note[240];                   /* the method's remarks, or why it failed */
+    char hash[CS_HASH_DIGITS];        /* of the last state */
 };
 
 /* Opens a scene for a method, "NAME:key=value,...", without post-step corrections. On failure

@@ -22,11 +22,12 @@ double cs_rms_difference(const double *a, const double *b, size_t n) {
     return sqrt(sum / (double)n);
 }
 
-double cs_distance_rms(const struct cs_system *system, const double *a, const double *b) {
+double cs_distance_rms(const struct cs_system *system, const struct cs_trajectory *run,
+                       uint32_t frame, const double *a, const double *b) {
     const size_t n = system->view.n;
     double sum = 0, mass = 0;
     for (size_t i = 0; i < n; i++)
-        if (system->inv_mass[i] > 0) {
+        if (run->free_from[i] <= frame / run->fps) {
             sum += system->mass[i] * squared(n, a, b, i);
             mass += system->mass[i];
         }
@@ -107,9 +108,9 @@ void cs_trajectory_error_compute(struct cs_trajectory_error *deviation,
         take_statistics(deviation, system, k / system->scene->time.fps, a, b);
         if (k > pointwise_frames)
             continue;
-        deviation->end = cs_distance_rms(system, a, b);
+        deviation->end = cs_distance_rms(system, track, k, a, b);
         deviation->end_max = cs_distance_max(system, a, b);
-        deviation->velocity = cs_distance_rms(system, a + v, b + v);
+        deviation->velocity = cs_distance_rms(system, track, k, a + v, b + v);
         deviation->path += deviation->end * deviation->end;
         deviation->path_max = fmax(deviation->path_max, deviation->end_max);
     }

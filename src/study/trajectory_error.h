@@ -29,9 +29,11 @@ void cs_trajectory_error_compute(struct cs_trajectory_error *deviation,
 /* Root mean square of a - b over n >= 1 values. */
 double cs_rms_difference(const double *a, const double *b, size_t n);
 
-/* sqrt(sum m |a - b|^2 / sum m) of two (3,n), over the particles that can move; 0 without any.
- * The mass as weight makes it independent of the resolution of a mesh. */
-double cs_distance_rms(const struct cs_system *system, const double *a, const double *b);
+/* sqrt(sum m |a - b|^2 / sum m) of two (3,n) at a frame of a run, over the particles that can
+ * move there or could before: those that an event releases from then on. 0 without any. The
+ * mass as weight makes it independent of the resolution of a mesh. */
+double cs_distance_rms(const struct cs_system *system, const struct cs_trajectory *run,
+                       uint32_t frame, const double *a, const double *b);
 /* Largest distance of a particle, pinned ones included. */
 double cs_distance_max(const struct cs_system *system, const double *a, const double *b);
 /* The distance of each particle, (n). */

@@ -124,6 +124,7 @@ static enum cs_status compare_reference_write(const struct cs_compare_reference 
     header->reference = *reference;
     /* an address means nothing to the next run */
     header->reference.trajectory.states = NULL;
+    header->reference.trajectory.free_from = NULL;
     cs_hash_doubles(track->states, values, header->hash);
     if (!cs_folder_create(folder, error) && !cs_file_create(&out, path, error)) {
         /* failures of fwrite are seen by cs_file_finish */
@@ -177,7 +178,7 @@ static void compare(const struct cs_system *system, const struct cs_trajectory *
     *rms = *largest = 0;
     for (uint32_t k = 1; k <= a->frames; k++) {
         const double *x = cs_trajectory_state(a, k), *y = cs_trajectory_state(b, k);
-        *rms = fmax(*rms, cs_distance_rms(system, x, y));
+        *rms = fmax(*rms, cs_distance_rms(system, a, k, x, y));
         *largest = fmax(*largest, cs_distance_max(system, x, y));
     }
 }
@@ -192,8 +193,9 @@ static void measure_motion(struct cs_compare_reference *reference,
             system, k / system->scene->time.fps, x, x + 3 * (size_t)track->n);
         reference->kinetic = fmax(reference->kinetic, energy.kinetic);
         reference->strain = fmax(reference->strain, cs_diagnostics_strain(system, x));
-        reference->motion_scale = fmax(
-            reference->motion_scale, cs_distance_rms(system, x, cs_trajectory_state(track, 0)));
+        reference->motion_scale =
+            fmax(reference->motion_scale,
+                 cs_distance_rms(system, track, k, x, cs_trajectory_state(track, 0)));
     }
 }
 

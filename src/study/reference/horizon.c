@@ -29,11 +29,11 @@ static void compare(struct cs_horizon *horizon, const struct cs_recorded_run *re
                     double accuracy) {
     const struct cs_system *system = &recording->session.system;
     const double start =
-        cs_distance_rms(system, cs_trajectory_state(a, 0), cs_trajectory_state(b, 0));
+        cs_distance_rms(system, a, 0, cs_trajectory_state(a, 0), cs_trajectory_state(b, 0));
     horizon->time = HUGE_VAL;
     for (uint32_t k = 1; k <= a->frames; k++) {
         horizon->separation =
-            cs_distance_rms(system, cs_trajectory_state(a, k), cs_trajectory_state(b, k));
+            cs_distance_rms(system, a, k, cs_trajectory_state(a, k), cs_trajectory_state(b, k));
         if (horizon->separation >= accuracy && horizon->time == HUGE_VAL)
             horizon->time = k / a->fps;
     }
