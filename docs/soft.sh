@@ -51,4 +51,4 @@ picture thrown 30 --set "$place=[-0.8, 0.7, 0]" --set 'bodies[0].mesh.velocity=[
 picture hung 60 --set "$place=[0, 0.72, 0]" --set 'bodies[0].pins=[612]'
 
 # what both cost, without the pictures: a second of this renderer says more of it than of them
-"$program" soft-bench ../../scenes/bear_springs.json --no-draw -o . -y >/dev/null
+"$program" soft-bench ../../scenes/bear_springs.json --no-render -o . -y >/dev/null

@@ -42,7 +42,7 @@ static const struct cs_arg rows[] = {
     {"plugin", 'p', "FILE", "load an integrator module in both runs; may be repeated",
      CS_ARG_LIST(struct options, plugins, n_plugins)},
     {"threads", 0, "N", "threads of both runs, 1 to 64", CS_ARG_INTO(struct options, threads)},
-    {"tolerance", 't', "NUMBER",
+    {"tolerance", 0, "NUMBER",
      "maximum difference of two numbers, in their own unit (default: 0, equal bits)",
      CS_ARG_INTO(struct options, tolerance)},
     {"quiet", 'q', NULL, "print nothing if both runs are equal",

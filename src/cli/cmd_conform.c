@@ -250,6 +250,7 @@ static enum cs_status finish(struct output *output, struct cs_error *error) {
         printf("%u pass, %u fail, %u expected, %u stale, %u not applicable\n",
                counts[CS_VERDICT_PASS], counts[CS_VERDICT_FAIL], counts[CS_VERDICT_EXPECTED],
                counts[CS_VERDICT_STALE], counts[CS_VERDICT_NONE]);
+    // what all processes have appended, in brackets
     if (output->json) {
         char piece[4096];
         cs_text_add(&json, "[");
@@ -307,6 +308,7 @@ static enum cs_status print_isolated(struct output *output, struct cs_error *err
             .verdict = CS_VERDICT_FAIL, .figure = (double)NAN, .bound = (double)NAN};
         cs_isolate_run(&isolate, &death);
         row.check = output->progress->check;
+        // done, or what is no fault of a check: usage, memory, a module that cannot be loaded
         if (death.status != CS_ERR_MODULE || !row.check) {
             *error = death;
             return error->status;

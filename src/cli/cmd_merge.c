@@ -9,6 +9,9 @@
 #include "study/parameter_sweep.h"
 #include "study/stability/stability_state.h"
 
+#include <dirent.h>
+#include <errno.h>
+#include <fnmatch.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,13 +21,15 @@ enum { FILE_BYTES_MAX = 1 << 30 };
 
 struct options {
     const char *out;
-    bool quiet;
+    bool overwrite, quiet;
 };
 static const struct options defaults = {.out = "merged"};
 
 static const struct cs_arg rows[] = {
     {"out", 'o', "DIR", "folder of the result (default: merged)",
      CS_ARG_INTO(struct options, out)},
+    {"overwrite", 'y', NULL, "replace the results of an earlier merge",
+     CS_ARG_INTO(struct options, overwrite)},
     {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
 
@@ -42,6 +47,22 @@ static enum cs_status copy_origin(const char *folder, const char *out, struct cs
     return error->status;
 }
 
+/* Removes what an earlier merge wrote: tables, provenance and parts of maps. */
+static enum cs_status remove_earlier(const char *out, struct cs_error *error) {
+    static const char *const names[] = {"compare.csv", "sweep.csv", "origin.json", "*.partial"};
+    DIR *directory = opendir(out);
+    char path[4096];
+    for (const struct dirent *entry; directory && (entry = readdir(directory));)
+        for (size_t k = 0; k < sizeof names / sizeof *names && !error->status; k++) {
+            snprintf(path, sizeof path, "%s/%s", out, entry->d_name);
+            if (!fnmatch(names[k], entry->d_name, 0) && remove(path))
+                cs_fail(error, CS_ERR_FILE, "cannot remove %s: %s", path, strerror(errno));
+        }
+    if (directory)
+        closedir(directory);
+    return error->status;
+}
+
 static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
     const char *out = options->out, *const *folders = args->operands;
@@ -52,6 +73,8 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
             return cs_fail(error, CS_ERR_USAGE,
                            "%s is both a part and the result: give another folder with --out",
                            out);
+    if (options->overwrite && remove_earlier(out, error))
+        return error->status;
     if (cs_compare_results_merge(folders, n, out, &cells, error) ||
         cs_parameter_sweep_merge(folders, n, out, &rows_of_sweep, error))
         return error->status;

@@ -17,10 +17,9 @@ struct options {
 static const struct options defaults = {.x = "cpu", .y = "error"};
 
 static const struct cs_arg rows[] = {
-    {"x", 'x', "COLUMN", "column of the x axis (default: cpu)", CS_ARG_INTO(struct options, x)},
-    {"y", 'y', "COLUMN", "column of the y axis (default: error)",
-     CS_ARG_INTO(struct options, y)},
-    {"family", 'f', "FAMILY",
+    {"x", 0, "COLUMN", "column of the x axis (default: cpu)", CS_ARG_INTO(struct options, x)},
+    {"y", 0, "COLUMN", "column of the y axis (default: error)", CS_ARG_INTO(struct options, y)},
+    {"family", 0, "FAMILY",
      "all series of one family, such as \"adaptive implicit\" (default: the twelve nearest to "
      "the front)",
      CS_ARG_INTO(struct options, family)},

@@ -20,7 +20,7 @@ struct options {
 static const struct options defaults = {.again = {.session = {.threads = CS_THREADS_AUTO}}};
 
 static const struct cs_arg rows[] = {
-    {"folder", 'f', "DIR",
+    {"folder", 0, "DIR",
      "folder of the scene's meshes and textures (default: the folder they were in)",
      CS_ARG_INTO(struct options, again.folder)},
     {"plugin", 'p', "FILE",

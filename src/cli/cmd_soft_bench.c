@@ -20,9 +20,10 @@ static const struct options defaults = {.soft = {.seconds = 0.5, .draw = true},
                                         .folder = "soft"};
 
 static const struct cs_arg rows[] = {
-    {"time", 't', "SECONDS", "processor time of the measurement of a body (default: 0.5)",
-     CS_ARG_INTO(struct options, soft.seconds)},
-    {"no-draw", 0, NULL, "do not time pictures", CS_ARG_INTO(struct options, soft.draw)},
+    {"budget", 0, "SECONDS", "processor time of the measurement of a body (default: 0.5)",
+     CS_ARG_INTO(struct options, soft.seconds), .old_name = "time"},
+    {"no-render", 0, NULL, "do not time pictures", CS_ARG_INTO(struct options, soft.draw),
+     .old_name = "no-draw"},
     CS_ARG_SET(struct options, soft.session),
     CS_ARG_PLUGIN(struct options, soft.session),
     {"out", 'o', "DIR",

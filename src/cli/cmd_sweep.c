@@ -28,6 +28,8 @@ static const struct cs_arg rows[] = {
     CS_ARG_PLUGIN(struct options, product.session),
     {"out", 'o', "DIR", "folder of sweep.csv (default: sweep)",
      CS_ARG_INTO(struct options, product.folder)},
+    {"overwrite", 'y', NULL, "replace an existing sweep.csv",
+     CS_ARG_INTO(struct options, product.overwrite)},
     {"shard", 0, "K/N", "run shard K of N of the cells; see: clothsim merge",
      CS_ARG_INTO(struct options, product.shard)},
     {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},

@@ -223,6 +223,7 @@ static const char *find_import(const struct link_map *map, const char *const *na
     for (const ElfW(Dyn) *row = map->l_ld; row->d_tag != DT_NULL; row++)
         if (row->d_tag > 0 && row->d_tag <= DT_JMPREL)
             rows[row->d_tag] = row;
+    // of calls, then of addresses; a module has one or two of the three
     for (int k = 0; k < TABLES; k++) {
         if (!rows[tables[k].table] || !rows[tables[k].size])
             continue;

@@ -303,7 +303,8 @@ static enum cs_status do_cell(struct cs_parameter_sweep *product, const struct s
     product->n_reused += taken != NULL;
     if (taken && strcmp(key_of(taken), cell.key) != 0)
         cs_fail(error, CS_ERR_USAGE,
-                "%s belongs to a different sweep; choose another folder with --out",
+                "%s belongs to a different sweep; choose another folder with --out, or "
+                "--overwrite to replace it",
                 rows->table.path);
     else if (!taken && !parameter_sweep_cell_run(&cell, product, &line, error))
         cs_row_table_append(&rows->table, line.bytes, line.length, error);
@@ -318,14 +319,15 @@ static enum cs_status begin(struct cs_parameter_sweep *product, struct sweep_row
     parameter_sweep_add_head(product, &rows->names);
     if (reserve_rows(rows, product->cells, error) || cs_row_table_lock(&rows->table, error))
         return error->status;
-    if (access(rows->table.path, F_OK))
+    if (product->overwrite || access(rows->table.path, F_OK))
         write_rows(rows, error);
     else
         read_rows(rows, product->folder, error);
     cs_row_table_unlock(&rows->table);
     if (!error->status && rows->n > product->cells)
         cs_fail(error, CS_ERR_USAGE,
-                "%s belongs to a different sweep; choose another folder with --out",
+                "%s belongs to a different sweep; choose another folder with --out, or "
+                "--overwrite to replace it",
                 rows->table.path);
     return error->status;
 }

@@ -27,6 +27,7 @@ struct cs_parameter_sweep {
     uint32_t frames;
     struct cs_shard shard;
     const char *folder; /* of sweep.csv */
+    bool overwrite;     /* an earlier sweep.csv is written over */
     void (*progress)(void *ctx, uint32_t n_done, uint32_t total);
     void *ctx;
     uint32_t cells, n_done, n_reused; /* out: in all; there now; of those, from earlier runs */

@@ -30,6 +30,36 @@ for command in $("$program" help | sed -n 's/^  \([a-z-]*\)  .*/\1/p' | grep -v 
     same "options of $command"
 done
 
+# what several commands have: one letter a name, one name a letter (but for one method or several),
+# and the table of clothsim(1)
+for command in $("$program" help | sed -n 's/^  \([a-z-]*\)  .*/\1/p' | grep -v help); do
+    "$program" "$command" --help |
+        sed -n "s/^  \(-[a-z], \)\? *--\([a-z-]*\).*/\2 \1$command/p"
+done >"$work/options"
+sort -k1,1 -k3,3 "$work/options" | awk '
+    {
+        letter = NF == 3 ? substr($2, 2, 1) : ""
+        if ($1 in n && letters[$1] != letter) print "--" $1 " has two letters"
+        n[$1]++
+        letters[$1] = letter
+        known = owner[letter]
+        if (letter && known && known != $1 && letter != "i")
+            print "-" letter " is --" known " and --" $1
+        owner[letter] = $1
+    }' >"$work/a"
+: >"$work/b"
+same "one letter a name, one name a letter"
+sort -k1,1 "$work/options" | awk '
+    $1 != "help" { n[$1]++; of[$1] = of[$1] " " $NF; letter[$1] = NF == 3 ? $2 " " : "" }
+    END { for (name in n) if (n[name] > 1) print letter[name] "--" name of[name] }' |
+    sort >"$work/a"
+sed -n '/^# SHARED OPTIONS/,/^# FILES/p' "$root/man/clothsim.1.scd" | tr -d '*' | awk '
+    /^-/ { name = $0; sub(/ _.*/, "", name); next }
+    /^\t/ { text = text $0; if (/\.$/) { sub(/.*:/, "", text); gsub(/[,.\t]/, " ", text)
+        gsub(/ +/, " ", text); sub(/ $/, "", text); if (name !~ /--help/) print name text; text = "" } }' |
+    sort >"$work/b"
+same "shared options in clothsim(1)"
+
 sed -n 's/^    X(CS_[A-Z_]*, \([0-9]*\), "\(.*\)").*/\1 \2/p' "$root/src/base/status.h" >"$work/a"
 sed -n '/^# EXIT STATUS/,/^# ENV/p' "$root/man/clothsim.1.scd" |
     awk '/^\*[0-9]+\*$/ { code = $0; gsub(/\*/, "", code) } /^\t/ { sub(/^\t/, ""); print code, $0 }' \

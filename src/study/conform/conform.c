@@ -76,6 +76,7 @@ enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error)
     for (uint32_t k = 0; k < CHECKS && !error->status; k++) {
         if (card->only_checks && !is_in(card->only_checks, checks[k].name))
             continue;
+        // another process may have reported it
         if (card->begin && !card->begin(card->ctx, checks[k].name))
             continue;
         struct cs_conform_row row = {
