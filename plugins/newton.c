@@ -56,7 +56,9 @@ enum cs_step newton_init(struct newton *newton, const struct cs_host *host, doub
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         if (!(*arrays[k] = host->alloc(host->ctx, 3 * n * sizeof(double))))
             return CS_STEP_FAIL;
-    if (CS_HAS(host, lag_friction) && host->lag_friction &&
+    // a host without lagged friction does not know the flag
+    newton->may_fail = CS_HAS(host, lag_friction) ? CS_SOLVE_MAY_FAIL : 0;
+    if (newton->may_fail && host->lag_friction &&
         !(newton->friction = host->alloc(host->ctx, 3 * n * sizeof(double))))
         return CS_STEP_FAIL;
     for (size_t i = 0; i < n; i++)
@@ -118,7 +120,7 @@ static enum cs_step find_direction(struct newton *newton, const struct newton_st
     /* far from the solution only the clamped matrix is sure to give a direction downhill */
     const bool near = newton->norm < NEAR * newton->impulse;
     // lagged friction is convex: its own slope goes downhill
-    const uint32_t flags = CS_SOLVE_MAY_FAIL | (near ? 0 : CS_SOLVE_PSD) |
+    const uint32_t flags = newton->may_fail | (near ? 0 : CS_SOLVE_PSD) |
                            (near || newton->lagged ? 0 : CS_SOLVE_BOUND);
     enum cs_step status =
         host->solve_setup(host->ctx, stage->t, newton->x, newton->v, 1, -stage->s * stage->gv,
@@ -290,7 +292,7 @@ static enum cs_step iterate(struct newton *newton, const struct newton_stage *st
         const double enough = 0.5 * goal / newton->norm;
         const enum cs_step status =
             find_direction(newton, stage, enough > LINEAR_RTOL ? enough : LINEAR_RTOL);
-        newton->linear_failed = status == CS_STEP_FAIL;
+        newton->linear_failed = newton->may_fail && status == CS_STEP_FAIL;
         if (status != CS_STEP_OK)
             return newton->linear_failed ? CS_STEP_OK : status;
         if (!search(newton, stage, u)) {
@@ -357,7 +359,7 @@ enum cs_step newton_step(struct newton *newton, const struct newton_stage *stage
     if (!isfinite(newton->norm))
         return CS_STEP_OK;
     const enum cs_step status = find_direction(newton, stage, newton->rtol);
-    newton->linear_failed = status == CS_STEP_FAIL;
+    newton->linear_failed = newton->may_fail && status == CS_STEP_FAIL;
     if (status != CS_STEP_OK)
         return newton->linear_failed ? CS_STEP_OK : status;
     newton->host->vector->linear_sum(n3, 1, u, 1, newton->du, u);

@@ -77,6 +77,7 @@ struct newton {
     double *zeros;              /* (3,n): stays 0 */
     double *friction;           /* (3,n): lagged friction; NULL: no contact has friction */
     bool lagged;                /* friction is lagged */
+    uint32_t may_fail;          /* CS_SOLVE_MAY_FAIL, or 0 */
     bool linear_failed;         /* a linear solve ended the last solution */
     double norm, impulse;       /* |r| and |M (u - ub)| of the last u, in sqrt(J) */
     double mass;                /* kg, of the free particles */

@@ -364,7 +364,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
     if (cs_terms_have_blocks(system))
         host->setup_v = cs_arena_alloc_array(&host->arena, n3, sizeof(double), error);
     if (cs_linear_init(&host->linear, system, &host->arena, error) ||
-        !begin(host, CS_FEATURE_REBOUNDS))
+        cs_host_init_settling(host, error) || !begin(host, CS_FEATURE_REBOUNDS))
         return error->status;
     host->table.euler_finish = cs_host_euler_finish;
     return cs_rebounds_init(system, &host->arena, error);

@@ -215,13 +215,11 @@ bool cs_host_clamp(struct cs_run_host *host, const double *b) {
 /* Sets the last euler_setup up again with friction by its chord to where the solution dv (3,n)
  * of its b ends. Returns false if nothing depends on it. */
 static bool set_end(struct cs_run_host *host, const double *b, const double *dv) {
-    const struct cs_pairs *pairs = host->run->system->pairs;
     const struct cs_matrix matrix = host->linear.matrix;
-    if (host->run->system->scene->contact.friction_speed >= SETTLED_BELOW) // and cost nothing
+    if (!host->settled || !host->euler.b || b != host->euler.b || !has_chord(host) ||
+        !host->run->system->pairs->current_contacts->n)
         return false;
-    if (!host->euler.b || b != host->euler.b || !has_chord(host) || !pairs ||
-        !pairs->current_contacts->n || cs_scene_friction_sticks(host->run->system->scene))
-        return false;
+    memcpy(host->settled, dv, 3 * sizeof *dv * host->run->system->view.n);
     host->euler.dv = dv;
     set_up(host, &matrix, true);
     host->euler.dv = NULL;
@@ -233,6 +231,16 @@ static bool set_end(struct cs_run_host *host, const double *b, const double *dv)
  * block is dragged beyond the speed of its conveyor with 0.1. */
 #define FRICTION_RESIDUAL 0.3
 #define FRICTION_SOLVES   8
+
+enum cs_status cs_host_init_settling(struct cs_run_host *host, struct cs_error *error) {
+    const struct cs_system *system = host->run->system;
+    if (system->pairs && system->scene->contact.friction_speed < SETTLED_BELOW &&
+        !cs_scene_friction_sticks(system->scene) &&
+        !(host->run->integrator->needs & CS_NEED_LAGGED_FRICTION))
+        host->settled = cs_arena_alloc_array(&host->arena, 3 * (size_t)system->view.n,
+                                             sizeof *host->settled, error);
+    return error->status;
+}
 
 /* Solves A u = b by conjugate gradients. If these meet p.Ap <= 0, A is clamped, the b of
  * euler_setup with it, u starts again from 0, and all iterations count. */
@@ -255,10 +263,16 @@ enum cs_linear_end cs_host_solve_settled(struct cs_run_host *host, const double 
                                          double *u, struct cs_solve_result *result) {
     bool settled = solve_clamped(host, b, rtol, u, result) != CS_LINEAR_DONE;
     const double near = rtol > FRICTION_RESIDUAL ? rtol : FRICTION_RESIDUAL;
-    for (int k = 0; k < FRICTION_SOLVES && !settled && set_end(host, b, u); k++)
+    for (int k = 0; k < FRICTION_SOLVES && !settled && set_end(host, b, u); k++) {
         settled = solve_clamped(host, b, near, u, result) != CS_LINEAR_DONE ||
                   !result->iterations ||
                   solve_clamped(host, b, rtol, u, result) != CS_LINEAR_DONE;
+        if (result->end == CS_LINEAR_DONE)
+            continue;
+        // the solution so far is good; only its friction is not settled
+        memcpy(u, host->settled, 3 * sizeof *u * host->run->system->view.n);
+        result->end = CS_LINEAR_DONE;
+    }
     return result->end;
 }
 

@@ -111,6 +111,8 @@ struct cs_run_host {
     double
         *setup_v; /* (3,n) in m/s: its velocities; NULL: no part of the matrix depends on v */
     struct cs_euler_step euler;
+    double *settled;     /* (3,n) in m/s: the solution before the last one, while friction is
+                            settled; NULL: it never is */
     bool solve_may_fail; /* the method asked for it at the last set-up */
     double *bounds_work; /* (2n) scratch; NULL: no force has bounds at a state alone */
     struct cs_contact_projection contact; /* only with contact by projection */
@@ -266,9 +268,13 @@ struct cs_solve_result {
     double residual;
 };
 
+/* Takes memory to settle friction, if the scene and the method may need it. CS_ERR_MEMORY. */
+enum cs_status cs_host_init_settling(struct cs_run_host *host, struct cs_error *error);
+
 /* Solves the last system, clamped where it is indefinite. One of euler_setup is solved again
  * with friction by its chord to the end of the solution, until that solves the new system too.
- * Contacts of surfaces with a small friction_speed alone need it (contact/friction_chord.h). */
+ * Contacts of surfaces with a small friction_speed alone need it (contact/friction_chord.h). If
+ * a later solve fails, the solution before it stands. */
 enum cs_linear_end cs_host_solve_settled(struct cs_run_host *host, const double *b, double rtol,
                                          double *u, struct cs_solve_result *result);
 

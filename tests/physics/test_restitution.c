@@ -128,7 +128,7 @@ TEST(refused_steps_are_counted) {
 #define PARTICLE                                                                               \
     "{\"bodies\": [{\"cloth\": {\"grid\": [1, 1], \"place\": {\"translate\": [0.1, %.17g, "    \
     "0]}, "                                                                                    \
-    "\"velocity\": [1, %g, 0]}, \"mass\": {\"particle\": 0.01}}], \"contact\": {\"law\": "     \
+    "\"velocity\": [%g, %g, 0]}, \"mass\": {\"particle\": 0.01}}], \"contact\": {\"law\": "    \
     "\"force\", \"stiffness\": 200}, \"forces\": {\"gravity\": [0, 0, 0]}, \"colliders\": "    \
     "[{%s, "                                                                                   \
     "\"thickness\": 0.004}]}"
@@ -137,9 +137,10 @@ static const char *const shapes[] = {
     "\"box\": {\"centre\": [0, -0.5, 0], \"size\": [1, 1, 1], \"radius\": 0.1}",
     "\"capsule\": {\"from\": [-1, -0.5, 0], \"to\": [1, -0.5, 0], \"radius\": 0.5}"};
 
-static double particle_keeps(const char *method, const char *shape, double speed) {
+static double particle_keeps(const char *method, const char *shape, double along,
+                             double speed) {
     struct fixture one;
-    fixture_open(&one, method, PARTICLE, 0.004 + 1.37 * speed / 60, -speed, shape);
+    fixture_open(&one, method, PARTICLE, 0.004 + 1.37 * speed / 60, along, -speed, shape);
     fixture_start(&one);
     const double start = fixture_energy(&one);
     fixture_frames(&one, 5);
@@ -162,10 +163,27 @@ TEST(linearised_steps_keep_the_energy_of_impacts) {
         for (double phase = 1.05; phase < 2; phase += 0.22)
             check(method, &plane, speeds[k / LENGTH(steps)], phase);
         for (size_t o = 0; o < LENGTH(shapes); o++) {
-            const double share = particle_keeps(method, shapes[o], speeds[k / LENGTH(steps)]);
+            const double share =
+                particle_keeps(method, shapes[o], 1, speeds[k / LENGTH(steps)]);
             ck_assert_msg(share > 0.97 && share < 1.02, "%s, %s, %g m/s: %.4f", method,
                           shapes[o], speeds[k / LENGTH(steps)], share);
         }
+    }
+}
+
+/* In the smoothed band between two faces of a box the gradient of the distance is shorter than
+ * 1: with 1 for its length the same throws kept 0.974 to 1.005. */
+TEST(edges_of_boxes_keep_the_energy_of_impacts) {
+    static const char *const methods[] = {"implicit-linearised", "implicit-linearised:dt=0.004",
+                                          "implicit-linearised:dt=0.001"};
+    static const char *const edge =
+        "\"box\": {\"centre\": [0, -0.5, 0], \"size\": [0.4, 1, 1], \"radius\": 0.1}";
+    static const double speeds[] = {1, 2, 5, 10, 20};
+    for (size_t k = 0; k < LENGTH(speeds) * LENGTH(methods); k++) {
+        const char *method = methods[k % LENGTH(methods)];
+        const double speed = speeds[k / LENGTH(methods)];
+        const double share = particle_keeps(method, edge, 0.3, speed);
+        ck_assert_msg(share > 0.985 && share < 1.012, "%s, %g m/s: %.4f", method, speed, share);
     }
 }
 

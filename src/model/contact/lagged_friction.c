@@ -192,10 +192,15 @@ static void add_jvp(const struct cs_system *system, const struct cs_eval *at, do
 
 static void prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
                            bool kept) {
-    struct pass pass = {.lagged = system->lagged_friction, .v = matrix->v, .matrix = matrix};
-    pass.lagged->set.diagonal_bound = !kept && matrix->bound;
-    if (cs_lagged_friction_acts(system))
-        run(&pass);
+    struct cs_lagged_friction *lagged = system->lagged_friction;
+    struct pass pass = {.lagged = lagged, .v = matrix->v, .matrix = matrix};
+    if (!cs_lagged_friction_acts(system))
+        return;
+    lagged->set.diagonal_bound = !kept && matrix->bound;
+    if (kept)
+        lagged->matrix = *matrix;
+    lagged->is_overwritten = !kept;
+    run(&pass);
 }
 
 static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
@@ -206,8 +211,11 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
 }
 
 static void add_product(const struct cs_system *system, const double *p, double *y) {
-    if (cs_lagged_friction_acts(system))
-        cs_contact_set_multiply(&system->lagged_friction->set, p, y);
+    if (!cs_lagged_friction_acts(system))
+        return;
+    if (system->lagged_friction->is_overwritten)
+        prepare_matrix(system, &system->lagged_friction->matrix, true);
+    cs_contact_set_multiply(&system->lagged_friction->set, p, y);
 }
 
 /* A row of w_k w_j B has the norm |w_k| sum |w_j| mu N / s. */

@@ -36,6 +36,8 @@ struct cs_lagged_friction {
     struct cs_contact_set set;      /* particles, weights, forces and blocks */
     struct cs_lagged_chunk *chunks; /* (set.n_chunks) */
     bool is_active;                 /* it acts, instead of the friction of the contact forces */
+    struct cs_matrix matrix;        /* of the last set-up of the solver */
+    bool is_overwritten;            /* the set's blocks are those of another matrix */
 };
 
 /* Prepares an empty store for the contact forces of a built system, appends its term to

@@ -40,8 +40,8 @@ enum cs_status cs_rebounds_init(struct cs_system *system, struct cs_arena *arena
     return error->status;
 }
 
-/* One particle before one collider at the begin of a step. Lengths along g, from the surface
- * outwards. */
+/* One particle before one collider at the begin of a step, with d as its coordinate: as d' =
+ * g.v, its mass along d is m/g.g, and its force g.f/g.g. */
 struct flight {
     double mass, h;           /* kg, s */
     double range, k, damping; /* m, N/m, s: the law */
@@ -155,7 +155,15 @@ struct search {
  * itself, and gradient of the distance. */
 struct start {
     double v[3], own[3], g[3];
+    double square; /* g.g */
 };
+
+/* g.g, below 1 in the smoothed bands at the edges of a box; exactly 1 where it is but for
+ * rounding. */
+static double squared_gradient(const double g[3]) {
+    const double square = cs_vec3_dot(g, g);
+    return fabs(square - 1) < 1e-12 ? 1 : square;
+}
 
 /* Sets *start and *flight of particle i. Returns false if it cannot come into range. */
 static bool approach(const struct search *search, size_t i, struct start *start,
@@ -186,14 +194,16 @@ static bool approach(const struct search *search, size_t i, struct start *start,
     cs_posed_collider_velocity(&near->collider, p, w);
     for (int c = 0; c < 3; c++)
         start->v[c] = v[c] - w[c];
-    *flight = (struct flight){.mass = m,
-                              .h = h,
-                              .range = near->params.range,
-                              .k = near->params.k,
-                              .damping = near->damping};
+    *flight = (struct flight){
+        .h = h, .range = near->params.range, .k = near->params.k, .damping = near->damping};
     flight->d = cs_posed_collider_smooth_distance(&near->collider, p, start->g, hessian);
+    start->square = squared_gradient(start->g);
+    if (!(start->square > 0))
+        return false;
+    flight->mass = m / start->square;
     flight->u = cs_vec3_dot(start->g, start->v);
-    flight->other = cs_vec3_dot(start->g, f) - cs_vec3_dot(start->g, start->own);
+    flight->other =
+        (cs_vec3_dot(start->g, f) - cs_vec3_dot(start->g, start->own)) / start->square;
     return true;
 }
 
@@ -207,28 +217,29 @@ static void find(const struct search *search, size_t i) {
     double tangent[3];
     if (!approach(search, i, &start, &flight))
         return;
-    const double *g = start.g, m = flight.mass, h = flight.h;
-    const double energy =
-        0.5 * m * flight.u * flight.u + cs_barrier_energy(flight.d, flight.range, flight.k);
+    const double *g = start.g, square = start.square, h = flight.h;
+    const double m = search->system->mass[i];
+    const double energy = 0.5 * flight.mass * flight.u * flight.u +
+                          cs_barrier_energy(flight.d, flight.range, flight.k);
     if (!rebounds(&flight, energy))
         return;
-    const double impulse = m * (flight.w1 - flight.u) - h * flight.other;
+    const double impulse = flight.mass * (flight.w1 - flight.u) - h * flight.other;
     for (int c = 0; c < 3; c++)
-        tangent[c] = start.v[c] - flight.u * g[c];
+        tangent[c] = start.v[c] - flight.u * g[c] / square;
     memcpy(rebound->g, g, sizeof rebound->g);
     rebound->collider = search->collider + 1;
     rebound->stiffness = cs_barrier_at(flight.d1, flight.range, flight.k).stiffness;
-    const double left =
-        speed_left(&search->near, m, impulse, sqrt(cs_vec3_dot(tangent, tangent)));
+    const double left = speed_left(&search->near, m, sqrt(square) * impulse,
+                                   sqrt(cs_vec3_dot(tangent, tangent)));
     rebound->drag = m / h * (1 / left - 1);
-    rebound->displacement = flight.d1 - flight.d - h * flight.w1;
+    rebound->displacement = (flight.d1 - flight.d - h * flight.w1) / square;
     rebound->distance = flight.d1;
     rebound->energy = energy;
     // the force of the step's begin is among all forces, and is taken out
     const double along = impulse + h * h * rebound->stiffness * (flight.w1 - flight.u);
     for (size_t c = 0; c < 3; c++) {
         rebound->impulse[c] = along * g[c] - h * rebound->drag * tangent[c] - h * start.own[c];
-        change[c * n] = (flight.w1 - flight.u) * g[c] - (1 - left) * tangent[c];
+        change[c * n] = (flight.w1 - flight.u) * g[c] / square - (1 - left) * tangent[c];
     }
 }
 
@@ -310,7 +321,7 @@ void cs_rebound_add_block(const struct cs_rebound *rebound, const struct cs_matr
                           double b[6]) {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const double drag = -matrix->cd * rebound->drag;
-    const double along = -matrix->ck * rebound->stiffness - drag;
+    const double along = -matrix->ck * rebound->stiffness - drag / squared_gradient(rebound->g);
     for (int e = 0; e < 6; e++)
         b[e] += along * rebound->g[row[e]] * rebound->g[column[e]] +
                 (row[e] == column[e] ? drag : 0);

@@ -13,10 +13,12 @@
  *
  *   m w' = F(d) - tau K w + f0        over h, by Verlet, gives d1, w1, J = m (w1 - u) - h f0
  *
- * The particle is in impact if |f0| h < J/2, or it leaves with a momentum above 2 |f0| h, which
- * a linear law would hold back; and if the linear model misses more than 0.01 E: of the energy
- * of contact along the way without contact, or along its own way, or of the whole energy
- * against that of the flight. Then, with K1 = K(d1), contact has in A dv = b
+ * with m/g.g for m and g.f/g.g for forces where g is no unit vector, as in the smoothed bands
+ * at the edges of a box. The particle is in impact if |f0| h < J/2, or it leaves with a
+ * momentum above 2 |f0| h, which a linear law would hold back; and if the linear model misses
+ * more than 0.01 E: of the energy of contact along the way without contact, or along its own
+ * way, or of the whole energy against that of the flight. Then, with K1 = K(d1), contact has in
+ * A dv = b
  *
  *   block   h^2 K1 g g' + h r (I - g g')
  *   b       (J + h^2 K1 (w1 - u)) g - h r T,    T the velocity along the surface

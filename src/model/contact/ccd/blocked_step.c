@@ -8,6 +8,7 @@
 #include "model/contact/ccd/step_limit.h"
 #include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
+#include "model/contact/rebound_list.h"
 #include "model/contact/step_check.h"
 #include "model/contact/surface_points.h"
 #include "model/system/surfaces.h"
@@ -143,6 +144,8 @@ static bool print_point(const struct cs_blocked_step *blocked, const struct cs_s
                                             .x1 = blocked->x + 3 * (size_t)system->view.n};
             struct point_search search = {.step = &step, .collider = c, .y = HUGE_VAL};
             cs_collider_step_set(&step, system, c, blocked->t[0], blocked->t[1]);
+            if (system->rebounds && !samples)
+                step.unresolved_max = CS_UNRESOLVED_BESIDE_REBOUNDS;
             if (samples)
                 try_samples(system, &search);
             else
