@@ -51,7 +51,9 @@ static enum cs_step fail_at_shortest_part(struct fixed_step *self, double t, dou
         return self->host->fail(self->host->ctx,
                                 "a stable step at t = %.9g s is shorter than %.3g s, which is "
                                 "the step after %d halvings: contact or its friction is too "
-                                "stiff there for an explicit method",
+                                "stiff there for an explicit method; a larger "
+                                "contact.friction_speed, an implicit method or one with error "
+                                "control may get through",
                                 t, h, MOST_CUTS);
     return self->host->fail(self->host->ctx,
                             "a step of %.3g s at t = %.9g s, after %d halvings, still misses "

@@ -1,5 +1,6 @@
 #include "fixture.h"
 
+#include "model/contact/barrier_law.h"
 #include "model/force/diagnostics.h"
 
 #include <math.h>
@@ -74,4 +75,30 @@ void ck_bits(const double *a, const double *b, size_t n, const char *what) {
     for (size_t i = 0; i < n; i++)
         ck_assert_msg(!memcmp(a + i, b + i, sizeof *a), "%s: value %zu is %.17g and %.17g",
                       what, i, a[i], b[i]);
+}
+
+#define SLOPE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"size\": [0.1, 0.1], \"start\": \"flat\","  \
+    " \"place\": {\"translate\": [%.17g, %.17g, 0], \"rotate\": [0, 0, %.17g, %.17g]}},"       \
+    " \"mass\": {\"total\": 0.1}, \"springs\": {\"stretch\": 1000, \"shear\": 500, \"bend\": " \
+    "0, \"damping\": 1}}], \"colliders\": [{\"plane\": {\"point\": [0, 0, 0], \"normal\": "    \
+    "[%.17g, %.17g, 0]}, \"thickness\": 0.02, \"friction\": 0.3}], \"contact\": {\"law\": "    \
+    "\"force\", \"start\": \"allow\", \"friction_law\": \"%s\", \"stiffness\": 1000, "         \
+    "\"damping\": 0.001}, \"events\": [%s]}"
+
+void fixture_open_slope(struct fixture *block, const char *method, const char *law,
+                        double tangent, const char *events) {
+    const double a = atan(tangent), n[2] = {sin(a), cos(a)};
+    const double d = cs_barrier_loaded_distance(0.02, 1000, 0.025 * 9.81 * cos(a));
+    fixture_open(block, method, SLOPE, n[0] * d, n[1] * d, -sin(a / 2), cos(a / 2), n[0], n[1],
+                 law, events);
+    fixture_start(block);
+}
+
+double fixture_sliding(const struct fixture *block, double tangent) {
+    const double a = atan(tangent);
+    double sum = 0;
+    for (size_t i = 0; i < block->n; i++)
+        sum += cos(a) * block->v[i] - sin(a) * block->v[block->n + i];
+    return sum / (double)block->n;
 }

@@ -43,32 +43,6 @@ TEST(law_is_one_function) {
         cs_barrier_energy(CS_BARRIER_CORE * range, range, k) / (k * range * range), 83, 0.005);
 }
 
-/* A square of four particles of 25 g on a slope, or a belt; %g: tangent of the slope, ... */
-#define SLOPE                                                                                  \
-    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"size\": [0.1, 0.1], \"start\": \"flat\","  \
-    " \"place\": {\"translate\": [%.17g, %.17g, 0], \"rotate\": [0, 0, %.17g, %.17g]}},"       \
-    " \"mass\": {\"total\": 0.1}, \"springs\": {\"stretch\": 1000, \"shear\": 500, \"bend\":"  \
-    " 0, \"damping\": 1}}], \"colliders\": [{\"plane\": {\"point\": [0, 0, 0], \"normal\":"    \
-    " [%.17g, %.17g, 0]}, \"thickness\": 0.02, \"friction\": 0.3}], \"events\": [%s],"         \
-    " \"contact\": {\"law\": \"force\", \"stiffness\": 1000, \"damping\": 0.001}}"
-
-static void open_slope(struct fixture *block, const char *integrator, double tangent,
-                       const char *events) {
-    const double a = atan(tangent), n[2] = {sin(a), cos(a)};
-    const double d = cs_barrier_loaded_distance(0.02, 1000, 0.025 * G * cos(a));
-    fixture_open(block, integrator, SLOPE, n[0] * d, n[1] * d, -sin(a / 2), cos(a / 2), n[0],
-                 n[1], events);
-    fixture_start(block);
-}
-
-/* mean velocity down the slope */
-static double sliding(const struct fixture *block, double tangent) {
-    double sum = 0;
-    for (size_t i = 0; i < block->n; i++)
-        sum += cos(atan(tangent)) * block->v[i] - sin(atan(tangent)) * block->v[block->n + i];
-    return sum / (double)block->n;
-}
-
 TEST(blocks_slide_and_creep_as_the_law_says) {
     const double ev = 1e-3, mu = 0.3;
     const struct methods methods =
@@ -82,11 +56,11 @@ TEST(blocks_slide_and_creep_as_the_law_says) {
             if (fabs(tangent - mu) < 0.01)
                 continue;
             struct fixture block;
-            open_slope(&block, methods.list[m].text, tangent, "");
+            fixture_open_slope(&block, methods.list[m].text, "smooth", tangent, "");
             fixture_frames(&block, 15);
-            const double before = sliding(&block, tangent);
+            const double before = fixture_sliding(&block, tangent);
             fixture_frames(&block, 15);
-            const double v = sliding(&block, tangent);
+            const double v = fixture_sliding(&block, tangent);
             const double cosine = cos(atan(tangent));
             if (tangent > mu)
                 ck_assert_msg(fabs((v - before) / 0.25 - G * cosine * (tangent - mu)) <
@@ -107,18 +81,18 @@ TEST(belts_carry_what_lies_on_them) {
                                           "backward-euler:dt=0.004", "xpbd:dt=0.004"};
     for (size_t m = 0; m < LENGTH(methods); m++) {
         struct fixture block;
-        open_slope(
-            &block, methods[m], 0,
+        fixture_open_slope(
+            &block, methods[m], "smooth", 0,
             "{\"from\": 0, \"to\": 1, \"move\": {\"collider\": 0, \"path\": [{\"at\": 1, "
             "\"point\": [0.5, 0, 0]}]}}");
         fixture_frames(&block, 6);
         // mu g t until it has the belt's 0.5 m/s
-        const double early = sliding(&block, 0);
+        const double early = fixture_sliding(&block, 0);
         ck_assert_msg(fabs(early - 0.3 * G * 0.1) < 0.01 * 0.3 * G * 0.1, "%s: %g m/s",
                       methods[m], early);
         fixture_frames(&block, 24);
-        ck_assert_msg(fabs(sliding(&block, 0) - 0.5) < 1e-3, "%s: %g m/s", methods[m],
-                      sliding(&block, 0));
+        ck_assert_msg(fabs(fixture_sliding(&block, 0) - 0.5) < 1e-3, "%s: %g m/s", methods[m],
+                      fixture_sliding(&block, 0));
         fixture_close(&block);
     }
 }

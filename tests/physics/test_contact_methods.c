@@ -46,10 +46,10 @@ static const struct {
     const char *name;
     double budget; /* s of processor time a scene; 0: the method must end */
 } hard_methods[] = {{"implicit-linearised", 0},
-                    {"backward-euler", 60},
-                    {"newmark", 60},
-                    {"velocity-verlet", 60},
-                    {"cvode-bdf", 60}};
+                    {"backward-euler", 20},
+                    {"newmark", 20},
+                    {"velocity-verlet", 20},
+                    {"cvode-bdf", 20}};
 static const struct meeting hard[] = {
     {.scene = "hard/star", .frames = 120},
     {.scene = "hard/needles", .frames = 120},

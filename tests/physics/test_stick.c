@@ -15,38 +15,6 @@
 /* anchors follow at each step, so methods with error control get a tolerance */
 #define RTOL 1e-6
 
-/* A square of four particles of 25 g at its height of balance on a slope, or a belt; %g: places
- * and directions by the slope, then events. */
-#define CONTACT                                                                                \
-    "\"contact\": {\"law\": \"force\", \"start\": \"allow\", \"friction_law\": \"stick\", "    \
-    "\"stiffness\": 1000, "                                                                    \
-    "\"damping\": 0.001}"
-#define SLOPE                                                                                  \
-    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"size\": [0.1, 0.1], \"start\": \"flat\","  \
-    " \"place\": {\"translate\": [%.17g, %.17g, 0], \"rotate\": [0, 0, %.17g, %.17g]}},"       \
-    " \"mass\": {\"total\": 0.1}, \"springs\": {\"stretch\": 1000, \"shear\": 500, \"bend\": " \
-    "0, \"damping\": 1}}], \"colliders\": [{\"plane\": {\"point\": [0, 0, 0], \"normal\": "    \
-    "[%.17g, %.17g, 0]}, \"thickness\": 0.02, \"friction\": 0.3}], \"events\": [%s], " CONTACT \
-    "}"
-
-static void open_slope(struct fixture *block, const char *integrator, double tangent,
-                       const char *events) {
-    const double a = atan(tangent), n[2] = {sin(a), cos(a)};
-    const double d = cs_barrier_loaded_distance(0.02, 1000, 0.025 * G * cos(a));
-    fixture_open(block, integrator, SLOPE, n[0] * d, n[1] * d, -sin(a / 2), cos(a / 2), n[0],
-                 n[1], events);
-    fixture_start(block);
-}
-
-/* m/s, mean velocity down the slope */
-static double sliding(const struct fixture *block, double tangent) {
-    const double a = atan(tangent);
-    double sum = 0;
-    for (size_t i = 0; i < block->n; i++)
-        sum += cos(a) * block->v[i] - sin(a) * block->v[block->n + i];
-    return sum / (double)block->n;
-}
-
 static double furthest(const double *a, const double *b, size_t n) {
     double most = 0;
     for (size_t i = 0; i < n; i++)
@@ -64,7 +32,7 @@ TEST(rest_is_exact) {
         const struct method_asked *method = methods.list + m;
         struct fixture block;
         double x[12], anchors[12];
-        open_slope(&block, method->text, 0.2, "");
+        fixture_open_slope(&block, method->text, "stick", 0.2, "");
         fixture_frames(&block, 60);
         memcpy(x, block.x, sizeof x);
         ck_assert_uint_eq(block.system->friction_anchors->n_values, 12);
@@ -87,11 +55,11 @@ TEST(sliding_is_coulombs) {
     for (size_t m = 0; m < methods.n; m++)
         for (double tangent = 0.4; tangent < 0.55; tangent += 0.1) {
             struct fixture block;
-            open_slope(&block, methods.list[m].text, tangent, "");
+            fixture_open_slope(&block, methods.list[m].text, "stick", tangent, "");
             fixture_frames(&block, 15);
-            const double before = sliding(&block, tangent);
+            const double before = fixture_sliding(&block, tangent);
             fixture_frames(&block, 15);
-            const double found = (sliding(&block, tangent) - before) / 0.25;
+            const double found = (fixture_sliding(&block, tangent) - before) / 0.25;
             const double expected = G * cos(atan(tangent)) * (tangent - 0.3);
             ck_assert_msg(fabs(found - expected) < 1e-6, "%s: slope %.1f, off by %.3g m/s2",
                           methods.list[m].text, tangent, found - expected);
@@ -154,9 +122,9 @@ TEST(belts_carry) {
     for (size_t m = 0; m < methods.n; m++) {
         const char *name = methods.list[m].text;
         struct fixture block;
-        open_slope(&block, name, 0, belt);
+        fixture_open_slope(&block, name, "stick", 0, belt);
         fixture_frames(&block, 6);
-        const double early = sliding(&block, 0);
+        const double early = fixture_sliding(&block, 0);
         ck_assert_msg(fabs(early - 0.3 * G * 0.1) < 0.06 * 0.3 * G, "%s: %g m/s", name, early);
         fixture_frames(&block, 24);
         const double before = block.x[0];
@@ -170,7 +138,7 @@ TEST(belts_carry) {
 /* m, the way of a block that starts on a slope at a speed across it, in steps of a frame */
 static void path_of(const char *method, double tangent, double across, double way[3]) {
     struct fixture block;
-    open_slope(&block, method, tangent, "");
+    fixture_open_slope(&block, method, "stick", tangent, "");
     const double x[3] = {block.x[0], block.x[4], block.x[8]};
     for (size_t i = 0; i < 4; i++)
         block.v[8 + i] = across;
