@@ -83,7 +83,7 @@ def twist():
         angle = 2 * math.pi * k / AROUND
         events += [turn(k, angle, 1), turn((ALONG - 1) * AROUND + k, angle, -1)]
     return {"bodies": [{"mesh": {"file": "tube.obj"}, "mass": {"areal_density": 0.2},
-                        "springs": SPRINGS, "thickness": THIN, "self_contact": True,
+                        "springs": {"stretch": 100, "bend": 1, "damping": 0.01}, "thickness": THIN, "self_contact": True,
                         "friction": 0.3}],
             "forces": {"gravity": [0, 0, 0]}, "events": events}
 
@@ -100,7 +100,7 @@ def scenes():
                      "place": {"translate": [0, 0.054, 0]}},
             "network": {"placement": "opposed-normals", "springs": 4, "surface": 4, "seed": 3},
             "mass": {"total": 0.2}, "springs": {"stretch": 400, "bend": 0, "damping": 0.05},
-            "friction": 0.3, "thickness": THIN}
+            "thickness": THIN}
     return {
         "star": ("A sheet falls on a star of spikes, folds over it and rests on points and edges.",
                  {"bodies": [sheet(0.45)], "colliders": [
@@ -160,7 +160,7 @@ def more():
     hard = {"friction": 0.3, "thickness": THIN}
     soft = {"network": {"placement": "opposed-normals", "springs": 4, "surface": 4, "seed": 3},
             "mass": {"total": 0.2}, "springs": {"stretch": 400, "bend": 0, "damping": 0.05},
-            "friction": 0.3, "thickness": THIN}
+            "thickness": THIN}
     moved = lambda k, to, **path: {"from": 0, "to": to, "move": {"collider": k} | path}
     tip = (0.2798, 0.1159, 0.3647, 0.8805)
     ringed = lambda x, turn: mesh("torus", [0.2, 0.2, 0.2], [x, 0, 0], turn) | soft | {

@@ -136,8 +136,8 @@ static const struct {
      "the body meets no surface, expected self_contact true, pairs, or contact.law force with "
      "a mesh"},
     {"bodies[].friction", meets_itself,
-     "it is of the body on itself, expected self_contact true; for obstacles "
-     "colliders[].friction"},
+     "it is of the body on itself, expected self_contact true; for other bodies "
+     "pairs.friction, for obstacles colliders[].friction"},
     {"bodies[].strain_limit_sweeps", limits_strain, "expected strain_limit"},
     {"bodies[].strain_limit", NULL, NULL},
     {"bodies[].material.texture_repeat", has_texture, "expected material.texture"},
