@@ -13,6 +13,13 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Fails with a message about the scene, at the place in its file that the message names. */
+static enum cs_status refuse(const struct cs_session *session, enum cs_status status,
+                             const char *message, struct cs_error *error) {
+    return cs_scene_refuse(&session->scene, session->settings.overrides,
+                           session->settings.n_overrides, status, message, error);
+}
+
 /* Reads the scene with its overrides, from the text or from a path that may name an installed
  * one. */
 static enum cs_status read_scene(struct cs_session *session, struct cs_error *error) {
@@ -43,8 +50,7 @@ static enum cs_status check_quotes(const struct cs_method *method,
 static enum cs_status set_options_of_scene(struct cs_session *session, const char *pairs,
                                            struct cs_error *error) {
     const struct cs_setting *options = session->scene.integrator_settings.items;
-    char place[512];
-    snprintf(place, sizeof place, "%s: integrator.", session->scene.path);
+    struct cs_error said = {0};
     for (uint32_t k = 0; k < session->scene.integrator_settings.n; k++)
         if (check_quotes(&session->method, options + k, error) ||
             cs_method_set(&session->method, options[k].name, options[k].value, options[k].place,
@@ -53,7 +59,9 @@ static enum cs_status set_options_of_scene(struct cs_session *session, const cha
     // what the command line gives may make an option of the scene idle: that is no mistake
     if (pairs || session->settings.has_all_values)
         session->method.given = 0;
-    return cs_method_check(&session->method, place, CS_ERR_SCENE, error);
+    return cs_method_check(&session->method, "integrator.", CS_ERR_SCENE, &said)
+               ? refuse(session, said.status, said.message, error)
+               : CS_OK;
 }
 
 /* Finds the requested method, or the scene's own. The scene's options apply if the scene names
@@ -64,18 +72,22 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
     struct cs_method *method = &session->method;
     struct cs_error missing = {0};
     /* a module file is code: it is run where the user names it, and never by a scene */
-    if (!asked && strchr(scene->integrator, '/'))
-        return cs_fail(
-            error, CS_ERR_SCENE,
-            "%s: integrator: found \"%.60s\", expected a name: a module file is given "
-            "with --integrator or --plugin",
-            scene->path, scene->integrator);
+    if (!asked && strchr(scene->integrator, '/')) {
+        cs_fail(&missing, CS_ERR_SCENE,
+                "integrator: found \"%.60s\", expected a name: a module file is given with "
+                "--integrator or --plugin",
+                scene->integrator);
+        return refuse(session, CS_ERR_SCENE, missing.message, error);
+    }
     if (cs_method_find(method, &session->registry, asked ? asked : scene->integrator, &pairs,
                        &missing)) {
-        const bool by_scene = !asked && missing.status == CS_ERR_USAGE;
-        return cs_fail(error, by_scene ? CS_ERR_SCENE : missing.status, "%s%s%s",
-                       by_scene ? scene->path : "", by_scene ? ": integrator: " : "",
-                       missing.message);
+        struct cs_text message = {0};
+        if (asked || missing.status != CS_ERR_USAGE)
+            return cs_fail(error, missing.status, "%s", missing.message);
+        cs_text_add(&message, "integrator: %s", missing.message);
+        refuse(session, CS_ERR_SCENE, cs_text_get(&message), error);
+        cs_text_finish(&message);
+        return error->status;
     }
     if (!strcmp(method->integrator->name, scene->integrator) &&
         set_options_of_scene(session, pairs, error))
@@ -112,7 +124,7 @@ static enum cs_status check_method(const struct cs_session *session, struct cs_e
     const bool render = session->settings.render;
     struct cs_error said = {0};
     if (!session->settings.method && cs_plan_check(&session->scene, method, &said))
-        return cs_fail(error, said.status, "%s: %s", session->scene.path, said.message);
+        return refuse(session, said.status, said.message, error);
     if (render && session->scene.render.look == CS_LOOK_GOALS && !cs_run_has_goals(method))
         return cs_fail(error, CS_ERR_SCENE,
                        "%s: render.look: integrator \"%s\" has no goals to draw",
@@ -192,9 +204,8 @@ enum cs_status cs_session_build(struct cs_session *session, struct cs_error *err
     struct cs_error said = {0};
     // what only the built system tells is a fault of the scene too
     if (cs_system_build(&session->system, &session->scene, &session->plan, &said))
-        return said.status == CS_ERR_SCENE
-                   ? cs_fail(error, said.status, "%s: %s", session->scene.path, said.message)
-                   : cs_fail(error, said.status, "%s", said.message);
+        return said.status == CS_ERR_SCENE ? refuse(session, said.status, said.message, error)
+                                           : cs_fail(error, said.status, "%s", said.message);
     if (cs_initial_penetration_resolve(&session->system, &session->initial_penetration, error))
         return error->status;
     if (session->settings.perturbation > 0)

@@ -281,6 +281,29 @@ done:
     return status;
 }
 
+enum cs_status cs_scene_refuse(const struct cs_scene *scene,
+                               const struct cs_override *overrides, uint32_t n_overrides,
+                               enum cs_status status, const char *message,
+                               struct cs_error *error) {
+    const struct cs_json *value = NULL;
+    struct cs_json *root = NULL;
+    struct cs_error unread = {0};
+    char path[CS_TEXT_MAX];
+    snprintf(path, sizeof path, "%.*s", (int)strcspn(message, ": "), message);
+    if (message[strlen(path)] == ':' && !parse(scene, &root, &unread) &&
+        !apply_overrides(root, overrides, n_overrides, &unread))
+        value = cs_json_nearest(root, path);
+    if (!value || value == root) {
+        cs_fail(error, status, "%s: %s", scene->path, message);
+    } else {
+        struct cs_json_context context = {
+            .name = scene->path, .text = scene->text, .error = error};
+        cs_json_context_fail(&context, value, false, "%s", message);
+    }
+    cs_json_destroy(root);
+    return error->status;
+}
+
 /* Reads the scene from standard input. */
 static enum cs_status read_input(struct cs_scene *scene, const struct cs_override *overrides,
                                  uint32_t n_overrides, struct cs_error *error) {

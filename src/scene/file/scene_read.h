@@ -26,6 +26,14 @@ enum cs_status cs_scene_read_text(struct cs_scene *scene, const char *path, cons
                                   size_t bytes, const struct cs_override *overrides,
                                   uint32_t n_overrides, struct cs_error *error);
 
+/* Fails with a message about a scene that has been read: `file:line:column: message` with the
+ * position of the value that the message names by a path before its first colon, or of the
+ * nearest above it; `--set message` where an override gave that value, else `file: message`. */
+enum cs_status cs_scene_refuse(const struct cs_scene *scene,
+                               const struct cs_override *overrides, uint32_t n_overrides,
+                               enum cs_status status, const char *message,
+                               struct cs_error *error);
+
 /* Prints a complete scene, the schema and the manual from the same tables. */
 
 /* Adds the scene as JSON with every value present (absent optional ones left out), indented by
