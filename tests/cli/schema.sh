@@ -60,6 +60,59 @@ for name, path in cases:
     if by_program != by_schema:
         failed += 1
         print("%s: program %s, schema %s" % (name, by_program, by_schema))
+# each key that has a short form, in both forms: the schema takes them, and the program reads the
+# same from the file and from --set
+particles = [["\"top-left\"", "{\"at\": \"top-left\"}"], ["3", "{\"index\": 3}"]]
+forms = {"contact": [["\"force\"", "{\"law\": \"force\"}"]],
+         "pairs": [["\"all\"", "{\"among\": \"all\"}"]],
+         "camera": [["\"auto\"", "{\"frame\": \"auto\"}"]],
+         "render.background": [["\"none\"", "{\"kind\": \"none\"}"],
+                               ["[0.1, 0.2, 0.3]", "{\"colour\": [0.1, 0.2, 0.3]}"]],
+         "integrator": [["\"rk4\"", "{\"name\": \"rk4\"}"]]}
+forms |= {path: particles for path in (
+    "bodies[].pins[]", "seams[].particles[]", "seams[].to.particles[]", "events[].impact.particles[]",
+    "events[].grab.particles[]", "events[].pin.particles[]", "events[].release.particles[]")}
+def short_keys(node, path):
+    found = {path} if "anyOf" in node else set()
+    for name, child in node.get("properties", {}).items():
+        found |= short_keys(child, path + "." * bool(path) + name)
+    return found | (short_keys(node["items"], path + "[]") if isinstance(node.get("items"), dict) else set())
+unknown = short_keys(schema, "") ^ set(forms)
+if unknown:
+    failed += 1
+    print("short forms of the schema and of this test differ: %s" % sorted(unknown))
+def base(path):
+    scene = {"bodies": [{"cloth": {"grid": [3, 3], "place": {"translate": [2.0 * k, 0, 0]}},
+                         "mass": {"total": 1}, "pins": [8]} for k in range(2)], "render": {}}
+    if path.startswith("seams"):
+        scene["seams"] = [{"body": 0, "particles": [4], "to": {"body": 1, "particles": [4]}}]
+    if path.startswith("events"):
+        kind = path.split(".")[1]
+        more = {"impact": {"direction": [1, 0, 0]}, "grab": {"path": [{"at": 1, "point": [0, 1, 0]}]}}
+        scene["events"] = [{"at": 0.5, kind: {"body": 0, "particles": [4]} | more.get(kind, {})}]
+    return scene
+def place(scene, path, value):
+    *way, last = path.replace("[]", ".0").split(".")
+    for step in way:
+        scene = scene[int(step)] if step == "0" else scene[step]
+    scene[int(last) if last == "0" else last] = value
+def resolved(scene, *options):
+    path = folder + "/form.json"
+    json.dump(scene, open(path, "w"))
+    return subprocess.run([program, "scene", path, "--resolved", *options], capture_output=True, text=True).stdout
+for path, pairs in forms.items():
+    for pair in pairs:
+        read = []
+        for text in pair:
+            scene = base(path)
+            place(scene, path, json.loads(text))
+            read += [resolved(scene), resolved(base(path), "--set", path.replace("[]", "[0]") + "=" + text)]
+            if not validator.is_valid(scene):
+                failed += 1
+                print("%s = %s: the schema refuses it" % (path, text))
+        if not read[0] or len(set(read)) != 1 or read[0] == resolved(base(path)):
+            failed += 1
+            print("%s: %s are not read alike" % (path, " and ".join(pair)))
 good = sum(validator.is_valid(json.load(open(path))) for _, path in cases)
 print("%d passed, %d failed" % (len(cases) - failed, failed))
 sys.exit(1 if failed or good < 10 or good == len(cases) else 0)
