@@ -1,9 +1,9 @@
 /* energy_ledger.c - keeps the energy balance of a run, step by step; the equations are in
  * energy_ledger.h.
  *
- * A step costs two evaluations of all forces and, for each column of work, three of the
- * forces in it. With events the work of pins takes three more evaluations, and the drift of
- * values measures all energies six times. */
+ * A step costs two evaluations of all forces, three of contact between surfaces, and three of
+ * the forces in each column of work. With events the work of pins takes three more
+ * evaluations, and the drift of values measures all energies six times. */
 #include "sim/energy_ledger.h"
 
 #include "base/table.h"
@@ -102,24 +102,11 @@ double cs_energy_ledger_sum(const struct cs_energy_ledger *ledger) {
     return sum_of(ledger->energies);
 }
 
-/* f (3,n) = the chosen parts at (t, x, v), on pinned particles too: the pin carries this
- * force, and does work if it moves. A copy of the system without pins gives them; normals are
- * those of x. */
-static void find_force(const struct cs_system *system, double t, const double *x,
-                       const double *v, uint32_t parts, double *f) {
-    struct cs_system free = *system;
-    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts};
-    free.n_pinned = 0;
-    if (cs_terms_need_normals(&free, parts))
-        cs_normals_update(&free, x);
-    cs_terms_force(&free, &at, f);
-}
-
 /* a (3,n) = M^-1 f in m/s2, 0 for pinned particles. */
 static void find_acceleration(const struct cs_energy_ledger *ledger, double t, const double *x,
                               const double *v, double *a) {
     const size_t n = ledger->system->view.n;
-    find_force(ledger->system, t, x, v, CS_PART_ALL, a);
+    cs_diagnostics_force(ledger->system, t, x, v, CS_PART_ALL, a);
     for (size_t k = 0; k < 3 * n; k++)
         a[k] *= ledger->system->inv_mass[k % n];
 }
@@ -255,8 +242,8 @@ static double find_pins(const struct cs_energy_ledger *ledger, double t) {
     const struct cs_system *system = ledger->system;
     const size_t n = system->view.n, n3 = 3 * n;
     double power = 0;
-    find_force(system, t, ledger->trial_state, ledger->trial_state + n3, CS_PART_ALL,
-               ledger->force);
+    cs_diagnostics_force(system, t, ledger->trial_state, ledger->trial_state + n3, CS_PART_ALL,
+                         ledger->force);
     for (uint32_t p = 0; p < system->n_pinned; p++)
         for (size_t k = system->pinned[p]; k < n3; k += n)
             power -= ledger->force[k] * ledger->trial_state[n3 + k];
@@ -272,19 +259,24 @@ static void choose_forces(const struct cs_energy_ledger *ledger, uint32_t column
             some->terms[some->n_terms++] = cs_terms[k];
 }
 
-/* Adds the work of the forces without an energy at one node of the quadrature. time: its
- * weight times h, in s. */
+/* Adds the work of the forces without an energy at one node of the quadrature, and the angular
+ * impulse of those between surfaces. time: its weight times h, in s. */
 static void add_forces(struct cs_energy_ledger *ledger, double t, double time) {
     struct cs_system some = *ledger->system;
     const size_t n3 = length_of(ledger);
-    const double *v = ledger->trial_state + n3;
+    const double *x = ledger->trial_state, *v = x + n3;
     for (uint32_t c = 0; c < CS_WORKS_MAX; c++) {
         choose_forces(ledger, c, &some);
         if (!some.n_terms)
             continue;
-        find_force(&some, t, ledger->trial_state, v, CS_PART_WITHOUT_ENERGY, ledger->force);
+        cs_diagnostics_force(&some, t, x, v, CS_PART_WITHOUT_ENERGY, ledger->force);
         ledger->work[c] += time * dot(n3, ledger->force, v);
     }
+    if (!some.pairs)
+        return;
+    some.n_terms = 1, some.terms[0] = &cs_term_pairs;
+    cs_diagnostics_force(&some, t, x, v, CS_PART_WITHOUT_ENERGY, ledger->force);
+    cs_diagnostics_add_moment(&some, NULL, time, x, ledger->force, ledger->couple);
 }
 
 /* Adds all works at one node of the quadrature, at time t and with weight `time` in s. Pins
@@ -385,7 +377,7 @@ void cs_energy_ledger_print_head(struct cs_text *out) {
     add_columns(&energies, NULL, out);
     cs_text_add(out, ",sum");
     add_columns(&work_done, NULL, out);
-    cs_text_add(out, "\n");
+    cs_text_add(out, ",angular_x,angular_y,angular_z,couple_x,couple_y,couple_z\n");
 }
 
 void cs_energy_ledger_print_row(const struct cs_energy_ledger *ledger, uint32_t frame,
@@ -395,5 +387,10 @@ void cs_energy_ledger_print_row(const struct cs_energy_ledger *ledger, uint32_t 
     add_columns(&energies, ledger->energies, out);
     cs_csv_add_number(out, cs_energy_ledger_sum(ledger));
     add_columns(&work_done, ledger->work, out);
+    double angular[3] = {0};
+    cs_diagnostics_add_moment(ledger->system, ledger->system->mass, 1, ledger->state,
+                              ledger->state + length_of(ledger), angular);
+    for (int k = 0; k < 6; k++)
+        cs_csv_add_number(out, k < 3 ? angular[k] : ledger->couple[k - 3]);
     cs_text_add(out, "\n");
 }

@@ -16,6 +16,11 @@
  * remainder is the method's error wherever that is larger. A particle whose accelerations the
  * step does not resolve follows the cubic through positions and velocities instead.
  *
+ * Angular momentum. Friction acts on both surfaces where they are, a distance d apart: its two
+ * forces F and -F leave the couple d n x F, which no other force takes up. The ledger
+ * integrates the sum of x x f over the forces between surfaces by the same quadrature. Without
+ * outer forces the angular momentum changes by that, and by the method's own error.
+ *
  * Order of the calls in one commit: book_step with the state that the method left,
  * book_correction after each correction, store_state with the state that the next step starts
  * from. Every joule that E changes by is then in exactly one column of work. */
@@ -91,7 +96,9 @@ struct cs_energy_ledger {
     uint32_t holding_of[CS_TERMS_MAX], work_of[CS_TERMS_MAX];
     double energies[CS_HOLDINGS_MAX]; /* J, of the state that was booked last */
     double work[CS_WORKS_MAX];        /* J since the start */
-    struct cs_arena arena;            /* owns the arrays */
+    double couple[3];      /* N m s since the start: the angular impulse of friction and damping
+                              between surfaces */
+    struct cs_arena arena; /* owns the arrays */
 };
 
 /* Allocates the arrays and stores the state of the system at t; all works are 0. On failure
@@ -120,9 +127,10 @@ void cs_energy_ledger_store_state(struct cs_energy_ledger *ledger, double t, con
 /* The sum of all stored energies, in J. */
 double cs_energy_ledger_sum(const struct cs_energy_ledger *ledger);
 
-/* CSV: frame and time, the stored energies in J, their sum, and the works in J. A force's own
- * column has its name, with _ for spaces. A force with both an energy and a work has the suffix
- * _work on the second. */
+/* CSV: frame and time, the stored energies in J, their sum, the works in J, the angular
+ * momentum about the origin in kg m2/s, and what the couple of friction has added to it. A
+ * force's own column has its name, with _ for spaces. A force with both an energy and a work
+ * has the suffix _work on the second. */
 void cs_energy_ledger_print_head(struct cs_text *out);
 void cs_energy_ledger_print_row(const struct cs_energy_ledger *ledger, uint32_t frame,
                                 struct cs_text *out);

@@ -2,6 +2,7 @@
  * tight reference nothing is left to the method. */
 #include "fixture.h"
 
+#include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "sim/energy_ledger.h"
 
@@ -89,6 +90,50 @@ TEST(nothing_is_left_to_a_tight_method) {
     }
 }
 
+/* About the origin, of the state that was stored last. */
+static void angular_momentum(const struct cs_energy_ledger *ledger, double sum[3]) {
+    const struct cs_system *system = ledger->system;
+    memset(sum, 0, 3 * sizeof *sum);
+    cs_diagnostics_add_moment(system, system->mass, 1, ledger->state,
+                              ledger->state + 3 * (size_t)system->view.n, sum);
+}
+
+/* Two sheets without outer forces that meet and rub: what their angular momentum gains is the
+ * couple of friction, which acts on surfaces a distance apart. Without friction it stays. */
+TEST(friction_between_surfaces_turns_them) {
+    for (int k = 0; k < 2; k++) {
+        struct kept kept;
+        char scene[1024];
+        snprintf(
+            scene, sizeof scene,
+            "{\"bodies\": [{\"cloth\": {\"grid\": [4, 4], \"size\": [0.4, 0.4], "
+            "\"start\": \"flat\"}, \"mass\": {\"areal_density\": 0.5}, \"thickness\": 0.02}, "
+            "{\"cloth\": {\"grid\": [3, 3], \"size\": [0.2, 0.2], \"start\": \"flat\", "
+            "\"velocity\": [0.5, -0.5, 0], \"place\": {\"translate\": [-0.03, 0.05, 0.01]}}, "
+            "\"mass\": {\"areal_density\": 0.5}, \"thickness\": 0.02}], \"forces\": "
+            "{\"gravity\": [0, 0, 0]}, \"pairs\": {\"among\": \"all\", \"friction\": %g}, "
+            "\"contact\": {\"law\": \"force\", \"friction_speed\": 0.05}, \"time\": "
+            "{\"fps\": 60}}",
+            k ? 0.5 : 0);
+        double start[3], end[3], change = 0, rest = 0, size = 0;
+        run_kept(&kept, TIGHT, scene, 0);
+        angular_momentum(&kept.account, start);
+        close_kept(&kept);
+        run_kept(&kept, TIGHT, scene, 15);
+        angular_momentum(&kept.account, end);
+        for (int c = 0; c < 3; c++) {
+            change = hypot(change, end[c] - start[c]);
+            rest = hypot(rest, end[c] - start[c] - kept.account.couple[c]);
+            size = hypot(size, start[c]);
+        }
+        ck_assert_msg(k ? change > 0.01 * size : change < 1e-9 * size,
+                      "friction %d: %.3g of %.3g kg m2/s", k, change, size);
+        ck_assert_msg(rest <= 1e-5 * (k ? change : size), "%.3g of %.3g kg m2/s are left", rest,
+                      change);
+        close_kept(&kept);
+    }
+}
+
 /* Free fall with drag c from rest: v = g m/c (1 - e), x = g m/c (t - m/c (1 - e)), e = exp(-c
  * t/m); drag has taken m g x - m v^2/2. */
 TEST(drag_takes_what_a_fall_lacks) {
@@ -149,16 +194,17 @@ TEST(the_rest_is_the_methods_error) {
                   left[1]);
 }
 
-/* A sheet on a sphere by projection: each step pushes particles out into springs that an implicit
- * step of a frame does not resolve. Along a path that followed their accelerations the dampers
- * took a hundred times the energy there is, and the method made as much. */
+/* A sheet on a sphere by projection: each step pushes particles out into springs that an
+ * implicit step of a frame does not resolve. Along a path that followed their accelerations the
+ * dampers took a hundred times the energy there is, and the method made as much. */
 TEST(dampers_take_no_more_than_there_is) {
     static const char *const methods[] = {"implicit-linearised", "backward-euler", "tr-bdf2"};
     static const char scene[] =
         "{\"bodies\": [{\"cloth\": {\"grid\": [16, 16], \"size\": [1, 1], \"start\": \"flat\","
         " \"place\": {\"translate\": [0, 0.62, 0]}}, \"mass\": {\"total\": 0.3}, \"springs\":"
         " {\"stretch\": 2000, \"shear\": 700, \"bend\": 200, \"damping\": 0.05}}],"
-        " \"colliders\": [{\"sphere\": {\"centre\": [0, 0, 0], \"radius\": 0.5}, \"friction\": 0.5}],"
+        " \"colliders\": [{\"sphere\": {\"centre\": [0, 0, 0], \"radius\": 0.5}, \"friction\": "
+        "0.5}],"
         " \"contact\": {\"law\": \"project\"}, \"time\": {\"fps\": 60}}";
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
         struct kept kept;

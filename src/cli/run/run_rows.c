@@ -156,6 +156,7 @@ static enum cs_status ledger_begin(struct cs_job *job, struct cs_error *error) {
 static void ledger_record(struct cs_job *job, struct cs_serialiser *record) {
     cs_serialiser_text(record, &job->ledger_rows);
     CS_SERIALISER(record, job->ledger.work);
+    CS_SERIALISER(record, job->ledger.couple);
 }
 
 static enum cs_status ledger_end(struct cs_job *job, struct cs_error *error) {

@@ -195,3 +195,23 @@ void cs_spectral_bounds_rate(const struct cs_system *system, const struct cs_eva
 void cs_spectral_bounds_set(struct cs_system *system, double *work) {
     cs_spectral_bounds_at(system, NULL, work, &system->view.omega, &system->view.delta);
 }
+
+void cs_diagnostics_force(const struct cs_system *system, double t, const double *x,
+                          const double *v, uint32_t parts, double *f) {
+    struct cs_system free = *system;
+    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts};
+    free.n_pinned = 0;
+    if (cs_terms_need_normals(&free, parts))
+        cs_normals_update(&free, x);
+    cs_terms_force(&free, &at, f);
+}
+
+void cs_diagnostics_add_moment(const struct cs_system *system, const double *weight,
+                               double factor, const double *a, const double *b, double sum[3]) {
+    const size_t n = system->view.n;
+    for (size_t i = 0; i < n; i++)
+        for (size_t c = 0; c < 3; c++) {
+            const size_t y = (c + 1) % 3 * n + i, z = (c + 2) % 3 * n + i;
+            sum[c] += factor * (weight ? weight[i] : 1) * (a[y] * b[z] - a[z] * b[y]);
+        }
+}

@@ -13,6 +13,16 @@ struct cs_energy {
 /* Kinetic energy in J: the sum of m |v|^2 / 2. */
 double cs_measure_kinetic(const struct cs_system *system, const double *v);
 
+/* f (3,n) in N = the chosen parts at (t, x, v), on pinned particles too: the pin carries this
+ * force, and does work if it moves. Normals become those of x. */
+void cs_diagnostics_force(const struct cs_system *system, double t, const double *x,
+                          const double *v, uint32_t parts, double *f);
+
+/* sum (3) += factor times the sum of weight a x b over particles; a and b are (3,n), weight (n)
+ * or NULL for 1. With the masses, positions and velocities: the angular momentum. */
+void cs_diagnostics_add_moment(const struct cs_system *system, const double *weight,
+                               double factor, const double *a, const double *b, double sum[3]);
+
 /* All energies of a state at time t; x and v are (3,n). Contact counts as `other`. */
 struct cs_energy cs_diagnostics_energy(const struct cs_system *system, double t,
                                        const double *x, const double *v);
