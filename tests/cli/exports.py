@@ -160,7 +160,8 @@ def check_files(folder, every, fps):
                     off = np.nan_to_num(vtp["uv"][faces] - run_["uv"]).any(axis=(1, 2))
                     assert list(np.flatnonzero(off)) == ([206] if len(faces) == 207 else [])
                 assert (vtp["Lines.connectivity"].reshape(-1, 2) == lines).all()
-                for one, many in ("velocity", "velocities"), ("force", "forces"), ("strain", "strains"):
+                for one, many in ("velocity", "velocities"), ("force", "forces"), ("strain", "strains"), \
+                        ("stitches", "stitch_counts"):
                     assert (one in vtp) == (many in run_)
                     assert one not in vtp or (vtp[one] == run_[many][k]).all()
         assert not os.path.exists(f"{folder}/{skin}_{len(places):05}.obj")
@@ -261,6 +262,32 @@ def every(program):
         check_states(check_files(name, 1, 60), name + "-s")
 
 
+def sewn(program):
+    """Stitches add up in their particles, pull with k d, and are gone once they are too long."""
+    limit, k = 0.03, 100
+    sheet = {"grid": [4, 3], "size": [0.3, 0.2]}
+    scene = {
+        "bodies": [{"cloth": sheet, "mass": {"total": 0.1}, "pins": ["top"]},
+                   {"cloth": sheet | {"place": {"translate": [0, -0.2, 0]}}, "mass": {"total": 0.9}}],
+        "seams": [{"body": 0, "particles": ["bottom"], "to": {"body": 1, "particles": ["top"]},
+                   "stiffness": k, "breaking_length": limit},
+                  {"body": 1, "particles": [0], "to": {"body": 0, "particles": [8, 9, 4], "weights": [0.5, 0.25, 0.25]},
+                   "stiffness": 300}]}
+    json.dump(scene, open("sewn.json", "w"))
+    run(program, "sewn.json", "-n", "20", "-o", "w", "--states", "ws", *ALL)
+    found = check_files("w", 1, 60)
+    check_states(found, "ws")
+    at, weights, x = found["stitches"], found["stitch_weights"], found["positions"]
+    assert (at[:4] == [[8 + s, 12 + s, -1, -1] for s in range(4)]).all() and (at[4] == [12, 8, 9, 4]).all()
+    assert (weights[:4] == [1, -1, 0, 0]).all() and (weights[4] == [1, -0.5, -0.25, -0.25]).all()
+    lengths = np.linalg.norm(np.einsum("sk,fskc->fsc", weights, x[:, at]), axis=2)
+    whole = found["stitch_counts"][:, 13:16] > 0
+    counts = found["stitch_counts"]
+    assert (counts[0] == np.bincount(at[at >= 0], minlength=24)).all() and counts[:, 4].min() == 1
+    assert (lengths[:, 1:4][whole] <= limit).all() and (np.diff(whole.astype(int), axis=0) <= 0).all()
+    assert not whole[-1].all() and lengths[-1, 1:4][~whole[-1]].max() > limit
+
+
 def survey(folder):
     return {f: open(f"{folder}/{f}", "rb").read() for f in os.listdir(folder)
             if not f.endswith((".checkpoint", ".part")) and f != "manifest.txt"}
@@ -351,7 +378,7 @@ def by_others(program):
 def main():
     program, others = os.path.realpath(sys.argv[1]), sys.argv[2:] == ["vtk"]
     root, failed = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__)))), 0
-    tests = [mixed, colliders, values, every, resumed, broken_off, stopped]
+    tests = [mixed, colliders, values, every, sewn, resumed, broken_off, stopped]
     if others:
         try:
             import meshio, vtk  # noqa: F401

@@ -2,6 +2,9 @@
 #include "io/export/export.h"
 
 #include "model/force/diagnostics.h"
+#include "model/system/seams.h"
+
+#include <string.h>
 
 #define X(BIT, name) &cs_export_##name,
 const struct cs_export_writer *const cs_export_writers[] = {CS_EXPORT_LIST(X)};
@@ -21,8 +24,10 @@ uint32_t cs_export_with_values(void) {
 /* Adds the fields besides positions, if a format can hold them: their order is that of
  * measure. */
 static enum cs_status add_fields(struct cs_export *export, struct cs_error *error) {
-    static const char *const names[][2] = {
-        {"velocity", "velocities"}, {"force", "forces"}, {"strain", "strains"}};
+    static const char *const names[][2] = {{"velocity", "velocities"},
+                                           {"force", "forces"},
+                                           {"strain", "strains"},
+                                           {"stitches", "stitch_counts"}};
     const uint32_t values = export->source.settings.values;
     struct cs_export_mesh *bodies = &export->bodies;
     struct cs_arena *arena = &export->arena;
@@ -33,7 +38,9 @@ static enum cs_status add_fields(struct cs_export *export, struct cs_error *erro
         cs_export_mesh_add_field(bodies, names[1], 3, arena, error);
     if (values & CS_EXPORT_STRAIN)
         cs_export_mesh_add_field(bodies, names[2], 1, arena, error);
-    if (values) {
+    if (export->source.seams)
+        cs_export_mesh_add_field(bodies, names[3], 1, arena, error);
+    if (values || export->source.seams) {
         export->values = cs_arena_alloc_array(arena, bodies->n, sizeof *export->values, error);
         export->scratch =
             cs_arena_alloc_array(arena, bodies->n, 3 * sizeof *export->scratch, error);
@@ -53,6 +60,7 @@ enum cs_status cs_export_open(struct cs_export *export,
                               const struct cs_system *system, struct cs_error *error) {
     *export = (struct cs_export){.source = {.skins = {&export->bodies, &export->colliders},
                                             .settings = *settings,
+                                            .seams = system->seams,
                                             .fps = system->scene->time.fps},
                                  .system = system,
                                  .n_samples = settings->n_samples_before};
@@ -71,6 +79,14 @@ enum cs_status cs_export_open(struct cs_export *export,
     return error->status;
 }
 
+/* Counts the stitches of each particle that are not broken. */
+static void count_stitches(const struct cs_seams *seams, uint32_t n, double *count) {
+    memset(count, 0, n * sizeof *count);
+    for (uint32_t s = 0; s < seams->n; s++)
+        for (uint32_t k = 0; k < seams->stitches[s].n && !seams->broken[s]; k++)
+            count[seams->stitches[s].at[k]]++;
+}
+
 /* Sets all fields from the state at time t, in the order of add_fields. */
 static void measure(struct cs_export *export, double t, const double *x, const double *v) {
     const struct cs_export_mesh *bodies = &export->bodies;
@@ -84,6 +100,10 @@ static void measure(struct cs_export *export, double t, const double *x, const d
     }
     if (export->source.settings.values & CS_EXPORT_STRAIN && export->values) {
         cs_diagnostics_particle_strain(export->system, x, export->values);
+        cs_export_mesh_set(bodies, field++, export->values);
+    }
+    if (export->source.seams && export->values) {
+        count_stitches(export->source.seams, bodies->n, export->values);
         cs_export_mesh_set(bodies, field, export->values);
     }
     if (export->colliders.is_moving && export->colliders.n > 0)

@@ -26,9 +26,10 @@ struct cs_export {
     struct cs_export_mesh bodies, colliders;
     struct cs_export_source source;
     void *states[CS_N_EXPORT_FORMATS]; /* of the formats, in the arena; NULL: not requested */
-    double *values, *scratch; /* (n), (3,n); NULL unless force or strain are requested */
-    uint32_t n_samples;       /* written, with those of the run before it was continued */
-    struct cs_arena arena;    /* owns the arrays */
+    double *values,
+        *scratch;          /* (n), (3,n); NULL unless force, strain or stitches are exported */
+    uint32_t n_samples;    /* written, with those of the run before it was continued */
+    struct cs_arena arena; /* owns the arrays */
 };
 
 /* Allocates memory and opens the files that grow. The system must outlive it. The caller closes

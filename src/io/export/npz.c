@@ -7,10 +7,12 @@
  * fields to fields of samples. A continued run goes on from the part.
  *
  * Arrays with N samples: times (N), frames (N), positions and other fields (N, n, components),
- * faces, lines, offsets of bodies, uv; the same of colliders with the prefix "collider_". */
+ * faces, lines, offsets of bodies, uv; the same of colliders with the prefix "collider_". Of
+ * seams: stitches (S, 4) and stitch_weights (S, 4). */
 #include "base/serialise.h"
 #include "io/export/writer.h"
 #include "io/npy.h"
+#include "model/system/seams.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -165,6 +167,26 @@ static void put_meshes(struct cs_zip *zip, const struct cs_export_mesh *const sk
                 0);
 }
 
+/* Writes the particles of each stitch, -1 where it has but two, and their weights. */
+static void put_stitches(struct cs_zip *zip, const struct cs_seams *seams) {
+    begin_array(zip, &(struct array){"stitches", "<i4", {seams->n, 4}, 2, 4});
+    for (uint32_t s = 0; s < seams->n; s++)
+        for (uint32_t k = 0; k < 4; k++) {
+            const struct cs_stitch *stitch = seams->stitches + s;
+            const uint32_t at = htole32(k < stitch->n ? stitch->at[k] : UINT32_MAX);
+            cs_zip_put(zip, &at, sizeof at);
+        }
+    cs_zip_end(zip);
+    begin_array(zip, &(struct array){"stitch_weights", "<f8", {seams->n, 4}, 2, 8});
+    for (uint32_t s = 0; s < seams->n; s++)
+        for (uint32_t k = 0; k < 4; k++) {
+            const struct cs_stitch *stitch = seams->stitches + s;
+            const uint64_t weight = cs_double_to_le64(k < stitch->n ? stitch->weight[k] : 0);
+            cs_zip_put(zip, &weight, sizeof weight);
+        }
+    cs_zip_end(zip);
+}
+
 /* Writes the frame of each sample. */
 static void put_frames(const struct archive *npz, struct cs_zip *zip) {
     begin_array(zip, &(struct array){"frames", "<i4", {npz->n_samples}, 1, 4});
@@ -263,6 +285,8 @@ static enum cs_status finish(void *state, const struct cs_export_source *source,
         return error->status;
     struct cs_zip zip = {.file = out.file};
     put_meshes(&zip, source->skins);
+    if (source->seams)
+        put_stitches(&zip, source->seams);
     if (put_samples(npz, source->skins, &zip, error)) {
         cs_file_abandon(&out);
         return error->status;

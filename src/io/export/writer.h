@@ -55,7 +55,7 @@ struct cs_export_field {
     uint64_t *words;           /* (n, components) little-endian doubles (base/serialise.h) */
 };
 
-enum { CS_EXPORT_FIELDS = 4 };
+enum { CS_EXPORT_FIELDS = 5 };
 
 /* Points of bodies are the particles, in their order. All arrays belong to the arena. */
 struct cs_export_mesh {
@@ -141,6 +141,7 @@ struct cs_export_source {
     const struct cs_export_mesh *skins[2]; /* bodies, colliders */
     struct cs_export_settings settings;
     double fps;
+    const struct cs_seams *seams; /* NULL: none */
 };
 
 /* A format. Calls may be NULL if there is nothing to do; they fail with CS_ERR_FILE or
