@@ -215,7 +215,9 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
 const struct cs_integrator gauss = {
     STEP_HALVING_METHOD(struct gauss_options, rows, archive),
     .name = "gauss",
-    .summary = "Gauss's collocation with 2, 3 or 4 stages by Newton: symplectic, many digits",
+    .summary =
+        "Gauss's collocation with 2, 3 or 4 stages by Newton: symplectic, many digits; makes "
+        "energy at long steps where springs are pressed hard",
     .source = "Hairer, Lubich, Wanner 2006, sec. II.1.3; Houwen, Swart 1997",
     .order = 4,
     .order_damped = 4,

@@ -244,7 +244,9 @@ static enum cs_step archive_linearised(void *object, const struct cs_archive *ar
 static const struct cs_integrator implicit_linearised = {
     .size = sizeof(struct cs_integrator),
     .name = "implicit-linearised",
-    .summary = "one linear solve of the whole system per step; stable at large steps, damps",
+    .summary =
+        "one linear solve of the whole system per step; damps; stable at large steps, but "
+        "not where springs are pressed hard",
     .source = "Baraff, Witkin 1998; cloth thesis, eq. 5.20",
     .order = 1,
     .order_damped = 1,

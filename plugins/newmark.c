@@ -159,7 +159,9 @@ const struct cs_integrator newmark = {
     .renames = renames,
     .n_renames = sizeof renames / sizeof *renames,
     .name = "newmark",
-    .summary = "Newmark's average acceleration, HHT or generalised-alpha, by Newton",
+    .summary =
+        "Newmark's average acceleration, HHT or generalised-alpha, by Newton; makes energy at "
+        "long steps where springs are pressed hard",
     .source = "Newmark 1959; Hilber et al. 1977; Chung, Hulbert 1993",
     .order = 2,
     .order_damped = 2,

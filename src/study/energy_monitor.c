@@ -16,7 +16,8 @@
 #define SPEED_SPREAD 4
 #define LEAST_ENERGY 1e-12
 #define LEAST_SPEED  1e-6
-/* A growth counts from so many samples on, else only beyond so many times the bound. */
+/* Energy that was made counts from so many samples on, else only beyond so many times the
+ * bound. */
 enum { SAMPLES_MIN = 8, FAR_BEYOND = 100 };
 
 static const struct {
@@ -133,7 +134,11 @@ enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
                                        const struct cs_run *run, struct cs_error *error) {
     const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
     double speed = 0;
-    *monitor = (struct cs_energy_monitor){.stride = 1, .is_closed = is_closed(run->system)};
+    *monitor = (struct cs_energy_monitor){
+        .stride = 1,
+        .is_closed = is_closed(run->system),
+        .may_swing =
+            (run->integrator->traits & (CS_SYMPLECTIC | CS_IMPLICIT)) == CS_SYMPLECTIC};
     if (spring_speed(run, &speed, error))
         return error->status;
     start_speeds(monitor, run);
@@ -215,9 +220,9 @@ static void balance(struct cs_energy_monitor *monitor, const struct cs_run *run,
     monitor->last_kinetic = row->energy.kinetic;
 }
 
-/* Stores what was made; halves the resolution if the array is full. Returns whether it is half
- * more than ever in the first half of the samples. */
-static bool is_growing(struct cs_energy_monitor *monitor, double made) {
+/* Stores what was made; halves the resolution if the array is full. Returns whether there are
+ * enough samples and, where energy may swing, it is half more than ever in the first half. */
+static bool has_lasted(struct cs_energy_monitor *monitor, double made) {
     double *peaks = monitor->peaks, before = 0;
     if (monitor->n_samples / monitor->stride == CS_MONITOR_PEAKS) {
         for (uint32_t k = 0; k < CS_MONITOR_PEAKS / 2; k++) {
@@ -230,7 +235,7 @@ static bool is_growing(struct cs_energy_monitor *monitor, double made) {
     peaks[now] = fmax(peaks[now], made);
     for (uint32_t k = 0; k < now / 2; k++)
         before = fmax(before, peaks[k]);
-    return monitor->n_samples >= SAMPLES_MIN && made > 1.5 * before;
+    return monitor->n_samples >= SAMPLES_MIN && (!monitor->may_swing || made > 1.5 * before);
 }
 
 /* Largest speed in m/s that counts as sound: what gravity and outer forces can have added is at
@@ -245,11 +250,11 @@ static double limit_of_speed(const struct cs_energy_monitor *monitor,
 
 static void judge(struct cs_energy_monitor *monitor, const struct cs_energy_ledger *ledger,
                   struct cs_energy_monitor_row *row) {
-    const bool grows = is_growing(monitor, row->made);
+    const bool counts = has_lasted(monitor, row->made) || row->made > FAR_BEYOND * row->bound;
     /* first, because no comparison with NAN is true */
     if (!isfinite(cs_energy_total(&row->energy) + row->speed + row->strain))
         row->verdict = CS_STABILITY_NOT_FINITE;
-    else if (row->made > row->bound && (grows || row->made > FAR_BEYOND * row->bound))
+    else if (row->made > row->bound && counts)
         row->verdict = CS_STABILITY_GLOBAL;
     else if (row->particles)
         row->verdict = CS_STABILITY_LOCAL;

@@ -10,18 +10,19 @@
  * is never called unstable.
  *
  * Bound. S(t) = energy but gravity's at the start + most that gravity has released + W(t): all
- * that the scene held and gave. A run is globally unstable if made > S, and still grows: made is
- * half more than ever in the first half of the run until then, or 100 S. The second condition is
- * for symplectic methods. Near their limit they conserve
+ * that the scene held and gave. A run is globally unstable if made > S, from the eighth sample
+ * on: S begins at nothing where all is at rest. With an explicit symplectic method it must also
+ * grow: made is half more than ever in the first half of the run until then. made > 100 S is
+ * enough by itself. Near their limit symplectic methods conserve
  *   w^2 + square (1 - h^2 square / 4) s^2
  * (velocity-verlet on s'' = -square s, w = s'), so energy swings by (h w)^2/4 / (1 - (h w)^2/4)
  * of itself, without bound as h approaches its limit, and comes back.
  *
- * W without a ledger, between two samples D apart: of wind and other outer forces of at most m_i
- * a_i on particle i, by the Cauchy-Schwarz inequality D sqrt(sum m a^2) sqrt(sum m v^2); of
+ * W without a ledger, between two samples D apart: of wind and other outer forces of at most
+ * m_i a_i on particle i, by the Cauchy-Schwarz inequality D sqrt(sum m a^2) sqrt(sum m v^2); of
  * events, ramps and moving things of speed u all that E rose by, up to S + M u^2/2. Corrections
- * after steps are not known. Where any of these act, the verdict of a sample is in doubt until a
- * run with a ledger confirms it (cs_stability_confirm), which takes W from its columns.
+ * after steps are not known. Where any of these act, the verdict of a sample is in doubt until
+ * a run with a ledger confirms it (cs_stability_confirm), which takes W from its columns.
  *
  * Local instability: a particle is faster than five times its speed at the start, what the
  * energy of its springs could give it, and a fall over the time passed. A whip does that too:
@@ -102,9 +103,10 @@ struct cs_energy_monitor {
     double peaks[CS_MONITOR_PEAKS];
     uint32_t n_samples, stride;
     bool is_closed; /* nothing can put energy in but what a sample shows */
+    bool may_swing; /* an explicit symplectic method: energy that it made may go again */
     /* the speeds; they restart after a frame with an event */
-    double t_begin;     /* s */
-    double start_speed; /* m/s: largest, and what the springs at one particle could give it */
+    double t_begin;      /* s */
+    double start_speed;  /* m/s: largest, and what the springs at one particle could give it */
     double acceleration; /* m/s2, the largest by gravity, wind and viewpoint forces */
     double mass, wind_mass; /* kg that can move; sum of m a^2 in kg m2/s4, of outer forces */
     struct cs_energy_monitor_row first; /* when an instability began; verdict BOUNDED: none */

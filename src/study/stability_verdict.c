@@ -24,9 +24,8 @@ struct check {
 
 static void follow_check(struct check *check, struct cs_run *run,
                          const struct cs_energy_ledger *ledger, struct cs_error *error) {
-    struct cs_follow follow = {.run = run,
-                               .last = cs_follow_frames(run->system->scene, check->seconds),
-                               .every = 1};
+    struct cs_follow follow = {
+        .run = run, .last = cs_follow_frames(run->system->scene, check->seconds), .every = 1};
     struct cs_run_result result;
     if (!cs_energy_monitor_begin(&check->monitor, run, error))
         do
@@ -44,8 +43,7 @@ static enum cs_status run_check(struct check *check, struct cs_error *error) {
         return error->status;
     check->takes_dt = cs_method_takes_dt(session.method.integrator);
     check->mass = session.system.mass[check->particle];
-    if (!(check->with_ledger &&
-          cs_energy_ledger_open(&ledger, &session.system, 0, error)) &&
+    if (!(check->with_ledger && cs_energy_ledger_open(&ledger, &session.system, 0, error)) &&
         !cs_session_begin(&session, NULL, error))
         follow_check(check, &session.run, check->with_ledger ? &ledger : NULL, error);
     cs_energy_ledger_close(&ledger);
@@ -53,8 +51,8 @@ static enum cs_status run_check(struct check *check, struct cs_error *error) {
     return error->status;
 }
 
-/* True if the particle that was too fast is by the integrator: at half the step none is, and the
- * ledger's column rose by half of its energy. */
+/* True if the particle that was too fast is by the integrator: at half the step none is, and
+ * the ledger's column rose by half of its energy. */
 static enum cs_status check_local(const struct check *asked, double half_step,
                                   const struct cs_energy_monitor_row *first, bool *found,
                                   struct cs_error *error) {
@@ -73,8 +71,8 @@ static enum cs_status check_local(const struct check *asked, double half_step,
 }
 
 enum cs_status cs_stability_confirm(struct cs_energy_monitor *monitor,
-                                    const struct cs_session_settings *settings,
-                                    double seconds, uint64_t steps, struct cs_error *error) {
+                                    const struct cs_session_settings *settings, double seconds,
+                                    uint64_t steps, struct cs_error *error) {
     const struct cs_energy_monitor_row first = monitor->first;
     const enum cs_stability_verdict worst = monitor->worst_verdict;
     struct check check = {.settings = *settings, .seconds = seconds, .with_ledger = true};
@@ -104,21 +102,26 @@ enum cs_status cs_stability_confirm(struct cs_energy_monitor *monitor,
     return CS_OK;
 }
 
-enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *trial,
-                                             const struct cs_sampled_run *reference,
-                                             bool is_full_length) {
-    const enum cs_outcome outcome = trial->result.outcome;
-    const enum cs_stability_verdict verdict = trial->monitor.worst_verdict;
-    if (outcome == CS_NOT_FINITE || verdict == CS_STABILITY_NOT_FINITE)
+enum cs_stability_verdict cs_stability_at_end(enum cs_outcome outcome,
+                                              enum cs_stability_verdict seen) {
+    if (outcome == CS_NOT_FINITE || seen == CS_STABILITY_NOT_FINITE)
         return CS_STABILITY_NOT_FINITE;
-    if (outcome == CS_UNBOUNDED || verdict == CS_STABILITY_GLOBAL)
+    if (outcome == CS_UNBOUNDED || seen == CS_STABILITY_GLOBAL)
         return CS_STABILITY_GLOBAL;
     if (outcome == CS_FAILED)
         return CS_STABILITY_FAILED;
-    if (verdict == CS_STABILITY_LOCAL)
-        return CS_STABILITY_LOCAL;
-    if (outcome == CS_OVER_BUDGET)
+    if (seen == CS_STABILITY_BOUNDED && outcome == CS_OVER_BUDGET)
         return CS_STABILITY_OVER_BUDGET;
+    return seen;
+}
+
+enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *trial,
+                                             const struct cs_sampled_run *reference,
+                                             bool is_full_length) {
+    const enum cs_stability_verdict verdict =
+        cs_stability_at_end(trial->result.outcome, trial->monitor.worst_verdict);
+    if (verdict != CS_STABILITY_BOUNDED)
+        return verdict;
     if (!is_full_length)
         return CS_STABILITY_SHORT;
     if (reference && reference->kinetic > LEAST_ENERGY &&

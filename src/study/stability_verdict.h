@@ -1,5 +1,5 @@
-/* stability_verdict.h - sampled runs and their verdicts: the energy monitor's, confirmed, and for
- * sound runs a comparison with a trusted run of the same scene (stability_state.h). */
+/* stability_verdict.h - sampled runs and their verdicts: the energy monitor's, confirmed, and
+ * for sound runs a comparison with a trusted run of the same scene (stability_state.h). */
 #ifndef CS_STABILITY_VERDICT_H
 #define CS_STABILITY_VERDICT_H
 
@@ -13,12 +13,13 @@
  * more than the bound; for fast particles, at half the step and with a ledger until they
  * showed. Methods that choose their own steps have no local instability.
  *
- * settings: of the run that `monitor` saw, of so many seconds and steps; frames are its samples. *monitor then has
- * the confirmed verdict and where it began. Each of these runs has ten times the budget; one that
- * ends early confirms nothing. Costs nothing without doubt. Errors: those of a session. */
+ * settings: of the run that `monitor` saw, of so many seconds and steps; frames are its
+ * samples. *monitor then has the confirmed verdict and where it began. Each of these runs has
+ * ten times the budget; one that ends early confirms nothing. Costs nothing without doubt.
+ * Errors: those of a session. */
 enum cs_status cs_stability_confirm(struct cs_energy_monitor *monitor,
-                                    const struct cs_session_settings *settings,
-                                    double seconds, uint64_t steps, struct cs_error *error);
+                                    const struct cs_session_settings *settings, double seconds,
+                                    uint64_t steps, struct cs_error *error);
 
 /* Runs a scene once for a study and records scalar figures, no states.
  *
@@ -40,13 +41,13 @@ struct cs_sampled_run {
     struct cs_run_result result;
     struct cs_energy_monitor monitor; /* confirmed */
     uint64_t steps;
-    double mean_step;    /* s, mean length of a step */
-    double end_energy;   /* J, whole */
-    double kinetic;      /* J, largest */
-    double energy_max;   /* J, largest kinetic + elastic */
-    double mean_kinetic; /* J, over the samples */
-    double speed_max;    /* m/s, largest */
-    double seconds;      /* wall time in the method */
+    double mean_step;                   /* s, mean length of a step */
+    double end_energy;                  /* J, whole */
+    double kinetic;                     /* J, largest */
+    double energy_max;                  /* J, largest kinetic + elastic */
+    double mean_kinetic;                /* J, over the samples */
+    double speed_max;                   /* m/s, largest */
+    double seconds;                     /* wall time in the method */
     struct cs_crossing_stats crossings; /* of the samples, where the scene counts them */
 };
 
@@ -56,11 +57,15 @@ enum cs_status cs_sampled_run_execute(struct cs_sampled_run *trial,
                                       const struct cs_sampled_run_settings *settings,
                                       struct cs_error *error);
 
-/* Verdict on a run by its outcome and its monitor; a sound one by that of the reference over the
- * same time, too: over-damped, if its mean kinetic energy is below half. NULL: none.
+/* Verdict on a run that ended so, and of which samples showed `seen`. */
+enum cs_stability_verdict cs_stability_at_end(enum cs_outcome outcome,
+                                              enum cs_stability_verdict seen);
+
+/* Verdict on a run by its outcome and its monitor; a sound one by that of the reference over
+ * the same time, too: over-damped, if its mean kinetic energy is below half. NULL: none.
  *
- * is_full_length: the run was meant to last as long as the reference; otherwise CS_STABILITY_SHORT
- * replaces the stable verdicts. */
+ * is_full_length: the run was meant to last as long as the reference; otherwise
+ * CS_STABILITY_SHORT replaces the stable verdicts. */
 enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *trial,
                                              const struct cs_sampled_run *reference,
                                              bool is_full_length);

@@ -137,6 +137,13 @@ double cs_diagnostics_magnitude(const double *values, uint32_t n) {
 
 /* --- bounds on frequencies and damping rates by Gershgorin's circles, from all forces --- */
 
+/* The sums in work (2n), zeroed. */
+static struct cs_gershgorin start_sums(const struct cs_system *system, double *work) {
+    const size_t n = system->view.n;
+    memset(work, 0, 2 * n * sizeof *work);
+    return (struct cs_gershgorin){work, work + n};
+}
+
 /* Largest row sum over mass, of stiffness, and half of that of damping. Pinned particles have
  * the inverse mass 0 and do not count. */
 static void take_largest(const struct cs_system *system, const struct cs_gershgorin *sums,
@@ -150,10 +157,8 @@ static void take_largest(const struct cs_system *system, const struct cs_gershgo
 
 void cs_spectral_bounds_at(const struct cs_system *system, const struct cs_eval *at,
                            double *work, double *omega, double *delta) {
-    const size_t n = system->view.n;
-    const struct cs_gershgorin sums = {work, work + n};
+    const struct cs_gershgorin sums = start_sums(system, work);
     double squared;
-    memset(work, 0, 2 * n * sizeof *work);
     for (uint32_t k = 0; k < system->n_terms; k++) {
         const struct cs_term *term = system->terms[k];
         if (at && term->add_state_bound)
@@ -179,10 +184,8 @@ bool cs_spectral_bounds_depend_on_state(const struct cs_system *system) {
 
 void cs_spectral_bounds_rate(const struct cs_system *system, const struct cs_eval *at,
                              double *work, double *omega, double *delta) {
-    const size_t n = system->view.n;
-    const struct cs_gershgorin sums = {work, work + n};
+    const struct cs_gershgorin sums = start_sums(system, work);
     double squared;
-    memset(work, 0, 2 * n * sizeof *work);
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (has_rate(system->terms[k]))
             system->terms[k]->add_state_bound(system, at, &sums);

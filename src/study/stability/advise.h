@@ -4,7 +4,8 @@
  * For a method with a fixed step:
  *   1. Reference run by velocity-verlet, and the limit of linear theory along it (theory.h).
  *   2. Advised step: 0.9 of the limit, at most one frame and 10 s.
- *   3. Probe run with this step over the time of the reference, judged like a cell of a map.
+ *   3. Probe runs with this step over the time of the reference, judged like a cell of a map,
+ * from the perturbed start and from the scene's own.
  *   4. If it is unstable, the border is bisected by probe runs and 0.9 of it is advised.
  * Without a limit in theory one step per frame is tried, and bisected if unstable. An adaptive
  * method gets a probe run only, for its cost and verdict. */
@@ -28,9 +29,9 @@ enum cs_advice_kind {
 struct cs_advice {
     const char *method;
     enum cs_advice_kind kind;
-    double limit, safe;                /* s: largest stable step, and the one advised */
-    double theory;                     /* s, limit of linear theory; HUGE_VAL: none */
-    struct cs_mode mode;               /* that limits it, where theory has a limit */
+    double limit, safe;  /* s: largest stable step, and the one advised */
+    double theory;       /* s, limit of linear theory; HUGE_VAL: none */
+    struct cs_mode mode; /* that limits it, where theory has a limit */
     /* s: when theory's limit was smallest; the limit at the end and when, HUGE_VAL: none */
     double time, end_limit, seconds;
     enum cs_stability_verdict verdict; /* of a run with the safe step */

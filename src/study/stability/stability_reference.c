@@ -5,8 +5,8 @@
  *    the limit 2/omega, because an instability near the border grows slowly.
  *   2. Limits at the unperturbed start: worst mode, and Gershgorin bounds.
  *   3. Run velocity-verlet at half of its Gershgorin limit from the perturbed start. At each
- *    step: bounds that depend on the state, by rate. Where they are tightest so far, and at times
- *    of a fixed grid: tighten the limit of the worst mode, and the Gershgorin limit.
+ *    step: bounds that depend on the state, by rate. Where they are tightest so far, and at
+ * times of a fixed grid: tighten the limit of the worst mode, and the Gershgorin limit.
  *   4. If the run is not stable, reset the limits to those of the start and halve the step. */
 #include "study/stability/stability_state.h"
 
@@ -21,8 +21,8 @@ enum { MOST_HALVINGS = 4 };
 /* Steps at the limit 2/omega that the run lasts at least. */
 enum { STEPS = 200 };
 
-/* s; theory looks at the run every GRID, later every t / GRID_RATIO: times that do not depend on
- * the length of the run, so that the limit of a longer run is never larger. */
+/* s; theory looks at the run every GRID, later every t / GRID_RATIO: times that do not depend
+ * on the length of the run, so that the limit of a longer run is never larger. */
 #define GRID       (1.0 / 64)
 #define GRID_RATIO 32
 /* Fraction of the smallest limit by rate so far below which a step is looked at too. */
@@ -41,15 +41,17 @@ struct way {
 };
 
 /* Limit in s by rate of a symplectic step with explicit damping, at most 2/w. With square = w^2
- * and rate = r it has trace 2 - h r - (h w)^2 and determinant 1 - h r, and is stable while |trace|
- * <= 1 + determinant: (h w)^2 + 2 h r <= 4. The positive root is h = 4 / (r + sqrt(r^2 + 4 w^2)). */
+ * and rate = r it has trace 2 - h r - (h w)^2 and determinant 1 - h r, and is stable while
+ * |trace|
+ * <= 1 + determinant: (h w)^2 + 2 h r <= 4. The positive root is h = 4 / (r + sqrt(r^2 + 4
+ * w^2)). */
 static double limit_by_rate(double w, double r) {
     return 4 / (r + sqrt(r * r + 4 * w * w));
 }
 
-/* True if the stiffness of contact at the state leaves a clearly smaller step than any before. The
- * bounds cost about an evaluation of the force, a search for the mode fifty and more. Friction is
- * left to the looks of the grid: it counts as of what rests, not under the load of a blow. */
+/* True if the stiffness of contact at the state leaves a clearly smaller step than any before.
+ * The bounds cost about an evaluation of the force, a search for the mode fifty and more.
+ * Dampers are left to the looks of the grid. */
 static bool is_tightest(struct way *way, const struct cs_eval *at) {
     double w, delta;
     if (!cs_spectral_bounds_depend_on_state(way->system))
@@ -64,12 +66,12 @@ static bool is_tightest(struct way *way, const struct cs_eval *at) {
 
 /* Tightens the limits at a state, and notes the time of the smallest. Without a limit at the
  * start contact may bring one. */
-static void tighten(struct way *way, double t, const double *x, bool with_friction) {
+static void tighten(struct way *way, double t, const double *x, bool with_dampers) {
     struct cs_reference *reference = way->reference;
     struct cs_theory_limit *smallest = &reference->smallest_limit;
     const double before = smallest->dt;
     if (smallest->dt < HUGE_VAL)
-        cs_theory_tighten(way->theory, x, with_friction, smallest, way->error);
+        cs_theory_tighten(way->theory, x, with_dampers, smallest, way->error);
     else if (way->is_explicit && cs_spectral_bounds_depend_on_state(way->system))
         cs_theory_at(way->theory, x, smallest, way->error);
     if (smallest->dt < before)
@@ -79,8 +81,8 @@ static void tighten(struct way *way, double t, const double *x, bool with_fricti
         cs_theory_gershgorin(way->theory, x, &reference->gershgorin_limit, way->error);
 }
 
-/* Called after every step of the run: looks at it if its bounds are the tightest so far, or if a
- * look is due. Moves nothing. */
+/* Called after every step of the run: looks at it if its bounds are the tightest so far, or if
+ * a look is due. Moves nothing. */
 static bool look_at_step(void *ctx, double t, double dt, double *x, double *v) {
     struct way *way = ctx;
     (void)dt;
@@ -114,8 +116,8 @@ static void take_sample(void *ctx, const struct cs_run *run, const struct cs_ene
     }
 }
 
-/* Runs once with the step dt in s. Returns false if the run blew up, was unstable, failed or had
- * an error. The limits that a failed run collected are discarded. */
+/* Runs once with the step dt in s. Returns false if the run blew up, was unstable, failed or
+ * had an error. The limits that a failed run collected are discarded. */
 static bool run_once(struct cs_reference *reference,
                      const struct cs_sampled_run_settings *settings, double dt, struct way *way,
                      struct cs_error *error) {
@@ -168,9 +170,9 @@ static double growth_of(const struct cs_system *system,
                : 0;
 }
 
-/* Step of the reference in s: half of the Gershgorin limit, at most one sample (`space`) or look
- * of theory, and 10 s. Half of the limit by rate also satisfies the condition of velocity-verlet,
- * whose damping uses a predicted velocity: (h w)^2 + 4 h r <= 4. */
+/* Step of the reference in s: half of the Gershgorin limit, at most one sample (`space`) or
+ * look of theory, and 10 s. Half of the limit by rate also satisfies the condition of
+ * velocity-verlet, whose damping uses a predicted velocity: (h w)^2 + 4 h r <= 4. */
 static double choose_dt(const struct cs_system *system, double space) {
     const double limit = limit_by_rate(system->view.omega, 2 * system->view.delta);
     return fmin(fmin(0.5 * limit, fmax(space, GRID)), 10);

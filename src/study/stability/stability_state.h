@@ -45,8 +45,8 @@ struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis)
  *
  * Linear theory holds at one state. A spring that stretches, turns or meets a collider changes
  * K and C, so the limit at the start can be too long for the rest of the run. The bounds of
- * contact are therefore evaluated at each step of the reference, the limit wherever they are the
- * tightest so far and at times of a fixed grid, and the smallest one counts. */
+ * contact are therefore evaluated at each step of the reference, the limit wherever they are
+ * the tightest so far and at times of a fixed grid, and the smallest one counts. */
 
 /* Reference run and the limits of one method. Contains no pointers: it is stored in the journal
  * of a map as it is. */
@@ -59,7 +59,8 @@ struct cs_reference {
     struct cs_theory_limit start_limit;    /* before the start is perturbed */
     struct cs_theory_limit smallest_limit; /* along the way */
     double smallest_time;                  /* s, when that was */
-    struct cs_theory_limit end_limit; /* at the end, where contact has a part; dt HUGE_VAL: none */
+    struct cs_theory_limit
+        end_limit; /* at the end, where contact has a part; dt HUGE_VAL: none */
 };
 
 /* Runs the scene of `settings` by velocity-verlet, and finds the limits of the method of
@@ -202,7 +203,8 @@ void cs_contact_note_add(const struct cs_scene *scene, const char *before, struc
 
 /* Adds the energy in J that contact holds beside the one that comes (contact_capacity.h), next
  * to the kinetic energy of the heaviest particle at `speed` (m/s; 0: unknown). Adds the damping
- * by friction that limits explicit steps. Adds nothing for scenes without contact by force. */
+ * by friction, and what longer explicit steps do. Adds nothing for scenes without contact by
+ * force. */
 void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
                                   struct cs_text *out);
 

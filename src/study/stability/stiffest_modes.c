@@ -24,7 +24,7 @@ enum { MOST_RESTARTS = 12, MOST_SWEEPS = 40 };
 enum cs_status cs_stiffest_modes_init(struct cs_stiffest_modes *modes,
                                       const struct cs_system *system, struct cs_error *error) {
     const size_t n = system->view.n;
-    *modes = (struct cs_stiffest_modes){.system = system};
+    *modes = (struct cs_stiffest_modes){.system = system, .parts = CS_PART_LINEARISED};
     double **arrays[] = {&modes->dx, &modes->dv, &modes->zeros, &modes->last_vector};
     modes->basis = cs_arena_alloc_array(&modes->arena, (CS_STIFFEST_MODES_BASIS + 1) * 3 * n,
                                         sizeof(double), error);
@@ -83,7 +83,7 @@ static void apply(struct cs_stiffest_modes *modes, const double *x, double a, do
     const struct cs_eval at = {.t = modes->t,
                                .x = x,
                                .v = modes->zeros,
-                               .parts = CS_PART_LINEARISED,
+                               .parts = modes->parts,
                                .dx = a != 0 ? dx : NULL,
                                .dv = b != 0 ? dv : NULL};
     cs_terms_jvp(system, &at, y);

@@ -31,6 +31,7 @@ struct cs_mode {
 struct cs_stiffest_modes {
     const struct cs_system *system; /* borrowed */
     double t;                       /* s, at which forces are taken */
+    uint32_t parts;                 /* of the forces; CS_PART_LINEARISED unless set */
     double *basis;                  /* (CS_STIFFEST_MODES_BASIS + 1, 3n) */
     double *dx, *dv, *zeros;        /* (3,n) each: arguments of the products */
     double *root;                   /* (n) root of 1/m */

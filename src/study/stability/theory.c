@@ -12,12 +12,23 @@
  * %. */
 enum { MOST_TURNS = 5 };
 
+/* True if friction is all that dissipates in contact, and that there is of CS_PART_DISSIPATIVE.
+ */
+static bool is_friction_alone(const struct cs_scene *scene) {
+    return !(scene->contact.damping > 0) && !scene->seams.n &&
+           scene->contact.friction_law == CS_FRICTION_SMOOTH;
+}
+
 enum cs_status cs_theory_init(struct cs_theory *theory, const struct cs_system *system,
                               const struct cs_integrator *integrator, const void *options,
                               double growth, struct cs_error *error) {
     *theory = (struct cs_theory){.amplification = {integrator, options, growth},
                                  .stiffness_damping_direction = {1, 0}};
-    return cs_stiffest_modes_init(&theory->modes, system, error);
+    if (cs_stiffest_modes_init(&theory->modes, system, error))
+        return error->status;
+    if (is_friction_alone(system->scene))
+        theory->modes.parts &= ~(uint32_t)CS_PART_DISSIPATIVE;
+    return CS_OK;
 }
 
 void cs_theory_finish(struct cs_theory *theory) {
@@ -44,9 +55,9 @@ enum cs_status cs_theory_gershgorin(struct cs_theory *theory, const double *x, d
 static enum cs_status is_growing(const struct cs_amplification *amplify, double h,
                                  double square, double rate, bool *out, struct cs_error *error);
 
-/* The limit of one motion replaces a larger one, and is searched only if the motion grows at the
- * limit there is. A motion that pushes itself away is
- * physically unstable: it limits no step, but what its damping does counts. */
+/* The limit of one motion replaces a larger one, and is searched only if the motion grows at
+ * the limit there is. A motion that pushes itself away is physically unstable: it limits no
+ * step, but what its damping does counts. */
 static enum cs_status consider(struct cs_theory *theory, const struct cs_mode *mode,
                                struct cs_theory_limit *limit, struct cs_error *error) {
     struct cs_theory_limit found = {HUGE_VAL, *mode};
@@ -131,11 +142,12 @@ enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
     return error->status;
 }
 
-/* Friction comes and goes with contact, and no turning from a motion that swings leads to one
+/* Dampers of contact come and go with it, and no turning from a motion that swings leads to one
  * that is only damped: the fastest of those is searched by itself. */
-static enum cs_status consider_friction(struct cs_theory *theory, const double *x,
-                                        struct cs_theory_limit *limit, struct cs_error *error) {
-    if (!cs_spectral_bounds_depend_on_state(theory->modes.system))
+static enum cs_status consider_dampers(struct cs_theory *theory, const double *x,
+                                       struct cs_theory_limit *limit, struct cs_error *error) {
+    if (!(theory->modes.parts & CS_PART_DISSIPATIVE) ||
+        !cs_spectral_bounds_depend_on_state(theory->modes.system))
         return CS_OK;
     theory->modes.has_start = false;
     const struct cs_mode mode = cs_stiffest_modes_largest(&theory->modes, x, 0, 1);
@@ -143,7 +155,7 @@ static enum cs_status consider_friction(struct cs_theory *theory, const double *
     return consider(theory, &mode, limit, error);
 }
 
-enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x, bool with_friction,
+enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x, bool with_dampers,
                                  struct cs_theory_limit *limit, struct cs_error *error) {
     if (!has_limit(limit))
         return CS_OK;
@@ -153,8 +165,8 @@ enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x, bool
     const double before = limit->dt;
     if (!consider(theory, &mode, limit, error) && limit->dt < 0.98 * before)
         update_search_direction(theory, limit, error);
-    return error->status || !with_friction ? error->status
-                                           : consider_friction(theory, x, limit, error);
+    return error->status || !with_dampers ? error->status
+                                          : consider_dampers(theory, x, limit, error);
 }
 
 /* Measures the amplification matrix of a method's step on a damped oscillator. */

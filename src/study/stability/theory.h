@@ -16,7 +16,12 @@
  * For fixed h and convex S the worst p maximises
  *   n1 h^2 p^T K p + n2 h p^T C p,
  * the largest eigenvalue of a K + b C with a = n1 h^2 and b = n2 h. The search alternates
- * between this eigenvalue problem and the normal at the new limit. */
+ * between this eigenvalue problem and the normal at the new limit.
+ *
+ * Smooth friction is left out where nothing else dissipates in contact. Its slope is up to mu
+ * N/ev, but its force is bounded by mu N: whatever the step h, it changes a velocity by mu N
+ * h/m at most, which is mu times what the load does. In steps that are too long for it a
+ * velocity along the surface turns round in each, and stays at half of that change. */
 #ifndef CS_THEORY_H
 #define CS_THEORY_H
 
@@ -122,9 +127,9 @@ enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
                             struct cs_theory_limit *limit, struct cs_error *error);
 
 /* Lowers *limit if a motion at x has a smaller one. Costs one search, from the direction and
- * mode of the last one: meant for successive states of a trajectory. with_friction: friction by
- * itself is searched too. Without a finite limit nothing happens. */
-enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x, bool with_friction,
+ * mode of the last one: meant for successive states of a trajectory. with_dampers: those of
+ * contact are searched by themselves too. Without a finite limit nothing happens. */
+enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x, bool with_dampers,
                                  struct cs_theory_limit *limit, struct cs_error *error);
 
 #endif
