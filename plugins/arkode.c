@@ -207,6 +207,9 @@ static void destroy(void *object) {
     .restart = sundials_restart, .advance = advance, .stats = stats, .destroy = destroy,       \
     .library = "SUNDIALS " SUNDIALS_VERSION
 
+static const char *const erk_orders[] = {"order=3", "order=4", "order=6", "order=8", NULL};
+static const char *const implicit_orders[] = {"order=3", "order=5", NULL};
+
 static const struct cs_integrator ark_erk = {
     ARKODE(erk_rows),
     .name = "ark-erk",
@@ -216,6 +219,7 @@ static const struct cs_integrator ark_erk = {
     .order_damped = 5,
     .traits = CS_ADAPTIVE | CS_LIBRARY_BITS,
     .create = create_erk,
+    .variants = erk_orders,
 };
 
 static const struct cs_integrator ark_dirk = {
@@ -230,6 +234,7 @@ static const struct cs_integrator ark_dirk = {
     .needs = CS_NEED_JVP | CS_NEED_SOLVE,
     .traits = CS_IMPLICIT | CS_ADAPTIVE | CS_LIBRARY_BITS,
     .create = create_dirk,
+    .variants = implicit_orders,
 };
 
 static const struct cs_integrator ark_imex = {
@@ -243,6 +248,7 @@ static const struct cs_integrator ark_imex = {
     .needs = CS_NEED_JVP | CS_NEED_SOLVE,
     .traits = CS_IMPLICIT | CS_ADAPTIVE | CS_LIBRARY_BITS,
     .create = create_imex,
+    .variants = implicit_orders,
 };
 
 static const struct cs_integrator *const integrators[] = {&ark_dirk, &ark_erk, &ark_imex};

@@ -271,6 +271,8 @@ static void destroy(void *object) {
     .advance = sundials_advance, .stats = stats, .destroy = destroy,                           \
     .library = "SUNDIALS " SUNDIALS_VERSION
 
+static const char *const bdf_orders[] = {"max_order=2", "max_order=5", NULL};
+
 static const struct cs_integrator cvode_bdf = {
     CVODE(bdf_rows),
     .name = "cvode-bdf",
@@ -280,6 +282,7 @@ static const struct cs_integrator cvode_bdf = {
     .needs = CS_NEED_JVP | CS_NEED_SOLVE,
     .traits = CS_IMPLICIT | CS_ADAPTIVE | CS_MULTISTEP | CS_LIBRARY_BITS,
     .create = create_bdf,
+    .variants = bdf_orders,
 };
 
 static const struct cs_integrator cvode_adams = {

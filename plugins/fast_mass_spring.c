@@ -169,6 +169,8 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
 static void stats(const void *object, struct cs_stats *out) {
     fixed_step_stats(object, out);
     out->newton = ((const struct local_global *)object)->passes;
+    if (CS_HAS(out, sweeps))
+        out->sweeps = 2 * out->newton; // the right-hand side, and the solve
 }
 
 static void destroy(void *object) {

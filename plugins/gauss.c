@@ -212,6 +212,8 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
     return step_halving_archive(self, archive);
 }
 
+static const char *const orders[] = {"order=6", "order=8", NULL};
+
 const struct cs_integrator gauss = {
     STEP_HALVING_METHOD(struct gauss_options, rows, archive),
     .name = "gauss",
@@ -224,4 +226,5 @@ const struct cs_integrator gauss = {
     .needs = CS_NEED_ENERGY | CS_NEED_SOLVE | CS_NEED_LAGGED_FRICTION,
     .traits = CS_IMPLICIT | CS_SYMPLECTIC,
     .create = create,
+    .variants = orders,
 };

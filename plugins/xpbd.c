@@ -293,6 +293,8 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
 static void stats(const void *object, struct cs_stats *out) {
     fixed_step_stats(object, out);
     out->newton = ((const struct xpbd *)object)->passes;
+    if (CS_HAS(out, sweeps))
+        out->sweeps = out->newton;
 }
 
 static enum cs_step archive(void *object, const struct cs_archive *archive) {

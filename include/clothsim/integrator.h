@@ -264,12 +264,12 @@ struct cs_host {
 /* Counts that only the method knows. */
 struct cs_stats {
     uint32_t size;
-    /* Rejected steps. */
-    uint64_t rejected;
-    /* Nonlinear iterations. */
-    uint64_t newton;
+    /* Rejected steps, and nonlinear iterations. */
+    uint64_t rejected, newton;
     /* Set-ups of the linear solver that a library asked for. */
     uint64_t setups;
+    /* Passes of its own over all springs, each about a force evaluation; late: ask CS_HAS. */
+    uint64_t sweeps;
 };
 
 /* Says of an option that it has an effect only where another one, a choice, has certain values.
@@ -375,10 +375,12 @@ struct cs_integrator {
      * CS_HAS(integrator, library). */
     const char *library;
 
-    /* Options that were renamed, and how many; or NULL and 0. Later than the first release: the
-     * host asks CS_HAS(integrator, n_renames). */
+    /* Options that were renamed, and how many; or NULL and 0. Options of further series for a
+     * comparison of all methods, such as "order=8", closed by NULL; or NULL. Later than the
+     * first release: the host asks CS_HAS. */
     const struct cs_option_rename *renames;
     uint32_t n_renames;
+    const char *const *variants;
 };
 
 /* The symbol that a module exports: CS_EXPORT const struct cs_module clothsim_module. */

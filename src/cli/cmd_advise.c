@@ -221,6 +221,7 @@ static enum cs_status advise_for_error(struct cs_args *args, struct cs_error *er
                                            .methods =
                                                study->n_methods ? cs_text_get(&list) : NULL,
                                            .accuracy = bound < 1e-6 ? bound : 1e-6,
+                                           .bound = bound,
                                            .runs = 15,
                                            .folder = options->folder,
                                            .cache = options->folder};

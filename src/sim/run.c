@@ -174,6 +174,7 @@ static void count_method(struct cs_run *run) {
     found->rejected += before->rejected;
     found->newton += before->newton;
     found->setups += before->setups;
+    found->sweeps += before->sweeps;
 }
 
 /* The time of a frame is computed from its number: fps need not divide it without rounding. */

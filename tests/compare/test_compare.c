@@ -12,6 +12,15 @@ static const char *const METHODS =
     "symplectic-euler:dt=2.5e-4..2e-3,velocity-verlet:dt=2.5e-4..2e-3,rk4:dt=1e-3..8e-3,"
     "explicit-euler:dt=0.05,dopri5:rtol=1e-8..1e-4";
 
+/* Leaves out the cells that were run for equal errors: how many depends on times. */
+static void keep_sweep(struct cs_compare *compare) {
+    uint32_t n = 0;
+    for (uint32_t k = 0; k < compare->cells.n; k++)
+        if (!isfinite(compare->cells.cells[k].target))
+            compare->cells.cells[n++] = compare->cells.cells[k];
+    compare->cells.n = n;
+}
+
 TEST(orders_are_seen) {
     struct place place;
     struct watch watch = {0};
@@ -20,8 +29,9 @@ TEST(orders_are_seen) {
     static const double orders[] = {1, 2, 4};
     place_make(&place, "0.02");
     run(&compare, &settings, &place, METHODS, &watch);
-    ck_assert_uint_eq(compare.cells.n, 4 + 4 + 4 + 1 + 9);
     ck_assert_uint_eq(watch.rows, compare.cells.n);
+    keep_sweep(&compare);
+    ck_assert_uint_eq(compare.cells.n, 4 + 4 + 4 + 1 + 9);
     for (uint32_t m = 0; m < 3; m++)
         ck_assert_msg(fabs(compare.cells.cells[4 * m + 3].order - orders[m]) < 0.1,
                       "%s: order %g", compare.cells.cells[4 * m].method,
@@ -109,12 +119,14 @@ TEST(ranking_takes_the_cheapest) {
         ck_assert_double_le(rank->best->error, pow(10, rank->exponent));
         for (uint32_t k = 0; k < compare.cells.n; k++) {
             const struct cs_cell *cell = compare.cells.cells + k;
+            // within a series by work: times of neighbours differ by noise
             ck_assert(!(cell->error <= pow(10, rank->exponent)) ||
-                      !(cell->cpu < rank->best->cpu));
+                      (strcmp(cell->series, rank->best->series)
+                           ? !(cell->cpu < 0.8 * rank->best->cpu)
+                           : !(cell->work < rank->best->work)));
         }
-        ck_assert(!rank->runner_up || rank->ratio.median >= 1);
+        ck_assert(!rank->has_factor || rank->ratio.median >= 1);
         ck_assert(!rank->runner_up || strcmp(rank->runner_up->series, rank->best->series) != 0);
-        ck_assert(ranking.on_pareto_front[rank->best - compare.cells.cells]);
     }
     cs_ranking_finish(&ranking);
     cs_compare_finish(&compare);
@@ -129,12 +141,16 @@ TEST(list_is_read) {
         .omega = 1000,
         .size = 1};
     ck_assert_msg(!cs_cell_list_parse(&sweep, &settings, &error), "%s", error.message);
-    ck_assert_uint_eq(sweep.n, 3 + 8 + 3);
+    ck_assert_uint_eq(sweep.n, 3 + 20 + 3);
     ck_assert_str_eq(sweep.cells[0].options, "dt=0.004");
     ck_assert_str_eq(sweep.cells[2].options, "dt=0.001");
     ck_assert_double_le(sweep.cells[3].value, 1 / 60.0);
     ck_assert_double_gt(sweep.cells[3].value, 2 / settings.omega);
-    ck_assert_str_eq(sweep.cells[11].options, "atol=1e-09,rtol=0.001");
+    ck_assert_str_eq(sweep.cells[23].options, "atol=1e-09,rtol=0.001");
+    // what may be run besides: between the ends of a range, or as far as the method goes
+    ck_assert(sweep.cells[1].low == 1e-3 && sweep.cells[1].high == 4e-3 &&
+              !sweep.cells[1].open);
+    ck_assert(sweep.cells[3].open && sweep.cells[3].high == 1 / 60.0);
     cs_cell_list_finish(&sweep);
 }
 
@@ -197,6 +213,8 @@ TEST(tolerances_have_no_unit) {
         write_scaled(place.scene, unit);
         run_in(compare + k, settings + k, &place, methods, &watch, 0.5, unit);
     }
+    keep_sweep(compare);
+    keep_sweep(compare + 1);
     ck_assert_uint_eq(compare[0].cells.n, compare[1].cells.n);
     for (uint32_t k = 0; k < compare[0].cells.n; k++) {
         const struct cs_cell *one = compare[0].cells.cells + k,

@@ -3,6 +3,7 @@
 #include "study/compare/compare_cell.h"
 #include "study/compare/ranking.h"
 
+#include <math.h>
 #include <sys/wait.h>
 
 static const char *const METHODS =
@@ -96,7 +97,8 @@ static uint32_t rows_of(const struct place *place, const char *series) {
     snprintf(path, sizeof path, "%s/compare.csv", place->folder);
     ck_assert(!cs_csv_read(path, &cells, &n, &error));
     for (uint32_t k = 0; k < n; k++)
-        found += !strcmp(cells[k].series, series) && !strcmp(cells[k].outcome, "finished");
+        found += !strcmp(cells[k].series, series) && isnan(cells[k].target) &&
+                 !strcmp(cells[k].outcome, "finished");
     free(cells);
     return found;
 }

@@ -76,6 +76,7 @@ static void add_counts(const struct cs_counts *c, struct cs_text *out) {
         {"jvps", c->jvps},
         {"diagonals", c->diagonals},
         {"newton", c->method.newton},
+        {"sweeps", c->method.sweeps},
         {"setups", c->method.setups},
         {"solve_setups", c->solve_setups},
         {"solves", c->solves},

@@ -99,21 +99,30 @@ static enum cs_status read_method(struct cs_cell_list *sweep, struct cs_registry
     return error->status;
 }
 
-/* Makes cells of all methods of the registry with their defaults. */
+/* Makes the cells of a method with one of its variants; NULL: with its defaults. */
+static enum cs_status read_variant(struct cs_cell_list *sweep, struct cs_registry *registry,
+                                   const struct cs_cell_list_settings *settings,
+                                   const char *name, const char *variant,
+                                   struct cs_error *error) {
+    char item[CS_CELL_INTEGRATOR];
+    snprintf(item, sizeof item, "%s%s%s", name, variant ? ":" : "", variant ? variant : "");
+    return read_method(sweep, registry, settings, item, error);
+}
+
+/* Makes cells of all methods of the registry with their defaults, and of their variants. */
 static enum cs_status take_all(struct cs_cell_list *sweep, struct cs_registry *registry,
                                const struct cs_cell_list_settings *settings,
                                struct cs_error *error) {
     if (cs_registry_open_all(registry, error))
         return error->status;
     for (uint32_t k = 0; k < registry->n && !error->status; k++) {
-        struct cs_method method;
-        struct cs_cell_list_entry entry;
-        if (!registry->entries[k].integrator)
+        const struct cs_integrator *integrator = registry->entries[k].integrator;
+        if (!integrator)
             continue;
-        if (!cs_method_init(&method, registry->entries[k].integrator, NULL, error) &&
-            !begin_entry(&entry, registry, &method, error) && !end_entry(&entry, "", error))
-            cs_cell_list_expand(sweep, &entry, settings, error);
-        cs_method_finish(&method);
+        read_variant(sweep, registry, settings, integrator->name, NULL, error);
+        const char *const *variant = CS_HAS(integrator, variants) ? integrator->variants : NULL;
+        for (; variant && *variant && !error->status; variant++)
+            read_variant(sweep, registry, settings, integrator->name, *variant, error);
     }
     return error->status;
 }
@@ -165,8 +174,9 @@ enum cs_status cs_cell_list_add_modules(const char *list, struct cs_arena *arena
 
 /* Expands a method to its steps or tolerances. */
 
-/* Steps of a default range, each half of the last; and the limit of cells in any range. */
-enum { DEFAULT_STEPS = 8, MOST_POINTS = 64 };
+/* Steps of a default range, each half of the last, of which only those are run that are worth
+ * it (compare.c); and the limit of cells in any range. */
+enum { DEFAULT_STEPS = 20, MOST_POINTS = 64 };
 
 /* First step of an explicit method in units of 2/omega. omega is an upper bound: the true limit
  * is up to 1.5 times longer for the leap-frog, and about twice for Runge-Kutta methods. 2.2 is
@@ -195,13 +205,26 @@ static void init_cell(struct cs_cell *cell, const struct cs_cell_list_entry *ent
     snprintf(cell->options, sizeof cell->options, "%s", entry->fixed);
 }
 
+/* Sets the values of the control that a cell of the entry may have: those of its range, or all
+ * that the option takes, up to one step per frame. */
+static void set_limits(struct cs_cell *cell, const struct cs_cell_list_entry *entry,
+                       double fps) {
+    const struct cs_option *row = cs_option_find(&entry->method.table, entry->control);
+    cell->open = isnan(entry->high);
+    cell->low = cell->open ? row->min : entry->low;
+    cell->high = cell->open ? cell->adaptive ? row->max : 1 / fps : entry->high;
+}
+
 /* Adds the cell of one step or tolerance. An adaptive method without a given atol gets rtol
  * times the size of the scene, within the range of the option. */
 static enum cs_status add_point(struct cs_cell_list *sweep,
                                 const struct cs_cell_list_entry *entry, double value,
-                                double size, struct cs_error *error) {
+                                const struct cs_cell_list_settings *settings,
+                                struct cs_error *error) {
     struct cs_cell cell;
     init_cell(&cell, entry);
+    if (*entry->control)
+        set_limits(&cell, entry, settings->fps);
     snprintf(cell.control, sizeof cell.control, "%s", entry->control);
     if (*entry->control) {
         cell.value = value;
@@ -210,11 +233,29 @@ static enum cs_status add_point(struct cs_cell_list *sweep,
     const struct cs_option *atol = cs_option_find(&entry->method.table, "atol");
     if (cell.adaptive && *entry->control && atol && !strstr(entry->fixed, "atol="))
         add_option(cell.options, sizeof cell.options, "atol",
-                   fmin(fmax(value * size, atol->min), atol->max));
+                   fmin(fmax(value * settings->size, atol->min), atol->max));
     return cs_cell_list_add(sweep, &cell, error);
 }
 
-/* Default range: rtol from 1e-2 to 1e-9 of an adaptive method; DEFAULT_STEPS steps from one
+void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value, double size) {
+    const char *atol = strstr(of->options, "atol=");
+    cs_cell_init(cell, of->method);
+    memcpy(cell->series, of->series, sizeof cell->series);
+    memcpy(cell->fixed, of->fixed, sizeof cell->fixed);
+    memcpy(cell->family, of->family, sizeof cell->family);
+    memcpy(cell->control, of->control, sizeof cell->control);
+    memcpy(cell->options, of->fixed, sizeof of->fixed);
+    cell->adaptive = of->adaptive;
+    cell->low = of->low;
+    cell->high = of->high;
+    cell->open = of->open;
+    cell->value = value;
+    add_option(cell->options, sizeof cell->options, of->control, value);
+    if (atol && !strstr(of->fixed, "atol="))
+        add_option(cell->options, sizeof cell->options, "atol", fmin(value * size, 1));
+}
+
+/* Default range: rtol from 1e-2 to 1e-13 of an adaptive method; DEFAULT_STEPS steps from one
  * frame down of a fixed one. Explicit methods begin just beyond their stability limit. */
 static void default_range(const struct cs_cell_list_entry *entry,
                           const struct cs_cell_list_settings *settings, double *high,
@@ -222,7 +263,7 @@ static void default_range(const struct cs_cell_list_entry *entry,
     const struct cs_option *row = cs_option_find(&entry->method.table, entry->control);
     if (entry->method.integrator->traits & CS_ADAPTIVE) {
         *high = fmin(1e-2, row->max);
-        *low = fmax(1e-9, row->min);
+        *low = fmax(1e-13, row->min);
         return;
     }
     *high = 1 / settings->fps;
@@ -246,7 +287,7 @@ enum cs_status cs_cell_list_expand(struct cs_cell_list *sweep,
         return cs_cell_list_add(sweep, &cell, error);
     }
     if (!*entry->control)
-        return add_point(sweep, entry, (double)NAN, settings->size, error);
+        return add_point(sweep, entry, (double)NAN, settings, error);
     if (isnan(high))
         default_range(entry, settings, &high, &low);
     const bool adaptive = entry->method.integrator->traits & CS_ADAPTIVE;
@@ -254,7 +295,7 @@ enum cs_status cs_cell_list_expand(struct cs_cell_list *sweep,
         // powers, so that 1e-3 is 1e-3 to the bit and a step halves exactly
         const double value =
             adaptive ? high * pow(10, -0.5 * k) : high / (double)(UINT64_C(1) << k);
-        if (value < low * (1 - 1e-9) || add_point(sweep, entry, value, settings->size, error))
+        if (value < low * (1 - 1e-9) || add_point(sweep, entry, value, settings, error))
             break;
     }
     return error->status;
@@ -332,21 +373,12 @@ void cs_cell_list_refuse(struct cs_cell_list *sweep, uint32_t first, const char 
     sweep->cells[first] = cell;
 }
 
-/* A series is counted at its first cell that was not run, the one after a cell with an outcome.
- */
-uint32_t cs_cell_list_drop_unrun(struct cs_cell_list *sweep, uint32_t *series) {
+void cs_cell_list_drop_unrun(struct cs_cell_list *sweep) {
     uint32_t kept = 0;
-    *series = 0;
-    for (uint32_t k = 0; k < sweep->n; k++) {
-        const struct cs_cell *cell = sweep->cells + k;
-        if (*cell->outcome)
-            sweep->cells[kept++] = *cell;
-        else
-            *series += k > 0 && *cell[-1].outcome;
-    }
-    const uint32_t dropped = sweep->n - kept;
+    for (uint32_t k = 0; k < sweep->n; k++)
+        if (*sweep->cells[k].outcome)
+            sweep->cells[kept++] = sweep->cells[k];
     sweep->n = kept;
-    return dropped;
 }
 
 void cs_cell_list_finish(struct cs_cell_list *sweep) {

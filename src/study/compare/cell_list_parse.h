@@ -6,7 +6,8 @@
  *
  * A range of dt goes from high down by factors of 2, one of rtol by half decades. Without a
  * range, a method of fixed step takes 1/fps divided by powers of 2 (explicit ones from just
- * beyond their stability limit on), an adaptive one rtol = atol from 1e-2 to 1e-9. */
+ * beyond their stability limit on), an adaptive one rtol = atol from 1e-2 to 1e-13; a
+ * comparison runs them down to its smallest error, or to its budget. */
 #ifndef CS_CELL_LIST_PARSE_H
 #define CS_CELL_LIST_PARSE_H
 
@@ -32,8 +33,12 @@ void cs_cell_list_finish(struct cs_cell_list *sweep);
 enum cs_status cs_cell_list_add(struct cs_cell_list *sweep, const struct cs_cell *cell,
                                 struct cs_error *error);
 
-/* Removes the cells that were not run. Returns their number; *series: that of their series. */
-uint32_t cs_cell_list_drop_unrun(struct cs_cell_list *sweep, uint32_t *series);
+/* Removes the cells that were not run. */
+void cs_cell_list_drop_unrun(struct cs_cell_list *sweep);
+
+/* Makes a cell of the same series with another value of its control, without results or key.
+ * size in m: of the scene, as in the settings below. */
+void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value, double size);
 
 /* Marks a cell as refused, with the reason. */
 void cs_cell_refuse(struct cs_cell *cell, const char *why);
@@ -50,7 +55,7 @@ void cs_cell_integrator(const struct cs_cell *cell, char *out, size_t size);
 
 /* Facts of the scene that steps and tolerances are derived from. */
 struct cs_cell_list_settings {
-    const char *list;           /* NULL: every method there is */
+    const char *list;           /* NULL: every method there is, and its variants */
     const char *const *plugins; /* (n_plugins) module files */
     uint32_t n_plugins;
     double fps, omega; /* of the scene: the default steps come from them */

@@ -2,6 +2,7 @@
  * rounds. */
 #include "study/compare/compare.h"
 
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json_writer.h"
@@ -11,6 +12,7 @@
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_results.h"
 #include "study/compare/compare_state.h"
+#include "study/compare/equal_error.h"
 #include "study/provenance_write.h"
 #include "study/reference/compare_reference.h"
 
@@ -111,8 +113,7 @@ static struct cs_compare_reference_settings ask_reference(const struct cs_compar
  *
  * Without a budget from the user all series together get CS_COMPARE_SECONDS. Steps are halved,
  * so the last finished run of a series takes about as long as all before it (1/2 + 1/4 + ... =
- * 1): twice the budget in total. One more run may exceed the budget, and each finished run is
- * repeated once in a round: five budgets per series. */
+ * 1): twice the budget in total. One more run may exceed the budget: three per series. */
 static void divide_time_budget(struct cs_compare *compare) {
     const struct cs_cell_list *sweep = &compare->cells;
     uint32_t n = 0;
@@ -121,7 +122,7 @@ static void divide_time_budget(struct cs_compare *compare) {
     compare->budget =
         compare->settings->budget > 0
             ? compare->settings->budget
-            : fmin(CS_COMPARE_SECONDS / (5 * fmax(n, 1)), CS_COMPARE_RUN_SECONDS_MAX);
+            : fmin(CS_COMPARE_SECONDS / (3 * fmax(n, 1)), CS_COMPARE_RUN_SECONDS_MAX);
     compare->rounds_seconds = fmax(CS_COMPARE_ROUND_SECONDS, 5 * compare->settings->budget);
 }
 
@@ -179,21 +180,28 @@ static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *er
     return error->status;
 }
 
-/* Key of each row: hash of the reference (scene, overrides, duration), then hash of module,
- * method and options. The list of cells has put the hash of the module into cell->key. */
+/* Key of a row: that of the reference (scene, overrides, duration), then the hash of module,
+ * method and options. */
+static void make_key(struct cs_cell *cell, const char *reference, const char *module) {
+    struct cs_text all = {0};
+    char hash[CS_HASH_DIGITS];
+    cs_text_add(&all, "%s|%s|%s", module, cell->method, cell->options);
+    cs_hash_bytes(cs_text_get(&all), all.length, hash);
+    snprintf(cell->key, sizeof cell->key, "%.*s-%.16s", CS_COMPARE_DIGITS, reference, hash);
+    cs_text_finish(&all);
+}
+
+/* The list of cells has put the hash of the module into cell->key. */
 static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *error) {
     const struct cs_compare_reference_settings asked = ask_reference(compare);
     struct cs_compare_reference reference;
-    char of_reference[CS_HASH_DIGITS], of_cell[CS_HASH_DIGITS];
+    char of_reference[CS_HASH_DIGITS];
     cs_compare_reference_plan(&reference, &asked, of_reference, error);
     for (uint32_t k = 0; k < compare->cells.n && !error->status; k++) {
         struct cs_cell *cell = compare->cells.cells + k;
-        struct cs_text all = {0};
-        cs_text_add(&all, "%s|%s|%s", cell->key, cell->method, cell->options);
-        cs_hash_bytes(cs_text_get(&all), all.length, of_cell);
-        snprintf(cell->key, sizeof cell->key, "%.*s-%.16s", CS_COMPARE_DIGITS, of_reference,
-                 of_cell);
-        cs_text_finish(&all);
+        char module[sizeof cell->key];
+        memcpy(module, cell->key, sizeof module);
+        make_key(cell, of_reference, module);
     }
     return error->status;
 }
@@ -205,9 +213,37 @@ static void report_row(struct cs_compare *compare, const struct cs_cell *cell, b
         compare->settings->row(compare->settings->ctx, cell, taken);
 }
 
-/* True if the cells after this one in the series need not be run: they take longer. */
-static bool is_ended(const struct cs_cell *cell) {
-    return !*cell->outcome || !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
+/* Fraction of the error before that counts as no fall: rounding. */
+#define NO_FALL 0.8
+
+/* True if error k of the cells is that of rounding: twice in a row it hardly fell. Far from
+ * the motion, because long steps may not fall either. */
+static bool is_rounding(const struct cs_compare *compare, uint32_t k) {
+    const struct cs_cell *cell = compare->cells.cells + k;
+    return k > 1 && cs_cell_same_series(cell, cell - 2) &&
+           cell[-2].error < 1e-3 * compare->reference.motion_scale &&
+           cell->error > NO_FALL * cell[-1].error && cell[-1].error > NO_FALL * cell[-2].error;
+}
+
+/* True if the cells after cell k in its series need not be run: they take longer, and no power
+ * of 10 above the bar is left to be passed. A range that was asked for is run whole. */
+static bool is_ended(const struct cs_compare *compare, uint32_t k) {
+    const struct cs_cell *cell = compare->cells.cells + k;
+    const double bar = compare->reference.error_bar;
+    const double least = compare->settings->bound > 0 ? compare->settings->bound
+                         : bar > 0                    ? pow(10, ceil(log10(bar)))
+                                                      : 0;
+    return !*cell->outcome || !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET)) ||
+           (cell->open && (cell->error <= least || is_rounding(compare, k)));
+}
+
+/* Runs a cell, appends its row and reports it. */
+static enum cs_status measure(struct cs_compare *compare, struct cs_compare_results *ledger,
+                              struct cs_cell *cell, struct cs_error *error) {
+    if (!cs_compare_measure(compare, cell, error) &&
+        !cs_compare_results_append(ledger, cell, error))
+        report_row(compare, cell, false);
+    return error->status;
 }
 
 /* Reports rows of earlier runs, then runs the others and appends each row at once. */
@@ -216,21 +252,37 @@ static enum cs_status measure_cells(struct cs_compare *compare,
     for (uint32_t k = 0; k < compare->cells.n; k++)
         if (*compare->cells.cells[k].outcome)
             report_row(compare, compare->cells.cells + k, true);
-    for (uint32_t k = 0; k < compare->cells.n; k++) {
+    for (uint32_t k = 0; k < compare->cells.n && !error->status; k++) {
         struct cs_cell *cell = compare->cells.cells + k;
         if (*cell->outcome)
             continue;
-        if (k > 0 && cs_cell_same_series(cell, cell - 1) && is_ended(cell - 1)) {
+        if (k > 0 && cs_cell_same_series(cell, cell - 1) && is_ended(compare, k - 1))
             compare->n_done++;
-            continue;
-        }
-        if (cs_compare_measure(compare, cell, error) ||
-            cs_compare_results_append(ledger, cell, error))
-            return error->status;
-        report_row(compare, cell, false);
+        else
+            measure(compare, ledger, cell, error);
     }
-    compare->n_not_run = cs_cell_list_drop_unrun(&compare->cells, &compare->n_ended_series);
-    return CS_OK;
+    cs_cell_list_drop_unrun(&compare->cells);
+    return error->status;
+}
+
+/* Runs cells in between until the methods near the front have cells at the errors of the
+ * verdict (equal_error.h). A shard has not all cells: that is left to the whole. */
+static enum cs_status equalise_errors(struct cs_compare *compare,
+                                      struct cs_compare_results *ledger,
+                                      struct cs_error *error) {
+    const double end = cs_clock_cpu() + fmax(CS_COMPARE_EQUAL_SECONDS, 20 * compare->budget);
+    const struct cs_cell *near;
+    double value, target;
+    while (compare->settings->shard.count < 2 && !error->status && cs_clock_cpu() < end &&
+           (near = cs_equal_error_find_next(compare, &value, &target))) {
+        struct cs_cell cell;
+        cs_cell_derive(&cell, near, value, compare->scene_size);
+        cell.target = target;
+        make_key(&cell, near->key, near->module);
+        if (!measure(compare, ledger, &cell, error))
+            cs_cell_list_add(&compare->cells, &cell, error);
+    }
+    return error->status;
 }
 
 enum cs_status cs_compare_run(struct cs_compare *compare,
@@ -249,7 +301,7 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
             settings->on_begin(settings->ctx);
         if (!measure_cells(compare, &ledger, error) &&
             !cs_compare_results_refresh(&ledger, compare, error) &&
-            !cs_compare_time(compare, error)) {
+            !equalise_errors(compare, &ledger, error) && !cs_compare_time(compare, error)) {
             cs_compare_find_orders(compare->cells.cells, compare->cells.n,
                                    compare->reference.error_bar,
                                    compare->reference.motion_scale);

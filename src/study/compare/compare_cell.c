@@ -27,6 +27,7 @@ const struct cs_column cs_columns[] = {
     TEXT(family),
     TEXT(control),
     NUMBER(value, "step in s, or tolerance"),
+    NUMBER(target, NULL),
     {"adaptive", NULL, CS_CELL_FLAG, offsetof(struct cs_cell, adaptive), sizeof(bool)},
     TEXT(outcome),
     NUMBER(time, NULL),
@@ -44,11 +45,12 @@ const struct cs_column cs_columns[] = {
     NUMBER(bar, NULL),
     NUMBER(order, NULL),
     NUMBER(achieved, "achieved error / (requested tolerance x motion)"),
-    NUMBER(work, "force evaluations, Jacobian products and solver iterations"),
+    NUMBER(work, "force evaluations, Jacobian products, solver iterations and sweeps"),
     NUMBER(evals, "force evaluations"),
     NUMBER(jvps, "Jacobian products"),
     NUMBER(solves, "linear solves"),
     NUMBER(iterations, "iterations of the linear solver"),
+    NUMBER(sweeps, "passes of the method itself over the springs"),
     NUMBER(setups, "matrices set up"),
     NUMBER(steps, "steps"),
     NUMBER(rejected, "rejected steps"),
@@ -115,6 +117,7 @@ void cs_cell_init(struct cs_cell *cell, const char *method) {
     for (uint32_t c = 0; c < cs_n_columns; c++)
         if (cs_columns[c].type == CS_CELL_NUMBER)
             cs_column_parse(cs_columns + c, cell, "");
+    cell->low = cell->high = (double)NAN;
     snprintf(cell->method, sizeof cell->method, "%s", method);
     snprintf(cell->series, sizeof cell->series, "%s", method);
 }

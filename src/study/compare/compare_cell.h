@@ -28,6 +28,9 @@ struct cs_cell {
     char family[24];                            /* see cs_family_names */
     bool adaptive;
     double value;            /* of control */
+    double target;           /* error that the value was sought for; NAN: of the sweep */
+    double low, high;        /* further values of control may be run between them; no column */
+    bool open;               /* they are the method's own, not the user's; no column */
     double step;             /* mean length of an internal step in s */
     double time;             /* reached, in s */
     double error, max_error; /* m at the end: mass-weighted RMS, largest of a particle */
@@ -40,8 +43,8 @@ struct cs_cell {
     double bar;                     /* m, error of the reference itself */
     double order;                   /* slope from the row before, where it is steady */
     double achieved;                /* error / (rtol x motion) of an adaptive method */
-    double work; /* force evaluations, Jacobian products and solver iterations */
-    double evals, jvps, solves, iterations, setups, steps, rejected, newton, clamped;
+    double work; /* evals + jvps + iterations + sweeps: each about a pass over the springs */
+    double evals, jvps, solves, iterations, sweeps, setups, steps, rejected, newton, clamped;
     double cpu, cpu_low, cpu_high; /* s: median and quartiles of rounds */
     double wall;                   /* s, of the first run */
     double runs, outliers;         /* timed ones; those far above the median */

@@ -20,7 +20,7 @@
 #define STEADY 0.1
 
 /* Counts, costs and outcome of a run. The unit of work counts one force evaluation, one
- * Jacobian product and one solver iteration as equal. */
+ * Jacobian product, one solver iteration and one sweep of the method as equal. */
 static void take_counts(struct cs_cell *cell, const struct cs_recorded_run_result *end) {
     const struct cs_counts *counts = &end->counts;
     cell->steps = (double)counts->steps;
@@ -32,7 +32,8 @@ static void take_counts(struct cs_cell *cell, const struct cs_recorded_run_resul
     cell->clamped = (double)counts->clamped_setups;
     cell->rejected = (double)counts->method.rejected;
     cell->newton = (double)counts->method.newton;
-    cell->work = cell->evals + cell->jvps + cell->iterations;
+    cell->sweeps = (double)counts->method.sweeps;
+    cell->work = cell->evals + cell->jvps + cell->iterations + cell->sweeps;
     cs_machine_name(cell->machine);
     snprintf(cell->version, sizeof cell->version, "%s", CS_VERSION);
     memcpy(cell->state_hash, end->hash, sizeof cell->state_hash);
@@ -128,8 +129,7 @@ enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_ce
         !cs_recorded_run_execute(&recording, compare->budget, &track, &end, error)) {
         take_counts(cell, &end);
         take_module(&recording.session, cell);
-        if (cs_cell_is_finished(cell) &&
-            !take_verdict(&recording, &end.monitor, cell, error)) {
+        if (cs_cell_is_finished(cell) && !take_verdict(&recording, &end.monitor, cell, error)) {
             take_errors(compare, &recording, &track, cell);
             if (compare->settings->ledger)
                 take_ledger(&recording, cell, error);
@@ -157,15 +157,21 @@ static double slope(const struct cs_cell *a, const struct cs_cell *b, double bar
 }
 
 /* A slope needs a neighbour that agrees: a single one can have any value where errors of two
- * orders cancel. */
+ * orders cancel. Only cells of the sweep have orders: others lie too close together. */
 void cs_compare_find_orders(struct cs_cell *cells, uint32_t n, double bar, double scale) {
+    struct cs_cell *last = NULL; // of the sweep
+    double before = (double)NAN;
     for (uint32_t k = 0; k < n; k++) {
-        const double here = k > 0 ? slope(cells + k - 1, cells + k, bar, scale) : (double)NAN;
-        const double before =
-            k > 1 ? slope(cells + k - 2, cells + k - 1, bar, scale) : (double)NAN;
-        const double after =
-            k + 1 < n ? slope(cells + k, cells + k + 1, bar, scale) : (double)NAN;
-        const bool steady = fabs(here - before) < STEADY || fabs(here - after) < STEADY;
-        cells[k].order = steady ? here : (double)NAN;
+        struct cs_cell *cell = cells + k;
+        cell->order = (double)NAN;
+        if (isfinite(cell->target))
+            continue;
+        const double here = last ? slope(last, cell, bar, scale) : (double)NAN;
+        if (fabs(here - before) < STEADY) {
+            cell->order = here;
+            last->order = before;
+        }
+        before = here;
+        last = cell;
     }
 }

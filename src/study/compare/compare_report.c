@@ -168,13 +168,18 @@ static void add_reference(const struct cs_compare_reference *reference, struct c
 
 static void add_rank(const struct cs_rank *rank, const struct cs_cell *cells,
                      struct cs_text *out) {
-    cs_json_write(out, "{'best': %ld", (long)(rank->best - cells));
+    cs_json_write(out, "{'best': %ld, 'least_work': %ld", (long)(rank->best - cells),
+                  (long)(rank->frugal - cells));
     if (rank->runner_up)
+        cs_json_write(out, ", 'next': %ld", (long)(rank->runner_up - cells));
+    /* without both at that error there is no number */
+    if (rank->has_factor)
         cs_json_write(out,
-                      ", 'next': %ld, 'factor': %g, 'interval': [%g, %g], 'pairs': %u, "
-                      "'told_apart': %d",
-                      (long)(rank->runner_up - cells), rank->ratio.median, rank->ratio.low,
-                      rank->ratio.high, rank->ratio.pairs, rank->is_significant);
+                      ", 'factor': %g, 'interval': [%g, %g], 'pairs': %u, 'told_apart': %d, "
+                      "'work_factor': %g, 'left': [%g, %g]",
+                      rank->ratio.median, rank->ratio.low, rank->ratio.high, rank->ratio.pairs,
+                      rank->is_significant, rank->runner_up->work / rank->best->work,
+                      rank->of[0].left, rank->of[1].left);
     for (enum cs_norm norm = 0; norm < CS_NORMS; norm++)
         if (rank->better_by_norm[norm])
             cs_text_add(out, ", \"by_%s\": %td", cs_norm_names[norm],
@@ -273,9 +278,10 @@ static void add_line(const struct cs_cell *cell, bool front, struct cs_text *out
     add_field(out, "%e", cell->energy_error);
     add_field(out, "%o", cell->order);
     add_field(out, "%e", cell->achieved);
+    add_field(out, "%f", cell->work);
     add_field(out, "%f", cell->evals);
-    add_field(out, "%f", cell->solves);
     add_field(out, "%f", cell->iterations);
+    add_field(out, "%f", cell->sweeps);
     add_field(out, "%e", cell->cpu);
     if (isfinite(cell->crossings))
         cs_text_add(out, " | %s, %.0f crossings |\n", cell->outcome, cell->crossings);
@@ -290,8 +296,8 @@ static void add_table(const struct cs_compare *compare, const struct cs_ranking 
                 "at the end (RMS; largest of a\nparticle) and m/s; energy as a fraction of the "
                 "largest kinetic energy; time in s.\n\n"
                 "| series | options | error | largest | velocity | energy | order | error / "
-                "(rtol x motion) | force evaluations | solves | iterations | time | |\n"
-                "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+                "(rtol x motion) | work | force evaluations | iterations | sweeps | time | |\n"
+                "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (uint32_t k = 0; k < compare->cells.n; k++)
         add_line(compare->cells.cells + k, ranking->on_pareto_front[k], out);
 }

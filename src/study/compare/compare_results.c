@@ -85,6 +85,15 @@ static bool is_valid(const struct cs_cell *old, const struct cs_compare *compare
     return *old->outcome && (!is_over_budget(old) || old->cpu > 0.9 * compare->budget);
 }
 
+/* Gives a cell the results of an old row; its limits are those of this comparison. */
+static void copy_row(struct cs_cell *cell, const struct cs_cell *old) {
+    const struct cs_cell asked = *cell;
+    *cell = *old;
+    cell->low = asked.low;
+    cell->high = asked.high;
+    cell->open = asked.open;
+}
+
 /* Takes over old rows by series, options and key. A row of the file that no cell asks for
  * becomes a further cell. */
 static enum cs_status reuse_row(struct cs_compare_results *ledger, struct cs_compare *compare,
@@ -98,7 +107,7 @@ static enum cs_status reuse_row(struct cs_compare_results *ledger, struct cs_com
         else if (*found->outcome)
             continue;
         else if (!strcmp(found->key, old->key) && is_valid(old, compare))
-            *found = *old;
+            copy_row(found, old);
         else
             continue;
         compare->n_reused++;

@@ -40,10 +40,11 @@ double cs_norm_of(enum cs_norm norm, const struct cs_cell *cell,
  * not known. */
 double cs_norm_scale(enum cs_norm norm, const struct cs_compare_reference *reference);
 
-/* The default budget: s of processor time for the cells of a comparison and for their rounds,
- * without its reference, and the most that a run may take. */
-#define CS_COMPARE_SECONDS         25
-#define CS_COMPARE_ROUND_SECONDS   20.0
+/* The default budget: s of processor time for the sweep of a comparison, for the search for
+ * equal errors, and for the rounds, without its reference; and the most that a run may take. */
+#define CS_COMPARE_SECONDS         18
+#define CS_COMPARE_EQUAL_SECONDS   10.0
+#define CS_COMPARE_ROUND_SECONDS   15.0
 #define CS_COMPARE_RUN_SECONDS_MAX 4.0
 
 /* Leading characters of a row's key: the same for all rows of a scene, time and reference. */
@@ -58,6 +59,7 @@ struct cs_compare_settings {
     double budget;             /* s of processor time that one run may take; 0: see below */
     uint32_t runs;             /* rounds of timed runs, at most; up to CS_ROUNDS_MAX */
     enum cs_norm ranking_norm; /* error norm of the ranking */
+    double bound;              /* the one error to rank at; 0: all powers of 10 */
     const char *folder;        /* for compare.csv */
     const char *command;       /* that repeats it, for the report; may be NULL */
     bool html;                 /* one HTML file as well */
@@ -89,14 +91,11 @@ struct cs_compare {
     double scene_size;         /* m, of the scene: a power of 10 */
     double rounds_seconds;     /* s that rounds may go on */
     uint32_t n_done, n_reused; /* cells; those of an earlier run */
-    uint32_t n_ended_series,
-        n_not_run; /* series that exceeded the budget, and their cells after that */
 };
 
-/* Times every finished cell of this machine that was run only once, and the contenders for the
- * verdict (ranking.h) in rounds. Ends when the ratios of the contenders are known well enough,
- * after settings.runs rounds, or when the time for rounds is used up. Updates cpu, cpu_low,
- * cpu_high, runs and outliers of the cells. CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
+/* Times the contenders for the verdict (ranking.h) in rounds. Ends when their ratios are known
+ * well enough, after settings.runs rounds, or when the time for rounds is used up. Updates cpu,
+ * cpu_low, cpu_high, runs and outliers of the cells. CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
 enum cs_status cs_compare_time(struct cs_compare *compare, struct cs_error *error);
 
 /* Runs one cell within compare->budget and fills its errors, counts, outcome and module. cpu is

@@ -93,16 +93,17 @@ void cs_table_add_row(const struct cs_compare *compare, const struct cs_cell *ce
     cs_text_add(out, "\n");
 }
 
-/* Summary of one series: finished cells, order, largest step, achieved over requested
- * tolerance. */
+/* Summary of one series: finished cells of the sweep, order, largest step, achieved over
+ * requested tolerance. */
 static void add_series(const struct cs_cell *cells, uint32_t n, int width,
                        struct cs_text *out) {
     double least = HUGE_VAL, most = 0, step = 0, low = HUGE_VAL, high = 0;
-    uint32_t finished = 0;
+    uint32_t finished = 0, swept = 0;
     for (uint32_t k = 0; k < n; k++) {
+        swept += !isfinite(cells[k].target);
         if (!cs_cell_is_finished(cells + k))
             continue;
-        finished++;
+        finished += !isfinite(cells[k].target);
         step = fmax(step, cells[k].step);
         if (isfinite(cells[k].order)) {
             low = fmin(low, cells[k].order);
@@ -113,7 +114,7 @@ static void add_series(const struct cs_cell *cells, uint32_t n, int width,
             most = fmax(most, cells[k].achieved);
         }
     }
-    cs_text_add(out, "%-*s %2u of %2u", width, cells->series, finished, n);
+    cs_text_add(out, "%-*s %2u of %2u", width, cells->series, finished, swept);
     /* one figure for a steady order, a range for one that varies with the step */
     if (high > 0)
         cs_text_add(out, high - low > 0.1 ? "  order %.2f to %.2f" : "  order %.2f", low, high);

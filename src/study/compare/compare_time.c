@@ -3,7 +3,7 @@
  *   1. Rank the cells by their times so far; contenders are those the verdict depends on.
  *   2. Stop if there are none, or after LEAST_ROUNDS rounds if their ratios are narrow or the
  *    time is over.
- *   3. Run each contender once (round 0: each cell of a single run too) and record its time.
+ *   3. Run each contender once and record its time.
  *   4. Update the cells' medians and quartiles, and go to 1.
  * Contenders are chosen again in every round, because better times change the ranking. */
 #include "study/compare/compare_state.h"
@@ -120,13 +120,9 @@ static enum cs_status choose(const struct cs_compare *compare, uint32_t *order, 
     *n = 0;
     if (cs_ranking_make(&ranking, compare, error))
         return error->status;
-    for (uint32_t k = 0; k < compare->cells.n; k++) {
-        const struct cs_cell *cell = compare->cells.cells + k;
-        const bool once = compare->rounds.n == 0 && cs_cell_is_finished(cell) &&
-                          cell->runs < 2 && !strcmp(cell->machine, compare->machine);
-        if (ranking.is_contender[k] || once)
+    for (uint32_t k = 0; k < compare->cells.n; k++)
+        if (ranking.is_contender[k])
             order[(*n)++] = k;
-    }
     *narrow = cs_ranking_is_narrow(&ranking, NARROW);
     cs_ranking_finish(&ranking);
     return CS_OK;

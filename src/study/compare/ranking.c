@@ -5,68 +5,36 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Cells up to FAR times the cost of the best, by their first times, are contenders; the
- * runner-up is one up to FAR_NEXT times. Chosen by trial. */
+/* Cells up to FAR times the cost of the best are contenders, in the first round FAR_NEXT times,
+ * and the runner-up up to FAR_NEXT times. Chosen by trial. */
 #define FAR      1.5
 #define FAR_NEXT 3
 
-/* Criterion of a rank. */
-struct choice {
-    const struct cs_compare *compare;
-    enum cs_norm norm;
-    double bound; /* of the error */
-};
-
-/* A predicate on cells; a rank is the cheapest cell that passes. */
-typedef bool passes(const struct cs_cell *cell, const struct choice *choice);
-
-/* Times of another machine are not comparable. */
-static bool is_timed_here(const struct cs_cell *cell, const struct choice *choice) {
-    return cs_cell_is_finished(cell) && !strcmp(cell->machine, choice->compare->machine);
-}
-
-/* A cell with a cost and an error in the norm. */
-static bool is_ranked(const struct cs_cell *cell, const struct choice *choice) {
-    return is_timed_here(cell, choice) && cell->cpu > 0 &&
-           isfinite(cs_norm_of(choice->norm, cell, &choice->compare->reference));
-}
-
-/* A cell with an error of at most the bound; rounding may exceed it by 1e-9. */
-static bool is_accurate(const struct cs_cell *cell, const struct choice *choice) {
-    return is_ranked(cell, choice) &&
-           cs_norm_of(choice->norm, cell, &choice->compare->reference) <=
-               choice->bound * (1 + 1e-9);
-}
-
 /* A cell with one step per frame: no more steps than frames, and those that end at events. */
-static bool takes_frames(const struct cs_cell *cell, const struct choice *choice) {
-    return is_timed_here(cell, choice) && !cell->adaptive &&
+static bool takes_frames(const struct cs_cell *cell, const struct cs_choice *choice) {
+    return cs_choice_is_timed(cell, choice) && !cell->adaptive &&
            cell->steps <=
                choice->compare->settings->run.frames + choice->compare->n_event_times;
 }
 
 /* A cell with one step per frame and a tolerable energy error. Where energies are not known,
  * any finished cell passes: NAN fails the comparison. */
-static bool keeps_energy(const struct cs_cell *cell, const struct choice *choice) {
+static bool keeps_energy(const struct cs_cell *cell, const struct cs_choice *choice) {
     return takes_frames(cell, choice) && !(cell->energy_error > CS_FRAME_ENERGY);
 }
 
 /* Marks the cells that no other one dominates, in O(n^2) for a few hundred cells. */
-static void mark_front(struct cs_ranking *ranking, const struct choice *choice) {
+static void mark_front(struct cs_ranking *ranking, const struct cs_choice *choice) {
     const struct cs_compare *compare = choice->compare;
     const struct cs_cell *cells = compare->cells.cells;
     for (uint32_t k = 0; k < compare->cells.n; k++) {
         const double error = cs_norm_of(choice->norm, cells + k, &compare->reference);
-        ranking->on_pareto_front[k] = is_ranked(cells + k, choice);
+        ranking->on_pareto_front[k] = cs_choice_is_ranked(cells + k, choice);
         for (uint32_t i = 0; i < compare->cells.n && ranking->on_pareto_front[k]; i++)
-            if (is_ranked(cells + i, choice) && cells[i].cpu < cells[k].cpu &&
+            if (cs_choice_is_ranked(cells + i, choice) && cells[i].cpu < cells[k].cpu &&
                 cs_norm_of(choice->norm, cells + i, &compare->reference) <= error)
                 ranking->on_pareto_front[k] = false;
     }
-}
-
-static bool is_cheaper(const struct cs_cell *cell, const struct cs_cell *than) {
-    return !than || cell->cpu < than->cpu;
 }
 
 /* Cost ratio of a cell to a base. Returns whether it differs from 1: by the interval of pairs
@@ -82,49 +50,67 @@ static bool compare_costs(const struct cs_compare *compare, const struct cs_cell
     return ratio->low > 1;
 }
 
-/* The cheapest cell that passes, of any series except that of `but` (NULL: of any). NULL: none.
- */
-static const struct cs_cell *cheapest(const struct choice *choice, passes *pass,
-                                      const struct cs_cell *but) {
+/* The series that passes at the least cost, of all except that of `but` (NULL: of all). */
+static void find_cheapest(const struct cs_choice *choice, cs_choice_passes *pass,
+                          const struct cs_cell *but, struct cs_standing *found) {
     const struct cs_cell_list *sweep = &choice->compare->cells;
-    const struct cs_cell *found = NULL;
-    for (uint32_t k = 0; k < sweep->n; k++)
-        if (pass(sweep->cells + k, choice) && is_cheaper(sweep->cells + k, found) &&
-            !(but && cs_cell_same_series(sweep->cells + k, but)))
-            found = sweep->cells + k;
-    return found;
+    *found = (struct cs_standing){0};
+    for (uint32_t first = 0, end; first < sweep->n; first = end) {
+        struct cs_standing standing;
+        end = cs_choice_series_end(choice, first);
+        if (but && cs_cell_same_series(sweep->cells + first, but))
+            continue;
+        cs_standing_find(choice, pass, first, end, &standing);
+        if (standing.cell && (!found->cell || cs_choice_cost(standing.cell, choice) <
+                                                  cs_choice_cost(found->cell, choice)))
+            *found = standing;
+    }
 }
 
-/* Marks the best, the cheapest cell of each series that is near it, and the runner-up. */
+/* Marks the cell of each series that is near the best, and the runner-up. */
 static void mark_contenders(struct cs_ranking *ranking, const struct cs_rank *rank,
-                            const struct choice *choice, passes *pass) {
+                            const struct cs_choice *choice, cs_choice_passes *pass) {
     const struct cs_cell_list *sweep = &choice->compare->cells;
-    const struct cs_cell *least = NULL;
-    for (uint32_t k = 0; k < sweep->n; k++) {
-        const struct cs_cell *cell = sweep->cells + k;
-        if (k > 0 && !cs_cell_same_series(cell, cell - 1))
-            least = NULL;
-        if (pass(cell, choice) && is_cheaper(cell, least))
-            least = cell;
-        const bool last = k + 1 == sweep->n || !cs_cell_same_series(cell, cell + 1);
-        if (last && least && least->cpu <= FAR * rank->best->cpu)
-            ranking->is_contender[least - sweep->cells] = true;
+    const double far = choice->compare->rounds.n > 0 ? FAR : FAR_NEXT;
+    for (uint32_t first = 0, end; first < sweep->n; first = end) {
+        struct cs_standing standing;
+        end = cs_choice_series_end(choice, first);
+        cs_standing_find(choice, pass, first, end, &standing);
+        if (standing.cell && standing.cell->cpu <= far * rank->best->cpu)
+            ranking->is_contender[standing.cell - sweep->cells] = true;
     }
     if (rank->runner_up && rank->runner_up->cpu <= FAR_NEXT * rank->best->cpu)
         ranking->is_contender[rank->runner_up - sweep->cells] = true;
 }
 
-/* The cheapest cell that passes, and the cheapest one of another series. */
-static void find_best(struct cs_rank *rank, const struct choice *choice, passes *pass) {
-    rank->best = cheapest(choice, pass, NULL);
-    rank->runner_up = rank->best ? cheapest(choice, pass, rank->best) : NULL;
-    if (rank->runner_up)
-        rank->is_significant =
-            compare_costs(choice->compare, rank->runner_up, rank->best, &rank->ratio);
+/* Finds the cheapest series that passes, the next one, and their factor. The interval of pairs
+ * is widened on the side to which each cell could still move. */
+static void find_best(struct cs_rank *rank, const struct cs_choice *choice,
+                      cs_choice_passes *pass) {
+    struct cs_choice by_work = *choice;
+    struct cs_standing frugal;
+    find_cheapest(choice, pass, NULL, rank->of);
+    rank->best = rank->of[0].cell;
+    if (!rank->best)
+        return;
+    by_work.by_work = true;
+    find_cheapest(&by_work, pass, NULL, &frugal);
+    rank->frugal = frugal.relation == CS_BOUND_BELOW ? rank->best : frugal.cell;
+    find_cheapest(choice, pass, rank->best, rank->of + 1);
+    rank->runner_up = rank->of[1].cell;
+    rank->has_factor = rank->runner_up && rank->of[0].relation != CS_BOUND_BELOW &&
+                       rank->of[1].relation != CS_BOUND_BELOW;
+    if (!rank->has_factor)
+        return;
+    rank->is_significant =
+        compare_costs(choice->compare, rank->runner_up, rank->best, &rank->ratio);
+    rank->ratio.low *= exp(-rank->of[1].left - rank->of[0].luck);
+    rank->ratio.high *= exp(rank->of[0].left + rank->of[1].luck);
+    rank->is_significant &= !(rank->ratio.low <= 1);
 }
 
 static void choose(struct cs_ranking *ranking, struct cs_rank *rank,
-                   const struct choice *choice, passes *pass) {
+                   const struct cs_choice *choice, cs_choice_passes *pass) {
     find_best(rank, choice, pass);
     if (rank->best)
         mark_contenders(ranking, rank, choice, pass);
@@ -132,43 +118,29 @@ static void choose(struct cs_ranking *ranking, struct cs_rank *rank,
 
 /* Finds for each other norm the cheapest cell that is no worse than the best and significantly
  * cheaper. It shows whether the winner depends on the choice of the norm. */
-static void rank_by_other_norms(struct cs_rank *rank, const struct choice *choice) {
+static void rank_by_other_norms(struct cs_rank *rank, const struct cs_choice *choice) {
     const struct cs_compare *compare = choice->compare;
     for (enum cs_norm norm = 0; norm < CS_NORMS; norm++) {
-        struct choice by = {compare, norm, 0};
+        struct cs_choice by = {.compare = compare, .norm = norm};
         struct cs_ratio ratio;
         if (norm == choice->norm || !cs_norm_is_known(norm, &compare->reference) ||
-            !is_ranked(rank->best, &by))
+            !cs_choice_is_ranked(rank->best, &by))
             continue;
         by.bound = cs_norm_of(norm, rank->best, &compare->reference);
-        const struct cs_cell *found = cheapest(&by, is_accurate, rank->best);
-        if (found && found->cpu < rank->best->cpu &&
-            compare_costs(compare, rank->best, found, &ratio))
-            rank->better_by_norm[norm] = found;
+        struct cs_standing found;
+        find_cheapest(&by, cs_choice_is_met, rank->best, &found);
+        if (found.cell && found.cell->cpu < rank->best->cpu &&
+            compare_costs(compare, rank->best, found.cell, &ratio))
+            rank->better_by_norm[norm] = found.cell;
     }
 }
 
-/* Largest decade in which an error is meaningful: a tenth of the motion, or the largest error
- * if the norm has no scale. An error as large as the motion means nothing. */
-static int first_exponent(const struct choice *choice) {
-    const struct cs_compare *compare = choice->compare;
-    double most = 0;
-    for (uint32_t k = 0; k < compare->cells.n; k++)
-        if (is_ranked(compare->cells.cells + k, choice))
-            most = fmax(
-                most, cs_norm_of(choice->norm, compare->cells.cells + k, &compare->reference));
-    // one as large as the motion says nothing
-    const double scale = cs_norm_scale(choice->norm, &compare->reference);
-    return (int)floor(log10(fmax(isfinite(scale) ? 0.1 * scale : most, 1e-300)) + 1e-9);
-}
-
 /* One rank per decade, down to the first one that no cell reaches. */
-static void make_ranks(struct cs_ranking *ranking, struct choice *choice) {
-    for (int exponent = first_exponent(choice); exponent > -16 && ranking->n < CS_RANKS_MAX;
-         exponent--) {
+static void make_ranks(struct cs_ranking *ranking, struct cs_choice *choice) {
+    int exponent = 0;
+    for (uint32_t n = 0; cs_choice_next_bound(choice, &exponent, &n);) {
         struct cs_rank rank = {.exponent = exponent};
-        choice->bound = pow(10, exponent);
-        choose(ranking, &rank, choice, is_accurate);
+        choose(ranking, &rank, choice, cs_choice_is_met);
         if (!rank.best)
             break;
         rank_by_other_norms(&rank, choice);
@@ -177,7 +149,7 @@ static void make_ranks(struct cs_ranking *ranking, struct choice *choice) {
 }
 
 /* Rank of the cells with one step per frame, and how many were tried and finished. */
-static void make_frame(struct cs_ranking *ranking, const struct choice *choice) {
+static void make_frame(struct cs_ranking *ranking, const struct cs_choice *choice) {
     const struct cs_compare *compare = choice->compare;
     for (uint32_t k = 0; k < compare->cells.n; k++) {
         const struct cs_cell *cell = compare->cells.cells + k;
@@ -194,7 +166,7 @@ static void make_frame(struct cs_ranking *ranking, const struct choice *choice) 
 
 enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compare *compare,
                                struct cs_error *error) {
-    struct choice choice = {.compare = compare, .norm = compare->settings->ranking_norm};
+    struct cs_choice choice = {.compare = compare, .norm = compare->settings->ranking_norm};
     *ranking = (struct cs_ranking){.norm = choice.norm};
     ranking->on_pareto_front = calloc(compare->cells.n + 1, sizeof *ranking->on_pareto_front);
     ranking->is_contender = calloc(compare->cells.n + 1, sizeof *ranking->is_contender);
@@ -211,9 +183,10 @@ enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compa
 }
 
 void cs_ranking_at(const struct cs_compare *compare, double bound, struct cs_rank *rank) {
-    const struct choice choice = {compare, compare->settings->ranking_norm, bound};
+    const struct cs_choice choice = {
+        .compare = compare, .norm = compare->settings->ranking_norm, .bound = bound};
     *rank = (struct cs_rank){.exponent = (int)floor(log10(bound))};
-    find_best(rank, &choice, is_accurate);
+    find_best(rank, &choice, cs_choice_is_met);
 }
 
 void cs_ranking_finish(struct cs_ranking *ranking) {
@@ -225,7 +198,7 @@ void cs_ranking_finish(struct cs_ranking *ranking) {
 /* True if more rounds would not change the statement on this rank. */
 static bool is_narrow(const struct cs_rank *rank, double share) {
     const struct cs_ratio *ratio = &rank->ratio;
-    if (!rank->runner_up || ratio->median > FAR_NEXT)
+    if (!rank->has_factor || ratio->median > FAR_NEXT)
         return true;
     return ratio->pairs > 0 && ratio->pair_uncertainty <= share;
 }

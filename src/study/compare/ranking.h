@@ -1,15 +1,14 @@
-/* ranking.h - ranks the rows of a comparison: the cheapest for each error, and its margin.
+/* ranking.h - ranks methods by their cost at equal error (equal_error.h), and states their
+ * margin.
  *
- * For each power of ten of the error the cheapest cell at or below it is the best, and the
- * cheapest cell of another series the runner-up. Cost is the median processor time. The Pareto
- * front holds the cells with no other one both cheaper and at least as accurate. Only cells
- * that were timed on this machine are ranked. */
+ * For each power of ten of the error the cheapest method is the best, and the next one the
+ * runner-up. Cost is the median processor time; the ranking by work is told beside it. The
+ * Pareto front holds the cells with no other one both cheaper and at least as accurate. Only
+ * cells that were timed on this machine are ranked. */
 #ifndef CS_RANKING_H
 #define CS_RANKING_H
 
-#include "study/compare/compare_state.h"
-
-enum { CS_RANKS_MAX = 24 };
+#include "study/compare/equal_error.h"
 
 /* Ratio from which two cells differ that were not timed in pairs. */
 #define CS_APART_UNPAIRED 1.5
@@ -18,13 +17,15 @@ enum { CS_RANKS_MAX = 24 };
  * counts as stable. */
 #define CS_FRAME_ENERGY 0.1
 
-/* The cheapest cell with an error of at most 10^exponent, and that of the next series. */
+/* The cheapest method with an error of at most 10^exponent, and the next one. */
 struct cs_rank {
     int exponent;
-    const struct cs_cell *best,
-        *runner_up;        /* borrowed; next NULL: no other series was run to it */
-    struct cs_ratio ratio; /* next over best */
-    bool is_significant;   /* their costs differ significantly */
+    const struct cs_cell *best, *runner_up; /* borrowed; NULL: no other series was run to it */
+    struct cs_standing of[2];               /* of the two */
+    bool has_factor;                        /* neither of them is somewhere below */
+    struct cs_ratio ratio;                  /* runner-up over best, if has_factor */
+    bool is_significant;                    /* their costs differ significantly */
+    const struct cs_cell *frugal; /* least work of a series at the bound; may be best */
     /* by another norm: the cheapest cell that is no worse than best, if it is another series
      * and significantly cheaper; NULL: best wins by that norm too */
     const struct cs_cell *better_by_norm[CS_NORMS];

@@ -16,12 +16,26 @@ static void add_cell(const struct cs_cell *cell, struct cs_text *out) {
         cs_text_add(out, "%s", cell->series);
 }
 
-/* Margin of the best over the runner-up: none, with its interval, or roughly from single times.
- */
+/* Time and work of a cell. */
+static void add_cost(const struct cs_cell *cell, struct cs_text *out) {
+    cs_text_add(out, ", %.3g ms", 1e3 * cell->cpu);
+    if (isfinite(cell->work))
+        cs_text_add(out, ", work %.0f", cell->work);
+}
+
+/* Margin of the best over the runner-up: none, with its interval, or roughly from single times;
+ * and that by work. */
 static void add_factor(const struct cs_rank *rank, const char *none, struct cs_text *out) {
     const struct cs_ratio *ratio = &rank->ratio;
     if (!rank->runner_up) {
         cs_text_add(out, "; %s\n", none);
+        return;
+    }
+    if (!rank->has_factor) {
+        const bool best = rank->of[0].relation == CS_BOUND_BELOW;
+        cs_text_add(out, "; no factor: not run to that error, only below it: ");
+        add_cell(best ? rank->best : rank->runner_up, out);
+        cs_text_add(out, "\n");
         return;
     }
     if (!rank->is_significant)
@@ -32,7 +46,24 @@ static void add_factor(const struct cs_rank *rank, const char *none, struct cs_t
     else
         cs_text_add(out, "; about %.1f times cheaper than ", ratio->median);
     add_cell(rank->runner_up, out);
+    if (rank->best->work > 0)
+        cs_text_add(out, ", by work %.2f", rank->runner_up->work / rank->best->work);
     cs_text_add(out, "\n");
+}
+
+/* Less work than this fraction of the best's is told. */
+#define FRUGAL 0.98
+
+/* Names the method with less work than the best, if there is one: where a force costs more than
+ * all else, it is the cheapest. */
+static void add_frugal(const struct cs_rank *rank, const char *bullet, struct cs_text *out) {
+    if (!rank->frugal || rank->of[0].relation == CS_BOUND_BELOW ||
+        !(rank->frugal->work < FRUGAL * rank->best->work))
+        return;
+    cs_text_add(out, "%s  least work: ", bullet);
+    add_cell(rank->frugal, out);
+    cs_text_add(out, ", %.2f of it in %.3g ms\n", rank->frugal->work / rank->best->work,
+                1e3 * rank->frugal->cpu);
 }
 
 /* Names the winners by other norms; a cell that wins by several is named once. */
@@ -63,8 +94,11 @@ static void add_rank(const struct cs_ranking *ranking, const struct cs_rank *ran
         cs_text_add(out, " down to 1e%03d", last);
     cs_text_add(out, "%s%s: ", *unit ? " " : "", unit);
     add_cell(rank->best, out);
-    cs_text_add(out, ", %.3g ms", 1e3 * rank->best->cpu);
-    add_factor(rank, "no other series covers that error", out);
+    if (rank->of[0].relation == CS_BOUND_LIMIT)
+        cs_text_add(out, " at its limit");
+    add_cost(rank->best, out);
+    add_factor(rank, "no other series was run to that error", out);
+    add_frugal(rank, bullet, out);
     add_others(rank, bullet, out);
 }
 
@@ -89,7 +123,7 @@ static void add_frame(const struct cs_ranking *ranking, const char *bullet,
         cs_text_add(out, "\n");
     } else {
         add_cell(best, out);
-        cs_text_add(out, ", %.3g ms", 1e3 * best->cpu);
+        add_cost(best, out);
         if (isfinite(best->error))
             cs_text_add(out, ", error %.1e m", best->error);
         if (isfinite(best->energy_error))
@@ -106,7 +140,8 @@ void cs_verdict_print(const struct cs_ranking *ranking, const char *bullet,
         const struct cs_rank *rank = ranking->ranks + k;
         // what the next decades share is said once
         for (last = k; last + 1 < ranking->n && rank[last + 1 - k].best == rank->best &&
-                       rank[last + 1 - k].runner_up == rank->runner_up;)
+                       rank[last + 1 - k].runner_up == rank->runner_up &&
+                       rank[last + 1 - k].has_factor == rank->has_factor;)
             last++;
         add_rank(ranking, rank, ranking->ranks[last].exponent, bullet, out);
     }
@@ -144,7 +179,7 @@ void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct 
         cs_text_add(out, "%s of at most %.3g %s after %.4g s: -i %s, %.3g ms per frame",
                     cs_norm_words(norm), bound, cs_norm_unit(norm), compare->time, integrator,
                     1e3 * rank.best->cpu / compare->settings->run.frames);
-        add_factor(&rank, "no other series covers that error", out);
+        add_factor(&rank, "no other series was run to that error", out);
     } else if (nearest) {
         cs_cell_integrator(nearest, integrator, sizeof integrator);
         cs_text_add(out,
@@ -203,10 +238,7 @@ void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
         ": not drawn, and ranked as if at it");
     add(out, bullet, stats.blown, "blew up", ": the step is beyond the stable one");
     add(out, bullet, stats.over, "over budget",
-        ": stopped (a larger --budget lets them finish)");
-    if (compare->n_not_run > 0)
-        cs_text_add(out, "%s%u series ended there, %u cells were not run\n", bullet,
-                    compare->n_ended_series, compare->n_not_run);
+        ": their series end there (a larger --budget lets them go on)");
     add(out, bullet, stats.failed, "failed", ": the notes in compare.csv say why");
     add(out, bullet, stats.brief, "ran for less than 5 ms",
         ": trust the counts rather than the times, or take a longer --time");
