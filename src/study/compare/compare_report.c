@@ -176,10 +176,9 @@ static void add_rank(const struct cs_rank *rank, const struct cs_cell *cells,
     if (rank->has_factor)
         cs_json_write(out,
                       ", 'factor': %g, 'interval': [%g, %g], 'pairs': %u, 'told_apart': %d, "
-                      "'work_factor': %g, 'left': [%g, %g]",
+                      "'work_factor': %g, 'work_interval': [%g, %g]",
                       rank->ratio.median, rank->ratio.low, rank->ratio.high, rank->ratio.pairs,
-                      rank->is_significant, rank->runner_up->work / rank->best->work,
-                      rank->of[0].left, rank->of[1].left);
+                      rank->is_significant, rank->work.median, rank->work.low, rank->work.high);
     for (enum cs_norm norm = 0; norm < CS_NORMS; norm++)
         if (rank->better_by_norm[norm])
             cs_text_add(out, ", \"by_%s\": %td", cs_norm_names[norm],

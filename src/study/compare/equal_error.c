@@ -16,9 +16,13 @@
 #define CLOSED 1.02
 
 /* Slopes of log(work) over log(1 / error): a method of order p has 1/p. */
-#define WIDE      1.5
-#define SLOPE_MIN 0.02
-#define SLOPE_MAX 2
+#define WIDE       1.5
+#define WIDE_NOISY 5
+#define SLOPE_MIN  0.02
+#define SLOPE_MAX  2
+
+/* Errors within this factor of a bound show the noise of error control there. */
+#define NOISE_RANGE 3
 
 /* Times of another machine are not comparable. */
 bool cs_choice_is_timed(const struct cs_cell *cell, const struct cs_choice *choice) {
@@ -74,10 +78,11 @@ uint32_t cs_choice_series_end(const struct cs_choice *choice, uint32_t first) {
  * times of single runs are noise too. */
 static double find_slope(const struct cs_choice *choice, const struct cs_cell *cell,
                          const struct cs_cell *first, const struct cs_cell *end) {
+    const double wide = cell->adaptive ? WIDE_NOISY : WIDE;
     const struct cs_cell *other = NULL;
     for (const struct cs_cell *at = first; at < end; at++) {
         const double apart = fabs(log(error_of(at, choice) / error_of(cell, choice)));
-        if (cs_choice_is_ranked(at, choice) && apart >= log(WIDE) &&
+        if (cs_choice_is_ranked(at, choice) && apart >= log(wide) &&
             (!other || apart < fabs(log(error_of(other, choice) / error_of(cell, choice)))))
             other = at;
     }
@@ -150,16 +155,19 @@ static bool is_free(const struct cs_cell *coarser, const struct cs_cell *cell) {
     return coarser ? coarser->value <= cell->high * (1 + 1e-9) : cell->open;
 }
 
-/* Logarithm of the work of the costliest cell that misses the bound over that of the cell that
- * meets it; 0 where it takes less, as it should. Noise of error control makes a lucky cell the
- * one with the least work. */
-static double find_luck(const struct cs_choice *choice, const struct cs_cell *first,
-                        const struct cs_cell *end, const struct cs_cell *cell) {
-    double luck = 0;
-    for (const struct cs_cell *at = first; at < end; at++)
-        if (cs_choice_is_ranked(at, choice) && error_of(at, choice) > choice->bound)
-            luck = fmax(luck, log(at->work / cell->work));
-    return luck;
+/* Widens left and luck of a method with error control by its noise. Each cell with an error
+ * near the bound gives an estimate of the work there, along the slope; they differ, because
+ * errors jump from one tolerance to the next. */
+static void add_noise(const struct cs_choice *choice, const struct cs_cell *first,
+                      const struct cs_cell *end, struct cs_standing *standing) {
+    for (const struct cs_cell *at = first; at < end; at++) {
+        const double apart = log(error_of(at, choice) / choice->bound);
+        if (!cs_choice_is_ranked(at, choice) || fabs(apart) > log(NOISE_RANGE))
+            continue;
+        const double more = log(at->work / standing->cell->work) + standing->slope * apart;
+        standing->luck = fmax(standing->luck, more);
+        standing->left = fmax(standing->left, -more);
+    }
 }
 
 /* Sets relation, slope, left and luck. */
@@ -170,7 +178,6 @@ static void find_relation(const struct cs_choice *choice, const struct cs_cell *
     const bool equal = error >= (1 - CS_EQUAL_ERROR) * choice->bound;
     double value;
     standing->slope = find_slope(choice, cell, first, end);
-    standing->luck = find_luck(choice, first, end, cell);
     if (!equal && takes_steps(cell) && steps_of(cell, choice) <= 1)
         standing->relation = CS_BOUND_LIMIT;
     else if (!equal &&
@@ -180,6 +187,8 @@ static void find_relation(const struct cs_choice *choice, const struct cs_cell *
         standing->relation = CS_BOUND_AT;
         standing->left =
             standing->slope * (log(choice->bound / error) + log1p(bar_of(choice) / error));
+        if (cell->adaptive)
+            add_noise(choice, first, end, standing);
     } else {
         standing->relation = CS_BOUND_LIMIT;
         standing->left = !coarser || takes_steps(cell) ? 0 : log(coarser->value / cell->value);

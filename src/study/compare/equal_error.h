@@ -9,8 +9,8 @@
  *   2. has no neighbour: no number of steps per frame, or no tolerance, lies in between;
  *   3. is at a limit: the next longer step is unstable, or longer than a frame.
  * In cases 1 and 2 the rest of the distance, times the slope of log(cost) over log(error),
- * widens the interval of a factor. Noise of error control widens it too, where cells that miss
- * the error cost more than the one that meets it. Methods without such a cell have no factor.
+ * widens the interval of a factor. Of methods with error control so does the scatter of the
+ * cells near the error about that slope. Methods without such a cell have no factor.
  */
 #ifndef CS_EQUAL_ERROR_H
 #define CS_EQUAL_ERROR_H
@@ -38,7 +38,7 @@ struct cs_standing {
     enum cs_bound_relation relation;
     double slope; /* d log(work) / d log(1 / error) near the bound */
     double left;  /* logarithm of the factor that the rest of the distance may save, */
-    double luck;  /* and of the factor by which cells with larger errors cost more */
+    double luck;  /* and of the factor by which the cell may be lucky: noise of error control */
 };
 
 /* A question to the cells of a comparison. */

@@ -104,9 +104,13 @@ static void find_best(struct cs_rank *rank, const struct cs_choice *choice,
         return;
     rank->is_significant =
         compare_costs(choice->compare, rank->runner_up, rank->best, &rank->ratio);
-    rank->ratio.low *= exp(-rank->of[1].left - rank->of[0].luck);
-    rank->ratio.high *= exp(rank->of[0].left + rank->of[1].luck);
+    const double below = exp(-rank->of[1].left - rank->of[0].luck),
+                 above = exp(rank->of[0].left + rank->of[1].luck),
+                 work = rank->runner_up->work / rank->best->work;
+    rank->ratio.low *= below;
+    rank->ratio.high *= above;
     rank->is_significant &= !(rank->ratio.low <= 1);
+    rank->work = (struct cs_ratio){.median = work, .low = work * below, .high = work * above};
 }
 
 static void choose(struct cs_ranking *ranking, struct cs_rank *rank,

@@ -24,7 +24,8 @@ struct cs_rank {
     struct cs_standing of[2];               /* of the two */
     bool has_factor;                        /* neither of them is somewhere below */
     struct cs_ratio ratio;                  /* runner-up over best, if has_factor */
-    bool is_significant;                    /* their costs differ significantly */
+    struct cs_ratio work;         /* the same of counts, with the last level of the interval */
+    bool is_significant;          /* their costs differ significantly */
     const struct cs_cell *frugal; /* least work of a series at the bound; may be best */
     /* by another norm: the cheapest cell that is no worse than best, if it is another series
      * and significantly cheaper; NULL: best wins by that norm too */

@@ -47,7 +47,7 @@ static void add_factor(const struct cs_rank *rank, const char *none, struct cs_t
         cs_text_add(out, "; about %.1f times cheaper than ", ratio->median);
     add_cell(rank->runner_up, out);
     if (rank->best->work > 0)
-        cs_text_add(out, ", by work %.2f", rank->runner_up->work / rank->best->work);
+        cs_text_add(out, ", by work %.2f", rank->work.median);
     cs_text_add(out, "\n");
 }
 
