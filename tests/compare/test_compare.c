@@ -132,6 +132,23 @@ TEST(ranking_takes_the_cheapest) {
     cs_compare_finish(&compare);
 }
 
+/* A method that goes over the springs itself is not cheaper by that: ten passes a step. */
+TEST(sweeps_are_work) {
+    struct place place;
+    struct watch watch = {0};
+    struct cs_compare compare;
+    struct cs_compare_settings settings;
+    place_make(&place, "0.02");
+    run(&compare, &settings, &place, "xpbd:dt=5e-3,velocity-verlet:dt=1e-3", &watch);
+    ck_assert_uint_eq(compare.cells.n, 2);
+    const struct cs_cell *xpbd = compare.cells.cells, *verlet = xpbd + 1;
+    ck_assert_double_eq(xpbd->sweeps, 10 * xpbd->steps);
+    ck_assert_double_eq(xpbd->work, xpbd->evals + xpbd->sweeps);
+    ck_assert_double_eq(verlet->sweeps, 0);
+    ck_assert_double_eq(verlet->work, verlet->evals);
+    cs_compare_finish(&compare);
+}
+
 TEST(list_is_read) {
     struct cs_cell_list sweep;
     struct cs_error error = {0};
