@@ -47,10 +47,9 @@ static inline void place_facet(uint64_t *state, int pair, double p[4][3]) {
             p[1][c] + along * (p[2][c] - p[1][c]) + aside * (p[3][c] - p[1][c]) + up * (c == 2);
 }
 
-/* Differences are poor where the plane of a triangle is not known, and by short edges. */
+/* Differences are poor by short edges. */
 static inline bool place_is_good(const struct cs_pair_distance *s) {
-    return s->d >= 0.02 && s->a >= 0.25 && s->c >= 0.25 &&
-           (s->kind == CS_PAIR_EDGE_EDGE || s->a * s->c - s->b * s->b >= 0.1 * s->a * s->c);
+    return s->d >= 0.02 && s->a >= 0.25 && s->c >= 0.25;
 }
 
 /* A slope by values at -3 .. 3 steps: sixth order. Which of the steps is best hangs on the

@@ -1,18 +1,17 @@
-/* pair_distance.h - distance of a point and a triangle, or smooth distance of two edges: a
- * function of four points, with its gradient; of edges also with its exact second derivative
- * along a direction (pair_distance_tangent.h).
+/* pair_distance.h - smooth distance of two edges: a function of four points, with its gradient
+ * and its exact second derivative along a direction (pair_distance_tangent.h); and the plane of
+ * a triangle, on which mesh_feature.h builds the distances of points.
  *
- * Both are |r| with r = w - L1 u - L2 v for three differences u, v, w of the points:
+ * All use three differences u, v, w of the points, and the weights l of a difference w - l1 u -
+ * l2 v that is as short as can be:
  *
  *   point p, triangle t0 t1 t2    u = t1 - t0   v = t2 - t0   w = p - t0
  *   edges x0 x1 and x2 x3         u = x0 - x1   v = x3 - x2   w = x0 - x2
  *
- * Triangles: L are the weights of the nearest point, so that |r| is the true distance. Forces
- * use the features of mesh_feature.h instead.
- *
- * Edges: l minimises |w - l1 u - l2 v|^2 + p1 (l1 - 1/2)^2 + p2 (l2 - 1/2)^2, a system of two
- * equations. The regularisation p keeps it regular for parallel edges. Then l is moved into the
- * edges by the smooth positive part S of scene/shape_core.h, over e_i to both sides of an end:
+ * The distance of edges is |r| with r = w - L1 u - L2 v. l minimises |w - l1 u - l2 v|^2 + p1
+ * (l1 - 1/2)^2 + p2 (l2 - 1/2)^2, a system of two equations. The regularisation p keeps it
+ * regular for parallel edges. Then l is moved into the edges by the smooth positive part S of
+ * scene/shape_core.h, over e_i to both sides of an end:
  *
  *   L_i = S(l_i, e_i) - S(l_i - 1, e_i)            e_i = B / sqrt(1 + (B s_i/R)^2),   B = 0.1
  *   p_i = s_i pi(s1 + s2)                          pi(s) = (q/2) s / (1 + q s^2/(2 C R^2))
@@ -44,7 +43,6 @@
 #include "scene/shape_core.h"
 
 #include <float.h>
-#include <stdbool.h>
 
 /* B, q and C of edges, as above: the half-width of the smooth clamp in units of l, half and
  * twice of which gave the same convergence orders; the slope and the limit of p. */
@@ -58,9 +56,9 @@
  * last two. */
 enum cs_pair_kind { CS_PAIR_POINT_TRIANGLE, CS_PAIR_EDGE_EDGE };
 
-/* One pair at one state; cs_pair_distance_set fills it. */
+/* Two edges at one state, filled by cs_pair_distance_set; or a point and the plane of a
+ * triangle, of which cs_pair_distance_frame fills u to unclamped. */
 struct cs_pair_distance {
-    enum cs_pair_kind kind;
     /* distance in m; unit vector from the second contact point to the first */
     double d, n[3];
     double u[3], v[3], w[3]; /* m */
@@ -70,10 +68,9 @@ struct cs_pair_distance {
     double pull[2];
     /* l before and L after the clamp */
     double unclamped[2], clamped[2];
-    /* of edges: lengths s_i in m; pi and its two derivatives */
+    /* lengths s_i in m; pi and its two derivatives */
     double length[2], pull_per_length[3];
-    /* of edges: L_i, its derivative by l_i and by s_i; then by l_i twice, by both, by s_i twice
-     */
+    /* L_i, its derivative by l_i and by s_i; then by l_i twice, by both, by s_i twice */
     double blend[2][3], blend_second[2][3];
 };
 
@@ -83,39 +80,6 @@ CS_INLINE void cs_pair_distance_solve(const struct cs_pair_distance *s, const do
     const double a = s->a + s->pull[0], c = s->c + s->pull[1];
     z[0] = (c * k[0] - s->b * k[1]) * s->inverse_determinant;
     z[1] = (a * k[1] - s->b * k[0]) * s->inverse_determinant;
-}
-
-/* t in [0, 1] at which the line from w along -u comes nearest to the origin. */
-CS_INLINE double cs_pair_distance_fraction(const double u[3], const double w[3]) {
-    const double t = cs_vec3_dot(u, w) / (cs_vec3_dot(u, u) + DBL_MIN), low = t > 0 ? t : 0;
-    return low < 1 ? low : 1;
-}
-
-/* L of the nearest point of a triangle: l if the foot is inside, else on the nearest of the
- * three edges, selected without branches. Triangles that are slivers within sin^2 = 1e-10 are
- * their edges, because l is then rounding alone. */
-CS_INLINE void cs_pair_distance_clamp_triangle(struct cs_pair_distance *s) {
-    const double *l = s->unclamped, *u = s->u, *v = s->v, *w = s->w;
-    const double far[3] = {v[0] - u[0], v[1] - u[1], v[2] - u[2]};
-    const double from[3] = {w[0] - u[0], w[1] - u[1], w[2] - u[2]};
-    const double first = cs_pair_distance_fraction(u, w),
-                 second = cs_pair_distance_fraction(v, w),
-                 third = cs_pair_distance_fraction(far, from);
-    double squared[3] = {0, 0, 0};
-    for (int c = 0; c < 3; c++) {
-        const double r[3] = {w[c] - first * u[c], w[c] - second * v[c],
-                             from[c] - third * far[c]};
-        squared[0] += r[0] * r[0], squared[1] += r[1] * r[1], squared[2] += r[2] * r[2];
-    }
-    const bool on_second = squared[1] < squared[0];
-    const double least = on_second ? squared[1] : squared[0];
-    const bool on_third = squared[2] < least;
-    const double edge1 = on_third ? 1 - third : on_second ? 0 : first;
-    const double edge2 = on_third ? third : on_second ? second : 0;
-    const bool inside = (l[0] >= 0) & (l[1] >= 0) & (l[0] + l[1] <= 1) &
-                        (s->a * s->c - s->b * s->b > 1e-10 * s->a * s->c);
-    s->clamped[0] = inside ? l[0] : edge1;
-    s->clamped[1] = inside ? l[1] : edge2;
 }
 
 /* L_i = S(l_i) - S(l_i - 1): 0 below -e, 1 above 1 + e, and l_i between e and 1 - e. S is
@@ -209,7 +173,6 @@ CS_INLINE void cs_pair_distance_refine(struct cs_pair_distance *s) {
  * coincide. range: R of edges in m; triangles have none. */
 CS_INLINE void cs_pair_distance_frame(struct cs_pair_distance *s, enum cs_pair_kind kind,
                                       double range, double p[4][3]) {
-    s->kind = kind;
     cs_pair_distance_differences(kind, p, s->u, s->v, s->w);
     s->a = cs_vec3_dot(s->u, s->u);
     s->b = cs_vec3_dot(s->u, s->v);
@@ -227,17 +190,12 @@ CS_INLINE void cs_pair_distance_frame(struct cs_pair_distance *s, enum cs_pair_k
         cs_pair_distance_refine(s);
 }
 
-/* Sets the distance, and all that its derivatives need. range: R of edges in m, above 0; not
- * read for triangles. p is not changed. */
-CS_INLINE void cs_pair_distance_set(struct cs_pair_distance *s, enum cs_pair_kind kind,
-                                    double range, double p[4][3]) {
-    cs_pair_distance_frame(s, kind, range, p);
-    if (kind == CS_PAIR_EDGE_EDGE) {
-        cs_pair_distance_clamp_edge(s, 0, s->a, range);
-        cs_pair_distance_clamp_edge(s, 1, s->c, range);
-    } else {
-        cs_pair_distance_clamp_triangle(s);
-    }
+/* Sets the distance of two edges, and all that its derivatives need. range: R in m, above 0. p
+ * is not changed. */
+CS_INLINE void cs_pair_distance_set(struct cs_pair_distance *s, double range, double p[4][3]) {
+    cs_pair_distance_frame(s, CS_PAIR_EDGE_EDGE, range, p);
+    cs_pair_distance_clamp_edge(s, 0, s->a, range);
+    cs_pair_distance_clamp_edge(s, 1, s->c, range);
     double r[3];
     for (int c = 0; c < 3; c++)
         r[c] = s->w[c] - s->clamped[0] * s->u[c] - s->clamped[1] * s->v[c];
@@ -248,10 +206,10 @@ CS_INLINE void cs_pair_distance_set(struct cs_pair_distance *s, enum cs_pair_kin
 
 /* Weights of the four points in the difference of both contact points; they sum to 0. */
 CS_INLINE void cs_pair_distance_weights(const struct cs_pair_distance *s, double out[4]) {
-    cs_pair_distance_to_points(s->kind, -s->clamped[0], -s->clamped[1], 1, out);
+    cs_pair_distance_to_points(CS_PAIR_EDGE_EDGE, -s->clamped[0], -s->clamped[1], 1, out);
 }
 
-/* Intermediate values of the gradient for edges, by the adjoint method: k = dd/dl through the
+/* Intermediate values of the gradient, by the adjoint method: k = dd/dl through the
  * clamp, z = A^-1 k, and y = z1 u + z2 v. For one direction, k.dl = z.(d(rhs) - dA l), so that
  * one solution z serves all twelve components. The lengths act through p and e:
  *
@@ -287,7 +245,7 @@ CS_INLINE void cs_pair_distance_set_slopes(const struct cs_pair_distance *s,
 }
 
 /* Gradient by the differences u, v, w, component c. */
-CS_INLINE void cs_pair_distance_gradient_edges(const struct cs_pair_distance *s,
+CS_INLINE void cs_pair_distance_slope(const struct cs_pair_distance *s,
                                                const struct cs_pair_distance_gradients *at,
                                                int c, double by[3]) {
     const double *l = s->unclamped;
@@ -297,23 +255,20 @@ CS_INLINE void cs_pair_distance_gradient_edges(const struct cs_pair_distance *s,
     by[2] = at->y[c] + s->n[c];
 }
 
-/* Sets g (4,3) = the gradient of d by the four points. For edges, by the differences, it is
+/* Sets g (4,3) = the gradient of d by the four points. By the differences it is
  *
  *   g_u = -L1 n + z1 r0 - l1 y + (m1/s1) u,   r0 = w - l1 u - l2 v
  *   g_v = -L2 n + z2 r0 - l2 y + (m2/s2) v
  *   g_w = n + y
  *
- * and for triangles the first terms alone, since L minimises d. The sum of g over the points is
- * 0, and so is that of p x g: no net force and no torque. */
+ * The sum of g over the points is 0, and so is that of p x g: no net force and no torque. */
 CS_INLINE void cs_pair_distance_gradient(const struct cs_pair_distance *s, double g[4][3]) {
     struct cs_pair_distance_gradients at;
-    if (s->kind == CS_PAIR_EDGE_EDGE)
-        cs_pair_distance_set_slopes(s, &at);
+    cs_pair_distance_set_slopes(s, &at);
     for (int c = 0; c < 3; c++) {
-        double by[3] = {-s->clamped[0] * s->n[c], -s->clamped[1] * s->n[c], s->n[c]}, out[4];
-        if (s->kind == CS_PAIR_EDGE_EDGE)
-            cs_pair_distance_gradient_edges(s, &at, c, by);
-        cs_pair_distance_to_points(s->kind, by[0], by[1], by[2], out);
+        double by[3], out[4];
+        cs_pair_distance_slope(s, &at, c, by);
+        cs_pair_distance_to_points(CS_PAIR_EDGE_EDGE, by[0], by[1], by[2], out);
         for (int k = 0; k < 4; k++)
             g[k][c] = out[k];
     }

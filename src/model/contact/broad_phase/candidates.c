@@ -106,10 +106,12 @@ CS_CLONES static void find_span(const double *now, const double *then, size_t co
         span.low[0] = move < span.low[0] ? move : span.low[0];
         span.high[0] = move > span.high[0] ? move : span.high[0];
     }
-    for (int l = 1; l < LANES; l++) {
-        span.low[0] = span.low[l] < span.low[0] ? span.low[l] : span.low[0];
-        span.high[0] = span.high[l] > span.high[0] ? span.high[l] : span.high[0];
-    }
+    for (int half = LANES / 2; half; half /= 2)
+        for (int l = 0; l < half; l++) {
+            const double low = span.low[half + l], high = span.high[half + l];
+            span.low[l] = low < span.low[l] ? low : span.low[l];
+            span.high[l] = high > span.high[l] ? high : span.high[l];
+        }
     *out = span;
 }
 

@@ -189,10 +189,11 @@ static double distance_of(const struct pair_move *pair) {
  * is stored. */
 static double energy_of(const struct cs_system *system, struct pair_move *pair, double h,
                         const struct place *at) {
-    double weight[4], way[3] = {0}, inverse = 0;
-    struct cs_pair_distance distance;
-    cs_pair_distance_set(&distance, pair->kind, at->range, pair->p);
-    cs_pair_distance_weights(&distance, weight);
+    double way[3] = {0}, inverse = 0;
+    struct cs_pair_contact contact;
+    const double d =
+        cs_pair_contact_measure_whole(&contact, pair->kind, at->range, pair->p);
+    const double *weight = contact.weight;
     for (int k = 0; k < 4; k++) {
         inverse += weight[k] * weight[k] * cs_surface_points_inverse_mass(system, pair->at[k]);
         for (int c = 0; c < 3; c++)
@@ -200,7 +201,7 @@ static double energy_of(const struct cs_system *system, struct pair_move *pair, 
     }
     // points that are held may meet beside a free one, which has no weight then
     return (inverse > 0 ? kinetic(1 / inverse, way, h) : 0) +
-           cs_barrier_energy(distance.d, at->range, at->k);
+           cs_barrier_energy(d, at->range, at->k);
 }
 
 /* Contact of a pair in a step of h seconds. Its energy is at least the one that may come to the
@@ -219,7 +220,7 @@ static struct place place_of(const struct cs_system *system, struct pair_move *p
     const struct cs_body_pair_params *params =
         cs_body_pair_params_of(&system->pairs->body_pairs, a, b);
     const bool edges = pair->kind == CS_PAIR_EDGE_EDGE;
-    at.range = cs_body_pair_params_range(params, edges);
+    at.range = cs_pair_contact_range(params, edges);
     at.k = cs_body_pair_params_stiffness(params, edges);
     at.stiffness = params->k;
     at.energy = fmax(energy_of(system, pair, h, &at),

@@ -70,8 +70,7 @@ static void put(const struct work *work, const struct cs_weighted_feature *use) 
     if (!to)
         return;
     memcpy(chunk->points + chunk->n++, use->points, sizeof *chunk->points);
-    to->range[l] = edges ? cs_body_pair_params_range(&params, true)
-                         : CS_FEATURE_RANGE_RATIO * params.range;
+    to->range[l] = cs_pair_contact_range(&params, edges);
     to->k[l] = cs_body_pair_params_stiffness(&params, edges);
     to->friction[l] = params.friction;
     to->weight[l] = use->weight;
@@ -123,14 +122,20 @@ static void find_facets(struct work *work) {
     work->waiting = 0;
 }
 
+/* Query of a candidate: a point and a triangle. */
+static struct cs_feature_query query_of(const struct cs_candidates *candidates,
+                                        const uint32_t pair[2]) {
+    struct cs_feature_query query = {.triangle = pair[1]};
+    cs_candidate_vertices(candidates->system->surfaces, CS_PAIR_POINT_TRIANGLE, pair,
+                          query.points);
+    query.same_body = candidates->body[query.points[0]] == candidates->body[query.points[1]];
+    query.range = meeting_of(candidates, query.points).range;
+    return query;
+}
+
 /* Adds a point-triangle pair to the waiting queries. */
-static void queue_pair(struct work *work, const uint32_t at[4], uint32_t triangle) {
-    const struct cs_candidates *search = work->active->candidates;
-    struct cs_feature_query *pair = work->pairs + work->waiting++;
-    memcpy(pair->points, at, sizeof pair->points);
-    pair->triangle = triangle;
-    pair->same_body = search->body[at[0]] == search->body[at[1]];
-    pair->range = meeting_of(search, at).range;
+static void queue_pair(struct work *work, const uint32_t pair[2]) {
+    work->pairs[work->waiting++] = query_of(work->active->candidates, pair);
     if (work->waiting == CS_FEATURE_QUERY_PAIRS)
         find_facets(work);
 }
@@ -155,7 +160,7 @@ static void take(struct work *work, const uint32_t pair[2]) {
     if (work->chunk->kind == CS_PAIR_EDGE_EDGE)
         put(work, &edges);
     else
-        queue_pair(work, edges.points, pair[1]);
+        queue_pair(work, pair);
 }
 
 struct job {
@@ -225,4 +230,53 @@ bool cs_active_contacts_gather(struct cs_active_contacts *active) {
         active->is_gathered = cs_gather_set(&active->force_gather);
     }
     return active->is_gathered;
+}
+
+/* --- the sum of the features of a point --- */
+
+/* Adds a feature at the start of the step to the model of its point. */
+static void add_slope(const struct cs_feature_positions *x, size_t n,
+                      const struct cs_weighted_feature *use, double range, double k,
+                      struct cs_point_energy *sum) {
+    struct cs_mesh_feature feature;
+    double p[4][3], g[4][3], approach = 0;
+    for (size_t j = 0; j < 12; j++)
+        p[j / 3][j % 3] = x->from[j % 3 * n + use->points[j / 3]];
+    cs_mesh_feature_set(&feature, use->form, p);
+    cs_mesh_feature_to_points(feature.g, g);
+    for (size_t j = 0; j < 12; j++)
+        approach -= g[j / 3][j % 3] * (x->to[j % 3 * n + use->points[j / 3]] - p[j / 3][j % 3]);
+    const struct cs_barrier law = cs_barrier_at(feature.d, range, use->weight * k);
+    sum->first += law.force * approach;
+    sum->second += 0.5 * law.stiffness * approach * approach;
+}
+
+struct cs_point_energy cs_point_energy_find(const struct cs_feature_weights *features,
+                                            const struct cs_candidates *candidates,
+                                            const struct cs_candidate_chunk *chunk,
+                                            uint32_t point,
+                                            const struct cs_feature_positions *x) {
+    struct cs_weighted_feature uses[CS_FEATURES_PER_TRIANGLE];
+    struct cs_point_energy sum = {0, 0, 0};
+    size_t begin = 0, end = chunk->n;
+    // the first candidate of the point: they are in the order of points
+    while (begin < end) {
+        const size_t middle = (begin + end) / 2;
+        if (chunk->pairs[2 * middle] < point)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    for (; begin < chunk->n && chunk->pairs[2 * begin] == point; begin++) {
+        const struct cs_feature_query query = query_of(candidates, chunk->pairs + 2 * begin);
+        const struct cs_body_pair_params params = meeting_of(candidates, query.points);
+        const double range = cs_pair_contact_range(&params, false);
+        const uint32_t n = cs_feature_weights_find_between(features, &query, 1, x, uses);
+        for (uint32_t u = 0; u < n; u++) {
+            sum.energy += uses[u].weight * cs_barrier_energy(uses[u].d, range, params.k);
+            if (x->fraction == 0)
+                add_slope(x, features->surfaces->n_points, uses + u, range, params.k, &sum);
+        }
+    }
+    return sum;
 }

@@ -70,6 +70,20 @@ bool cs_active_contacts_find(struct cs_active_contacts *active, const double *x)
  * if out of memory. */
 bool cs_active_contacts_gather(struct cs_active_contacts *active);
 
+/* Energy in J of all features of a point, and the terms of its second-order model for a whole
+ * straight step: F a and K a^2/2 summed over the features, with the approach a of each. */
+struct cs_point_energy {
+    double energy, first, second;
+};
+
+/* Sums the features of a point at x, from all its candidates in a chunk. The terms of the model
+ * are set at fraction 0 only. */
+struct cs_point_energy cs_point_energy_find(const struct cs_feature_weights *features,
+                                            const struct cs_candidates *candidates,
+                                            const struct cs_candidate_chunk *chunk,
+                                            uint32_t point,
+                                            const struct cs_feature_positions *x);
+
 /* True squared distances of points, triangles and edges, in lanes. Candidates are selected by
  * them, because the smooth distance of pair_distance.h may jump where the true one, which is
  * 1-Lipschitz, moves little. */

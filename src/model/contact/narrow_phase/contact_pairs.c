@@ -21,7 +21,7 @@ static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error 
         for (size_t p = 0; p < search->chunks[l].n; p++) {
             uint32_t at[4];
             double places[4][3];
-            struct cs_pair_distance s;
+            struct cs_pair_contact contact;
             cs_candidate_vertices(pairs->system->surfaces, search->chunks[l].kind,
                                   search->chunks[l].pairs + 2 * p, at);
             const uint32_t body = search->body[at[0]];
@@ -30,17 +30,18 @@ static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error 
             for (size_t k = 0; k < 4; k++)
                 for (size_t c = 0; c < 3; c++)
                     places[k][c] = pairs->system->start[c * n + at[k]];
-            const double range = cs_body_pair_params_range(
-                cs_body_pair_params_of(&pairs->body_pairs, body, body),
-                search->chunks[l].kind == CS_PAIR_EDGE_EDGE);
-            cs_pair_distance_set(&s, search->chunks[l].kind, range, places);
+            const double range =
+                cs_pair_contact_range(cs_body_pair_params_of(&pairs->body_pairs, body, body),
+                                      search->chunks[l].kind == CS_PAIR_EDGE_EDGE);
+            const double d =
+                cs_pair_contact_measure_whole(&contact, search->chunks[l].kind, range, places);
             const uint32_t first = pairs->system->bodies[body].first;
-            if (s.d < range)
+            if (d < range)
                 return cs_fail(error, CS_ERR_SCENE,
                                "bodies[%u].self_contact: layers are only %.3g m apart at the "
                                "start (particles %u and %u), expected at least the thickness, "
                                "%.3g m; reduce bodies[%u].thickness",
-                               body, s.d, at[0] - first, at[2] - first, range, body);
+                               body, d, at[0] - first, at[2] - first, range, body);
         }
     return CS_OK;
 }

@@ -116,7 +116,9 @@ void cs_pairs_add_bound(struct cs_pairs *pairs, const struct cs_eval *at, double
  * from x0 at t0 to x1 at t1. Samples are at most half a range of relative motion apart. The
  * energy that is not predicted must stay below CS_UNRESOLVED_ENERGY_MAX of the energy of the
  * pair: psi(d), the kinetic energy of its contact points, and psi at half the range, so that
- * pairs that barely touch do not decide. Returns false too if bodies near each other move too
+ * pairs that barely touch do not decide. A point and a triangle have the distance of the
+ * nearest feature, and decide only if the energy of all features of the point, in place of
+ * psi(d), is not predicted either. Returns false too if bodies near each other move too
  * far for cs_candidates_cover_step. With all threads. */
 bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const double *x0,
                                    double t1, const double *x1);

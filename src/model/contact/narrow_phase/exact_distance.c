@@ -118,7 +118,7 @@ struct work {
 static void measure_lanes(enum cs_pair_kind kind, struct cs_pair_lanes *lanes) {
     struct cs_exact_distance_lanes near;
     if (kind == CS_PAIR_EDGE_EDGE) {
-        cs_pair_lanes_measure(kind, lanes);
+        cs_pair_lanes_measure_edges(lanes);
         return;
     }
     memcpy(near.p, lanes->p, sizeof near.p);

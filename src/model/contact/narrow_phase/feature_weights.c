@@ -106,9 +106,14 @@ struct finding {
     const struct cs_feature_query *pair;
     const struct lanes *at;
     int lane;
-    const double *x;
+    const struct cs_feature_positions *x;
     double count[CS_FEATURES_PER_TRIANGLE], alone[CS_FEATURES_PER_TRIANGLE];
 };
+
+/* m, component `at` of all positions; that of one state has its bits. */
+static double position(const struct cs_feature_positions *x, size_t at) {
+    return x->from[at] + x->fraction * (x->to[at] - x->from[at]);
+}
 
 /* Returns whether an edge joins two points: a point does not feel the vertices next to it. */
 static bool are_joined(const struct cs_feature_weights *features, uint32_t a, uint32_t b) {
@@ -125,8 +130,7 @@ static bool is_in_range(const struct finding *on, int feature) {
     return on->at->square[feature][on->lane] < range * range;
 }
 
-/* The feature that edge k stands for: a vertex if the foot projects beyond an end, or the edge.
- */
+/* The feature of edge k: a vertex if the foot projects beyond an end, else the edge. */
 static int facet_of_rim(const struct finding *on, int k) {
     const double t = on->at->t[k][on->lane];
     if (t <= 0)
@@ -144,7 +148,7 @@ static bool is_convex_edge(const struct finding *on, int k, uint32_t across) {
     for (size_t c = 0; c < 3; c++) {
         const double a = on->at->p[1 + k][c][on->lane];
         u[c] = on->at->p[1 + (k + 1) % 3][c][on->lane] - a;
-        v[c] = on->x[c * on->facets->surfaces->n_points + across] - a;
+        v[c] = position(on->x, c * on->facets->surfaces->n_points + across) - a;
         w[c] = on->at->p[0][c][on->lane] - a;
     }
     return cs_vec3_dot(w, v) * cs_vec3_dot(u, u) < cs_vec3_dot(w, u) * cs_vec3_dot(u, v);
@@ -166,9 +170,8 @@ static double count_alone(const struct finding *on, int k, uint32_t across) {
     return (t < 0 || t > 1) && share > 0 ? share : 0.5;
 }
 
-/* Far vertex of the neighbour across edge k; CS_NO_POINT at a border, and if the far vertex is
- * the point itself: its own triangles are left out of the pairs, so the edge is a border to it.
- */
+/* Far vertex of the neighbour across edge k; CS_NO_POINT at a border, and if it is the point
+ * itself: its own triangles are left out of the pairs, so the edge is a border to it. */
 static uint32_t across_rim(const struct finding *on, int k) {
     const uint32_t *across = on->facets->opposite_vertex + 3 * (size_t)on->pair->triangle;
     const uint32_t to = across[(k + 2) % 3];
@@ -269,21 +272,23 @@ static uint32_t find(struct finding *on, struct cs_weighted_feature *uses) {
 /* Loads n queries into lanes. The range of features is CS_FEATURE_RANGE_RATIO of the pair's,
  * the blend radius e is CS_FEATURE_BLEND_RADIUS of it. Unused lanes stay unspecified. */
 static void read(const struct cs_feature_weights *features,
-                 const struct cs_feature_query *pairs, uint32_t n, const double *x,
-                 struct lanes *at) {
+                 const struct cs_feature_query *pairs, uint32_t n,
+                 const struct cs_feature_positions *x, struct lanes *at) {
+    const size_t n_points = features->surfaces->n_points;
     for (uint32_t i = 0; i < n; i++) {
         at->range[i] = CS_FEATURE_RANGE_RATIO * pairs[i].range;
         at->bend[i] = CS_FEATURE_BLEND_RADIUS * pairs[i].range;
         for (size_t k = 0; k < 4; k++)
             for (size_t c = 0; c < 3; c++)
-                at->p[k][c][i] = x[c * features->surfaces->n_points + pairs[i].points[k]];
+                at->p[k][c][i] = position(x, c * n_points + pairs[i].points[k]);
     }
 }
 
 /* In three passes over at most CS_FEATURE_QUERY_PAIRS queries: load lanes, measure, select. */
-uint32_t cs_feature_weights_find(const struct cs_feature_weights *features,
-                                 const struct cs_feature_query *pairs, uint32_t n,
-                                 const double *x, struct cs_weighted_feature *uses) {
+uint32_t cs_feature_weights_find_between(const struct cs_feature_weights *features,
+                                         const struct cs_feature_query *pairs, uint32_t n,
+                                         const struct cs_feature_positions *x,
+                                         struct cs_weighted_feature *uses) {
     struct lanes at[CS_FEATURE_QUERY_PAIRS / LANES];
     uint32_t found = 0;
     // all lanes are written before any is measured: a vector load directly after scalar stores

@@ -57,15 +57,31 @@ struct cs_feature_query {
     double range;   /* m */
 };
 
-/* Finds the features that the points of n <= CS_FEATURE_QUERY_PAIRS pairs feel at x (3,
- * n_points), and returns their number. `uses` must hold n CS_FEATURES_PER_TRIANGLE of them;
+/* Positions (3,n_points) in m at a fraction of the straight way between two states. */
+struct cs_feature_positions {
+    const double *from, *to;
+    double fraction;
+};
+
+/* Finds the features that the points of n <= CS_FEATURE_QUERY_PAIRS pairs feel at the positions
+ * x, and returns their number. `uses` must hold n CS_FEATURES_PER_TRIANGLE of them;
  * they come pair by pair in the order of the queries.
  *
  * Features with the same distance as a function of the state are merged: edges and vertices
  * near the foot become the plane, and an edge beyond its end becomes the vertex. */
-uint32_t cs_feature_weights_find(const struct cs_feature_weights *features,
-                                 const struct cs_feature_query *pairs, uint32_t n,
-                                 const double *x, struct cs_weighted_feature *uses);
+uint32_t cs_feature_weights_find_between(const struct cs_feature_weights *features,
+                                         const struct cs_feature_query *pairs, uint32_t n,
+                                         const struct cs_feature_positions *x,
+                                         struct cs_weighted_feature *uses);
+
+/* The same at one state x (3,n_points). */
+static inline uint32_t cs_feature_weights_find(const struct cs_feature_weights *features,
+                                               const struct cs_feature_query *pairs, uint32_t n,
+                                               const double *x,
+                                               struct cs_weighted_feature *uses) {
+    return cs_feature_weights_find_between(features, pairs, n,
+                                           &(struct cs_feature_positions){x, x, 0}, uses);
+}
 
 /* Merges `more` features behind the first n into these, and returns the new number. All are of
  * one point. Equal shared features are merged by adding their weights; the first n must contain

@@ -53,6 +53,8 @@
 #include "model/contact/narrow_phase/pair_distance_tangent.h"
 #include "model/contact/pair_distance.h"
 
+#include <stdbool.h>
+
 /* Fractions of the range D of a pair. The blend radius is e. The range of the features is
  * smaller than D, so that candidates with a true distance below D miss none: from d < r D
  * follows a true distance below D sqrt(r^2 + 0.3451 0.2^2), which is 0.9990 D for r = 0.992. */
@@ -210,6 +212,53 @@ CS_INLINE void cs_mesh_feature_set(struct cs_mesh_feature *s, struct cs_feature_
     s->length = sqrt(cs_vec3_dot(r, r) + least);
     for (int c = 0; c < 3; c++)
         s->n[c] = r[c] / s->length;
+}
+
+/* Squared distance of p[0] from the edge of a triangle between p[i] and p[j], in m2. */
+CS_INLINE double cs_mesh_feature_to_edge(double p[4][3], int i, int j) {
+    double u[3], w[3], r[3];
+    for (int c = 0; c < 3; c++) {
+        u[c] = p[j][c] - p[i][c];
+        w[c] = p[0][c] - p[i][c];
+    }
+    const double t = cs_vec3_dot(u, w) / (cs_vec3_dot(u, u) + DBL_MIN), low = t > 0 ? t : 0;
+    const double inner = low < 1 ? low : 1;
+    for (int c = 0; c < 3; c++)
+        r[c] = w[c] - inner * u[c];
+    return cs_vec3_dot(r, r);
+}
+
+/* Number 0, 1 or 2 of the edge of a triangle that is nearest to the point p[0]: a double, and
+ * selected without branches, so that loops over lanes vectorise. */
+CS_INLINE double cs_mesh_feature_nearest_edge(double p[4][3]) {
+    const double first = cs_mesh_feature_to_edge(p, 1, 2),
+                 second = cs_mesh_feature_to_edge(p, 2, 3),
+                 third = cs_mesh_feature_to_edge(p, 3, 1);
+    const double least = second < first ? second : first, edge = second < first ? 1 : 0;
+    return third < least ? 2 : edge;
+}
+
+/* Rotates the numbers x[1..3] of the vertices by `edge` places, to begin at that edge. */
+CS_INLINE void cs_mesh_feature_rotate(double edge, double x[4]) {
+    const double a = x[1], b = x[2], c = x[3];
+    const double first = edge > 0.5 ? b : a, second = edge > 0.5 ? c : b,
+                 third = edge > 0.5 ? a : c;
+    x[1] = edge > 1.5 ? c : first;
+    x[2] = edge > 1.5 ? a : second;
+    x[3] = edge > 1.5 ? b : third;
+}
+
+/* Form of the feature of a whole triangle that is nearest to a point, of those that sums count
+ * with 1: the plane if the foot is inside, else the first edge, which stands for its ends too.
+ * p is rotated to begin at the nearest edge. Triangles that are slivers within sin^2 = 1e-10
+ * are their edges, because l is then rounding alone. */
+CS_INLINE struct cs_feature_kind cs_mesh_feature_nearest_form(double e, double p[4][3]) {
+    struct cs_pair_distance plane;
+    cs_pair_distance_frame(&plane, CS_PAIR_POINT_TRIANGLE, 0, p);
+    const double *l = plane.unclamped;
+    const bool inside = (l[0] >= 0) & (l[1] >= 0) & (l[0] + l[1] <= 1) &
+                        (plane.a * plane.c - plane.b * plane.b > 1e-10 * plane.a * plane.c);
+    return (struct cs_feature_kind){inside ? 0 : 1, inside ? 0 : 1, e};
 }
 
 /* Converts slopes by u, v, w into slopes by the four points. */

@@ -91,7 +91,7 @@ static void read_positions(const struct work *work, struct cs_pair_lanes *lanes,
 static void add_energy(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     if (work->chunk->kind == CS_PAIR_EDGE_EDGE) {
         read_positions(work, lanes, first);
-        cs_pair_lanes_measure(work->chunk->kind, lanes);
+        cs_pair_lanes_measure_edges(lanes);
     }
     for (uint32_t l = 0; l < lanes->n; l++)
         work->chunk->energy += cs_barrier_energy(lanes->d[l], lanes->range[l], lanes->k[l]);

@@ -35,7 +35,7 @@ CS_INLINE void cs_pair_contact_measure(struct cs_pair_contact *reaction, enum cs
                                        double p[4][3]) {
     reaction->kind = kind;
     if (kind == CS_PAIR_EDGE_EDGE) {
-        cs_pair_distance_set(&reaction->distance, kind, range, p);
+        cs_pair_distance_set(&reaction->distance, range, p);
         cs_pair_distance_gradient(&reaction->distance, reaction->g);
         cs_pair_distance_weights(&reaction->distance, reaction->weight);
     } else {
@@ -43,6 +43,45 @@ CS_INLINE void cs_pair_contact_measure(struct cs_pair_contact *reaction, enum cs
         cs_mesh_feature_to_points(reaction->feature.g, reaction->g);
         cs_mesh_feature_weights(&reaction->feature, reaction->weight);
     }
+}
+
+/* m, range of the force of edges, or of features. */
+CS_INLINE double cs_pair_contact_range(const struct cs_body_pair_params *params, bool edges) {
+    return edges ? cs_body_pair_params_range(params, true)
+                 : CS_FEATURE_RANGE_RATIO * params->range;
+}
+
+/* As cs_pair_contact_measure for a pair as a whole, by which steps and starts are judged: a
+ * point and a triangle have the feature that is nearest. range: that of the force. Returns the
+ * distance in m. */
+CS_INLINE double cs_pair_contact_measure_whole(struct cs_pair_contact *reaction,
+                                               enum cs_pair_kind kind, double range,
+                                               double p[4][3]) {
+    const double e = CS_FEATURE_BLEND_RADIUS / CS_FEATURE_RANGE_RATIO * range;
+    struct cs_feature_kind form = {0, 0, e};
+    double to[4][3];
+    if (kind == CS_PAIR_EDGE_EDGE) {
+        cs_pair_contact_measure(reaction, kind, form, range, p);
+        return reaction->distance.d;
+    }
+    const double edge = cs_mesh_feature_nearest_edge(p), back = edge > 0.5 ? 3 - edge : 0;
+    for (int c = 0; c < 3; c++) {
+        double x[4] = {p[0][c], p[1][c], p[2][c], p[3][c]};
+        cs_mesh_feature_rotate(edge, x);
+        for (int k = 0; k < 4; k++)
+            to[k][c] = x[k];
+    }
+    form = cs_mesh_feature_nearest_form(e, to);
+    cs_pair_contact_measure(reaction, kind, form, range, to);
+    for (int c = 0; c < 3; c++) {
+        double g[4] = {reaction->g[0][c], reaction->g[1][c], reaction->g[2][c],
+                       reaction->g[3][c]};
+        cs_mesh_feature_rotate(back, g);
+        for (int k = 0; k < 4; k++)
+            reaction->g[k][c] = g[k];
+    }
+    cs_mesh_feature_rotate(back, reaction->weight);
+    return reaction->feature.d;
 }
 
 /* Sets `contact` after the measurement; v (4,3) velocities in m/s. The vector between the

@@ -32,30 +32,14 @@ CS_INLINE void write_lane(double from[4][3], int lane, double to[4][3][CS_PAIR_L
         to[k / 3][k % 3][lane] = from[k / 3][k % 3];
 }
 
-/* d of all lanes: cs_pair_distance_set */
-CS_INLINE void measure(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes) {
+CS_CLONES void cs_pair_lanes_measure_edges(struct cs_pair_lanes *restrict lanes) {
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         double p[4][3];
         struct cs_pair_distance distance;
         read_lane(lanes->p, l, p);
-        cs_pair_distance_set(&distance, kind, lanes->range[l], p);
+        cs_pair_distance_set(&distance, lanes->range[l], p);
         lanes->d[l] = distance.d;
     }
-}
-
-CS_CLONES static void measure_triangles(struct cs_pair_lanes *restrict lanes) {
-    measure(CS_PAIR_POINT_TRIANGLE, lanes);
-}
-
-CS_CLONES static void measure_edges(struct cs_pair_lanes *restrict lanes) {
-    measure(CS_PAIR_EDGE_EDGE, lanes);
-}
-
-void cs_pair_lanes_measure(enum cs_pair_kind kind, struct cs_pair_lanes *lanes) {
-    if (kind == CS_PAIR_EDGE_EDGE)
-        measure_edges(lanes);
-    else
-        measure_triangles(lanes);
 }
 
 /* Measures the pair of one lane: distance, gradient, weights, relative velocity. The law is

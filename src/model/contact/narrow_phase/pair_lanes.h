@@ -25,7 +25,7 @@ struct cs_pair_lanes {
     double range[CS_PAIR_LANES], k[CS_PAIR_LANES], friction[CS_PAIR_LANES];
     /* direction of a Jacobian product: changes of p and v */
     double dp[4][3][CS_PAIR_LANES], dv[4][3][CS_PAIR_LANES];
-    /* smooth distance in m; cs_pair_lanes_measure sets it */
+    /* distance in m; cs_pair_lanes_measure_edges sets it */
     double d[CS_PAIR_LANES];
     /* result in N: forces on the four points, or their changes */
     double out[4][3][CS_PAIR_LANES];
@@ -37,9 +37,9 @@ struct cs_pair_lanes {
     uint32_t n;
 };
 
-/* Sets d from p and range by the distance of pair_distance.h. For features of triangles d comes
- * from feature_weights.h instead. */
-void cs_pair_lanes_measure(enum cs_pair_kind kind, struct cs_pair_lanes *lanes);
+/* Sets d of edges from p and range; for features of triangles d comes from feature_weights.h.
+ */
+void cs_pair_lanes_measure_edges(struct cs_pair_lanes *lanes);
 
 /* Parameters that all lanes share: damping and friction speed of the scene, and the parts of
  * the force that are wanted. */

@@ -1,14 +1,16 @@
 /* Energy of pairs that a step does not predict, from the candidates that cover the step.
  *
- * Three filters come in turn: swept boxes; the end of short steps in lanes; all samples of long
- * steps, one pair at a time. The chunk that rejected the last step is asked first, because a
- * step that is halved is often rejected by the same pair again. */
+ * Filters come in turn: swept boxes; the end of short steps in lanes; all samples of long
+ * steps, one pair at a time. Edges that remain reject the step. A point and a triangle reject
+ * it if the sum of all features of the point, by which it is pushed, is unresolved too. The
+ * chunk that rejected the last step is asked first, because a step that is halved is often
+ * rejected by the same pair again. */
 #include "model/contact/narrow_phase/contact_pairs.h"
 
 #include "base/pool.h"
 #include "base/vector.h"
 #include "model/contact/barrier_law.h"
-#include "model/contact/pair_distance.h"
+#include "model/contact/narrow_phase/pair_contact.h"
 #include "model/contact/step_check.h"
 #include "model/contact/surface_points.h"
 
@@ -64,27 +66,27 @@ struct cs_pair_motion_start {
     double approach;
 };
 
-/* Sets the model from the pair s at the start; h: seconds of the whole step. The effective mass
- * of the contact points is 1 / sum (w_k^2 / m_k), infinite if all are pinned. psi(D/2) keeps
- * pairs that barely touch from being judged. */
-CS_INLINE void pair_motion_begin(struct cs_pair_motion *way, const struct cs_pair_distance *s,
-                                 double h, double range, double k,
-                                 struct cs_pair_motion_start *start) {
-    double weight[4], g[4][3], v[3] = {0}, inverse = 0;
-    cs_pair_distance_weights(s, weight);
-    cs_pair_distance_gradient(s, g);
+/* Sets the model from the pair at the start, and returns its distance in m; h: seconds of the
+ * whole step. The effective mass of the contact points is 1 / sum (w_k^2 / m_k), infinite if
+ * all are pinned. psi(D/2) keeps pairs that barely touch from being judged. */
+CS_INLINE double pair_motion_begin(struct cs_pair_motion *way, double h, double range, double k,
+                                   struct cs_pair_motion_start *start) {
+    struct cs_pair_contact at;
+    const double d = cs_pair_contact_measure_whole(&at, way->kind, range, way->x0);
+    double v[3] = {0}, inverse = 0;
     start->approach = 0;
     for (int j = 0; j < 4; j++) {
-        inverse += weight[j] * weight[j] * way->inverse_mass[j];
-        start->approach -= cs_vec3_dot(g[j], way->displacement[j]);
+        inverse += at.weight[j] * at.weight[j] * way->inverse_mass[j];
+        start->approach -= cs_vec3_dot(at.g[j], way->displacement[j]);
         for (int c = 0; c < 3; c++)
-            v[c] += weight[j] * way->displacement[j][c] / h;
+            v[c] += at.weight[j] * way->displacement[j][c] / h;
     }
     const double kinetic = 0.5 * cs_vec3_dot(v, v) / inverse;
-    start->law = cs_barrier_at(s->d, range, k);
-    start->contact_energy = cs_barrier_energy(s->d, range, k);
+    start->law = cs_barrier_at(d, range, k);
+    start->contact_energy = cs_barrier_energy(d, range, k);
     start->total_energy = (inverse > 0 ? kinetic : HUGE_VAL) + start->contact_energy +
                           cs_barrier_energy(0.5 * range, range, k);
+    return d;
 }
 
 /* e in J after the fraction `share` of the step, where the distance is d. */
@@ -127,17 +129,16 @@ CS_INLINE void read_motion(struct cs_pair_motion_lanes *lanes, int lane,
 
 /* Result of one lane. A pair that is out of range at both ends counts as resolved. */
 CS_INLINE double motion_ask(struct cs_pair_motion *way, double h, double range, double k) {
-    struct cs_pair_distance at, to;
+    struct cs_pair_contact to;
     struct cs_pair_motion_start start;
     double end[4][3];
     CS_UNROLLED
     for (int j = 0; j < 12; j++)
         end[j / 3][j % 3] = way->x0[j / 3][j % 3] + way->displacement[j / 3][j % 3];
-    cs_pair_distance_set(&at, way->kind, range, way->x0);
-    cs_pair_distance_set(&to, way->kind, range, end);
-    pair_motion_begin(way, &at, h, range, k, &start);
-    const double nearest = to.d < at.d ? to.d : at.d;
-    const double unseen = pair_motion_unresolved_energy(&start, 1, to.d, range, k);
+    const double from = pair_motion_begin(way, h, range, k, &start);
+    const double d = cs_pair_contact_measure_whole(&to, way->kind, range, end);
+    const double nearest = d < from ? d : from;
+    const double unseen = pair_motion_unresolved_energy(&start, 1, d, range, k);
     const double much = unseen > CS_UNRESOLVED_ENERGY_MAX * start.total_energy ? 1 : 0;
     const double near = nearest < range ? much : 0;
     return pair_motion_samples(pair_motion_longest(way), range) < 1 ? near : 2;
@@ -180,8 +181,10 @@ enum { SOME = 256 };
 
 struct job {
     struct cs_pairs *pairs;
-    double h;    /* s */
-    bool nearby; /* the pairs nearby suffice */
+    const double *from, *to; /* (3,n_points) m, both ends of the step */
+    double h;                /* s */
+    bool nearby;             /* the pairs nearby suffice */
+    uint32_t n_checked;      /* chunks that are resolved, from the last rejected one on */
     /* a chunk with an unresolved pair; NONE */
     uint32_t unseen;
 };
@@ -189,65 +192,81 @@ struct job {
 /* One chunk at work; pairs are collected until a block of lanes is full. */
 struct work {
     const struct job *job;
+    const struct cs_candidate_chunk *chunk;
     enum cs_pair_kind kind;
     struct cs_pair_motion_lanes lanes;
+    uint32_t points[CS_PAIR_MOTION_LANES]; /* of points and triangles */
     uint32_t waiting;
+    /* the last point whose sum is resolved, or NONE */
+    uint32_t resolved_point;
     bool unseen;
 };
 
-/* d[0..points] = smooth distances at the start and at `points` equal fractions of the step. d
- * needs room for CS_PAIR_LANES - 1 numbers more. Returns whether one is below the range. */
-static bool measure(struct cs_pair_motion *way, int points, double range, double *d) {
-    struct cs_pair_lanes lanes;
-    bool near = false;
-    for (int l = 0; l < CS_PAIR_LANES; l++)
-        lanes.range[l] = range;
-    for (int first = 0; first <= points; first += CS_PAIR_LANES) {
-        double share[CS_PAIR_LANES];
-        for (int l = 0; l < CS_PAIR_LANES; l++)
-            share[l] = (first + l) / (double)points;
-        for (int k = 0; k < 12; k++)
-            for (int l = 0; l < CS_PAIR_LANES; l++)
-                lanes.p[k / 3][k % 3][l] =
-                    way->x0[k / 3][k % 3] + share[l] * way->displacement[k / 3][k % 3];
-        cs_pair_lanes_measure(way->kind, &lanes);
-        memcpy(d + first, lanes.d, sizeof lanes.d);
-    }
-    for (int j = 0; j <= points; j++)
-        near = near || d[j] < range;
-    return near;
+/* Number of equal parts of the step of a pair, at whose ends it is sampled. */
+static int parts_of(struct cs_pair_motion *way, double range) {
+    const double along = pair_motion_samples(pair_motion_longest(way), range);
+    return along < POINTS_MAX ? 1 + (int)along : POINTS_MAX;
 }
 
 /* Judges a step of any length by its samples. */
 static bool is_unresolved(const struct job *job, struct cs_pair_motion *way, double range,
                           double k) {
-    const double along = pair_motion_samples(pair_motion_longest(way), range);
-    const int points = along < POINTS_MAX ? 1 + (int)along : POINTS_MAX;
-    double d[POINTS_MAX + CS_PAIR_LANES], unseen = 0;
-    struct cs_pair_distance at;
+    const int points = parts_of(way, range);
     struct cs_pair_motion_start start;
-    if (!measure(way, points, range, d))
-        return false;
-    cs_pair_distance_set(&at, way->kind, range, way->x0);
-    pair_motion_begin(way, &at, job->h, range, k, &start);
-    for (int j = 1; j <= points; j++)
-        unseen = fmax(
-            unseen, pair_motion_unresolved_energy(&start, j / (double)points, d[j], range, k));
-    return unseen > CS_UNRESOLVED_ENERGY_MAX * start.total_energy;
+    struct cs_pair_contact at;
+    double nearest = pair_motion_begin(way, job->h, range, k, &start), unseen = 0;
+    for (int j = 1; j <= points; j++) {
+        const double share = j / (double)points;
+        double p[4][3];
+        for (int c = 0; c < 12; c++)
+            p[c / 3][c % 3] = way->x0[c / 3][c % 3] + share * way->displacement[c / 3][c % 3];
+        const double d = cs_pair_contact_measure_whole(&at, way->kind, range, p);
+        nearest = fmin(nearest, d);
+        unseen = fmax(unseen, pair_motion_unresolved_energy(&start, share, d, range, k));
+    }
+    return nearest < range && unseen > CS_UNRESOLVED_ENERGY_MAX * start.total_energy;
 }
 
-/* Samples the pair of a lane, whose step is long. */
-static bool is_lane_unresolved(const struct work *work, uint32_t l) {
-    const struct cs_pair_motion_lanes *lanes = &work->lanes;
-    struct cs_pair_motion way = {.kind = work->kind};
-    for (int k = 0; k < 4; k++) {
-        way.inverse_mass[k] = lanes->inverse_mass[k][l];
-        for (int c = 0; c < 3; c++) {
-            way.x0[k][c] = lanes->x0[k][c][l];
-            way.displacement[k][c] = lanes->displacement[k][c][l];
-        }
+/* Judges a point, a triangle of which is unresolved, by all its features: on its way from one
+ * triangle to the next, what one loses the other gains. The kinetic energy is that against the
+ * triangle in `way`. */
+static bool is_point_unresolved(struct work *work, uint32_t point, struct cs_pair_motion *way,
+                                double range, double k) {
+    const struct cs_candidates *candidates = &work->job->pairs->candidates;
+    const int points = parts_of(way, range);
+    struct cs_pair_motion_start start;
+    bool unresolved = false;
+    if (point == work->resolved_point)
+        return false;
+    pair_motion_begin(way, work->job->h, range, k, &start);
+    struct cs_feature_positions x = {work->job->from, work->job->to, 0};
+    const struct cs_point_energy sum = cs_point_energy_find(&work->job->pairs->feature_weights,
+                                                            candidates, work->chunk, point, &x);
+    const double total = start.total_energy - start.contact_energy + fmax(sum.energy, 0);
+    for (int j = 1; j <= points && !unresolved; j++) {
+        const double share = j / (double)points;
+        const double seen = sum.energy + share * (sum.first + share * sum.second);
+        x.fraction = share;
+        const struct cs_point_energy at = cs_point_energy_find(
+            &work->job->pairs->feature_weights, candidates, work->chunk, point, &x);
+        unresolved = fabs(at.energy - seen) > CS_UNRESOLVED_ENERGY_MAX * total;
     }
-    return is_unresolved(work->job, &way, lanes->range[l], lanes->k[l]);
+    work->resolved_point = unresolved ? NONE : point;
+    return unresolved;
+}
+
+/* Tells whether the pair of a lane is unresolved: by its samples if its step is long, and with
+ * all features of its point if that is unresolved by this triangle alone. */
+static bool is_lane_unresolved(struct work *work, uint32_t l) {
+    struct cs_pair_motion_lanes *lanes = &work->lanes;
+    struct cs_pair_motion way = {.kind = work->kind};
+    if (lanes->result[l] == 0)
+        return false;
+    read_motion(lanes, (int)l, &way);
+    return (lanes->result[l] < 2 ||
+            is_unresolved(work->job, &way, lanes->range[l], lanes->k[l])) &&
+           (work->kind == CS_PAIR_EDGE_EDGE ||
+            is_point_unresolved(work, work->points[l], &way, lanes->range[l], lanes->k[l]));
 }
 
 /* Checks the collected pairs. */
@@ -255,8 +274,7 @@ static void ask(struct work *work) {
     if (work->waiting)
         pair_motion_lanes_check(work->kind, &work->lanes, work->job->h);
     for (uint32_t l = 0; l < work->waiting && !work->unseen; l++)
-        work->unseen =
-            work->lanes.result[l] < 2 ? work->lanes.result[l] > 0 : is_lane_unresolved(work, l);
+        work->unseen = is_lane_unresolved(work, l);
     work->waiting = 0;
 }
 
@@ -270,7 +288,8 @@ static void take(struct work *work, const uint32_t pair[2]) {
     cs_candidate_vertices(pairs->system->surfaces, work->kind, pair, at);
     const struct cs_body_pair_params *params =
         cs_body_pair_params_of(&pairs->body_pairs, search->body[at[0]], search->body[at[2]]);
-    lanes->range[l] = cs_body_pair_params_range(params, work->kind == CS_PAIR_EDGE_EDGE);
+    lanes->range[l] = cs_pair_contact_range(params, work->kind == CS_PAIR_EDGE_EDGE);
+    work->points[l] = pair[0];
     lanes->k[l] = cs_body_pair_params_stiffness(params, work->kind == CS_PAIR_EDGE_EDGE);
     for (size_t k = 0; k < 4; k++) {
         const double *move = pairs->point_motion[at[k]].values;
@@ -285,8 +304,9 @@ static void take(struct work *work, const uint32_t pair[2]) {
 }
 
 /* Checks those candidates of a chunk whose swept boxes come within the range. */
-static void check_chunk(struct work *work, const struct cs_candidate_chunk *chunk) {
+static void check_chunk(struct work *work) {
     const struct cs_pairs *pairs = work->job->pairs;
+    const struct cs_candidate_chunk *chunk = work->chunk;
     const bool edges = chunk->kind == CS_PAIR_EDGE_EDGE;
     const struct cs_body_pair_params widest = {.range = pairs->body_pairs.range_max};
     const double reach = cs_body_pair_params_range(&widest, edges) * (1 + 1e-9);
@@ -310,22 +330,26 @@ static void find_unresolved(void *arg, uint32_t number) {
     struct job *job = arg;
     const struct cs_candidates *search = &job->pairs->candidates;
     // the one that was unseen before may well be so again
-    const uint32_t l = (number + job->pairs->unresolved_chunk) % search->n_chunks;
-    struct work work = {.job = job, .kind = search->chunks[l].kind};
+    const uint32_t l =
+        (number + job->n_checked + job->pairs->unresolved_chunk) % search->n_chunks;
+    struct work work = {.job = job,
+                        .chunk = search->chunks + l,
+                        .kind = search->chunks[l].kind,
+                        .resolved_point = NONE};
     if (__atomic_load_n(&job->unseen, __ATOMIC_RELAXED) != NONE)
         return;
-    check_chunk(&work, search->chunks + l);
+    check_chunk(&work);
     if (work.unseen)
         __atomic_store_n(&job->unseen, l, __ATOMIC_RELAXED);
 }
 
-/* Checks `chunks` chunks of the list as it is, from the last rejected one on. */
-static bool are_seen(struct cs_pairs *pairs, uint32_t chunks, double h, bool nearby) {
-    struct job job = {pairs, h, nearby, NONE};
-    cs_pool_run(chunks, find_unresolved, &job);
-    if (job.unseen != NONE)
-        pairs->unresolved_chunk = job.unseen;
-    return job.unseen == NONE;
+/* Checks the list as it is up to a number of chunks, from the last rejected one on. */
+static bool are_seen(struct job *job, uint32_t chunks) {
+    cs_pool_run(chunks - job->n_checked, find_unresolved, job);
+    job->n_checked = chunks;
+    if (job->unseen != NONE)
+        job->pairs->unresolved_chunk = job->unseen;
+    return job->unseen == NONE;
 }
 
 bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const double *x0,
@@ -333,15 +357,20 @@ bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const doub
     struct cs_candidates *search = &pairs->candidates;
     const double *from = cs_surface_points_positions(pairs->system, CS_POINTS_BEGIN, t0, x0);
     const double *to = cs_surface_points_positions(pairs->system, CS_POINTS_END, t1, x1);
+    struct job job = {.pairs = pairs, .from = from, .to = to, .h = t1 - t0, .unseen = NONE};
+    const uint64_t build = search->n_builds;
     cs_point_motion_set(pairs->system, from, to, pairs->point_motion);
     // Pairs in range anywhere on the way are nearby, because the motion from where these were
     // collected is largest at one of its ends. A pair that rejects the step again makes a list
     // that covers the step unnecessary.
-    const bool nearby =
-        cs_candidates_is_nearby(search, from) && cs_candidates_is_nearby(search, to);
-    if (search->is_built && !are_seen(pairs, 1, t1 - t0, nearby))
+    job.nearby = cs_candidates_is_nearby(search, from) && cs_candidates_is_nearby(search, to);
+    if (search->is_built && !are_seen(&job, 1))
         return false;
-    return cs_candidates_cover_step(search, from, to) &&
-           are_seen(pairs, search->n_chunks, t1 - t0,
-                    nearby && search->nearby_build == search->n_builds);
+    if (!cs_candidates_cover_step(search, from, to))
+        return false;
+    if (search->n_builds != build) {
+        job.nearby = false;
+        job.n_checked = 0;
+    }
+    return are_seen(&job, search->n_chunks);
 }
