@@ -9,7 +9,7 @@ that h; advise names a step, which is then run with a ledger. Counted are
                  time, neither "in doubt"; advise contradicts by naming an unstable step
   dissipating    called unstable, although energy less what came in never rose
   unconfirmed    called unstable, where the ledger does not show it
-  missed         called bounded by frames, unstable by the ledger
+  missed         called bounded by run and by the command, unstable by the ledger
 stability and advise start 1e-4 of a spring's length from the scene's start and follow 200 periods
 at least, so that they also find what grows later or from nothing: "only shaken", no contradiction.
 compare switches corrections after steps off: where a scene has such, its cell is of another scene.
@@ -137,6 +137,11 @@ def contradicts(a, b):
     return (is_unstable(a) and b in sound) or (is_unstable(b) and a in sound)
 
 
+def fault_of(plain):
+    """What it is that a ledger alone shows, where a plain run says so."""
+    return "missed" if plain == "bounded" else "contradiction"
+
+
 def judge_by_ledger(name, word, run, found):
     """A word of a command against the ledger of a run of that step."""
     if not is_unstable(word) or "blew up" in word or "not finite" in word:
@@ -160,7 +165,8 @@ def judge_stability(pair, row, found):
     if is_unstable(cell["verdict"]) and not is_unstable(twin["word"]):
         found.append("only shaken: stability")
     elif contradicts(cell["verdict"], twin["word"]):
-        found.append("contradiction: stability")
+        plain = pair.run(f"{pair.method}:dt={h!r}", False)
+        found.append(fault_of(plain["word"]) + ": stability")
     else:
         judge_by_ledger("stability", cell["verdict"], twin, found)
 
@@ -174,8 +180,7 @@ def judge_compare(pair, row, full, found):
     if cell["state_hash"] != pair.plain["state_hash"]:
         row["compare"] += ", of another scene"
     elif contradicts(word, pair.plain["word"]) or contradicts(word, full["word"]):
-        seen = pair.plain["word"] == word == "bounded"
-        found.append("missed: compare" if seen else "contradiction: compare")
+        found.append(fault_of(pair.plain["word"] if word == "bounded" else word) + ": compare")
     else:
         judge_by_ledger("compare", word, full, found)
 
@@ -190,11 +195,12 @@ def judge_advise(pair, row, full, found):
     row["advised"], h = advice["dt"], pair.default_step()
     if h and advice["dt"] >= 0.999 * h:
         if is_unstable(full["word"]):
-            found.append("contradiction: advise")
+            found.append(fault_of(pair.plain["word"]) + ": advise")
         return
     run = pair.run(f"{pair.method}:dt={advice['dt']!r}", True)
     if run and is_unstable(run["word"]):
-        found.append("contradiction: advise")
+        plain = pair.run(f"{pair.method}:dt={advice['dt']!r}", False)
+        found.append(fault_of(plain["word"]) + ": advise")
 
 
 def cpu_seconds():
