@@ -307,7 +307,7 @@ static const struct cs_integrator xpbd = {
     .name = "xpbd",
     .summary =
         "springs as constraints, one after the other; cheap, damps, settles beside implicit "
-        "Euler; makes energy before it has, little with substeps=0,iterations=1",
+        "Euler; its default makes energy on some scenes, substeps=0,iterations=1 little",
     .source = "Macklin, Mueller, Chentanez 2016; small steps: Macklin et al. 2019; pbd: "
               "Mueller et al. 2007",
     .order = 1,
