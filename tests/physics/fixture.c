@@ -35,6 +35,23 @@ void fixture_start(struct fixture *fixture) {
     ck_assert_msg(!error.status, "%s", error.message);
 }
 
+static bool log_energies(void *ctx, double t, double dt, double *x, double *v) {
+    struct fixture_log *log = ctx;
+    const struct cs_energy energy = cs_diagnostics_energy(log->fixture->system, t, x, v);
+    (void)dt;
+    log->largest = fmax(log->largest, cs_energy_total(&energy));
+    log->lowest_gravity = fmin(log->lowest_gravity, energy.gravity);
+    return false;
+}
+
+void fixture_start_logged(struct fixture *fixture, struct fixture_log *log) {
+    *log = (struct fixture_log){.fixture = fixture, .lowest_gravity = HUGE_VAL};
+    fixture->session.settings.run.after_commit = log_energies;
+    fixture->session.settings.run.ctx = log;
+    fixture_start(fixture);
+    log->first = log->largest = fixture_energy(fixture);
+}
+
 void fixture_frames(struct fixture *fixture, uint32_t frames) {
     struct cs_error error = {0};
     struct cs_run *run = &fixture->session.run;

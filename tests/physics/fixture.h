@@ -20,6 +20,15 @@ void fixture_open(struct fixture *fixture, const char *integrator, const char *f
     __attribute__((format(printf, 3, 4)));
 void fixture_start(struct fixture *fixture);
 
+/* Energies in J at the ends of commits: kinetic and potential, and of gravity alone. */
+struct fixture_log {
+    const struct fixture *fixture;
+    double first, largest, lowest_gravity;
+};
+
+/* fixture_start with a log, which must stay where it is while the run lasts. */
+void fixture_start_logged(struct fixture *fixture, struct fixture_log *log);
+
 /* Runs that many frames; a blow-up fails the test. */
 void fixture_frames(struct fixture *fixture, uint32_t frames);
 void fixture_close(struct fixture *fixture);

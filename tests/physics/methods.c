@@ -3,7 +3,9 @@
 
 #include "sim/registry.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Options beside the query's, or in place of them; NULL: the method is left out. */
@@ -151,4 +153,45 @@ struct methods methods_find(const struct methods_query *query) {
     ck_assert_uint_gt(methods.n, 0);
     cs_registry_finish(&registry);
     return methods;
+}
+
+void methods_check_agreement(void (*end)(const char *method, const char *value, double *state),
+                             const char *value, size_t n) {
+    static const char *const by[] = {"cvode-bdf:rtol=1e-8", "cvode-adams:rtol=1e-9",
+                                     "ark-erk:rtol=1e-9", "ark-dirk:rtol=1e-9",
+                                     "ark-imex:rtol=1e-9"};
+    double *reference = calloc(2 * n, sizeof *reference), *state = reference + n;
+    ck_assert_ptr_nonnull(reference);
+    end("dopri5:rtol=1e-13", value, reference);
+    for (size_t k = 0; k < sizeof by / sizeof *by; k++) {
+        end(by[k], value, state);
+        const double error = cs_rms_difference(state, reference, n);
+        ck_assert_msg(error < 1e-5, "%s: %.3g", by[k], error);
+    }
+    free(reference);
+}
+
+void methods_check_mesh_orders(const char *test,
+                               void (*end)(const char *method, double h, double *state),
+                               size_t n, double h_reference, double first, double higher) {
+    const struct methods methods = methods_find(
+        &(struct methods_query){.test = test,
+                                .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN,
+                                .residual = 1e-12});
+    double *reference = calloc(2 * n, sizeof *reference), *state = reference + n;
+    ck_assert_ptr_nonnull(reference);
+    end("rk4", h_reference, reference);
+    for (size_t m = 0; m < methods.n; m++) {
+        const struct method_asked *method = methods.list + m;
+        const double h = method->order_damped == 1 ? first : higher;
+        double error[2];
+        for (int k = 0; k < 2; k++) {
+            end(method->text, h / (1 + k), state);
+            error[k] = cs_rms_difference(state, reference, n);
+        }
+        const double order = log2(error[0] / error[1]);
+        ck_assert_msg(fabs(order - method->order_damped) < 0.2, "%s: order %.3f (%.3g, %.3g)",
+                      method->text, order, error[0], error[1]);
+    }
+    free(reference);
 }

@@ -40,6 +40,19 @@ double methods_step(uint32_t order);
 /* Adds ",key=value" or ":key=value" to a method. */
 void methods_set(char text[120], const char *name, const char *key, double value);
 
+/* Fails unless methods with error control come within 1e-5 of dopri5 at a tolerance of 1e-13:
+ * rms of the n values of `state` that `end` leaves for a method and a value of the test's own.
+ */
+void methods_check_agreement(void (*end)(const char *method, const char *value, double *state),
+                             const char *value, size_t n);
+
+/* Fails unless each method that is as exact in a moving frame has its own order on the mesh
+ * collider of a test, to the fourth, from steps of h and h / 2 s against rk4 at h_reference; h
+ * is `first` for methods of order 1, else `higher`. test: as in a query. */
+void methods_check_mesh_orders(const char *test,
+                               void (*end)(const char *method, double h, double *state),
+                               size_t n, double h_reference, double first, double higher);
+
 /* Whether the text names this method, with any options. */
 bool methods_is(const char *text, const char *name);
 

@@ -110,16 +110,7 @@ TEST(order_with_dampers_at_what_turns) {
 
 /* Methods with error control come as near as their tolerance. */
 TEST(adaptive_methods_agree) {
-    static const char *const by[] = {"cvode-bdf:rtol=1e-8", "cvode-adams:rtol=1e-9",
-                                     "ark-erk:rtol=1e-9", "ark-dirk:rtol=1e-9",
-                                     "ark-imex:rtol=1e-9"};
-    double reference[VALUES], state[VALUES];
-    end_state("dopri5:rtol=1e-13", ", \"damping\": 0.1", reference);
-    for (size_t k = 0; k < LENGTH(by); k++) {
-        end_state(by[k], ", \"damping\": 0.1", state);
-        const double error = cs_rms_difference(state, reference, VALUES);
-        ck_assert_msg(error < 1e-5, "%s: %.3g", by[k], error);
-    }
+    methods_check_agreement(end_state, ", \"damping\": 0.1", VALUES);
 }
 
 /* A particle on a spring to a turning pivot at a = 0.3 m: at r = k (a + L) / (k - m w^2) the

@@ -306,25 +306,9 @@ static void end_state(const char *name, double h, double state[6 * SHEET_N]) {
 
 /* each its own order, to the fourth, though no step ends on a key frame */
 TEST(orders_hold_on_key_frames) {
-    const struct methods methods = methods_find(
-        &(struct methods_query){.test = "key frames",
-                                .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN,
-                                .residual = 1e-12});
-    static double reference[6 * SHEET_N], state[6 * SHEET_N];
     write_keys("smooth.npz", CS_MESH_TORUS, 5, wobble, 45, 45);
-    end_state("rk4", 1.0 / 4800, reference);
-    for (size_t m = 0; m < methods.n; m++) {
-        const struct method_asked *method = methods.list + m;
-        const double h = method->order_damped == 1 ? 1.0 / 3000 : 1.0 / 1500;
-        double error[2];
-        for (int k = 0; k < 2; k++) {
-            end_state(method->text, h / (1 + k), state);
-            error[k] = cs_rms_difference(state, reference, 6 * SHEET_N);
-        }
-        const double order = log2(error[0] / error[1]);
-        ck_assert_msg(fabs(order - method->order_damped) < 0.2, "%s: order %.3f (%.3g, %.3g)",
-                      method->text, order, error[0], error[1]);
-    }
+    methods_check_mesh_orders("key frames", end_state, 6 * SHEET_N, 1.0 / 4800, 1.0 / 3000,
+                              1.0 / 1500);
 }
 
 /* --- what is not there --- */

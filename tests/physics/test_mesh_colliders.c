@@ -164,24 +164,8 @@ static void end_state(const char *name, double h, double state[6 * SHEET_N]) {
 
 /* each its own order, to the fourth */
 TEST(orders_hold_on_a_turning_mesh) {
-    const struct methods methods = methods_find(
-        &(struct methods_query){.test = "turning mesh",
-                                .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN,
-                                .residual = 1e-12});
-    static double reference[6 * SHEET_N], state[6 * SHEET_N];
-    end_state("rk4", 1.0 / 2400, reference);
-    for (size_t m = 0; m < methods.n; m++) {
-        const struct method_asked *method = methods.list + m;
-        const double h = method->order_damped == 1 ? 1.0 / 2400 : 1.0 / 600;
-        double error[2];
-        for (int k = 0; k < 2; k++) {
-            end_state(method->text, h / (1 + k), state);
-            error[k] = cs_rms_difference(state, reference, 6 * SHEET_N);
-        }
-        const double order = log2(error[0] / error[1]);
-        ck_assert_msg(fabs(order - method->order_damped) < 0.2, "%s: order %.3f (%.3g, %.3g)",
-                      method->text, order, error[0], error[1]);
-    }
+    methods_check_mesh_orders("turning mesh", end_state, 6 * SHEET_N, 1.0 / 2400, 1.0 / 2400,
+                              1.0 / 600);
 }
 
 /* --- a slope of triangles --- */

@@ -228,21 +228,6 @@ TEST(block_slides_when_friction_lets_go) {
     " \"colliders\": [{\"floor\": {\"height\": 0}, \"absorption\": %g, \"friction\": 0.2}],"   \
     " \"time\": {\"fps\": %d}}"
 
-/* the largest energy at the end of a commit, and how low the body came */
-struct log {
-    const struct fixture *ball;
-    double largest, lowest;
-};
-
-static bool look(void *ctx, double t, double dt, double *x, double *v) {
-    struct log *log = ctx;
-    const struct cs_energy energy = cs_diagnostics_energy(log->ball->system, t, x, v);
-    (void)dt;
-    log->largest = fmax(log->largest, cs_energy_total(&energy));
-    log->lowest = fmin(log->lowest, energy.gravity);
-    return false;
-}
-
 static int detail(void) {
     return suite_all ? 5 : 3;
 }
@@ -256,13 +241,11 @@ static double damping_of(const char *method) {
     return is_forward(method) && !suite_all ? 0.2 : 0.02;
 }
 
-static struct log drop(const char *method, double absorption, int fps, double seconds) {
+static struct fixture_log drop(const char *method, double absorption, int fps, double seconds) {
     struct fixture ball;
-    struct log log = {.ball = &ball, .lowest = HUGE_VAL};
+    struct fixture_log log;
     fixture_open(&ball, method, BALL, detail(), damping_of(method), absorption, fps);
-    ball.session.settings.run.after_commit = look;
-    ball.session.settings.run.ctx = &log;
-    fixture_start(&ball);
+    fixture_start_logged(&ball, &log);
     fixture_frames(&ball, (uint32_t)(seconds * fps));
     fixture_close(&ball);
     return log;
@@ -282,12 +265,13 @@ static double limit_of(const struct method_asked *method) {
 }
 
 static void check_drop(const char *method, double absorption, int fps) {
-    const struct log log = drop(method, absorption, fps, 0.8);
+    const struct fixture_log log = drop(method, absorption, fps, 0.8);
     ck_assert_msg(log.largest <= 1.01 * 5.886, "%s, absorption %g, %d frames a second: %.4g J",
                   method, absorption, fps, log.largest);
     // it may be flattened to half its height, but not sink in
-    ck_assert_msg(log.lowest >= 0.15 * 9.81, "%s, absorption %g, %d frames a second: %.4g m",
-                  method, absorption, fps, log.lowest / 9.81);
+    ck_assert_msg(log.lowest_gravity >= 0.15 * 9.81,
+                  "%s, absorption %g, %d frames a second: %.4g m", method, absorption, fps,
+                  log.lowest_gravity / 9.81);
 }
 
 TEST(ball_gets_no_energy_from_the_floor) {

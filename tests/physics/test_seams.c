@@ -62,16 +62,7 @@ TEST(order_is_that_of_the_method) {
 }
 
 TEST(adaptive_methods_agree) {
-    static const char *const by[] = {"cvode-bdf:rtol=1e-8", "cvode-adams:rtol=1e-9",
-                                     "ark-erk:rtol=1e-9", "ark-dirk:rtol=1e-9",
-                                     "ark-imex:rtol=1e-9"};
-    double reference[VALUES], state[VALUES];
-    end_state("dopri5:rtol=1e-13", "0.1", reference);
-    for (size_t k = 0; k < LENGTH(by); k++) {
-        end_state(by[k], "0.1", state);
-        const double error = cs_rms_difference(state, reference, VALUES);
-        ck_assert_msg(error < 1e-5, "%s: %.3g", by[k], error);
-    }
+    methods_check_agreement(end_state, "0.1", VALUES);
 }
 
 /* A force between a particle and a triangle of another body: equal and opposite in sum, and

@@ -3,8 +3,6 @@
  * a step, and all methods everywhere. */
 #include "methods.h"
 
-#include "model/force/diagnostics.h"
-
 #include <math.h>
 #include <stdio.h>
 
@@ -16,28 +14,6 @@
     " \"mass\": {\"areal_density\": 0.2}, \"springs\": {\"damping\": 0.02}}]"
 #define BOX(centre, size) "{\"box\": {\"centre\": [" centre "], \"size\": [" size "]}}"
 #define FALL(collider)    "{" SHEET ", \"colliders\": [" collider "]}"
-
-/* the energies at the end of commits */
-struct log {
-    const struct fixture *sheet;
-    double first, largest;
-};
-
-static bool look(void *ctx, double t, double dt, double *x, double *v) {
-    struct log *log = ctx;
-    const struct cs_energy energy = cs_diagnostics_energy(log->sheet->system, t, x, v);
-    (void)dt;
-    log->largest = fmax(log->largest, cs_energy_total(&energy));
-    return false;
-}
-
-static void start(struct fixture *sheet, struct log *log) {
-    *log = (struct log){.sheet = sheet};
-    sheet->session.settings.run.after_commit = look;
-    sheet->session.settings.run.ctx = log;
-    fixture_start(sheet);
-    log->first = log->largest = fixture_energy(sheet);
-}
 
 /* lowest height of rows and columns [begin, end) */
 static double lowest(const struct fixture *sheet, size_t begin, size_t end) {
@@ -71,9 +47,9 @@ static struct methods some_methods(void) {
 /* Drops the sheet from `height` on a plate of 2 cm that is larger: it lies there. */
 static void drop(const char *method, double height, uint32_t frames) {
     struct fixture sheet;
-    struct log log;
+    struct fixture_log log;
     fixture_open(&sheet, method, FALL(BOX("0, 0, 0", "0.6, 0.02, 0.6")), 0.01 + height, 0.0);
-    start(&sheet, &log);
+    fixture_start_logged(&sheet, &log);
     fixture_frames(&sheet, frames);
     ck_assert_msg(fabs(lowest(&sheet, 0, 16) - 0.01) <= 1e-6, "%s from %g m: %.6f m", method,
                   height, lowest(&sheet, 0, 16));
@@ -101,10 +77,10 @@ TEST(small_plate_holds_the_middle) {
         for (int phase = 0; phase < (suite_all ? 8 : 2); phase++) {
             const char *method = methods.list[k].text;
             struct fixture sheet;
-            struct log log;
+            struct fixture_log log;
             fixture_open(&sheet, method, FALL(BOX("0, 0, 0", "0.3, 0.02, 0.3")),
                          0.3 + 0.02 * phase, -10.0);
-            start(&sheet, &log);
+            fixture_start_logged(&sheet, &log);
             fixture_frames(&sheet, 12);
             ck_assert_msg(lowest(&sheet, 6, 10) >= 0.005, "%s, phase %d: %.4f m", method, phase,
                           lowest(&sheet, 6, 10));
@@ -121,11 +97,11 @@ TEST(edge_holds_the_column_above_it) {
     for (size_t k = 0; k < methods.n; k++) {
         const char *method = methods.list[k].text;
         struct fixture sheet;
-        struct log log;
+        struct fixture_log log;
         double least = HUGE_VAL;
         fixture_open(&sheet, method, FALL(BOX("0.016666666666666666, 0, 0", "0.02, 0.6, 0.8")),
                      0.5, -10.0);
-        start(&sheet, &log);
+        fixture_start_logged(&sheet, &log);
         fixture_frames(&sheet, 3);
         for (size_t i = 0; i < 16; i++)
             least = fmin(least, sheet.x[sheet.n + 16 * i + 8]);
@@ -199,13 +175,13 @@ TEST(sheet_inside_stays_on_the_nearest_side) {
     for (size_t k = 0; k < methods.n; k++)
         for (int side = 0; side < 2; side++) {
             struct fixture sheet;
-            struct log log;
+            struct fixture_log log;
             fixture_open(
                 &sheet, methods.list[k].text,
                 "{" SHEET ", \"colliders\": [" BOX(
                     "0, 0, 0", "0.6, 0.02, 0.6") "], \"contact\": {\"start\": \"allow\"}}",
                 heights[side], 0.0);
-            start(&sheet, &log);
+            fixture_start_logged(&sheet, &log);
             fixture_frames(&sheet, 10);
             const double y = lowest(&sheet, 0, 16);
             ck_assert_msg(side ? y < -0.0025 : y > 0.0025, "%s: %.4f m", methods.list[k].text,
