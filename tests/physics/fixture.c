@@ -100,15 +100,15 @@ void ck_bits(const double *a, const double *b, size_t n, const char *what) {
     " \"mass\": {\"total\": 0.1}, \"springs\": {\"stretch\": 1000, \"shear\": 500, \"bend\": " \
     "0, \"damping\": 1}}], \"colliders\": [{\"plane\": {\"point\": [0, 0, 0], \"normal\": "    \
     "[%.17g, %.17g, 0]}, \"thickness\": 0.02, \"friction\": 0.3}], \"contact\": {\"law\": "    \
-    "\"force\", \"start\": \"allow\", \"friction_law\": \"%s\", \"stiffness\": 1000, "         \
+    "\"force\", \"start\": \"allow\", %s, \"stiffness\": 1000, "                               \
     "\"damping\": 0.001}, \"events\": [%s]}"
 
-void fixture_open_slope(struct fixture *block, const char *method, const char *law,
+void fixture_open_slope(struct fixture *block, const char *method, const char *friction,
                         double tangent, const char *events) {
     const double a = atan(tangent), n[2] = {sin(a), cos(a)};
     const double d = cs_barrier_loaded_distance(0.02, 1000, 0.025 * 9.81 * cos(a));
     fixture_open(block, method, SLOPE, n[0] * d, n[1] * d, -sin(a / 2), cos(a / 2), n[0], n[1],
-                 law, events);
+                 friction, events);
     fixture_start(block);
 }
 

@@ -34,9 +34,9 @@ void fixture_frames(struct fixture *fixture, uint32_t frames);
 void fixture_close(struct fixture *fixture);
 
 /* A block at its height of balance on a slope of mu = 0.3, whose tangent is given, or on a
- * belt: four particles of 25 g, contact of 1000 N/m. law: contact.friction_law; events: JSON or
- * "". The run is started. */
-void fixture_open_slope(struct fixture *block, const char *method, const char *law,
+ * belt: four particles of 25 g, contact of 1000 N/m. friction: more keys of contact; events:
+ * JSON or "". The run is started. */
+void fixture_open_slope(struct fixture *block, const char *method, const char *friction,
                         double tangent, const char *events);
 /* Its mean velocity down the slope in m/s. */
 double fixture_sliding(const struct fixture *block, double tangent);

@@ -56,7 +56,8 @@ TEST(blocks_slide_and_creep_as_the_law_says) {
             if (fabs(tangent - mu) < 0.01)
                 continue;
             struct fixture block;
-            fixture_open_slope(&block, methods.list[m].text, "smooth", tangent, "");
+            fixture_open_slope(&block, methods.list[m].text, "\"friction_law\": \"smooth\"",
+                               tangent, "");
             fixture_frames(&block, 15);
             const double before = fixture_sliding(&block, tangent);
             fixture_frames(&block, 15);
@@ -75,6 +76,30 @@ TEST(blocks_slide_and_creep_as_the_law_says) {
         }
 }
 
+/* At one step a frame, whatever the step is against m ev/(mu N): what rests may creep for 30 s
+ * and be 0.2 mm away. */
+TEST(what_rests_creeps_by_less_than_a_fifth_of_a_millimetre) {
+    const double ev = 5e-6, tangent = 0.2, mu = 0.3;
+    const struct methods methods = methods_find(
+        &(struct methods_query){.test = "small creep",
+                                .with = CS_IMPLICIT,
+                                .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN});
+    ck_assert_uint_ge(methods.n, 8);
+    for (size_t m = 0; m < methods.n; m++) {
+        struct fixture block;
+        fixture_open_slope(&block, methods.list[m].text, "\"friction_speed\": 5e-6", tangent,
+                           "");
+        fixture_frames(&block, 120);
+        const double begin[2] = {block.x[0], block.x[block.n]};
+        fixture_frames(&block, 180);
+        const double way = hypot(block.x[0] - begin[0], block.x[block.n] - begin[1]);
+        const double expected = 3 * ev * tangent / sqrt(mu * mu - tangent * tangent);
+        ck_assert_msg(fabs(way / expected - 1) < 0.01 && 10 * way < 2e-4, "%s: %g mm in 3 s",
+                      methods.list[m].text, 1e3 * way);
+        fixture_close(&block);
+    }
+}
+
 /* also those that move particles place by place see how fast the belt is */
 TEST(belts_carry_what_lies_on_them) {
     static const char *const methods[] = {"rk4", "implicit-linearised:dt=0.004",
@@ -82,7 +107,7 @@ TEST(belts_carry_what_lies_on_them) {
     for (size_t m = 0; m < LENGTH(methods); m++) {
         struct fixture block;
         fixture_open_slope(
-            &block, methods[m], "smooth", 0,
+            &block, methods[m], "\"friction_law\": \"smooth\"", 0,
             "{\"from\": 0, \"to\": 1, \"move\": {\"collider\": 0, \"path\": [{\"at\": 1, "
             "\"point\": [0.5, 0, 0]}]}}");
         fixture_frames(&block, 6);

@@ -32,7 +32,7 @@ TEST(rest_is_exact) {
         const struct method_asked *method = methods.list + m;
         struct fixture block;
         double x[12], anchors[12];
-        fixture_open_slope(&block, method->text, "stick", 0.2, "");
+        fixture_open_slope(&block, method->text, "\"friction_law\": \"stick\"", 0.2, "");
         fixture_frames(&block, 60);
         memcpy(x, block.x, sizeof x);
         ck_assert_uint_eq(block.system->friction_anchors->n_values, 12);
@@ -55,7 +55,8 @@ TEST(sliding_is_coulombs) {
     for (size_t m = 0; m < methods.n; m++)
         for (double tangent = 0.4; tangent < 0.55; tangent += 0.1) {
             struct fixture block;
-            fixture_open_slope(&block, methods.list[m].text, "stick", tangent, "");
+            fixture_open_slope(&block, methods.list[m].text, "\"friction_law\": \"stick\"",
+                               tangent, "");
             fixture_frames(&block, 15);
             const double before = fixture_sliding(&block, tangent);
             fixture_frames(&block, 15);
@@ -122,7 +123,7 @@ TEST(belts_carry) {
     for (size_t m = 0; m < methods.n; m++) {
         const char *name = methods.list[m].text;
         struct fixture block;
-        fixture_open_slope(&block, name, "stick", 0, belt);
+        fixture_open_slope(&block, name, "\"friction_law\": \"stick\"", 0, belt);
         fixture_frames(&block, 6);
         const double early = fixture_sliding(&block, 0);
         ck_assert_msg(fabs(early - 0.3 * G * 0.1) < 0.06 * 0.3 * G, "%s: %g m/s", name, early);
@@ -138,7 +139,7 @@ TEST(belts_carry) {
 /* m, the way of a block that starts on a slope at a speed across it, in steps of a frame */
 static void path_of(const char *method, double tangent, double across, double way[3]) {
     struct fixture block;
-    fixture_open_slope(&block, method, "stick", tangent, "");
+    fixture_open_slope(&block, method, "\"friction_law\": \"stick\"", tangent, "");
     const double x[3] = {block.x[0], block.x[4], block.x[8]};
     for (size_t i = 0; i < 4; i++)
         block.v[8 + i] = across;

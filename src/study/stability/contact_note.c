@@ -62,6 +62,7 @@ void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
             out,
             "friction under a load N damps a particle of m kg at up to mu N/(m %.3g m/s): in "
             "steps above 2 over that explicit methods let it chatter, by mu N dt/(2 m) at "
-            "most\n",
-            scene->contact.friction_speed);
+            "most; what rests on a slope of half of mu creeps by %.2g mm in 30 s, with an "
+            "implicit method and a friction_speed of 5e-6 m/s by 0.09 mm\n",
+            scene->contact.friction_speed, 30e3 * 0.57735 * scene->contact.friction_speed);
 }
