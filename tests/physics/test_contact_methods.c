@@ -108,7 +108,8 @@ static void follow(struct cs_session *session, uint32_t frames, struct course *c
     }
 }
 
-/* Returns true if nothing crossed, and all frames were done or the budget ended. */
+/* Returns true if nothing crossed, and all frames were done; with a budget also if that ended,
+ * or contact wants steps that are too short for an explicit method. */
 static bool run(const struct meeting *params, double budget) {
     struct cs_session session;
     struct course course = {0};
@@ -121,7 +122,8 @@ static bool run(const struct meeting *params, double budget) {
            course.frames, (unsigned long long)course.most, processor_seconds() - before,
            course.error.status ? course.error.message : "");
     fflush(stdout);
-    const bool is_over = budget > 0 && session.run.outcome == CS_OVER_BUDGET;
+    const bool is_over = budget > 0 && (session.run.outcome == CS_OVER_BUDGET ||
+                                        strstr(course.error.message, "a stable step"));
     cs_session_close(&session);
     return (!course.error.status || is_over) && !course.most;
 }
