@@ -35,12 +35,14 @@
 #include <clothsim/system.h>
 
 #ifdef __cplusplus
+#define CS_EXPORT extern "C" __attribute__((visibility("default")))
 extern "C" {
+#else
+#define CS_EXPORT __attribute__((visibility("default")))
 #endif
 
 /* Raised whenever a struct changes other than by growing at its end. */
 #define CS_ABI          1u
-#define CS_EXPORT       __attribute__((visibility("default")))
 #define CS_PRINTF(a, b) __attribute__((format(printf, a, b)))
 
 /* How a call ended. */

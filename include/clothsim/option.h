@@ -97,27 +97,39 @@ struct cs_table {
     const char *shorthand_list;
 };
 
-/* The rows that integrator modules use. The option's type follows from the C type of the field,
- * and a field of any other type does not compile. In C only: a C++ module fills the struct. */
-#define CS_TYPE_OF(struct_, field)                                                             \
+#ifdef __cplusplus
+}
+#endif
+
+/* The rows that integrator modules use. The option's type follows from the type of the field,
+ * and a field of any other type does not compile. */
+#ifdef __cplusplus
+template <typename field> struct cs_number_type;
+template <> struct cs_number_type<double> { static constexpr cs_type type = CS_REAL; };
+template <> struct cs_number_type<int64_t> { static constexpr cs_type type = CS_INT; };
+template <> struct cs_number_type<bool> { static constexpr cs_type type = CS_BOOL; };
+template <typename field> struct cs_choice_type;
+template <> struct cs_choice_type<int32_t> { static constexpr cs_type type = CS_CHOICE; };
+#define CS_NUMBER_TYPE(struct_, field) cs_number_type<decltype(((struct_ *)0)->field)>::type
+#define CS_CHOICE_TYPE(struct_, field) cs_choice_type<decltype(((struct_ *)0)->field)>::type
+#else
+#define CS_NUMBER_TYPE(struct_, field)                                                         \
     _Generic(((struct_ *)0)->field, double : CS_REAL, int64_t : CS_INT, bool : CS_BOOL)
+#define CS_CHOICE_TYPE(struct_, field) _Generic(((struct_ *)0)->field, int32_t : CS_CHOICE)
+#endif
 
 /* A number or a switch: its unit, default, least and largest value, and help. */
 #define CS_OPTION(struct_, field, unit_, def_, min_, max_, help_)                              \
     {                                                                                          \
-        .name = #field, .unit = unit_, .help = help_, .type = CS_TYPE_OF(struct_, field),      \
-        .count = 1, .offset = offsetof(struct_, field), .def = def_, .min = min_, .max = max_  \
+        "" #field, unit_, help_, CS_NUMBER_TYPE(struct_, field), 1, offsetof(struct_, field),  \
+            def_, min_, max_, NULL, NULL, NULL                                                 \
     }
 
 /* One of several names: an int32_t that is the number of the name, the default likewise. */
 #define CS_OPTION_CHOICE(struct_, field, names_, def_, help_)                                  \
     {                                                                                          \
-        .name = #field, .unit = "", .help = help_, .type = CS_CHOICE,                          \
-        .count = _Generic(((struct_ *)0)->field, int32_t : 1),                                 \
-        .offset = offsetof(struct_, field), .def = def_, .choices = names_                     \
+        "" #field, "", help_, CS_CHOICE_TYPE(struct_, field), 1, offsetof(struct_, field),     \
+            def_, 0, 0, NULL, names_, NULL                                                     \
     }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

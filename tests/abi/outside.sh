@@ -50,6 +50,15 @@ grep -q ' 0 fail, 0 expected, 0 stale' card
 # and the installed program gives its own modules a card
 "$program" conform --quiet --only order velocity-verlet
 
+# the same method in C++, by two compilers: the same bits
+for compiler in g++ clang++; do
+    # shellcheck disable=SC2086
+    $compiler -std=c++17 -Wall -Wextra -Wpedantic -Werror -O2 -shared -fPIC $flags -o cxx.so "${example}pp"
+    "$program" run "$source/scenes/hang.json" --frames 2 --no-render --quiet --hash \
+        --plugin cxx.so --integrator midpoint:dt=0.0002 | cmp - hashes
+done
+"$program" integrators --plugin cxx.so midpoint | grep -q '^ *dt '
+
 # documents, and scenes and golden tables from any folder
 documents=$(dirname "$example")
 for file in LICENSE README.md CHANGELOG.md docs/compare.md; do [ -s "$documents/$file" ]; done
