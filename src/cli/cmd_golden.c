@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "sim/install_paths.h"
+#include "study/compare/compare_curves.h"
 #include "study/golden/golden.h"
 
 #include <stdio.h>
@@ -13,12 +14,25 @@
 
 struct options {
     struct cs_golden check;
-    const char *json;
-    bool quiet;
+    const char *const *sets;
+    uint32_t n_sets;
+    const char *json, *junit;
+    bool image, github, quiet;
 };
 static const struct options defaults = {.check = {.threads = 1}};
 
 static const struct cs_arg rows[] = {
+    {"add", 0, "SCENE", "add a run of that scene to the golden tables, made if there are none",
+     CS_ARG_INTO(struct options, check.add.scene)},
+    {"frames", 'n', "N", "frames of the run that is added",
+     CS_ARG_INTO(struct options, check.add.frames), .min = 1, .max = UINT32_MAX},
+    {"integrator", 'i', "NAME[:KEY=VALUE,...]",
+     "its integrator and options (default: the scene's)",
+     CS_ARG_INTO(struct options, check.add.integrator), .methods = true},
+    {"set", 's', "PATH=VALUE", "override a scene value in it; may be repeated",
+     CS_ARG_LIST(struct options, sets, n_sets)},
+    {"image", 0, NULL, "add a picture of its last frame too",
+     CS_ARG_INTO(struct options, image)},
     {"accept", 0, NULL, "replace the golden files with the new results: look at them first",
      CS_ARG_INTO(struct options, check.accept_all)},
     {"hashes", 0, NULL, "state hashes only", CS_ARG_INTO(struct options, check.hashes)},
@@ -34,6 +48,10 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, check.threads), .min = 1, .max = CS_POOL_THREADS_MAX},
     {"json", 0, "FILE", "write the rows as JSON too; -: to standard output",
      CS_ARG_INTO(struct options, json)},
+    {"junit", 0, "FILE", "write the rows as a JUnit report too",
+     CS_ARG_INTO(struct options, junit)},
+    {"github", 0, NULL, "print rows that differ as annotations of GitHub",
+     CS_ARG_INTO(struct options, github)},
     {"quiet", 'q', NULL, "print only rows that differ, and the count",
      CS_ARG_INTO(struct options, quiet)},
 };
@@ -41,8 +59,33 @@ static const struct cs_arg rows[] = {
 /* Destination of the rows. */
 struct sink {
     const struct options *options;
-    struct cs_text json;
+    struct cs_text json, junit;
 };
+
+static bool is_different(const struct cs_golden_row *row) {
+    return row->message.length > 0 && (row->added || !row->skipped);
+}
+
+static const char *verdict_of(const struct options *options, const struct cs_golden_row *row) {
+    if (row->failed)
+        return "FAILED";
+    if (is_different(row) && options->check.accept_all)
+        return options->check.add.scene ? "added" : "accepted";
+    return row->skipped ? "skip" : is_different(row) ? "DIFFERS" : "ok";
+}
+
+/* Adds "image NAME SCENE  INTEGRATOR  OVERRIDES  frame N", without what the row has not. */
+static void add_name(const struct cs_golden_row *row, struct cs_text *out) {
+    const struct cs_golden_run *run = &row->run;
+    if (row->image)
+        cs_text_add(out, "image %s ", row->image);
+    cs_text_add(out, "%s", run->scene);
+    if (strcmp(run->integrator, "-"))
+        cs_text_add(out, "  %s", run->integrator);
+    if (strcmp(run->overrides, "-"))
+        cs_text_add(out, "  %s", run->overrides);
+    cs_text_add(out, "  frame %u", run->frames);
+}
 
 static void add_json(const struct cs_golden_row *row, const char *verdict,
                      struct cs_text *out) {
@@ -53,25 +96,41 @@ static void add_json(const struct cs_golden_row *row, const char *verdict,
                   row->run.overrides, cs_text_get(&row->message), row->run.frames);
 }
 
+/* Adds a test case of a JUnit report, with the message of a failure or a skip. */
+static void add_junit(const struct cs_golden_row *row, const char *name, const char *element,
+                      struct cs_text *out) {
+    cs_text_add(out, "<testcase classname=\"clothsim golden\" name=\"");
+    cs_svg_add_text(out, name);
+    cs_text_add(out, "\">");
+    if (element) {
+        cs_text_add(out, "<%s message=\"", element);
+        cs_svg_add_text(out, cs_text_get(&row->message));
+        cs_text_add(out, "\"/>");
+    }
+    cs_text_add(out, "</testcase>\n");
+}
+
 static void print_row(void *ctx, const struct cs_golden_row *row) {
     struct sink *sink = ctx;
     const struct options *options = sink->options;
-    const bool differs = row->message.length > 0 && (row->added || !row->skipped);
-    const char *verdict = row->skipped ? "skip" : !differs ? "ok" : "DIFFERS";
-    if (differs && options->check.accept_all)
-        verdict = "accepted";
+    const char *verdict = verdict_of(options, row);
+    const bool fails = is_different(row) && (row->failed || !options->check.accept_all);
+    struct cs_text name = {0};
+    add_name(row, &name);
     add_json(row, verdict, &sink->json);
-    if ((!differs && options->quiet) || cs_print_is_stdout(options->json))
-        return;
-    printf("%-8s %s%s%s  %s", verdict, row->image ? "image " : "", row->image ? row->image : "",
-           row->image ? " " : "", row->run.scene);
-    if (strcmp(row->run.integrator, "-"))
-        printf("  %s", row->run.integrator);
-    if (strcmp(row->run.overrides, "-"))
-        printf("  %s", row->run.overrides);
-    printf("  frame %u%s%s\n", row->run.frames, row->message.length ? ": " : "",
-           cs_text_get(&row->message));
+    add_junit(row, cs_text_get(&name),
+              fails          ? "failure"
+              : row->skipped ? "skipped"
+                             : NULL,
+              &sink->junit);
+    if (!cs_print_is_stdout(options->json) && (is_different(row) || !options->quiet))
+        printf("%-8s   %s%s%s\n", verdict, cs_text_get(&name), row->message.length ? ": " : "",
+               cs_text_get(&row->message));
+    if (options->github && fails)
+        printf("::error file=%s,title=clothsim golden::%s: %s\n", row->run.scene,
+               cs_text_get(&name), cs_text_get(&row->message));
     fflush(stdout);
+    cs_text_finish(&name);
 }
 
 static enum cs_status write_json(const struct cs_golden *check, struct sink *sink,
@@ -90,34 +149,70 @@ static enum cs_status write_json(const struct cs_golden *check, struct sink *sin
     return error->status;
 }
 
-static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
+static enum cs_status write_junit(const struct cs_golden *check, struct sink *sink,
+                                  struct cs_error *error) {
+    struct cs_text out = {0};
+    if (!sink->options->junit)
+        return CS_OK;
+    cs_text_add(
+        &out,
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"clothsim golden\" "
+        "tests=\"%u\" failures=\"%u\" skipped=\"%u\">\n%s</testsuite>\n",
+        check->passed + check->failed + check->accepted + check->skipped, check->failed,
+        check->skipped, cs_text_get(&sink->junit));
+    out.failed |= sink->junit.failed;
+    return cs_print_file(sink->options->junit, &out, error);
+}
+
+/* Fills the run to be added from the options: overrides joined by semicolons, "-" for none. */
+static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
-    struct cs_golden *check = &options->check;
-    char installed[CS_DATA_PATH_MAX];
-    struct sink sink = {.options = options};
-    /* installed tables are for comparison only and never written */
-    if (!check->folder)
-        check->folder =
-            check->accept_all ? "golden" : cs_data_find("golden", installed, sizeof installed);
-    /* without a flag both are checked, as with both flags */
-    if (check->hashes == check->images)
-        check->hashes = check->images = true;
-    if (!check->renderers)
-        check->renderers = 1u << CS_RENDERER_AUTO;
-    check->stop = cs_interrupt_catch();
-    check->report = print_row;
-    check->ctx = &sink;
-    if (!cs_golden_check(check, error))
-        write_json(check, &sink, error);
-    cs_text_finish(&sink.json);
-    if (error->status)
+    struct cs_golden_run *run = &options->check.add;
+    struct cs_text sets = {0};
+    for (uint32_t k = 0; k < options->n_sets; k++)
+        cs_text_add(&sets, "%s%s", k ? ";" : "", options->sets[k]);
+    if (!run->scene && (run->frames || run->integrator || options->n_sets || options->image))
+        cs_fail(error, CS_ERR_USAGE, "these options are of a run to be added: --add SCENE");
+    else if (run->scene && !run->frames)
+        cs_fail(error, CS_ERR_USAGE, "--add: the number of frames is missing, expected -n N");
+    else if (options->n_sets > CS_GOLDEN_SETS_MAX || sets.length >= CS_GOLDEN_SETS_BYTES)
+        cs_fail(error, CS_ERR_USAGE,
+                "--set: found %u of them, %zu bytes, expected at most %d, %d", options->n_sets,
+                sets.length, CS_GOLDEN_SETS_MAX, CS_GOLDEN_SETS_BYTES - 1);
+    else if (strpbrk(cs_text_get(&sets), "\t\n"))
+        cs_fail(error, CS_ERR_USAGE, "--set: found a tab or a new line, which no row can hold");
+    else if (run->scene) {
+        run->integrator = run->integrator ? run->integrator : "-";
+        run->overrides =
+            options->n_sets ? cs_arena_copy_text(&args->arena, cs_text_get(&sets), error) : "-";
+        options->check.accept_all = options->check.hashes = true;
+        options->check.images = options->image;
+        options->check.renderers = 1u << CS_RENDERER_CPU;
+    }
+    cs_text_finish(&sets);
+    return error->status;
+}
+
+static enum cs_status report(const struct cs_golden *check, struct sink *sink,
+                             struct cs_error *error) {
+    if (write_json(check, sink, error) || write_junit(check, sink, error))
         return error->status;
-    if (!cs_print_is_stdout(options->json))
+    if (!cs_print_is_stdout(sink->options->json))
         printf("%u agree, %u differ, %u accepted, %u skipped\n", check->passed, check->failed,
                check->accepted, check->skipped);
     /* a misspelt --only must not look like success */
     if (check->passed + check->failed + check->accepted + check->skipped == 0)
-        return cs_fail(error, CS_ERR_USAGE, "no golden row matches");
+        return cs_fail(error, CS_ERR_USAGE,
+                       check->only_rows
+                           ? "no golden row matches"
+                           : "no golden row in folder \"%s\"; clothsim golden --add "
+                             "SCENE -n N makes one",
+                       check->folder);
+    if (check->broken > 0)
+        return cs_fail(error, CS_ERR_CHECK,
+                       "%u golden row%s differ%s, of which %u cannot be run", check->failed,
+                       check->failed == 1 ? "" : "s", check->failed == 1 ? "s" : "",
+                       check->broken);
     if (check->failed > 0)
         return cs_fail(error, CS_ERR_CHECK,
                        "%u golden row%s differ%s; if the change is intended, look at it, then "
@@ -125,6 +220,33 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
                        check->failed, check->failed == 1 ? "" : "s",
                        check->failed == 1 ? "s" : "");
     return CS_OK;
+}
+
+static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
+    struct options *options = args->options;
+    struct cs_golden *check = &options->check;
+    char installed[CS_DATA_PATH_MAX];
+    struct sink sink = {.options = options};
+    if (take_run(args, error))
+        return error->status;
+    /* installed tables are for comparison only and never written */
+    if (!check->folder)
+        check->folder =
+            check->accept_all ? "golden" : cs_data_find("golden", installed, sizeof installed);
+    /* without a flag both are checked, as with both flags; one of the tables may be missing */
+    check->any_table = !check->hashes && !check->images;
+    if (check->any_table)
+        check->hashes = check->images = true;
+    if (!check->renderers)
+        check->renderers = 1u << CS_RENDERER_AUTO;
+    check->stop = cs_interrupt_catch();
+    check->report = print_row;
+    check->ctx = &sink;
+    if (!cs_golden_check(check, error))
+        report(check, &sink, error);
+    cs_text_finish(&sink.json);
+    cs_text_finish(&sink.junit);
+    return error->status;
 }
 
 const struct cs_command cs_command_golden = {

@@ -2,7 +2,6 @@
 #include "study/golden/golden.h"
 
 #include "base/file.h"
-#include "base/table.h"
 #include "draw/image_diff.h"
 #include "io/png.h"
 #include "study/follow.h"
@@ -108,10 +107,8 @@ static enum cs_status check_with(const struct cs_golden *golden, enum cs_rendere
     return error->status;
 }
 
-/* Renders the last frame of a row's run and compares it with the golden image; the result is in
- * row->found, row->renderer and row->message. With accept_all the image is replaced. */
-static enum cs_status golden_check_image(struct cs_golden *golden, struct cs_golden_row *row,
-                                         struct cs_error *error) {
+static enum cs_status check_image(struct cs_golden *golden, struct cs_golden_row *row,
+                                  struct cs_error *error) {
     struct cs_session session;
     if (cs_golden_step(golden, &row->run, true, &session, error))
         return error->status;
@@ -120,83 +117,6 @@ static enum cs_status golden_check_image(struct cs_golden *golden, struct cs_gol
             check_with(golden, (enum cs_renderer_kind)kind, &session, row, error);
     cs_session_close(&session);
     return error->status;
-}
-
-enum { HASH_FIELDS = 6, IMAGE_FIELDS = 7 };
-
-/* A golden table, read into memory; rows point into its lines. */
-struct table {
-    char path[1024];
-    const char *head; /* first line, without its end */
-    uint32_t n_fields;
-    struct cs_rows lines; /* rows point into them */
-    struct cs_golden_row *rows;
-    uint32_t n;
-};
-
-/* Cuts a line into fields, in place. */
-static enum cs_status read_row(const struct table *table, struct cs_golden_row *row, char *line,
-                               struct cs_error *error) {
-    char *fields[IMAGE_FIELDS];
-    const uint32_t n = cs_csv_cut(line, '\t', fields, table->n_fields);
-    const uint32_t frames = n == table->n_fields ? (uint32_t)strtoul(fields[3], NULL, 10) : 0;
-    if (frames == 0)
-        return cs_fail(error, CS_ERR_FILE, "%s: a row has less than %u fields or no frames: %s",
-                       table->path, table->n_fields, line);
-    row->run = (struct cs_golden_run){fields[0], fields[1], fields[2], frames};
-    row->image = n == IMAGE_FIELDS ? fields[4] : NULL;
-    row->hash = fields[n - 2];
-    row->note = fields[n - 1];
-    return CS_OK;
-}
-
-static enum cs_status read_table(struct table *table, const char *folder, const char *name,
-                                 struct cs_error *error) {
-    snprintf(table->path, sizeof table->path, "%s/%s", folder, name);
-    if (cs_rows_open(&table->lines, table->path, 0, error))
-        return error->status;
-    // a table that was edited by hand may lack the end of its last line
-    table->lines.bytes[table->lines.length++] = '\n';
-    table->rows = calloc(table->lines.n + 1, sizeof *table->rows);
-    if (!table->rows)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
-    char *line = cs_rows_next(&table->lines);
-    if (strcmp(line, table->head) != 0)
-        return cs_fail(error, CS_ERR_FILE, "%s: the first line is not \"%s\"", table->path,
-                       table->head);
-    while (!error->status && (line = cs_rows_next(&table->lines)))
-        if (*line)
-            read_row(table, table->rows + table->n++, line, error);
-    return error->status;
-}
-
-/* Prints a row as a line of the table. */
-static void add_line(const struct cs_golden_row *row, const char *hash, const char *note,
-                     struct cs_text *text) {
-    cs_text_add(text, "%s\t%s\t%s\t%u\t", row->run.scene, row->run.integrator,
-                row->run.overrides, row->run.frames);
-    if (row->image)
-        cs_text_add(text, "%s\t", row->image);
-    cs_text_add(text, "%s\t%s\n", hash, note);
-}
-
-/* Writes all rows, and the added ones after the rows of the same run. */
-static enum cs_status write_table(const struct table *table, struct cs_error *error) {
-    struct cs_text text = {0};
-    cs_text_add(&text, "%s\n", table->head);
-    for (uint32_t k = 0; k < table->n; k++) {
-        add_line(table->rows + k, table->rows[k].hash, table->rows[k].note, &text);
-        if (table->rows[k].added)
-            add_line(table->rows + k, table->rows[k].found, table->rows[k].library, &text);
-    }
-    return cs_file_write_text(table->path, &text, error);
-}
-
-static void free_table(struct table *table) {
-    for (uint32_t k = 0; k < table->n; k++)
-        cs_text_finish(&table->rows[k].message);
-    free(table->rows);
-    cs_rows_close(&table->lines);
 }
 
 /* True if the row holds for this build. A method whose bits depend on a library has one row per
@@ -226,9 +146,12 @@ static enum cs_status check_hash(struct cs_golden *golden, struct cs_golden_row 
         return CS_OK;
     }
     cs_run_hash(&session.run, row->found);
-    if (is_for_this_build(row, session.method.integrator) && strcmp(row->found, row->hash))
-        cs_text_add(&row->message, "hash %s, expected %s (%s after frame %u)", row->found,
-                    row->hash, cs_outcome_text(session.run.outcome), session.run.frame);
+    if (is_for_this_build(row, session.method.integrator) && strcmp(row->found, row->hash)) {
+        cs_text_add(&row->message, "hash %s", row->found);
+        if (!golden->add.scene)
+            cs_text_add(&row->message, ", expected %s (%s after frame %u)", row->hash,
+                        cs_outcome_text(session.run.outcome), session.run.frame);
+    }
     cs_session_close(&session);
     return CS_OK;
 }
@@ -237,19 +160,6 @@ static enum cs_status check_hash(struct cs_golden *golden, struct cs_golden_row 
 static bool is_wanted(const struct cs_golden *golden, const struct cs_golden_row *row) {
     return !golden->only_rows || strstr(row->run.scene, golden->only_rows) ||
            strstr(row->run.integrator, golden->only_rows);
-}
-
-/* True if the table has a row of the same run for the library of this build. */
-static bool is_in_table(const struct table *table, const struct cs_golden_row *row) {
-    bool found = false;
-    for (uint32_t k = 0; k < table->n; k++) {
-        const struct cs_golden_row *other = table->rows + k;
-        found |= !strcmp(other->note, row->library) && other->run.frames == row->run.frames &&
-                 !strcmp(other->run.scene, row->run.scene) &&
-                 !strcmp(other->run.integrator, row->run.integrator) &&
-                 !strcmp(other->run.overrides, row->run.overrides);
-    }
-    return found;
 }
 
 static void accept_row(struct cs_golden_row *row) {
@@ -263,58 +173,83 @@ static void count(struct cs_golden *golden, const struct cs_golden_row *row) {
         golden->skipped++;
     else if (row->message.length == 0)
         golden->passed++;
-    else if (golden->accept_all)
+    else if (golden->accept_all && !row->failed)
         golden->accepted++;
     else
         golden->failed++;
 }
 
-/* Checks one table; check handles a row. */
-static enum cs_status
-check_table(struct cs_golden *golden, const char *name, const char *head, uint32_t n_fields,
-            enum cs_status (*check)(struct cs_golden *golden, struct cs_golden_row *row,
-                                    struct cs_error *error),
-            struct cs_error *error) {
-    struct table table = {.head = head, .n_fields = n_fields};
-    const uint32_t before = golden->accepted;
-    read_table(&table, golden->folder, name, error);
-    for (uint32_t k = 0; k < table.n && !error->status; k++) {
-        struct cs_golden_row *row = table.rows + k;
-        if (!is_wanted(golden, row) || check(golden, row, error))
-            continue;
-        row->added =
-            golden->accept_all && row->skipped && *row->library && !is_in_table(&table, row);
-        count(golden, row);
-        if (golden->report)
-            golden->report(golden->ctx, row);
-        if (golden->accept_all && row->message.length > 0 && !row->skipped)
-            accept_row(row);
+/* A table of one kind, and the check of its rows. */
+struct kind {
+    const char *name, *head;
+    uint32_t n_fields;
+    enum cs_status (*check)(struct cs_golden *golden, struct cs_golden_row *row,
+                            struct cs_error *error);
+};
+static const struct kind hashes = {"hash.tsv",
+                                   "scene\tintegrator\toverrides\tframes\thash\tbuilds",
+                                   CS_GOLDEN_HASH_FIELDS, check_hash};
+static const struct kind images = {
+    "image.tsv", "scene\tintegrator\toverrides\tframe\timage\tpixels\trenderer",
+    CS_GOLDEN_IMAGE_FIELDS, check_image};
+
+/* Checks a row. A failed run is a failed row, unless the run is added, the user interrupts, or
+ * memory ends. */
+static enum cs_status check_row(struct cs_golden *golden, const struct kind *kind,
+                                const struct cs_golden_table *table, struct cs_golden_row *row,
+                                struct cs_error *error) {
+    struct cs_error own = {0};
+    if (kind->check(golden, row, &own)) {
+        if (golden->add.scene || own.status == CS_ERR_INTERRUPT || own.status == CS_ERR_MEMORY)
+            return cs_fail(error, own.status, "%s", own.message);
+        row->failed = true;
+        golden->broken++;
+        cs_text_add(&row->message, "%s", own.message);
     }
+    row->added =
+        golden->accept_all && row->skipped && *row->library && !cs_golden_table_has(table, row);
+    count(golden, row);
+    if (golden->report)
+        golden->report(golden->ctx, row);
+    if (golden->accept_all && row->message.length > 0 && !row->skipped && !row->failed)
+        accept_row(row);
+    return CS_OK;
+}
+
+static enum cs_status check_table(struct cs_golden *golden, const struct kind *kind,
+                                  struct cs_error *error) {
+    struct cs_golden_table table = {.head = kind->head, .n_fields = kind->n_fields};
+    const uint32_t before = golden->accepted;
+    const bool may_lack = golden->add.scene || golden->any_table;
+    cs_golden_table_read(&table, golden->folder, kind->name, may_lack, error);
+    if (golden->add.scene && !error->status)
+        check_row(golden, kind, &table, cs_golden_table_add(&table, &golden->add), error);
+    for (uint32_t k = 0; k < table.n && !golden->add.scene && !error->status; k++)
+        if (is_wanted(golden, table.rows + k))
+            check_row(golden, kind, &table, table.rows + k, error);
     if (!error->status && golden->accepted > before)
-        write_table(&table, error);
-    free_table(&table);
+        cs_golden_table_write(&table, error);
+    cs_golden_table_close(&table);
     return error->status;
 }
 
 enum cs_status cs_golden_check(struct cs_golden *golden, struct cs_error *error) {
-    if (golden->hashes &&
-        check_table(golden, "hash.tsv", "scene\tintegrator\toverrides\tframes\thash\tbuilds",
-                    HASH_FIELDS, check_hash, error))
+    char folder[1024];
+    snprintf(folder, sizeof folder, "%.900s%s", golden->folder, golden->images ? "/image" : "");
+    if (golden->add.scene && cs_folder_create(folder, error))
         return error->status;
-    if (golden->images)
-        check_table(golden, "image.tsv",
-                    "scene\tintegrator\toverrides\tframe\timage\tpixels\trenderer",
-                    IMAGE_FIELDS, golden_check_image, error);
-    return error->status;
+    if (golden->hashes && check_table(golden, &hashes, error))
+        return error->status;
+    return golden->images ? check_table(golden, &images, error) : CS_OK;
 }
 
 /* Opens the session of a golden row and steps it to the row's frame. */
 
 /* Splits "path=value;path=value" in place. Returns the number of overrides. */
-static uint32_t split_overrides(char *text, struct cs_override *overrides, uint32_t most) {
+static uint32_t split_overrides(char *text, struct cs_override *overrides) {
     uint32_t n = 0;
     char *pair;
-    while (n < most && (pair = strsep(&text, ";"))) {
+    while (n < CS_GOLDEN_SETS_MAX && (pair = strsep(&text, ";"))) {
         char *equals = strchr(pair, '=');
         if (!equals)
             continue;
@@ -326,16 +261,18 @@ static uint32_t split_overrides(char *text, struct cs_override *overrides, uint3
 
 enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_golden_run *run,
                               bool render, struct cs_session *session, struct cs_error *error) {
-    char scene[1280], text[1024];
-    struct cs_override overrides[16];
-    /* scenes are named from the folder above the golden one */
-    snprintf(scene, sizeof scene, "%s/../%s", golden->folder, run->scene);
+    char scene[1280], text[CS_GOLDEN_SETS_BYTES];
+    struct cs_override overrides[CS_GOLDEN_SETS_MAX];
+    /* scenes are named from the folder above the golden one, which is often this one */
+    const bool here = *golden->folder != '.' && !strchr(golden->folder, '/');
+    snprintf(scene, sizeof scene, "%s%s%s", here ? "" : golden->folder, here ? "" : "/../",
+             run->scene);
     /* a copy, which split_overrides cuts up */
     snprintf(text, sizeof text, "%s", run->overrides);
     const struct cs_session_settings settings = {
         .scene = scene,
         .overrides = overrides,
-        .n_overrides = split_overrides(text, overrides, 16),
+        .n_overrides = split_overrides(text, overrides),
         .integrator = strcmp(run->integrator, "-") ? run->integrator : NULL,
         .render = render,
         .threads = golden->threads,
