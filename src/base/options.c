@@ -177,7 +177,8 @@ enum cs_status cs_option_set(const struct cs_option *row, void *object, const ch
         return cs_option_set_choice(row, object, text, where, status, error);
     double value;
     if (!cs_parse_real(text, &value))
-        return cs_fail(error, status, "%s: expected a number, found \"%.60s\"", where, text);
+        return cs_fail(error, status, "%s: expected a number, found \"%.60s\"%s", where, text,
+                       strstr(text, "..") ? " (a range is for compare and sweep)" : "");
     return cs_option_set_number(row, object, value, where, status, error);
 }
 

@@ -82,10 +82,30 @@ const char *cs_renderer_folder(void) {
     return *folder ? folder : find("src/draw", CS_MODULES_FROM_PROGRAM "/render", folder);
 }
 
-const char *cs_data_find(const char *path, char *out, size_t size) {
+/* The path if it exists, or that of an installed file; else NULL. */
+static const char *find_data(const char *path, char *out, size_t size) {
     char folder[FOLDER_MAX] = "";
-    if (*path == '/' || access(path, F_OK) == 0 || !*find(NULL, CS_DATA_FROM_PROGRAM, folder))
+    if (access(path, F_OK) == 0)
         return path;
+    if (*path == '/' || !*find(NULL, CS_DATA_FROM_PROGRAM, folder))
+        return NULL;
     const int length = snprintf(out, size, "%s/%s", folder, path);
-    return length > 0 && (size_t)length < size && access(out, F_OK) == 0 ? out : path;
+    return length > 0 && (size_t)length < size && access(out, F_OK) == 0 ? out : NULL;
+}
+
+const char *cs_data_find(const char *path, char *out, size_t size) {
+    const char *found = find_data(path, out, size);
+    return found ? found : path;
+}
+
+const char *cs_scene_find(const char *name, char *out, size_t size) {
+    char path[CS_DATA_PATH_MAX];
+    const char *found = find_data(name, out, size);
+    if (found || strpbrk(name, "/."))
+        return found ? found : name;
+    snprintf(path, sizeof path, "scenes/%.200s.json", name);
+    found = find_data(path, out, size);
+    if (found == path)
+        found = strcpy(out, path);
+    return found ? found : name;
 }

@@ -21,4 +21,7 @@ const char *cs_renderer_folder(void);
  * such as CS_DATA_PATH_MAX). Else the path itself. */
 const char *cs_data_find(const char *path, char *out, size_t size);
 
+/* The same for a scene, whose name alone ("hang") means scenes/hang.json. */
+const char *cs_scene_find(const char *name, char *out, size_t size);
+
 #endif

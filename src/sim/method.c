@@ -206,7 +206,10 @@ enum cs_status cs_method_parse_pair(const char *name, char **pairs, const char *
     char *pair = strsep(pairs, ","), *equals = strchr(pair, '=');
     if (!equals)
         return cs_fail(error, CS_ERR_USAGE,
-                       "integrator \"%s\": found \"%.60s\", expected key=value", name, pair);
+                       "integrator \"%s\": found \"%.60s\", expected key=value%s", name, pair,
+                       *pair && strspn(pair, "0123456789e-") == strlen(pair)
+                           ? " (decimals have a point, as in 0.001)"
+                           : "");
     *equals = 0;
     *key = pair;
     *value = equals + 1;

@@ -27,7 +27,7 @@ static enum cs_status read_scene(struct cs_session *session, struct cs_error *er
     char installed[CS_DATA_PATH_MAX];
     if (!settings->text)
         return cs_scene_read(&session->scene,
-                             cs_data_find(settings->scene, installed, sizeof installed),
+                             cs_scene_find(settings->scene, installed, sizeof installed),
                              settings->overrides, settings->n_overrides, error);
     return cs_scene_read_text(&session->scene, settings->scene, settings->text,
                               strlen(settings->text), settings->overrides,

@@ -101,7 +101,9 @@ TEST(messages_name_the_place) {
     static const char *const rows[][2] = {
         {"{\n  \"time\": {\"fps\": 60,}\n}",
          "s.json:2:22: found '}' after ',': JSON has no trailing comma"},
-        {"[1, 2]", "s.json:1:1: found a list of 2, expected an object"},
+        {"[1, 2]", "s.json:1:1: found a list of 2, expected an object (\"about\", \"source\", "
+                   "\"bodies\", "
+                   "\"colliders\", ...)"},
         {"{\"bodies\": [" BODY "],\n \"time\": {\"fps\": \"60\"}}",
          "s.json:2:18: time.fps: found string \"60\", expected a number (0.001..1000000 1/s)"},
         {"{\"bodies\": [\n" BODY ",\n{\"cloth\": {\"grid\": [2, 2]}}]}",
@@ -129,7 +131,7 @@ TEST(messages_name_the_place) {
          "s.json:1:27: render.size[1]: 99.5 is not an integer (16..8192 pixels)"},
         {"{\"render\": {\"size\": [640]}}",
          "s.json:1:21: render.size: found a list of 1, expected "
-         "a list of 2 integers (16..8192 pixels)"},
+         "a list of 2 integers (16..8192 pixels): width and height"},
         {"{\"camera\": {\"eye\": [0, null, 1]}}",
          "s.json:1:24: camera.eye[1]: found null, expected a number"},
         {"{\"render\": {\"look\": \"strian\"}}",
@@ -146,7 +148,7 @@ TEST(messages_name_the_place) {
         {"{\"about\": true}", "s.json:1:11: about: found true, expected a string"},
         {"{\"bodies\": [{\"pins\": [[1]]}]}",
          "s.json:1:23: bodies[0].pins[0]: found a list of 1, "
-         "expected an object, a string or a number"},
+         "expected an object (\"to\", \"at\", \"index\", \"box\") or a string or a number"},
         {"{\"bodies\": [{\"pins\": [-1]}]}",
          "s.json:1:23: bodies[0].pins[0]: -1 is out of range (0..4294967295)"},
         {"{\"bodies\": [{\"pins\": [{}]}]}",

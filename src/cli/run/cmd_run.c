@@ -145,6 +145,19 @@ static enum cs_status check_stream(const struct cs_job_settings *settings,
     return CS_OK;
 }
 
+/* Refuses the name of a film or a picture, where a folder is meant. */
+static enum cs_status check_folder(const char *folder, struct cs_error *error) {
+    static const char *const endings[] = {".mp4", ".webm", ".mkv", ".gif", ".png", NULL};
+    const char *ending = folder ? strrchr(folder, '.') : NULL;
+    for (int k = 0; ending && endings[k]; k++)
+        if (!strcmp(ending, endings[k]))
+            return cs_fail(error, CS_ERR_USAGE,
+                           "--output: found \"%s\", expected a folder, which is filled with "
+                           "pictures; clothsim film makes a film of them",
+                           folder);
+    return CS_OK;
+}
+
 /* Derives the job's settings from the options, and checks their combinations. */
 static enum cs_status read_settings(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
@@ -153,7 +166,7 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_error *error
     settings->session.run.stop = cs_interrupt_catch();
     if (read_checkpoints(args, options, error) ||
         (options->trace && cs_run_trace_read(options->trace, &settings->trace, error)) ||
-        check_stream(settings, error) ||
+        check_stream(settings, error) || check_folder(settings->folder, error) ||
         cs_run_export_read(options->export, options->values, &settings->export, error))
         return error->status;
     if (!settings->session.render && !cs_job_makes_checkpoints(settings) &&

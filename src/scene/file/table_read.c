@@ -17,6 +17,9 @@ static enum cs_status fail_row(struct cs_json_context *context, const struct cs_
                                const struct cs_option *row) {
     struct cs_text expected = {0};
     cs_option_print_expected(row, &expected);
+    // of a list of the wrong length also what its numbers are
+    if (row->count > 1 && cs_json_kind_of(value) == CS_JSON_LIST)
+        cs_text_add(&expected, ": %.*s", (int)strcspn(row->help, ";"), row->help);
     const enum cs_status status =
         cs_json_context_fail_type(context, value, cs_text_get(&expected));
     cs_text_finish(&expected);
@@ -311,6 +314,26 @@ static enum cs_status check_complete(struct cs_json_context *context,
     return table->one_of ? check_one_of(context, value, table, object) : CS_OK;
 }
 
+/* Fails with what may stand there: an object with some of its keys, or a short form. */
+static enum cs_status fail_not_object(struct cs_json_context *context,
+                                      const struct cs_json *value,
+                                      const struct cs_table *table) {
+    enum { KEYS = 4 };
+    struct cs_text expected = {0};
+    cs_text_add(&expected, "an object");
+    for (uint32_t r = 0; r < table->n && r < KEYS; r++)
+        cs_text_add(&expected, "%s\"%s\"", r ? ", " : " (", table->rows[r].name);
+    cs_text_add(&expected, table->n > KEYS ? ", ...)" : ")");
+    if (table->shorthand_text)
+        cs_text_add(&expected, " or a string");
+    if (table->shorthand_number || table->shorthand_list)
+        cs_text_add(&expected, " or a %s", table->shorthand_number ? "number" : "list");
+    const enum cs_status status =
+        cs_json_context_fail_type(context, value, cs_text_get(&expected));
+    cs_text_finish(&expected);
+    return status;
+}
+
 enum cs_status cs_table_read(struct cs_json_context *context, const struct cs_json *value,
                              const struct cs_table *table, void *object) {
     if (table->optional)
@@ -319,12 +342,7 @@ enum cs_status cs_table_read(struct cs_json_context *context, const struct cs_js
     if (shorthand)
         return read_row(context, value, shorthand, object);
     if (cs_json_kind_of(value) != CS_JSON_OBJECT)
-        return cs_json_context_fail_type(
-            context, value,
-            table->shorthand_number ? "an object, a string or a number"
-            : table->shorthand_list ? "an object, a string or a list"
-            : table->shorthand_text ? "an object or a string"
-                                    : "an object");
+        return fail_not_object(context, value, table);
     for (const struct cs_json *m = cs_json_first(value); m; m = cs_json_next(m))
         if (read_member(context, m, table, object))
             return context->error->status;

@@ -75,8 +75,8 @@ static enum cs_status print_origin(struct cs_compare *compare, struct cs_error *
     struct cs_text *out = &compare->provenance;
     struct cs_scene scene = {0};
     char found[CS_DATA_PATH_MAX];
-    if (cs_scene_read(&scene, cs_data_find(asked->scene, found, sizeof found), asked->overrides,
-                      asked->n_overrides, error))
+    if (cs_scene_read(&scene, cs_scene_find(asked->scene, found, sizeof found),
+                      asked->overrides, asked->n_overrides, error))
         return error->status;
     cs_json_write(out, "{\n  'versions': {'clothsim': %s},\n  'frames': %u,\n", CS_VERSION,
                   recording->frames);

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Checks one picture in two levels. */
 
@@ -233,8 +234,18 @@ static enum cs_status check_table(struct cs_golden *golden, const struct kind *k
     return error->status;
 }
 
+static bool is_there(const struct cs_golden *golden, const struct kind *kind) {
+    char path[1024];
+    snprintf(path, sizeof path, "%.900s/%s", golden->folder, kind->name);
+    return access(path, F_OK) == 0;
+}
+
 enum cs_status cs_golden_check(struct cs_golden *golden, struct cs_error *error) {
     char folder[1024];
+    if (golden->any_table && !is_there(golden, &hashes) && !is_there(golden, &images))
+        return cs_fail(error, CS_ERR_FILE,
+                       "no golden files in \"%s\"; clothsim golden --add SCENE -n N makes them",
+                       golden->folder);
     snprintf(folder, sizeof folder, "%.900s%s", golden->folder, golden->images ? "/image" : "");
     if (golden->add.scene && cs_folder_create(folder, error))
         return error->status;

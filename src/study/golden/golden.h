@@ -14,7 +14,7 @@ struct cs_golden {
     const char *folder;    /* "golden" */
     const char *only_rows; /* rows whose scene or integrator holds this text; NULL: all */
     bool hashes, images;   /* what to do */
-    bool any_table;        /* a table that is not there has no rows */
+    bool any_table;        /* one of the two may be missing: it has no rows */
     bool accept_all;       /* write what was found instead of failing */
     /* with a scene: this run alone is done, and added to the tables, which are made if they are
      * not there; set accept_all too */

@@ -168,7 +168,7 @@ static enum cs_status add_row(struct cs_soft *soft, enum cs_soft_series series, 
 enum cs_status cs_soft_check(const struct cs_soft *soft, struct cs_error *error) {
     struct cs_scene scene;
     char installed[CS_DATA_PATH_MAX];
-    if (cs_scene_read(&scene, cs_data_find(soft->session.scene, installed, sizeof installed),
+    if (cs_scene_read(&scene, cs_scene_find(soft->session.scene, installed, sizeof installed),
                       soft->session.overrides, soft->session.n_overrides, error))
         return error->status;
     const struct cs_body *body = cs_scene_bodies(&scene);
