@@ -214,8 +214,7 @@ struct cs_host {
      * Euler step of length h: contact_blocks (6,n) in kg = -h df/dv - h h df/dx of
      * CS_PART_POTENTIAL and CS_PART_DISSIPATIVE at (t, x, v), each as CS_SOLVE_PSD and
      * CS_SOLVE_BOUND have it: xx, xy, xz, yy, yz, zz. For methods that move particles one after
-     * the other: with h h f they make a step towards where contact and the rest are in balance.
-     */
+     * the other: with h h f they make a step towards balance with the rest. */
     void (*contact_blocks)(void *ctx, double t, const double *x, const double *v, double h,
                            double *contact_blocks);
 
@@ -229,8 +228,7 @@ struct cs_host {
      * limit, velocity loss or crossings). Then a step may end after t1: the method gives the
      * state at t1 by interpolation, commits it as if the step had ended there, and commits the
      * rest of the step in the next advance. commit leaves its own state alone, unless it sets
-     * *changed. Not in hosts whose size ends before it: ask CS_HAS(host, may_overstep) first.
-     */
+     * *changed. Not in older hosts: ask CS_HAS(host, may_overstep) first. */
     bool may_overstep;
 
     /* [advance] The linear system of a linearised step of implicit Euler, A dv = b with
