@@ -78,6 +78,12 @@ def cost_at(rows, bound, column):
     return None
 
 
+def lies_in(interval, value):
+    """True if the interval, whose open ends are None, has the value."""
+    low, high = interval
+    return (low is None or low <= value) and (high is None or value <= high)
+
+
 def judge(program, name, folder):
     path, cache = f"{folder}/{name}.json", f"{folder}/{name}-cache"
     with open(path, "w") as file:
@@ -110,7 +116,7 @@ def judge(program, name, folder):
             continue
         low, high = rank["work_interval"]
         works = low - 0.01 <= true["work"] <= high + 0.01
-        times = rank["interval"] and rank["interval"][0] <= true["cpu"] <= rank["interval"][1]
+        times = rank["interval"] and lies_in(rank["interval"], true["cpu"])
         n, by_work, by_time = n + 1, by_work + works, by_time + bool(times)
         print(f"{name} {rank['error']:.0e} {pair[0]['series']} over {pair[1]['series']}: work "
               f"{rank['work_factor']:.3f} ({low:.3f} to {high:.3f}), dense {true['work']:.3f}"
@@ -126,7 +132,7 @@ def repeat(program, name, folder, times):
     for k in range(times):
         found = compare(program, path, METHODS, f"{folder}/{name}-{k}", cache, 15)
         for rank in found["verdict"]:
-            if rank.get("factor") and rank["interval"]:
+            if rank.get("factor") and rank["interval"] and None not in rank["interval"]:
                 names = [found["cells"][rank[key]]["series"] for key in ("best", "next")]
                 low, high = rank["interval"]
                 if names != sorted(names):

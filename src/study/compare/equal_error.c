@@ -187,8 +187,7 @@ static void find_relation(const struct cs_choice *choice, const struct cs_cell *
         standing->relation = CS_BOUND_AT;
         standing->left =
             standing->slope * (log(choice->bound / error) + log1p(bar_of(choice) / error));
-        if (cell->adaptive)
-            add_noise(choice, first, end, standing);
+        add_noise(choice, first, end, standing);
     } else {
         standing->relation = CS_BOUND_LIMIT;
         standing->left = !coarser || takes_steps(cell) ? 0 : log(coarser->value / cell->value);

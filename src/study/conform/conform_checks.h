@@ -7,7 +7,7 @@
  *   contact   incline, rest, bounce, impacts, crossings         conform_contact.c
  *   rules     descriptor, imports, commits, pins, failures      conform_rules.c
  *   fidelity  the limit of a method's iterations                conform_fidelity.c
- *   memory, threads, resume: the rules of the host              files of these names
+ *   host      memory, threads, cuts, resume                     conform_host.c
  *
  * An error is measured against a closed form, an invariant or the independent method of
  * conform_checks.h. It is never measured against the same method at a smaller step, because
