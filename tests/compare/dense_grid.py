@@ -8,7 +8,8 @@ which is the cheapest, and its factor over the next one, by time and by work. Th
 then run at ten times as many steps or tolerances around those that were found, and the factor is
 taken where log(cost) over log(error) meets the power of ten. With --repeats a comparison is made R
 times, and intervals of the same pair that do not overlap are contradictions. Prints a line a
-factor; exits with 1 if fewer than 95 of 100 hold by work, which depends on no machine.
+factor; exits with 1 if fewer than 95 of 100 hold by work, which depends on no machine, or if
+comparisons contradict each other.
 """
 import argparse, csv, json, math, os, subprocess, sys, tempfile
 
@@ -154,14 +155,14 @@ def main():
     parser.add_argument("--scene", choices=list(SCENES), action="append")
     parser.add_argument("--repeats", type=int, default=0)
     asked = parser.parse_args()
-    total = [0, 0, 0]
+    total, contradictions = [0, 0, 0], 0
     with tempfile.TemporaryDirectory() as folder:
         for name in asked.scene or SCENES:
             total = [a + b for a, b in zip(total, judge(asked.program, name, folder))]
             if asked.repeats:
-                repeat(asked.program, name, folder, asked.repeats)
+                contradictions += repeat(asked.program, name, folder, asked.repeats)
     print(f"{total[1]} of {total[0]} factors by work, {total[2]} by time, are those of the dense grid")
-    sys.exit(total[1] < 0.95 * total[0])
+    sys.exit(total[1] < 0.95 * total[0] or contradictions > 0)
 
 
 if __name__ == "__main__":
