@@ -14,7 +14,7 @@
 
 struct options {
     struct cs_golden check;
-    const char *const *sets;
+    const struct cs_override *sets;
     uint32_t n_sets;
     const char *json, *junit;
     bool image, github, quiet;
@@ -169,8 +169,12 @@ static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
     struct cs_golden_run *run = &options->check.add;
     struct cs_text sets = {0};
-    for (uint32_t k = 0; k < options->n_sets; k++)
-        cs_text_add(&sets, "%s%s", k ? ";" : "", options->sets[k]);
+    bool has_semicolon = false;
+    for (uint32_t k = 0; k < options->n_sets; k++) {
+        const struct cs_override *set = options->sets + k;
+        cs_text_add(&sets, "%s%s=%s", k ? ";" : "", set->path, set->value);
+        has_semicolon |= strchr(set->value, ';') != NULL;
+    }
     if (!run->scene && (run->frames || run->integrator || options->n_sets || options->image))
         cs_fail(error, CS_ERR_USAGE, "these options are of a run to be added: --add SCENE");
     else if (run->scene && !run->frames)
@@ -179,8 +183,9 @@ static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
         cs_fail(error, CS_ERR_USAGE,
                 "--set: found %u of them, %zu bytes, expected at most %d, %d", options->n_sets,
                 sets.length, CS_GOLDEN_SETS_MAX, CS_GOLDEN_SETS_BYTES - 1);
-    else if (strpbrk(cs_text_get(&sets), "\t\n"))
-        cs_fail(error, CS_ERR_USAGE, "--set: found a tab or a new line, which no row can hold");
+    else if (has_semicolon || strpbrk(cs_text_get(&sets), "\t\n"))
+        cs_fail(error, CS_ERR_USAGE,
+                "--set: found a tab, a new line or a semicolon, which no row can hold");
     else if (run->scene) {
         run->integrator = run->integrator ? run->integrator : "-";
         run->overrides =

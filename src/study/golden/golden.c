@@ -228,7 +228,8 @@ static enum cs_status check_table(struct cs_golden *golden, const struct kind *k
     for (uint32_t k = 0; k < table.n && !golden->add.scene && !error->status; k++)
         if (is_wanted(golden, table.rows + k))
             check_row(golden, kind, &table, table.rows + k, error);
-    if (!error->status && golden->accepted > before)
+    // a run that cannot be added leaves no folder
+    if (!error->status && golden->accepted > before && !cs_folder_create(golden->folder, error))
         cs_golden_table_write(&table, error);
     cs_golden_table_close(&table);
     return error->status;
@@ -246,10 +247,10 @@ enum cs_status cs_golden_check(struct cs_golden *golden, struct cs_error *error)
         return cs_fail(error, CS_ERR_FILE,
                        "no golden files in \"%s\"; clothsim golden --add SCENE -n N makes them",
                        golden->folder);
-    snprintf(folder, sizeof folder, "%.900s%s", golden->folder, golden->images ? "/image" : "");
-    if (golden->add.scene && cs_folder_create(folder, error))
-        return error->status;
     if (golden->hashes && check_table(golden, &hashes, error))
+        return error->status;
+    snprintf(folder, sizeof folder, "%.900s/image", golden->folder);
+    if (golden->images && golden->add.scene && cs_folder_create(folder, error))
         return error->status;
     return golden->images ? check_table(golden, &images, error) : CS_OK;
 }
