@@ -5,6 +5,7 @@
  * second opinion on the software renderer (cpu/canvas.c), whose formulas and order are the
  * same. */
 #include "draw/collider_mesh.h"
+#include "draw/gl/context.h"
 #include "draw/gl/gl.h"
 #include "draw/mesh.h"
 #include "draw/overlay.h"

@@ -1,5 +1,5 @@
 /* An OpenGL context through EGL on Mesa's surfaceless platform: no display, no window. */
-#include "draw/gl/gl.h"
+#include "draw/gl/context.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

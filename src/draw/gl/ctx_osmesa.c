@@ -1,6 +1,6 @@
 /* An OpenGL context through OSMesa. Its own buffer is never drawn into: frames go to
  * framebuffer objects, as with EGL. */
-#include "draw/gl/gl.h"
+#include "draw/gl/context.h"
 
 #include <GL/osmesa.h>
 #include <stdlib.h>

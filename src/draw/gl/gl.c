@@ -1,6 +1,8 @@
 /* Loads the OpenGL 3.3 calls by name, and turns OpenGL errors into messages. */
 #include "draw/gl/gl.h"
 
+#include "draw/gl/context.h"
+
 struct cs_gl_calls gl;
 
 enum cs_status cs_gl_load(struct cs_error *error) {
