@@ -92,4 +92,18 @@ static inline double place_whole(double p[4][3], double f[4][3]) {
     return sqrt(cs_vec3_dot(sum, sum) + cs_vec3_dot(torque, torque));
 }
 
+/* least distance of p from the segment a b, squared */
+static inline double place_from_segment(const double p[3], const double a[3],
+                                        const double b[3]) {
+    double u[3], w[3], squared = 0;
+    for (int c = 0; c < 3; c++) {
+        u[c] = b[c] - a[c];
+        w[c] = p[c] - a[c];
+    }
+    const double t = fmin(fmax(cs_vec3_dot(w, u) / cs_vec3_dot(u, u), 0), 1);
+    for (int c = 0; c < 3; c++)
+        squared += (w[c] - t * u[c]) * (w[c] - t * u[c]);
+    return squared;
+}
+
 #endif

@@ -259,9 +259,7 @@ static void bend(struct field *field, enum shape shape, double by, uint64_t *sta
 static double nearest_on(const struct field *field, const uint32_t *corners, double to[3]) {
     double p[4][3], best = HUGE_VAL, share[2];
     struct cs_pair_distance plane;
-    for (int k = 0; k < 4; k++)
-        for (size_t c = 0; c < 3; c++)
-            p[k][c] = field->x[c * POINTS + (k ? corners[k - 1] : 0)];
+    place_of(field, (uint32_t[4]){0, corners[0], corners[1], corners[2]}, p);
     cs_pair_distance_frame(&plane, CS_PAIR_POINT_TRIANGLE, 0, p);
     const double *l = plane.unclamped;
     for (int k = 0; k < 4; k++) { // the plane, and the three rims
@@ -298,8 +296,7 @@ static double nearest(const struct field *field, double to[3]) {
     return best;
 }
 
-/* a triangle by the definition: its plane or nearest rim, its rims and its corners, each
- * measured alone */
+/* a triangle by definition: plane or nearest rim, rims and corners, each measured alone */
 static double plain_triangle(struct field *field, uint32_t t, double range, double force[3]) {
     const double within = CS_FEATURE_RANGE_RATIO * range, e = CS_FEATURE_BLEND_RADIUS * range;
     const uint32_t *c = field->triangles + 3 * t;
@@ -353,8 +350,7 @@ TEST(facets_are_joined_to_the_same_sum) {
         bend(&field, k / 3, 0.2 + 0.8 * (k % 3), &state);
         for (int probe = 0; probe < 200; probe++) {
             double force[3], plain[3] = {0}, to[3], energy = 0, off = 0;
-            // some right over corners
-            const double aside = probe % 4 ? 1 : 0.03;
+            const double aside = probe % 4 ? 1 : 0.03; // some right over corners
             put(&field, aside * draw(&state), aside * draw(&state), draw(&state));
             // the foot is at its place to 1e-12, which a short distance does not show
             if (!(nearest(&field, to) > 0.04))
@@ -365,8 +361,8 @@ TEST(facets_are_joined_to_the_same_sum) {
             for (int c = 0; c < 3; c++)
                 off = fmax(off, fabs(force[c] - plain[c]));
             tried++;
-            worst = fmax(worst, off / (1 + sqrt(cs_vec3_dot(plain, plain))));
-            worst = fmax(worst, fabs(joined - energy) / (1 + energy));
+            worst = fmax(worst, fmax(off / (1 + sqrt(cs_vec3_dot(plain, plain))),
+                                     fabs(joined - energy) / (1 + energy)));
         }
         cs_arena_finish(&field.arena);
     }
@@ -386,10 +382,9 @@ TEST(bent_meshes_never_draw) {
         for (int probe = 0; probe < 400; probe++) {
             double to[3] = {0}, force[3], out = 0;
             put(&field, draw(&state), draw(&state), draw(&state));
-            const double d = nearest(&field, to);
+            const double d = nearest(&field, to), energy = energy_at(&field, range, force);
             if (!(d > 0.1 * range && d < 0.9 * range))
                 continue;
-            const double energy = energy_at(&field, range, force);
             for (size_t c = 0; c < 3; c++)
                 out += force[c] * (field.x[c * POINTS] - to[c]) / d;
             ck_assert_msg(out > 0 && energy > 0.3 * cs_barrier_energy(d, range, 1),

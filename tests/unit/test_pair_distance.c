@@ -24,19 +24,6 @@ static double distance_at(enum cs_pair_kind kind, double range, double p[4][3],
     return d;
 }
 
-/* least distance of p from the segment a b, squared */
-static double from_segment(const double p[3], const double a[3], const double b[3]) {
-    double u[3], w[3], squared = 0;
-    for (int c = 0; c < 3; c++) {
-        u[c] = b[c] - a[c];
-        w[c] = p[c] - a[c];
-    }
-    const double t = fmin(fmax(cs_vec3_dot(w, u) / cs_vec3_dot(u, u), 0), 1);
-    for (int c = 0; c < 3; c++)
-        squared += (w[c] - t * u[c]) * (w[c] - t * u[c]);
-    return squared;
-}
-
 /* the true distance: the crossing of perpendiculars where it is inside, else the best rim */
 static double true_distance(enum cs_pair_kind kind, double p[4][3]) {
     double u[3], v[3], w[3], squared = 0;
@@ -49,13 +36,15 @@ static double true_distance(enum cs_pair_kind kind, double p[4][3]) {
     if (kind == CS_PAIR_EDGE_EDGE) {
         if (l >= 0 && l <= 1 && m >= 0 && m <= 1)
             return sqrt(squared);
-        return sqrt(fmin(fmin(from_segment(p[0], p[2], p[3]), from_segment(p[1], p[2], p[3])),
-                         fmin(from_segment(p[2], p[0], p[1]), from_segment(p[3], p[0], p[1]))));
+        return sqrt(fmin(
+            fmin(place_from_segment(p[0], p[2], p[3]), place_from_segment(p[1], p[2], p[3])),
+            fmin(place_from_segment(p[2], p[0], p[1]), place_from_segment(p[3], p[0], p[1]))));
     }
     if (l >= 0 && m >= 0 && l + m <= 1)
         return sqrt(squared);
-    return sqrt(fmin(from_segment(p[0], p[1], p[2]),
-                     fmin(from_segment(p[0], p[2], p[3]), from_segment(p[0], p[3], p[1]))));
+    return sqrt(
+        fmin(place_from_segment(p[0], p[1], p[2]),
+             fmin(place_from_segment(p[0], p[2], p[3]), place_from_segment(p[0], p[3], p[1]))));
 }
 
 /* That of edges is never below it. The square of that of triangles is at most 0.3451 e^2 below,

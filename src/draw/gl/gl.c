@@ -10,7 +10,7 @@ enum cs_status cs_gl_load(struct cs_error *error) {
     CS_GL_CALLS(X)
 #undef X
 
-    // a loader gives a stub for any name, so that only the version tells what is there
+    // a loader gives an address for any name, so that only the version tells what is there
     GLint major = 0, minor = 0;
     if (gl.GetIntegerv && gl.GetString) {
         gl.GetIntegerv(GL_MAJOR_VERSION, &major);

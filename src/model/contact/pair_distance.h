@@ -246,8 +246,8 @@ CS_INLINE void cs_pair_distance_set_slopes(const struct cs_pair_distance *s,
 
 /* Gradient by the differences u, v, w, component c. */
 CS_INLINE void cs_pair_distance_slope(const struct cs_pair_distance *s,
-                                               const struct cs_pair_distance_gradients *at,
-                                               int c, double by[3]) {
+                                      const struct cs_pair_distance_gradients *at, int c,
+                                      double by[3]) {
     const double *l = s->unclamped;
     const double r = s->w[c] - l[0] * s->u[c] - l[1] * s->v[c];
     by[0] = at->z[0] * r + at->stretch[0] * s->u[c] - l[0] * at->y[c] - s->clamped[0] * s->n[c];
@@ -261,7 +261,8 @@ CS_INLINE void cs_pair_distance_slope(const struct cs_pair_distance *s,
  *   g_v = -L2 n + z2 r0 - l2 y + (m2/s2) v
  *   g_w = n + y
  *
- * The sum of g over the points is 0, and so is that of p x g: no net force and no torque. */
+ * The sum of g over the points is 0, and so is that of p x g: forces along g have no resultant
+ * or moment. */
 CS_INLINE void cs_pair_distance_gradient(const struct cs_pair_distance *s, double g[4][3]) {
     struct cs_pair_distance_gradients at;
     cs_pair_distance_set_slopes(s, &at);

@@ -191,8 +191,7 @@ static double energy_of(const struct cs_system *system, struct pair_move *pair, 
                         const struct place *at) {
     double way[3] = {0}, inverse = 0;
     struct cs_pair_contact contact;
-    const double d =
-        cs_pair_contact_measure_whole(&contact, pair->kind, at->range, pair->p);
+    const double d = cs_pair_contact_measure_whole(&contact, pair->kind, at->range, pair->p);
     const double *weight = contact.weight;
     for (int k = 0; k < 4; k++) {
         inverse += weight[k] * weight[k] * cs_surface_points_inverse_mass(system, pair->at[k]);
