@@ -18,12 +18,8 @@
 #include <stdio.h>
 #include <string.h>
 
-enum {
-    NOTE_COLUMN = 55,
-    METHODS_MAX = 64,
-    PATIENCE_SECONDS = 60,
-    SECOND_PATIENCE_SECONDS = 10
-};
+enum { NOTE_COLUMN = 55, METHODS_MAX = 64 };
+enum { PATIENCE_SECONDS = 60, SECOND_PATIENCE_SECONDS = 10 };
 
 struct options {
     const char *json, *only;

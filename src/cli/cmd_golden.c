@@ -176,7 +176,8 @@ static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
         has_semicolon |= strchr(set->value, ';') != NULL;
     }
     if (!run->scene && (run->frames || run->integrator || options->n_sets || options->image))
-        cs_fail(error, CS_ERR_USAGE, "these options are of a run to be added: --add SCENE");
+        cs_fail(error, CS_ERR_USAGE,
+                "-n, -i, -s and --image are for --add SCENE, which is missing");
     else if (run->scene && !run->frames)
         cs_fail(error, CS_ERR_USAGE, "--add: the number of frames is missing, expected -n N");
     else if (options->n_sets > CS_GOLDEN_SETS_MAX || sets.length >= CS_GOLDEN_SETS_BYTES)

@@ -206,13 +206,16 @@ static void add_nearest_paths(const struct cs_table *table, const char *key,
 /* Adds the name or the paths that an unknown key most probably stands for. */
 static void suggest_key(const struct cs_table *table, const char *apart, const char *key,
                         struct cs_text *out) {
-    const char *other = translate_key(key, table);
+    const char *near = nearest_key(table, apart, key), *other = translate_key(key, table);
+    // "pin" is "pins" of this object rather than "pin" of another one
+    if (!other && near && !strncmp(near, key, strlen(key)))
+        other = near;
     if (!other || !cs_option_find(table, other)) {
         add_nearest_paths(table, key, out);
         if (other && !out->length)
             add_nearest_paths(table, other, out);
     }
-    other = other ? other : nearest_key(table, apart, key);
+    other = other ? other : near;
     // the keys of an integrator are in no table
     if (other && !out->length)
         cs_text_add(out, "%s", other);
