@@ -52,6 +52,12 @@ static bool flushes_to_zero(void) {
     return half == 0 || half + half != tiny;
 }
 
+/* -0 + 0 is +0, and its reciprocal +inf; -(1 - 1) is -0. */
+static bool loses_signs_of_zero(void) {
+    const double negative = (one - one) * -one, sum = negative + 0.0, negated = -(one - one);
+    return one / sum < 0 || one / negated > 0;
+}
+
 /* 1e309 must overflow; with the wider range of x87 registers it does not. */
 static bool is_wider(void) {
     const double product = large * 10, narrowed = product / 10;
@@ -73,6 +79,8 @@ const char *cs_ieee_check(void) {
         return "sums are reordered (-fassociative-math)";
     if (flushes_to_zero())
         return "numbers below 2^-1022 are flushed to 0 (linked with -ffast-math)";
+    if (loses_signs_of_zero())
+        return "signs of zero are lost (-fno-signed-zeros)";
     if (is_wider())
         return "doubles are computed with a wider range (x87: use -msse2 -mfpmath=sse)";
     if (takes_nan_for_a_number())

@@ -28,13 +28,33 @@ for level in -O0 -O2 -O3; do
     expect none "$@" $level -ffp-contract=off
     expect none "$@" $level -ffp-contract=off -fno-math-errno -fno-trapping-math
 done
-for flag in -ffast-math -Ofast -funsafe-math-optimizations -freciprocal-math; do
+for flag in -ffast-math -Ofast -funsafe-math-optimizations -freciprocal-math \
+    -fno-signed-zeros; do
     expect fault "$@" -O2 -ffp-contract=off $flag
 done
 if grep -qw fma /proc/cpuinfo 2>/dev/null; then
     expect fault "$@" -O2 -mfma -ffp-contract=fast
     expect none "$@" -O2 -mfma -ffp-contract=off
 fi
+# a builder's own flags come last in the build, and so in the check made when it is configured
+refuse() {
+    n=$((n + 1))
+    if CC=$compiler meson setup "$work/build" "$root" "-Dc_args=$1" >"$work/log" 2>&1; then
+        echo "not ok $n - meson setup takes c_args=$1"
+        failed=1
+    elif grep -q 'promises the same bits' "$work/log"; then
+        echo "ok $n - meson setup refuses c_args=$1"
+    else
+        echo "not ok $n - meson setup fails with c_args=$1, and not for its arithmetic"
+        failed=1
+    fi
+    rm -rf "$work/build"
+}
+compiler=$*
+refuse -Ofast
+refuse -fno-signed-zeros
+grep -qw fma /proc/cpuinfo 2>/dev/null && refuse '-mfma -ffp-contract=fast'
+
 echo "1..$n"
 [ $n -gt 3 ] || failed=1
 exit $failed
