@@ -1,7 +1,7 @@
 /* step_control.h - the choice of the next step from an error estimate, by a PI controller.
  *
- * With the error e of a step in units of the tolerance and a method whose estimate is of order
- * four (local error h^5), r = e^(1/5) is how many times the step was too long, and
+ * With the error e of a step in units of the tolerance, and a local error that grows as h^k,
+ * r = e^(1/k) is how many times the step was too long, and
  *   h' = 0.9 h (r_old / r^3)^(1/4)
  * (Gustafsson 1991, with 1/2 and 1/4 for the integral and the proportional part, so that the
  * powers are square roots: they have the same bits everywhere, pow has not).
@@ -19,16 +19,30 @@
 struct step_control {
     double h;               /* s, the next step to try */
     double last_error_root; /* r of the last accepted step of free length; 0: none */
+    int power;              /* k above */
     bool rejected;          /* the last try was rejected: the next step must not grow */
 };
 
-/* e^(1/5) for e in 1e-12..1e12; outside the nearer end is taken. */
-static inline double step_fifth_root(double e) {
+/* e^(1/power) for e in 1e-12..1e12 and a power of 2 to 12; outside the nearer end is taken. */
+static inline double step_root(double e, int power) {
     e = e < 1e-12 ? 1e-12 : e > 1e12 ? 1e12 : e;
-    // e^(3/16) is within a third of it: five Newton steps leave rounding only
-    double root = sqrt(sqrt(sqrt(sqrt(e * e * e))));
-    for (int k = 0; k < 5; k++)
-        root += (e / (root * root * root * root) - root) / 5;
+    // a product of e^(1/2), e^(1/4), ... e^(1/64): 1/power in binary, cut after six digits
+    double digit = e, rest = 1, root = 1;
+    for (int k = 0; k < 6; k++) {
+        digit = sqrt(digit);
+        rest *= 2;
+        if (rest >= power) {
+            root *= digit;
+            rest -= power;
+        }
+    }
+    // e^(1/64) is at most 1.54: six Newton steps leave rounding only
+    for (int k = 0; k < 6; k++) {
+        double slope = 1;
+        for (int j = 1; j < power; j++)
+            slope *= root;
+        root += (e / slope - root) / power;
+    }
     return root;
 }
 
@@ -37,7 +51,7 @@ static inline double step_fifth_root(double e) {
 static inline bool step_control_judge(struct step_control *control, double h, double e,
                                       bool cut) {
     // an infinite or NaN error gives no length: the step shrinks by STEP_SHRINK
-    const double root = e < HUGE_VAL ? step_fifth_root(e) : HUGE_VAL;
+    const double root = e < HUGE_VAL ? step_root(e, control->power) : HUGE_VAL;
     if (!(e <= 1)) {
         const double factor = STEP_SAFETY / root;
         control->h = h * (factor > STEP_SHRINK ? factor : STEP_SHRINK);

@@ -1,0 +1,215 @@
+/* adaptive_step.c - steps of a length that the error allows.
+ *
+ * One turn of the loop in adaptive_step_advance:
+ * 1. Evaluate the slope at the state, if the last step did not leave it; choose a first step
+ *    after a restart.
+ * 2. Take the smallest of: what the error allowed, dt_max, what the method can take, what
+ *    contact lets pass, the rest of the advance.
+ * 3. Try it. A step whose error is too large, or that contact refuses, is tried again shorter.
+ * 4. Accept the new state and commit it. */
+#include "adaptive_step.h"
+
+#include <float.h>
+#include <string.h>
+
+/* Growth per step of what contact lets pass, and how much a refused step is cut at most;
+ * chosen on contact_compare and self_compare. */
+#define CONTACT_GROWTH 1.1
+#define CONTACT_CUT    0.2
+
+enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host *host,
+                                const struct adaptive_options *options, int power) {
+    self->host = host;
+    self->asked = *options;
+    if (self->asked.atol <= 0)
+        self->asked.atol = self->asked.rtol;
+    self->control.power = power;
+    self->length = 6 * (size_t)host->view->n;
+    /* pinned particles have no error: the norm is a mean over the others */
+    for (size_t i = 0; i < host->view->n; i++)
+        self->free += host->view->inv_mass[i] > 0 ? 6 : 0;
+    self->free = self->free > 1 ? self->free : 1;
+    double **const arrays[] = {&self->slope, &self->next, &self->error, &self->weight};
+    for (int k = 0; k < 4; k++)
+        if (!(*arrays[k] = (double *)host->alloc(host->ctx, self->length * sizeof(double))))
+            return CS_STEP_FAIL;
+    return CS_STEP_OK;
+}
+
+void adaptive_step_evaluate(const struct adaptive_step *self, double t, const double *x,
+                            const double *v, double *a) {
+    const struct cs_host *host = self->host;
+    const size_t n = host->view->n;
+    host->force(host->ctx, t, x, v, CS_PART_ALL, a);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            a[c * n + i] *= host->view->inv_mass[i];
+}
+
+CS_CLONES static void weigh(size_t n, double atol, double rtol, const double *restrict y,
+                            const double *restrict z, double *restrict weight) {
+    for (size_t i = 0; i < n; i++) {
+        const double begin = fabs(y[i]), end = fabs(z[i]);
+        weight[i] = 1 / (atol + rtol * (begin > end ? begin : end));
+    }
+}
+
+void adaptive_step_weigh(struct adaptive_step *self, const double *y, const double *z) {
+    weigh(self->length, self->asked.atol, self->asked.rtol, y, z, self->weight);
+}
+
+double adaptive_step_norm(const struct adaptive_step *self, const double *values) {
+    const struct cs_vector_kernels *vector = self->host->vector;
+    return sqrt(vector->weighted_sum_of_squares(self->length, values, self->weight) /
+                self->free);
+}
+
+/* A first step whose explicit Euler step changes y by a hundredth, and whose term of the
+ * method's power would be near the tolerance (Hairer, Norsett, Wanner 1993, sec. II.4). */
+static double first_step(struct adaptive_step *self, double t, double span, const double *y) {
+    const size_t half = self->length / 2;
+    const double *v = y + half;
+    double *slope = self->error, *next = self->next; /* (v, a), and the state after h */
+    adaptive_step_weigh(self, y, y);
+    memcpy(slope, v, half * sizeof *slope);
+    memcpy(slope + half, self->slope, half * sizeof *slope);
+    const double size = adaptive_step_norm(self, y), speed = adaptive_step_norm(self, slope);
+    double h = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
+    h = h < span ? h : span;
+    self->host->vector->linear_sum(self->length, 1, y, h, slope, next);
+    adaptive_step_evaluate(self, t + h, next, next + half, slope + half);
+    for (size_t i = 0; i < half; i++) {
+        slope[i] = next[half + i] - v[i];
+        slope[half + i] -= self->slope[i];
+    }
+    const double bend = adaptive_step_norm(self, slope) / h;
+    const double largest = bend > speed ? bend : speed;
+    const double other =
+        largest > 1e-15 ? step_root(0.01 / largest, self->control.power) : 1000 * h;
+    return other < 100 * h ? other : 100 * h;
+}
+
+static void prepare(struct adaptive_step *self, double t, double span, const double *y) {
+    if (self->fresh)
+        adaptive_step_evaluate(self, t, y, y + self->length / 2, self->slope);
+    self->fresh = false;
+    if (!self->started)
+        self->control.h = first_step(self, t, span, y);
+    self->started = true;
+}
+
+/* The length of the next step: the rest of the advance in one step, at most 0.1 % longer than
+ * planned; in two equal ones if it is less than two planned steps; else the planned step. No
+ * step before a frame is then much shorter than planned. */
+static double cut(double planned, double left) {
+    if (left <= planned * 1.001)
+        return left;
+    return left < 2 * planned ? left / 2 : planned;
+}
+
+static double least(double a, double b) {
+    return a < b ? a : b;
+}
+
+/* The longest step in s from y at t that dt_max, contact and the method let pass. */
+static double longest_step(struct adaptive_step *self, double t, const double *y) {
+    const struct cs_host *host = self->host;
+    const double span = self->end - self->begin;
+    double most = least(self->contact, self->asked.dt_max > 0 ? self->asked.dt_max : span);
+    if (self->limit)
+        most = least(most, self->limit(self, t, y));
+    if (CS_HAS(host, longest_step) && host->longest_step)
+        most = least(most, host->longest_step(host->ctx, t, y, y + self->length / 2));
+    return most;
+}
+
+/* True if the step passes over contact by force, or through a surface: an error estimate
+ * cannot see contact that no stage lies in. Shortens what contact lets pass. */
+static bool is_refused(struct adaptive_step *self, double t, double h, const double *x) {
+    const struct cs_host *host = self->host;
+    if (!CS_HAS(host, max_step_fraction) || !host->max_step_fraction)
+        return false;
+    const double fraction = host->max_step_fraction(host->ctx, t, x, t + h, self->next);
+    if (fraction >= 1)
+        return false;
+    self->contact = h * (fraction > CONTACT_CUT ? 0.95 * fraction : CONTACT_CUT);
+    return true;
+}
+
+/* Tries steps from y at t until one holds. *h: its length in s. */
+static enum cs_step try_steps(struct adaptive_step *self, double t, const double *y,
+                              double *h) {
+    const struct cs_host *host = self->host;
+    struct step_control *control = &self->control;
+    for (;; self->rejected++) {
+        if (self->tries++ >= self->asked.max_steps)
+            return host->fail(host->ctx, "more than %lld steps from t = %.9g s to %.9g s",
+                              (long long)self->asked.max_steps, self->begin, t);
+        *h = cut(least(control->h, longest_step(self, t, y)), self->end - t);
+        /* a shorter step is lost in the rounding of t; NaN is refused too */
+        if (!(*h > 4 * DBL_EPSILON * self->end))
+            return host->fail(host->ctx, "the step fell to %.3g s at t = %.9g s", *h, t);
+        double error = HUGE_VAL;
+        const enum cs_step status = self->attempt(self, t, *h, y, &error);
+        if (status != CS_STEP_OK)
+            return status;
+        if (error <= 1 && is_refused(self, t, *h, y))
+            continue;
+        if (step_control_judge(control, *h, error, *h < control->h))
+            return CS_STEP_OK;
+    }
+}
+
+enum cs_step adaptive_step_advance(void *object, double t0, double t1, double *x, double *v) {
+    struct adaptive_step *self = object;
+    const struct cs_host *host = self->host;
+    enum cs_step status = CS_STEP_OK;
+    self->begin = t0;
+    self->end = t1;
+    self->tries = 0;
+    for (double t = t0, h = 0; t < t1 && status == CS_STEP_OK;) {
+        prepare(self, t, t1 - t, x);
+        status = try_steps(self, t, x, &h);
+        if (status != CS_STEP_OK)
+            return status;
+        memcpy(x, self->next, self->length * sizeof *x);
+        self->contact *= CONTACT_GROWTH;
+        self->fresh = !self->accept(self);
+        /* ends at t1 itself, not at a sum that rounds beside it */
+        t = h < t1 - t ? t + h : t1;
+        bool changed = false;
+        status = host->commit(host->ctx, t, h, x, v, &changed);
+        self->fresh = self->fresh || changed;
+    }
+    return status;
+}
+
+enum cs_step adaptive_step_restart(void *object, double t, const double *x, const double *v) {
+    (void)t, (void)x, (void)v;
+    struct adaptive_step *self = object;
+    self->control = (struct step_control){.power = self->control.power};
+    self->contact = HUGE_VAL;
+    self->fresh = true;
+    self->started = false;
+    return CS_STEP_OK;
+}
+
+void adaptive_step_stats(const void *object, struct cs_stats *out) {
+    out->rejected = ((const struct adaptive_step *)object)->rejected;
+}
+
+enum cs_step adaptive_step_archive(void *object, const struct cs_archive *archive) {
+    struct adaptive_step *self = object;
+    struct step_control *control = &self->control;
+    uint64_t marks[] = {self->fresh, self->started, control->rejected};
+    archive->integers(archive->ctx, marks, 3);
+    self->fresh = marks[0] != 0;
+    self->started = marks[1] != 0;
+    control->rejected = marks[2] != 0;
+    archive->integers(archive->ctx, &self->rejected, 1);
+    archive->reals(archive->ctx, &control->h, 1);
+    archive->reals(archive->ctx, &control->last_error_root, 1);
+    archive->reals(archive->ctx, &self->contact, 1);
+    archive->reals(archive->ctx, self->slope, self->length / 2);
+    return CS_STEP_OK;
+}

@@ -1,0 +1,180 @@
+/* nystrom.c - stages and errors of explicit pairs in Nystrom form. */
+#include "nystrom.h"
+
+#include <string.h>
+
+enum { BLOCK = 512 };
+
+/* The stages that a sum takes, with their weights in velocity and position. */
+struct sum {
+    int terms, stage[NYSTROM_STAGES];
+    double velocity[NYSTROM_STAGES], position[NYSTROM_STAGES];
+};
+
+struct nystrom {
+    struct adaptive_step base;
+    const struct nystrom_pair *pair;
+    struct sum stage[NYSTROM_STAGES], difference, lower_order;
+    double *f[NYSTROM_STAGES]; /* (3,n) in m/s2 each; the first is base.slope */
+};
+
+/* Sums that are 0 by the order conditions come out as rounding: below this they count as 0. */
+#define ROUNDING 1e-14
+
+/* The sum with weights b (stages) in velocity, and in position sum_i b_i a_ij or, where exact,
+ * b_j (1 - c_j). */
+static struct sum sum_of(const struct nystrom_pair *pair, const double *b, bool exact) {
+    struct sum sum = {0};
+    for (int j = 0; j < pair->stages; j++) {
+        double position = exact ? b[j] * (1 - pair->nodes[j]) : 0;
+        for (int i = j + 1; i < pair->stages && !exact; i++)
+            position += b[i] * pair->table[i][j];
+        if (fabs(b[j]) < ROUNDING && fabs(position) < ROUNDING)
+            continue;
+        sum.stage[sum.terms] = j;
+        sum.velocity[sum.terms] = b[j];
+        sum.position[sum.terms++] = position;
+    }
+    return sum;
+}
+
+/* One evaluation of a sum over all numbers: z = y + drift (v, 0) + h^2 and h times the sums of
+ * f; without y, the sums alone. */
+struct combination {
+    int terms;
+    size_t half; /* 3n */
+    const double *f[NYSTROM_STAGES];
+    double velocity[NYSTROM_STAGES], position[NYSTROM_STAGES], drift;
+    const double *y;
+    double *z;
+};
+
+/* Adds terms j to j + 3 to `count` numbers at `at`: four at once, which loads and stores the
+ * sums a quarter as often. */
+CS_CLONES static void add_four(const struct combination *of, int j, size_t at, size_t count) {
+    const double *p = of->position + j, *q = of->velocity + j;
+    const double *restrict a = of->f[j] + at, *restrict b = of->f[j + 1] + at;
+    const double *restrict c = of->f[j + 2] + at, *restrict d = of->f[j + 3] + at;
+    const double p0 = p[0], p1 = p[1], p2 = p[2], p3 = p[3];
+    const double q0 = q[0], q1 = q[1], q2 = q[2], q3 = q[3];
+    double *restrict x = of->z + at, *restrict v = of->z + of->half + at;
+    for (size_t i = 0; i < count; i++) {
+        x[i] = x[i] + p0 * a[i] + p1 * b[i] + p2 * c[i] + p3 * d[i];
+        v[i] = v[i] + q0 * a[i] + q1 * b[i] + q2 * c[i] + q3 * d[i];
+    }
+}
+
+/* Adds term j. */
+CS_CLONES static void add_one(const struct combination *of, int j, size_t at, size_t count) {
+    const double p = of->position[j], q = of->velocity[j], *restrict f = of->f[j] + at;
+    double *restrict x = of->z + at, *restrict v = of->z + of->half + at;
+    for (size_t i = 0; i < count; i++) {
+        x[i] += p * f[i];
+        v[i] += q * f[i];
+    }
+}
+
+/* Adds the state at the begin of the step and its free motion. */
+CS_CLONES static void add_state(const struct combination *of, size_t at, size_t count) {
+    const double drift = of->drift;
+    const double *restrict x0 = of->y + at, *restrict v0 = of->y + of->half + at;
+    double *restrict x = of->z + at, *restrict v = of->z + of->half + at;
+    for (size_t i = 0; i < count; i++) {
+        x[i] = x0[i] + drift * v0[i] + x[i];
+        v[i] += v0[i];
+    }
+}
+
+/* The numbers [begin, end) of positions and velocities, in blocks that stay in the cache. */
+static void combine_part(void *arg, size_t begin, size_t end) {
+    const struct combination *of = arg;
+    for (size_t at = begin; at < end; at += BLOCK) {
+        const size_t count = end - at < BLOCK ? end - at : BLOCK;
+        memset(of->z + at, 0, count * sizeof *of->z);
+        memset(of->z + of->half + at, 0, count * sizeof *of->z);
+        int j = 0;
+        for (; j + 4 <= of->terms; j += 4)
+            add_four(of, j, at, count);
+        for (; j < of->terms; j++)
+            add_one(of, j, at, count);
+        if (of->y)
+            add_state(of, at, count);
+    }
+}
+
+/* z (6n) = the state of a stage at node * h, or with y NULL a difference of states. */
+static void combine(const struct nystrom *self, const struct sum *sum, double h, double node,
+                    const double *y, double *z) {
+    const struct cs_vector_kernels *vector = self->base.host->vector;
+    struct combination of = {
+        .terms = sum->terms, .half = self->base.length / 2, .drift = node * h, .y = y, .z = z};
+    for (int j = 0; j < sum->terms; j++) {
+        of.f[j] = self->f[sum->stage[j]];
+        of.position[j] = h * h * sum->position[j];
+        of.velocity[j] = h * sum->velocity[j];
+    }
+    if (CS_HAS(vector, parallel_for))
+        vector->parallel_for(of.half, combine_part, &of);
+    else
+        combine_part(&of, 0, of.half);
+}
+
+/* The error of a step of h in units of the tolerance. With an error of lower order E3 beside
+ * E5 it is E5 E5 / sqrt(E5^2 + E3^2 / 100), of higher order than both
+ * (Hairer, Norsett, Wanner 1993, sec. II.10, eq. 10.17). */
+static double error_of(struct nystrom *self, double h, const double *y) {
+    struct adaptive_step *base = &self->base;
+    adaptive_step_weigh(base, y, base->next);
+    combine(self, &self->difference, h, 0, NULL, base->error);
+    const double error = adaptive_step_norm(base, base->error);
+    if (!self->pair->lower_order || !(error > 0))
+        return error;
+    combine(self, &self->lower_order, h, 0, NULL, base->error);
+    const double lower = adaptive_step_norm(base, base->error);
+    return error * (error / sqrt(error * error + 0.01 * lower * lower));
+}
+
+static enum cs_step attempt(struct adaptive_step *base, double t, double h, const double *y,
+                            double *error) {
+    struct nystrom *self = (struct nystrom *)base;
+    for (int i = 1; i < self->pair->stages; i++) {
+        combine(self, self->stage + i, h, self->pair->nodes[i], y, base->next);
+        adaptive_step_evaluate(base, t + self->pair->nodes[i] * h, base->next,
+                               base->next + base->length / 2, self->f[i]);
+    }
+    *error = error_of(self, h, y);
+    return CS_STEP_OK;
+}
+
+/* The last stage is the first of the next step. */
+static bool accept(struct adaptive_step *base) {
+    struct nystrom *self = (struct nystrom *)base;
+    double **last = self->f + self->pair->stages - 1;
+    base->slope = *last;
+    *last = self->f[0];
+    self->f[0] = base->slope;
+    return true;
+}
+
+enum cs_step nystrom_create(const struct cs_host *host, const void *options,
+                            const struct nystrom_pair *pair, void **out) {
+    struct nystrom *self = host->alloc(host->ctx, sizeof *self);
+    if (!self)
+        return CS_STEP_FAIL;
+    *out = self;
+    self->pair = pair;
+    self->base.attempt = attempt;
+    self->base.accept = accept;
+    if (adaptive_step_init(&self->base, host, options, pair->power) != CS_STEP_OK)
+        return CS_STEP_FAIL;
+    self->f[0] = self->base.slope;
+    for (int i = 1; i < pair->stages; i++) {
+        self->stage[i] = sum_of(pair, pair->table[i], i == pair->stages - 1);
+        if (!(self->f[i] = host->alloc(host->ctx, self->base.length / 2 * sizeof(double))))
+            return CS_STEP_FAIL;
+    }
+    self->difference = sum_of(pair, pair->difference, false);
+    if (pair->lower_order)
+        self->lower_order = sum_of(pair, pair->lower_order, false);
+    return CS_STEP_OK;
+}

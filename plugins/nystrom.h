@@ -1,0 +1,30 @@
+/* nystrom.h - explicit Runge-Kutta pairs in Nystrom form, with error control.
+ *
+ * On dx/dt = v, dv/dt = F a Runge-Kutta method with the table a_ij and nodes c_i is
+ *   V_i = v + h sum_j a_ij F_j,  X_i = x + c_i h v + h^2 sum_j (a a)_ij F_j,
+ *   F_i = F(t + c_i h, X_i, V_i)
+ * since c_i is the sum of the a_ij (Hairer, Norsett, Wanner 1993, sec. II.14). It stores F_i
+ * of 3n numbers in place of slopes of 6n, and reads each once for both halves of the state. */
+#ifndef NYSTROM_H
+#define NYSTROM_H
+
+#include "adaptive_step.h"
+
+enum { NYSTROM_STAGES = 13 };
+
+/* A pair of stages `stages`, the last of which stands at the new state: its row is b. Needs
+ * sum_i b_i a_ij = b_j (1 - c_j). */
+struct nystrom_pair {
+    int stages, power;                     /* power: that of the local error in h */
+    const double *nodes;                   /* (stages) */
+    const double (*table)[NYSTROM_STAGES]; /* (stages, NYSTROM_STAGES) a_ij */
+    const double *difference;              /* (stages): weights of the error estimate */
+    const double *lower_order;             /* (stages) b_j minus those of a method of order 3,
+                                            * see dop853.c; NULL: none */
+};
+
+/* create of a method's descriptor, with struct adaptive_options as its options. */
+enum cs_step nystrom_create(const struct cs_host *host, const void *options,
+                            const struct nystrom_pair *pair, void **out);
+
+#endif
