@@ -2,6 +2,7 @@
 #include "base/table.h"
 
 #include "base/file.h"
+#include "base/hash.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -11,7 +12,8 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-enum { FILE_BYTES_MAX = 1 << 30 };
+enum { FILE_BYTES_MAX = 1 << 30, CHECK_DIGITS = 16 };
+static const char CHECK[] = ",check";
 
 /* A comma, unless the line is empty. */
 static void add_comma(struct cs_text *out) {
@@ -38,14 +40,39 @@ void cs_csv_add_number(struct cs_text *out, double value) {
         cs_text_add_real(out, value);
 }
 
-void cs_columns_print_names(const struct cs_column *columns, uint32_t n, struct cs_text *out) {
-    for (uint32_t c = 0; c < n; c++)
-        cs_csv_add_text(out, columns[c].name);
-    cs_text_add(out, "\n");
+/* Hash of two texts, one after the other. */
+static void find_check(const char *names, size_t names_length, const char *row, size_t length,
+                       char digits[CS_HASH_DIGITS]) {
+    char both[2 * CS_HASH_DIGITS];
+    cs_hash_bytes(names, names_length, both);
+    cs_hash_bytes(row, length, both + CS_HASH_DIGITS);
+    cs_hash_bytes(both, sizeof both, digits);
 }
 
-void cs_columns_print_row(const struct cs_column *columns, uint32_t n, const void *row,
-                          struct cs_text *out) {
+void cs_csv_end_names(struct cs_text *out) {
+    cs_text_add(out, "%s\n", CHECK);
+}
+
+void cs_csv_end_row(struct cs_text *out, size_t from, const char *names) {
+    char digits[CS_HASH_DIGITS];
+    if (out->failed)
+        return;
+    find_check(names, strlen(names), out->bytes + from, out->length - from, digits);
+    cs_text_add(out, ",%.*s\n", CHECK_DIGITS, digits);
+}
+
+static void add_names(const struct cs_column *columns, uint32_t n, struct cs_text *out) {
+    for (uint32_t c = 0; c < n; c++)
+        cs_csv_add_text(out, columns[c].name);
+}
+
+void cs_columns_print_names(const struct cs_column *columns, uint32_t n, struct cs_text *out) {
+    add_names(columns, n, out);
+    cs_csv_end_names(out);
+}
+
+static void add_fields(const struct cs_column *columns, uint32_t n, const void *row,
+                       struct cs_text *out) {
     for (uint32_t c = 0; c < n; c++) {
         const char *member = (const char *)row + columns[c].offset;
         double value;
@@ -57,7 +84,17 @@ void cs_columns_print_row(const struct cs_column *columns, uint32_t n, const voi
         else
             cs_csv_add_text(out, member);
     }
-    cs_text_add(out, "\n");
+}
+
+void cs_columns_print_row(const struct cs_column *columns, uint32_t n, const void *row,
+                          struct cs_text *out) {
+    struct cs_text names = {0};
+    const size_t from = out->length;
+    add_names(columns, n, &names);
+    add_fields(columns, n, row, out);
+    out->failed |= names.failed;
+    cs_csv_end_row(out, from, cs_text_get(&names));
+    cs_text_finish(&names);
 }
 
 void cs_column_parse(const struct cs_column *column, void *row, const char *field) {
@@ -155,6 +192,45 @@ enum cs_status cs_row_table_append(const struct cs_row_table *table, const void 
     return error->status;
 }
 
+/* Length of a line without its check; its whole length if it has none. */
+static size_t find_check_start(const char *line, size_t length) {
+    const char *comma = memrchr(line, ',', length);
+    return comma ? (size_t)(comma - line) : length;
+}
+
+/* True if a line ends with the check of its fields. */
+static bool is_as_written(const char *names, size_t names_length, const char *line,
+                          size_t length) {
+    char digits[CS_HASH_DIGITS];
+    const size_t fields = find_check_start(line, length);
+    find_check(names, names_length, line, fields, digits);
+    return length == fields + 1 + CHECK_DIGITS &&
+           !memcmp(line + fields + 1, digits, CHECK_DIGITS);
+}
+
+/* Checks all whole lines of a table whose first line ends with "check". */
+static enum cs_status check_lines(struct cs_rows *rows, const char *path,
+                                  struct cs_error *error) {
+    const char *names = rows->bytes, *end = names + rows->length, *line = names, *stop;
+    size_t names_length = 0;
+    for (uint32_t k = 1; (stop = memchr(line, '\n', (size_t)(end - line)));
+         line = stop + 1, k++) {
+        const size_t length = (size_t)(stop - line);
+        if (k == 1) {
+            names_length = length - (sizeof CHECK - 1);
+            rows->checked = length >= sizeof CHECK &&
+                            !memcmp(names + names_length, CHECK, sizeof CHECK - 1);
+            if (!rows->checked)
+                return CS_OK;
+        } else if (!is_as_written(names, names_length, line, length))
+            return cs_fail(error, CS_ERR_FILE,
+                           "%s: line %u, or the first, is not as it was written; a row that is "
+                           "removed is computed again",
+                           path, k);
+    }
+    return CS_OK;
+}
+
 enum cs_status cs_rows_open(struct cs_rows *rows, const char *path, size_t row_bytes,
                             struct cs_error *error) {
     *rows = (struct cs_rows){.row_bytes = row_bytes};
@@ -162,7 +238,9 @@ enum cs_status cs_rows_open(struct cs_rows *rows, const char *path, size_t row_b
         return error->status;
     for (size_t k = 0; k < rows->length; k++)
         rows->n += rows->bytes[k] == '\n';
-    return CS_OK;
+    if (!row_bytes && check_lines(rows, path, error))
+        cs_rows_close(rows);
+    return error->status;
 }
 
 char *cs_rows_next(struct cs_rows *rows) {
@@ -173,8 +251,8 @@ char *cs_rows_next(struct cs_rows *rows) {
         char *end = left ? memchr(row, '\n', left) : NULL;
         if (!end)
             return NULL;
-        *end = 0;
         length = (size_t)(end - row) + 1;
+        row[rows->checked ? find_check_start(row, length - 1) : length - 1] = 0;
     }
     if (length > left)
         return NULL;

@@ -4,7 +4,8 @@
  *   open -> lock, read the rows, write them in order -> append rows as they are computed
  *
  * A row is a line of fields (RFC 4180), with column names in the first line, or a record of a
- * fixed size. */
+ * fixed size. The last field of a line is its check: a hash of the first line and of the fields
+ * before it, so that a changed byte is found, and rows can still be appended one by one. */
 #ifndef CS_ROW_TABLE_H
 #define CS_ROW_TABLE_H
 
@@ -20,6 +21,11 @@
 void cs_csv_add_text(struct cs_text *out, const char *text);
 void cs_csv_add_number(struct cs_text *out, double value);
 
+/* End a line: the names of the columns, or the row that begins at `from`, under names as
+ * returned by cs_rows_next, with its check. */
+void cs_csv_end_names(struct cs_text *out);
+void cs_csv_end_row(struct cs_text *out, size_t from, const char *names);
+
 /* C type of a column's member: char[size], double, bool. */
 enum cs_cell_type { CS_CELL_TEXT, CS_CELL_NUMBER, CS_CELL_FLAG };
 
@@ -31,7 +37,7 @@ struct cs_column {
     size_t offset, size;
 };
 
-/* Append a line: the names of n columns, or the fields of a row. */
+/* Append a line: the names of n columns, or the fields of a row; each with its end. */
 void cs_columns_print_names(const struct cs_column *columns, uint32_t n, struct cs_text *out);
 void cs_columns_print_row(const struct cs_column *columns, uint32_t n, const void *row,
                           struct cs_text *out);
@@ -71,14 +77,17 @@ enum cs_status cs_row_table_append(const struct cs_row_table *table, const void 
 struct cs_rows {
     char *bytes; /* (length + 1) owned; rows point into it */
     size_t length, at, row_bytes;
-    uint32_t n; /* lines, with the names of the columns */
+    uint32_t n;   /* lines, with the names of the columns */
+    bool checked; /* lines end with their checks */
 };
 
-/* Reads a file; *rows is zeroed on failure. CS_ERR_FILE, CS_ERR_MEMORY. */
+/* Reads a file; *rows is zeroed on failure. A line that does not match its check is
+ * CS_ERR_FILE. Tables of earlier versions, and those that others write, have no checks, and are
+ * taken as they are. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_rows_open(struct cs_rows *rows, const char *path, size_t row_bytes,
                             struct cs_error *error);
-/* Returns the next line, without its end, or the next record; NULL after the last. A partial
- * last row is skipped. */
+/* Returns the next line, without its check and its end, or the next record; NULL after the
+ * last. A partial last row is skipped. */
 char *cs_rows_next(struct cs_rows *rows);
 void cs_rows_close(struct cs_rows *rows);
 

@@ -6,6 +6,7 @@
  * before the verdict is printed, so a closed output loses no result. */
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "cli/manifest.h"
 #include "cli/run_output.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
@@ -247,6 +248,8 @@ static enum cs_status compare_here(void *ctx, struct cs_error *error) {
         if (!cs_compare_write_report(&screen.compare, error) &&
             !print_verdict(&screen, error) && options->pictures)
             cs_compare_contact_sheet_write(&screen.compare, options->renderer, error);
+        if (!error->status)
+            cs_manifest_write_study(settings->folder, error);
         if (!error->status && options->strict)
             check_cells(&screen.compare, error);
     }

@@ -5,6 +5,7 @@
  * A merged map is completed by repeating its command on the merged folder. */
 #include "base/file.h"
 #include "cli/commands.h"
+#include "cli/manifest.h"
 #include "study/compare/compare_results.h"
 #include "study/parameter_sweep.h"
 #include "study/stability/stability_state.h"
@@ -47,6 +48,24 @@ static enum cs_status copy_origin(const char *folder, const char *out, struct cs
     return error->status;
 }
 
+/* Refuses folders of which some hold a comparison and others a sweep. */
+static enum cs_status check_kinds(const char *const *folders, uint32_t n,
+                                  struct cs_error *error) {
+    static const char *const names[] = {"compare.csv", "sweep.csv"};
+    const char *with[2] = {NULL, NULL};
+    char path[4096];
+    for (uint32_t k = 0; k < n; k++)
+        for (int kind = 0; kind < 2; kind++) {
+            snprintf(path, sizeof path, "%s/%s", folders[k], names[kind]);
+            with[kind] = access(path, F_OK) ? with[kind] : folders[k];
+        }
+    return with[0] && with[1]
+               ? cs_fail(error, CS_ERR_USAGE,
+                         "%s holds a comparison and %s a sweep: merge them apart", with[0],
+                         with[1])
+               : CS_OK;
+}
+
 /* Removes what an earlier merge wrote: tables, provenance and parts of maps. */
 static enum cs_status remove_earlier(const char *out, struct cs_error *error) {
     static const char *const names[] = {"compare.csv", "sweep.csv", "origin.json", "*.partial"};
@@ -73,6 +92,8 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
             return cs_fail(error, CS_ERR_USAGE,
                            "%s is both a part and the result: give another folder with --out",
                            out);
+    if (check_kinds(folders, n, error))
+        return error->status;
     if (options->overwrite && remove_earlier(out, error))
         return error->status;
     if (cs_compare_results_merge(folders, n, out, &cells, error) ||
@@ -87,6 +108,8 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
         return cs_fail(
             error, CS_ERR_FILE,
             "no folder contains a compare.csv, a sweep.csv or the .partial of a map");
+    if (cs_manifest_write_study(out, error))
+        return error->status;
     if (!options->quiet)
         printf("%u cells and %u parts of maps from %u folders in %s\n", cells, maps, n, out);
     return CS_OK;

@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "cli/manifest.h"
 #include "cli/run_output.h"
 #include "io/subprocess.h"
 #include "study/soft/soft.h"
@@ -51,7 +52,9 @@ static enum cs_status write_files(const char *folder, const struct cs_soft *soft
         write_one(folder, "soft.txt", cs_soft_print, soft, error) ||
         write_one(folder, "soft.gp", cs_soft_print_plot, soft, error))
         return error->status;
-    return cs_gnuplot_run(folder, "soft.gp", &drawn, error);
+    if (cs_gnuplot_run(folder, "soft.gp", &drawn, error))
+        return error->status;
+    return cs_manifest_write_study(folder, error);
 }
 
 /* Checks everything that can be refused before a measurement of minutes; the folder last. */

@@ -3,6 +3,7 @@
  *   -s PATH=V1,V2,... and -i METHOD -> axes -> cs_parameter_sweep_run: a row per cell */
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "cli/manifest.h"
 #include "study/parameter_sweep.h"
 
 #include <stdio.h>
@@ -97,7 +98,8 @@ static enum cs_status sweep(struct cs_args *args, struct cs_error *error) {
     if (read_keys(args, options, product, error))
         return error->status;
     cs_progress_begin(&progress, "cell", options->quiet);
-    cs_parameter_sweep_run(product, error);
+    if (!cs_parameter_sweep_run(product, error))
+        cs_manifest_write_study(product->folder, error);
     cs_progress_end(&progress);
     if (error->status || options->quiet)
         return error->status;

@@ -1,4 +1,4 @@
-/* clothsim verify: checks that the files of a run are unchanged. */
+/* clothsim verify: checks that the files of a run or a study are unchanged. */
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
@@ -42,7 +42,7 @@ static enum cs_status verify(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_verify = {
     .name = "verify",
     .operands = "DIR...",
-    .summary = "check that the files of a run are unchanged",
+    .summary = "check that the files of a run or a study are unchanged",
     .notes = "Example: clothsim verify out\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,

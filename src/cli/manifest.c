@@ -28,9 +28,19 @@ struct list {
     size_t n, capacity;
 };
 
-static bool is_listed(const char *name) {
+static bool is_of_run(const char *name) {
     return strcmp(name, CS_MANIFEST_NAME) != 0 &&
            (cs_output_is_result(name) || cs_output_is_state(name));
+}
+
+static bool is_of_study(const char *name) {
+    static const char *const endings[] = {".csv",   ".json", ".md",  ".txt", ".html",
+                                          ".state", ".gp",   ".png", ".pdf", ".svg"};
+    const char *ending = strrchr(name, '.');
+    bool found = false;
+    for (size_t k = 0; ending && k < sizeof endings / sizeof *endings; k++)
+        found |= !strcmp(ending, endings[k]);
+    return found && *name != '.' && strcmp(name, CS_MANIFEST_NAME) != 0;
 }
 
 static enum cs_status add(struct list *list, const struct entry *entry,
@@ -51,8 +61,9 @@ static int by_name(const void *a, const void *b) {
     return strcmp(((const struct entry *)a)->name, ((const struct entry *)b)->name);
 }
 
-/* Lists the files of the folder that a run writes. */
-static enum cs_status list_names(const char *folder, struct list *list,
+/* Lists the files of the folder that is_listed accepts, and those that are in another list. */
+static enum cs_status list_names(const char *folder, bool (*is_listed)(const char *name),
+                                 const struct list *other, struct list *list,
                                  struct cs_error *error) {
     DIR *entries = opendir(folder);
     if (!entries)
@@ -60,10 +71,11 @@ static enum cs_status list_names(const char *folder, struct list *list,
                        folder, strerror(errno));
     for (struct dirent *found; (found = readdir(entries)) && !error->status;) {
         struct entry entry = {.size = 0};
-        if (is_listed(found->d_name)) {
-            snprintf(entry.name, sizeof entry.name, "%s", found->d_name);
+        snprintf(entry.name, sizeof entry.name, "%s", found->d_name);
+        if (is_listed(entry.name) ||
+            (other && other->n &&
+             bsearch(&entry, other->entries, other->n, sizeof entry, by_name)))
             add(list, &entry, error);
-        }
     }
     closedir(entries);
     if (list->n)
@@ -89,11 +101,12 @@ static enum cs_status write_text(const char *folder, struct cs_text *text,
                         : cs_file_write_durable(path, text->bytes, text->length, error);
 }
 
-enum cs_status cs_manifest_write(const char *folder, struct cs_error *error) {
+static enum cs_status write_manifest(const char *folder, bool (*is_listed)(const char *name),
+                                     struct cs_error *error) {
     struct list list = {0};
     struct cs_text text = {0};
     cs_text_add(&text, "%s", head);
-    list_names(folder, &list, error);
+    list_names(folder, is_listed, NULL, &list, error);
     for (size_t k = 0; k < list.n && !error->status; k++) {
         struct entry *entry = list.entries + k;
         if (!hash(folder, entry->name, entry, error))
@@ -104,6 +117,14 @@ enum cs_status cs_manifest_write(const char *folder, struct cs_error *error) {
     cs_text_finish(&text);
     free(list.entries);
     return error->status;
+}
+
+enum cs_status cs_manifest_write(const char *folder, struct cs_error *error) {
+    return write_manifest(folder, is_of_run, error);
+}
+
+enum cs_status cs_manifest_write_study(const char *folder, struct cs_error *error) {
+    return write_manifest(folder, is_of_study, error);
 }
 
 /* True if the last line is the hash of all above; cuts that line off. */
@@ -120,13 +141,13 @@ static bool is_whole(char *text) {
     return same;
 }
 
-/* Reads a line. Names come from the program: they have no blanks and no slash, so a manifest
- * cannot lead out of its folder. */
+/* Reads a line. Names are those that the program gives, without a slash, so a manifest cannot
+ * lead out of its folder. */
 static bool read_line(const char *line, struct entry *entry) {
     *entry = (struct entry){.size = 0};
     return sscanf(line, "%32[0-9a-f] %" SCNu64 " %255[^\n]", entry->hash, &entry->size,
                   entry->name) == 3 &&
-           is_listed(entry->name);
+           (is_of_run(entry->name) || is_of_study(entry->name)) && !strchr(entry->name, '/');
 }
 
 static enum cs_status read_list(const char *folder, struct list *list, struct cs_error *error) {
@@ -189,7 +210,8 @@ enum cs_status cs_manifest_check(const char *folder, struct cs_text *out, uint32
                                  uint32_t *differing, struct cs_error *error) {
     struct list written = {0}, there = {0};
     *n = *differing = 0;
-    if (!read_list(folder, &written, error) && !list_names(folder, &there, error)) {
+    if (!read_list(folder, &written, error) &&
+        !list_names(folder, is_of_run, &written, &there, error)) {
         check_lists(folder, &written, &there, out, differing);
         *n = (uint32_t)written.n;
     }

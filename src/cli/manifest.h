@@ -1,4 +1,5 @@
-/* manifest.h - manifest.txt: the files that a run left in a folder, with sizes and hashes.
+/* manifest.h - manifest.txt: the files that a run or a study left in a folder, with sizes and
+ * hashes.
  *
  * The first line is "# clothsim manifest 1". A line "HASH SIZE NAME" follows for each file,
  * sorted by name. The last line has the hash of everything above, which detects a damaged or
@@ -17,9 +18,14 @@
  * synced: the disk has it when the call returns. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_manifest_write(const char *folder, struct cs_error *error);
 
+/* The same for a study, over the tables, reports, diagrams and references in the folder, by the
+ * endings of their names. A study that is continued and does not end leaves that of before,
+ * which then names the tables it has added to. */
+enum cs_status cs_manifest_write_study(const char *folder, struct cs_error *error);
+
 /* Compares a folder with its manifest: adds a line for each file that has changed, is missing,
- * or is not in the manifest. *n: files listed; *differing: lines added. CS_ERR_FILE if there is
- * no manifest or if it is damaged. */
+ * or is a run's and not in the manifest. *n: files listed; *differing: lines added. CS_ERR_FILE
+ * if there is no manifest or if it is damaged. */
 enum cs_status cs_manifest_check(const char *folder, struct cs_text *out, uint32_t *n,
                                  uint32_t *differing, struct cs_error *error);
 

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "cli/line/print.h"
+#include "cli/manifest.h"
 #include "cli/run_output.h"
 #include "io/subprocess.h"
 #include "study/stability/stability_report.h"
@@ -64,6 +65,8 @@ static enum cs_status write_files(const struct cs_stability_options *options,
         write_file(options, name, ".gp", &plot, error);
     if (!error->status)
         *drawn = draw(options->map.folder, name);
+    if (!error->status)
+        cs_manifest_write_study(options->map.folder, error);
     cs_text_finish(&borders);
     cs_text_finish(&json);
     cs_text_finish(&plot);

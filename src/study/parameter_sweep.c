@@ -1,19 +1,16 @@
 /* Runs the Cartesian product of values and methods, and stores one row per cell. */
 #include "study/parameter_sweep.h"
 
-#include "base/file.h"
 #include "base/hash.h"
-#include "base/table.h"
 #include "model/force/diagnostics.h"
 #include "scene/file/scene_read.h"
 #include "sim/module.h"
 #include "study/follow.h"
 #include "study/provenance_write.h"
+#include "study/sweep_rows.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* One cell of a sweep: its values, its key, its run, its row.
  *
@@ -164,11 +161,12 @@ static double run_frames(struct cs_parameter_sweep_cell *cell, uint32_t frames) 
     return follow.cpu;
 }
 
-/* Runs the cell and adds its row. A refusal by scene or method is a row, and counted.
- * CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
+/* Runs the cell and adds its row, under these names. A refusal by scene or method is a row, and
+ * counted. CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
 static enum cs_status parameter_sweep_cell_run(struct cs_parameter_sweep_cell *cell,
                                                struct cs_parameter_sweep *product,
-                                               struct cs_text *out, struct cs_error *error) {
+                                               const char *names, struct cs_text *out,
+                                               struct cs_error *error) {
     const struct cs_session *session = &cell->session;
     const struct cs_integrator *integrator = session->method.integrator;
     char machine[CS_MACHINE_NAME];
@@ -187,112 +185,16 @@ static enum cs_status parameter_sweep_cell_run(struct cs_parameter_sweep_cell *c
     cs_csv_add_text(out, CS_VERSION);
     cs_csv_add_text(out, cell->refusal.message);
     cs_csv_add_text(out, cell->key);
-    cs_text_add(out, "\n");
+    cs_csv_end_row(out, 0, names);
     if (out->failed && !error->status)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a row");
     return error->status;
 }
 
-static const char *const NAME = "sweep.csv";
-
-/* The rows by their cells: each begins with the number of its cell and ends with its key. */
-struct sweep_rows {
-    struct cs_row_table table;
-    struct cs_text names; /* first line; empty: not known yet */
-    char **lines;         /* (n) owned; NULL: not there */
-    uint32_t n;
-};
-
-/* Frees all lines. */
-static void finish_rows(struct sweep_rows *rows) {
-    for (uint32_t k = 0; k < rows->n; k++)
-        free(rows->lines[k]);
-    free(rows->lines);
-    cs_text_finish(&rows->names);
-}
-
-/* Grows the array of lines to n; new ones are NULL. */
-static enum cs_status reserve_rows(struct sweep_rows *rows, uint32_t n,
-                                   struct cs_error *error) {
-    if (n <= rows->n)
-        return CS_OK;
-    char **lines = realloc(rows->lines, n * sizeof *lines);
-    if (!lines)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u rows", n);
-    memset(lines + rows->n, 0, (n - rows->n) * sizeof *lines);
-    rows->lines = lines;
-    rows->n = n;
-    return CS_OK;
-}
-
-/* The key of a row, its last column. */
-static const char *key_of(const char *line) {
-    const char *comma = strrchr(line, ',');
-    return comma ? comma + 1 : "";
-}
-
-/* Stores a line under its cell; a text that is no row is skipped. Two different keys for one
- * cell mean two different sweeps. */
-static enum cs_status store_line(struct sweep_rows *rows, const char *line, const char *path,
-                                 struct cs_error *error) {
-    char *end;
-    const unsigned long cell = strtoul(line, &end, 10);
-    if (end == line || *end != ',' || cell >= CS_PARAMETER_SWEEP_CELLS_MAX)
-        return CS_OK;
-    if (reserve_rows(rows, (uint32_t)cell + 1, error))
-        return error->status;
-    char **stored = rows->lines + cell;
-    if (*stored && strcmp(key_of(*stored), key_of(line)) != 0)
-        return cs_fail(error, CS_ERR_USAGE, "%s belongs to a different sweep: cell %lu differs",
-                       path, cell);
-    if (!*stored && !(*stored = strdup(line)))
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the rows of %s", path);
-    return error->status;
-}
-
-/* Adds the rows of a folder, if there are any. Their columns must be those of the sweep. */
-static enum cs_status read_rows(struct sweep_rows *rows, const char *folder,
-                                struct cs_error *error) {
-    struct cs_rows found;
-    char path[4200];
-    snprintf(path, sizeof path, "%s/%s", folder, NAME);
-    if (access(path, F_OK) || cs_rows_open(&found, path, 0, error))
-        return error->status;
-    const char *line = cs_rows_next(&found);
-    if (line && !rows->names.length)
-        cs_text_add(&rows->names, "%s", line);
-    if (rows->names.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the columns");
-    else if (line && strcmp(cs_text_get(&rows->names), line) != 0)
-        cs_fail(error, CS_ERR_USAGE, "%s belongs to a different sweep: its columns differ",
-                path);
-    while (!error->status && (line = cs_rows_next(&found)))
-        store_line(rows, line, path, error);
-    cs_rows_close(&found);
-    return error->status;
-}
-
-/* All rows in the order of the cells. */
-static enum cs_status write_rows(const struct sweep_rows *rows, struct cs_error *error) {
-    struct cs_text out = {.failed = rows->names.failed};
-    cs_text_add(&out, "%s\n", cs_text_get(&rows->names));
-    for (uint32_t k = 0; k < rows->n; k++)
-        if (rows->lines[k])
-            cs_text_add(&out, "%s\n", rows->lines[k]);
-    return cs_file_write_text(rows->table.path, &out, error);
-}
-
-/* Number of finished cells. */
-static uint32_t count_rows(const struct sweep_rows *rows) {
-    uint32_t n = 0;
-    for (uint32_t k = 0; k < rows->n; k++)
-        n += rows->lines[k] != NULL;
-    return n;
-}
-
 /* Runs one cell, unless its row exists or it belongs to another shard. */
-static enum cs_status do_cell(struct cs_parameter_sweep *product, const struct sweep_rows *rows,
-                              uint32_t number, struct cs_error *error) {
+static enum cs_status do_cell(struct cs_parameter_sweep *product,
+                              const struct cs_sweep_rows *rows, uint32_t number,
+                              struct cs_error *error) {
     struct cs_parameter_sweep_cell cell;
     struct cs_text line = {0};
     const char *taken = rows->lines[number];
@@ -301,12 +203,13 @@ static enum cs_status do_cell(struct cs_parameter_sweep *product, const struct s
     if (parameter_sweep_cell_open(&cell, product, number, error))
         return error->status;
     product->n_reused += taken != NULL;
-    if (taken && strcmp(key_of(taken), cell.key) != 0)
+    if (taken && strcmp(cs_sweep_row_key(taken), cell.key) != 0)
         cs_fail(error, CS_ERR_USAGE,
                 "%s belongs to a different sweep; choose another folder with --out, or "
                 "--overwrite to replace it",
                 rows->table.path);
-    else if (!taken && !parameter_sweep_cell_run(&cell, product, &line, error))
+    else if (!taken &&
+             !parameter_sweep_cell_run(&cell, product, cs_text_get(&rows->names), &line, error))
         cs_row_table_append(&rows->table, line.bytes, line.length, error);
     cs_text_finish(&line);
     parameter_sweep_cell_close(&cell);
@@ -314,15 +217,14 @@ static enum cs_status do_cell(struct cs_parameter_sweep *product, const struct s
 }
 
 /* Writes the first line of a new file, or adds the rows of an old one. */
-static enum cs_status begin(struct cs_parameter_sweep *product, struct sweep_rows *rows,
+static enum cs_status begin(struct cs_parameter_sweep *product, struct cs_sweep_rows *rows,
                             struct cs_error *error) {
     parameter_sweep_add_head(product, &rows->names);
-    if (reserve_rows(rows, product->cells, error) || cs_row_table_lock(&rows->table, error))
+    if (cs_sweep_rows_reserve(rows, product->cells, error) ||
+        cs_row_table_lock(&rows->table, error))
         return error->status;
-    if (product->overwrite || access(rows->table.path, F_OK))
-        write_rows(rows, error);
-    else
-        read_rows(rows, product->folder, error);
+    if (product->overwrite || !cs_sweep_rows_read(rows, product->folder, error))
+        cs_sweep_rows_write(rows, error);
     cs_row_table_unlock(&rows->table);
     if (!error->status && rows->n > product->cells)
         cs_fail(error, CS_ERR_USAGE,
@@ -334,14 +236,14 @@ static enum cs_status begin(struct cs_parameter_sweep *product, struct sweep_row
 
 /* Adds what this and other processes have appended since; the rows are written in order when
  * all are there. */
-static enum cs_status end(struct cs_parameter_sweep *product, struct sweep_rows *rows,
+static enum cs_status end(struct cs_parameter_sweep *product, struct cs_sweep_rows *rows,
                           struct cs_error *error) {
     if (cs_row_table_lock(&rows->table, error))
         return error->status;
-    read_rows(rows, product->folder, error);
-    product->n_done = count_rows(rows);
+    cs_sweep_rows_read(rows, product->folder, error);
+    product->n_done = cs_sweep_rows_count(rows);
     if (!error->status && product->n_done == product->cells)
-        write_rows(rows, error);
+        cs_sweep_rows_write(rows, error);
     cs_row_table_unlock(&rows->table);
     return error->status;
 }
@@ -357,13 +259,48 @@ static enum cs_status count(struct cs_parameter_sweep *product, struct cs_error 
     return CS_OK;
 }
 
+/* Reads the scene with one key set, or with none; a refusal by the scene is left in *refusal.
+ */
+static enum cs_status try_override(const struct cs_parameter_sweep *product,
+                                   const struct cs_override *key, struct cs_error *refusal,
+                                   struct cs_error *error) {
+    struct cs_session_settings asked = product->session;
+    struct cs_session session = {0};
+    asked.overrides = key;
+    asked.n_overrides = key != NULL;
+    asked.integrator = product->n_methods ? product->methods[0] : NULL;
+    *refusal = (struct cs_error){0};
+    if (cs_session_open_plan(&session, &asked, refusal) && !is_own_fault(refusal))
+        cs_fail(error, refusal->status, "%s", refusal->message);
+    cs_session_close(&session);
+    return error->status;
+}
+
+/* Refuses a key that the scene takes with none of its values: it is misspelt, or its values
+ * are. Of a scene that is refused by itself nothing can be said. */
+static enum cs_status check_keys(const struct cs_parameter_sweep *product,
+                                 struct cs_error *error) {
+    struct cs_error refusal;
+    if (try_override(product, NULL, &refusal, error) || refusal.status)
+        return error->status;
+    for (uint32_t k = 0; k < product->n_keys && !error->status; k++) {
+        const struct cs_parameter_axis *key = product->keys + k;
+        refusal.status = CS_ERR_SCENE;
+        for (uint32_t v = 0; v < key->n && refusal.status && !error->status; v++)
+            try_override(product, &(struct cs_override){key->path, key->values[v]}, &refusal,
+                         error);
+        if (refusal.status && !error->status)
+            cs_fail(error, refusal.status, "%s", refusal.message);
+    }
+    return error->status;
+}
+
 enum cs_status cs_parameter_sweep_run(struct cs_parameter_sweep *product,
                                       struct cs_error *error) {
-    struct sweep_rows rows = {0};
-    if (count(product, error))
+    struct cs_sweep_rows rows = {0};
+    if (count(product, error) || check_keys(product, error))
         return error->status;
-    if (!cs_row_table_open(&rows.table, product->folder, NAME, ".lock", 0, error) &&
-        !begin(product, &rows, error)) {
+    if (!cs_sweep_rows_open(&rows, product->folder, error) && !begin(product, &rows, error)) {
         for (uint32_t k = 0; k < product->cells && !error->status; k++) {
             do_cell(product, &rows, k, error);
             if (product->progress)
@@ -372,20 +309,20 @@ enum cs_status cs_parameter_sweep_run(struct cs_parameter_sweep *product,
         if (!error->status)
             end(product, &rows, error);
     }
-    finish_rows(&rows);
+    cs_sweep_rows_finish(&rows);
     return error->status;
 }
 
 enum cs_status cs_parameter_sweep_merge(const char *const *folders, uint32_t n_folders,
                                         const char *out, uint32_t *n, struct cs_error *error) {
-    struct sweep_rows rows = {0};
-    if (!cs_row_table_open(&rows.table, out, NAME, ".lock", 0, error))
-        read_rows(&rows, out, error);
+    struct cs_sweep_rows rows = {0};
+    if (!cs_sweep_rows_open(&rows, out, error))
+        cs_sweep_rows_read(&rows, out, error);
     for (uint32_t k = 0; k < n_folders && !error->status; k++)
-        read_rows(&rows, folders[k], error);
-    *n = count_rows(&rows);
+        cs_sweep_rows_read(&rows, folders[k], error);
+    *n = cs_sweep_rows_count(&rows);
     if (!error->status && rows.names.length)
-        write_rows(&rows, error);
-    finish_rows(&rows);
+        cs_sweep_rows_write(&rows, error);
+    cs_sweep_rows_finish(&rows);
     return error->status;
 }

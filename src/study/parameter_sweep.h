@@ -8,7 +8,7 @@
 
 /* Settings of a parameter sweep, and its counts so far. */
 
-enum { CS_PARAMETER_AXES_MAX = 16, CS_PARAMETER_SWEEP_CELLS_MAX = 10000000 };
+enum { CS_PARAMETER_AXES_MAX = 16 };
 
 /* One key of the scene and its values. */
 struct cs_parameter_axis {

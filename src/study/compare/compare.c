@@ -80,6 +80,10 @@ static enum cs_status print_origin(struct cs_compare *compare, struct cs_error *
         return error->status;
     cs_json_write(out, "{\n  'versions': {'clothsim': %s},\n  'frames': %u,\n", CS_VERSION,
                   recording->frames);
+    if (compare->settings->reference[0])
+        cs_json_write(out, "  'reference': [%s, %s],\n", compare->settings->reference[0],
+                      compare->settings->reference[1]);
+    cs_json_write(out, "  'accuracy': %g,\n", compare->settings->accuracy);
     cs_provenance_out_print_scene(&scene, out, error);
     cs_text_add(out, ",\n  \"scene\": ");
     cs_scene_print(&scene, NULL, NULL, 2, out);
@@ -97,9 +101,8 @@ static enum cs_status write_origin(const struct cs_compare *compare, struct cs_e
     return cs_file_write(path, compare->provenance.bytes, compare->provenance.length, error);
 }
 
-/* The settings of the reference, from those of the comparison. */
-static struct cs_compare_reference_settings ask_reference(const struct cs_compare *compare) {
-    const struct cs_compare_settings *settings = compare->settings;
+struct cs_compare_reference_settings
+cs_compare_reference_query(const struct cs_compare_settings *settings) {
     return (struct cs_compare_reference_settings){
         .run = &settings->run,
         .methods = {settings->reference[0], settings->reference[1]},
@@ -193,7 +196,8 @@ static void make_key(struct cs_cell *cell, const char *reference, const char *mo
 
 /* The list of cells has put the hash of the module into cell->key. */
 static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *error) {
-    const struct cs_compare_reference_settings asked = ask_reference(compare);
+    const struct cs_compare_reference_settings asked =
+        cs_compare_reference_query(compare->settings);
     struct cs_compare_reference reference;
     char of_reference[CS_HASH_DIGITS];
     cs_compare_reference_plan(&reference, &asked, of_reference, error);
@@ -291,7 +295,8 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
     struct cs_compare_results ledger = {0};
     *compare = (struct cs_compare){.settings = settings};
     cs_machine_name(compare->machine);
-    const struct cs_compare_reference_settings reference = ask_reference(compare);
+    const struct cs_compare_reference_settings reference =
+        cs_compare_reference_query(compare->settings);
     // the folder is checked before the reference, which may take long
     if (!read_scene_facts(compare, error) && !print_origin(compare, error) &&
         !make_cells(compare, error) && !make_keys(compare, error) &&

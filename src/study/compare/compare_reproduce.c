@@ -5,6 +5,8 @@
 #include "study/provenance_write.h"
 #include "study/recorded_run.h"
 
+#include <libgen.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,10 +67,10 @@ static void describe_row(const struct cs_provenance *provenance, struct cs_sessi
     cs_provenance_add_changed_files(provenance, out);
 }
 
-/* Exact comparison; only the first difference is reported. */
+/* Exact comparison, where none equals none; only the first difference is reported. */
 static void compare_numbers(struct cs_reproduction *again, const char *what, double then,
                             double now) {
-    if (!again->first_difference.length && then != now)
+    if (!again->first_difference.length && then != now && !(isnan(then) && isnan(now)))
         cs_text_add(&again->first_difference, "%s was %.17g, is %.17g", what, then, now);
 }
 
@@ -79,46 +81,91 @@ static void compare_texts(struct cs_reproduction *again, const char *what, const
 }
 
 /* Compares in the order outcome, time, steps, state: the first difference says most. */
-static void compare_ends(struct cs_reproduction *again, const struct cs_cell *cell,
-                         const struct cs_recorded_run_result *end) {
-    compare_texts(again, "the outcome", cell->outcome, cs_outcome_text(end->result.outcome));
-    compare_numbers(again, "the time", cell->time, end->result.time);
-    compare_numbers(again, "the number of steps", cell->steps, (double)end->counts.steps);
-    compare_texts(again, "the state at the end", cell->state_hash, end->hash);
+static void compare_ends(struct cs_reproduction *again, const struct cs_cell *then,
+                         const struct cs_cell *now, bool errors) {
+    static const char *const names[] = {"error",          "max_error",      "path_error",
+                                        "max_path_error", "velocity_error", "energy_error",
+                                        "centre_error",   "box_error",      "bar"};
+    compare_texts(again, "the outcome", then->outcome, now->outcome);
+    compare_numbers(again, "the time", then->time, now->time);
+    compare_numbers(again, "the number of steps", then->steps, now->steps);
+    compare_texts(again, "the state at the end", then->state_hash, now->state_hash);
+    for (size_t k = 0; k < sizeof names / sizeof *names && errors; k++) {
+        const struct cs_column *column = cs_column_find(names[k]);
+        compare_numbers(again, names[k], cs_cell_number(then, column),
+                        cs_cell_number(now, column));
+    }
     if (!again->first_difference.length)
-        cs_text_add(&again->equal_items, "outcome, time, steps and the state at the end");
+        cs_text_add(&again->equal_items, "outcome, time, steps%s the state at the end%s",
+                    errors ? "," : " and", errors ? " and the errors" : "");
+}
+
+/* Gets the reference of the comparison, from beside the file or computed. Another one than that
+ * of the row is noted, and *same is false. */
+static enum cs_status get_reference(struct cs_compare *compare, const struct cs_cell *cell,
+                                    struct cs_reproduction *again, bool *same,
+                                    struct cs_error *error) {
+    const struct cs_compare_reference_settings asked =
+        cs_compare_reference_query(compare->settings);
+    char key[CS_HASH_DIGITS];
+    if (cs_compare_reference_plan(&compare->reference, &asked, key, error))
+        return error->status;
+    *same = !strncmp(key, cell->key, CS_COMPARE_DIGITS);
+    if (*same)
+        return cs_compare_reference_get(&compare->reference, &asked, error);
+    cs_text_add(
+        &again->notes,
+        "the reference: it is of another version or scene, and errors are not compared\n");
+    return CS_OK;
 }
 
 static enum cs_status run(struct cs_reproduction *again,
-                          const struct cs_recorded_run_settings *settings,
+                          const struct cs_compare_settings *settings,
                           const struct cs_provenance *provenance, const struct cs_cell *cell,
                           struct cs_error *error) {
     char integrator[CS_CELL_INTEGRATOR];
     struct cs_recorded_run recording = {0};
-    struct cs_recorded_run_result end;
+    struct cs_compare compare = {.settings = settings};
+    struct cs_cell now = *cell;
+    bool errors = false;
     cs_cell_integrator(cell, integrator, sizeof integrator);
-    cs_text_add(&again->description, "%u frames of %s by %s", settings->frames,
+    cs_text_add(&again->description, "%u frames of %s by %s", settings->run.frames,
                 provenance->scene_file, integrator);
-    if (!cs_recorded_run_open(&recording, settings, integrator, error)) {
+    if (!cs_recorded_run_open(&recording, &settings->run, integrator, error))
         describe_row(provenance, &recording.session, cell, &again->notes);
-        if (!cs_recorded_run_execute(&recording, 0, NULL, &end, error))
-            compare_ends(again, cell, &end);
-    }
     cs_recorded_run_close(&recording);
+    if (!error->status && !isnan(cell->bar))
+        get_reference(&compare, cell, again, &errors, error);
+    if (!error->status && !cs_compare_measure(&compare, &now, error))
+        compare_ends(again, cell, &now, errors);
+    cs_compare_reference_finish(&compare.reference);
     return error->status;
+}
+
+/* Reads what the reference is chosen by; without methods it was the program's choice. */
+static void read_reference(const struct cs_provenance *provenance,
+                           struct cs_compare_settings *settings) {
+    const struct cs_json *pair = cs_json_find_kind(provenance->json, "reference", CS_JSON_LIST);
+    for (uint32_t k = 0; k < 2 && cs_json_count(pair) == 2; k++)
+        if (cs_json_kind_of(cs_json_at(pair, k)) == CS_JSON_TEXT)
+            settings->reference[k] = cs_json_text(cs_json_at(pair, k));
+    settings->accuracy = cs_provenance_number(provenance->json, "accuracy");
 }
 
 enum cs_status cs_compare_reproduce_row(struct cs_reproduction *again,
                                         const struct cs_reproduction_settings *settings,
                                         uint32_t row, struct cs_error *error) {
-    struct cs_recorded_run_settings asked = {.session = settings->session};
+    struct cs_compare_settings asked = {.run.session = settings->session};
     struct cs_provenance provenance = {0};
     struct cs_cell cell;
     char path[PATH_BYTES];
     if (!read_row(settings->file, row, &cell, error) &&
-        !read_origin(&provenance, settings->file, path, &asked, error) &&
-        !cs_provenance_to_session(&provenance, settings->folder, &asked.session, error))
+        !read_origin(&provenance, settings->file, path, &asked.run, error) &&
+        !cs_provenance_to_session(&provenance, settings->folder, &asked.run.session, error)) {
+        read_reference(&provenance, &asked);
+        asked.cache = dirname(path);
         run(again, &asked, &provenance, &cell, error);
+    }
     cs_provenance_finish(&provenance);
     return error->status;
 }

@@ -93,6 +93,10 @@ struct cs_compare {
     uint32_t n_done, n_reused; /* cells; those of an earlier run */
 };
 
+/* The settings of the reference, from those of the comparison. */
+struct cs_compare_reference_settings
+cs_compare_reference_query(const struct cs_compare_settings *settings);
+
 /* Times the contenders for the verdict (ranking.h) in rounds. Ends when their ratios are known
  * well enough, after settings.runs rounds, or when the time for rounds is used up. Updates cpu,
  * cpu_low, cpu_high, runs and outliers of the cells. CS_ERR_INTERRUPT, CS_ERR_MEMORY. */

@@ -26,7 +26,7 @@ struct header {
     double one;
     uint32_t n, frames;
     double fps;
-    char hash[40];                         /* of the states */
+    char hash[40];                         /* of the head without it, and of the states */
     struct cs_compare_reference reference; /* pointers in it mean nothing */
 };
 
@@ -67,6 +67,17 @@ static void file_path(const char *folder, const char *key, char *path, size_t si
     snprintf(path, size, "%s/reference-%.16s.state", folder, key);
 }
 
+/* Hash of everything in the file but the hash itself. */
+static void hash_file(const struct header *header, const double *states, size_t values,
+                      char hash[CS_HASH_DIGITS]) {
+    char both[2 * CS_HASH_DIGITS], head[sizeof *header];
+    memcpy(head, header, sizeof head);
+    memset(head + offsetof(struct header, hash), 0, sizeof header->hash);
+    cs_hash_bytes(head, sizeof head, both);
+    cs_hash_doubles(states, values, both + CS_HASH_DIGITS);
+    cs_hash_bytes(both, sizeof both, hash);
+}
+
 /* Reads or writes DIR/reference-KEY.state. A file that does not match the scene, the machine or
  * its own hash counts as missing. */
 static bool compare_reference_read(struct cs_compare_reference *reference, const char *folder,
@@ -89,8 +100,8 @@ static bool compare_reference_read(struct cs_compare_reference *reference, const
                length == sizeof header + values * sizeof(double);
         if (good) {
             memcpy(track.states, bytes + sizeof header, values * sizeof(double));
-            cs_hash_doubles(track.states, values, hash);
-            good = !strcmp(hash, header.hash);
+            hash_file(&header, track.states, values, hash);
+            good = !memcmp(hash, header.hash, sizeof hash);
         }
         if (good) {
             *reference = header.reference;
@@ -125,7 +136,7 @@ static enum cs_status compare_reference_write(const struct cs_compare_reference 
     /* an address means nothing to the next run */
     header->reference.trajectory.states = NULL;
     header->reference.trajectory.free_from = NULL;
-    cs_hash_doubles(track->states, values, header->hash);
+    hash_file(header, track->states, values, header->hash);
     if (!cs_folder_create(folder, error) && !cs_file_create(&out, path, error)) {
         /* failures of fwrite are seen by cs_file_finish */
         fwrite(header, sizeof *header, 1, out.file);

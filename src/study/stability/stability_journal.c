@@ -15,9 +15,11 @@
 /* Values of record.kind. They are in files: new kinds go to the end. */
 enum kind { REFERENCE, CELL, BORDER };
 
-/* One result. A record with the key of a different map is skipped. Its layout is that of the
- * machine; the size of a record is a part of the key. */
+/* One result. A record with the key of a different map is skipped. One that is not as it was
+ * written is skipped too: its cell is computed again. Its layout is that of the machine; the
+ * size of a record is a part of the key. */
 struct record {
+    char check[CS_HASH_DIGITS]; /* hash of the rest */
     char key[CS_HASH_DIGITS];
     uint32_t kind, column, row;
     union {
@@ -54,10 +56,17 @@ static enum cs_status make_key(const struct cs_stability *map, char key[CS_HASH_
     return error->status;
 }
 
-/* Stores one record in the map. Records beyond its columns or rows, or with another key, are
- * ignored. */
+static void find_check(const struct record *record, char check[CS_HASH_DIGITS]) {
+    cs_hash_bytes(record->key, sizeof *record - offsetof(struct record, key), check);
+}
+
+/* Stores one record in the map. Records beyond its columns or rows, with another key, or
+ * damaged, are ignored. */
 static void take(struct cs_stability *map, const struct record *record) {
-    if (record->column >= map->n_columns || record->row >= map->n_rows ||
+    char check[CS_HASH_DIGITS];
+    find_check(record, check);
+    if (memcmp(record->check, check, sizeof check) != 0 || record->column >= map->n_columns ||
+        record->row >= map->n_rows ||
         strncmp(record->key, map->journal.key, sizeof record->key) != 0)
         return;
     struct cs_stability_column *column = map->columns + record->column;
@@ -109,6 +118,7 @@ static enum cs_status append(const struct cs_stability *map, struct record *reco
     if (!*map->journal.table.path)
         return CS_OK;
     memcpy(record->key, map->journal.key, sizeof record->key);
+    find_check(record, record->check);
     return cs_row_table_append(&map->journal.table, record, sizeof *record, error);
 }
 
