@@ -196,6 +196,12 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            "one does all the work");
 }
 
+/* Tells whether a method moves springs by a model of its own instead of their force. */
+static bool has_own_springs(const struct cs_integrator *method) {
+    return method->fidelity != CS_FIDELITY_ODE &&
+           method->needs & (CS_NEED_SPRINGS | CS_NEED_CLUSTERS);
+}
+
 enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integrator *method,
                              struct cs_error *error) {
     const uint32_t matched = cs_scene_first_matched(scene);
@@ -217,6 +223,13 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
                        "contact.law: force is too stiff for integrator \"%s\", which treats "
                        "contact explicitly; use %sanother integrator",
                        method->name, cs_scene_has_body_contact(scene) ? "" : "project, or ");
+    const uint32_t elastic = cs_scene_first_elastic(scene);
+    if (elastic < scene->bodies.n && has_own_springs(method))
+        return cs_fail(
+            error, CS_ERR_SCENE,
+            "bodies[%u].elastic: integrator \"%s\" has a model of springs of its own, "
+            "and none of membranes; use another integrator",
+            elastic, method->name);
     if (scene->seams.n && method->traits & CS_EXPLICIT_OUTER)
         return cs_fail(error, CS_ERR_SCENE,
                        "seams: integrator \"%s\" treats all forces but springs explicitly, for "

@@ -26,6 +26,10 @@ enum cs_status cs_check_unit(const struct cs_check *at, const char *path, double
 enum cs_status cs_check_pose(const struct cs_check *at, const char *body, const char *shape,
                              struct cs_pose *place);
 
+/* Checks the constants of an elastic body. */
+enum cs_status cs_elastic_check(const struct cs_check *at, const char *body,
+                                const struct cs_body *of);
+
 /* Checks that bodies, particles, weights and lengths of the scene's seams are possible. */
 enum cs_status cs_seams_check(const struct cs_check *at, const struct cs_scene *scene);
 

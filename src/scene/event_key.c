@@ -10,11 +10,23 @@
 
 /* Paths without indices of numbers that may change. Numbers of `forces` may too, unless `fixed`
  * names them. */
-static const char *const changeable[] = {
-    "bodies.springs.stretch", "bodies.springs.shear", "bodies.springs.bend",
-    "bodies.springs.damping", "bodies.strain_limit",  "bodies.mass.particle",
-    "bodies.mass.total",      "bodies.mass.degree",   "bodies.mass.areal_density",
-    "colliders.friction",     "colliders.absorption", NULL};
+static const char *const changeable[] = {"bodies.springs.stretch",
+                                         "bodies.springs.shear",
+                                         "bodies.springs.bend",
+                                         "bodies.springs.damping",
+                                         "bodies.strain_limit",
+                                         "bodies.mass.particle",
+                                         "bodies.mass.total",
+                                         "bodies.mass.degree",
+                                         "bodies.mass.areal_density",
+                                         "colliders.friction",
+                                         "colliders.absorption",
+                                         "bodies.elastic.membrane.young",
+                                         "bodies.elastic.membrane.shear",
+                                         "bodies.elastic.bending.stiffness",
+                                         "bodies.elastic.bending.twist",
+                                         "bodies.elastic.damping",
+                                         NULL};
 
 /* Prefixes of keys that cannot change, and why; the first that fits counts. */
 static const struct {
@@ -155,10 +167,11 @@ static enum cs_status check_springs(const struct walk *walk, const struct cs_bod
                                     double value) {
     const bool shear = !strcmp(walk->plain, "bodies.springs.shear");
     const bool damping = !strcmp(walk->plain, "bodies.springs.damping");
-    const char *why = cs_scene_springs_left_out(body) ? "shape_matching disables the springs"
-                      : shear && body->mesh.present   ? "a mesh has none"
-                      : !damping && value <= 0        ? "it is 0: there are no such springs"
-                                                      : NULL;
+    const char *why = body->elastic.present             ? "elastic replaces the springs"
+                      : cs_scene_springs_left_out(body) ? "shape_matching disables the springs"
+                      : shear && body->mesh.present     ? "a mesh has none"
+                      : !damping && value <= 0          ? "it is 0: there are no such springs"
+                                                        : NULL;
     return why ? cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: %s", walk->path, why)
                : CS_OK;
 }

@@ -13,6 +13,7 @@
 #include "base/status.h"
 #include "mesh/spring_network.h"
 #include "mesh/vertex_paths.h"
+#include "scene/elastic_keys.h"
 #include "scene/pair_keys.h"
 #include "scene/picture_keys.h"
 #include "scene/pin_keys.h"
@@ -111,7 +112,8 @@ struct cs_body {
     struct cs_shape_matching shape_matching;
     struct cs_mass mass;
     struct cs_spring_law springs;
-    struct cs_list pins; /* struct cs_pin */
+    struct cs_elastic elastic; /* instead of springs */
+    struct cs_list pins;       /* struct cs_pin */
     bool self_contact;   /* contact with itself; needs contact.law force */
     double thickness;    /* m, range of its contact with bodies; 0: a fraction of its edges */
     double friction;     /* Coulomb coefficient of self-contact */
@@ -333,6 +335,7 @@ struct cs_scene {
 
 /* The root of the scene's tables, and names of its choices. */
 extern const struct cs_table cs_scene_table, cs_pin_table, cs_event_table, cs_seam_table;
+extern const struct cs_table cs_spring_table, cs_elastic_table;
 extern const char *const cs_pin_names[];
 extern const char *const cs_mesh_shape_names[];
 #define CS_INTEGRATOR_DEFAULT "implicit-linearised"
@@ -344,15 +347,24 @@ static inline struct cs_collider *cs_scene_colliders(const struct cs_scene *scen
     return scene->colliders.items;
 }
 
-/* Returns true if the body is drawn to its shape and its springs do not act. */
+/* Returns true if the body has no springs: it is drawn to its shape instead, or elastic. */
 static inline bool cs_scene_springs_left_out(const struct cs_body *body) {
-    return body->shape_matching.present && !body->shape_matching.springs;
+    return body->elastic.present ||
+           (body->shape_matching.present && !body->shape_matching.springs);
 }
 
 /* Returns the first body that is drawn to its shape; bodies.n if there is none. */
 static inline uint32_t cs_scene_first_matched(const struct cs_scene *scene) {
     uint32_t b = 0;
     while (b < scene->bodies.n && !cs_scene_bodies(scene)[b].shape_matching.present)
+        b++;
+    return b;
+}
+
+/* Returns the first body that is elastic; bodies.n if there is none. */
+static inline uint32_t cs_scene_first_elastic(const struct cs_scene *scene) {
+    uint32_t b = 0;
+    while (b < scene->bodies.n && !cs_scene_bodies(scene)[b].elastic.present)
         b++;
     return b;
 }

@@ -1,4 +1,5 @@
 /* Checks of a scene that ranges of single values cannot express. */
+#include "base/options.h"
 #include "scene/body_pairs.h"
 #include "scene/check.h"
 #include "scene/collider.h"
@@ -76,6 +77,41 @@ static enum cs_status check_matching(const struct cs_check *at, const char *body
         at, path, "shape_matching disables the springs, expected shape_matching.springs true");
 }
 
+/* Returns the first number of the springs that is not the default; NULL: none. */
+static const char *changed_spring(const struct cs_spring_law *law) {
+    struct cs_spring_law plain;
+    cs_options_default(&cs_spring_table, &plain);
+    for (uint32_t k = 0; k < cs_spring_table.n; k++)
+        if (!cs_option_is_default(cs_spring_table.rows + k, law))
+            return cs_spring_table.rows[k].name;
+    return NULL;
+}
+
+/* Returns what a body has that needs springs; NULL: nothing. */
+static const char *needs_springs(const struct cs_body *body) {
+    return body->network.present          ? "network"
+           : body->shape_matching.present ? "shape_matching"
+           : !isnan(body->strain_limit)   ? "strain_limit"
+                                          : NULL;
+}
+
+/* Refuses what is for springs in an elastic body. */
+static enum cs_status check_elastic(const struct cs_check *at, const char *body,
+                                    const struct cs_body *of) {
+    const char *spring = changed_spring(&of->springs), *other = needs_springs(of);
+    char path[128];
+    if (!of->elastic.present)
+        return CS_OK;
+    snprintf(path, sizeof path, "%s.%s%s", body, spring ? "springs." : "",
+             spring  ? spring
+             : other ? other
+                     : "");
+    if (spring || other)
+        return cs_check_refuse(at, path,
+                               "elastic replaces the springs, expected one of the two");
+    return cs_elastic_check(at, body, of);
+}
+
 /* Checks one body: a shape, then all that depends on it. */
 static enum cs_status check_body(const struct cs_check *at, const struct cs_scene *scene,
                                  uint32_t b, struct cs_body *body) {
@@ -84,7 +120,8 @@ static enum cs_status check_body(const struct cs_check *at, const struct cs_scen
     if (body->cloth.present == body->mesh.present)
         return cs_check_refuse(at, path, "found %s, expected cloth or mesh",
                                body->cloth.present ? "cloth and mesh" : "no shape");
-    if (check_network(at, path, body) || check_matching(at, path, body) ||
+    if (check_elastic(at, path, body) || check_network(at, path, body) ||
+        check_matching(at, path, body) ||
         cs_check_pose(at, path, "cloth", &body->cloth.place) ||
         cs_check_pose(at, path, "mesh", &body->mesh.place) || check_mass(at, path, body) ||
         check_pins(at, scene, path, body) || check_texture(at, path, body->material.texture))

@@ -165,8 +165,8 @@ static const struct cs_option spring_rows[] = {
     CHOICE(struct cs_spring_law, stiffness_unit, stiffness_names, CS_STIFFNESS_N_PER_M,
            "N: the stiffness is divided by each spring's rest length"),
 };
-static const struct cs_table spring_table = {ROWS(spring_rows),
-                                             .size = sizeof(struct cs_spring_law)};
+const struct cs_table cs_spring_table = {ROWS(spring_rows),
+                                         .size = sizeof(struct cs_spring_law)};
 
 static const char *const shading_names[] = {"smooth", "flat", NULL};
 static const double red_cloth[3] = {0.60, 0.06, 0.07};
@@ -195,7 +195,10 @@ static const struct cs_option body_rows[] = {
     TABLE(struct cs_body, shape_matching, matching_table,
           "pulled back to its shape at time 0, for integrator shape-matching"),
     TABLE(struct cs_body, mass, mass_table, "exactly one of its keys"),
-    TABLE(struct cs_body, springs, spring_table, "spring law"),
+    TABLE(struct cs_body, springs, cs_spring_table, "spring law"),
+    TABLE(struct cs_body, elastic, cs_elastic_table,
+          "membrane and bending instead of springs, with constants that do not depend on the "
+          "mesh"),
     LIST(struct cs_body, pins, cs_pin_table, "particles that keep their position"),
     BOOL(struct cs_body, self_contact, 0,
          "it does not pass through itself; for contact.law force"),

@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "base/vector.h"
+#include "model/elastic/membrane_matrix.h"
 #include "model/event/event_state.h"
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"
@@ -167,7 +168,7 @@ void cs_blow_up_check_set(struct cs_blow_up_check *bound, const struct cs_system
     *bound = (struct cs_blow_up_check){
         .start_energy = energy.elastic + energy.other +
                         cs_springs_energy_at_twice(&system->springs) +
-                        cs_shape_clusters_energy(system),
+                        cs_membranes_energy_at_twice(system) + cs_shape_clusters_energy(system),
         .speed = 2 * energy.kinetic,
         .force_rate = force_power_bound(system),
         .t_forces = t,

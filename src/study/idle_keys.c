@@ -110,6 +110,19 @@ static bool has_range(const struct cs_scene *scene, uint32_t k) {
     return scene->render.look == CS_LOOK_FORCE || scene->render.look == CS_LOOK_STRAIN;
 }
 
+static bool has_young(const struct cs_scene *scene, uint32_t k) {
+    return !isnan(body_at(scene, k)->elastic.membrane.young);
+}
+static bool has_warp(const struct cs_scene *scene, uint32_t k) {
+    return !isnan(body_at(scene, k)->elastic.membrane.warp);
+}
+static bool bends_alike(const struct cs_scene *scene, uint32_t k) {
+    return !isnan(body_at(scene, k)->elastic.bending.stiffness);
+}
+static bool bends_by_warp(const struct cs_scene *scene, uint32_t k) {
+    return !isnan(body_at(scene, k)->elastic.bending.warp);
+}
+
 /* acts NULL: always. In the order of the tables, single keys before the tables they are in. */
 static const struct {
     const char *key;
@@ -129,7 +142,12 @@ static const struct {
     {"bodies[].springs.bend", bend_acts, "there are no such springs"},
     {"bodies[].springs.damping_model", damps, "springs.damping is 0"},
     {"bodies[].springs", springs_act,
-     "shape_matching disables the springs, expected shape_matching.springs true"},
+     "elastic replaces the springs, and shape_matching without shape_matching.springs true"},
+    {"bodies[].elastic.membrane.poisson", has_young, "it belongs to young"},
+    {"bodies[].elastic.membrane.coupling", has_warp, "it belongs to warp"},
+    {"bodies[].elastic.bending.poisson", bends_alike, "it belongs to stiffness"},
+    {"bodies[].elastic.bending.coupling", bends_by_warp, "it belongs to warp"},
+    {"bodies[].elastic", NULL, NULL},
     {"bodies[].pins", NULL, NULL},
     {"bodies[].self_contact", NULL, NULL},
     {"bodies[].thickness", has_surface,

@@ -68,6 +68,7 @@ forms = {"contact": [["\"force\"", "{\"law\": \"force\"}"]],
          "camera": [["\"auto\"", "{\"frame\": \"auto\"}"]],
          "render.background": [["\"none\"", "{\"kind\": \"none\"}"],
                                ["[0.1, 0.2, 0.3]", "{\"colour\": [0.1, 0.2, 0.3]}"]],
+         "bodies[].elastic.bending": [["0.001", "{\"stiffness\": 0.001}"]],
          "integrator": [["\"rk4\"", "{\"name\": \"rk4\"}"]]}
 forms |= {path: particles for path in (
     "bodies[].pins[]", "seams[].particles[]", "seams[].to.particles[]", "events[].impact.particles[]",
@@ -84,6 +85,8 @@ if unknown:
 def base(path):
     scene = {"bodies": [{"cloth": {"grid": [3, 3], "place": {"translate": [2.0 * k, 0, 0]}},
                          "mass": {"total": 1}, "pins": [8]} for k in range(2)], "render": {}}
+    if "elastic" in path:
+        scene["bodies"][0]["elastic"] = {"membrane": {"young": 100}}
     if path.startswith("seams"):
         scene["seams"] = [{"body": 0, "particles": [4], "to": {"body": 1, "particles": [4]}}]
     if path.startswith("events"):

@@ -8,7 +8,7 @@
 cd "$1" || exit 1
 awk '
     BEGIN {
-        n = split("base mesh scene model/spring model/system model/force model/contact model/contact/broad_phase" \
+        n = split("base mesh scene model/spring model/system model/elastic model/force model/contact model/contact/broad_phase" \
             " model/contact/narrow_phase model/contact/ccd model/solver,model/event model/post_step model" \
             " scene/file io,draw,sim io/export draw/gl,draw/cpu study study/reference" \
             " study/compare,study/stability,study/conform,study/golden,study/soft cli/line cli cli/film,cli/run", floors, " ")

@@ -5,12 +5,19 @@
 #include "base/vec3.h"
 #include "model/contact/approach.h"
 #include "model/contact/lagged_friction.h"
+#include "model/force/diagnostics.h"
 
 #include <math.h>
 
-/* N/m, softest stretch spring; HUGE_VAL without one */
-static double softest(const struct cs_springs *springs) {
+/* N/m, softest stretch spring, or membrane along its threads; HUGE_VAL without one */
+static double softest(const struct cs_system *system) {
+    const struct cs_springs *springs = &system->springs;
     double k = HUGE_VAL;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_elastic *elastic = &cs_scene_bodies(system->scene)[b].elastic;
+        const struct cs_moduli moduli = cs_membrane_moduli(elastic);
+        k = elastic->present ? fmin(k, fmin(moduli.warp, moduli.weft)) : k;
+    }
     for (uint32_t r = 0; r < springs->n_runs; r++)
         for (uint32_t i = 0;
              springs->runs[r].kind == CS_SPRING_STRETCH && i < springs->runs[r].count; i++)
@@ -20,11 +27,12 @@ static double softest(const struct cs_springs *springs) {
 
 enum cs_status cs_collider_params_softest(struct cs_system *system, double *k,
                                           struct cs_error *error) {
-    *k = softest(&system->springs);
+    *k = softest(system);
     if (isnan(system->scene->contact.stiffness) && !isfinite(*k))
-        return cs_fail(error, CS_ERR_SCENE,
-                       "contact.stiffness: no stretch spring to derive it from, expected a "
-                       "number in N/m");
+        return cs_fail(
+            error, CS_ERR_SCENE,
+            "contact.stiffness: no stretch spring or membrane to derive it from, expected a "
+            "number in N/m");
     return cs_approach_build(system, error);
 }
 
@@ -40,7 +48,7 @@ static double energy_of(const struct cs_system *system, uint32_t collider) {
 enum cs_status cs_collider_params_table_build(struct cs_system *system,
                                               struct cs_error *error) {
     const struct cs_scene *scene = system->scene;
-    const double shortest = cs_springs_shortest(&system->springs);
+    const double shortest = cs_diagnostics_shortest(system);
     double k;
     if (cs_collider_params_softest(system, &k, error))
         return error->status;
@@ -51,10 +59,11 @@ enum cs_status cs_collider_params_table_build(struct cs_system *system,
         pairings[c].range = thickness > 0 ? thickness : CS_RANGE_SHARE * shortest;
         // the stiffness divides by it
         if (!(pairings[c].range > 0))
-            return cs_fail(error, CS_ERR_SCENE,
-                           "colliders[%u].thickness: 0, but there is no spring to derive the "
-                           "contact range from; expected a length in m",
-                           c);
+            return cs_fail(
+                error, CS_ERR_SCENE,
+                "colliders[%u].thickness: 0, but there is no spring or membrane to derive the "
+                "contact range from; expected a length in m",
+                c);
         pairings[c].k =
             cs_approach_stiffness(system, k, energy_of(system, c), pairings[c].range);
     }

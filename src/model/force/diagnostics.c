@@ -1,6 +1,7 @@
 /* Measures a state: energies, strains and forces. */
 #include "model/force/diagnostics.h"
 
+#include "model/elastic/membranes.h"
 #include "model/force/terms.h"
 
 #include <math.h>
@@ -39,6 +40,13 @@ static double strain_of(const struct cs_spring_run *run, size_t n, const double 
         squared += d * d;
     }
     return sqrt(squared) / cs_spring_length(run, i) - 1;
+}
+
+double cs_diagnostics_shortest(const struct cs_system *system) {
+    const double springs = system->springs.n ? cs_springs_shortest(&system->springs) : HUGE_VAL;
+    const double shortest =
+        system->membranes ? fmin(springs, system->membranes->shortest) : springs;
+    return isfinite(shortest) ? shortest : 0;
 }
 
 double cs_diagnostics_strain(const struct cs_system *system, const double *x) {
@@ -175,17 +183,31 @@ static bool has_rate(const struct cs_term *term) {
     return term->add_state_bound && !term->add_bound;
 }
 
+/* Tells whether a force has both: at a state its bound may be the larger one. */
+static bool any_varies(const struct cs_system *system) {
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (system->terms[k]->add_state_bound && system->terms[k]->add_bound)
+            return true;
+    return false;
+}
+
 bool cs_spectral_bounds_depend_on_state(const struct cs_system *system) {
     for (uint32_t k = 0; k < system->n_terms; k++)
-        if (has_rate(system->terms[k]))
+        if (system->terms[k]->add_state_bound)
             return true;
     return false;
 }
 
 void cs_spectral_bounds_rate(const struct cs_system *system, const struct cs_eval *at,
                              double *work, double *omega, double *delta) {
-    const struct cs_gershgorin sums = start_sums(system, work);
     double squared;
+    if (any_varies(system)) {
+        cs_spectral_bounds_at(system, at, work, omega, delta);
+        *omega = fmax(*omega, system->view.omega);
+        *delta = fmax(*delta, system->view.delta);
+        return;
+    }
+    const struct cs_gershgorin sums = start_sums(system, work);
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (has_rate(system->terms[k]))
             system->terms[k]->add_state_bound(system, at, &sums);

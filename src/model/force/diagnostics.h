@@ -37,6 +37,9 @@ static inline double cs_energy_without_gravity(const struct cs_energy *energy) {
     return energy->kinetic + energy->elastic + energy->other;
 }
 
+/* Shortest rest length in m of all springs and edges of membranes; 0 without any. */
+double cs_diagnostics_shortest(const struct cs_system *system);
+
 /* Largest |l / L - 1| over all springs; 0 without springs. */
 double cs_diagnostics_strain(const struct cs_system *system, const double *x);
 
@@ -80,11 +83,13 @@ void cs_spectral_bounds_at(const struct cs_system *system, const struct cs_eval 
                            double *work, double *omega, double *delta);
 
 /* The view's bounds, increased by those of forces that have bounds only at a state
- * (add_state_bound without add_bound in struct cs_term), such as contact. work as above. */
+ * (add_state_bound without add_bound in struct cs_term), such as contact. With forces that have
+ * both, such as membranes, the bounds of all at the state, not below the view's. work as above.
+ */
 void cs_spectral_bounds_rate(const struct cs_system *system, const struct cs_eval *at,
                              double *work, double *omega, double *delta);
 
-/* Tells whether the scene has such forces. */
+/* Tells whether the scene has forces with bounds at a state. */
 bool cs_spectral_bounds_depend_on_state(const struct cs_system *system);
 
 /* Sets view.omega and view.delta to the bounds for the whole run. */

@@ -107,7 +107,8 @@ struct cs_term {
     /* Adds its Gershgorin bounds that hold for the whole run, with the scene's present values.
      * NULL: it has none, or none that holds for every state. */
     void (*add_bound)(const struct cs_system *system, const struct cs_gershgorin *sums);
-    /* Adds bounds at a state, instead of those above. NULL: those above hold at any. */
+    /* Adds bounds at a state, instead of those above. NULL: those above hold at any. With both,
+     * those above hold near rest. */
     void (*add_state_bound)(const struct cs_system *system, const struct cs_eval *at,
                             const struct cs_gershgorin *sums);
     /* Greatest force in N that it can exert on particle i in any state. NULL: its energy bounds

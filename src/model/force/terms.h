@@ -12,7 +12,7 @@
 #define CS_TERM_LIST_MORE(X)
 #endif
 #define CS_TERM_LIST(X)                                                                        \
-    X(springs)                                                                                 \
+    X(springs) X(membrane) X(bending)                                                          \
     X(gravity)                                                                                 \
     X(drag) X(wind) X(push) X(seams) X(contact) X(pairs) X(cover) CS_TERM_LIST_MORE(X)
 

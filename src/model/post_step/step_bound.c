@@ -1,10 +1,13 @@
 /* step_bound.c - time to a surface, and to the admissible depth behind it, in free fall. */
 #include "model/post_step/contact_projection.h"
 
+#include "model/force/diagnostics.h"
+
 #include <math.h>
 
 double cs_step_bound_depth(const struct cs_system *system) {
-    return system->springs.n > 0 ? 0.1 * cs_springs_shortest(&system->springs) : HUGE_VAL;
+    const double shortest = cs_diagnostics_shortest(system);
+    return shortest > 0 ? 0.1 * shortest : HUGE_VAL;
 }
 
 /* Time in s to cover the distance way > 0 at speed s with acceleration a, the root of way = s t

@@ -1,6 +1,7 @@
 /* Finds a safe step for each method from linear theory, and confirms it by probe runs. */
 #include "study/stability/advise.h"
 
+#include "model/force/diagnostics.h"
 #include "study/process_pool.h"
 
 #include <math.h>
@@ -211,7 +212,7 @@ static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *err
         .session = advise->session, .seconds = advise->seconds, .samples = SAMPLES};
     const double frame = 1 / advise->was_opened.scene.time.fps;
     trial.session.perturbation =
-        PERTURBATION * cs_springs_shortest(&advise->was_opened.system.springs);
+        PERTURBATION * cs_diagnostics_shortest(&advise->was_opened.system);
     trial.session.run.budget = advise->budget;
     trial.session.integrator = row->method = advise->names[task];
     /* only to learn whether the method can follow the scene, and whether it takes dt */

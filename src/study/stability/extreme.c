@@ -2,6 +2,7 @@
 #include "study/stability/extreme.h"
 
 #include "base/clock.h"
+#include "model/force/diagnostics.h"
 #include "study/follow.h"
 #include "study/perturb.h"
 #include "study/process_pool.h"
@@ -43,7 +44,7 @@ static void step(struct cs_extreme_row *row, struct cs_session *session, double 
         ending->silent |= look.verdict == CS_STABILITY_NOT_FINITE;
     }
     struct cs_session_settings again = session->settings;
-    again.perturbation = PERTURBATION * cs_springs_shortest(&session->system.springs);
+    again.perturbation = PERTURBATION * cs_diagnostics_shortest(&session->system);
     again.dt = dt;
     if (cs_follow_result(run, "", &result, error) ||
         cs_stability_confirm(&monitor, &again, run->t, run->counts.steps, error))
@@ -137,7 +138,7 @@ static enum cs_status run_row(const struct cs_extreme *extreme,
     if (!cs_session_build(&session, error)) {
         /* an instability needs something to grow from */
         cs_perturb_random(&session.system,
-                          PERTURBATION * cs_springs_shortest(&session.system.springs), 0);
+                          PERTURBATION * cs_diagnostics_shortest(&session.system), 0);
         if (dt > 0 && cs_extreme_expects(row->expected, "theory"))
             find_theory(&session, scene->seconds, &ending.theory, error);
         if (!error->status && !cs_session_begin(&session, NULL, error))

@@ -3,6 +3,7 @@
 #include "study/stability/stability.h"
 
 #include "base/clock.h"
+#include "model/force/diagnostics.h"
 #include "study/process_pool.h"
 #include "study/stability/stability_state.h"
 
@@ -80,8 +81,7 @@ static enum cs_status make_column(struct work *work, struct cs_stability_column 
     struct cs_sampled_run_settings trial = {.session = map->settings->session,
                                             .seconds = map->settings->seconds,
                                             .samples = SAMPLES};
-    trial.session.perturbation =
-        PERTURBATION * cs_springs_shortest(&map->session.system.springs);
+    trial.session.perturbation = PERTURBATION * cs_diagnostics_shortest(&map->session.system);
     trial.session.run.budget = map->settings->budget;
     /* springs get shorter as columns are added: the perturbation keeps its ratio to them */
     if (map->settings->axis == CS_AXIS_RESOLUTION && column->value > 0)

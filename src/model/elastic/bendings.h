@@ -1,0 +1,66 @@
+/* bendings.h - linear bending of sheets that are flat at rest: curvature as sums of positions
+ * with constant weights.
+ *
+ * A stencil has weights b_aj of its particles j for each curvature a of XX, YY, 2 XY in the
+ * cloth's axes, and an area A. With the moduli D (scene/elastic_keys.h):
+ *
+ *   k_a = sum over j of b_aj x_j    vectors    W = A/2 sum over a, b of D_ab k_a.k_b
+ *
+ * Weights of a stencil sum to 0, so W depends on differences alone and is objective: k turns
+ * with the sheet. It is the bending energy of a plate for isometric deformation (Bergou et al.
+ * 2006 for the idea, not the weights), and quadratic: its matrix is constant.
+ *
+ *   grid   at each particle second differences along its row and column, 2 x_XY in each cell.
+ *          On a rim the moment across it is 0.
+ *   mesh   for each triangle the curvatures of the quadratic through its corners and the three
+ *          points beyond its edges. On a rim, and where the six points lie on a conic, the sum
+ *          of its hinges, each with the curvature -(slope jump)/(2 A) l n n^T of an edge of
+ *          length l and normal n (Onate, Flores 2005).
+ */
+#ifndef CS_BENDINGS_H
+#define CS_BENDINGS_H
+
+#include "model/system/particle_system.h"
+
+/* Points of a stencil, and of all its weights. */
+enum { CS_BENDING_POINTS = 6, CS_BENDING_WEIGHTS = 18 };
+
+/* The stencils of one body. */
+struct cs_bending {
+    uint32_t body, first, count; /* of particles */
+    uint32_t columns, rows;      /* of a grid; 0: a mesh */
+    uint32_t n;                  /* stencils: of a grid, one a particle and one a cell */
+    double spacing[2];           /* m, of a grid */
+    double *moments;             /* (9, count) of a grid, (9, n) of a mesh: A D k in N m2 */
+    /* of a mesh */
+    uint32_t *points;         /* (n, 6) particles within the body; unused: the first again */
+    double *weights, *areas;  /* (n, 3, 6) in 1/m2, (n) in m2 */
+    uint32_t *incident_begin; /* (count + 1) */
+    uint32_t *incident;       /* stencils at a particle, ascending: 8 t + its place */
+};
+
+/* All bendings of a system, whose arena owns the arrays. */
+struct cs_bendings {
+    struct cs_bending *bodies; /* (n) ascending */
+    uint32_t n;
+    double *diagonal;         /* (particles) of K in N/m, for the moduli below */
+    double *blocks;           /* (particles) the diagonal in the matrix prepared last */
+    struct cs_moduli *moduli; /* (n) of `diagonal` */
+    double kept;              /* -ck of the matrix kept last */
+};
+
+/* A stencil with its weights; D_ab times the area: 11, 22, 12, 33. */
+struct cs_bending_stencil {
+    uint32_t n, at[CS_BENDING_POINTS]; /* particles of the system */
+    double weights[3][CS_BENDING_POINTS];
+    struct cs_moduli moduli;
+};
+
+/* Builds system->bendings. Fails with CS_ERR_SCENE for a mesh that is not flat. */
+enum cs_status cs_bendings_build(struct cs_system *system, struct cs_error *error);
+
+/* Stencil s of a body. */
+void cs_bending_stencil_at(const struct cs_bending *bending, const struct cs_moduli *moduli,
+                           uint32_t s, struct cs_bending_stencil *stencil);
+
+#endif

@@ -1,0 +1,330 @@
+/* Energies and bounds of membranes, and their part of the solver's matrix.
+ *
+ * With u the differences of a vector p over the edges, a triangle's part of A p pulls at the
+ * ends of edge i with
+ *
+ *   r_i = kappa (K 2 d.u)_i d_i + s_i u_i,   kappa = -ck - cd tau,   s = -ck t
+ *
+ * The first part is positive semi-definite. The second is A_0 (grad u) S (grad u)^T in the
+ * stress S; with psd, S is replaced by its positive part, the nearest such (Teran et al. 2005
+ * clamp the whole 6x6 matrix instead). The position derivative of the damping, which is not
+ * symmetric, is left out, as with springs. */
+#include "model/elastic/membrane_matrix.h"
+
+#include "base/pool.h"
+#include "base/vec3.h"
+#include "model/elastic/membrane_forces.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Index in K of the entry i, j. */
+static const int entry[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+
+/* One triangle at a state. */
+struct triangle {
+    uint32_t corners[3];
+    double d[3][3], w[3][3]; /* m, m/s: differences over the edges */
+    double q[3];             /* m2 */
+    const double *rest;
+    size_t stride; /* of rest */
+};
+
+/* Differences of an array (3,n) over the edges; NULL: 0. */
+static void find_edges(const uint32_t corners[3], size_t n, const double *p, double d[3][3]) {
+    for (size_t k = 0; k < 3; k++)
+        for (size_t c = 0; c < 3; c++)
+            d[k][c] = p ? p[c * n + corners[(k + 1) % 3]] - p[c * n + corners[k]] : 0;
+}
+
+static void find_triangle(const struct cs_membrane *membrane, uint32_t t, size_t n,
+                          const double *x, const double *v, struct triangle *triangle) {
+    triangle->stride = membrane->columns ? 1 : membrane->n;
+    triangle->rest = membrane->rest + (membrane->columns ? 0 : t);
+    cs_membrane_corners(membrane, t, triangle->corners);
+    find_edges(triangle->corners, n, x, triangle->d);
+    find_edges(triangle->corners, n, v, triangle->w);
+    for (size_t k = 0; k < 3; k++)
+        triangle->q[k] = cs_vec3_dot(triangle->d[k], triangle->d[k]) -
+                         triangle->rest[(CS_MEMBRANE_P + k) * triangle->stride];
+}
+
+/* --- energies --- */
+
+/* The moduli of a body now. */
+static struct cs_moduli moduli_of(const struct cs_system *system,
+                                  const struct cs_membrane *membrane) {
+    return cs_membrane_moduli(&cs_scene_bodies(system->scene)[membrane->body].elastic);
+}
+
+/* W = 1/4 z.C z of q. */
+static double energy_of(const struct cs_moduli *moduli, const struct triangle *at,
+                        const double q[3]) {
+    double s[3], t[3];
+    membrane_stress(moduli, at->rest, at->stride, q, s);
+    membrane_tension_of_stress(at->rest, at->stride, s, t);
+    return 0.25 * (t[0] * q[0] + t[1] * q[1] + t[2] * q[2]);
+}
+
+double cs_membranes_energy(const struct cs_system *system, const double *x) {
+    const struct cs_membranes *all = system->membranes;
+    double sum = 0;
+    for (uint32_t b = 0; b < all->n; b++) {
+        const struct cs_membrane *membrane = all->bodies + b;
+        const struct cs_moduli moduli = moduli_of(system, membrane);
+        for (uint32_t t = 0; t < membrane->n; t++) {
+            struct triangle at;
+            find_triangle(membrane, t, system->view.n, x, NULL, &at);
+            sum += energy_of(&moduli, &at, at.q);
+        }
+    }
+    return sum;
+}
+
+double cs_membranes_energy_at_twice(const struct cs_system *system) {
+    const struct cs_membranes *all = system->membranes;
+    double sum = 0;
+    for (uint32_t b = 0; all && b < all->n; b++) {
+        const struct cs_membrane *membrane = all->bodies + b;
+        const struct cs_moduli moduli = moduli_of(system, membrane);
+        for (uint32_t t = 0; t < membrane->n; t++) {
+            struct triangle at;
+            double q[3];
+            find_triangle(membrane, t, system->view.n, NULL, NULL, &at);
+            for (size_t k = 0; k < 3; k++)
+                q[k] = 3 * at.rest[(CS_MEMBRANE_P + k) * at.stride];
+            sum += energy_of(&moduli, &at, q);
+        }
+    }
+    return sum;
+}
+
+/* --- bounds --- */
+
+/* Products d_i.d_j at rest, from the lengths: d_0 + d_1 + d_2 = 0. */
+static void rest_products(const struct triangle *at, double G[3][3]) {
+    const double *squared = at->rest + CS_MEMBRANE_P * at->stride;
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < 3; j++)
+            G[i][j] = i == j ? squared[i * at->stride]
+                             : (squared[(3 - i - j) * at->stride] - squared[i * at->stride] -
+                                squared[j * at->stride]) /
+                                   2;
+}
+
+/* Norm of 2 K G: no eigenvalue of the stiffness along the edges is larger. */
+static double norm_of(const double K[6], double G[3][3]) {
+    double P[3][3], norm = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            P[i][j] = 0;
+            for (int l = 0; l < 3; l++)
+                P[i][j] += 2 * K[entry[i][l]] * (l == j ? 2 : -1) * G[l][j];
+        }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            norm += P[i][j] * P[j][i];
+    return sqrt(norm);
+}
+
+/* Adds the row sums of one triangle; without a state at rest. */
+static void add_triangle_bound(const struct membrane_law *law, const double K[6],
+                               const struct triangle *at, bool at_state, double *stiffness,
+                               double *damping) {
+    double G[3][3], q[3], t[3] = {0, 0, 0};
+    rest_products(at, G);
+    for (size_t i = 0; at_state && i < 3; i++)
+        for (size_t j = 0; j < 3; j++)
+            G[i][j] = cs_vec3_dot(at->d[i], at->d[j]);
+    for (size_t k = 0; at_state && k < 3; k++)
+        q[k] = at->q[k] + law->damping * 2 * cs_vec3_dot(at->d[k], at->w[k]);
+    if (at_state)
+        membrane_tension_by_k(K, q, t);
+    const double norm = norm_of(K, G);
+    for (size_t k = 0; k < 3; k++) {
+        stiffness[at->corners[k]] += norm + 2 * (fabs(t[k]) + fabs(t[(k + 2) % 3]));
+        damping[at->corners[k]] += law->damping * norm;
+    }
+}
+
+void cs_membranes_add_bound(const struct cs_system *system, const struct cs_eval *at,
+                            double *stiffness, double *damping) {
+    const struct membrane_job job = {.system = system, .elastic = 1, .damping = 1};
+    const struct cs_membranes *all = system->membranes;
+    for (uint32_t b = 0; b < all->n; b++) {
+        const struct cs_membrane *membrane = all->bodies + b;
+        const struct membrane_law law = cs_membrane_law_of(&job, membrane);
+        for (uint32_t t = 0; t < membrane->n; t++) {
+            struct triangle triangle;
+            double K[6];
+            cs_membrane_stiffness(membrane, t, &law.moduli, K);
+            find_triangle(membrane, t, system->view.n, at ? at->x : NULL, at ? at->v : NULL,
+                          &triangle);
+            add_triangle_bound(&law, K, &triangle, at, stiffness, damping);
+        }
+    }
+}
+
+/* --- the matrix --- */
+
+/* The positive part of a 2x2 stress XX, YY, XY. Its eigenvalues are mid +- r. */
+static void clamp_stress(double s[3]) {
+    const double mid = (s[0] + s[1]) / 2, half = (s[0] - s[1]) / 2;
+    const double r = sqrt(half * half + s[2] * s[2]);
+    const double high = fmax(mid + r, 0), low = fmax(mid - r, 0);
+    const double share = r > 0 ? (high - low) / (2 * r) : 0;
+    s[0] = (high + low) / 2 + share * half;
+    s[1] = (high + low) / 2 - share * half;
+    s[2] = share * s[2];
+}
+
+/* Tensions of a triangle in the matrix, -ck t. */
+static void matrix_tensions(const struct triangle *at, const struct cs_moduli *moduli,
+                            const struct cs_matrix *matrix, double t[3]) {
+    double s[3];
+    membrane_stress(moduli, at->rest, at->stride, at->q, s);
+    if (matrix->psd)
+        clamp_stress(s);
+    membrane_tension_of_stress(at->rest, at->stride, s, t);
+    for (int k = 0; k < 3; k++)
+        t[k] *= -matrix->ck;
+}
+
+/* Adds the diagonal block of a corner, where edge k leaves and edge m arrives:
+ *
+ *   2 kappa (K_kk d_k d_k^T + K_mm d_m d_m^T - K_km (d_k d_m^T + d_m d_k^T)) + (s_k + s_m) I */
+static void add_corner_block(const struct triangle *at, const double K[6], const double s[3],
+                             double kappa, size_t corner, double block[6]) {
+    static const int rows[6] = {0, 0, 0, 1, 1, 2}, columns[6] = {0, 1, 2, 1, 2, 2};
+    const size_t k = corner, m = (corner + 2) % 3;
+    const double *u = at->d[k], *w = at->d[m];
+    const double uu = 2 * kappa * K[entry[k][k]], ww = 2 * kappa * K[entry[m][m]],
+                 uw = 2 * kappa * K[entry[k][m]];
+    for (int c = 0; c < 6; c++) {
+        const int a = rows[c], b = columns[c];
+        block[c] += uu * u[a] * u[b] + ww * w[a] * w[b] - uw * (u[a] * w[b] + w[a] * u[b]) +
+                    (a == b ? s[k] + s[m] : 0);
+    }
+}
+
+/* Arguments of the loops that set the matrix up. */
+struct setup {
+    const struct cs_system *system;
+    const struct cs_matrix *matrix;
+    bool kept;
+};
+
+/* Sets the blocks of particles [begin, end) of a membrane, and if the matrix is kept the
+ * tensions of the triangles whose first corner they are. */
+static void set_blocks(const struct setup *setup, const struct cs_membrane *membrane,
+                       uint32_t begin, uint32_t end) {
+    const struct cs_system *system = setup->system;
+    const struct cs_matrix *matrix = setup->matrix;
+    const struct membrane_job job = {.system = system, .damping = 1};
+    const struct membrane_law law = cs_membrane_law_of(&job, membrane);
+    struct cs_membranes *all = system->membranes;
+    const size_t n = system->view.n;
+    const double kappa = -matrix->ck - matrix->cd * law.damping;
+    const double factor = matrix->bound && !setup->kept ? 3 : 1;
+    for (uint32_t i = begin; i < end; i++) {
+        uint32_t grid[6];
+        const uint32_t *around;
+        const uint32_t count = cs_membrane_incident(membrane, i, grid, &around);
+        double block[6] = {0};
+        for (uint32_t k = 0; k < count; k++) {
+            const uint32_t t = around[k] / 4, corner = around[k] % 4;
+            struct triangle at;
+            double K[6], s[3];
+            // computed for each corner again: threads share no particle
+            find_triangle(membrane, t, n, matrix->x, NULL, &at);
+            cs_membrane_stiffness(membrane, t, &law.moduli, K);
+            matrix_tensions(&at, &law.moduli, matrix, s);
+            add_corner_block(&at, K, s, kappa, corner, block);
+            for (size_t e = 0; setup->kept && corner == 0 && e < 3; e++)
+                all->tensions[e * all->n_triangles + membrane->begin + t] = s[e];
+        }
+        for (size_t c = 0; c < 6; c++)
+            all->blocks[c * n + membrane->first + i] = factor * block[c];
+    }
+}
+
+/* Calls set_blocks for the particles of each body in a block. */
+static void set_block(void *arg, uint32_t number) {
+    const struct setup *setup = arg;
+    const struct cs_system *system = setup->system;
+    const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
+    for (uint32_t b = 0; b < system->membranes->n; b++) {
+        const struct cs_membrane *membrane = system->membranes->bodies + b;
+        const uint32_t first = membrane->first, after = first + membrane->count;
+        const uint32_t begin = block.begin > first ? block.begin : first;
+        const uint32_t end = block.end < after ? block.end : after;
+        if (begin < end)
+            set_blocks(setup, membrane, begin - first, end - first);
+    }
+}
+
+/* A positive semi-definite matrix of m blocks a side is at most m times its diagonal blocks: 3
+ * for a triangle, which is what matrix->bound asks for. */
+void cs_membranes_prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
+                                 bool kept) {
+    struct cs_membranes *all = system->membranes;
+    struct setup setup = {system, matrix, kept};
+    cs_pool_run(system->springs.n_blocks, set_block, &setup);
+    if (!kept)
+        return;
+    memcpy(all->kept, all->blocks, 6 * sizeof *all->kept * system->view.n);
+    memcpy(all->x, matrix->x, 3 * sizeof *all->x * system->view.n);
+    all->cd = matrix->cd;
+    all->ck = matrix->ck;
+}
+
+/* Arguments of a product. */
+struct product {
+    struct membrane_job job;
+    const double *p;
+    double *y;
+    bool apart; /* without the diagonal blocks */
+};
+
+static void product_block(void *arg, uint32_t number) {
+    const struct product *product = arg;
+    const struct cs_system *system = product->job.system;
+    const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
+    const size_t n = system->view.n;
+    const double *b = system->membranes->kept, *p = product->p;
+    double *y = product->y;
+    cs_membrane_job_add(&product->job, &block);
+    for (size_t i = block.begin; product->apart && i < block.end; i++) {
+        const double px = p[i], py = p[n + i], pz = p[2 * n + i];
+        y[i] -= b[i] * px + b[n + i] * py + b[2 * n + i] * pz;
+        y[n + i] -= b[n + i] * px + b[3 * n + i] * py + b[4 * n + i] * pz;
+        y[2 * n + i] -= b[2 * n + i] * px + b[4 * n + i] * py + b[5 * n + i] * pz;
+    }
+}
+
+/* y += A p of the matrix kept last; damped: with its damping. */
+static void add_product(const struct cs_system *system, const double *p, bool damped,
+                        double *y) {
+    const struct cs_membranes *all = system->membranes;
+    struct product product = {.job = {.system = system,
+                                      .kind = MEMBRANE_PRODUCT,
+                                      .x = all->x,
+                                      .dx = p,
+                                      .tensions = all->tensions,
+                                      .elastic = -all->ck,
+                                      .per_damping = damped ? -all->cd : 0,
+                                      .to = y},
+                              .p = p,
+                              .y = y,
+                              .apart = damped};
+    cs_membrane_job_prepare(&product.job);
+    cs_pool_run(system->springs.n_blocks, product_block, &product);
+}
+
+void cs_membranes_add_product(const struct cs_system *system, const double *p, double *y) {
+    add_product(system, p, true, y);
+}
+
+void cs_membranes_add_approach(const struct cs_system *system, const double *v, double *y) {
+    add_product(system, v, false, y);
+}

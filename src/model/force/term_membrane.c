@@ -1,0 +1,63 @@
+/* Membranes of elastic bodies as a term: the kernels of elastic/membrane_forces.h. */
+#include "model/elastic/membrane_forces.h"
+#include "model/elastic/membrane_matrix.h"
+#include "model/force/term.h"
+
+#include <string.h>
+
+static struct cs_plan_row plan(const struct cs_scene *scene) {
+    const bool acts = cs_scene_first_elastic(scene) < scene->bodies.n;
+    return (struct cs_plan_row){.built = acts, .reason = acts ? "bodies are elastic" : NULL};
+}
+
+static double energy(const struct cs_system *system, const struct cs_eval *at) {
+    return cs_membranes_energy(system, at->x);
+}
+
+static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
+                       size_t begin, size_t end, double *blocks) {
+    const size_t n = system->view.n;
+    (void)matrix;
+    for (size_t c = 0; c < 6; c++)
+        for (size_t i = begin; i < end; i++)
+            blocks[c * n + i] += system->membranes->blocks[c * n + i];
+}
+
+static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                         double *y) {
+    cs_membranes_add_approach(system, matrix->v, y);
+}
+
+/* Sums at rest. A stretched membrane is stiffer: methods ask for the bound at a state. */
+static void add_bound(const struct cs_system *system, const struct cs_gershgorin *sums) {
+    cs_membranes_add_bound(system, NULL, sums->stiffness, sums->damping);
+}
+
+static void add_state_bound(const struct cs_system *system, const struct cs_eval *at,
+                            const struct cs_gershgorin *sums) {
+    cs_membranes_add_bound(system, at, sums->stiffness, sums->damping);
+}
+
+static const char *const ramps[] = {"bodies.elastic.membrane.young",
+                                    "bodies.elastic.membrane.shear", "bodies.elastic.damping",
+                                    NULL};
+
+const struct cs_term cs_term_membrane = {
+    .name = "membrane",
+    .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
+    .plan = plan,
+    .build = cs_membranes_build,
+    .rampable_keys = ramps,
+    .prepare = cs_membranes_prepare,
+    .add_force = cs_membranes_add,
+    .add_jvp = cs_membranes_add,
+    .energy = energy,
+    .energy_kind = CS_ENERGY_ELASTIC,
+    .work_column = "dampers",
+    .prepare_matrix = cs_membranes_prepare_matrix,
+    .add_blocks = add_blocks,
+    .add_matrix_product = cs_membranes_add_product,
+    .add_approach = add_approach,
+    .add_bound = add_bound,
+    .add_state_bound = add_state_bound,
+};

@@ -1,0 +1,44 @@
+/* elastic_keys.h - keys of a body that resists strain and bending as a continuous sheet: its
+ * constants belong to the cloth, not to the mesh. */
+#ifndef CS_ELASTIC_KEYS_H
+#define CS_ELASTIC_KEYS_H
+
+#include <clothsim/option.h>
+
+/* Tension per strain in the plane, in N/m: young and poisson, or the four others. */
+struct cs_membrane_keys {
+    bool present;
+    double young, poisson;        /* isotropic; NAN: not given */
+    double warp, weft, shear;     /* orthotropic; NAN: not given */
+    double coupling;              /* of warp and weft */
+};
+
+/* Moment per curvature, in N m: stiffness and poisson, or the four others. */
+struct cs_bending_keys {
+    bool present;
+    double stiffness, poisson; /* isotropic; NAN: not given */
+    double warp, weft, twist;  /* orthotropic; NAN: not given */
+    double coupling;           /* of warp and weft */
+};
+
+/* Law of force of a body instead of springs. */
+struct cs_elastic {
+    bool present;
+    struct cs_membrane_keys membrane;
+    struct cs_bending_keys bending;
+    double damping; /* s: stress per rate of strain over stress per strain */
+};
+
+/* A symmetric matrix of moduli over the strains (XX, YY, XY), or the curvatures (XX, YY, 2 XY):
+ * entries 11, 22, 12, 33; the others are 0. X is the direction of the warp. */
+struct cs_moduli {
+    double warp, weft, coupling, shear;
+};
+
+/* Moduli of a membrane in N/m; the XY strain is the change of the angle in rad. For Young's
+ * modulus Y and Poisson's ratio p: Y/(1 - p^2) (1, 1, p, (1 - p)/2). All 0 without one. */
+struct cs_moduli cs_membrane_moduli(const struct cs_elastic *elastic);
+/* Moduli of bending in N m; likewise, with the stiffness D: D (1, 1, p, (1 - p)/2). */
+struct cs_moduli cs_bending_moduli(const struct cs_elastic *elastic);
+
+#endif

@@ -1,0 +1,142 @@
+/* The rows of a body's membrane and bending (scene_tables.c), their moduli, and their checks.
+ */
+#include "scene/check.h"
+#include "scene/table_rows.h"
+
+#include <stdio.h>
+
+static const struct cs_option membrane_rows[] = {
+    REAL(struct cs_membrane_keys, young, "N/m", ABSENT, 1e-6, BIG,
+         "Young's modulus times thickness: tension over strain of a strip that is free to "
+         "narrow; the same in every direction"),
+    REAL(struct cs_membrane_keys, poisson, "", 0.3, -0.99, 0.99,
+         "with young: sideways contraction over strain"),
+    REAL(struct cs_membrane_keys, warp, "N/m", ABSENT, 1e-6, BIG,
+         "instead of young: tension over strain along the warp, at a constant width. The warp "
+         "runs along a row, or along the x axis of a mesh"),
+    REAL(struct cs_membrane_keys, weft, "N/m", ABSENT, 1e-6, BIG,
+         "with warp: likewise across the warp"),
+    REAL(struct cs_membrane_keys, shear, "N/m", ABSENT, 1e-6, BIG,
+         "with warp: shear force over the change of the angle in rad"),
+    REAL(struct cs_membrane_keys, coupling, "N/m", 0, -BIG, BIG,
+         "with warp: tension along the warp over strain across it; its square is below warp "
+         "times weft"),
+};
+static const struct cs_table membrane_table = {
+    ROWS(membrane_rows), .size = sizeof(struct cs_membrane_keys), .optional = true};
+
+static const struct cs_option bending_rows[] = {
+    REAL(struct cs_bending_keys, stiffness, "N m", ABSENT, 1e-15, BIG,
+         "moment per width over curvature; the same in every direction"),
+    REAL(struct cs_bending_keys, poisson, "", 0.3, -0.99, 0.99,
+         "with stiffness: sideways curvature, of the other sign, over curvature"),
+    REAL(struct cs_bending_keys, warp, "N m", ABSENT, 1e-15, BIG,
+         "instead of stiffness: moment over curvature along the warp, flat across it"),
+    REAL(struct cs_bending_keys, weft, "N m", ABSENT, 1e-15, BIG,
+         "with warp: likewise across the warp"),
+    REAL(struct cs_bending_keys, twist, "N m", ABSENT, 1e-15, BIG,
+         "with warp: twisting moment over twice the twist"),
+    REAL(struct cs_bending_keys, coupling, "N m", 0, -BIG, BIG,
+         "with warp: moment along the warp over curvature across it; its square is below warp "
+         "times weft"),
+};
+static const struct cs_table bending_table = {
+    ROWS(bending_rows), .size = sizeof(struct cs_bending_keys), .optional = true,
+    .shorthand_number = "stiffness"};
+
+static const struct cs_option elastic_rows[] = {
+    TABLE(struct cs_elastic, membrane, membrane_table,
+          "resistance to strain; young, or warp, weft and shear"),
+    TABLE(struct cs_elastic, bending, bending_table,
+          "resistance to curvature; stiffness, or warp, weft and twist. A number is the "
+          "stiffness"),
+    REAL(struct cs_elastic, damping, "s", 0, 0, BIG,
+         "of the rate of strain: tension as from a strain of damping times that rate"),
+};
+const struct cs_table cs_elastic_table = {ROWS(elastic_rows), .size = sizeof(struct cs_elastic),
+                                          .optional = true};
+
+static struct cs_moduli isotropic(double modulus, double poisson) {
+    return (struct cs_moduli){modulus, modulus, poisson * modulus, (1 - poisson) / 2 * modulus};
+}
+
+struct cs_moduli cs_membrane_moduli(const struct cs_elastic *elastic) {
+    const struct cs_membrane_keys *keys = &elastic->membrane;
+    if (!elastic->present || !keys->present)
+        return (struct cs_moduli){0};
+    if (!isnan(keys->young))
+        return isotropic(keys->young / (1 - keys->poisson * keys->poisson), keys->poisson);
+    return (struct cs_moduli){keys->warp, keys->weft, keys->coupling, keys->shear};
+}
+
+struct cs_moduli cs_bending_moduli(const struct cs_elastic *elastic) {
+    const struct cs_bending_keys *keys = &elastic->bending;
+    if (!elastic->present || !keys->present)
+        return (struct cs_moduli){0};
+    if (!isnan(keys->stiffness))
+        return isotropic(keys->stiffness, keys->poisson);
+    return (struct cs_moduli){keys->warp, keys->weft, keys->coupling, keys->twist};
+}
+
+/* The constants of one kind, as given: the isotropic one, and the three others. */
+struct given {
+    const char *isotropic, *orthotropic; /* their names */
+    double one, three[3], coupling;
+};
+
+/* Checks that one set of constants is whole, and that energies are positive. */
+static enum cs_status check_given(const struct cs_check *at, const char *path,
+                                  const struct given *given) {
+    int n = 0;
+    for (int k = 0; k < 3; k++)
+        n += !isnan(given->three[k]);
+    if (n + !isnan(given->one) == 0)
+        return cs_check_refuse(at, path, "found no constants, expected %s, or %s",
+                               given->isotropic, given->orthotropic);
+    if (!isnan(given->one) && n > 0)
+        return cs_check_refuse(at, path, "found %s and others, expected %s, or %s",
+                               given->isotropic, given->isotropic, given->orthotropic);
+    if (isnan(given->one) && n < 3)
+        return cs_check_refuse(at, path, "found %d of %s, expected all three", n,
+                               given->orthotropic);
+    if (n == 3 && !(given->coupling * given->coupling < given->three[0] * given->three[1]))
+        return cs_check_refuse(at, path,
+                               "coupling = %.9g, expected less than sqrt(warp weft) = %.9g in "
+                               "magnitude",
+                               given->coupling, sqrt(given->three[0] * given->three[1]));
+    return CS_OK;
+}
+
+enum cs_status cs_elastic_check(const struct cs_check *at, const char *body,
+                                const struct cs_body *of) {
+    const struct cs_membrane_keys *membrane = &of->elastic.membrane;
+    const struct cs_bending_keys *bending = &of->elastic.bending;
+    char path[128];
+    if (!of->elastic.present)
+        return CS_OK;
+    snprintf(path, sizeof path, "%s.elastic", body);
+    if (!membrane->present)
+        return cs_check_refuse(at, path, "missing key \"membrane\"");
+    if (of->cloth.present && (of->cloth.grid[0] < 2 || of->cloth.grid[1] < 2))
+        return cs_check_refuse(at, path,
+                               "a cloth of one row or column has no area, expected at "
+                               "least 2 rows and columns");
+    snprintf(path, sizeof path, "%s.elastic.membrane", body);
+    if (check_given(at, path,
+                    &(struct given){"young",
+                                    "warp, weft and shear",
+                                    membrane->young,
+                                    {membrane->warp, membrane->weft, membrane->shear},
+                                    membrane->coupling}))
+        return at->error->status;
+    snprintf(path, sizeof path, "%s.elastic.bending", body);
+    if (bending->present &&
+        check_given(at, path,
+                    &(struct given){"stiffness",
+                                    "warp, weft and twist",
+                                    bending->stiffness,
+                                    {bending->warp, bending->weft, bending->twist},
+                                    bending->coupling}))
+        return at->error->status;
+    return CS_OK;
+}
