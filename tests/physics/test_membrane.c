@@ -297,3 +297,50 @@ static void end_of(const char *method, const char *value, double *state) {
 TEST(methods_with_error_control_agree) {
     methods_check_agreement(end_of, "", 96);
 }
+
+/* Iterations per solve to 1e-6 of a sheet of 1 m that hangs by two corners, in steps of 1/60 s.
+ */
+static double iterations_of(int cells, bool mesh) {
+    struct fixture sheet;
+    char shape[80] = "\"mesh\": {\"file\": \"sheet.obj\"}";
+    sheet_write(SHEET_IRREGULAR, cells + 1, cells + 1, 1, 1, 0);
+    if (!mesh)
+        snprintf(shape, sizeof shape, "\"cloth\": {\"grid\": [%d, %d], \"size\": [1, 1]}",
+                 cells + 1, cells + 1);
+    fixture_open(
+        &sheet, "implicit-linearised:rtol=1e-6",
+        "{\"bodies\": [{%s, \"pins\": [0, %d], \"elastic\": {\"membrane\": {\"young\": "
+        "1000}, \"bending\": 1e-6}, \"mass\": {\"areal_density\": 0.2}}]}",
+        shape, cells);
+    fixture_start(&sheet);
+    fixture_frames(&sheet, 4);
+    const struct cs_counts *counts = &sheet.session.run.counts;
+    const double found = (double)counts->solve_iterations / (double)counts->solves;
+    fixture_close(&sheet);
+    return found;
+}
+
+TEST(iterations_hardly_grow_with_the_mesh) {
+    for (int mesh = 0; mesh < 2; mesh++) {
+        const double coarse = iterations_of(32, mesh), fine = iterations_of(128, mesh);
+        ck_assert_msg(fine < 45 && fine < 1.5 * coarse,
+                      "%s: %.1f iterations at 32 cells, %.1f at 128", mesh ? "mesh" : "grid",
+                      coarse, fine);
+    }
+}
+
+/* An even stretch of 10 % along the rows, which narrows the sheet by Poisson's ratio. */
+TEST(strain_is_the_principal_one) {
+    for (int pattern = -1; pattern <= SHEET_IRREGULAR; pattern++) {
+        struct fixture sheet;
+        double F[2][2], strain[81];
+        open_sheet(&sheet, 8, pattern);
+        stretch(M_PI / 5, (1.1 * 1.1 - 1) / 2, F);
+        deform(&sheet, F);
+        ck_assert_double_eq_tol(cs_diagnostics_strain(sheet.system, sheet.x), 0.1, 1e-12);
+        cs_diagnostics_particle_strain(sheet.system, sheet.x, strain);
+        for (int i = 0; i < 81; i++)
+            ck_assert_double_eq_tol(strain[i], 0.1, 1e-12);
+        fixture_close(&sheet);
+    }
+}

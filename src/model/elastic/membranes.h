@@ -24,6 +24,9 @@
 /* Numbers of a triangle at rest: P row by row, then the squares of L in m2. */
 enum { CS_MEMBRANE_P = 9, CS_MEMBRANE_REST = 12 };
 
+/* No triangle at the other side of an edge. */
+#define CS_NO_SIDE UINT32_MAX
+
 /* The triangles of one body. */
 struct cs_membrane {
     uint32_t body, first, count; /* of particles */
@@ -49,6 +52,10 @@ struct cs_membranes {
     double *tensions; /* (3, n_triangles) -ck t, clamped with psd */
     double *kept;     /* (6, particles) diagonal blocks */
     double ck, cd;    /* its coefficients */
+    /* edges as springs for its preconditioner (membrane_surrogate.h); likewise */
+    struct cs_spring_run *runs; /* (n_runs) body by body; numbers go on after the springs' */
+    uint32_t n_runs, n_edges;
+    uint32_t *sides; /* (n_edges, 2) 4 t + edge of the triangles at an edge; CS_NO_SIDE */
 };
 
 /* Builds system->membranes from the elastic bodies of the scene. CS_ERR_MEMORY. */

@@ -1,7 +1,7 @@
 /* Measures a state: energies, strains and forces. */
 #include "model/force/diagnostics.h"
 
-#include "model/elastic/membranes.h"
+#include "model/elastic/membrane_strain.h"
 #include "model/force/terms.h"
 
 #include <math.h>
@@ -50,7 +50,8 @@ double cs_diagnostics_shortest(const struct cs_system *system) {
 }
 
 double cs_diagnostics_strain(const struct cs_system *system, const double *x) {
-    return cs_springs_largest_strain(&system->springs, system->view.n, x);
+    return fmax(cs_springs_largest_strain(&system->springs, system->view.n, x),
+                cs_membranes_largest_strain(system, x));
 }
 
 /* Comparisons are negated, to count a NaN as too fast. */
@@ -85,6 +86,7 @@ void cs_diagnostics_particle_strain(const struct cs_system *system, const double
                     out[ends[e]] = strain;
         }
     }
+    cs_membranes_particle_strain(system, x, out);
 }
 
 void cs_diagnostics_particle_force(const struct cs_system *system, double t, const double *x,

@@ -40,11 +40,12 @@ static inline double cs_energy_without_gravity(const struct cs_energy *energy) {
 /* Shortest rest length in m of all springs and edges of membranes; 0 without any. */
 double cs_diagnostics_shortest(const struct cs_system *system);
 
-/* Largest |l / L - 1| over all springs; 0 without springs. */
+/* Largest |l / L - 1| over all springs, and largest principal strain of membranes; 0 without
+ * both. */
 double cs_diagnostics_strain(const struct cs_system *system, const double *x);
 
-/* The same per particle: the strain of largest magnitude among its springs, with its sign; out
- * (n). */
+/* The same per particle: the strain of largest magnitude among its springs and triangles, with
+ * its sign; out (n). */
 void cs_diagnostics_particle_strain(const struct cs_system *system, const double *x,
                                     double *out);
 

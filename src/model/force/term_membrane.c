@@ -1,6 +1,7 @@
 /* Membranes of elastic bodies as a term: the kernels of elastic/membrane_forces.h. */
 #include "model/elastic/membrane_forces.h"
 #include "model/elastic/membrane_matrix.h"
+#include "model/elastic/membrane_surrogate.h"
 #include "model/force/term.h"
 
 #include <string.h>
@@ -8,6 +9,11 @@
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool acts = cs_scene_first_elastic(scene) < scene->bodies.n;
     return (struct cs_plan_row){.built = acts, .reason = acts ? "bodies are elastic" : NULL};
+}
+
+static enum cs_status build(struct cs_system *system, struct cs_error *error) {
+    return cs_membranes_build(system, error) ? error->status
+                                             : cs_membrane_surrogate_build(system, error);
 }
 
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
@@ -46,7 +52,7 @@ const struct cs_term cs_term_membrane = {
     .name = "membrane",
     .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
     .plan = plan,
-    .build = cs_membranes_build,
+    .build = build,
     .rampable_keys = ramps,
     .prepare = cs_membranes_prepare,
     .add_force = cs_membranes_add,

@@ -16,6 +16,7 @@
 
 #include "base/vector.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
+#include "model/elastic/membrane_surrogate.h"
 #include "model/force/terms.h"
 
 #include <clothsim/clones.h>
@@ -29,8 +30,8 @@ enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *
                               struct cs_arena *arena, struct cs_error *error) {
     const size_t n = system->view.n;
     *linear = (struct cs_linear){.system = system};
-    linear->factors =
-        cs_arena_alloc_array(arena, 4 * (size_t)system->springs.n, sizeof(double), error);
+    const size_t n_springs = (size_t)system->springs.n + cs_membrane_surrogate_count(system);
+    linear->factors = cs_arena_alloc_array(arena, 4 * n_springs, sizeof(double), error);
     linear->mass = cs_arena_alloc_array(arena, n, sizeof(double), error);
     linear->inverse = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
     if (cs_terms_have_blocks(system))
@@ -108,10 +109,14 @@ static double mean_mass(const struct cs_system *system) {
  * scale for single precision. Lack of memory is noted in the pairs, whose owner reports it. */
 static void set_multigrid(struct cs_linear *linear) {
     struct cs_pairs *pairs = linear->system->pairs;
+    const struct cs_membranes *membranes = linear->system->membranes;
     const double mass = mean_mass(linear->system), cm = linear->matrix.cm;
+    if (membranes)
+        cs_membrane_surrogate_factor(linear->system, linear->factors);
     const struct cs_multigrid_matrix matrix = {.factors = linear->factors,
                                                .mass = linear->mass,
                                                .blocks = linear->blocks,
+                                               .as_springs = membranes ? membranes->kept : NULL,
                                                .pairs = pairs,
                                                .trace_min = LEAST * mass * cm,
                                                .scale = mass * (cm + linear->stiffness)};

@@ -11,6 +11,7 @@
 #include "model/solver/multigrid.h"
 
 #include "base/pool.h"
+#include "model/elastic/membranes.h"
 #include "model/force/terms.h"
 #include "model/solver/contact_coupling.h"
 #include "model/solver/extra_springs.h"
@@ -58,22 +59,26 @@ static bool is_joint(const struct cs_scene *scene) {
     return false;
 }
 
-/* Describes a body to its hierarchy: its range of particles and its range of runs of springs.
+/* Describes a body to its hierarchy: its range of particles and its range of runs of springs,
+ * or of those that stand for its membrane.
  * Runs of one body stand together, in the order of the bodies. */
 static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t body) {
     const struct cs_body_range *range = system->bodies + body;
-    const struct cs_springs *springs = &system->springs;
+    const struct cs_membranes *membranes = system->membranes;
+    const bool elastic = cs_scene_bodies(system->scene)[body].elastic.present;
+    const struct cs_spring_run *runs = elastic ? membranes->runs : system->springs.runs;
+    const uint32_t n_runs = elastic ? membranes->n_runs : system->springs.n_runs;
     uint32_t begin = 0;
-    while (begin < springs->n_runs && springs->runs[begin].body != body)
+    while (begin < n_runs && runs[begin].body != body)
         begin++;
     uint32_t end = begin;
-    while (end < springs->n_runs && springs->runs[end].body == body)
+    while (end < n_runs && runs[end].body == body)
         end++;
     return (struct cs_hierarchy){
         .first = range->first,
         .count = range->count,
         .columns = range->mesh ? ROW : range->columns,
-        .runs = springs->runs + begin,
+        .runs = runs + begin,
         .n_runs = end - begin,
         .has_particle_blocks = cs_terms_have_blocks(system),
         .has_body_contact = meets_any(system->scene, body, 0, system->scene->bodies.n)};
@@ -215,7 +220,7 @@ CS_CLONES static void load_diagonal(void *arg, uint32_t block) {
     const struct cs_hierarchy *hierarchy = loading->exchange.hierarchy;
     const struct cs_level *level = hierarchy->levels;
     const double *mass = loading->matrix->mass, *blocks = loading->matrix->blocks;
-    const double *inner = loading->inner;
+    const double *inner = loading->inner, *as_springs = loading->matrix->as_springs;
     const double *inv_mass = loading->exchange.multigrid->system->inv_mass;
     const size_t n = loading->exchange.multigrid->system->view.n;
     for (uint32_t k = 0; k < rows_of_block(hierarchy); k++) {
@@ -226,6 +231,8 @@ CS_CLONES static void load_diagonal(void *arg, uint32_t block) {
                 double value = on_diagonal[c] ? mass[at] : 0;
                 if (blocks)
                     value += blocks[c * n + at];
+                if (as_springs)
+                    value -= as_springs[c * n + at];
                 if (inner)
                     value -= inner[c * n + at];
                 /* 0 marks a dead cell: a pinned particle does not move */

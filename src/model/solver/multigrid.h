@@ -57,9 +57,12 @@ bool cs_multigrid_is_in_reserve(const struct cs_scene *scene);
 
 /* The matrix to approximate: the springs' factors, and a mass and a block per particle. */
 struct cs_multigrid_matrix {
-    const double *factors;        /* 4 doubles per spring, as cs_springs_factor makes them */
+    const double *factors;        /* 4 doubles per spring, as cs_springs_factor makes them,
+                                     then of the membranes' (membrane_surrogate.h) */
     const double *mass;           /* (n) a number times the identity */
     const double *blocks;         /* (6,n) positive semi-definite; NULL: 0 */
+    const double *as_springs;     /* (6,n) parts of `blocks` that springs among the factors
+                                     stand for; NULL: none */
     const struct cs_pairs *pairs; /* their diagonal blocks are in `blocks`; NULL: none */
     double trace_min;             /* smallest trace of a pair's block that gets extra springs */
     double scale;                 /* about the largest entry of the matrix */
