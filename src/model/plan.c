@@ -94,6 +94,8 @@ static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
     decide(plan, CS_FEATURE_SPRINGS, springs, "the bodies have springs",
            cs_scene_first_matched(scene) < plan->n_bodies
                ? "no stiffness above 0, or shape_matching instead"
+           : cs_scene_first_elastic(scene) < plan->n_bodies
+               ? "no stiffness above 0, or elastic instead"
                : "no stiffness above 0");
     decide(plan, CS_FEATURE_DAMPING,
            springs && (any_body(scene, has_damping) || cs_event_key_changes(scene, ".damping")),

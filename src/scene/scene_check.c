@@ -106,9 +106,11 @@ static enum cs_status check_elastic(const struct cs_check *at, const char *body,
              spring  ? spring
              : other ? other
                      : "");
-    if (spring || other)
+    if (spring)
         return cs_check_refuse(at, path,
                                "elastic replaces the springs, expected one of the two");
+    if (other)
+        return cs_check_refuse(at, path, "it acts on springs, which elastic replaces");
     return cs_elastic_check(at, body, of);
 }
 

@@ -59,15 +59,13 @@ static bool is_joint(const struct cs_scene *scene) {
     return false;
 }
 
-/* Describes a body to its hierarchy: its range of particles and its range of runs of springs,
- * or of those that stand for its membrane.
- * Runs of one body stand together, in the order of the bodies. */
+/* Describes a body to its hierarchy: its particles, and its runs of springs or of those that
+ * stand for its membrane. Runs of one body stand together, in the order of the bodies. */
 static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t body) {
     const struct cs_body_range *range = system->bodies + body;
-    const struct cs_membranes *membranes = system->membranes;
     const bool elastic = cs_scene_bodies(system->scene)[body].elastic.present;
-    const struct cs_spring_run *runs = elastic ? membranes->runs : system->springs.runs;
-    const uint32_t n_runs = elastic ? membranes->n_runs : system->springs.n_runs;
+    const struct cs_spring_run *runs = elastic ? system->membranes->runs : system->springs.runs;
+    const uint32_t n_runs = elastic ? system->membranes->n_runs : system->springs.n_runs;
     uint32_t begin = 0;
     while (begin < n_runs && runs[begin].body != body)
         begin++;
@@ -231,8 +229,7 @@ CS_CLONES static void load_diagonal(void *arg, uint32_t block) {
                 double value = on_diagonal[c] ? mass[at] : 0;
                 if (blocks)
                     value += blocks[c * n + at];
-                if (as_springs)
-                    value -= as_springs[c * n + at];
+                value -= as_springs ? as_springs[c * n + at] : 0;
                 if (inner)
                     value -= inner[c * n + at];
                 /* 0 marks a dead cell: a pinned particle does not move */
