@@ -2,7 +2,6 @@
  * without names or lengths; only texts have their length. */
 #include "base/serialise.h"
 
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,21 +43,6 @@ void cs_serialiser_bytes(struct cs_serialiser *record, void *value, size_t n) {
         return;
     record->failed =
         record->is_reading ? !read_bytes(record, value, n) : !write_bytes(record, value, n);
-}
-
-void cs_serialiser_text(struct cs_serialiser *record, struct cs_text *text) {
-    size_t length = text->length;
-    CS_SERIALISER(record, length);
-    if (!record->is_reading)
-        cs_serialiser_bytes(record, text->bytes, length);
-    if (!record->is_reading || record->failed)
-        return;
-    record->failed = length > record->length - record->position || length > INT_MAX;
-    if (record->failed)
-        return;
-    cs_text_add(text, "%.*s", (int)length, record->bytes + record->position);
-    record->position += length;
-    record->failed = text->failed;
 }
 
 void cs_serialiser_begin(struct cs_serialiser *record) {

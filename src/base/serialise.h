@@ -29,9 +29,6 @@ void cs_serialiser_bytes(struct cs_serialiser *record, void *value, size_t n);
 /* Writes or reads a variable or array of fixed size. */
 #define CS_SERIALISER(record, value) cs_serialiser_bytes(record, &(value), sizeof(value))
 
-/* Writes a text, or reads one into an empty text. */
-void cs_serialiser_text(struct cs_serialiser *record, struct cs_text *text);
-
 /* Empties the buffer for writing again; its memory is kept. */
 void cs_serialiser_begin(struct cs_serialiser *record);
 

@@ -48,7 +48,8 @@ static bool is_exported(const struct cs_export_writer *writer, const char *name)
 }
 
 bool cs_output_is_result(const char *name) {
-    static const char *const alone[] = {"run.json", "run.checkpoint", "manifest.txt"};
+    static const char *const alone[] = {"run.json", "run.checkpoint", "run.frames",
+                                        "run.frames.part", "manifest.txt"};
     bool is_ours = is_numbered(name, "frame_", ".png");
     for (size_t k = 0; k < sizeof alone / sizeof *alone; k++)
         is_ours = is_ours || !strcmp(name, alone[k]);

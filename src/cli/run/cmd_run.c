@@ -175,25 +175,6 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_error *error
     return CS_OK;
 }
 
-/* Writes run.json beside the pictures, and the copy that --json asks for. */
-static enum cs_status write_json(const struct cs_job *job, struct cs_error *error) {
-    const struct cs_job_settings *settings = job->settings;
-    struct cs_text json = {0}, path = {0};
-    if (!cs_job_wants_json(settings))
-        return CS_OK;
-    cs_report_print_json(job, &json);
-    cs_text_add(&path, "%s/run.json", settings->folder);
-    if (json.failed || path.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the report");
-    if (!error->status && settings->session.render)
-        cs_file_write(cs_text_get(&path), json.bytes, json.length, error);
-    if (!error->status && settings->json)
-        cs_print_file(settings->json, &json, error);
-    cs_text_finish(&json);
-    cs_text_finish(&path);
-    return error->status;
-}
-
 /* Prints the table to standard output, or to standard error if an output uses the former. */
 static enum cs_status print_table(const struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
@@ -256,10 +237,10 @@ static enum cs_status run_here(void *ctx, struct cs_error *error) {
     cs_job_run(&job, &options->job, error);
     /* a failed step leaves the report of the frames before; its own message stands */
     struct cs_error later = {0};
-    if (job.failure && !write_json(&job, &later))
+    if (job.failure && !cs_report_write_json(&job, &later))
         cs_run_outputs_sign(&job, &later);
-    if (!error->status && !write_json(&job, error) && !cs_run_outputs_sign(&job, error) &&
-        !print_table(&job, error))
+    if (!error->status && !cs_report_write_json(&job, error) &&
+        !cs_run_outputs_sign(&job, error) && !print_table(&job, error))
         print_outcome(&job, options->strict, error);
     cs_job_finish(&job);
     cs_run_range_finish(&range);

@@ -9,6 +9,7 @@
 #include "draw/render.h"
 #include "io/export/export.h"
 #include "io/frame_writer.h"
+#include "io/row_log.h"
 #include "sim/energy_ledger.h"
 #include "sim/run.h"
 #include "study/frame_picture.h"
@@ -88,20 +89,6 @@ struct cs_run_camera {
  * if they are large enough in each frame, else a path. Errors are in camera->error. */
 void cs_run_camera_find(struct cs_scene *scene, void *camera);
 
-/* Facts of one frame for the report. */
-struct cs_job_frame {
-    char hash[CS_HASH_DIGITS];
-    bool drawn;
-    double range[2];    /* of the colours, where drawn by a value */
-    uint64_t crossings; /* where they are counted */
-};
-
-/* Facts of all frames so far; zeroed: none. */
-struct cs_frame_log {
-    struct cs_job_frame *frames; /* owned; of frame 1 on, or of the start alone */
-    size_t capacity;
-};
-
 /* The picture that is drawn while the run goes on. */
 struct cs_job_picture {
     uint32_t number; /* of the picture */
@@ -121,13 +108,13 @@ struct cs_job {
     struct cs_picture picture;
     struct cs_frame_writer *writer;
     uint32_t frames;                    /* asked for; 0: the start is the only result */
-    struct cs_frame_log frame_log;      /* a row a frame; only where JSON is written */
+    struct cs_row_log frame_log;        /* rows of the report; open where JSON is written */
     struct cs_energy_monitor monitor;   /* is it still sound */
     struct cs_energy_monitor_row sound; /* of the last frame */
     struct cs_crossing_stats crossings; /* of crossings, where the scene asks for it */
-    struct cs_text watch_rows;          /* CSV; empty unless asked for */
+    struct cs_row_log watch_log;        /* CSV; open where it is asked for */
     struct cs_energy_ledger ledger;     /* open where it is asked for */
-    struct cs_text ledger_rows;         /* CSV of it */
+    struct cs_row_log ledger_log;       /* CSV of it */
     struct cs_text scene;               /* the resolved scene, indented by two */
     struct cs_text method;              /* "NAME:key=value,..." with every option */
     struct cs_text provenance;          /* see study/provenance_write.h */
@@ -171,11 +158,6 @@ struct cs_run_output {
     /* Stores its state between frames in a checkpoint, or loads it. */
     void (*record)(struct cs_job *job, struct cs_serialiser *record);
 };
-
-/* Rows of the log that are filled. */
-static inline uint32_t cs_job_rows(const struct cs_job *job) {
-    return job->frames ? job->session.run.frame : 1;
-}
 
 extern const struct cs_run_output cs_run_output_export, cs_run_output_hash, cs_run_output_json,
     cs_run_output_ledger, cs_run_output_pictures, cs_run_output_states, cs_run_output_trace,
@@ -231,9 +213,13 @@ enum cs_status cs_run_outputs_sign(const struct cs_job *job, struct cs_error *er
 /* Adds the table. */
 void cs_report_print_table(const struct cs_job *job, struct cs_text *out);
 
-/* Adds the JSON: every value that decides the run, versions, counts, energies, outcome and the
- * hash of each frame. */
-void cs_report_print_json(const struct cs_job *job, struct cs_text *out);
+/* Writes the report as JSON beside the pictures, and where --json asks for it: every value that
+ * decides the run, versions, counts, energies, outcome and the hash of each frame. CS_ERR_FILE,
+ * CS_ERR_MEMORY. */
+enum cs_status cs_report_write_json(struct cs_job *job, struct cs_error *error);
+/* Closes the rows of frames; they stay for a run that goes on from a checkpoint. CS_ERR_FILE.
+ */
+enum cs_status cs_run_json_close(struct cs_job *job, struct cs_error *error);
 
 /* Adds "blew up: ... at t = ... s, particle ..." or "finished". */
 void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out);

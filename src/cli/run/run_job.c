@@ -199,11 +199,9 @@ void cs_job_finish(struct cs_job *job) {
     cs_text_finish(&job->provenance);
     cs_text_finish(&job->picture_provenance);
     cs_text_finish(&job->renderer);
-    cs_text_finish(&job->watch_rows);
-    cs_text_finish(&job->ledger_rows);
+    cs_run_json_close(job, &(struct cs_error){0});
     cs_energy_ledger_close(&job->ledger);
     cs_text_finish(&job->outputs);
     cs_checkpointer_finish(&job->checkpoints);
-    free(job->frame_log.frames);
     *job = (struct cs_job){0};
 }

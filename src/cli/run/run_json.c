@@ -1,7 +1,9 @@
 /* Prints run.json: everything needed to repeat a run and to verify its result. */
+#include "base/file.h"
 #include "base/ieee_check.h"
 #include "base/json_writer.h"
 #include "base/pool.h"
+#include "cli/line/print.h"
 #include "cli/run/job_state.h"
 #include "study/contact_capacity.h"
 #include "study/provenance_write.h"
@@ -155,26 +157,8 @@ static void add_seconds(const struct cs_job *job, struct cs_text *out) {
     cs_text_add(out, "},\n");
 }
 
-static void add_frames(const struct cs_job *job, struct cs_text *out) {
-    const bool coloured = cs_picture_is_coloured(&job->session.scene);
-    cs_json_write(out, "  'frames': [");
-    for (uint32_t i = 0; i < cs_job_rows(job); i++) {
-        const struct cs_job_frame *frame = job->frame_log.frames + i;
-        const uint32_t number = job->frames ? i + 1 : 0;
-        cs_json_write(out, ",\n    {'number': %u, 'hash': %s, 'drawn': %d", number, frame->hash,
-                      frame->drawn);
-        if (frame->drawn)
-            cs_json_write(out, ", 'picture': %u", number / job->settings->frame_interval);
-        if (job->crossings.is_counted)
-            cs_json_write(out, ", 'crossings': %llu", (unsigned long long)frame->crossings);
-        if (coloured && frame->drawn)
-            cs_json_write(out, ", 'range': [%g, %g]", frame->range[0], frame->range[1]);
-        cs_text_add(out, "}");
-    }
-    cs_text_add(out, "\n  ]\n");
-}
-
-void cs_report_print_json(const struct cs_job *job, struct cs_text *out) {
+/* All of it up to the rows of frames. */
+static void print_report(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     cs_json_write(out, "{\n  'schema': %u,\n", SCHEMA_VERSION);
     add_versions(job, out);
@@ -191,46 +175,113 @@ void cs_report_print_json(const struct cs_job *job, struct cs_text *out) {
     cs_json_write(out, "  'state_hash': %s,\n", job->hash);
     add_seconds(job, out);
     cs_text_add(out, "  \"scene\": %s,\n", cs_text_get(&job->scene));
-    add_frames(job, out);
-    cs_text_add(out, "}\n");
+    cs_json_write(out, "  'frames': [\n");
 }
 
-/* Doubles the log until it has so many frames. Returns false if out of memory. */
-static bool has_room(struct cs_frame_log *kept, size_t frames) {
-    if (frames <= kept->capacity)
-        return true;
-    void *larger =
-        cs_arena_realloc(kept->frames, &kept->capacity, frames, sizeof *kept->frames);
-    kept->frames = larger ? larger : kept->frames;
-    return larger;
-}
-
-/* The row of a frame; its picture is noted there once it is begun. */
-static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
-    const uint32_t n = cs_job_rows(job);
-    if (!cs_job_wants_json(job->settings))
-        return CS_OK;
-    if (!has_room(&job->frame_log, n))
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the hashes of %u frames", n);
-    struct cs_job_frame *kept = job->frame_log.frames + n - 1;
-    *kept = (struct cs_job_frame){.crossings = job->crossings.last_count};
-    memcpy(kept->hash, job->hash, sizeof kept->hash);
+/* The rows of frames stand between the report and the end of its list. */
+static enum cs_status write_parts(const struct cs_job *job, const struct cs_text *report,
+                                  FILE *file, struct cs_error *error) {
+    static const char between[] = ",\n";
+    const uint64_t length = job->frame_log.length;
+    fwrite(report->bytes, 1, report->length, file);
+    if (length && cs_row_log_copy(&job->frame_log, length - strlen(between), file, error))
+        return error->status;
+    fputs(length ? "\n  ]\n}\n" : "  ]\n}\n", file);
     return CS_OK;
 }
 
-static void record_rows(struct cs_job *job, struct cs_serialiser *record) {
-    struct cs_frame_log *kept = &job->frame_log;
-    uint64_t n = cs_job_wants_json(job->settings) ? job->session.run.frame : 0;
-    CS_SERIALISER(record, n);
-    if (record->is_reading &&
-        (record->failed || n > record->length || !has_room(kept, (size_t)n)))
-        record->failed = true;
-    else
-        cs_serialiser_bytes(record, kept->frames, (size_t)n * sizeof *kept->frames);
+static enum cs_status write_file(const struct cs_job *job, const struct cs_text *report,
+                                 const char *path, struct cs_error *error) {
+    struct cs_file_out out = {0};
+    if (cs_print_is_stdout(path)) {
+        if (!write_parts(job, report, stdout, error) && (fflush(stdout) || ferror(stdout)))
+            cs_fail(error, CS_ERR_FILE, "cannot write to standard output");
+    } else if (!cs_file_create(&out, path, error)) {
+        if (write_parts(job, report, out.file, error))
+            cs_file_abandon(&out);
+        else
+            cs_file_finish(&out, error);
+    }
+    return error->status;
 }
 
-const struct cs_run_output cs_run_output_json = {
-    .option = "--json",
-    .path = offsetof(struct cs_job_settings, json),
-    .at = {[CS_RUN_START] = frame, [CS_RUN_FRAME] = frame},
-    .record = record_rows};
+enum cs_status cs_report_write_json(struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    struct cs_text report = {0}, path = {0};
+    if (!cs_job_wants_json(settings))
+        return CS_OK;
+    print_report(job, &report);
+    cs_text_add(&path, "%s/run.json", settings->folder);
+    if (report.failed || path.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the report");
+    if (!error->status && settings->session.render)
+        write_file(job, &report, cs_text_get(&path), error);
+    if (!error->status && settings->json)
+        write_file(job, &report, settings->json, error);
+    cs_text_finish(&report);
+    cs_text_finish(&path);
+    if (!error->status)
+        cs_run_json_close(job, error);
+    return error->status;
+}
+
+enum cs_status cs_run_json_close(struct cs_job *job, struct cs_error *error) {
+    if (cs_job_makes_checkpoints(job->settings))
+        return cs_row_log_finish(&job->frame_log, error);
+    cs_row_log_remove(&job->frame_log);
+    return error->status;
+}
+
+/* Opens the rows: beside the pictures or checkpoints, or without a name. */
+static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    struct cs_text path = {0};
+    if (!cs_job_wants_json(settings))
+        return CS_OK;
+    cs_text_add(&path, "%s/run.frames", settings->folder);
+    if (path.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for a path");
+    else if (settings->resume)
+        cs_row_log_resume(&job->frame_log, cs_text_get(&path), error);
+    else
+        cs_row_log_create(&job->frame_log, settings->folder ? cs_text_get(&path) : NULL, error);
+    cs_text_finish(&path);
+    return error->status;
+}
+
+/* The row of a frame, after its picture was begun. */
+static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_picture *picture = &job->has_begun;
+    const uint32_t number = job->session.run.frame;
+    const bool drawn = picture->image && picture->frame == number;
+    struct cs_text row = {0};
+    if (!cs_job_wants_json(job->settings))
+        return CS_OK;
+    cs_json_write(&row, "    {'number': %u, 'hash': %s, 'drawn': %d", number, job->hash, drawn);
+    if (drawn)
+        cs_json_write(&row, ", 'picture': %u", picture->number);
+    if (job->crossings.is_counted)
+        cs_json_write(&row, ", 'crossings': %llu",
+                      (unsigned long long)job->crossings.last_count);
+    if (drawn && cs_picture_is_coloured(&job->session.scene))
+        cs_json_write(&row, ", 'range': [%g, %g]", picture->range[0], picture->range[1]);
+    cs_text_add(&row, "},\n");
+    return cs_row_log_add(&job->frame_log, &row, error);
+}
+
+static enum cs_status settle(struct cs_job *job, struct cs_error *error) {
+    return cs_job_makes_checkpoints(job->settings) ? cs_row_log_sync(&job->frame_log, error)
+                                                   : CS_OK;
+}
+
+static void record_rows(struct cs_job *job, struct cs_serialiser *record) {
+    cs_row_log_record(&job->frame_log, record);
+}
+
+const struct cs_run_output cs_run_output_json = {.option = "--json",
+                                                 .path = offsetof(struct cs_job_settings, json),
+                                                 .at = {[CS_RUN_BEGIN] = begin,
+                                                        [CS_RUN_START] = frame,
+                                                        [CS_RUN_FRAME] = frame,
+                                                        [CS_RUN_SETTLE] = settle},
+                                                 .record = record_rows};

@@ -5,15 +5,15 @@
 #include "io/file_conflicts.h"
 #include "study/provenance_write.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Order of the calls per frame: the report's row must exist before a picture enters its range.
+/* Order of the calls per frame: the report's row says which picture was begun, in which range.
  */
 static const struct cs_run_output *const outputs[] = {
-    &cs_run_output_trace,  &cs_run_output_json,   &cs_run_output_watch,
-    &cs_run_output_ledger, &cs_run_output_states, &cs_run_output_pictures,
-    &cs_run_output_export, &cs_run_output_hash,
+    &cs_run_output_trace,    &cs_run_output_watch, &cs_run_output_ledger, &cs_run_output_states,
+    &cs_run_output_pictures, &cs_run_output_json,  &cs_run_output_export, &cs_run_output_hash,
 };
 enum { OUTPUTS = sizeof outputs / sizeof *outputs };
 _Static_assert((int)OUTPUTS <= (int)CS_RUN_OUTPUTS_MAX, "too many outputs for one run");
@@ -44,16 +44,25 @@ static enum cs_status check_claims(const struct cs_job *job, struct cs_error *er
     if (!conflicts)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of files");
     claim_inputs(&job->session, conflicts);
-    for (int k = 0; k < OUTPUTS && !error->status; k++) {
-        const char *path = path_of(job, outputs[k]);
-        if (path && outputs[k]->is_ours)
-            cs_file_conflicts_folder(conflicts, path, outputs[k]->is_ours, outputs[k]->option,
+    /* files first: each folder is held against them */
+    for (int k = 0; k < OUTPUTS && !error->status; k++)
+        if (path_of(job, outputs[k]) && !outputs[k]->is_ours)
+            cs_file_conflicts_output(conflicts, path_of(job, outputs[k]), outputs[k]->option,
                                      error);
-        else if (path)
-            cs_file_conflicts_output(conflicts, path, outputs[k]->option, error);
-    }
+    for (int k = 0; k < OUTPUTS && !error->status; k++)
+        if (path_of(job, outputs[k]) && outputs[k]->is_ours)
+            cs_file_conflicts_folder(conflicts, path_of(job, outputs[k]), outputs[k]->is_ours,
+                                     outputs[k]->option, error);
     free(conflicts);
     return error->status;
+}
+
+/* Looks for the file of an earlier run, and for the rows of one that was killed. */
+static enum cs_status check_file(const char *path, struct cs_error *error) {
+    char part[4104];
+    snprintf(part, sizeof part, "%s.part", path);
+    return cs_output_check_file(path, error) ? error->status
+                                             : cs_output_check_file(part, error);
 }
 
 enum cs_status cs_run_outputs_check(const struct cs_job *job, struct cs_error *error) {
@@ -66,7 +75,7 @@ enum cs_status cs_run_outputs_check(const struct cs_job *job, struct cs_error *e
         if (path && outputs[k]->is_ours)
             cs_output_check(path, outputs[k]->is_ours, error);
         else if (path)
-            cs_output_check_file(path, error);
+            check_file(path, error);
     }
     return error->status;
 }

@@ -120,11 +120,8 @@ static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
                                 .frame = run->frame,
                                 .time = run->t,
                                 .image = image};
-    struct cs_job_frame *row = job->frame_log.frames + cs_job_rows(job) - 1;
     memcpy(job->has_begun.hash, job->hash, sizeof job->hash);
     memcpy(job->has_begun.range, job->picture.range, sizeof job->has_begun.range);
-    memcpy(row->range, job->picture.range, sizeof row->range);
-    row->drawn = true;
     return CS_OK;
 }
 

@@ -90,77 +90,94 @@ static enum cs_status end(struct cs_job *job, struct cs_error *error) {
 const struct cs_run_output cs_run_output_trace = {
     .at = {[CS_RUN_BEGIN] = begin, [CS_RUN_FRAME] = frame, [CS_RUN_END] = end}};
 
-/* Rows are collected in memory and written at the end; lack of memory shows here. */
-static enum cs_status check(const struct cs_text *rows, struct cs_error *error) {
-    return rows->failed ? cs_fail(error, CS_ERR_MEMORY, "out of memory for the rows of frames")
-                        : CS_OK;
+/* Opens the rows of a file; a resumed run goes on with those that its checkpoint has loaded. */
+static enum cs_status open_rows(const struct cs_job *job, struct cs_row_log *log,
+                                const char *path, struct cs_error *error) {
+    return job->settings->resume ? cs_row_log_resume(log, path, error)
+                                 : cs_row_log_create(log, path, error);
 }
 
-/* Writes the rows of a whole or failed run; the first failure wins. */
-static enum cs_status write_rows(const char *path, struct cs_text *rows,
-                                 struct cs_error *error) {
-    struct cs_error failure = {0};
-    if (path && !rows->failed && cs_print_file(path, rows, &failure) && !error->status)
-        *error = failure;
-    return error->status;
+/* A checkpoint on disk has the rows before it there as well. */
+static enum cs_status settle_rows(const struct cs_job *job, const struct cs_row_log *log,
+                                  struct cs_error *error) {
+    return cs_job_makes_checkpoints(job->settings) ? cs_row_log_sync(log, error) : CS_OK;
 }
 
 static enum cs_status watch_frame(struct cs_job *job, struct cs_error *error) {
-    if (job->settings->monitor_file)
-        cs_energy_monitor_print_row(&job->sound, job->session.run.frame, &job->watch_rows);
-    return check(&job->watch_rows, error);
+    struct cs_text row = {0};
+    if (!job->settings->monitor_file)
+        return CS_OK;
+    cs_energy_monitor_print_row(&job->sound, job->session.run.frame, &row);
+    return cs_row_log_add(&job->watch_log, &row, error);
 }
 
-/* Column names and the start state; a resumed run has loaded its rows with the checkpoint. */
+/* Column names and the start state. */
 static enum cs_status watch_begin(struct cs_job *job, struct cs_error *error) {
-    if (job->settings->resume)
-        return CS_OK;
-    if (job->settings->monitor_file)
-        cs_energy_monitor_print_head(&job->watch_rows);
-    return watch_frame(job, error);
+    struct cs_text head = {0};
+    const char *path = job->settings->monitor_file;
+    if (!path || open_rows(job, &job->watch_log, path, error) || job->settings->resume)
+        return error->status;
+    cs_energy_monitor_print_head(&head);
+    return cs_row_log_add(&job->watch_log, &head, error) ? error->status
+                                                         : watch_frame(job, error);
 }
 
 static void watch_record(struct cs_job *job, struct cs_serialiser *record) {
-    cs_serialiser_text(record, &job->watch_rows);
+    cs_row_log_record(&job->watch_log, record);
+}
+
+static enum cs_status watch_settle(struct cs_job *job, struct cs_error *error) {
+    return settle_rows(job, &job->watch_log, error);
 }
 
 static enum cs_status watch_end(struct cs_job *job, struct cs_error *error) {
-    return write_rows(job->settings->monitor_file, &job->watch_rows, error);
+    return cs_row_log_finish(&job->watch_log, error);
 }
 
 const struct cs_run_output cs_run_output_watch = {
     .option = "--monitor",
     .path = offsetof(struct cs_job_settings, monitor_file),
-    .at =
-        {[CS_RUN_BEGIN] = watch_begin, [CS_RUN_FRAME] = watch_frame, [CS_RUN_END] = watch_end},
+    .at = {[CS_RUN_BEGIN] = watch_begin,
+           [CS_RUN_FRAME] = watch_frame,
+           [CS_RUN_SETTLE] = watch_settle,
+           [CS_RUN_END] = watch_end},
     .record = watch_record};
 
 static enum cs_status ledger_frame(struct cs_job *job, struct cs_error *error) {
-    if (job->settings->ledger)
-        cs_energy_ledger_print_row(&job->ledger, job->session.run.frame, &job->ledger_rows);
-    return check(&job->ledger_rows, error);
+    struct cs_text row = {0};
+    if (!job->settings->ledger)
+        return CS_OK;
+    cs_energy_ledger_print_row(&job->ledger, job->session.run.frame, &row);
+    return cs_row_log_add(&job->ledger_log, &row, error);
 }
 
 /* A resumed ledger continues from the loaded state. */
 static enum cs_status ledger_begin(struct cs_job *job, struct cs_error *error) {
-    if (!job->settings->ledger)
-        return CS_OK;
+    struct cs_text head = {0};
+    const char *path = job->settings->ledger;
+    if (!path || open_rows(job, &job->ledger_log, path, error))
+        return error->status;
     if (job->settings->resume) {
         cs_energy_ledger_resume(&job->ledger, job->session.run.t);
         return CS_OK;
     }
-    cs_energy_ledger_print_head(&job->ledger_rows);
-    return ledger_frame(job, error);
+    cs_energy_ledger_print_head(&head);
+    return cs_row_log_add(&job->ledger_log, &head, error) ? error->status
+                                                          : ledger_frame(job, error);
 }
 
 static void ledger_record(struct cs_job *job, struct cs_serialiser *record) {
-    cs_serialiser_text(record, &job->ledger_rows);
+    cs_row_log_record(&job->ledger_log, record);
     CS_SERIALISER(record, job->ledger.work);
     CS_SERIALISER(record, job->ledger.couple);
 }
 
+static enum cs_status ledger_settle(struct cs_job *job, struct cs_error *error) {
+    return settle_rows(job, &job->ledger_log, error);
+}
+
 static enum cs_status ledger_end(struct cs_job *job, struct cs_error *error) {
-    return write_rows(job->settings->ledger, &job->ledger_rows, error);
+    return cs_row_log_finish(&job->ledger_log, error);
 }
 
 const struct cs_run_output cs_run_output_ledger = {.option = "--ledger",
@@ -168,6 +185,7 @@ const struct cs_run_output cs_run_output_ledger = {.option = "--ledger",
                                                        offsetof(struct cs_job_settings, ledger),
                                                    .at = {[CS_RUN_BEGIN] = ledger_begin,
                                                           [CS_RUN_FRAME] = ledger_frame,
+                                                          [CS_RUN_SETTLE] = ledger_settle,
                                                           [CS_RUN_END] = ledger_end},
                                                    .record = ledger_record};
 

@@ -1,0 +1,165 @@
+/* Appends rows to a file, cuts it back, and renames it at the end. */
+#include "io/row_log.h"
+
+#include "base/file.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static enum cs_status fail(const struct cs_row_log *log, struct cs_error *error) {
+    return cs_fail(error, cs_file_status(errno), "cannot write \"%s\": %s",
+                   *log->path ? log->path : "the rows of frames", strerror(errno));
+}
+
+static bool is_stdout(const struct cs_row_log *log) {
+    return !strcmp(log->path, "-");
+}
+
+/* Sets the names; "" for a file without one. */
+static enum cs_status set_path(struct cs_row_log *log, const char *path,
+                               struct cs_error *error) {
+    const int length = snprintf(log->path, sizeof log->path, "%s", path ? path : "");
+    snprintf(log->part, sizeof log->part, "%s.part", log->path);
+    return length < (int)sizeof log->path
+               ? CS_OK
+               : cs_fail(error, CS_ERR_FILE, "the path \"%.60s...\" is too long", path);
+}
+
+/* Opens the file that rows are added to, empty. */
+static enum cs_status open_part(struct cs_row_log *log, struct cs_error *error) {
+    log->file = is_stdout(log) ? stdout : *log->path ? fopen(log->part, "w+e") : tmpfile();
+    return log->file ? CS_OK : fail(log, error);
+}
+
+enum cs_status cs_row_log_create(struct cs_row_log *log, const char *path,
+                                 struct cs_error *error) {
+    *log = (struct cs_row_log){0};
+    return set_path(log, path, error) ? error->status : open_part(log, error);
+}
+
+/* The hash of the rows up to this one, from that of the rows before. */
+static void add_hash(char hash[CS_HASH_DIGITS], const char *row, size_t length) {
+    char both[2 * CS_HASH_DIGITS] = "";
+    memcpy(both, hash, CS_HASH_DIGITS);
+    cs_hash_bytes(row, length, both + CS_HASH_DIGITS);
+    cs_hash_bytes(both, sizeof both, hash);
+}
+
+enum cs_status cs_row_log_add(struct cs_row_log *log, struct cs_text *row,
+                              struct cs_error *error) {
+    if (row->failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the rows of frames");
+    else if (log->file && (fwrite(row->bytes, 1, row->length, log->file) != row->length ||
+                           fflush(log->file)))
+        fail(log, error);
+    else {
+        add_hash(log->hash, row->bytes, row->length);
+        log->length += row->length;
+    }
+    cs_text_finish(row);
+    return error->status;
+}
+
+void cs_row_log_record(struct cs_row_log *log, struct cs_serialiser *record) {
+    CS_SERIALISER(record, log->length);
+    CS_SERIALISER(record, log->hash);
+}
+
+enum cs_status cs_row_log_sync(const struct cs_row_log *log, struct cs_error *error) {
+    return log->file && !is_stdout(log) && fdatasync(fileno(log->file)) ? fail(log, error)
+                                                                        : CS_OK;
+}
+
+/* Reads rows up to the length of the record, and adds them to `copy` if there is one. Returns
+ * true if they are those of the record. */
+static bool read_rows(const struct cs_row_log *log, FILE *from, FILE *copy) {
+    char hash[CS_HASH_DIGITS] = "", *row = NULL;
+    size_t capacity = 0;
+    uint64_t at = 0;
+    ssize_t length;
+    while (at < log->length && (length = getline(&row, &capacity, from)) > 0) {
+        add_hash(hash, row, (size_t)length);
+        at += (uint64_t)length;
+        if (copy)
+            fwrite(row, 1, (size_t)length, copy);
+    }
+    free(row);
+    return at == log->length && !memcmp(hash, log->hash, sizeof hash);
+}
+
+/* Takes over PATH.part, and cuts off what was added after the record. */
+static bool resume_part(struct cs_row_log *log) {
+    log->file = fopen(log->part, "r+e");
+    if (log->file && read_rows(log, log->file, NULL) &&
+        !ftruncate(fileno(log->file), (off_t)log->length) &&
+        !fseeko(log->file, (off_t)log->length, SEEK_SET))
+        return true;
+    if (log->file)
+        fclose(log->file);
+    log->file = NULL;
+    return false;
+}
+
+/* Copies the rows of PATH, which stays until the end. */
+static enum cs_status resume_whole(struct cs_row_log *log, struct cs_error *error) {
+    FILE *whole = fopen(log->path, "re");
+    const bool good = whole && read_rows(log, whole, NULL);
+    if (!good)
+        cs_fail(error, CS_ERR_FILE,
+                "\"%s\": it does not begin with the rows that the checkpoint goes on with",
+                log->path);
+    else if (!open_part(log, error)) {
+        rewind(whole);
+        if (!read_rows(log, whole, log->file) || fflush(log->file))
+            fail(log, error);
+    }
+    if (whole)
+        fclose(whole);
+    return error->status;
+}
+
+enum cs_status cs_row_log_resume(struct cs_row_log *log, const char *path,
+                                 struct cs_error *error) {
+    if (set_path(log, path, error))
+        return error->status;
+    if (is_stdout(log))
+        return open_part(log, error);
+    return resume_part(log) ? CS_OK : resume_whole(log, error);
+}
+
+enum cs_status cs_row_log_copy(const struct cs_row_log *log, uint64_t bytes, FILE *out,
+                               struct cs_error *error) {
+    char block[1 << 14];
+    rewind(log->file);
+    while (bytes > 0) {
+        const size_t n = bytes < sizeof block ? (size_t)bytes : sizeof block;
+        if (fread(block, 1, n, log->file) != n)
+            return cs_fail(error, CS_ERR_FILE, "cannot read \"%s\": %s", log->part,
+                           ferror(log->file) ? strerror(errno) : "it was cut");
+        fwrite(block, 1, n, out);
+        bytes -= n;
+    }
+    return CS_OK;
+}
+
+enum cs_status cs_row_log_finish(struct cs_row_log *log, struct cs_error *error) {
+    FILE *file = log->file;
+    log->file = NULL;
+    if (!file || is_stdout(log))
+        return error->status;
+    const bool cut = !ftruncate(fileno(file), (off_t)log->length);
+    if ((fclose(file) != 0 || !cut || rename(log->part, log->path)) && !error->status)
+        fail(log, error);
+    return error->status;
+}
+
+void cs_row_log_remove(struct cs_row_log *log) {
+    if (log->file && !is_stdout(log)) {
+        fclose(log->file);
+        if (*log->path)
+            unlink(log->part);
+    }
+    log->file = NULL;
+}

@@ -1,0 +1,111 @@
+/* A log of rows goes on where a record was made, and not after other rows. */
+#include "base/file.h"
+#include "io/row_log.h"
+#include "unit.h"
+
+#include <string.h>
+#include <unistd.h>
+
+static void add(struct cs_row_log *log, const char *row, struct cs_error *error) {
+    struct cs_text text = {0};
+    cs_text_add(&text, "%s", row);
+    cs_row_log_add(log, &text, error);
+}
+
+static void assert_file(const char *path, const char *expected) {
+    struct cs_error error = {0};
+    char *bytes;
+    size_t length;
+    ck_assert(!cs_file_read(path, 1000, &bytes, &length, &error));
+    ck_assert_str_eq(bytes, expected);
+    free(bytes);
+}
+
+/* Writes two rows, a record, and a third row; the log stays open. */
+static void write_three(struct cs_row_log *log, struct cs_serialiser *record) {
+    struct cs_error error = {0};
+    cs_row_log_create(log, "log", &error);
+    add(log, "a\n", &error);
+    add(log, "bc\n", &error);
+    cs_row_log_record(log, record);
+    add(log, "d\n", &error);
+    UNIT_ASSERT_OK(&error);
+    // a row is there before the file is closed
+    assert_file("log.part", "a\nbc\nd\n");
+}
+
+/* Loads the record, and resumes. */
+static enum cs_status resume(struct cs_row_log *log, struct cs_serialiser *record,
+                             struct cs_error *error) {
+    *log = (struct cs_row_log){0};
+    record->is_reading = true;
+    record->position = 0;
+    cs_row_log_record(log, record);
+    ck_assert(!record->failed);
+    return cs_row_log_resume(log, "log", error);
+}
+
+TEST(a_killed_log_is_cut_to_its_record) {
+    struct cs_row_log killed, log;
+    struct cs_serialiser record = {0};
+    struct cs_error error = {0};
+    write_three(&killed, &record);
+    fclose(killed.file);
+    resume(&log, &record, &error);
+    add(&log, "e\n", &error);
+    cs_row_log_finish(&log, &error);
+    UNIT_ASSERT_OK(&error);
+    assert_file("log", "a\nbc\ne\n");
+    ck_assert(access("log.part", F_OK));
+    cs_serialiser_finish(&record);
+}
+
+TEST(a_whole_log_stays_until_the_end) {
+    struct cs_row_log log;
+    struct cs_serialiser record = {0};
+    struct cs_error error = {0};
+    write_three(&log, &record);
+    cs_row_log_finish(&log, &error);
+    resume(&log, &record, &error);
+    add(&log, "f\n", &error);
+    assert_file("log", "a\nbc\nd\n");
+    cs_row_log_finish(&log, &error);
+    UNIT_ASSERT_OK(&error);
+    assert_file("log", "a\nbc\nf\n");
+    cs_serialiser_finish(&record);
+}
+
+TEST(changed_rows_are_refused) {
+    static const char *const changed[] = {"a\nbd\n", "a\nb", "ab\nc\n", ""};
+    struct cs_row_log log;
+    struct cs_serialiser record = {0};
+    write_three(&log, &record);
+    cs_row_log_remove(&log);
+    ck_assert(access("log.part", F_OK));
+    for (size_t k = 0; k < sizeof changed / sizeof *changed; k++) {
+        struct cs_error error = {0};
+        cs_file_write("log", changed[k], strlen(changed[k]), &error);
+        UNIT_ASSERT_OK(&error);
+        ck_assert_int_eq(resume(&log, &record, &error), CS_ERR_FILE);
+        assert_file("log", changed[k]);
+    }
+    cs_serialiser_finish(&record);
+}
+
+TEST(rows_are_copied) {
+    struct cs_row_log log;
+    struct cs_error error = {0};
+    char *bytes;
+    size_t length;
+    cs_row_log_create(&log, NULL, &error);
+    for (int k = 0; k < 5000; k++)
+        add(&log, "0123456789\n", &error);
+    FILE *out = open_memstream(&bytes, &length);
+    cs_row_log_copy(&log, log.length - 2, out, &error);
+    fclose(out);
+    UNIT_ASSERT_OK(&error);
+    ck_assert_uint_eq(length, 5000 * 11 - 2);
+    ck_assert(!strncmp(bytes + length - 10, "\n012345678", 10));
+    free(bytes);
+    cs_row_log_remove(&log);
+}
