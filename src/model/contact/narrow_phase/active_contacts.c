@@ -251,15 +251,9 @@ static void add_slope(const struct cs_feature_positions *x, size_t n,
     sum->second += 0.5 * law.stiffness * approach * approach;
 }
 
-struct cs_point_energy cs_point_energy_find(const struct cs_feature_weights *features,
-                                            const struct cs_candidates *candidates,
-                                            const struct cs_candidate_chunk *chunk,
-                                            uint32_t point,
-                                            const struct cs_feature_positions *x) {
-    struct cs_weighted_feature uses[CS_FEATURES_PER_TRIANGLE];
-    struct cs_point_energy sum = {0, 0, 0};
+/* Index of the first candidate of a point; these are in the order of points. */
+static size_t first_of(const struct cs_candidate_chunk *chunk, uint32_t point) {
     size_t begin = 0, end = chunk->n;
-    // the first candidate of the point: they are in the order of points
     while (begin < end) {
         const size_t middle = (begin + end) / 2;
         if (chunk->pairs[2 * middle] < point)
@@ -267,16 +261,41 @@ struct cs_point_energy cs_point_energy_find(const struct cs_feature_weights *fea
         else
             end = middle;
     }
-    for (; begin < chunk->n && chunk->pairs[2 * begin] == point; begin++) {
-        const struct cs_feature_query query = query_of(candidates, chunk->pairs + 2 * begin);
-        const struct cs_body_pair_params params = meeting_of(candidates, query.points);
+    return begin;
+}
+
+/* Adds the features of n queries of one point to its sum. */
+static void add_point_energy(const struct cs_feature_weights *features,
+                             const struct cs_candidates *candidates,
+                             const struct cs_feature_query *queries, uint32_t n,
+                             const struct cs_feature_positions *x,
+                             struct cs_point_energy *sum) {
+    struct cs_weighted_feature uses[CS_FEATURES_PER_TRIANGLE * CS_FEATURE_QUERY_PAIRS];
+    const uint32_t found = cs_feature_weights_find_between(features, queries, n, x, uses);
+    for (uint32_t u = 0; u < found; u++) {
+        const struct cs_body_pair_params params = meeting_of(candidates, uses[u].points);
         const double range = cs_pair_contact_range(&params, false);
-        const uint32_t n = cs_feature_weights_find_between(features, &query, 1, x, uses);
-        for (uint32_t u = 0; u < n; u++) {
-            sum.energy += uses[u].weight * cs_barrier_energy(uses[u].d, range, params.k);
-            if (x->fraction == 0)
-                add_slope(x, features->surfaces->n_points, uses + u, range, params.k, &sum);
-        }
+        sum->energy += uses[u].weight * cs_barrier_energy(uses[u].d, range, params.k);
+        if (x->fraction == 0)
+            add_slope(x, features->surfaces->n_points, uses + u, range, params.k, sum);
     }
+}
+
+struct cs_point_energy cs_point_energy_find(const struct cs_feature_weights *features,
+                                            const struct cs_candidates *candidates,
+                                            const struct cs_candidate_chunk *chunk,
+                                            uint32_t point,
+                                            const struct cs_feature_positions *x) {
+    struct cs_feature_query queries[CS_FEATURE_QUERY_PAIRS];
+    struct cs_point_energy sum = {0, 0, 0};
+    uint32_t n = 0;
+    for (size_t k = first_of(chunk, point); k < chunk->n && chunk->pairs[2 * k] == point; k++) {
+        queries[n++] = query_of(candidates, chunk->pairs + 2 * k);
+        if (n < CS_FEATURE_QUERY_PAIRS)
+            continue;
+        add_point_energy(features, candidates, queries, n, x, &sum);
+        n = 0;
+    }
+    add_point_energy(features, candidates, queries, n, x, &sum);
     return sum;
 }

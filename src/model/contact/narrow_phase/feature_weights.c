@@ -259,6 +259,8 @@ static void fill(const struct finding *on, int feature, struct cs_weighted_featu
 /* Collects the weights of one query, and writes the features whose weight is not 0. */
 static uint32_t find(struct finding *on, struct cs_weighted_feature *uses) {
     uint32_t n = 0;
+    memset(on->count, 0, sizeof on->count);
+    memset(on->alone, 0, sizeof on->alone);
     count_plane(on);
     count_rims(on);
     count_corners(on);
@@ -269,18 +271,18 @@ static uint32_t find(struct finding *on, struct cs_weighted_feature *uses) {
     return n;
 }
 
-/* Loads n queries into lanes. The range of features is CS_FEATURE_RANGE_RATIO of the pair's,
- * the blend radius e is CS_FEATURE_BLEND_RADIUS of it. Unused lanes stay unspecified. */
+/* Loads n queries. Unused lanes repeat the last: what they held may be slow to compute with. */
 static void read(const struct cs_feature_weights *features,
                  const struct cs_feature_query *pairs, uint32_t n,
                  const struct cs_feature_positions *x, struct lanes *at) {
     const size_t n_points = features->surfaces->n_points;
-    for (uint32_t i = 0; i < n; i++) {
-        at->range[i] = CS_FEATURE_RANGE_RATIO * pairs[i].range;
-        at->bend[i] = CS_FEATURE_BLEND_RADIUS * pairs[i].range;
+    for (uint32_t i = 0; i < LANES; i++) {
+        const struct cs_feature_query *pair = pairs + (i < n ? i : n - 1);
+        at->range[i] = CS_FEATURE_RANGE_RATIO * pair->range;
+        at->bend[i] = CS_FEATURE_BLEND_RADIUS * pair->range;
         for (size_t k = 0; k < 4; k++)
             for (size_t c = 0; c < 3; c++)
-                at->p[k][c][i] = position(x, c * n_points + pairs[i].points[k]);
+                at->p[k][c][i] = position(x, c * n_points + pair->points[k]);
     }
 }
 
@@ -290,6 +292,7 @@ uint32_t cs_feature_weights_find_between(const struct cs_feature_weights *featur
                                          const struct cs_feature_positions *x,
                                          struct cs_weighted_feature *uses) {
     struct lanes at[CS_FEATURE_QUERY_PAIRS / LANES];
+    struct finding on = {.facets = features, .x = x};
     uint32_t found = 0;
     // all lanes are written before any is measured: a vector load directly after scalar stores
     // to the same addresses would stall
@@ -298,11 +301,8 @@ uint32_t cs_feature_weights_find_between(const struct cs_feature_weights *featur
     for (uint32_t k = 0; k < n; k += LANES)
         measure(at + k / LANES);
     for (uint32_t k = 0; k < n; k++) {
-        struct finding on = {.facets = features,
-                             .pair = pairs + k,
-                             .at = at + k / LANES,
-                             .lane = (int)(k % LANES),
-                             .x = x};
+        on.pair = pairs + k;
+        on.at = at + k / LANES, on.lane = (int)(k % LANES);
         found += find(&on, uses + found);
     }
     return found;

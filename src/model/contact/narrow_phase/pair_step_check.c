@@ -1,8 +1,8 @@
 /* Energy of pairs that a step does not predict, from the candidates that cover the step.
  *
- * Filters come in turn: swept boxes; the end of short steps in lanes; all samples of long
- * steps, one pair at a time. Edges that remain reject the step. A point and a triangle reject
- * it if the sum of all features of the point, by which it is pushed, is unresolved too. The
+ * Filters come in turn: swept boxes; then all samples of a step, eight pairs at a time in
+ * lanes. Edges that remain reject the step. A point and a triangle reject it if the sum of all
+ * features of the point, by which it is pushed, is unresolved too. The
  * chunk that rejected the last step is asked first, because a step that is halved is often
  * rejected by the same pair again. */
 #include "model/contact/narrow_phase/contact_pairs.h"
@@ -89,34 +89,32 @@ CS_INLINE double pair_motion_begin(struct cs_pair_motion *way, double h, double 
     return d;
 }
 
-/* e in J after the fraction `share` of the step, where the distance is d. */
-CS_INLINE double pair_motion_unresolved_energy(const struct cs_pair_motion_start *start,
-                                               double share, double d, double range, double k) {
-    const double come = share * start->approach;
-    const double seen = start->contact_energy + start->law.force * come +
-                        0.5 * start->law.stiffness * come * come;
-    return fabs(cs_barrier_energy(d, range, k) - seen);
-}
+/* largest number of samples of one step; longer steps have coarser samples */
+enum { SAMPLES_MAX = 64 };
 
-/* Number of samples of a step after its start: they are at most half a range of relative motion
- * apart, so that no contact is passed over. */
-CS_INLINE double pair_motion_samples(double longest, double range) {
-    return longest / (0.5 * range);
+/* Number of equal parts of a step, at whose ends it is sampled: they are at most half a range
+ * of relative motion, so that no contact is passed over. */
+CS_INLINE double pair_motion_parts(double longest, double range) {
+    const double along = longest / (0.5 * range);
+    return 1 + (int)(along < SAMPLES_MAX - 1 ? along : SAMPLES_MAX - 1);
 }
 
 /* Eight pairs in lanes; lanes without a pair hold unspecified numbers. */
-enum { CS_PAIR_MOTION_LANES = 8 };
+enum { LANES = 8 };
 
-struct cs_pair_motion_lanes {
-    double x0[4][3][CS_PAIR_MOTION_LANES], displacement[4][3][CS_PAIR_MOTION_LANES],
-        inverse_mass[4][CS_PAIR_MOTION_LANES];
-    double range[CS_PAIR_MOTION_LANES], k[CS_PAIR_MOTION_LANES];
-    double result[CS_PAIR_MOTION_LANES];
+struct lanes {
+    double x0[4][3][LANES], displacement[4][3][LANES], inverse_mass[4][LANES];
+    double range[LANES], k[LANES];
+    /* struct cs_pair_motion_start */
+    double contact_energy[LANES], total_energy[LANES], approach[LANES], force[LANES],
+        stiffness[LANES];
+    double parts[LANES]; /* pair_motion_parts */
+    /* of the samples so far: least distance in m, largest e in J */
+    double nearest[LANES], missed[LANES];
 };
 
 /* Copies one lane to a pair in point order. */
-CS_INLINE void read_motion(struct cs_pair_motion_lanes *lanes, int lane,
-                           struct cs_pair_motion *way) {
+CS_INLINE void read_motion(struct lanes *lanes, int lane, struct cs_pair_motion *way) {
     CS_UNROLLED
     for (int k = 0; k < 12; k++) {
         way->x0[k / 3][k % 3] = lanes->x0[k / 3][k % 3][lane];
@@ -127,52 +125,83 @@ CS_INLINE void read_motion(struct cs_pair_motion_lanes *lanes, int lane,
         way->inverse_mass[k] = lanes->inverse_mass[k][lane];
 }
 
-/* Result of one lane. A pair that is out of range at both ends counts as resolved. */
-CS_INLINE double motion_ask(struct cs_pair_motion *way, double h, double range, double k) {
-    struct cs_pair_contact to;
-    struct cs_pair_motion_start start;
-    double end[4][3];
+/* Samples one lane after the fraction `share` of the step. */
+CS_INLINE void sample_lane(struct lanes *lanes, int l, struct cs_pair_motion *way,
+                           double share) {
+    struct cs_pair_contact at;
+    double p[4][3];
     CS_UNROLLED
     for (int j = 0; j < 12; j++)
-        end[j / 3][j % 3] = way->x0[j / 3][j % 3] + way->displacement[j / 3][j % 3];
-    const double from = pair_motion_begin(way, h, range, k, &start);
-    const double d = cs_pair_contact_measure_whole(&to, way->kind, range, end);
-    const double nearest = d < from ? d : from;
-    const double unseen = pair_motion_unresolved_energy(&start, 1, d, range, k);
-    const double much = unseen > CS_UNRESOLVED_ENERGY_MAX * start.total_energy ? 1 : 0;
-    const double near = nearest < range ? much : 0;
-    return pair_motion_samples(pair_motion_longest(way), range) < 1 ? near : 2;
+        p[j / 3][j % 3] = way->x0[j / 3][j % 3] + share * way->displacement[j / 3][j % 3];
+    const double range = lanes->range[l], k = lanes->k[l], come = share * lanes->approach[l];
+    const double d = cs_pair_contact_measure_whole(&at, way->kind, range, p);
+    const double seen = lanes->contact_energy[l] + lanes->force[l] * come +
+                        0.5 * lanes->stiffness[l] * come * come;
+    const double missed = fabs(cs_barrier_energy(d, range, k) - seen);
+    lanes->nearest[l] = d < lanes->nearest[l] ? d : lanes->nearest[l];
+    lanes->missed[l] = missed > lanes->missed[l] ? missed : lanes->missed[l];
 }
 
-CS_INLINE void check_all(enum cs_pair_kind kind, struct cs_pair_motion_lanes *restrict lanes,
-                         double h) {
-    for (int l = 0; l < CS_PAIR_MOTION_LANES; l++) {
+/* Sets the model of all lanes. */
+CS_INLINE void begin_all(enum cs_pair_kind kind, struct lanes *restrict lanes, double h) {
+    for (int l = 0; l < LANES; l++) {
         struct cs_pair_motion way = {.kind = kind};
+        struct cs_pair_motion_start start;
         read_motion(lanes, l, &way);
-        lanes->result[l] = motion_ask(&way, h, lanes->range[l], lanes->k[l]);
+        lanes->nearest[l] = pair_motion_begin(&way, h, lanes->range[l], lanes->k[l], &start);
+        lanes->missed[l] = 0;
+        lanes->contact_energy[l] = start.contact_energy;
+        lanes->total_energy[l] = start.total_energy;
+        lanes->approach[l] = start.approach;
+        lanes->force[l] = start.law.force;
+        lanes->stiffness[l] = start.law.stiffness;
+        lanes->parts[l] = pair_motion_parts(pair_motion_longest(&way), lanes->range[l]);
     }
 }
 
-CS_CLONES static void check_triangles(struct cs_pair_motion_lanes *restrict lanes, double h) {
-    check_all(CS_PAIR_POINT_TRIANGLE, lanes, h);
+/* Samples all lanes after part j of their steps; those of fewer parts at their end again. */
+CS_INLINE void sample_all(enum cs_pair_kind kind, struct lanes *restrict lanes, double j) {
+    for (int l = 0; l < LANES; l++) {
+        struct cs_pair_motion way = {.kind = kind};
+        const double share = j / lanes->parts[l];
+        read_motion(lanes, l, &way);
+        sample_lane(lanes, l, &way, share < 1 ? share : 1);
+    }
 }
 
-CS_CLONES static void check_edges(struct cs_pair_motion_lanes *restrict lanes, double h) {
-    check_all(CS_PAIR_EDGE_EDGE, lanes, h);
+CS_CLONES static void begin_triangles(struct lanes *restrict lanes, double h) {
+    begin_all(CS_PAIR_POINT_TRIANGLE, lanes, h);
 }
 
-/* Sets result: 1 if the energy missed at the end of the step is above the limit, 0 if it is
- * not, 2 if the step is too long to be judged by its end alone. h: seconds of the step. */
-static void pair_motion_lanes_check(enum cs_pair_kind kind, struct cs_pair_motion_lanes *lanes,
-                                    double h) {
-    if (kind == CS_PAIR_EDGE_EDGE)
-        check_edges(lanes, h);
+CS_CLONES static void begin_edges(struct lanes *restrict lanes, double h) {
+    begin_all(CS_PAIR_EDGE_EDGE, lanes, h);
+}
+
+CS_CLONES static void sample_triangles(struct lanes *restrict lanes, double j) {
+    sample_all(CS_PAIR_POINT_TRIANGLE, lanes, j);
+}
+
+CS_CLONES static void sample_edges(struct lanes *restrict lanes, double j) {
+    sample_all(CS_PAIR_EDGE_EDGE, lanes, j);
+}
+
+/* Samples the steps of the first n lanes, of h seconds, at the ends of all their parts. */
+static void sample_steps(enum cs_pair_kind kind, struct lanes *lanes, uint32_t n, double h) {
+    const bool edges = kind == CS_PAIR_EDGE_EDGE;
+    double parts = 1;
+    if (edges)
+        begin_edges(lanes, h);
     else
-        check_triangles(lanes, h);
+        begin_triangles(lanes, h);
+    for (uint32_t l = 0; l < n; l++)
+        parts = pair_motion_max(parts, lanes->parts[l]);
+    for (double j = 1; j <= parts; j++) {
+        if (edges)
+            sample_edges(lanes, j);
+        else
+            sample_triangles(lanes, j);
+    }
 }
-
-/* largest number of samples of one step; longer steps have coarser samples */
-enum { POINTS_MAX = 64 };
 
 /* pairs per call of the swept-box filter */
 enum { SOME = 256 };
@@ -194,57 +223,31 @@ struct work {
     const struct job *job;
     const struct cs_candidate_chunk *chunk;
     enum cs_pair_kind kind;
-    struct cs_pair_motion_lanes lanes;
-    uint32_t points[CS_PAIR_MOTION_LANES]; /* of points and triangles */
+    struct lanes lanes;
+    uint32_t points[LANES]; /* of points and triangles */
     uint32_t waiting;
     /* the last point whose sum is resolved, or NONE */
     uint32_t resolved_point;
     bool unseen;
 };
 
-/* Number of equal parts of the step of a pair, at whose ends it is sampled. */
-static int parts_of(struct cs_pair_motion *way, double range) {
-    const double along = pair_motion_samples(pair_motion_longest(way), range);
-    return along < POINTS_MAX ? 1 + (int)along : POINTS_MAX;
-}
-
-/* Judges a step of any length by its samples. */
-static bool is_unresolved(const struct job *job, struct cs_pair_motion *way, double range,
-                          double k) {
-    const int points = parts_of(way, range);
-    struct cs_pair_motion_start start;
-    struct cs_pair_contact at;
-    double nearest = pair_motion_begin(way, job->h, range, k, &start), unseen = 0;
-    for (int j = 1; j <= points; j++) {
-        const double share = j / (double)points;
-        double p[4][3];
-        for (int c = 0; c < 12; c++)
-            p[c / 3][c % 3] = way->x0[c / 3][c % 3] + share * way->displacement[c / 3][c % 3];
-        const double d = cs_pair_contact_measure_whole(&at, way->kind, range, p);
-        nearest = fmin(nearest, d);
-        unseen = fmax(unseen, pair_motion_unresolved_energy(&start, share, d, range, k));
-    }
-    return nearest < range && unseen > CS_UNRESOLVED_ENERGY_MAX * start.total_energy;
-}
-
-/* Judges a point, a triangle of which is unresolved, by all its features: on its way from one
- * triangle to the next, what one loses the other gains. The kinetic energy is that against the
- * triangle in `way`. */
-static bool is_point_unresolved(struct work *work, uint32_t point, struct cs_pair_motion *way,
-                                double range, double k) {
+/* Judges the point of a lane, a triangle of which is unresolved, by all its features: on its
+ * way from one triangle to the next, what one loses the other gains. The kinetic energy is that
+ * against this triangle. */
+static bool is_point_unresolved(struct work *work, uint32_t l) {
     const struct cs_candidates *candidates = &work->job->pairs->candidates;
-    const int points = parts_of(way, range);
-    struct cs_pair_motion_start start;
+    const struct lanes *lanes = &work->lanes;
+    const uint32_t point = work->points[l];
     bool unresolved = false;
     if (point == work->resolved_point)
         return false;
-    pair_motion_begin(way, work->job->h, range, k, &start);
     struct cs_feature_positions x = {work->job->from, work->job->to, 0};
     const struct cs_point_energy sum = cs_point_energy_find(&work->job->pairs->feature_weights,
                                                             candidates, work->chunk, point, &x);
-    const double total = start.total_energy - start.contact_energy + fmax(sum.energy, 0);
-    for (int j = 1; j <= points && !unresolved; j++) {
-        const double share = j / (double)points;
+    const double total =
+        lanes->total_energy[l] - lanes->contact_energy[l] + fmax(sum.energy, 0);
+    for (double j = 1; j <= lanes->parts[l] && !unresolved; j++) {
+        const double share = j / lanes->parts[l];
         const double seen = sum.energy + share * (sum.first + share * sum.second);
         x.fraction = share;
         const struct cs_point_energy at = cs_point_energy_find(
@@ -255,24 +258,19 @@ static bool is_point_unresolved(struct work *work, uint32_t point, struct cs_pai
     return unresolved;
 }
 
-/* Tells whether the pair of a lane is unresolved: by its samples if its step is long, and with
- * all features of its point if that is unresolved by this triangle alone. */
+/* Tells whether the pair of a lane is unresolved, with all features of its point if it is by
+ * this triangle alone. A pair that is out of range at all samples is resolved. */
 static bool is_lane_unresolved(struct work *work, uint32_t l) {
-    struct cs_pair_motion_lanes *lanes = &work->lanes;
-    struct cs_pair_motion way = {.kind = work->kind};
-    if (lanes->result[l] == 0)
-        return false;
-    read_motion(lanes, (int)l, &way);
-    return (lanes->result[l] < 2 ||
-            is_unresolved(work->job, &way, lanes->range[l], lanes->k[l])) &&
-           (work->kind == CS_PAIR_EDGE_EDGE ||
-            is_point_unresolved(work, work->points[l], &way, lanes->range[l], lanes->k[l]));
+    const struct lanes *lanes = &work->lanes;
+    return lanes->nearest[l] < lanes->range[l] &&
+           lanes->missed[l] > CS_UNRESOLVED_ENERGY_MAX * lanes->total_energy[l] &&
+           (work->kind == CS_PAIR_EDGE_EDGE || is_point_unresolved(work, l));
 }
 
 /* Checks the collected pairs. */
 static void ask(struct work *work) {
     if (work->waiting)
-        pair_motion_lanes_check(work->kind, &work->lanes, work->job->h);
+        sample_steps(work->kind, &work->lanes, work->waiting, work->job->h);
     for (uint32_t l = 0; l < work->waiting && !work->unseen; l++)
         work->unseen = is_lane_unresolved(work, l);
     work->waiting = 0;
@@ -282,7 +280,7 @@ static void ask(struct work *work) {
 static void take(struct work *work, const uint32_t pair[2]) {
     const struct cs_pairs *pairs = work->job->pairs;
     const struct cs_candidates *search = &pairs->candidates;
-    struct cs_pair_motion_lanes *lanes = &work->lanes;
+    struct lanes *lanes = &work->lanes;
     const uint32_t l = work->waiting;
     uint32_t at[4];
     cs_candidate_vertices(pairs->system->surfaces, work->kind, pair, at);
@@ -299,7 +297,7 @@ static void take(struct work *work, const uint32_t pair[2]) {
             lanes->displacement[k][c][l] = move[CS_POINT_MOVE_BY + c];
         }
     }
-    if (++work->waiting == CS_PAIR_MOTION_LANES)
+    if (++work->waiting == LANES)
         ask(work);
 }
 
