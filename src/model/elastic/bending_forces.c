@@ -35,56 +35,62 @@ static bool find_range(const struct cs_bending *bending, const struct cs_block *
 
 /* --- moments of a grid --- */
 
-/* One component of the second differences of a row of particles times factors: along it in kx,
- * across it in ky, whose factor is 0 where a neighbour lacks. */
-CS_CLONES static void differences(const double *restrict p, size_t w, const double factor[2],
-                                  double *restrict kx, double *restrict ky) {
-    const double px = factor[0], qy = factor[1];
-    kx[0] = kx[w - 1] = 0;
-    for (size_t i = 1; i + 1 < w; i++)
-        kx[i] = px * ((p[i - 1] - p[i]) + (p[i + 1] - p[i]));
-    const double *up = qy > 0 ? p - w : p, *down = qy > 0 ? p + w : p;
-    for (size_t i = 0; i < w; i++)
-        ky[i] = qy * ((up[i] - p[i]) + (down[i] - p[i]));
-}
+/* Factors of one row of particles: of differences along and across it, of curvatures in moments
+ * inside and at the row's ends, of twists. */
+struct row_law {
+    double along, across;
+    struct cs_moduli inner;
+    double end_weft, twist;
+};
 
-/* The moments of a row of particles, in place of their curvatures. */
-static void row_moments(const struct cs_bending *bending, const struct cs_moduli *moduli,
-                        uint32_t row, double *restrict kx, double *restrict ky) {
+/* The law of a row. On a row that is a rim `across` is 0. */
+static struct row_law law_of(const struct cs_bending *bending, const struct cs_moduli *moduli,
+                             uint32_t row) {
     const uint32_t w = bending->columns;
-    struct cs_bending_stencil ends[2];
-    cs_bending_stencil_at(bending, moduli, row * w, ends);
-    cs_bending_stencil_at(bending, moduli, row * w + (w > 2), ends + 1);
-    for (uint32_t i = 0; i < w; i++) {
-        const struct cs_moduli *at = &ends[i > 0 && i + 1 < w].moduli;
-        const double x = kx[i], y = ky[i];
-        kx[i] = at->warp * x + at->coupling * y;
-        ky[i] = at->coupling * x + at->weft * y;
-    }
+    const double dx = bending->spacing[0], dy = bending->spacing[1];
+    const bool across = row > 0 && row + 1 < bending->rows;
+    struct cs_bending_stencil end, inner;
+    cs_bending_stencil_at(bending, moduli, row * w, &end);
+    cs_bending_stencil_at(bending, moduli, row * w + (w > 2), &inner);
+    return (struct row_law){.along = 1 / (dx * dx),
+                            .across = across ? 1 / (dy * dy) : 0,
+                            .inner = inner.moduli,
+                            .end_weft = end.moduli.weft,
+                            .twist = 2 * moduli->shear};
 }
 
-/* 2 x_XY of the cells below a row, times moduli: 0 after the last column and row. */
-CS_CLONES static void twists(const double *restrict p, size_t w, double factor,
-                             double *restrict t) {
+/* The moments of one component p of a row in X, Y and T; up, down: the rows beside it, or p
+ * where there is none, which makes the twists 0. */
+CS_CLONES static void row_moments(const struct row_law *of, size_t w,
+                                  const double *const rows[3], double *restrict X,
+                                  double *restrict Y, double *restrict T) {
+    const struct row_law law = *of;
+    const double *up = rows[0], *p = rows[1], *down = rows[2];
+    for (size_t i = 1; i + 1 < w; i++) {
+        const double x = law.along * ((p[i - 1] - p[i]) + (p[i + 1] - p[i]));
+        const double y = law.across * ((up[i] - p[i]) + (down[i] - p[i]));
+        X[i] = law.inner.warp * x + law.inner.coupling * y;
+        Y[i] = law.inner.coupling * x + law.inner.weft * y;
+    }
+    for (size_t i = 0; i < w; i += w - 1) {
+        X[i] = 0;
+        Y[i] = law.end_weft * law.across * ((up[i] - p[i]) + (down[i] - p[i]));
+    }
     for (size_t i = 0; i + 1 < w; i++)
-        t[i] = factor * ((p[i] - p[i + 1]) - (p[w + i] - p[w + i + 1]));
-    t[w - 1] = 0;
+        T[i] = law.twist * ((p[i] - p[i + 1]) - (down[i] - down[i + 1]));
+    T[w - 1] = 0;
 }
 
 static void grid_moments(const struct job *job, const struct cs_bending *bending,
-                         uint32_t row) {
-    const struct cs_moduli moduli = moduli_of(job->system, bending);
-    const size_t n = job->system->view.n, w = bending->columns, at = (size_t)row * w;
-    const double dx = bending->spacing[0], dy = bending->spacing[1];
-    const bool across = row > 0 && row + 1 < bending->rows;
+                         const struct cs_moduli *moduli, uint32_t row) {
+    const struct row_law law = law_of(bending, moduli, row);
+    const size_t w = bending->columns, at = (size_t)row * w, plane = bending->count;
     for (size_t c = 0; c < 3; c++) {
-        const double *p = job->p + c * n + bending->first + at;
-        double *kx = bending->moments + c * bending->count + at;
-        double *ky = kx + 3 * (size_t)bending->count, *t = ky + 3 * (size_t)bending->count;
-        differences(p, w, (const double[2]){1 / (dx * dx), across ? 1 / (dy * dy) : 0}, kx, ky);
-        row_moments(bending, &moduli, row, kx, ky);
-        if (row + 1 < bending->rows)
-            twists(p, w, 2 * moduli.shear, t);
+        const double *p = job->p + c * job->system->view.n + bending->first + at;
+        const double *const rows[3] = {row > 0 ? p - w : p, p,
+                                       row + 1 < bending->rows ? p + w : p};
+        double *X = bending->moments + c * plane + at;
+        row_moments(&law, w, rows, X, X + 3 * plane, X + 6 * plane);
     }
 }
 
@@ -133,11 +139,12 @@ static void grid_block(void *arg, uint32_t number) {
     const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
     for (uint32_t b = 0; b < system->bendings->n; b++) {
         const struct cs_bending *bending = system->bendings->bodies + b;
+        const struct cs_moduli moduli = moduli_of(system, bending);
         uint32_t range[2];
         if (bending->columns && find_range(bending, &block, range))
             for (uint32_t row = range[0] / bending->columns; row < range[1] / bending->columns;
                  row++)
-                grid_moments(job, bending, row);
+                grid_moments(job, bending, &moduli, row);
     }
 }
 
@@ -153,35 +160,45 @@ static void find_moments(struct job *job) {
 
 /* --- sums at particles --- */
 
-CS_CLONES static void add_scaled(size_t count, double factor, const double *restrict from,
-                                 double *restrict to) {
-    for (size_t i = 0; i < count; i++)
-        to[i] += factor * from[i];
+/* Moments of one component at a row and its neighbours. Where a neighbour lacks, its moments
+ * are those of a rim, which are 0. */
+struct moment_rows {
+    const double *X, *Y, *up, *down; /* up, down: Y of the rows beside it */
+    const double *T, *above;         /* above: T of the row before it */
+    double along, across, twist;     /* weights times the factor of the sum */
+};
+
+/* y += weights times moments. X and T end in a 0 in every row, and T begins after one: what
+ * stands before a row's first particle and after its last is 0. */
+CS_CLONES static void add_row(const struct moment_rows *of, size_t w, double *restrict y) {
+    const struct moment_rows at = *of;
+    for (size_t i = 0; i < w; i++) {
+        const double *X = at.X + i, *T = at.T + i, *above = at.above + i;
+        y[i] += at.along * ((X[-1] - X[0]) + (X[1] - X[0])) +
+                at.across * ((at.up[i] - at.Y[i]) + (at.down[i] - at.Y[i])) +
+                at.twist * ((T[0] - T[-1]) - (above[0] - above[-1]));
+    }
 }
 
-/* One component of a row: its own moments, those of its neighbours, and of its four cells. */
+/* One component of a row of a grid. */
 static void add_grid_row(const struct cs_bending *bending, const double *moments, uint32_t row,
                          double factor, double *y) {
-    const size_t w = bending->columns, plane = 3 * (size_t)bending->count;
+    const size_t w = bending->columns, plane = 3 * (size_t)bending->count, at = (size_t)row * w;
     const double dx = bending->spacing[0], dy = bending->spacing[1];
-    const double p = factor / (dx * dx), q = factor / (dy * dy), k = factor * 2 / (dx * dy);
-    const double *X = moments + row * w, *Y = X + plane, *T = Y + plane;
-    add_scaled(w, -2 * p, X, y);
-    add_scaled(w, -2 * q, Y, y);
-    add_scaled(w - 1, p, X, y + 1);
-    add_scaled(w - 1, p, X + 1, y);
-    if (row > 0)
-        add_scaled(w, q, Y - w, y);
-    if (row + 1 < bending->rows)
-        add_scaled(w, q, Y + w, y);
-    if (row > 0) {
-        add_scaled(w - 1, -k, T - w, y);
-        add_scaled(w - 1, k, T - w, y + 1);
-    }
-    if (row + 1 < bending->rows) {
-        add_scaled(w - 1, k, T, y);
-        add_scaled(w - 1, -k, T, y + 1);
-    }
+    const double *Y = moments + plane + at, *T = moments + 2 * plane;
+    const bool is_first = row == 0, is_last = row + 1 == bending->rows;
+    const struct moment_rows rows = {
+        .X = moments + at,
+        .Y = Y,
+        .up = is_first ? Y : Y - w,
+        .down = is_last ? Y : Y + w,
+        .T = T + at,
+        .above = is_first ? T + bending->count - w : T + at - w,
+        .along = factor / (dx * dx),
+        .across = factor / (dy * dy),
+        .twist = factor * 2 / (dx * dy),
+    };
+    add_row(&rows, w, y);
 }
 
 static void add_mesh_particle(const struct job *job, const struct cs_bending *bending,

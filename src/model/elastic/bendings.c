@@ -222,8 +222,10 @@ static enum cs_status build_grid(struct cs_bending *bending, const struct cs_clo
     bending->n = 2 * bending->count;
     for (int k = 0; k < 2; k++)
         bending->spacing[k] = cloth->size[k] / (double)(cloth->grid[k] - 1);
-    bending->moments =
-        cs_arena_alloc_array(arena, 9 * (size_t)bending->count, sizeof(double), error);
+    /* one before and one after, which are 0: kernels read beyond the ends of rows */
+    double *moments =
+        cs_arena_alloc_array(arena, 9 * (size_t)bending->count + 2, sizeof(double), error);
+    bending->moments = moments ? moments + 1 : NULL;
     return error->status;
 }
 
