@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "scene/body_pairs.h"
+#include "study/advise/cheapest.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
 #include "study/compare/ranking.h"
@@ -209,11 +210,12 @@ static enum cs_status add_modules(struct cs_args *args, struct cs_compare_settin
                : CS_OK;
 }
 
-/* Answers "cheapest way to an error" by a comparison over its default range of steps. */
+/* Answers "cheapest way to an error" by a comparison of the cells that a search chooses. */
 static enum cs_status advise_for_error(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
     const struct cs_advise *study = &options->study;
     const double bound = options->error;
+    struct cs_cheapest search = {0};
     struct cs_compare compare = {0};
     struct cs_text list = {0}, out = {0};
     join(study, &list);
@@ -222,6 +224,9 @@ static enum cs_status advise_for_error(struct cs_args *args, struct cs_error *er
                                                study->n_methods ? cs_text_get(&list) : NULL,
                                            .accuracy = bound < 1e-6 ? bound : 1e-6,
                                            .bound = bound,
+                                           .budget = study->budget,
+                                           .next = cs_cheapest_choose,
+                                           .ctx = &search,
                                            .runs = 15,
                                            .folder = options->folder,
                                            .cache = options->folder};
@@ -236,6 +241,7 @@ static enum cs_status advise_for_error(struct cs_args *args, struct cs_error *er
         cs_print_out(stdout, &out, error);
     }
     cs_compare_finish(&compare);
+    cs_cheapest_finish(&search);
     cs_text_finish(&list);
     return error->status;
 }

@@ -193,6 +193,14 @@ static void add_option(char *options, size_t size, const char *name, double valu
     cs_text_finish(&number);
 }
 
+/* The declared order, or the value of an option for it. */
+static uint32_t order_of(const struct cs_method *method) {
+    const struct cs_option *row = cs_option_find(&method->table, "order");
+    const bool is_set = row && row->type == CS_INT;
+    return is_set ? (uint32_t) * (const int64_t *)((char *)method->options + row->offset)
+                  : method->integrator->order;
+}
+
 /* A cell with the options that all cells of the entry share. */
 static void init_cell(struct cs_cell *cell, const struct cs_cell_list_entry *entry) {
     const struct cs_integrator *integrator = entry->method.integrator;
@@ -200,7 +208,8 @@ static void init_cell(struct cs_cell *cell, const struct cs_cell_list_entry *ent
     memcpy(cell->series, entry->series, sizeof cell->series);
     memcpy(cell->fixed, entry->fixed, sizeof cell->fixed);
     snprintf(cell->family, sizeof cell->family, "%s", cs_family_of(integrator));
-    snprintf(cell->key, sizeof cell->key, "%s", entry->module);
+    memcpy(cell->module, entry->module, sizeof cell->module);
+    cell->declared_order = order_of(&entry->method);
     cell->adaptive = integrator->traits & CS_ADAPTIVE;
     snprintf(cell->options, sizeof cell->options, "%s", entry->fixed);
 }
@@ -223,10 +232,9 @@ static enum cs_status add_point(struct cs_cell_list *sweep,
                                 struct cs_error *error) {
     struct cs_cell cell;
     init_cell(&cell, entry);
-    if (*entry->control)
-        set_limits(&cell, entry, settings->fps);
     snprintf(cell.control, sizeof cell.control, "%s", entry->control);
     if (*entry->control) {
+        set_limits(&cell, entry, settings->fps);
         cell.value = value;
         add_option(cell.options, sizeof cell.options, entry->control, value);
     }
@@ -249,6 +257,9 @@ void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value
     cell->low = of->low;
     cell->high = of->high;
     cell->open = of->open;
+    cell->declared_order = of->declared_order;
+    if (!*of->control)
+        return;
     cell->value = value;
     add_option(cell->options, sizeof cell->options, of->control, value);
     if (atol && !strstr(of->fixed, "atol="))
@@ -300,8 +311,6 @@ enum cs_status cs_cell_list_expand(struct cs_cell_list *sweep,
     }
     return error->status;
 }
-
-/* Keeps the cells of a comparison sorted by series. */
 
 /* Inserts a copy at an index; the capacity doubles when it is used up. */
 static enum cs_status insert(struct cs_cell_list *sweep, uint32_t at,

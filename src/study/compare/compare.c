@@ -194,7 +194,6 @@ static void make_key(struct cs_cell *cell, const char *reference, const char *mo
     cs_text_finish(&all);
 }
 
-/* The list of cells has put the hash of the module into cell->key. */
 static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *error) {
     const struct cs_compare_reference_settings asked =
         cs_compare_reference_query(compare->settings);
@@ -203,9 +202,7 @@ static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *err
     cs_compare_reference_plan(&reference, &asked, of_reference, error);
     for (uint32_t k = 0; k < compare->cells.n && !error->status; k++) {
         struct cs_cell *cell = compare->cells.cells + k;
-        char module[sizeof cell->key];
-        memcpy(module, cell->key, sizeof module);
-        make_key(cell, of_reference, module);
+        make_key(cell, of_reference, cell->module);
     }
     return error->status;
 }
@@ -250,12 +247,15 @@ static enum cs_status measure(struct cs_compare *compare, struct cs_compare_resu
     return error->status;
 }
 
-/* Reports rows of earlier runs, then runs the others and appends each row at once. */
-static enum cs_status measure_cells(struct cs_compare *compare,
-                                    struct cs_compare_results *ledger, struct cs_error *error) {
+static void report_old_rows(struct cs_compare *compare) {
     for (uint32_t k = 0; k < compare->cells.n; k++)
         if (*compare->cells.cells[k].outcome)
             report_row(compare, compare->cells.cells + k, true);
+}
+
+/* Runs the cells that no earlier run has, and appends each row at once. */
+static enum cs_status measure_cells(struct cs_compare *compare,
+                                    struct cs_compare_results *ledger, struct cs_error *error) {
     for (uint32_t k = 0; k < compare->cells.n && !error->status; k++) {
         struct cs_cell *cell = compare->cells.cells + k;
         if (*cell->outcome)
@@ -269,6 +269,20 @@ static enum cs_status measure_cells(struct cs_compare *compare,
     return error->status;
 }
 
+/* Runs a cell of the series of another one and adds it to the cells. */
+static enum cs_status measure_further(struct cs_compare *compare,
+                                      struct cs_compare_results *ledger,
+                                      const struct cs_cell *of, double value, double target,
+                                      struct cs_error *error) {
+    struct cs_cell cell;
+    cs_cell_derive(&cell, of, value, compare->scene_size);
+    cell.target = target;
+    make_key(&cell, of->key, of->module);
+    if (!measure(compare, ledger, &cell, error))
+        cs_cell_list_add(&compare->cells, &cell, error);
+    return error->status;
+}
+
 /* Runs cells in between until the methods near the front have cells at the errors of the
  * verdict (equal_error.h). A shard has not all cells: that is left to the whole. */
 static enum cs_status equalise_errors(struct cs_compare *compare,
@@ -278,14 +292,30 @@ static enum cs_status equalise_errors(struct cs_compare *compare,
     const struct cs_cell *near;
     double value, target;
     while (compare->settings->shard.count < 2 && !error->status && cs_clock_cpu() < end &&
-           (near = cs_equal_error_find_next(compare, &value, &target))) {
-        struct cs_cell cell;
-        cs_cell_derive(&cell, near, value, compare->scene_size);
-        cell.target = target;
-        make_key(&cell, near->key, near->module);
-        if (!measure(compare, ledger, &cell, error))
-            cs_cell_list_add(&compare->cells, &cell, error);
-    }
+           (near = cs_equal_error_find_next(compare, &value, &target)))
+        measure_further(compare, ledger, near, value, target, error);
+    return error->status;
+}
+
+/* Runs the cells of the default sweep, and those for equal errors. */
+static enum cs_status run_sweep(struct cs_compare *compare, struct cs_compare_results *ledger,
+                                struct cs_error *error) {
+    if (!measure_cells(compare, ledger, error) &&
+        !cs_compare_results_refresh(ledger, compare, error))
+        equalise_errors(compare, ledger, error);
+    return error->status;
+}
+
+/* Runs the cells that settings->next chooses. */
+static enum cs_status run_chosen(struct cs_compare *compare, struct cs_compare_results *ledger,
+                                 struct cs_error *error) {
+    const struct cs_compare_settings *settings = compare->settings;
+    const struct cs_cell *of;
+    double value;
+    while (!settings->next(settings->ctx, compare, &of, &value, error) && of)
+        if (measure_further(compare, ledger, of, value, settings->bound, error))
+            break;
+    cs_cell_list_drop_unrun(&compare->cells);
     return error->status;
 }
 
@@ -304,9 +334,9 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
         !cs_compare_reference_get(&compare->reference, &reference, error)) {
         if (settings->on_begin)
             settings->on_begin(settings->ctx);
-        if (!measure_cells(compare, &ledger, error) &&
-            !cs_compare_results_refresh(&ledger, compare, error) &&
-            !equalise_errors(compare, &ledger, error) && !cs_compare_time(compare, error)) {
+        report_old_rows(compare);
+        if (!(settings->next ? run_chosen : run_sweep)(compare, &ledger, error) &&
+            !cs_compare_time(compare, error)) {
             cs_compare_find_orders(compare->cells.cells, compare->cells.n,
                                    compare->reference.error_bar,
                                    compare->reference.motion_scale);

@@ -31,6 +31,7 @@ struct cs_cell {
     double target;           /* error that the value was sought for; NAN: of the sweep */
     double low, high;        /* further values of control may be run between them; no column */
     bool open;               /* they are the method's own, not the user's; no column */
+    uint32_t declared_order; /* of the method or its variant; 0: not known; no column */
     double step;             /* mean length of an internal step in s */
     double time;             /* reached, in s */
     double error, max_error; /* m at the end: mass-weighted RMS, largest of a particle */

@@ -50,6 +50,15 @@ double cs_norm_scale(enum cs_norm norm, const struct cs_compare_reference *refer
 /* Leading characters of a row's key: the same for all rows of a scene, time and reference. */
 #define CS_COMPARE_DIGITS 16
 
+struct cs_compare;
+
+/* Chooses the cell to run next: *value of the control of the series of *of, which stays valid
+ * until the next call; NULL: none. At the first call the cells without an outcome are those of
+ * the default sweep. */
+typedef enum cs_status cs_compare_next(void *ctx, struct cs_compare *compare,
+                                       const struct cs_cell **of, double *value,
+                                       struct cs_error *error);
+
 /* Request for a comparison. All pointers are borrowed. */
 struct cs_compare_settings {
     struct cs_recorded_run_settings run;
@@ -67,6 +76,7 @@ struct cs_compare_settings {
     struct cs_shard shard;     /* of the cells; zeroed: all */
     const char *cache;         /* folder of references */
     bool overwrite;            /* an earlier compare.csv is written over */
+    cs_compare_next *next;     /* chooses the cells for `bound`; NULL: the default sweep */
     /* may be NULL; taken: the row is of an earlier run */
     void (*reference_progress)(void *ctx, uint32_t done, uint32_t total, const char *what);
     void (*on_begin)(void *ctx); /* after the reference, before the cells */
