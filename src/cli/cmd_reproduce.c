@@ -50,11 +50,15 @@ static uint32_t split_row(char *path) {
 }
 
 /* Notes the files of the folder that have changed since the run. */
-static void print_manifest(const char *folder, struct cs_text *notes) {
+static enum cs_status print_manifest(const char *folder, struct cs_text *notes,
+                                     struct cs_error *error) {
     struct cs_error unread = {0};
     uint32_t n, differing;
-    if (cs_manifest_check(folder, notes, &n, &differing, &unread))
+    if (cs_manifest_check(folder, notes, &n, &differing, &unread) == CS_ERR_MEMORY)
+        return cs_fail(error, CS_ERR_MEMORY, "%s", unread.message);
+    if (unread.status)
         cs_text_add(notes, "%s\n", unread.message);
+    return CS_OK;
 }
 
 /* Chooses the reproduction by the file's name; a folder stands for the report in it. */
@@ -64,7 +68,8 @@ static enum cs_status reproduce_file(struct cs_reproduction *again,
     struct stat info;
     const uint32_t row = split_row(path);
     if (!stat(path, &info) && S_ISDIR(info.st_mode)) {
-        print_manifest(path, &again->notes);
+        if (print_manifest(path, &again->notes, error))
+            return error->status;
         strncat(path, "/run.json", PATH_BYTES - strlen(path) - 1);
     }
     settings->file = path;
@@ -93,6 +98,14 @@ static enum cs_status print(struct cs_reproduction *again, struct cs_error *erro
     return cs_print_out(stdout, &out, error);
 }
 
+/* A difference must not be lost with the text that says it. */
+static enum cs_status check_texts(const struct cs_reproduction *again, struct cs_error *error) {
+    return again->description.failed || again->notes.failed || again->equal_items.failed ||
+                   again->first_difference.failed
+               ? cs_fail(error, CS_ERR_MEMORY, "out of memory for what was found")
+               : CS_OK;
+}
+
 static enum cs_status reproduce(struct cs_args *args, struct cs_error *error) {
     char path[PATH_BYTES];
     struct cs_reproduction again = {0};
@@ -106,8 +119,8 @@ static enum cs_status reproduce(struct cs_args *args, struct cs_error *error) {
     cs_progress_begin(&progress, "frame", options->quiet);
     reproduce_file(&again, settings, path, error);
     cs_progress_end(&progress);
-    if (!error->status && (options->quiet || !print(&again, error)) &&
-        again.first_difference.length)
+    if (!error->status && !check_texts(&again, error) &&
+        (options->quiet || !print(&again, error)) && again.first_difference.length)
         cs_fail(error, CS_ERR_CHECK, "%s: %s", args->operands[0],
                 cs_text_get(&again.first_difference));
     cs_reproduction_finish(&again);

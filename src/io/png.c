@@ -6,6 +6,7 @@
 #include "io/png.h"
 #include "base/file.h"
 
+#include <errno.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdlib.h>
@@ -142,6 +143,7 @@ static enum cs_status read_bytes(struct reader *reader, const char *name,
                                  struct cs_image *image, struct cs_error *error) {
     enum cs_status status = CS_OK;
     *image = (struct cs_image){0};
+    errno = 0; // what libpng says of memory is in words alone
     if (reader->length < 8 || png_sig_cmp(reader->bytes, 0, 8))
         return cs_fail(error, CS_ERR_FILE, "cannot read \"%s\": it is not a PNG file", name);
     reader->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, reader, on_error, on_warning);
@@ -149,8 +151,8 @@ static enum cs_status read_bytes(struct reader *reader, const char *name,
     if (!reader->info)
         status = cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", name);
     else if (!decode(reader))
-        status =
-            cs_fail(error, CS_ERR_FILE, "cannot read \"%s\" as PNG: %s", name, reader->message);
+        status = cs_fail(error, cs_file_status(errno), "cannot read \"%s\" as PNG: %s", name,
+                         reader->message);
     png_destroy_read_struct(&reader->png, &reader->info, NULL);
     if (!status) {
         *image = reader->image;

@@ -67,12 +67,13 @@ enum cs_status cs_subprocess_open(struct cs_subprocess *program, const char *con
     const int reason = spawn(program, arguments, quiet, ends[1]);
     close(ends[1]);
     program->output = reason ? NULL : fdopen(ends[0], "r");
+    const int why = reason ? reason : errno;
     if (program->output)
         return CS_OK;
     close(ends[0]);
     cs_subprocess_close(program);
-    return cs_fail(error, cs_file_status(reason ? reason : ENOMEM), "cannot run %s: %s",
-                   arguments[0], strerror(reason ? reason : ENOMEM));
+    return cs_fail(error, cs_file_status(why), "cannot run %s: %s", arguments[0],
+                   strerror(why));
 }
 
 int cs_subprocess_close(struct cs_subprocess *program) {

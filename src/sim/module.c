@@ -190,10 +190,10 @@ enum cs_status cs_module_open(const char *file, const struct cs_module **module,
     return CS_OK;
 }
 
-void cs_module_hash(const char *file, char digits[CS_HASH_DIGITS]) {
+enum cs_status cs_module_hash(const char *file, char digits[CS_HASH_DIGITS],
+                              struct cs_error *error) {
     uint64_t size;
-    struct cs_error unread = {0};
-    cs_hash_file(file, &size, digits, &unread);
+    return cs_hash_file(file, &size, digits, error);
 }
 
 /* A word of the dynamic section as an address. Some C libraries add the base when they load,

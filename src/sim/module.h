@@ -14,9 +14,10 @@
 enum cs_status cs_module_open(const char *file, const struct cs_module **module,
                               struct cs_error *error);
 
-/* The hash of the file's bytes, to recognise another build, which may give other results. ""
- * if the file cannot be read. */
-void cs_module_hash(const char *file, char digits[CS_HASH_DIGITS]);
+/* The hash of the file's bytes, to recognise another build, which may give other results.
+ * CS_ERR_FILE; digits is then "". */
+enum cs_status cs_module_hash(const char *file, char digits[CS_HASH_DIGITS],
+                              struct cs_error *error);
 
 /* Looks for the first symbol that the module around an address takes from elsewhere and that is
  * in the list (closed by NULL; a name that ends in * is the begin of names). Returns its name,

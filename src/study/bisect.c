@@ -120,11 +120,13 @@ static void end(struct side *side, struct cs_bisect_difference *found, int k,
     if (!side->program.pid)
         return;
     const int code = cs_subprocess_close(&side->program);
+    const bool memory = code == cs_status_exit_code(CS_ERR_MEMORY);
     if (!wrote && !error->status)
-        cs_fail(error, CS_ERR_FILE, "%s: %s wrote no trace, exit code %d", side->asked->name,
+        cs_fail(error, memory ? CS_ERR_MEMORY : CS_ERR_FILE,
+                "%s: %s wrote no trace, exit code %d", side->asked->name,
                 side->asked->arguments[0], code);
     else if (ended && code != 0 && !found->exists)
-        cs_fail(error, CS_ERR_MODULE,
+        cs_fail(error, memory ? CS_ERR_MEMORY : CS_ERR_MODULE,
                 "%s ended with exit code %d after frame %" PRIu32
                 ": both are equal up to there",
                 side->asked->name, code, side->trail.point.frame);

@@ -52,9 +52,9 @@ static void add_meaning(struct cs_parameter_sweep_cell *cell, struct cs_text *al
     char scene[CS_HASH_DIGITS] = "", module[CS_HASH_DIGITS] = "";
     if (cs_scene_hash(&session->scene, &session->method.table, session->method.options, scene,
                       error) ||
-        cs_registry_find(&session->registry, session->method.integrator->name, &found, error))
+        cs_registry_find(&session->registry, session->method.integrator->name, &found, error) ||
+        cs_module_hash(found->file, module, error))
         return;
-    cs_module_hash(found->file, module);
     cs_text_add(all, "|%s|%s", scene, module);
 }
 

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 const char *cs_provenance_text(const struct cs_json *object, const char *key) {
     const struct cs_json *found = cs_json_find_kind(object, key, CS_JSON_TEXT);
@@ -141,13 +142,16 @@ void cs_provenance_add_change(const char *what, const char *then, const char *no
 }
 
 /* Changes of the method's library and of its module's build. */
-static void print_module(const struct cs_provenance *provenance, struct cs_session *session,
-                         struct cs_text *out) {
+static enum cs_status print_module(const struct cs_provenance *provenance,
+                                   struct cs_session *session, struct cs_text *out,
+                                   struct cs_error *error) {
     struct cs_provenance_out_module module;
-    cs_provenance_out_find_module(session, &module);
+    if (cs_provenance_out_find_module(session, &module, error))
+        return error->status;
     cs_provenance_add_change("the library", provenance->library, module.library, out);
     if (strcmp(provenance->module_hash, module.hash) != 0)
         cs_text_add(out, "the module %s is a different build\n", provenance->module);
+    return CS_OK;
 }
 
 /* Returns how a file has changed, or NULL. Files of the scene's folder are looked for in its
@@ -165,7 +169,7 @@ static const char *change_of(const struct cs_provenance *provenance, const char 
              provenance->folder && beside ? provenance->folder : "",
              provenance->folder && beside ? path + length : path);
     if (cs_hash_file(moved, &bytes, now, &unread))
-        return "is missing";
+        return access(moved, F_OK) ? "is missing" : "cannot be read";
     return strcmp(then, now) != 0 ? "has changed" : NULL;
 }
 
@@ -195,7 +199,8 @@ enum cs_status cs_provenance_add_changes(const struct cs_provenance *provenance,
                       error))
         return error->status;
     cs_provenance_add_change("the version of clothsim", provenance->version, CS_VERSION, out);
-    print_module(provenance, session, out);
+    if (print_module(provenance, session, out, error))
+        return error->status;
     cs_provenance_add_changed_files(provenance, out);
     if (*provenance->scene_hash && strcmp(hash, provenance->scene_hash) != 0)
         cs_text_add(out, "the scene has changed (hash was %s, is now %s)\n",

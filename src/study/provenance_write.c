@@ -76,19 +76,20 @@ static bool is_own(const char *file) {
            !strchr(file + length + 1, '/');
 }
 
-void cs_provenance_out_find_module(struct cs_session *session,
-                                   struct cs_provenance_out_module *module) {
+enum cs_status cs_provenance_out_find_module(struct cs_session *session,
+                                             struct cs_provenance_out_module *module,
+                                             struct cs_error *error) {
     const struct cs_integrator *integrator = session->method.integrator;
     const struct cs_registry_entry *found;
-    struct cs_error none = {0};
     *module = (struct cs_provenance_out_module){.library = ""};
     if (CS_HAS(integrator, library) && integrator->library)
         module->library = integrator->library;
-    if (cs_registry_find(&session->registry, integrator->name, &found, &none))
-        return;
-    cs_module_hash(found->file, module->hash);
+    if (cs_registry_find(&session->registry, integrator->name, &found, error) ||
+        cs_module_hash(found->file, module->hash, error))
+        return error->status;
     snprintf(module->file, sizeof module->file, "%s",
              is_own(found->file) ? strrchr(found->file, '/') + 1 : found->file);
+    return CS_OK;
 }
 
 enum cs_status cs_provenance_out_print_scene(const struct cs_scene *scene, struct cs_text *out,
@@ -106,9 +107,9 @@ enum cs_status cs_provenance_out_print(struct cs_session *session, const char *h
                                        const char *method, struct cs_text *out,
                                        struct cs_error *error) {
     struct cs_provenance_out_module module;
-    if (cs_provenance_out_print_scene(&session->scene, out, error))
+    if (cs_provenance_out_print_scene(&session->scene, out, error) ||
+        cs_provenance_out_find_module(session, &module, error))
         return error->status;
-    cs_provenance_out_find_module(session, &module);
     cs_json_write(out, ",\n  'scene_hash': %s,\n  'method': %s,\n", hash, method);
     cs_json_write(out, "  'module': {'file': %s, 'hash': %s, 'library': %s}", module.file,
                   module.hash, module.library);

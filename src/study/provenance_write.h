@@ -45,8 +45,10 @@ struct cs_provenance_out_module {
     const char *library; /* borrowed from the module */
 };
 
-void cs_provenance_out_find_module(struct cs_session *session,
-                                   struct cs_provenance_out_module *module);
+/* CS_ERR_FILE if it cannot be read. */
+enum cs_status cs_provenance_out_find_module(struct cs_session *session,
+                                             struct cs_provenance_out_module *module,
+                                             struct cs_error *error);
 
 /* Describes the machine that a measurement was made on. */
 

@@ -77,7 +77,8 @@ enum cs_status cs_film_report_read(const char *folder, struct cs_film_report *re
     snprintf(path, sizeof path, "%.4000s/run.json", folder);
     if (cs_file_read(path, CS_JSON_BYTES_MAX, &text, &length, error))
         return error->status;
-    cs_json_parse(text, length, &root, &fault);
+    if (cs_json_parse(text, length, &root, &fault) == CS_ERR_MEMORY)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", path);
     free(text);
     if (root)
         read_pictures(root, report, error);

@@ -40,14 +40,13 @@ enum cs_status cs_checkpointer_read_interval(const char *value,
                    value);
 }
 
-/* Hash of the method's module file; empty for a method of the program. */
-static void hash_module(struct cs_checkpointer *resume) {
+/* Hash of the method's module file. */
+static enum cs_status hash_module(struct cs_checkpointer *resume, struct cs_error *error) {
     const struct cs_registry_entry *found;
-    struct cs_error unread = {0};
     struct cs_session *session = resume->session;
-    if (!cs_registry_find(&session->registry, session->method.integrator->name, &found,
-                          &unread))
-        cs_module_hash(found->file, resume->module);
+    return cs_registry_find(&session->registry, session->method.integrator->name, &found, error)
+               ? error->status
+               : cs_module_hash(found->file, resume->module, error);
 }
 
 /* Facts that must agree before a run resumes, each with its name for the message. */
@@ -88,8 +87,7 @@ enum cs_status cs_checkpointer_begin(struct cs_checkpointer *resume, struct cs_s
         (int)sizeof resume->path)
         return cs_fail(error, CS_ERR_FILE,
                        "cannot use the folder \"%.60s...\": the path is too long", folder);
-    hash_module(resume);
-    return CS_OK;
+    return hash_module(resume, error);
 }
 
 /* The interval is a part of the record: a resumed run keeps it. */

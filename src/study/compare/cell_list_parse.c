@@ -45,9 +45,9 @@ static enum cs_status begin_entry(struct cs_cell_list_entry *entry,
     const struct cs_integrator *integrator = method->integrator;
     *entry = (struct cs_cell_list_entry){
         .method = *method, .low = (double)NAN, .high = (double)NAN, .control = ""};
-    if (cs_registry_find(registry, integrator->name, &registered, error))
+    if (cs_registry_find(registry, integrator->name, &registered, error) ||
+        cs_module_hash(registered->file, entry->module, error))
         return error->status;
-    cs_module_hash(registered->file, entry->module);
     const char *control = integrator->traits & CS_ADAPTIVE ? "rtol" : "dt";
     if (cs_option_find(&method->table, control))
         entry->control = control;

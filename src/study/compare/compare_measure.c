@@ -111,10 +111,12 @@ static enum cs_status take_ledger(struct cs_recorded_run *recording, struct cs_c
 }
 
 /* Hash of the module's file: a rebuilt module makes a different row. */
-static void take_module(struct cs_session *session, struct cs_cell *cell) {
+static enum cs_status take_module(struct cs_session *session, struct cs_cell *cell,
+                                  struct cs_error *error) {
     struct cs_provenance_out_module module;
-    cs_provenance_out_find_module(session, &module);
-    memcpy(cell->module, module.hash, sizeof cell->module);
+    if (!cs_provenance_out_find_module(session, &module, error))
+        memcpy(cell->module, module.hash, sizeof cell->module);
+    return error->status;
 }
 
 enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_cell *cell,
@@ -128,8 +130,8 @@ enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_ce
         !cs_trajectory_init(&track, &recording, error) &&
         !cs_recorded_run_execute(&recording, compare->budget, &track, &end, error)) {
         take_counts(cell, &end);
-        take_module(&recording.session, cell);
-        if (cs_cell_is_finished(cell) && !take_verdict(&recording, &end.monitor, cell, error)) {
+        if (!take_module(&recording.session, cell, error) && cs_cell_is_finished(cell) &&
+            !take_verdict(&recording, &end.monitor, cell, error)) {
             take_errors(compare, &recording, &track, cell);
             if (compare->settings->ledger)
                 take_ledger(&recording, cell, error);

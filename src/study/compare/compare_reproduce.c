@@ -57,14 +57,17 @@ static enum cs_status read_origin(struct cs_provenance *provenance, const char *
 }
 
 /* Notes what has changed since: version, module, files of the scene. */
-static void describe_row(const struct cs_provenance *provenance, struct cs_session *session,
-                         const struct cs_cell *cell, struct cs_text *out) {
+static enum cs_status describe_row(const struct cs_provenance *provenance,
+                                   struct cs_session *session, const struct cs_cell *cell,
+                                   struct cs_text *out, struct cs_error *error) {
     struct cs_provenance_out_module module;
-    cs_provenance_out_find_module(session, &module);
+    if (cs_provenance_out_find_module(session, &module, error))
+        return error->status;
     cs_provenance_add_change("the version of clothsim", cell->version, CS_VERSION, out);
     if (strcmp(cell->module, module.hash) != 0)
         cs_text_add(out, "the module %s is a different build\n", module.file);
     cs_provenance_add_changed_files(provenance, out);
+    return CS_OK;
 }
 
 /* Exact comparison, where none equals none; only the first difference is reported. */
@@ -132,7 +135,7 @@ static enum cs_status run(struct cs_reproduction *again,
     cs_text_add(&again->description, "%u frames of %s by %s", settings->run.frames,
                 provenance->scene_file, integrator);
     if (!cs_recorded_run_open(&recording, &settings->run, integrator, error))
-        describe_row(provenance, &recording.session, cell, &again->notes);
+        describe_row(provenance, &recording.session, cell, &again->notes, error);
     cs_recorded_run_close(&recording);
     if (!error->status && !isnan(cell->bar))
         get_reference(&compare, cell, again, &errors, error);

@@ -1,6 +1,7 @@
 /* Appends the results of a map to a file as binary records, and reads them back. */
 #include "study/stability/stability_state.h"
 
+#include "base/file.h"
 #include "base/hash.h"
 #include "scene/file/scene_read.h"
 
@@ -177,7 +178,7 @@ enum cs_status cs_journal_merge(const char *const *folders, uint32_t n_folders, 
     for (uint32_t k = 0; k < n_folders && !error->status; k++) {
         DIR *directory = opendir(folders[k]);
         if (!directory)
-            return cs_fail(error, CS_ERR_FILE, "cannot open %s: %s", folders[k],
+            return cs_fail(error, cs_file_status(errno), "cannot open %s: %s", folders[k],
                            strerror(errno));
         for (const struct dirent *entry; !error->status && (entry = readdir(directory));)
             if (is_journal(entry->d_name) &&
