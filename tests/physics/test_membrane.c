@@ -1,5 +1,6 @@
 /* Membranes against closed forms: moduli that depend neither on the mesh nor on the direction,
  * motion in a moving frame, the bound on their frequency, the order of the methods. */
+#include "base/pool.h"
 #include "methods.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
@@ -343,4 +344,39 @@ TEST(strain_is_the_principal_one) {
             ck_assert_double_eq_tol(strain[i], 0.1, 1e-12);
         fixture_close(&sheet);
     }
+}
+
+/* a grid and a mesh, each in several blocks of particles, after two frames */
+static double *end_with(uint32_t threads, size_t *n) {
+    struct fixture sheets;
+    struct cs_error error = {0};
+    cs_pool_start(threads, &error);
+    sheet_write(SHEET_IRREGULAR, 31, 37, 1, 1, 0);
+    fixture_open(
+        &sheets, "implicit-linearised",
+        "{\"bodies\": [{\"cloth\": {\"grid\": [33, 40], \"size\": [1, 1]}, \"pins\": "
+        "[\"top\"], \"mass\": {\"areal_density\": 0.2}, \"elastic\": {\"membrane\": "
+        "{\"young\": 900}, \"bending\": 1e-4, \"damping\": 1e-3}}, {\"mesh\": {\"file\": "
+        "\"sheet.obj\"}, \"pins\": [5], \"mass\": {\"areal_density\": 0.2}, "
+        "\"elastic\": {\"membrane\": {\"warp\": 900, \"weft\": 500, \"shear\": 20}, "
+        "\"bending\": 1e-4, \"damping\": 1e-3}}]}");
+    cs_perturb_smooth(sheets.system, 0.02, 0.5);
+    fixture_start(&sheets);
+    fixture_frames(&sheets, 2);
+    *n = 6 * sheets.n;
+    double *state = malloc(*n * sizeof *state);
+    memcpy(state, sheets.x, *n * sizeof *state);
+    fixture_close(&sheets);
+    cs_pool_stop();
+    return state;
+}
+
+TEST(threads_do_not_change_the_bits) {
+    size_t n;
+    double *one = end_with(1, &n), *five = end_with(5, &n), *two = end_with(2, &n);
+    ck_bits(one, five, n, "five threads");
+    ck_bits(one, two, n, "two threads");
+    free(one);
+    free(two);
+    free(five);
 }
