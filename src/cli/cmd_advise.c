@@ -5,7 +5,9 @@
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "model/elastic/membranes.h"
 #include "scene/body_pairs.h"
+#include "scene/shape.h"
 #include "study/advise/cheapest.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
@@ -63,11 +65,16 @@ static void add_binding(const struct cs_system *system, const struct cs_mode *mo
                     kinds[spring.kind], spring.stiffness);
 }
 
-/* When something hit, and the limit at the end, if that is clearly longer. */
-static void add_times(const struct cs_advice *row, struct cs_text *out) {
+/* When something hit, or a membrane was stretched, and the limit at the end, if that is clearly
+ * longer. */
+static void add_times(const struct cs_advise *advise, const struct cs_advice *row,
+                      struct cs_text *out) {
+    const struct cs_scene *scene = advise->was_opened.system.scene;
+    const bool meets = scene->colliders.n || cs_scene_has_body_contact(scene);
     if (row->end_limit < 1e100 && row->theory < 0.95 * row->end_limit)
-        cs_text_add(out, "; while something hits, at t = %.4g s: at rest, at %.4g s, %.4g s",
-                    row->time, row->seconds, row->end_limit);
+        cs_text_add(out, "; %s, at t = %.4g s: at rest, at %.4g s, %.4g s",
+                    meets ? "while something hits" : "where it is stretched", row->time,
+                    row->seconds, row->end_limit);
 }
 
 /* The reason of an advised step, and remarks on its probe run. */
@@ -76,12 +83,12 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
     switch (row->kind) {
     case CS_ADVICE_THEORY:
         add_binding(&advise->was_opened.system, &row->mode, out);
-        add_times(row, out);
+        add_times(advise, row, out);
         break;
     case CS_ADVICE_LOWERED:
         add_binding(&advise->was_opened.system, &row->mode, out);
         cs_text_add(out, "; bisected, linear theory allows %.4g s", row->theory);
-        add_times(row, out);
+        add_times(advise, row, out);
         break;
     case CS_ADVICE_MEASURED:
         cs_text_add(out, "no limit in linear theory; bisected, large motions set it");
@@ -135,9 +142,46 @@ static void add_contact(const struct cs_advise *advise, struct cs_text *out) {
     cs_contact_note_add_crossing(system, speed, out);
 }
 
+/* Mass of a body over its area, in kg/m2. */
+static double density_of(const struct cs_system *system, uint32_t body) {
+    const struct cs_body_range *range = system->bodies + body;
+    double mass = 0, area = 0;
+    for (uint32_t i = 0; i < range->count; i++) {
+        mass += system->mass[range->first + i];
+        area += cs_shape_area(cs_scene_bodies(system->scene) + body, i);
+    }
+    return mass / area;
+}
+
+/* How stiff elastic bodies are for a step of one frame, and the length over which they bend by
+ * their own weight. */
+static void add_elastic(const struct cs_system *system, struct cs_text *out) {
+    const double *g = system->scene->forces.gravity, dt = 1 / system->scene->time.fps;
+    const double weight = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    for (uint32_t k = 0; system->membranes && k < system->membranes->n; k++) {
+        const struct cs_membrane *membrane = system->membranes->bodies + k;
+        const struct cs_elastic *elastic =
+            &cs_scene_bodies(system->scene)[membrane->body].elastic;
+        const struct cs_moduli Y = cs_membrane_moduli(elastic), D = cs_bending_moduli(elastic);
+        const double density = density_of(system, membrane->body), h = membrane->shortest;
+        const double bends = fmax(D.warp, D.weft);
+        cs_text_add(out,
+                    "bodies[%u]: Y dt^2/(rho h^2) = %.3g for a frame and the shortest edge",
+                    membrane->body, fmax(Y.warp, Y.weft) * dt * dt / (density * h * h));
+        if (bends > 0)
+            cs_text_add(out, ", D dt^2/(rho h^4) = %.3g",
+                        bends * dt * dt / (density * h * h * h * h));
+        if (bends > 0 && weight > 0)
+            cs_text_add(out, "; bending length (D/(rho g))^(1/3) = %.3g m",
+                        cbrt(bends / (density * weight)));
+        cs_text_add(out, "\n");
+    }
+}
+
 /* Adds a line per method and below it what limits the step; notes on contact come first. */
 static void advise_print(const struct cs_advise *advise, struct cs_text *out) {
     add_contact(advise, out);
+    add_elastic(&advise->was_opened.system, out);
     cs_text_add(out, "advice for runs of %.4g s; each step was tested for that long\n",
                 advise->seconds);
     cs_text_add(out, "%-22s%12s%12s%s%12s%14s\n", "method", "limit [s]", "advised [s]",

@@ -237,7 +237,7 @@ TEST(bounds_are_above_and_near_the_frequency) {
             for (size_t k = 0; k < LENGTH(stretched); k++) {
                 const double ratio =
                     check_bound(bends ? 1e-3 : 1000, bends ? 1e-2 : 1e-9, mesh, stretched[k]);
-                ck_assert_msg(ratio > 0.999 && ratio < (mesh ? 1.6 : 1.34),
+                ck_assert_msg(ratio > 0.999 && ratio < (mesh ? 1.45 : 1.25),
                               "%s, %s, stretched %g: bound %.3f of the frequency",
                               mesh ? "mesh" : "grid", bends ? "bending" : "membrane",
                               stretched[k], ratio);

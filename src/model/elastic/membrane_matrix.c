@@ -112,36 +112,51 @@ static void rest_products(const struct triangle *at, double G[3][3]) {
                                    2;
 }
 
-/* Norm of 2 K G: no eigenvalue of the stiffness along the edges is larger. */
-static double norm_of(const double K[6], double G[3][3]) {
-    double P[3][3], norm = 0;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            P[i][j] = 0;
-            for (int l = 0; l < 3; l++)
-                P[i][j] += 2 * K[entry[i][l]] * (l == j ? 2 : -1) * G[l][j];
+/* Square of a bound on the frequency of one triangle alone, with a mass s at each corner: the
+ * norm of 2 K G, where G has the products of the gradients g of its edges over the masses.
+ * g_i is -d_i at corner i and d_i at corner i + 1; two edges share one corner. */
+static double frequency_of(const double K[6], double dots[3][3], const double s[3]) {
+    double G[3][3], P[3][3] = {{0}}, norm = 0;
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < 3; j++) {
+            const size_t shared = j == (i + 1) % 3 ? j : i;
+            G[i][j] =
+                i == j ? dots[i][i] * (1 / s[i] + 1 / s[(i + 1) % 3]) : -dots[i][j] / s[shared];
         }
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < 3; j++)
+            for (size_t l = 0; l < 3; l++)
+                P[i][j] += 2 * K[entry[i][l]] * G[l][j];
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < 3; j++)
             norm += P[i][j] * P[j][i];
     return sqrt(norm);
 }
 
-/* Adds the row sums of one triangle; without a state at rest. */
-static void add_triangle_bound(const struct membrane_law *law, const double K[6],
-                               const struct triangle *at, bool at_state, double *stiffness,
-                               double *damping) {
-    double G[3][3], q[3], t[3] = {0, 0, 0};
-    rest_products(at, G);
-    for (size_t i = 0; at_state && i < 3; i++)
+/* A triangle in the sums of bounds. */
+struct bounded {
+    struct triangle at;
+    double K[6], masses[3]; /* kg, of its corners divided among their triangles */
+    bool has_state;
+};
+
+/* Adds the row sums of one triangle: the stiffness along its edges is at most `square` times
+ * its masses. */
+static void add_triangle_bound(const struct membrane_law *law, const struct bounded *bounded,
+                               double *stiffness, double *damping) {
+    const struct triangle *at = &bounded->at;
+    double dots[3][3], q[3], t[3] = {0, 0, 0};
+    rest_products(at, dots);
+    for (size_t i = 0; bounded->has_state && i < 3; i++)
         for (size_t j = 0; j < 3; j++)
-            G[i][j] = cs_vec3_dot(at->d[i], at->d[j]);
-    for (size_t k = 0; at_state && k < 3; k++)
+            dots[i][j] = cs_vec3_dot(at->d[i], at->d[j]);
+    for (size_t k = 0; bounded->has_state && k < 3; k++)
         q[k] = at->q[k] + law->damping * 2 * cs_vec3_dot(at->d[k], at->w[k]);
-    if (at_state)
-        membrane_tension_by_k(K, q, t);
-    const double norm = norm_of(K, G);
+    if (bounded->has_state)
+        membrane_tension_by_k(bounded->K, q, t);
+    const double square = frequency_of(bounded->K, dots, bounded->masses);
     for (size_t k = 0; k < 3; k++) {
+        const double norm = bounded->masses[k] * square;
         stiffness[at->corners[k]] += norm + 2 * (fabs(t[k]) + fabs(t[(k + 2) % 3]));
         damping[at->corners[k]] += law->damping * norm;
     }
@@ -155,12 +170,15 @@ void cs_membranes_add_bound(const struct cs_system *system, const struct cs_eval
         const struct cs_membrane *membrane = all->bodies + b;
         const struct membrane_law law = cs_membrane_law_of(&job, membrane);
         for (uint32_t t = 0; t < membrane->n; t++) {
-            struct triangle triangle;
-            double K[6];
-            cs_membrane_stiffness(membrane, t, &law.moduli, K);
+            struct bounded bounded = {.has_state = at};
+            cs_membrane_stiffness(membrane, t, &law.moduli, bounded.K);
             find_triangle(membrane, t, system->view.n, at ? at->x : NULL, at ? at->v : NULL,
-                          &triangle);
-            add_triangle_bound(&law, K, &triangle, at, stiffness, damping);
+                          &bounded.at);
+            for (size_t k = 0; k < 3; k++) {
+                const uint32_t corner = bounded.at.corners[k];
+                bounded.masses[k] = system->mass[corner] / all->n_around[corner];
+            }
+            add_triangle_bound(&law, &bounded, stiffness, damping);
         }
     }
 }

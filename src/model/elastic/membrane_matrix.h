@@ -10,8 +10,9 @@ double cs_membranes_energy(const struct cs_system *system, const double *x);
 double cs_membranes_energy_at_twice(const struct cs_system *system);
 
 /* Adds a membrane's row sums (struct cs_gershgorin of term.h) to stiffness and damping (n), at
- * the state `at`, or for NULL at rest. A triangle's stiffness along its edges has the norm of
- * 2 K G, G_ij = (2 or -1) d_i.d_j, which each corner gets; its tension 2 |t| at both ends. */
+ * the state `at`, or for NULL at rest. Masses are divided among the triangles at a particle.
+ * With these, the stiffness of a triangle along its edges has frequencies of at most w; each
+ * corner gets w^2 times its mass, and 2 |t| of the edges that end there. */
 void cs_membranes_add_bound(const struct cs_system *system, const struct cs_eval *at,
                             double *stiffness, double *damping);
 

@@ -117,12 +117,20 @@ static double shortest_of(const struct cs_membrane *membrane) {
     return sqrt(squared);
 }
 
-/* Allocates what the solver's matrix needs. */
+/* Allocates what bounds and the solver's matrix need. */
 static enum cs_status alloc_matrix(struct cs_membranes *all, struct cs_system *system,
                                    struct cs_error *error) {
     struct cs_arena *arena = &system->arena;
     const size_t n = system->view.n;
     all->blocks = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
+    all->n_around = cs_arena_alloc_array(arena, n, sizeof *all->n_around, error);
+    for (uint32_t b = 0; !error->status && b < all->n; b++)
+        for (uint32_t t = 0; t < all->bodies[b].n; t++) {
+            uint32_t corners[3];
+            cs_membrane_corners(all->bodies + b, t, corners);
+            for (int k = 0; k < 3; k++)
+                all->n_around[corners[k]]++;
+        }
     if (!system->plan.rows[CS_FEATURE_SOLVER].built)
         return error->status;
     all->x = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
@@ -154,7 +162,8 @@ enum cs_status cs_membranes_build(struct cs_system *system, struct cs_error *err
                                    : build_grid(membrane, &bodies[b].cloth, arena, error))
             break;
         all->n_triangles += membrane->n;
-        all->shortest = fmin(all->shortest, shortest_of(membrane));
+        membrane->shortest = shortest_of(membrane);
+        all->shortest = fmin(all->shortest, membrane->shortest);
     }
     system->membranes = all;
     return error->status ? error->status : alloc_matrix(all, system, error);

@@ -32,6 +32,7 @@ struct cs_membrane {
     uint32_t body, first, count; /* of particles */
     uint32_t columns, rows;      /* of a grid; 0: a mesh */
     uint32_t n, begin;           /* triangles; the first's number among those of all bodies */
+    double shortest;             /* m, edge at rest */
     double *rest;                /* (12, n) of a mesh, (12) of a grid: P, squares of L */
     /* of a mesh */
     const uint32_t *triangles; /* (n, 3) particles within the body; borrowed */
@@ -44,7 +45,8 @@ struct cs_membrane {
 struct cs_membranes {
     struct cs_membrane *bodies; /* (n) ascending */
     uint32_t n, n_triangles;
-    double shortest; /* m, edge at rest */
+    double shortest;    /* m, of all */
+    uint32_t *n_around; /* (particles) triangles at each */
 
     double *blocks; /* (6, particles) diagonal blocks of the matrix prepared last */
     /* of the matrix kept last; NULL without a solver */
