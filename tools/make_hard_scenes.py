@@ -100,7 +100,7 @@ def scenes():
                      "place": {"translate": [0, 0.054, 0]}},
             "network": {"placement": "opposed-normals", "springs": 4, "surface": 4, "seed": 3},
             "mass": {"total": 0.2}, "springs": {"stretch": 400, "bend": 0, "damping": 0.05},
-            "thickness": THIN}
+            "thickness": THIN, "material": {"colour": [0.6, 0.45, 0.1]}}
     return {
         "star": ("A sheet falls on a star of spikes, folds over it and rests on points and edges.",
                  {"bodies": [sheet(0.45)], "colliders": [
@@ -144,8 +144,9 @@ def scenes():
         "tube": ("A tube is twisted by two turns at each end, and winds up on itself.", twist()),
         "pull": ("A cloth is pulled from under two soft balls at 3 m/s.",
                  {"bodies": [cloth(40, 0.6, {"translate": [0, 0.003, 0]}), ball,
-                             json.loads(json.dumps(ball).replace("[0, 0.054, 0]",
-                                                                 "[-0.15, 0.054, 0.1]"))],
+                             json.loads(json.dumps(ball | {"material": {"colour": [0.2, 0.4, 0.75]}}).replace(
+                                 "[0, 0.054, 0]", "[-0.15, 0.054, 0.1]"))],
+                  "camera": {"eye": [0.15, 0.55, 1.2], "target": [0.15, 0, 0]},
                   "colliders": [floor], "pairs": {"among": "all", "friction": 0.3},
                   "events": [grab("right", 0.3, 0.7, [{"at": 0.7, "point": [1.2, 0, 0]}])]}),
     }
