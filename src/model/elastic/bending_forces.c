@@ -305,16 +305,8 @@ static void add_body_rows(const struct cs_bending *bending, const struct cs_modu
     }
 }
 
-void cs_bendings_add_bound(const struct cs_system *system, double *sums) {
-    for (uint32_t b = 0; b < system->bendings->n; b++) {
-        const struct cs_bending *bending = system->bendings->bodies + b;
-        const struct cs_moduli moduli = moduli_of(system, bending);
-        add_body_rows(bending, &moduli, false, sums);
-    }
-}
-
-/* Finds the diagonal of K where the moduli are not those that it was found for. */
-static void update_diagonal(const struct cs_system *system) {
+/* Finds diagonal and row sums of K where the moduli are not those that they were found for. */
+static void update_rows(const struct cs_system *system) {
     struct cs_bendings *all = system->bendings;
     for (uint32_t b = 0; b < all->n; b++) {
         const struct cs_bending *bending = all->bodies + b;
@@ -324,9 +316,17 @@ static void update_diagonal(const struct cs_system *system) {
             of->coupling == moduli.coupling && of->shear == moduli.shear)
             continue;
         memset(all->diagonal + bending->first, 0, bending->count * sizeof *all->diagonal);
+        memset(all->row_sums + bending->first, 0, bending->count * sizeof *all->row_sums);
         add_body_rows(bending, &moduli, true, all->diagonal);
+        add_body_rows(bending, &moduli, false, all->row_sums);
         all->moduli[b] = moduli;
     }
+}
+
+void cs_bendings_add_bound(const struct cs_system *system, double *sums) {
+    update_rows(system);
+    for (uint32_t i = 0; i < system->view.n; i++)
+        sums[i] += system->bendings->row_sums[i];
 }
 
 /* A stencil of m points is at most m times its diagonal: what matrix->bound asks for. */
@@ -334,7 +334,7 @@ void cs_bendings_prepare_matrix(const struct cs_system *system, const struct cs_
                                 bool kept) {
     struct cs_bendings *all = system->bendings;
     const double factor = -matrix->ck * (matrix->bound && !kept ? CS_BENDING_POINTS : 1);
-    update_diagonal(system);
+    update_rows(system);
     for (uint32_t i = 0; i < system->view.n; i++)
         all->blocks[i] = factor * all->diagonal[i];
     if (kept)

@@ -240,6 +240,7 @@ enum cs_status cs_bendings_build(struct cs_system *system, struct cs_error *erro
     all->moduli = cs_arena_alloc_array(arena, n_bodies, sizeof *all->moduli, error);
     all->diagonal = cs_arena_alloc_array(arena, system->view.n, sizeof(double), error);
     all->blocks = cs_arena_alloc_array(arena, system->view.n, sizeof(double), error);
+    all->row_sums = cs_arena_alloc_array(arena, system->view.n, sizeof(double), error);
     for (uint32_t b = 0; b < n_bodies && !error->status; b++) {
         if (!bodies[b].elastic.present || !bodies[b].elastic.bending.present)
             continue;

@@ -44,8 +44,9 @@ struct cs_bendings {
     struct cs_bending *bodies; /* (n) ascending */
     uint32_t n;
     double *diagonal;         /* (particles) of K in N/m, for the moduli below */
+    double *row_sums;         /* (particles) of |K| in N/m, likewise */
     double *blocks;           /* (particles) the diagonal in the matrix prepared last */
-    struct cs_moduli *moduli; /* (n) of `diagonal` */
+    struct cs_moduli *moduli; /* (n) of the two above */
     double kept;              /* -ck of the matrix kept last */
 };
 

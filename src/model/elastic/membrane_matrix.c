@@ -49,6 +49,15 @@ static void find_triangle(const struct cs_membrane *membrane, uint32_t t, size_t
                          triangle->rest[(CS_MEMBRANE_P + k) * triangle->stride];
 }
 
+/* K of a triangle: of a grid all have that of the law. */
+static void find_stiffness(const struct cs_membrane *membrane, const struct membrane_law *law,
+                           uint32_t t, double K[6]) {
+    if (membrane->columns)
+        memcpy(K, law->K, sizeof law->K);
+    else
+        cs_membrane_stiffness(membrane, t, &law->moduli, K);
+}
+
 /* --- energies --- */
 
 /* The moduli of a body now. */
@@ -171,7 +180,7 @@ void cs_membranes_add_bound(const struct cs_system *system, const struct cs_eval
         const struct membrane_law law = cs_membrane_law_of(&job, membrane);
         for (uint32_t t = 0; t < membrane->n; t++) {
             struct bounded bounded = {.has_state = at};
-            cs_membrane_stiffness(membrane, t, &law.moduli, bounded.K);
+            find_stiffness(membrane, &law, t, bounded.K);
             find_triangle(membrane, t, system->view.n, at ? at->x : NULL, at ? at->v : NULL,
                           &bounded.at);
             for (size_t k = 0; k < 3; k++) {
@@ -255,7 +264,7 @@ static void set_blocks(const struct setup *setup, const struct cs_membrane *memb
             double K[6], s[3];
             // computed for each corner again: threads share no particle
             find_triangle(membrane, t, n, matrix->x, NULL, &at);
-            cs_membrane_stiffness(membrane, t, &law.moduli, K);
+            find_stiffness(membrane, &law, t, K);
             matrix_tensions(&at, &law.moduli, matrix, s);
             add_corner_block(&at, K, s, kappa, corner, block);
             for (size_t e = 0; setup->kept && corner == 0 && e < 3; e++)
