@@ -142,13 +142,17 @@ static enum cs_step try_steps(struct adaptive_step *self, double t, const double
     const struct cs_host *host = self->host;
     struct step_control *control = &self->control;
     for (;; self->rejected++) {
-        if (self->tries++ >= self->asked.max_steps)
-            return host->fail(host->ctx, "more than %lld steps from t = %.9g s to %.9g s",
-                              (long long)self->asked.max_steps, self->begin, t);
+        if (self->tries++ >= self->asked.max_steps) {
+            host->fail(host->ctx, "more than %lld steps from t = %.9g s to %.9g s",
+                       (long long)self->asked.max_steps, self->begin, t);
+            return CS_STEP_HALT;
+        }
         *h = cut(least(control->h, longest_step(self, t, y)), self->end - t);
         /* a shorter step is lost in the rounding of t; NaN is refused too */
-        if (!(*h > 4 * DBL_EPSILON * self->end))
-            return host->fail(host->ctx, "the step fell to %.3g s at t = %.9g s", *h, t);
+        if (!(*h > 4 * DBL_EPSILON * self->end)) {
+            host->fail(host->ctx, "the step fell to %.3g s at t = %.9g s", *h, t);
+            return CS_STEP_HALT;
+        }
         double error = HUGE_VAL;
         const enum cs_step status = self->attempt(self, t, *h, y, &error);
         if (status != CS_STEP_OK)

@@ -11,6 +11,11 @@
 #include "fixed_step.h"
 #include "sundials_common.h"
 
+_Static_assert(ARK_ERR_FAILURE == SUNDIALS_ERROR_TEST &&
+                   ARK_CONV_FAILURE == SUNDIALS_CONVERGENCE &&
+                   ARK_REPTD_RHSFUNC_ERR == SUNDIALS_REFUSED,
+               "codes of sundials.h");
+
 #define EXPLICIT_PARTS (CS_PART_ALL & ~CS_PART_STIFF)
 
 /* Vectors besides the slopes of stages: state, error weights, scratch, interpolation, Newton,

@@ -11,6 +11,11 @@
 #include <cvode/cvode.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
+_Static_assert(CV_ERR_FAILURE == SUNDIALS_ERROR_TEST &&
+                   CV_CONV_FAILURE == SUNDIALS_CONVERGENCE &&
+                   CV_REPTD_RHSFUNC_ERR == SUNDIALS_REFUSED,
+               "codes of sundials.h");
+
 /* Below this damping ratio, stability near the imaginary axis holds back the orders above 2
  * of BDF: see cvode_order_control.h. Chosen by trial. */
 #define WEAK_DAMPING 0.05

@@ -6,7 +6,7 @@
  *    stable and looks admissible; halved until it is not longer than 0.9 of the stability
  *    limit at the state, and, with checks_free_motion, until the host admits the motion
  *    without forces. After a refusal step 1 is left out, because the state is the same.
- * 2. More than max_depth halvings: the run fails with the reason of the last refusal.
+ * 2. More than max_depth halvings: the run ends with the reason of the last refusal.
  * 3. Take the part. If the host does not admit the displacement, restore the state, halve,
  *    and go to 2.
  * 4. Commit the part. If the commit changed the state, the method's history is void.
@@ -190,8 +190,10 @@ static enum cs_step take_step_in_parts(struct fixed_step *self, double t, double
         bool cut = false, changed = false;
         if (moved)
             choose_cuts(self, begin, h, x, v);
-        if (cuts->depth > self->max_depth)
-            return self->report_failure(self, begin, 2 * step_subdivision_length(cuts, h));
+        if (cuts->depth > self->max_depth) {
+            self->report_failure(self, begin, 2 * step_subdivision_length(cuts, h));
+            return CS_STEP_HALT;
+        }
         const double part = step_subdivision_length(cuts, h),
                      from = t + cuts->parts_done * part;
         enum cs_step status = self->try_step(self, from, part, x, v, &cut);

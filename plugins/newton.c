@@ -1,5 +1,4 @@
-/* newton.c - Newton's method with a line search for the equation of one implicit stage;
- * formulas and sources are in newton.h.
+/* newton.c - Newton's method with a line search for one implicit stage; formulas: newton.h.
  *
  * One iteration, in order:
  * 1. Converged if |r| <= goal = rtol impulse + residual_floor times the rounding floor. Also
@@ -10,8 +9,7 @@
  * 4. The line search accepts a length, or the iteration ends.
  *
  * Where that fails and contact has friction, the same with lagged friction goes on from the
- * last u, in outer iterations (iterate_lags). A linear solve that fails ends the iteration
- * without a solution: the method then tries a shorter step. */
+ * last u (iterate_lags). Where a linear solve fails the method tries a shorter step. */
 #include "newton.h"
 
 #include <float.h>
@@ -33,10 +31,14 @@
 /* Share of P below which a slope is lost in its rounding: P sums 1e4 and more numbers. */
 #define MERIT_NOISE 1e-11
 
+/* A move is doubled, so often at most, where P falls by more than this share of what its slope
+ * promises. With an exact A it falls by half of that. Chosen by trial. */
+#define STRAIGHT      0.9
+#define DOUBLINGS_MAX 10
+
 /* An iteration with friction ends if so many steps do not lower |r| to this share of its
  * smallest value. With true friction it is then in a circle, mostly of two states. Chosen by
- * trial: sheets that clash took 0.3 to 0.5 fewer linear iterations with 4 than with 10, and
- * 0.08 with 2 than with 4. */
+ * trial (docs/contact.md). */
 #define IDLE_GAIN   0.9
 #define IDLE        2
 #define IDLE_LAGGED 10
@@ -133,7 +135,6 @@ static enum cs_step find_direction(struct newton *newton, const struct newton_st
             newton->rhs[c * n + i] = -newton->r[c * n + i];
             newton->du[c * n + i] = view->inv_mass[i] * newton->rhs[c * n + i];
         }
-    /* free fall stays the start if it halves the residual */
     host->matrix_product(host->ctx, newton->du, newton->f);
     host->vector->linear_sum(3 * n, 1, newton->rhs, -1, newton->f, newton->f);
     const double left = host->vector->dot(3 * n, newton->f, newton->f);
@@ -229,12 +230,42 @@ static struct merit merit_at_start(struct newton *newton, const struct newton_st
     return merit;
 }
 
+/* P at u_start + a du, less P at u_start; sets u, X and V. */
+static double change_of(struct newton *newton, const struct newton_stage *stage,
+                        const struct merit *merit, double a, double *u) {
+    const size_t n3 = 3 * (size_t)newton->host->view->n;
+    newton->host->vector->linear_sum(n3, 1, newton->u_start, a, newton->du, u);
+    return potential(newton, stage, u) - a * merit->work - merit->start;
+}
+
+/* Doubles du, which P has accepted with this change, while P falls nearly straight and no
+ * surface is in the way. Under load in a sharp fold the clamped A may be a thousand times too
+ * stiff. */
+static void lengthen(struct newton *newton, const struct newton_stage *stage,
+                     struct merit *merit, double slope, double change, double *u) {
+    const size_t n3 = 3 * (size_t)newton->host->view->n;
+    const bool blocked = newton->line_search_blocked;
+    for (int k = 0; k < DOUBLINGS_MAX && change < STRAIGHT * slope; k++) {
+        newton->host->vector->linear_sum(n3, 2, newton->du, 0, newton->du, newton->du);
+        merit->work *= 2;
+        slope *= 2;
+        const double longer =
+            longest_move(newton, stage) < 1 ? HUGE_VAL : change_of(newton, stage, merit, 1, u);
+        if (!(longer < change)) {
+            change_of(newton, stage, merit, 0.5, u);
+            break;
+        }
+        change = longer;
+    }
+    newton->line_search_blocked = blocked;
+    evaluate(newton, stage, u);
+}
+
 /* Line search from u along du: accepts the first a that lowers |r| by 1e-4 a, or P by 1e-4 of
  * what its slope promises. P is evaluated only if |r| fails at first: it costs an energy and
  * a force more. With lagged friction P alone decides: with both tests an iteration may run in
- * circles, where each undoes what the other has gained. |r| then decides only where the slope
- * is lost in the rounding of P. Returns false if no length is accepted; u is then the last one
- * tried. */
+ * circles. |r| then decides only where the slope is lost in the rounding of P. A whole move is
+ * lengthened where P falls straight. False: no length is accepted, u is the last one tried. */
 static bool search(struct newton *newton, const struct newton_stage *stage, double *u) {
     const struct cs_host *host = newton->host;
     const size_t n3 = 3 * (size_t)host->view->n;
@@ -251,12 +282,14 @@ static bool search(struct newton *newton, const struct newton_stage *stage, doub
             return true;
         if (isnan(merit.start)) // only now: most searches end above
             merit = merit_at_start(newton, stage);
-        const double now = potential(newton, stage, u);
+        const double change = change_of(newton, stage, &merit, a, u);
         if (falls && -slope < MERIT_NOISE * fabs(merit.start))
             return true;
-        if (now - a * merit.work <= merit.start + LINE_DECREASE * a * slope &&
-            isfinite(newton->norm))
+        if (change <= LINE_DECREASE * a * slope && isfinite(newton->norm)) {
+            if (a == 1 && change < STRAIGHT * slope)
+                lengthen(newton, stage, &merit, slope, change, u);
             return true;
+        }
     }
     return false;
 }
@@ -289,9 +322,8 @@ static enum cs_step iterate(struct newton *newton, const struct newton_stage *st
             break;
         before = newton->norm;
         // the goal moves with the impulse: aim at half of it
-        const double enough = 0.5 * goal / newton->norm;
-        const enum cs_step status =
-            find_direction(newton, stage, enough > LINEAR_RTOL ? enough : LINEAR_RTOL);
+        const double enough = fmax(0.5 * goal / newton->norm, LINEAR_RTOL);
+        const enum cs_step status = find_direction(newton, stage, enough);
         newton->linear_failed = newton->may_fail && status == CS_STEP_FAIL;
         if (status != CS_STEP_OK)
             return newton->linear_failed ? CS_STEP_OK : status;
@@ -333,8 +365,7 @@ static enum cs_step iterate_lags(struct newton *newton, const struct newton_stag
         if (status != CS_STEP_OK || !*converged)
             return status;
         evaluate(newton, stage, u);
-        *converged = is_solved(newton, stage, u, 0, &goal);
-        if (*converged)
+        if ((*converged = is_solved(newton, stage, u, 0, &goal)))
             break;
     }
     return CS_STEP_OK;

@@ -51,8 +51,14 @@ struct sundials {
     char message[256];   /* the library's last */
 };
 
+/* Codes of both libraries, for a step that has become as short as it may be: the error test
+ * failed, the nonlinear solver did, the right-hand side was refused. */
+enum { SUNDIALS_ERROR_TEST = -3, SUNDIALS_CONVERGENCE = -4, SUNDIALS_REFUSED = -10 };
+
 /* Fails with the library's code and last message at t, unless the host's own calls failed
- * before: their status is returned then. */
+ * before: their status is returned then. CS_STEP_HALT if no step was short enough. */
 enum cs_step sundials_fail(struct sundials *self, int code, double t);
+/* Ends an advance from t0 at t, after max_steps steps. */
+enum cs_step sundials_fail_by_count(struct sundials *self, double t0, double t);
 
 #endif

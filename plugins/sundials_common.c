@@ -132,9 +132,10 @@ static int restore_state(struct sundials *self, double t, double reached, double
     const struct cs_host *host = self->host;
     memcpy(x, self->y_before, 6 * sizeof *x * host->view->n);
     if (self->equal_steps || (reached - t) * PARTS_MAX < frame) {
-        self->status =
-            host->fail(host->ctx, "a step of %.3g s at t = %.9g s passes through a surface",
-                       reached - t, t);
+        host->fail(host->ctx,
+                   "a step of %.3g s at t = %.9g s misses contact or crosses a surface",
+                   reached - t, t);
+        self->status = CS_STEP_HALT;
         return -1;
     }
     return self->library->on_state_changed(self, t, 0);
@@ -156,8 +157,7 @@ enum cs_step sundials_advance(void *object, double t0, double t1, double *x, dou
     double t = t0;
     for (int64_t steps = 0; t < t1; steps++) {
         if (steps >= self->max_steps)
-            return host->fail(host->ctx, "more than %lld steps from t = %.9g s to %.9g s",
-                              (long long)self->max_steps, t0, t);
+            return sundials_fail_by_count(self, t0, t);
         const double before = t;
         bool changed = false;
         if (self->y_before)

@@ -69,8 +69,7 @@ enum cs_step sundials_overstep_advance(struct sundials *self, double t0, double 
         int code = 0;
         if (self->t_internal <= t) {
             if (steps++ >= self->max_steps)
-                return host->fail(host->ctx, "more than %lld steps from t = %.9g s to %.9g s",
-                                  (long long)self->max_steps, t0, t);
+                return sundials_fail_by_count(self, t0, t);
             code = self->library->evolve(self->memory, self->t_internal + AHEAD, self->state,
                                          &self->t_internal, self->library->one_step);
         }

@@ -48,8 +48,8 @@ extern "C" {
 /* How a call ended. */
 enum cs_step {
     CS_STEP_OK,
-    /* commit said stop: a blow-up, an interrupt, or the budget is used up. Return it upwards at
-     * once. */
+    /* The run ends with a result: commit said so, return it upwards at once. Or, from advance
+     * alone, no step is short enough: host->fail was told, x and v are of the last commit. */
     CS_STEP_HALT,
     /* The reason was given to host->fail. */
     CS_STEP_FAIL

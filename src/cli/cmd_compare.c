@@ -219,7 +219,7 @@ static void add_command(const struct cs_args *args, struct cs_text *out) {
 static enum cs_status check_cells(const struct cs_compare *compare, struct cs_error *error) {
     uint32_t bad = 0;
     for (uint32_t k = 0; k < compare->cells.n; k++)
-        bad += !strcmp(compare->cells.cells[k].outcome, "failed") ||
+        bad += cs_cell_has_failed(compare->cells.cells + k) ||
                !strncmp(compare->cells.cells[k].outcome, "blew up", 7);
     return bad ? cs_fail(error, CS_ERR_UNSTABLE, "%u of %u cells blew up or failed", bad,
                          compare->cells.n)

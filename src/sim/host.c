@@ -37,7 +37,8 @@ static enum cs_step host_fail(void *ctx, const char *format, ...) {
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
     struct cs_text where = {0};
-    cs_blocked_step_print(&host->blocked_step, host->run->system, &where);
+    if (host->blocked_step.is_set)
+        cs_blocked_step_print(&host->blocked_step, host->run->system, &where);
     cs_fail(&host->error, CS_ERR_MODULE, "%s%s", message, cs_text_get(&where));
     cs_text_finish(&where);
     return CS_STEP_FAIL;

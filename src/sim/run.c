@@ -79,6 +79,31 @@ static enum cs_step check_left(struct cs_run *run, double to) {
     return step;
 }
 
+/* Adds the deepest contact to the reason of a method that gave up without a rejected step. */
+static void add_deepest_contact(struct cs_run *run) {
+    struct cs_run_host *host = run->host;
+    struct cs_text where = {0};
+    const size_t used = strlen(host->error.message);
+    cs_blocked_step_print_deepest(&host->blocked_step, run->system,
+                                  host->advance_check.last_commit, run->x, run->v, &where);
+    snprintf(host->error.message + used, sizeof host->error.message - used, "%s",
+             cs_text_get(&where));
+    cs_text_finish(&where);
+}
+
+/* Makes a result of an advance that found no step short enough. Without memory it is none. */
+static void note_give_up(struct cs_run *run) {
+    const struct cs_run_host *host = run->host;
+    const struct cs_error *said = &host->error;
+    if (run->outcome != CS_RUNNING || said->status != CS_ERR_MODULE ||
+        cs_crash_was_starved(CS_CRASH_METHOD))
+        return;
+    run->outcome = CS_GAVE_UP;
+    run->reason = said->message;
+    if (!host->blocked_step.is_set)
+        add_deepest_contact(run);
+}
+
 /* The method's advance, with its post-conditions checked. */
 static enum cs_step advance(struct cs_run *run, double from, double to) {
     if (!run->host->settings.skip_advance_check)
@@ -89,6 +114,8 @@ static enum cs_step advance(struct cs_run *run, double from, double to) {
         run->integrator->advance(run->host->self, from, to, run->x, run->v);
     cs_host_pin(run->host, false);
     cs_crash_forget(CS_CRASH_METHOD);
+    if (step == CS_STEP_HALT)
+        note_give_up(run);
     return step == CS_STEP_OK ? check_left(run, to) : step;
 }
 

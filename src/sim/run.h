@@ -23,9 +23,10 @@ enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
                             const struct cs_integrator *integrator, const void *options,
                             const struct cs_run_settings *settings, struct cs_error *error);
 
-/* Steps to the next frame, t = (frame + 1) / fps. A blow-up, an interrupt or the end of the
- * budget sets run->outcome and returns CS_OK with run->frame unchanged; the state is then the
- * one of the last commit. CS_ERR_MODULE: the method failed; the message says when and why. */
+/* Steps to the next frame, t = (frame + 1) / fps. A blow-up, an interrupt, the end of the
+ * budget or a method that gives up sets run->outcome and returns CS_OK with run->frame
+ * unchanged; the state is then the one of the last commit. CS_ERR_MODULE: the method failed;
+ * the message says when and why. */
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error);
 
 /* The two calls of the method that make up a frame, alone: no events, no clock. The caller

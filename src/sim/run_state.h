@@ -8,14 +8,16 @@
 #include <clothsim/integrator.h>
 #include <signal.h>
 
-/* How a run stands. All but the first end it, and none is an error. CS_FAILED occurs in
- * stored results only: a run reports a method that gave up by an error. */
+/* How a run stands. All but the first end it, and none is an error. CS_GAVE_UP: the method
+ * found no step short enough. CS_FAILED occurs in stored results only: a run reports a method
+ * that failed by an error. */
 #define CS_OUTCOME_LIST(X)                                                                     \
     X(CS_RUNNING, "finished")                                                                  \
     X(CS_NOT_FINITE, "blew up: not finite")                                                    \
     X(CS_UNBOUNDED, "blew up: unbounded energy")                                               \
     X(CS_INTERRUPTED, "interrupted")                                                           \
     X(CS_OVER_BUDGET, "over budget")                                                           \
+    X(CS_GAVE_UP, "gave up")                                                                   \
     X(CS_FAILED, "failed")
 enum cs_outcome {
 #define X(name, text) name,
@@ -26,6 +28,11 @@ enum cs_outcome {
 /* True for the two kinds of blow-up. */
 static inline bool cs_outcome_is_blow_up(enum cs_outcome outcome) {
     return outcome == CS_NOT_FINITE || outcome == CS_UNBOUNDED;
+}
+
+/* True if the method said why it did not go on. */
+static inline bool cs_outcome_has_reason(enum cs_outcome outcome) {
+    return outcome == CS_GAVE_UP || outcome == CS_FAILED;
 }
 
 /* Stages of a step that the host times with settings.timed; names are in cs_stage_names. */
@@ -78,6 +85,7 @@ struct cs_run {
     uint32_t frame; /* frames done */
     enum cs_outcome outcome;
     struct cs_blow_up blow_up; /* where outcome says so */
+    const char *reason;        /* with CS_GAVE_UP: the method's, the host's text */
     struct cs_counts counts;
     double stage_seconds[CS_STAGES]; /* all 0 unless timed */
     double advance_seconds;          /* wall time inside the method */

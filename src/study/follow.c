@@ -34,12 +34,12 @@ enum cs_status cs_follow_check(const struct cs_run *run, const char *interrupted
 enum cs_status cs_follow_result(const struct cs_run *run, const char *interrupted,
                                 struct cs_run_result *result, struct cs_error *error) {
     const bool failed = error->status == CS_ERR_MODULE;
+    const char *text = run->reason ? run->reason : cs_outcome_text(run->outcome);
     *result = (struct cs_run_result){
         .outcome = failed ? CS_FAILED : run->outcome,
         .reached = run->t,
         .time = cs_outcome_is_blow_up(run->outcome) ? run->blow_up.time : run->t};
-    snprintf(result->message, sizeof result->message, "%s",
-             failed ? error->message : cs_outcome_text(run->outcome));
+    snprintf(result->message, sizeof result->message, "%s", failed ? error->message : text);
     if (failed)
         *error = (struct cs_error){0};
     return cs_follow_check(run, interrupted, error);

@@ -25,10 +25,11 @@ bool cs_follow_next(struct cs_follow *follow, struct cs_error *error);
 
 /* Result of a run. */
 struct cs_run_result {
-    enum cs_outcome outcome; /* CS_RUNNING: at its last frame; CS_FAILED: the method gave up */
-    double reached;          /* s, of the last frame */
-    double time;             /* s, of the blow-up if there was one, else as reached */
-    char message[1024];      /* why the method gave up, else the outcome as text */
+    enum cs_outcome
+        outcome;        /* CS_RUNNING: at its last frame; CS_FAILED: an error of the method */
+    double reached;     /* s, of the last frame */
+    double time;        /* s, of the blow-up if there was one, else as reached */
+    char message[1024]; /* why the method gave up, else the outcome as text */
 };
 
 /* Fills the result. A method that gave up is a result, and *error is cleared. An interrupted

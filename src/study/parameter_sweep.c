@@ -183,7 +183,7 @@ static enum cs_status parameter_sweep_cell_run(struct cs_parameter_sweep_cell *c
     cs_machine_name(machine);
     cs_csv_add_text(out, machine);
     cs_csv_add_text(out, CS_VERSION);
-    cs_csv_add_text(out, cell->refusal.message);
+    cs_csv_add_text(out, session->run.reason ? session->run.reason : cell->refusal.message);
     cs_csv_add_text(out, cell->key);
     cs_csv_end_row(out, 0, names);
     if (out->failed && !error->status)

@@ -148,7 +148,7 @@ enum cs_status cs_recorded_run_execute(struct cs_recorded_run *recording, double
         cs_run_hash(&session->run, end->hash);
     }
     cs_follow_result(&session->run, "; finished rows are saved", &end->result, error);
-    if (end->result.outcome == CS_FAILED)
+    if (cs_outcome_has_reason(end->result.outcome))
         snprintf(end->note, sizeof end->note, "%.239s", end->result.message);
     cs_run_finish(&session->run);
     return error->status ? error->status : renew(recording, error);

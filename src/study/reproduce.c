@@ -102,7 +102,7 @@ static enum cs_status compare_end(struct work *work, uint32_t total, struct cs_e
         return error->status;
     if (strcmp(then, cs_outcome_text(now.outcome)) != 0)
         differ(work, "the outcome", then, cs_outcome_text(now.outcome));
-    else if (now.outcome == CS_FAILED && strcmp(detail, now.message) != 0)
+    else if (cs_outcome_has_reason(now.outcome) && !strstr(detail, now.message))
         differ(work, "the reason", detail, now.message);
     else
         cs_text_add(&work->again->equal_items, " and the outcome");

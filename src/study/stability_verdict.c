@@ -108,7 +108,7 @@ enum cs_stability_verdict cs_stability_at_end(enum cs_outcome outcome,
         return CS_STABILITY_NOT_FINITE;
     if (outcome == CS_UNBOUNDED || seen == CS_STABILITY_GLOBAL)
         return CS_STABILITY_GLOBAL;
-    if (outcome == CS_FAILED)
+    if (cs_outcome_has_reason(outcome))
         return CS_STABILITY_FAILED;
     if (seen == CS_STABILITY_BOUNDED && outcome == CS_OVER_BUDGET)
         return CS_STABILITY_OVER_BUDGET;

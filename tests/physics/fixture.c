@@ -64,6 +64,16 @@ void fixture_frames(struct fixture *fixture, uint32_t frames) {
     }
 }
 
+const char *fixture_reason(struct fixture *fixture) {
+    struct cs_run *run = &fixture->session.run;
+    struct cs_error error = {0};
+    const uint32_t frame = run->frame;
+    ck_assert_msg(!cs_run_frame(run, &error), "%s", error.message);
+    ck_assert_int_eq(run->outcome, CS_GAVE_UP);
+    ck_assert_uint_eq(run->frame, frame);
+    return run->reason;
+}
+
 void fixture_close(struct fixture *fixture) {
     cs_session_close(&fixture->session);
 }

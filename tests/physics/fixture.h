@@ -31,6 +31,8 @@ void fixture_start_logged(struct fixture *fixture, struct fixture_log *log);
 
 /* Runs that many frames; a blow-up fails the test. */
 void fixture_frames(struct fixture *fixture, uint32_t frames);
+/* Steps a frame in which the method must give up, which is no error; returns its reason. */
+const char *fixture_reason(struct fixture *fixture);
 void fixture_close(struct fixture *fixture);
 
 /* A block at its height of balance on a slope of mu = 0.3, whose tangent is given, or on a

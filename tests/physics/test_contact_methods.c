@@ -99,7 +99,9 @@ static void follow(struct cs_session *session, uint32_t frames, struct course *c
     while (course->frames < frames && !course->error.status) {
         cs_run_frame(&session->run, &course->error);
         if (session->run.outcome != CS_RUNNING)
-            cs_fail(&course->error, CS_ERR_MODULE, "%s", cs_outcome_text(session->run.outcome));
+            cs_fail(&course->error, CS_ERR_MODULE, "%s",
+                    session->run.reason ? session->run.reason
+                                        : cs_outcome_text(session->run.outcome));
         if (course->error.status)
             return;
         const uint64_t n = meeting_crossings(session);

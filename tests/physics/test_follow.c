@@ -49,6 +49,7 @@ TEST(ends_are_results) {
         enum cs_outcome outcome;
         const char *message;
     } rows[] = {{"explicit-euler:dt=0.0166", CS_UNBOUNDED, "blew up: unbounded energy"},
+                {"dopri5:rtol=1e-12,max_steps=3", CS_GAVE_UP, "more than 3 steps"},
                 {"symplectic-euler:dt=1e-14", CS_FAILED, "needs more than 1e+09 steps"}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct fixture cloth;
@@ -69,7 +70,8 @@ TEST(ends_are_results) {
         ck_assert_int_eq(result.outcome, rows[k].outcome);
         ck_assert_msg(strstr(result.message, rows[k].message), "%s", result.message);
         ck_assert(result.reached == run->t);
-        ck_assert(result.time == (rows[k].outcome == CS_FAILED ? run->t : run->blow_up.time));
+        ck_assert(result.time ==
+                  (cs_outcome_has_reason(rows[k].outcome) ? run->t : run->blow_up.time));
         fixture_close(&cloth);
     }
 }

@@ -115,13 +115,11 @@ TEST(failures_have_reasons) {
                 {"cvode-adams:max_steps=2,rtol=1e-10", "more than 2 steps"}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct fixture cloth;
-        struct cs_error error = {0};
         fixture_open(&cloth, rows[k].integrator, SCENE);
         cs_perturb_smooth(cloth.system, 0.01, 1);
         fixture_start(&cloth);
-        cs_run_frame(&cloth.session.run, &error);
-        ck_assert_msg(error.status == CS_ERR_MODULE, "%s did not fail", rows[k].integrator);
-        ck_assert_msg(strstr(error.message, rows[k].reason), "%s", error.message);
+        const char *reason = fixture_reason(&cloth);
+        ck_assert_msg(strstr(reason, rows[k].reason), "%s", reason);
         fixture_close(&cloth);
     }
 }

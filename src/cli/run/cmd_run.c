@@ -102,7 +102,8 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, job.fast_render)},
     {"png-level", 0, "LEVEL", "compression, 0 to 9 (default: 1)",
      CS_ARG_INTO(struct options, job.level), .min = 0, .max = 9},
-    {"strict", 0, NULL, "exit with 8 if the run blew up", CS_ARG_INTO(struct options, strict)},
+    {"strict", 0, NULL, "exit with 8 if the run blew up or gave up",
+     CS_ARG_INTO(struct options, strict)},
     {"quiet", 'q', NULL, "no progress and no table", CS_ARG_INTO(struct options, job.quiet)},
 };
 
@@ -203,7 +204,7 @@ static void print_watch(const struct cs_job *job) {
     cs_text_finish(&found);
 }
 
-/* Reports a run that stopped early; with strict, a blow-up is an error. */
+/* Reports a run that stopped early; with strict, a blow-up and giving up are errors. */
 static enum cs_status print_outcome(const struct cs_job *job, bool strict,
                                     struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
@@ -216,7 +217,7 @@ static enum cs_status print_outcome(const struct cs_job *job, bool strict,
     cs_text_add(&outcome, "; %u of %u frames were finished", run->frame, job->frames);
     if (run->outcome == CS_INTERRUPTED)
         cs_fail(error, CS_ERR_INTERRUPT, "%s", cs_text_get(&outcome));
-    else if (strict && cs_outcome_is_blow_up(run->outcome))
+    else if (strict && (cs_outcome_is_blow_up(run->outcome) || run->outcome == CS_GAVE_UP))
         cs_fail(error, CS_ERR_UNSTABLE, "%s", cs_text_get(&outcome));
     else
         cs_print_message(cs_text_get(&outcome));

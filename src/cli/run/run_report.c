@@ -30,7 +30,10 @@ void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out) {
     if (run->outcome == CS_RUNNING)
         return;
     const bool blown = cs_outcome_is_blow_up(run->outcome);
-    cs_text_add(out, " at t = %.6g s", blown ? run->blow_up.time : run->t);
+    if (run->reason)
+        cs_text_add(out, ": %s", run->reason);
+    else
+        cs_text_add(out, " at t = %.6g s", blown ? run->blow_up.time : run->t);
     if (!blown)
         return;
     cs_text_add(out, ", ");
@@ -46,7 +49,7 @@ static void add_frames(const struct cs_job *job, struct cs_text *out) {
     struct cs_text outcome = {0};
     cs_report_print_outcome(job, &outcome);
     add_row(out, "frames", "%u of %u, t = %.6g s", run->frame, job->frames, run->t);
-    add_row(out, "outcome", "%s", cs_text_get(&outcome));
+    cs_print_hanging("outcome", cs_text_get(&outcome), VALUE_COLUMN, out);
     cs_text_finish(&outcome);
 }
 

@@ -139,6 +139,11 @@ bool cs_cell_is_finished(const struct cs_cell *cell) {
     return !strcmp(cell->outcome, cs_outcome_text(CS_RUNNING));
 }
 
+bool cs_cell_has_failed(const struct cs_cell *cell) {
+    return !strcmp(cell->outcome, cs_outcome_text(CS_FAILED)) ||
+           !strcmp(cell->outcome, cs_outcome_text(CS_GAVE_UP));
+}
+
 /* Finds a column by its name or by that of the last release; NULL if unknown. */
 static const struct cs_column *find_column(const char *name) {
     static const char *const renamed[][2] = {{"ledger_push", "ledger_events_force"},

@@ -18,10 +18,10 @@ struct cs_cell {
     char fixed[192];   /* options that all cells of the series share */
     char options[256]; /* all of them: "dt=0.001"; "": all at their defaults */
     char control[16];  /* "dt", "rtol", or "" */
-    char
-        outcome[48]; /* "finished", "blew up: not finite", "over budget", "failed", "refused" */
-    char note[240];  /* the method's reason, or its remarks */
-    char key[40];    /* hash of everything that the row depends on, but for the machine */
+    char outcome[48];  /* "finished", "blew up: not finite", "over budget", "gave up", "failed",
+                          "refused" */
+    char note[240];    /* the method's reason, or its remarks */
+    char key[40];      /* hash of everything that the row depends on, but for the machine */
     char machine[CS_MACHINE_NAME], version[24]; /* that it was timed on and with */
     char state_hash[CS_HASH_DIGITS];            /* at its end */
     char module[CS_HASH_DIGITS];                /* of the method's file */
@@ -83,6 +83,8 @@ void cs_cell_name_machine(struct cs_cell *cell, const char *here);
 bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b);
 /* True if the run reached its last frame. */
 bool cs_cell_is_finished(const struct cs_cell *cell);
+/* True if the method failed or gave up: the note says why. */
+bool cs_cell_has_failed(const struct cs_cell *cell);
 /* True if the energy ledger is known. Comparing a number with itself tests for NAN. */
 static inline bool cs_cell_has_ledger(const struct cs_cell *cell) {
     return cell->ledger[CS_WORK_INTEGRATOR] == cell->ledger[CS_WORK_INTEGRATOR];

@@ -208,7 +208,7 @@ static struct tally count(const struct cs_compare *compare) {
             stats.below += cell->error < compare->reference.error_bar;
         }
         stats.over += !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
-        stats.failed += !strcmp(cell->outcome, "failed");
+        stats.failed += cs_cell_has_failed(cell);
         stats.blown += !strncmp(cell->outcome, "blew up", 7);
     }
     return stats;
@@ -239,7 +239,7 @@ void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
     add(out, bullet, stats.blown, "blew up", ": the step is beyond the stable one");
     add(out, bullet, stats.over, "over budget",
         ": their series end there (a larger --budget lets them go on)");
-    add(out, bullet, stats.failed, "failed", ": the notes in compare.csv say why");
+    add(out, bullet, stats.failed, "failed or gave up", ": the notes in compare.csv say why");
     add(out, bullet, stats.brief, "ran for less than 5 ms",
         ": trust the counts rather than the times, or take a longer --time");
     add(out, bullet, stats.spread, "with quartiles further apart than 10 %",

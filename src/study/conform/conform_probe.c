@@ -141,8 +141,9 @@ bool cs_probe_run(struct cs_probe *probe, uint32_t frames) {
     if (!probe->has_ended)
         cs_follow_next(&follow, &probe->error);
     if (run->outcome != CS_RUNNING)
-        cs_fail(&probe->error, CS_ERR_CHECK, "%s at t = %.6g s", cs_outcome_text(run->outcome),
-                run->blow_up.time);
+        cs_fail(&probe->error, CS_ERR_CHECK, "%s at t = %.6g s%s%s",
+                cs_outcome_text(run->outcome), run->reason ? run->t : run->blow_up.time,
+                run->reason ? ": " : "", run->reason ? run->reason : "");
     probe->has_ended = probe->error.status;
     return !probe->has_ended;
 }

@@ -43,7 +43,7 @@ static enum cs_status try_safe(struct cs_advice *row,
         }
     }
     row->checked_seconds = trial.result.reached;
-    if (trial.result.outcome == CS_FAILED)
+    if (cs_outcome_has_reason(trial.result.outcome))
         snprintf(row->message, sizeof row->message, "%.300s", trial.result.message);
     if (row->checked_seconds > 0) {
         row->frame_cost = trial.seconds / row->checked_seconds * frame;

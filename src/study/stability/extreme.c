@@ -50,8 +50,8 @@ static void step(struct cs_extreme_row *row, struct cs_session *session, double 
         cs_stability_confirm(&monitor, &again, run->t, run->counts.steps, error))
         return;
     cs_energy_monitor_print(&monitor, run->system, &text);
-    ending->refused = result.outcome == CS_FAILED;
-    row->verdict = result.outcome == CS_FAILED        ? CS_STABILITY_FAILED
+    ending->refused = cs_outcome_has_reason(result.outcome);
+    row->verdict = ending->refused                    ? CS_STABILITY_FAILED
                    : result.outcome == CS_OVER_BUDGET ? CS_STABILITY_OVER_BUDGET
                    : result.outcome == CS_NOT_FINITE  ? CS_STABILITY_NOT_FINITE
                    : result.outcome == CS_UNBOUNDED   ? CS_STABILITY_GLOBAL

@@ -64,6 +64,9 @@ static void print_place(const struct place *at, struct cs_text *out) {
                     "; %.3g times the stiffness would hold (contact.stiffness %.3g N/m), "
                     "or %.3g times the thickness",
                     factor, factor * at->stiffness, sqrt(factor));
+    else
+        cs_text_add(out, ", which a contact.stiffness of %.3g N/m holds, and it is %.3g N/m",
+                    factor * at->stiffness, at->stiffness);
 }
 
 /* J, kinetic energy of the relative motion of a mass in a step of h seconds. */
@@ -77,18 +80,19 @@ static double kinetic(double mass, const double way[3], double h) {
 struct point_search {
     const struct cs_collider_step *step;
     uint32_t collider;
-    double y; /* distance at the end over the range; of the best one */
+    bool samples, resolved; /* of samples; those too that do not miss contact */
+    double y;               /* distance at the end over the range; of the best one */
     uint32_t particle;
     struct place place;
 };
 
-/* Takes a point over that goes deepest and misses contact. */
+/* Takes a point over that goes deepest. */
 static void try_point(struct point_search *search, uint32_t particle, double mass,
                       const double from[3], const double to[3]) {
     const struct cs_collider_step *step = search->step;
     const double range = step->params.range, k = step->params.k;
     double start[3], way[3], g[3], h[6];
-    if (!cs_collider_step_misses_contact(step, mass, from, to))
+    if (!search->resolved && !cs_collider_step_misses_contact(step, mass, from, to))
         return;
     for (int c = 0; c < 3; c++) {
         start[c] = from[c] + step->at_t1.centre[c] - step->at_t0.centre[c];
@@ -135,31 +139,58 @@ static void try_samples(const struct cs_system *system, struct point_search *sea
         }
 }
 
-/* Adds the point of a body that misses contact with a collider; returns false if none does. */
-static bool print_point(const struct cs_blocked_step *blocked, const struct cs_system *system,
+/* Searches the particles or samples near search->collider; returns false if none is found. */
+static bool find_point(const struct cs_blocked_step *blocked, const struct cs_system *system,
+                       struct point_search *search) {
+    struct cs_collider_step step = {.x0 = blocked->x,
+                                    .x1 = blocked->x + 3 * (size_t)system->view.n};
+    cs_collider_step_set(&step, system, search->collider, blocked->t[0], blocked->t[1]);
+    if (system->rebounds && !search->samples)
+        step.unresolved_max = CS_UNRESOLVED_BESIDE_REBOUNDS;
+    search->step = &step;
+    if (search->samples)
+        try_samples(system, search);
+    else
+        try_particles(system, search);
+    search->step = NULL;
+    return search->y < HUGE_VAL;
+}
+
+static void print_point(const struct point_search *found, const struct cs_system *system,
                         struct cs_text *out) {
+    cs_text_add(out, found->samples ? "; there the surface at " : "; there ");
+    cs_system_print_particle(system, found->particle, out);
+    cs_text_add(out, " comes to colliders[%u]", found->collider);
+    print_place(&found->place, out);
+}
+
+/* Adds the point of a body that misses contact with a collider; returns false if none does. */
+static bool print_missed_point(const struct cs_blocked_step *blocked,
+                               const struct cs_system *system, struct cs_text *out) {
     for (uint32_t c = 0; c < system->scene->colliders.n; c++)
         for (int samples = 0; samples < 2; samples++) {
-            struct cs_collider_step step = {.x0 = blocked->x,
-                                            .x1 = blocked->x + 3 * (size_t)system->view.n};
-            struct point_search search = {.step = &step, .collider = c, .y = HUGE_VAL};
-            cs_collider_step_set(&step, system, c, blocked->t[0], blocked->t[1]);
-            if (system->rebounds && !samples)
-                step.unresolved_max = CS_UNRESOLVED_BESIDE_REBOUNDS;
-            if (samples)
-                try_samples(system, &search);
-            else
-                try_particles(system, &search);
+            struct point_search search = {.collider = c, .samples = samples > 0, .y = HUGE_VAL};
             // the first collider with such a point rejected the step
-            if (!(search.y < HUGE_VAL))
+            if (!find_point(blocked, system, &search))
                 continue;
-            cs_text_add(out, samples ? "; there the surface at " : "; there ");
-            cs_system_print_particle(system, search.particle, out);
-            cs_text_add(out, " comes to colliders[%u]", c);
-            print_place(&search.place, out);
+            print_point(&search, system, out);
             return true;
         }
     return false;
+}
+
+/* The point of a body that is deepest in the range of a collider; false if none is in range. */
+static bool find_deepest_point(const struct cs_blocked_step *blocked,
+                               const struct cs_system *system, struct point_search *found) {
+    *found = (struct point_search){.y = 1};
+    for (uint32_t c = 0; c < system->scene->colliders.n && system->collider_params; c++)
+        for (int samples = 0; samples < 2; samples++) {
+            struct point_search search = {
+                .collider = c, .samples = samples > 0, .resolved = true, .y = HUGE_VAL};
+            if (find_point(blocked, system, &search) && search.y < found->y)
+                *found = search;
+        }
+    return found->y < 1;
 }
 
 /* --- pairs --- */
@@ -250,12 +281,12 @@ static double nearness_of(const struct cs_candidates *candidates, const double *
            cs_candidate_range_of(candidates, pair->kind, pair->at);
 }
 
-/* Adds the nearest of the candidates, in units of their range; returns false if none is in
- * range at either end. */
-static bool print_nearest(const struct cs_blocked_step *blocked, const struct cs_system *system,
-                          const double *const x[2], struct cs_text *out) {
+/* Finds the nearest of the candidates, in units of their range. Returns that, or 1 if none is
+ * in range at either end. */
+static double find_nearest(const struct cs_system *system, const double *const x[2],
+                           struct pair_move *nearest) {
     const struct cs_candidates *candidates = &system->pairs->candidates;
-    struct pair_move pair, nearest;
+    struct pair_move pair;
     double least = 1;
     for (uint32_t l = 0; l < candidates->n_chunks; l++)
         for (size_t k = 0; k < candidates->chunks[l].n; k++) {
@@ -266,12 +297,10 @@ static bool print_nearest(const struct cs_blocked_step *blocked, const struct cs
             const double y = nearness_of(candidates, x, &pair);
             if (y < least) {
                 least = y;
-                nearest = pair;
+                *nearest = pair;
             }
         }
-    if (least < 1)
-        print_pair(blocked, system, "comes to", &nearest, out);
-    return least < 1;
+    return least;
 }
 
 /* --- crossings --- */
@@ -291,23 +320,71 @@ static void print_crossing(const struct cs_blocked_step *blocked,
     print_pair(blocked, system, "would cross", &pair, out);
 }
 
+/* Positions of all points of surfaces at both ends of the step. */
+static void read_ends(const struct cs_blocked_step *blocked, const struct cs_system *system,
+                      const double *x[2]) {
+    const double *x0 = blocked->x, *x1 = x0 + 3 * (size_t)system->view.n;
+    x[0] = cs_surface_points_positions(system, CS_POINTS_BEGIN, blocked->t[0], x0);
+    x[1] = cs_surface_points_positions(system, CS_POINTS_END, blocked->t[1], x1);
+}
+
+/* Makes the list of candidates good for the step; returns whether the step resolves pairs. */
+static bool pairs_resolve_step(const struct cs_blocked_step *blocked,
+                               const struct cs_system *system) {
+    return cs_contact_pairs_resolve_step(system->pairs, blocked->t[0], blocked->x,
+                                         blocked->t[1],
+                                         blocked->x + 3 * (size_t)system->view.n);
+}
+
 void cs_blocked_step_print(const struct cs_blocked_step *blocked,
                            const struct cs_system *system, struct cs_text *out) {
-    if (!blocked->is_set)
-        return;
-    const double *t = blocked->t, *x0 = blocked->x, *x1 = x0 + 3 * (size_t)system->view.n;
     const double *x[2];
-    if (system->collider_params && t[1] > t[0] && print_point(blocked, system, out))
+    struct pair_move nearest;
+    const bool moves = blocked->t[1] > blocked->t[0];
+    if (system->collider_params && moves && print_missed_point(blocked, system, out))
         return;
     if (!system->surfaces)
         return;
     // in the order of cs_step_limit_fraction: pairs before crossings
-    x[0] = cs_surface_points_positions(system, CS_POINTS_BEGIN, t[0], x0);
-    x[1] = cs_surface_points_positions(system, CS_POINTS_END, t[1], x1);
-    if (system->pairs && t[1] > t[0] &&
-        !cs_contact_pairs_resolve_step(system->pairs, t[0], x0, t[1], x1) &&
-        print_nearest(blocked, system, x, out))
-        return;
-    if (cs_scene_crossings(system->scene) == CS_CROSSINGS_LIMIT)
+    read_ends(blocked, system, x);
+    if (system->pairs && moves && !pairs_resolve_step(blocked, system) &&
+        find_nearest(system, x, &nearest) < 1)
+        print_pair(blocked, system, "comes to", &nearest, out);
+    else if (cs_scene_crossings(system->scene) == CS_CROSSINGS_LIMIT)
         print_crossing(blocked, system, x, out);
+}
+
+/* s, of the step straight on from a state whose deepest contact is sought */
+#define INSTANT 1e-9
+
+/* Takes the step straight on from a state. */
+static void store_instant(struct cs_blocked_step *blocked, const struct cs_system *system,
+                          double t, const double *x, const double *v) {
+    const size_t n3 = 3 * (size_t)system->view.n;
+    blocked->t[0] = t;
+    blocked->t[1] = t + INSTANT;
+    for (size_t i = 0; i < n3; i++) {
+        blocked->x[i] = x[i];
+        blocked->x[n3 + i] = x[i] + INSTANT * v[i];
+    }
+}
+
+void cs_blocked_step_print_deepest(struct cs_blocked_step *blocked,
+                                   const struct cs_system *system, double t, const double *x,
+                                   const double *v, struct cs_text *out) {
+    const double *ends[2];
+    struct point_search point;
+    struct pair_move nearest;
+    if (!blocked->x)
+        return;
+    store_instant(blocked, system, t, x, v);
+    const bool touches = find_deepest_point(blocked, system, &point);
+    if (system->pairs) {
+        read_ends(blocked, system, ends);
+        pairs_resolve_step(blocked, system);
+    }
+    if (system->pairs && find_nearest(system, ends, &nearest) < point.y)
+        print_pair(blocked, system, "comes to", &nearest, out);
+    else if (touches)
+        print_point(&point, system, out);
 }

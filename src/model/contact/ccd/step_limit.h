@@ -45,11 +45,18 @@ enum cs_status cs_blocked_step_init(struct cs_blocked_step *blocked,
 void cs_blocked_step_store(struct cs_blocked_step *blocked, const struct cs_system *system,
                            const double t[2], const double *const x[2], double share);
 
-/* Asks the questions of cs_step_limit_fraction again and appends what rejected the stored step:
- * "; there ... would cross ..." or "; there ... comes to ...", with the distance, the energy
- * that contact takes up there, the energy that comes, and the stiffness or range that would
- * hold it. Appends nothing if no step is stored. */
+/* Asks the questions of cs_step_limit_fraction again and appends what rejected the stored step,
+ * which must be set: "; there ... would cross ..." or "; there ... comes to ...", with the
+ * distance, the energy that contact takes up there, the energy that comes, and the stiffness or
+ * range that would hold it. */
 void cs_blocked_step_print(const struct cs_blocked_step *blocked,
                            const struct cs_system *system, struct cs_text *out);
+
+/* Appends the same of the contact that is deepest in its range at (t, x, v), for a method that
+ * gives up without a rejected step: that one is the stiffest. Nothing if none is in range, or
+ * the scene does not limit steps. The stored step is lost. */
+void cs_blocked_step_print_deepest(struct cs_blocked_step *blocked,
+                                   const struct cs_system *system, double t, const double *x,
+                                   const double *v, struct cs_text *out);
 
 #endif
