@@ -77,7 +77,7 @@ TEST(only_relative_motion_counts) {
     for (size_t o = 0; o < LENGTH(obstacles); o++) {
         // error control looks at velocities as they are
         const struct methods methods = methods_find(&(struct methods_query){
-            .test = o == BALL ? "relative ball" : "relative",
+            .test = "relative",
             .without = CS_NOT_GALILEAN | CS_ADAPTIVE | CS_EXPLICIT_OUTER,
             .residual = 1e-12,
             .more =

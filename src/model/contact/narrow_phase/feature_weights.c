@@ -3,10 +3,10 @@
 
 #include "base/vector.h"
 
+#include <math.h>
 #include <string.h>
 
-/* Inclusion-exclusion weights of faces, edges and vertices (formula: mesh_feature.h). Distances
- * are computed eight pairs at a time; features are selected pair by pair.
+/* Inclusion-exclusion weights of faces, edges and vertices (formula: mesh_feature.h).
  *
  * For the foot q of a point in the plane of its triangle, each query adds to the energy of the
  * mesh its own part of
@@ -18,9 +18,8 @@
  * - each inner edge counts -1/2, because both its triangles measure it;
  * - each inner vertex counts vertex_share, which its triangles add up to 1.
  *
- * An edge counts as the vertex at its end where q projects beyond that end, since its distance
- * is then the vertex's. The weights of one query often cancel to 0; the remaining features are
- * merged over the triangles of a point by cs_feature_weights_join. */
+ * An edge counts as the vertex at its end where q projects beyond that end: it has its
+ * distance. Equal features of a point are merged over its triangles. */
 
 /* Index of a feature: the plane, RIM + k for edge k, CORNER + k for vertex k, k = 0, 1, 2. */
 enum { LANES = 8, PLANE = 0, RIM = 1, CORNER = 4 };
@@ -154,13 +153,21 @@ static bool is_convex_edge(const struct finding *on, int k, uint32_t across) {
     return cs_vec3_dot(w, v) * cs_vec3_dot(u, u) < cs_vec3_dot(w, u) * cs_vec3_dot(u, v);
 }
 
-/* Weight of the nearest edge in a positive semi-definite matrix, where nothing may be
- * subtracted. At a border it counts 1. Beyond a valley or a flat edge it counts 0, because the
- * foot is not beyond this edge for the neighbour, which counts the point itself. Over a ridge
- * both triangles see the edge as nearest and count half of it; its end counts vertex_share in
- * each triangle. */
-static double count_alone(const struct finding *on, int k, uint32_t across) {
+/* Far vertex of the neighbour across edge k; CS_NO_POINT at a border, and if it is the point
+ * itself: its own triangles are left out of the pairs, so the edge is a border to it. */
+static uint32_t across_rim(const struct finding *on, int k) {
+    const uint32_t *across = on->facets->opposite_vertex + 3 * (size_t)on->pair->triangle;
+    const uint32_t to = across[(k + 2) % 3];
+    return to == on->pair->points[0] ? CS_NO_POINT : to;
+}
+
+/* Weight of a nearest edge in a positive semi-definite matrix, where nothing is subtracted. At
+ * a border it is 1. Beyond a valley or a flat edge it is 0: the foot is not beyond it for the
+ * neighbour, which counts the point. Over a ridge both triangles count half of the edge; its
+ * end counts vertex_share in each triangle. */
+static double count_alone(const struct finding *on, int k) {
     const double t = on->at->t[k][on->lane];
+    const uint32_t across = across_rim(on, k);
     const double share =
         on->facets->vertex_share[on->pair->points[1 + (t < 0 ? k : (k + 1) % 3)]];
     if (across == CS_NO_POINT)
@@ -168,14 +175,6 @@ static double count_alone(const struct finding *on, int k, uint32_t across) {
     if (!is_convex_edge(on, k, across))
         return 0;
     return (t < 0 || t > 1) && share > 0 ? share : 0.5;
-}
-
-/* Far vertex of the neighbour across edge k; CS_NO_POINT at a border, and if it is the point
- * itself: its own triangles are left out of the pairs, so the edge is a border to it. */
-static uint32_t across_rim(const struct finding *on, int k) {
-    const uint32_t *across = on->facets->opposite_vertex + 3 * (size_t)on->pair->triangle;
-    const uint32_t to = across[(k + 2) % 3];
-    return to == on->pair->points[0] ? CS_NO_POINT : to;
 }
 
 /* Edges: subtracts half of each inner edge in range, and adds the nearest edge that the foot is
@@ -195,8 +194,12 @@ static void count_rims(struct finding *on) {
     }
     if (nearest < 0)
         return;
-    on->count[facet_of_rim(on, nearest)] += 1;
-    on->alone[facet_of_rim(on, nearest)] += count_alone(on, nearest, across_rim(on, nearest));
+    const int feature = facet_of_rim(on, nearest);
+    on->count[feature] += 1;
+    // beyond a vertex both its edges are as near, and rounding would choose: the larger counts
+    for (int k = 0; k < 3; k++)
+        if (at->l[(k + 2) % 3][on->lane] < 0 && facet_of_rim(on, k) == feature)
+            on->alone[feature] = fmax(on->alone[feature], count_alone(on, k));
 }
 
 /* Vertices in range count vertex_share, except those next to the point. */
@@ -256,7 +259,7 @@ static void fill(const struct finding *on, int feature, struct cs_weighted_featu
     name_whole(on, feature, use);
 }
 
-/* Collects the weights of one query, and writes the features whose weight is not 0. */
+/* Writes the features of one query whose weight is not 0. */
 static uint32_t find(struct finding *on, struct cs_weighted_feature *uses) {
     uint32_t n = 0;
     memset(on->count, 0, sizeof on->count);
@@ -294,8 +297,7 @@ uint32_t cs_feature_weights_find_between(const struct cs_feature_weights *featur
     struct lanes at[CS_FEATURE_QUERY_PAIRS / LANES];
     struct finding on = {.facets = features, .x = x};
     uint32_t found = 0;
-    // all lanes are written before any is measured: a vector load directly after scalar stores
-    // to the same addresses would stall
+    // all lanes are written first: a vector load right after scalar stores there would stall
     for (uint32_t k = 0; k < n; k += LANES)
         read(features, pairs + k, n - k < LANES ? n - k : LANES, x, at + k / LANES);
     for (uint32_t k = 0; k < n; k += LANES)
@@ -341,10 +343,9 @@ static uint32_t corner_opposite(const uint32_t *corners, const uint32_t *edge) {
     return k;
 }
 
-/* Weights of the vertices. For inclusion and exclusion to give 1 at a vertex, triangles count
- * +1, inner edges -1, and so the vertex must count 1 - triangles + inner edges. That is 1
- * inside a surface, where both numbers are equal, and 0 at its border. Each of its triangles
- * measures an equal fraction. */
+/* Weights of the vertices. Triangles count +1, inner edges -1: for a sum of 1 the vertex must
+ * count 1 - triangles + inner edges. That is 1 inside a surface, where both numbers are equal,
+ * and 0 at its border. Each of its triangles measures an equal fraction. */
 static void share_corners(struct cs_feature_weights *features, const uint32_t *inner) {
     const struct cs_surfaces *s = features->surfaces;
     for (size_t c = 0; c < 3 * (size_t)s->n_triangles; c++)
@@ -355,8 +356,7 @@ static void share_corners(struct cs_feature_weights *features, const uint32_t *i
                 (1 - features->vertex_share[i] + inner[i]) / features->vertex_share[i];
 }
 
-/* Sets the opposite vertices, and counts the inner edges of each point and the edges of each
- * first end. An edge with one triangle is at the border. */
+/* Sets the opposite vertices; counts inner edges of each point, and edges of each first end. */
 static void cross_edges(struct cs_feature_weights *features, uint32_t *inner) {
     const struct cs_surfaces *s = features->surfaces;
     for (size_t c = 0; c < 3 * (size_t)s->n_triangles; c++)
