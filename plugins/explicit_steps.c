@@ -13,6 +13,7 @@
  *                     k4 = F(t + h, y + h k3)   (Kutta 1901)
  */
 #include "explicit_steps.h"
+#include "parallel.h"
 
 #include <math.h>
 
@@ -64,14 +65,10 @@ static void move_part(void *arg, size_t begin, size_t end) {
     }
 }
 
-/* Runs a loop on the host's threads, or here if the host has no such call. */
+/* Runs a loop on the host's threads. */
 static void share(struct move *move) {
     const struct cs_host *host = move->self->fixed.host;
-    const struct cs_vector_kernels *vector = host->vector;
-    if (CS_HAS(vector, parallel_for))
-        vector->parallel_for(host->view->n, move_part, move);
-    else
-        move_part(move, 0, host->view->n);
+    parallel_for(host, host->view->n, move_part, move);
 }
 
 /* Runs a loop over rows that updates x and v. */

@@ -1,5 +1,6 @@
 /* nystrom.c - stages and errors of explicit pairs in Nystrom form. */
 #include "nystrom.h"
+#include "parallel.h"
 
 #include <string.h>
 
@@ -105,7 +106,6 @@ static void combine_part(void *arg, size_t begin, size_t end) {
 /* z (6n) = the state of a stage at node * h, or with y NULL a difference of states. */
 static void combine(const struct nystrom *self, const struct sum *sum, double h, double node,
                     const double *y, double *z) {
-    const struct cs_vector_kernels *vector = self->base.host->vector;
     struct combination of = {
         .terms = sum->terms, .half = self->base.length / 2, .drift = node * h, .y = y, .z = z};
     for (int j = 0; j < sum->terms; j++) {
@@ -113,10 +113,7 @@ static void combine(const struct nystrom *self, const struct sum *sum, double h,
         of.position[j] = h * h * sum->position[j];
         of.velocity[j] = h * sum->velocity[j];
     }
-    if (CS_HAS(vector, parallel_for))
-        vector->parallel_for(of.half, combine_part, &of);
-    else
-        combine_part(&of, 0, of.half);
+    parallel_for(self->base.host, of.half, combine_part, &of);
 }
 
 /* The error of a step of h in units of the tolerance. With an error of lower order E3 beside

@@ -16,6 +16,7 @@
  *
  * Source: Sommeijer, Shampine, Verwer 1998. */
 #include "adaptive_step.h"
+#include "parallel.h"
 
 enum { STAGES_MAX = 250 };
 #define REACH   0.65 /* of s stages on the real axis, divided by s^2 - 1; a little below */
@@ -104,12 +105,8 @@ static void stage_part(void *arg, size_t begin, size_t end) {
 /* The next D_j from a (3,n), the acceleration at the stage before; leaves it in self->last,
  * and its state in base.next. */
 static void take_stage(struct rkc2 *self, struct stage of, const double *y, const double *a) {
-    const struct cs_vector_kernels *vector = self->base.host->vector;
     struct job job = {self, of, y, a};
-    if (CS_HAS(vector, parallel_for))
-        vector->parallel_for(self->base.length / 2, stage_part, &job);
-    else
-        stage_part(&job, 0, self->base.length / 2);
+    parallel_for(self->base.host, self->base.length / 2, stage_part, &job);
     double *swapped = self->last;
     self->last = self->older;
     self->older = swapped;

@@ -55,7 +55,7 @@ static const struct {
 };
 
 double methods_step(uint32_t order) {
-    return order == 1 ? 2.5e-4 : order == 2 ? 1e-3 : 4e-3;
+    return order == 1 ? 2.5e-4 : order == 2 ? 1e-3 : order == 4 ? 4e-3 : 5e-2;
 }
 
 void methods_set(char text[120], const char *name, const char *key, double value) {

@@ -86,6 +86,7 @@ TEST(scenes_go_on) {
         {SCENES "/push.json", "bdf2", 16, {2, 7, 12}},
         {SCENES "/swing.json", "dopri5", 20, {1, 9, 15}},
         {SCENES "/swing.json", "rkc2", 20, {1, 9, 15}},
+        {SCENES "/swing.json", "composition", 20, {1, 9, 15}},
         {SCENES "/contact_compare.json", "dop853", 40, {12, 21, 33}},
         {SCENES "/two_winds.json", "implicit-linearised", 16, {2, 7, 12}},
         {SCENES "/contact_compare.json", "newmark", 16, {3, 8, 13}},
