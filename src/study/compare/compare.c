@@ -216,14 +216,18 @@ static void report_row(struct cs_compare *compare, const struct cs_cell *cell, b
 
 /* Fraction of the error before that counts as no fall: rounding. */
 #define NO_FALL 0.8
+/* Growth of the work over two cells from which on steps became shorter: half of that of
+ * order 12. Looser tolerances of a method whose steps contact cuts are the same run. */
+#define SHORTER 1.1
 
-/* True if error k of the cells is that of rounding: twice in a row it hardly fell. Far from
- * the motion, because long steps may not fall either. */
+/* True if error k of the cells is that of rounding: twice in a row it hardly fell, though steps
+ * became shorter. Far from the motion, because long steps may not fall either. */
 static bool is_rounding(const struct cs_compare *compare, uint32_t k) {
     const struct cs_cell *cell = compare->cells.cells + k;
     return k > 1 && cs_cell_same_series(cell, cell - 2) &&
            cell[-2].error < 1e-3 * compare->reference.motion_scale &&
-           cell->error > NO_FALL * cell[-1].error && cell[-1].error > NO_FALL * cell[-2].error;
+           cell->work > SHORTER * cell[-2].work && cell->error > NO_FALL * cell[-1].error &&
+           cell[-1].error > NO_FALL * cell[-2].error;
 }
 
 /* True if the cells after cell k in its series need not be run: they take longer, and no power
