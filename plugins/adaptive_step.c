@@ -89,12 +89,25 @@ static double first_step(struct adaptive_step *self, double t, double span, cons
     return other < 100 * h ? other : 100 * h;
 }
 
+static double least(double a, double b) {
+    return a < b ? a : b;
+}
+
+/* s: half a radian of the fastest mode for a method without a limit of its own. In the first
+ * step from rest odd terms of the error vanish, and an estimate that compares two orders passes
+ * a step that is far too long: dop853 on the drum without damping was 3e-8 m off at any rtol
+ * below 1e-6. */
+static double trusted_step(const struct adaptive_step *self) {
+    const struct cs_view *view = self->host->view;
+    return self->limit || !(view->omega > 0) ? HUGE_VAL : 0.5 / view->omega;
+}
+
 static void prepare(struct adaptive_step *self, double t, double span, const double *y) {
     if (self->fresh)
         adaptive_step_evaluate(self, t, y, y + self->length / 2, self->slope);
     self->fresh = false;
     if (!self->started)
-        self->control.h = first_step(self, t, span, y);
+        self->control.h = least(first_step(self, t, span, y), trusted_step(self));
     self->started = true;
 }
 
@@ -105,10 +118,6 @@ static double cut(double planned, double left) {
     if (left <= planned * 1.001)
         return left;
     return left < 2 * planned ? left / 2 : planned;
-}
-
-static double least(double a, double b) {
-    return a < b ? a : b;
 }
 
 /* The longest step in s from y at t that dt_max, contact and the method let pass. */
