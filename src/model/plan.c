@@ -198,8 +198,7 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            "one does all the work");
 }
 
-/* Tells whether a method moves springs by a model of its own instead of their force. */
-static bool has_own_springs(const struct cs_integrator *method) {
+bool cs_plan_has_own_springs(const struct cs_integrator *method) {
     return method->fidelity != CS_FIDELITY_ODE &&
            method->needs & (CS_NEED_SPRINGS | CS_NEED_CLUSTERS);
 }
@@ -226,7 +225,7 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
                        "contact explicitly; use %sanother integrator",
                        method->name, cs_scene_has_body_contact(scene) ? "" : "project, or ");
     const uint32_t elastic = cs_scene_first_elastic(scene);
-    if (elastic < scene->bodies.n && has_own_springs(method))
+    if (elastic < scene->bodies.n && cs_plan_has_own_springs(method))
         return cs_fail(
             error, CS_ERR_SCENE,
             "bodies[%u].elastic: integrator \"%s\" has a model of springs of its own, "

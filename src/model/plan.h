@@ -21,6 +21,10 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
 enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integrator *method,
                              struct cs_error *error);
 
+/* Tells whether a method moves springs by a model of its own instead of their force: elastic
+ * bodies are not for it. */
+bool cs_plan_has_own_springs(const struct cs_integrator *method);
+
 /* Appends the plan as aligned text, one feature per line, with the bytes allocated for it so
  * far. */
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out);

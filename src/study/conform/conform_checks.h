@@ -43,6 +43,8 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     X("force-gravity", force_gravity, ANY, "motion under gravity alone")                       \
     X("force-springs", force_springs, SPRINGS, "under stretch, shear and bend springs, each")  \
     X("force-damping", force_damping, SPRINGS, "under axial and relative dampers, each")       \
+    X("force-membrane", force_membrane, SPRINGS, "under a membrane, without and with damping") \
+    X("force-bending", force_bending, SPRINGS, "under bending")                                \
     X("force-drag", force_drag, ANY, "under drag of each particle, and by area")               \
     X("force-wind", force_wind, ANY, "under wind on each particle, and by area")               \
     X("force-push", force_push, ANY, "under impacts and viewpoint forces")                     \

@@ -6,6 +6,7 @@
  * that is allowed, and never less than 1e-10. A force that is missed or applied twice causes an
  * error of the size of the motion at any step. Two levels of accuracy differ by 8 in h: a wrong
  * order fails at the fine level. */
+#include "model/plan.h"
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 
@@ -35,10 +36,12 @@ static bool run_reference(const struct cs_conform *card, const struct cs_force_s
                           struct truth *truth, struct cs_conform_row *row) {
     double start[2 * CS_FORCE_VALUES];
     struct cs_probe probe;
-    if (cs_probe_open(&probe, card, &cs_conform_reference, "%s", scene->json))
+    const bool open = cs_probe_open(&probe, card, &cs_conform_reference, "%s", scene->json);
+    if (open) {
         memcpy(start, probe.x, 6 * probe.n * sizeof *start);
-    cs_probe_set_step(&probe, REFERENCE_STEP);
-    const bool done = cs_probe_run(&probe, CS_FORCE_FRAMES);
+        cs_probe_set_step(&probe, REFERENCE_STEP);
+    }
+    const bool done = open && cs_probe_run(&probe, CS_FORCE_FRAMES);
     if (!done)
         cs_row_fail(row, "%s: %s", scene->description, probe.error.message);
     for (size_t k = 0; k < 2 && done; k++) {
@@ -112,7 +115,8 @@ static void follow(const struct cs_conform *card, struct cs_conform_row *row,
 static bool is_for(const struct cs_conform *card, const struct cs_force_scene *scene,
                    const char *check) {
     return !strcmp(scene->check, check) &&
-           !(scene->deforms && card->method->fidelity == CS_FIDELITY_OTHER);
+           !(scene->deforms && card->method->fidelity == CS_FIDELITY_OTHER) &&
+           !(strstr(scene->json, "\"elastic\"") && cs_plan_has_own_springs(card->method));
 }
 
 /* Runs all scenes of a check, at the order that the method claims for forces of that kind. */
@@ -131,7 +135,9 @@ static void check_scenes(const struct cs_conform *card, struct cs_conform_row *r
                                       .level = level});
     }
     if (!any)
-        cs_row_skip(row, "another model: it does not follow the motion of springs");
+        cs_row_skip(row, card->method->fidelity == CS_FIDELITY_OTHER
+                             ? "another model: it does not follow the motion of springs"
+                             : "springs of its own: it refuses elastic bodies");
 }
 
 #define X(function)                                                                            \
@@ -141,6 +147,8 @@ static void check_scenes(const struct cs_conform *card, struct cs_conform_row *r
 X(force_gravity)
 X(force_springs)
 X(force_damping)
+X(force_membrane)
+X(force_bending)
 X(force_drag)
 X(force_wind)
 X(force_push)

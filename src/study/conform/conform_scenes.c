@@ -28,6 +28,11 @@
     "{\"bodies\": [{" CLOTH ", \"springs\": {" values "}}], \"forces\": {" NO_GRAVITY          \
     "}, " FIVE_FRAMES "}"
 
+/* The same sheet, elastic. */
+#define ELASTIC(values, events)                                                                \
+    "{\"bodies\": [{" CLOTH ", \"elastic\": {" values "}}], \"forces\": {" NO_GRAVITY           \
+    "}, \"events\": [" events "], " FIVE_FRAMES "}"
+
 /* Springs so soft that dampers determine the motion; a pinned edge causes relative velocities.
  */
 #define DAMPERS(model)                                                                         \
@@ -115,6 +120,13 @@ const struct cs_force_scene cs_force_scenes[] = {
     {"force-springs", "bend springs",
      SPRINGS("\"stretch\": 0, \"shear\": 0, \"bend\": 1"), 9, false, true},
 
+    {"force-membrane", "a membrane",
+     ELASTIC("\"membrane\": {\"young\": 1, \"poisson\": 0.3}", ""), 9, false, true},
+    {"force-membrane", "a membrane with damping",
+     ELASTIC("\"membrane\": {\"young\": 1, \"poisson\": 0.3}, \"damping\": 0.1", ""), 9, true, true},
+    {"force-bending", "bending",
+     ELASTIC("\"membrane\": {\"young\": 0.01, \"poisson\": 0}, \"bending\": {\"stiffness\": 0.1}", ""), 9, false, true},
+
     {"force-damping", "axial dampers", DAMPERS("axial"), 8, true, true},
     {"force-damping", "relative dampers", DAMPERS("relative"), 8, true, true},
 
@@ -178,6 +190,18 @@ const struct cs_force_scene cs_force_scenes[] = {
      "{" RAMP("bodies[0].springs.stretch", "1") "}, {" RAMP("bodies[0].springs.shear", "0.1") "},"
      " {" RAMP("bodies[0].springs.bend", "0.4") "}, {" RAMP("bodies[0].springs.damping", "0") "}], "
      FIVE_FRAMES "}", 9, true, true},
+    {"time-dependence", "ramps of a membrane and of its damping",
+     ELASTIC("\"membrane\": {\"young\": 1, \"poisson\": 0.3}, \"damping\": 0.05",
+             "{" RAMP("bodies[0].elastic.membrane.young", "0.5") "}, {"
+             RAMP("bodies[0].elastic.damping", "0.1") "}"), 9, true, true},
+    {"time-dependence", "a ramp of bending",
+     ELASTIC("\"membrane\": {\"young\": 0.01, \"poisson\": 0}, \"bending\": {\"stiffness\": 0.1}",
+             "{" RAMP("bodies[0].elastic.bending.stiffness", "0.05") "}"), 9, false, true},
+    {"time-dependence", "ramps of shear and twist",
+     ELASTIC("\"membrane\": {\"warp\": 1, \"weft\": 0.8, \"shear\": 0.3},"
+             " \"bending\": {\"warp\": 0.1, \"weft\": 0.05, \"twist\": 0.04}",
+             "{" RAMP("bodies[0].elastic.membrane.shear", "0.1") "}, {"
+             RAMP("bodies[0].elastic.bending.twist", "0.02") "}"), 9, false, true},
     {"time-dependence", "a sheet held to a collider that turns", CARRIED, 12, true, true},
 };
 // clang-format on
