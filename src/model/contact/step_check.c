@@ -41,7 +41,8 @@ bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, dou
         return false;
     const struct cs_barrier law = cs_barrier_at(d, range, k);
     const double held = cs_barrier_energy(d, range, k);
-    const double has = 0.5 * mass * squared / (passing->h * passing->h) + held;
+    const double has = 0.5 * mass * squared / (passing->h * passing->h) + held +
+                       passing->spare_energy;
     const int points =
         move < 0.5 * range * POINTS_MAX ? 1 + (int)(move / (0.5 * range)) : POINTS_MAX;
     double unseen = 0;
@@ -60,7 +61,8 @@ bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, dou
  *
  *   s^3 k / (12 D y^4) <= a m s^2 / 2h^2   <=>   s k h^2 <= 6 a D m y^4,   a = unresolved_max
  *
- * so that no particle that is_unresolved would reject is left out. */
+ * so that no particle that is_unresolved would reject is left out; a spare energy only makes it
+ * reject fewer. */
 CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *passing, size_t begin,
                                         size_t count) {
     const struct cs_posed_collider *after = &passing->at_t1, *before = &passing->at_t0;
@@ -152,10 +154,20 @@ void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_syst
     passing->system = system;
     passing->collider = collider;
     passing->unresolved_max = CS_UNRESOLVED_ENERGY_MAX;
+    passing->spare_energy = 0;
     passing->h = t1 - t0;
     passing->params = system->collider_params[collider];
     cs_posed_collider_at(system, collider, t0, &passing->at_t0);
     cs_posed_collider_at(system, collider, t1, &passing->at_t1);
+}
+
+void cs_collider_step_set_beside_rebounds(struct cs_collider_step *passing) {
+    const double range = passing->params.range;
+    if (!passing->system->rebounds)
+        return;
+    passing->unresolved_max = CS_UNRESOLVED_BESIDE_REBOUNDS;
+    passing->spare_energy = CS_SPARE_BESIDE_REBOUNDS *
+                            cs_barrier_energy(0.5 * range, range, passing->params.k);
 }
 
 /* Ends at the first collider with an unresolved particle. */
@@ -164,8 +176,7 @@ bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         struct cs_collider_step passing = {.x0 = x0, .x1 = x1};
         cs_collider_step_set(&passing, system, c, t0, t1);
-        if (system->rebounds)
-            passing.unresolved_max = CS_UNRESOLVED_BESIDE_REBOUNDS;
+        cs_collider_step_set_beside_rebounds(&passing);
         if (cs_vector_sum(system->view.n, count_unresolved, &passing) > 0)
             return false;
     }

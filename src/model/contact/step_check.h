@@ -17,8 +17,8 @@
  * CS_UNRESOLVED_ENERGY_MAX of the energy of every particle: the kinetic energy of its motion
  * relative to the collider plus psi(d). x0, x1 (3,n) in m. Particles that are not finite are
  * left to the blow-up check. Particles in impact in the step that was finished last are left to
- * cs_rebounds_resolve_step; in scenes with impacts others have CS_UNRESOLVED_BESIDE_REBOUNDS.
- */
+ * cs_rebounds_resolve_step; others are then judged as cs_collider_step_set_beside_rebounds
+ * says. */
 #define CS_UNRESOLVED_ENERGY_MAX 0.02
 bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0,
                                        const double *x0, double t1, const double *x1);
@@ -32,10 +32,15 @@ struct cs_collider_step {
     struct cs_posed_collider at_t0, at_t1;
     struct cs_collider_params params;
     double unresolved_max; /* of a particle's energy */
+    double spare_energy;   /* J, added to a particle's energy */
 };
-/* Sets all members but x0 and x1; unresolved_max to CS_UNRESOLVED_ENERGY_MAX. */
+/* Sets all members but x0 and x1: unresolved_max to CS_UNRESOLVED_ENERGY_MAX, spare_energy to
+ * 0. */
 void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_system *system,
                           uint32_t collider, double t0, double t1);
+/* Sets unresolved_max and spare_energy for the particles of a step with impacts that are not in
+ * impact (rebound_list.h). Does nothing in scenes without impacts. */
+void cs_collider_step_set_beside_rebounds(struct cs_collider_step *passing);
 
 /* Returns whether `count` particles from `begin` on, and all points between them, stay out of
  * range. */

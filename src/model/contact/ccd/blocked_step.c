@@ -8,7 +8,6 @@
 #include "model/contact/ccd/step_limit.h"
 #include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
-#include "model/contact/rebound_list.h"
 #include "model/contact/step_check.h"
 #include "model/contact/surface_points.h"
 #include "model/system/surfaces.h"
@@ -145,8 +144,8 @@ static bool find_point(const struct cs_blocked_step *blocked, const struct cs_sy
     struct cs_collider_step step = {.x0 = blocked->x,
                                     .x1 = blocked->x + 3 * (size_t)system->view.n};
     cs_collider_step_set(&step, system, search->collider, blocked->t[0], blocked->t[1]);
-    if (system->rebounds && !search->samples)
-        step.unresolved_max = CS_UNRESOLVED_BESIDE_REBOUNDS;
+    if (!search->samples)
+        cs_collider_step_set_beside_rebounds(&step);
     search->step = &step;
     if (search->samples)
         try_samples(system, search);
