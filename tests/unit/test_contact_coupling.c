@@ -123,13 +123,31 @@ static void open_stack(struct crumple *crumple, size_t r, uint32_t n_sheets) {
     }
 }
 
-static bool set_up_stack(struct crumple *crumple) {
-    const double h = 0.004;
+static bool set_up_stack_for(struct crumple *crumple, double h) {
     const struct sheet *sheet = &crumple->sheet;
     return cs_linear_setup(
         &crumple->linear,
         &(struct cs_matrix){
             .x = sheet->x, .v = sheet->v, .cm = 1, .cd = -h, .ck = -h * h, .psd = true});
+}
+
+static bool set_up_stack(struct crumple *crumple) {
+    return set_up_stack_for(crumple, 0.004);
+}
+
+/* In a step of 1 ms that is short against springs, stiff contact of two sheets has the levels
+ * all the same; one sheet has blocks, and so has contact in a step of 0.1 ms. */
+TEST(stiff_contact_has_levels_in_short_steps) {
+    for (uint32_t n_sheets = 1; n_sheets <= 2; n_sheets++)
+        for (int tenths = 1; tenths <= 10; tenths += 9) {
+            struct crumple crumple;
+            open_stack(&crumple, 32, n_sheets);
+            ck_assert(set_up_stack_for(&crumple, 1e-4 * tenths));
+            ck_assert_double_le(crumple.linear.stiffness, CS_LINEAR_STIFF);
+            ck_assert_int_eq(crumple.linear.stiff, n_sheets == 2 && tenths == 10);
+            ck_assert_int_eq(crumple_solve(&crumple, 1e-6), CS_LINEAR_DONE);
+            crumple_shut(&crumple);
+        }
 }
 
 /* One sheet takes 5 iterations, two take 9 and four 12. With diagonal blocks between bodies two

@@ -7,6 +7,7 @@
 #include "model/solver/float_lanes.h"
 #include "model/solver/multigrid_hierarchy.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -106,8 +107,9 @@ static void count_in(const struct cs_coupling *coupling, uint32_t particle,
 
 /* Adds the springs from one vertex of a pair to the others: -w_i w_k C to each free particle k.
  * A pinned particle does not move, so its spring stays in the diagonal block; it is not counted
- * as internal. A negative spring to a pinned particle is left out: the diagonal must stay
- * positive. */
+ * as internal. So does a weak spring, which mass outweighs: most springs are weak, and each
+ * costs every sweep of the smoother. A negative one of them is left out: the diagonal must stay
+ * positive. Both ends decide alike, because the product of two weights has no order. */
 static void add_springs(const struct cs_coupling *coupling,
                         struct cs_extra_springs_chunk *piece,
                         const struct cs_pair_vertex_terms *share) {
@@ -117,19 +119,21 @@ static void add_springs(const struct cs_coupling *coupling,
         block[c] = (float)(coupling->scale * whole[c]);
     for (uint32_t k = 0; k < 4; k++) {
         const double stiff = -share->weight[share->vertex] * share->weight[k];
+        const double trace = stiff * (whole[0] + whole[3] + whole[5]);
         const uint32_t other = share->points[k];
         if (k == share->vertex || stiff == 0)
             continue;
-        if (coupling->inv_mass[other] > 0)
+        if (coupling->inv_mass[other] > 0 && fabs(trace) >= coupling->trace_min)
             cs_extra_springs_add(piece, cell_of(coupling, other), block, (float)stiff);
-        else if (stiff * (whole[0] + whole[3] + whole[5]) > 0)
+        else if (trace > 0)
             count_in(coupling, share->points[share->vertex], whole, -stiff);
     }
 }
 
 /* Adds one vertex of a pair: its diagonal block to the internal blocks, and its springs. Weak
- * pairs are skipped, except those that are subtracted (negative trace): they must not remain
- * where the pairs that they are subtracted from do not. */
+ * pairs, none of whose springs can be strong, are skipped, except those that are subtracted
+ * (negative trace): they must not remain where the pairs that they are subtracted from do not.
+ */
 static void add_corner(const struct cs_coupling *coupling, struct cs_extra_springs_chunk *piece,
                        const struct cs_pair_vertex *corner) {
     struct cs_pair_vertex_terms share;

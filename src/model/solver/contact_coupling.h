@@ -92,7 +92,7 @@ struct cs_coupling {
     const struct cs_pair_vertices *pair_vertices; /* the pairs indexed by particle */
     const double *inv_mass;                       /* (n) of all particles; 0: pinned */
     double scale;                                 /* factor of all blocks */
-    double trace_min;        /* pairs whose block has a smaller trace stay in the diagonal */
+    double trace_min;        /* springs whose block has a smaller trace stay in the diagonal */
     double *internal_blocks; /* (6,n) output for the body's particles: the pairs' diagonal
                                 blocks that extra springs replace, without the parts of springs
                                 to pinned particles */

@@ -12,7 +12,9 @@
  *   - A body of the scene has more than 24 x 24 particles.
  *   - The matrix is stiff: -ck omega^2 - 2 cd delta > 16 cm. The view's bounds omega and delta
  *     limit the eigenvalues of M^-1 df/dx and M^-1 df/dv, so the left side bounds stiffness
- *     over mass.
+ *     over mass. Or contact between surfaces is: the trace of the pairs' diagonal block of a
+ *     particle exceeds 16 cm m. Layers that move together meet little of that stiffness, which
+ *     blocks do not know.
  *
  * At the limit of 16 the condition number of M^-1 A is at most 17. The bound of conjugate
  * gradients, a factor (sqrt(17) - 1) / (sqrt(17) + 1) = 0.61 per iteration (Saad 2003, section

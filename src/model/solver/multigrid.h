@@ -64,7 +64,7 @@ struct cs_multigrid_matrix {
     const double *as_springs;     /* (6,n) parts of `blocks` that springs among the factors
                                      stand for; NULL: none */
     const struct cs_pairs *pairs; /* their diagonal blocks are in `blocks`; NULL: none */
-    double trace_min;             /* smallest trace of a pair's block that gets extra springs */
+    double trace_min;             /* smallest trace of an extra spring's block */
     double scale;                 /* about the largest entry of the matrix */
 };
 
