@@ -41,8 +41,8 @@ bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, dou
         return false;
     const struct cs_barrier law = cs_barrier_at(d, range, k);
     const double held = cs_barrier_energy(d, range, k);
-    const double has = 0.5 * mass * squared / (passing->h * passing->h) + held +
-                       passing->spare_energy;
+    const double has =
+        0.5 * mass * squared / (passing->h * passing->h) + held + passing->spare_energy;
     const int points =
         move < 0.5 * range * POINTS_MAX ? 1 + (int)(move / (0.5 * range)) : POINTS_MAX;
     double unseen = 0;
@@ -166,8 +166,8 @@ void cs_collider_step_set_beside_rebounds(struct cs_collider_step *passing) {
     if (!passing->system->rebounds)
         return;
     passing->unresolved_max = CS_UNRESOLVED_BESIDE_REBOUNDS;
-    passing->spare_energy = CS_SPARE_BESIDE_REBOUNDS *
-                            cs_barrier_energy(0.5 * range, range, passing->params.k);
+    passing->spare_energy =
+        CS_SPARE_BESIDE_REBOUNDS * cs_barrier_energy(0.5 * range, range, passing->params.k);
 }
 
 /* Ends at the first collider with an unresolved particle. */
