@@ -44,7 +44,7 @@ TEST(order_is_that_of_the_method) {
         for (size_t i = 0; i < methods.n; i++) {
             const struct method_asked *method = methods.list + i;
             const double h =
-                method->traits & CS_NOT_GALILEAN ? 2.5e-5 : methods_step(method->order);
+                method->traits & CS_NOT_GALILEAN ? 2.5e-5 : methods_step(method->order_damped);
             double error[2];
             for (int k = 0; k < 2; k++) {
                 char text[120];
