@@ -10,11 +10,11 @@
  * Equation of motion: M dv/dt = f(t,x,v), dx/dt = v.
  *
  * Pinned particles need no special case: their inv_mass is 0, and their rows of f and df are 0
- * too. Their v is 0, or the velocity of the path along which the scene moves them. v is
- * constant between restarts: after a step h such a particle is at x + h v. commit enforces this
- * exactly, and does not set *changed for it. Where the scene turns particles that it holds, x +
- * h v is the tangent of their arc: all calls of the host that take t then take their x and v
- * from the arc at t instead, and commit sets both. Forces depend on t in this way.
+ * too. Their v is 0, or that of the path along which the scene moves them, and constant between
+ * restarts: after a step h such a particle is at x + h v. commit places those on a path, and does
+ * not set *changed for it; a module that moves one at rest, by a rounding too, ends the run. Where
+ * the scene turns particles that it holds, all calls of the host that take t take x and v from
+ * their arc at t, and commit sets both. Forces depend on t in this way.
  *
  * The scene's events happen between two calls of advance. There x, v, view->mass,
  * view->inv_mass and the springs' constants may change in place, and then restart is called.
