@@ -25,7 +25,7 @@
 /* Shortens springs that are longer than the scene allows; counts them. */
 static void limit_strain(struct cs_run_host *host, double dt, double *x, double *v,
                          bool *changed) {
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     const uint64_t moves = cs_strain_limit_apply(host->run->system, dt, x, v);
     host->run->counts.strain_limit_moves += moves;
     *changed |= moves > 0;
@@ -35,7 +35,7 @@ static void limit_strain(struct cs_run_host *host, double dt, double *x, double 
 /* Moves particles out of colliders and corrects their velocities (contact by projection). */
 static void resolve_contact(struct cs_run_host *host, double t, double dt, double *x, double *v,
                             bool *changed) {
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     *changed |= cs_contact_projection_resolve(&host->contact, t, dt, x, v);
     host->run->counts.contact_tests = host->contact.counts.tests;
     host->run->counts.projected_particles = host->contact.counts.projected;
@@ -55,7 +55,7 @@ void cs_host_pin(struct cs_run_host *host, bool held) {
 static bool store_contact(struct cs_run_host *host, double t, const double *x, const double *v,
                           bool observed, bool moved) {
     struct cs_contact_projection *contact = &host->contact;
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     cs_contact_projection_store(contact, x, v, !moved);
     if (observed)
         cs_static_friction_clear(&contact->static_friction);
@@ -106,7 +106,7 @@ static enum cs_step judge(struct cs_run_host *host, double t, const double *x,
 /* Ends the run at the first crossing of surfaces, if the scene asks for that: the motion
  * after it has no meaning. */
 static enum cs_step stop_crossings(struct cs_run_host *host, double t, const double *x) {
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     struct cs_text why = {0};
     enum cs_step step = CS_STEP_OK;
     if (cs_step_limit_ends_run(host->run->system, t, x, &why))

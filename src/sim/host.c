@@ -63,7 +63,7 @@ static void host_note(void *ctx, const char *format, ...) {
 static void update_normals(struct cs_run_host *host, const double *x, uint32_t parts) {
     if (!cs_terms_need_normals(host->run->system, parts))
         return;
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     cs_normals_update(host->run->system, x);
     host->run->counts.normals++;
     cs_stage_end(host, CS_STAGE_NORMALS, begin);
@@ -75,7 +75,7 @@ static void host_force(void *ctx, double t, const double *x, const double *v, ui
     struct cs_run_host *host = ctx;
     cs_host_state_at(host, t, &x, &v);
     update_normals(host, x, parts);
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts};
     cs_terms_force(host->run->system, &at, f);
     host->run->counts.forces++;
@@ -101,7 +101,7 @@ static void host_jvp(void *ctx, double t, const double *x, const double *v, uint
     struct cs_run_host *host = ctx;
     cs_host_state_at(host, t, &x, &v);
     update_normals(host, x, parts);
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts, .dx = dx, .dv = dv};
     cs_terms_jvp(host->run->system, &at, df);
     host->run->counts.jvps++;
@@ -116,7 +116,7 @@ static void host_diagonal(void *ctx, double t, const double *x, const double *v,
                           double *dvv) {
     struct cs_run_host *host = ctx;
     cs_host_state_at(host, t, &x, &v);
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_LINEARISED};
     cs_terms_diagonal(host->run->system, &at, kxx, dvv);
     host->run->counts.diagonals++;
@@ -130,7 +130,7 @@ static void host_force_diagonal(void *ctx, double t, const double *x, const doub
     struct cs_run_host *host = ctx;
     cs_host_state_at(host, t, &x, &v);
     update_normals(host, x, CS_PART_ALL);
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
     cs_terms_force_diagonal(host->run->system, &at, f, blocks);
     host->run->counts.forces++;
@@ -147,7 +147,7 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
     struct cs_solve_result result = {0};
     if (!host->linear.system)
         return host_fail(ctx, "solve was used without CS_NEED_SOLVE");
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     host->run->counts.solves++;
     const enum cs_linear_end end = cs_host_solve_settled(host, b, rtol, u, &result);
     cs_stage_end(host, CS_STAGE_SOLVE, begin);
@@ -163,7 +163,7 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
 /* y = A p with the last A, counted as a Jacobian product. */
 static void host_matrix_product(void *ctx, const double *p, double *y) {
     struct cs_run_host *host = ctx;
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     cs_linear_mul(&host->linear, p, y);
     host->run->counts.jvps++;
     cs_stage_end(host, CS_STAGE_SOLVE, begin);
@@ -175,7 +175,7 @@ static void host_bounds_at(void *ctx, double t, const double *x, const double *v
     struct cs_run_host *host = ctx;
     cs_host_state_at(host, t, &x, &v);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     cs_spectral_bounds_rate(host->run->system, &at, host->bounds_work, omega, delta);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }
@@ -186,7 +186,7 @@ static double host_max_step_fraction(void *ctx, double t0, const double *x0, dou
     struct cs_run_host *host = ctx;
     cs_host_held_at(host, 0, t0, &x0, NULL);
     cs_host_held_at(host, 1, t1, &x1, NULL);
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     double share = cs_step_limit_fraction(host->run->system, t0, x0, t1, x1);
     if (share == 1 && host->contact.limits_steps)
         share = cs_contact_projection_fraction(&host->contact, t0, x0, t1, x1);
@@ -206,7 +206,7 @@ static void host_contact_blocks(void *ctx, double t, const double *x, const doub
     cs_host_state_at(host, t, &x, &v);
     const struct cs_matrix matrix = {
         .t = t, .x = x, .v = v, .cd = -h, .ck = -h * h, .psd = true, .bound = true};
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     cs_terms_blocks(host->run->system, &matrix, CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
                     blocks);
     host->run->counts.diagonals++;
@@ -246,7 +246,7 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
 static void host_lag_friction(void *ctx, double t, const double *x) {
     struct cs_run_host *host = ctx;
     struct cs_lagged_friction *lagged = host->run->system->lagged_friction;
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     if (x) {
         cs_host_state_at(host, host->lag_time = t, &x, NULL);
         cs_lagged_friction_begin(lagged, t, x);
@@ -260,7 +260,7 @@ static double host_friction_potential(void *ctx, const double *v, double *f) {
     struct cs_run_host *host = ctx;
     const double *x = host->run->x;
     cs_host_held_at(host, 0, host->lag_time, &x, &v);
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     const double sum = cs_lagged_friction_potential(host->run->system->lagged_friction, v, f);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
     return sum;
@@ -279,7 +279,7 @@ static enum cs_status add_lagged_friction(struct cs_run_host *host, struct cs_er
 static double host_longest_step(void *ctx, double t, const double *x, const double *v) {
     struct cs_run_host *host = ctx;
     struct cs_contact_projection *contact = &host->contact;
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     cs_move_values(host, t);
     cs_posed_colliders_at(contact->system, t, contact->colliders);
     const double step =

@@ -64,7 +64,7 @@ enum cs_step cs_host_solve_setup(void *ctx, double t, const double *x, const dou
     if (refuse(host, cm, cd, ck))
         return CS_STEP_FAIL;
     cs_trace_state(host, "solve set-up", t, x, v);
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     host->run->counts.solve_setups++;
     // the b of a former euler_setup belongs to another A
     host->euler.b = NULL;
@@ -82,7 +82,7 @@ enum cs_step cs_host_solve_setup(void *ctx, double t, const double *x, const dou
                                      .bound = flags & CS_SOLVE_BOUND};
     if (!cs_linear_setup(&host->linear, &matrix))
         cs_host_clamp(host, NULL);
-    cs_stage_end(host, CS_STAGE_SOLVE, begin);
+    cs_stage_end(host, CS_STAGE_SETUP, begin);
     return CS_STEP_OK;
 }
 
@@ -149,7 +149,7 @@ static void set_up(struct cs_run_host *host, const struct cs_matrix *matrix, boo
         .all = step->dv ? contact : f, .contact = contact, .is_end_known = step->dv};
     // A leaves r and z alone, so that its friction may know the forces, and b follow it
     host->table.force(host, at.t, at.x, at.v, CS_PART_ALL, f);
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     if (has_chord(host)) {
         if (step->dv)
             find_mean_force(system, step, contact);
@@ -165,7 +165,7 @@ static void set_up(struct cs_run_host *host, const struct cs_matrix *matrix, boo
     host->linear.matrix.chord = NULL;
     if (rhs)
         build_rhs(host, f);
-    cs_stage_end(host, CS_STAGE_SOLVE, begin);
+    cs_stage_end(host, CS_STAGE_SETUP, begin);
 }
 
 enum cs_step cs_host_euler_setup(void *ctx, double t, double h, const double *x,
@@ -195,7 +195,7 @@ enum cs_step cs_host_euler_setup(void *ctx, double t, double h, const double *x,
 
 void cs_host_euler_finish(void *ctx, double *x, double *v) {
     struct cs_run_host *host = ctx;
-    const double begin = cs_stage_begin(host);
+    const struct cs_stage_start begin = cs_stage_begin(host);
     cs_rebounds_move(host->run->system, host->euler.h, x, v);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }

@@ -13,7 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const cs_stage_names[] = {"force", "solve", "contact", "limit", "normals", NULL};
+const char *const cs_stage_names[] = {"force", "setup",   "solve", "contact",
+                                      "limit", "normals", NULL};
 
 const char *cs_outcome_current(const char *text) {
     return strcmp(text, "blew up: energy beyond all bound") ? text
@@ -208,8 +209,10 @@ static void count_method(struct cs_run *run) {
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
     const double next = (run->frame + 1) / run->system->scene->time.fps;
     const double begin = cs_clock_wall();
+    const double begin_cpu = cs_clock_cpu();
     const enum cs_step step = advance_frame(run, next);
     run->advance_seconds += cs_clock_wall() - begin;
+    run->advance_cpu += cs_clock_cpu() - begin_cpu;
     count_method(run);
     if (judge(run, step, error))
         return error->status;

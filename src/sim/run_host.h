@@ -138,15 +138,24 @@ struct cs_run_host {
 enum cs_step cs_run_host_fail_solve(struct cs_run_host *host, enum cs_linear_end end,
                                     const double *b, uint64_t iterations, double residual);
 
-/* Wall time in s at the begin of a stage; 0 without settings.timed: no clock is read then. */
-static inline double cs_stage_begin(const struct cs_run_host *host) {
-    return host->settings.timed ? cs_clock_wall() : 0;
+/* Times in s at the begin of a stage: of the wall, and of the process. */
+struct cs_stage_start {
+    double wall, cpu;
+};
+
+/* Without settings.timed no clock is read. */
+static inline struct cs_stage_start cs_stage_begin(const struct cs_run_host *host) {
+    return host->settings.timed ? (struct cs_stage_start){cs_clock_wall(), cs_clock_cpu()}
+                                : (struct cs_stage_start){0};
 }
 
-/* Adds the time since begin to a stage. */
-static inline void cs_stage_end(struct cs_run_host *host, enum cs_stage stage, double begin) {
-    if (host->settings.timed)
-        host->run->stage_seconds[stage] += cs_clock_wall() - begin;
+/* Adds the times since then to a stage. */
+static inline void cs_stage_end(struct cs_run_host *host, enum cs_stage stage,
+                                struct cs_stage_start begin) {
+    if (!host->settings.timed)
+        return;
+    host->run->stage_seconds[stage] += cs_clock_wall() - begin.wall;
+    host->run->stage_cpu[stage] += cs_clock_cpu() - begin.cpu;
 }
 
 /* Replaces x and v at t by a copy if held particles turn: there they are on their arc, which

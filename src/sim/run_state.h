@@ -38,6 +38,7 @@ static inline bool cs_outcome_has_reason(enum cs_outcome outcome) {
 /* Stages of a step that the host times with settings.timed; names are in cs_stage_names. */
 enum cs_stage {
     CS_STAGE_FORCE,
+    CS_STAGE_SETUP,
     CS_STAGE_SOLVE,
     CS_STAGE_CONTACT,
     CS_STAGE_LIMIT,
@@ -87,8 +88,10 @@ struct cs_run {
     struct cs_blow_up blow_up; /* where outcome says so */
     const char *reason;        /* with CS_GAVE_UP: the method's, the host's text */
     struct cs_counts counts;
-    double stage_seconds[CS_STAGES]; /* all 0 unless timed */
+    double stage_seconds[CS_STAGES]; /* wall time; all 0 unless timed */
+    double stage_cpu[CS_STAGES];     /* processor time of the process meanwhile; likewise */
     double advance_seconds;          /* wall time inside the method */
+    double advance_cpu;              /* processor time of the process meanwhile */
     struct cs_plan plan;             /* the system's, with the bytes of the run's own arrays */
     size_t method_bytes;             /* of arrays that the method took from the host */
     char notes[CS_NOTES_MAX][160];   /* remarks of the method */

@@ -147,7 +147,7 @@ static uint64_t run_meeting(struct fixture *fixture, const char *method, const c
     fixture_open(fixture, method, MEETING, pairs);
     fixture_start(fixture);
     ck_assert_ptr_nonnull(fixture->system->crossings);
-    while (run->frame < 12 && !cs_run_frame(run, &error)) {
+    while (run->frame < 12 && run->outcome == CS_RUNNING && !cs_run_frame(run, &error)) {
         const uint64_t found = cs_crossings_count(fixture->system, run->t, run->x).n;
         most = found > most ? found : most;
     }

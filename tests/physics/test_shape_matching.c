@@ -233,10 +233,12 @@ static uint64_t throw_boxes(const char *step, const char *pairs, struct cs_count
     fixture_open(&boxes, "shape-matching", THROWN, step, step, pairs);
     fixture_start(&boxes);
     struct cs_run *run = &boxes.session.run;
-    while (run->frame < 15 && !cs_run_frame(run, error)) {
+    while (run->frame < 15 && run->outcome == CS_RUNNING && !cs_run_frame(run, error)) {
         const uint64_t found = cs_crossings_count(boxes.system, run->t, run->x).n;
         most = found > most ? found : most;
     }
+    if (run->outcome == CS_GAVE_UP)
+        cs_fail(error, CS_ERR_MODULE, "%s", run->reason);
     *counts = run->counts;
     *y = boxes.x[boxes.n];
     fixture_close(&boxes);

@@ -120,11 +120,16 @@ static void add_measures(const struct cs_job *job, struct cs_text *out) {
             run->advance_seconds);
 }
 
-static void add_stage(const struct cs_job *job, const char *name, double seconds,
+/* cpu: NAN where it is not measured. */
+static void add_stage(const struct cs_job *job, const char *name, double wall, double cpu,
                       struct cs_text *out) {
     const uint32_t frames = job->session.run.frame;
-    cs_text_add(out, "  %-*s%10.4f%14.4f\n", STAGE_COLUMN - 2, name, seconds,
-                1e3 * seconds / (frames ? frames : 1));
+    cs_text_add(out, "  %-*s%10.4f%14.4f", STAGE_COLUMN - 2, name, wall,
+                1e3 * wall / (frames ? frames : 1));
+    if (isnan(cpu))
+        cs_text_add(out, "\n");
+    else
+        cs_text_add(out, "%15.4f\n", cpu);
 }
 
 /* Peak of the resident set in bytes, libraries included; 0 if unknown. ru_maxrss is in KiB. */
@@ -135,13 +140,15 @@ static size_t peak_memory(void) {
 
 /* Times of the stages in total and per frame; stages of the model are a part of "simulate". */
 static void add_stages(const struct cs_job *job, struct cs_text *out) {
-    cs_text_add(out, "%-*s%10s%14s\n", STAGE_COLUMN, "stage", "total [s]", "frame [ms]");
-    add_stage(job, "simulate", job->session.run.advance_seconds, out);
+    const struct cs_run *run = &job->session.run;
+    cs_text_add(out, "%-*s%10s%14s%15s\n", STAGE_COLUMN, "stage", "total [s]", "frame [ms]",
+                "processor [s]");
+    add_stage(job, "simulate", run->advance_seconds, run->advance_cpu, out);
     for (uint32_t s = 0; s < CS_STAGES; s++)
-        add_stage(job, cs_stage_names[s], job->session.run.stage_seconds[s], out);
-    add_stage(job, "draw", job->picture.seconds, out);
-    add_stage(job, "encode", job->encode_seconds, out);
-    add_stage(job, "waiting for pictures", job->wait_seconds, out);
+        add_stage(job, cs_stage_names[s], run->stage_seconds[s], run->stage_cpu[s], out);
+    add_stage(job, "draw", job->picture.seconds, (double)NAN, out);
+    add_stage(job, "encode", job->encode_seconds, (double)NAN, out);
+    add_stage(job, "waiting for pictures", job->wait_seconds, (double)NAN, out);
     add_row(out, "peak memory", "%.1f MiB of the whole process",
             (double)peak_memory() / (1 << 20));
 }
