@@ -17,8 +17,8 @@ import sources
 LIMITS = (
     ("units", "most", 343, "units in src (NAME.c, NAME.h or both)"),
     ("headers", "most", 213, "headers in src"),
-    ("arrows", "most", 37, "arrows between rooms"),
-    ("code", "most", 62300, "lines of code in src"),
+    ("arrows", "most", 45, "arrows between rooms"),
+    ("code", "most", 62320, "lines of code in src"),
     ("comments", "least", 15.0, "% of the lines of code and comment in src are comment"),
 )
 # a type that one header declares, and that alternatives define: no program sees two of them
