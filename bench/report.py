@@ -16,7 +16,8 @@ import pathlib
 import re
 import sys
 
-SECTIONS = ["limits", "kernels", "steps", "thesis", "pairs", "pictures", "pipeline", "scipy"]
+SECTIONS = ["limits", "kernels", "steps", "thesis", "pairs", "contact", "pictures", "pipeline",
+            "bdf"]
 # of figures that belong to the measured one
 RANGE = re.compile(r"(min|median|max)_(ns|ms|s)$")
 

@@ -24,7 +24,7 @@ for method in explicit-euler:dt=0.016666666666666666 explicit-euler:dt=0.0016666
     echo "$method"
     "$program" run scenes/explosion.json -n 1200 --no-render -i $method \
         --monitor "$out/$(echo $method | tr ':=' '__' | cut -c 1-30).csv" -y 2>/dev/null |
-        grep -A1 -E '^(outcome|monitor|energy)' | grep -vE '^(steps|evaluations|largest|--)' || true
+        sed -n '/^outcome/,/^energy/p' | grep -vE '^(steps|evaluations|iterations)' || true
 done >$out/story.txt
 
 "$program" advise scenes/hang.json --set "$grid=[16, 16]" --check --quiet >$out/advise.txt

@@ -1,6 +1,6 @@
 #!/bin/sh
 # page.sh SCDOC SOURCE [PROGRAM] - one man page to standard output; a line @KEYS@ of the source
-# stands for the program's own list of scene keys, @COMMANDS@ for that of its commands, @GLOSSARY@
+# stands for the program's own list of scene keys, @FILES@ of what it writes, @COMMANDS@ of its commands, @GLOSSARY@
 # for the table of docs/glossary.md. No page where the program or scdoc fails: a pipe tells only how
 # its last command ended.
 set -eu
@@ -31,6 +31,7 @@ glossary() {
 sed '/^@[A-Z]*@$/,$d' "$2" >"$work/source"
 case $(grep '^@[A-Z]*@$' "$2") in
 @KEYS@) "$3" scene --manual >>"$work/source" ;;
+@FILES@) "$3" --files >>"$work/source" ;;
 @COMMANDS@) commands "$3" >>"$work/source" ;;
 @GLOSSARY@) glossary "$(dirname "$2")/../docs/glossary.md" >>"$work/source" ;;
 esac

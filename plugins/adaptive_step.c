@@ -190,9 +190,9 @@ enum cs_step adaptive_step_advance(void *object, double t0, double t1, double *x
         self->fresh = !self->accept(self);
         /* ends at t1 itself, not at a sum that rounds beside it */
         t = h < t1 - t ? t + h : t1;
-        bool changed = false;
-        status = host->commit(host->ctx, t, h, x, v, &changed);
-        self->fresh = self->fresh || changed;
+        self->changed = false;
+        status = host->commit(host->ctx, t, h, x, v, &self->changed);
+        self->fresh = self->fresh || self->changed;
     }
     return status;
 }
@@ -203,6 +203,7 @@ enum cs_step adaptive_step_restart(void *object, double t, const double *x, cons
     self->control = (struct step_control){.power = self->control.power};
     self->contact = HUGE_VAL;
     self->fresh = true;
+    self->changed = false;
     self->started = false;
     return CS_STEP_OK;
 }
@@ -214,11 +215,12 @@ void adaptive_step_stats(const void *object, struct cs_stats *out) {
 enum cs_step adaptive_step_archive(void *object, const struct cs_archive *archive) {
     struct adaptive_step *self = object;
     struct step_control *control = &self->control;
-    uint64_t marks[] = {self->fresh, self->started, control->rejected};
-    archive->integers(archive->ctx, marks, 3);
+    uint64_t marks[] = {self->fresh, self->changed, self->started, control->rejected};
+    archive->integers(archive->ctx, marks, 4);
     self->fresh = marks[0] != 0;
-    self->started = marks[1] != 0;
-    control->rejected = marks[2] != 0;
+    self->changed = marks[1] != 0;
+    self->started = marks[2] != 0;
+    control->rejected = marks[3] != 0;
     archive->integers(archive->ctx, &self->rejected, 1);
     archive->reals(archive->ctx, &control->h, 1);
     archive->reals(archive->ctx, &control->last_error_root, 1);

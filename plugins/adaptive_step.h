@@ -49,6 +49,7 @@ struct adaptive_step {
     double *weight; /* (6n): 1 / tolerance */
     double contact; /* s, the longest step that contact lets pass; HUGE_VAL: any */
     bool fresh;     /* slope is not that of the state */
+    bool changed;   /* the last commit changed the state */
     bool started;   /* control.h was chosen */
     uint64_t rejected;
     double begin, end; /* s, of the advance */

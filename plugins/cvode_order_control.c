@@ -23,7 +23,7 @@ enum { LONG = 20, PATIENCE = 100 };
  * - SHORT_DAMPED: the same while damping takes twice the error term. Stability holds order 5
  *   near 0.53, which limits it. Tuned on sheets of 8 x 8 and 16 x 16 and a drum, rtol 1e-3 to
  *   1e-6: up to 2.6 times fewer forces, at 0.1 to 0.5 of the error. Of 36 runs no other
- *   changed by more than 5 % in forces (docs/speed.md).
+ *   changed by more than 5 % in forces (docs/notes).
  * - BEYOND: hysteresis. Just above either limit, order 5 itself may be what keeps the steps
  *   short.
  * - FAR: a step of order 2 longer than that shows that it was. */

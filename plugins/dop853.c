@@ -6,7 +6,7 @@
  *
  * Coefficients: Prince, Dormand 1981; Hairer, Norsett, Wanner 1993, sec. II.10 and the errors
  * of its appendix. Rounded to the double nearest. */
-#include "nystrom.h"
+#include "order_8_methods.h"
 
 enum { STAGES = 13 };
 
@@ -64,7 +64,7 @@ static const double lower_order[STAGES] =
      [11] = 4.47106157277725905176885569043E-2 - 0.220588235294117647058823529412E-01};
 // clang-format on
 
-static const struct nystrom_pair pair = {.stages = STAGES,
+const struct nystrom_pair dop853_pair = {.stages = STAGES,
                                          .power = 8,
                                          .nodes = nodes,
                                          .table = table,
@@ -74,10 +74,10 @@ static const struct nystrom_pair pair = {.stages = STAGES,
 static const struct cs_option rows[] = {ADAPTIVE_ROWS(struct adaptive_options, 1e-6)};
 
 static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
-    return nystrom_create(host, options, &pair, out);
+    return nystrom_create(host, options, &dop853_pair, out);
 }
 
-static const struct cs_integrator dop853 = {
+const struct cs_integrator dop853 = {
     ADAPTIVE_METHOD(struct adaptive_options, rows),
     .name = "dop853",
     .summary = "explicit, order 8 with error control: for errors below 1e-7 of smooth motion",
@@ -86,13 +86,4 @@ static const struct cs_integrator dop853 = {
     .order_damped = 8,
     .traits = CS_ADAPTIVE,
     .create = create,
-};
-
-static const struct cs_integrator *const integrators[] = {&dop853};
-
-CS_EXPORT const struct cs_module clothsim_module = {
-    .abi = CS_ABI,
-    .size = sizeof(struct cs_integrator),
-    .n = sizeof integrators / sizeof integrators[0],
-    .integrators = integrators,
 };

@@ -131,7 +131,7 @@ static enum cs_step create(const struct cs_host *host, const struct lossy_option
         choose_dt(&self->fixed, limit(&self->fixed, host->view->omega, host->view->delta));
     // without damping some methods have no stable step: then symplectic-euler's, as choose_dt
     const bool stable = limit(&self->fixed, host->view->omega, host->view->delta) > 0;
-    self->fixed.checks_free_motion = step == step_rk4;
+    self->fixed.free_motion = step == step_rk4 ? 1 : 0;
     return fixed_step_guard(&self->fixed, asked->dt > 0 ? NULL
                                           : stable      ? limit
                                                         : symplectic_euler_limit);

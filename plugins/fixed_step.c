@@ -4,11 +4,11 @@
  * The decisions of one step, in order:
  * 1. Choose the length of the part: as the part before; twice as long if that is aligned,
  *    stable and looks admissible; halved until it is not longer than 0.9 of the stability
- *    limit at the state, and, with checks_free_motion, until the host admits the motion
- *    without forces. After a refusal step 1 is left out, because the state is the same.
+ *    limit at the state, and, with free_motion, until the host admits the motion without
+ *    forces. After a refusal step 1 is left out, because the state is the same.
  * 2. More than max_depth halvings: the run ends with the reason of the last refusal.
- * 3. Take the part. If the host does not admit the displacement, restore the state, halve,
- *    and go to 2.
+ * 3. Take the part. If the host does not admit the displacement, or the part is longer than
+ *    0.9 of the stability limit at its end, restore the state, halve, and go to 2.
  * 4. Commit the part. If the commit changed the state, the method's history is void.
  * 5. Continue until all parts are done.
  *
@@ -28,17 +28,40 @@
 /* Halvings of a step before the run fails: parts of 1/65536. Chosen by trial. */
 enum { MOST_CUTS = 16 };
 
+/* Finds 0.9 of the longest stable step at a state, in s: the margin of the automatic dt.
+ * HUGE_VAL for a method that did not choose dt by its limit. */
+static void find_longest(struct fixed_step *self, double t, const double *x, const double *v) {
+    double omega, delta;
+    self->longest = HUGE_VAL;
+    if (self->limit) {
+        self->host->bounds_at(self->host->ctx, t, x, v, &omega, &delta);
+        self->longest = 0.9 * self->limit(self, omega, delta);
+    }
+}
+
+/* True if a step from the saved state at t to (x, v) at t + h may stand. */
+static bool is_step_admissible(struct fixed_step *self, double t, double h, const double *x,
+                               const double *v) {
+    const struct cs_host *host = self->host;
+    if (host->max_step_fraction(host->ctx, t, self->saved_state, t + h, x) < 1)
+        return false;
+    find_longest(self, t + h, x, v);
+    // a limit that is not a number is left to the blow-up check
+    return !(self->longest < h);
+}
+
 /* try_step of a method whose steps cannot fail by themselves: the host may refuse them. */
 static enum cs_step take(struct fixed_step *self, double t, double h, double *x, double *v,
                          bool *cut) {
-    const struct cs_host *host = self->host;
-    const size_t bytes = 6 * sizeof *x * host->view->n;
+    const size_t bytes = 6 * sizeof *x * self->host->view->n;
     if (!self->saved_state)
         return self->step(self, t, h, x, v);
     memcpy(self->saved_state, x, bytes);
     const enum cs_step status = self->step(self, t, h, x, v);
-    if (status == CS_STEP_OK &&
-        host->max_step_fraction(host->ctx, t, self->saved_state, t + h, x) < 1) {
+    if (status != CS_STEP_OK)
+        return status;
+    self->longest_is_current = is_step_admissible(self, t, h, x, v);
+    if (!self->longest_is_current) {
         memcpy(x, self->saved_state, bytes);
         *cut = self->history_void = true;
     }
@@ -48,13 +71,13 @@ static enum cs_step take(struct fixed_step *self, double t, double h, double *x,
 /* The failure of a step that was refused at the shortest length. */
 static enum cs_step fail_at_shortest_part(struct fixed_step *self, double t, double h) {
     if (h > self->longest)
-        return self->host->fail(self->host->ctx,
-                                "a stable step at t = %.9g s is shorter than %.3g s, which is "
-                                "the step after %d halvings: contact or its friction is too "
-                                "stiff there for an explicit method; a larger "
-                                "contact.friction_speed, an implicit method or one with error "
-                                "control may get through",
-                                t, h, MOST_CUTS);
+        return self->host->fail(
+            self->host->ctx,
+            "a stable step at t = %.9g s is shorter than %.3g s, which is "
+            "the step after %d halvings: contact is too stiff or too damped "
+            "there for an explicit method; less contact.damping, an implicit "
+            "method or one with error control may get through",
+            t, h, MOST_CUTS);
     return self->host->fail(self->host->ctx,
                             "a step of %.3g s at t = %.9g s, after %d halvings, still misses "
                             "contact or crosses a surface",
@@ -123,25 +146,15 @@ enum cs_step fixed_step_count(struct fixed_step *self, double span, double *n) {
     return CS_STEP_OK;
 }
 
-/* 0.9 of the longest stable step at a state, in s: the margin of the automatic dt. HUGE_VAL
- * for a method that did not choose dt by its limit. */
-static double longest_at(const struct fixed_step *self, double t, const double *x,
-                         const double *v) {
-    double omega, delta;
-    if (!self->limit)
-        return HUGE_VAL;
-    self->host->bounds_at(self->host->ctx, t, x, v, &omega, &delta);
-    return 0.9 * self->limit(self, omega, delta);
-}
-
-/* True if the host admits the straight displacement h v, the motion without forces. Uses
- * saved_state as scratch. */
+/* True if the host admits the straight displacement h v, the motion without forces, or that
+ * over free_motion lengths of the step. Uses saved_state as scratch. */
 static bool is_free_motion_admissible(const struct fixed_step *self, double t, double h,
                                       const double *x, const double *v) {
     const struct cs_host *host = self->host;
+    const double span = self->free_motion > 0 ? self->free_motion * h : h;
     for (size_t i = 0; i < 3 * (size_t)host->view->n; i++)
-        self->saved_state[i] = x[i] + h * v[i];
-    return host->max_step_fraction(host->ctx, t, x, t + h, self->saved_state) >= 1;
+        self->saved_state[i] = x[i] + span * v[i];
+    return host->max_step_fraction(host->ctx, t, x, t + span, self->saved_state) >= 1;
 }
 
 /* True if a part of length h may be tried after shorter ones. The free motion predicts the
@@ -150,7 +163,7 @@ static bool is_free_motion_admissible(const struct fixed_step *self, double t, d
 static bool is_growth_admissible(const struct fixed_step *self, double t, double h,
                                  const double *x, const double *v) {
     return !self->saved_state ||
-           (!self->checks_free_motion &&
+           (!(self->free_motion > 0) &&
             self->subdivision.accepted_in_row >= STEP_SUBDIVISION_GROW_ALWAYS_AFTER) ||
            is_free_motion_admissible(self, t, h, x, v);
 }
@@ -159,10 +172,12 @@ static bool is_growth_admissible(const struct fixed_step *self, double t, double
  * max_depth, for the caller to fail. */
 static void choose_cuts(struct fixed_step *self, double t, double h, const double *x,
                         const double *v) {
-    const double longest = self->longest = longest_at(self, t, x, v);
+    if (!self->longest_is_current)
+        find_longest(self, t, x, v);
+    const double longest = self->longest;
     struct step_subdivision *cuts = &self->subdivision;
     const double twice = 2 * step_subdivision_length(cuts, h);
-    bool admitted = !self->saved_state || !self->checks_free_motion;
+    bool admitted = !self->saved_state || !(self->free_motion > 0);
     if (step_subdivision_may_grow(cuts) && twice <= longest &&
         is_growth_admissible(self, t, twice, x, v)) {
         step_subdivision_grow(cuts);
@@ -208,6 +223,7 @@ static enum cs_step take_step_in_parts(struct fixed_step *self, double t, double
                 step_subdivision_are_over(cuts) ? end : t + cuts->parts_done * part;
             status = host->commit(host->ctx, to, part, x, v, &changed);
             self->history_void = changed;
+            self->longest_is_current &= !changed;
         }
         if (status != CS_STEP_OK)
             return status;
@@ -220,6 +236,7 @@ enum cs_step fixed_step_advance(void *object, double t0, double t1, double *x, d
     double n;
     enum cs_step status = fixed_step_count(self, t1 - t0, &n);
     const double h = (t1 - t0) / n;
+    self->longest_is_current = false; // events may have changed forces
     for (double i = 0; i < n && status == CS_STEP_OK; i++)
         // times from t0, not summed up: the last is t1 to the bit
         status =

@@ -7,10 +7,12 @@
  * (step_subdivision.h) for three reasons:
  * 1. It would pass over contact that it cannot see, or through a surface
  *    (host->max_step_fraction from the state before the step to the one after).
- * 2. The motion without forces, x to x + h v, would (checks_free_motion). A step that enters
+ * 2. The motion without forces, x to x + h v, would (free_motion). A step that enters
  *    contact and leaves it again has both its ends outside, and is seen by this test alone.
  * 3. The method chose dt by its stability limit, which is shorter in contact
- *    (host->bounds_at).
+ *    (host->bounds_at), at the state before the step or at the one after. A long step that
+ *    ends just inside of contact has an impulse of h F/2 there, with less energy in the
+ *    contact than the host would refuse.
  *
  * Each part is committed by itself. */
 #ifndef FIXED_STEP_H
@@ -47,11 +49,14 @@ struct fixed_step {
     /* only in scenes with contact by force, see fixed_step_guard */
     double *saved_state; /* (6n) the state before a step; NULL: no step is judged */
     /* For a method whose result depends on contact that is neither at the begin of a step nor
-     * at its end: one with stages, or with an iteration. The force at the begin alone does not
-     * move a particle into contact and out of it. */
-    bool checks_free_motion;
+     * at its end: one with stages, or with an iteration. The motion without forces is judged
+     * over so many lengths of the step; 0: it is not. (The force at the begin alone does not
+     * move a particle into contact and out of it.) */
+    double free_motion;
     bool refused_by_contact; /* the last part that was refused passed over contact */
-    double longest; /* s, 0.9 of the longest stable step at the begin of the last part */
+    double
+        longest; /* s, 0.9 of the longest stable step at the state that was asked about last */
+    bool longest_is_current; /* that is the present state */
     double (*limit)(const struct fixed_step *self, double omega,
                     double delta); /* s; NULL: none */
 };

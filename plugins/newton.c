@@ -1,8 +1,8 @@
 /* newton.c - Newton's method with a line search for one implicit stage; formulas: newton.h.
  *
  * One iteration, in order:
- * 1. Converged if |r| <= goal = rtol impulse + residual_floor times the rounding floor. Also
- *    if |r| is below rtol impulse + floor and the last iteration gained less than a factor 2.
+ * 1. Converged if |r| <= goal = rtol impulse + absolute + residual_floor times the rounding
+ *    floor. Also if the last iteration gained less than a factor 2 with that share of it 1.
  * 2. The linear solve gets the tolerance 1e-3, or a looser one that suffices: half of goal /
  *    |r|. The impulse, and with it the goal, moves with u.
  * 3. du from A du = -r. A is clamped while |r| >= 0.1 impulse, else exact.
@@ -38,7 +38,7 @@
 
 /* An iteration with friction ends if so many steps do not lower |r| to this share of its
  * smallest value. With true friction it is then in a circle, mostly of two states. Chosen by
- * trial (docs/contact.md). */
+ * trial (docs/notes/contact-newton.md). */
 #define IDLE_GAIN   0.9
 #define IDLE        2
 #define IDLE_LAGGED 10
@@ -299,7 +299,7 @@ static bool search(struct newton *newton, const struct newton_stage *stage, doub
 static bool is_solved(const struct newton *newton, const struct newton_stage *stage,
                       const double *u, double before, double *goal) {
     const double noise = newton_rounding_floor(newton, stage, u);
-    const double enough = newton->rtol * newton->impulse;
+    const double enough = newton->rtol * newton->impulse + newton->absolute;
     *goal = enough + newton->residual_floor * noise;
     return newton->norm <= *goal ||
            (newton->norm <= enough + noise && newton->norm > before / 2);

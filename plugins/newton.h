@@ -71,6 +71,8 @@ struct newton {
      * smaller for methods of many digits. If rounding ends the iteration before, the floor
      * itself is enough. */
     double residual_floor;
+    double
+        absolute; /* sqrt(J): added to the residual that is small enough; 0 after newton_init */
     double *x, *v;              /* (3,n): X and V of the last u */
     double *r, *f;              /* (3,n) */
     double *rhs, *du, *u_start; /* (3,n) */

@@ -2,7 +2,8 @@
 #include "newton_methods.h"
 
 static const struct cs_integrator *const integrators[] = {
-    &backward_euler, &implicit_midpoint, &bdf2, &tr_bdf2, &sdirk2, &ros2, &newmark, &gauss,
+    &backward_euler, &implicit_midpoint, &bdf2,  &tr_bdf2, &sdirk2,
+    &ros2,           &newmark,           &gauss, &esdirk,
 };
 
 CS_EXPORT const struct cs_module clothsim_module = {

@@ -6,30 +6,23 @@
 
 enum { BLOCK = 512 };
 
-/* The stages that a sum takes, with their weights in velocity and position. */
-struct sum {
-    int terms, stage[NYSTROM_STAGES];
-    double velocity[NYSTROM_STAGES], position[NYSTROM_STAGES];
-};
-
 struct nystrom {
     struct adaptive_step base;
     const struct nystrom_pair *pair;
-    struct sum stage[NYSTROM_STAGES], difference, lower_order;
+    struct nystrom_sum stage[NYSTROM_STAGES], difference, lower_order;
     double *f[NYSTROM_STAGES]; /* (3,n) in m/s2 each; the first is base.slope */
 };
 
 /* Sums that are 0 by the order conditions come out as rounding: below this they count as 0. */
 #define ROUNDING 1e-14
 
-/* The sum with weights b (stages) in velocity, and in position sum_i b_i a_ij or, where exact,
- * b_j (1 - c_j). */
-static struct sum sum_of(const struct nystrom_pair *pair, const double *b, bool exact) {
-    struct sum sum = {0};
-    for (int j = 0; j < pair->stages; j++) {
-        double position = exact ? b[j] * (1 - pair->nodes[j]) : 0;
-        for (int i = j + 1; i < pair->stages && !exact; i++)
-            position += b[i] * pair->table[i][j];
+struct nystrom_sum nystrom_sum_of(int stages, const double (*table)[NYSTROM_STAGES],
+                                  const double *b, const double *nodes) {
+    struct nystrom_sum sum = {0};
+    for (int j = 0; j < stages; j++) {
+        double position = nodes ? b[j] * (1 - nodes[j]) : 0;
+        for (int i = j; i < stages && !nodes; i++)
+            position += b[i] * table[i][j];
         if (fabs(b[j]) < ROUNDING && fabs(position) < ROUNDING)
             continue;
         sum.stage[sum.terms] = j;
@@ -103,17 +96,19 @@ static void combine_part(void *arg, size_t begin, size_t end) {
     }
 }
 
-/* z (6n) = the state of a stage at node * h, or with y NULL a difference of states. */
-static void combine(const struct nystrom *self, const struct sum *sum, double h, double node,
-                    const double *y, double *z) {
-    struct combination of = {
-        .terms = sum->terms, .half = self->base.length / 2, .drift = node * h, .y = y, .z = z};
+void nystrom_combine(const struct cs_host *host, const struct nystrom_sum *sum,
+                     double *const *f, double h, const double *y, double *z) {
+    struct combination of = {.terms = sum->terms,
+                             .half = 3 * (size_t)host->view->n,
+                             .drift = sum->node * h,
+                             .y = y,
+                             .z = z};
     for (int j = 0; j < sum->terms; j++) {
-        of.f[j] = self->f[sum->stage[j]];
+        of.f[j] = f[sum->stage[j]];
         of.position[j] = h * h * sum->position[j];
         of.velocity[j] = h * sum->velocity[j];
     }
-    parallel_for(self->base.host, of.half, combine_part, &of);
+    parallel_for(host, of.half, combine_part, &of);
 }
 
 /* The error of a step of h in units of the tolerance. With an error of lower order E3 beside
@@ -122,11 +117,11 @@ static void combine(const struct nystrom *self, const struct sum *sum, double h,
 static double error_of(struct nystrom *self, double h, const double *y) {
     struct adaptive_step *base = &self->base;
     adaptive_step_weigh(base, y, base->next);
-    combine(self, &self->difference, h, 0, NULL, base->error);
+    nystrom_combine(base->host, &self->difference, self->f, h, NULL, base->error);
     const double error = adaptive_step_norm(base, base->error);
     if (!self->pair->lower_order || !(error > 0))
         return error;
-    combine(self, &self->lower_order, h, 0, NULL, base->error);
+    nystrom_combine(base->host, &self->lower_order, self->f, h, NULL, base->error);
     const double lower = adaptive_step_norm(base, base->error);
     return error * (error / sqrt(error * error + 0.01 * lower * lower));
 }
@@ -135,7 +130,7 @@ static enum cs_step attempt(struct adaptive_step *base, double t, double h, cons
                             double *error) {
     struct nystrom *self = (struct nystrom *)base;
     for (int i = 1; i < self->pair->stages; i++) {
-        combine(self, self->stage + i, h, self->pair->nodes[i], y, base->next);
+        nystrom_combine(base->host, self->stage + i, self->f, h, y, base->next);
         adaptive_step_evaluate(base, t + self->pair->nodes[i] * h, base->next,
                                base->next + base->length / 2, self->f[i]);
     }
@@ -153,6 +148,13 @@ static bool accept(struct adaptive_step *base) {
     return true;
 }
 
+struct nystrom_sum nystrom_stage(const struct nystrom_pair *pair, int i) {
+    struct nystrom_sum sum = nystrom_sum_of(pair->stages, pair->table, pair->table[i],
+                                            i == pair->stages - 1 ? pair->nodes : NULL);
+    sum.node = pair->nodes[i];
+    return sum;
+}
+
 enum cs_step nystrom_create(const struct cs_host *host, const void *options,
                             const struct nystrom_pair *pair, void **out) {
     struct nystrom *self = host->alloc(host->ctx, sizeof *self);
@@ -166,12 +168,12 @@ enum cs_step nystrom_create(const struct cs_host *host, const void *options,
         return CS_STEP_FAIL;
     self->f[0] = self->base.slope;
     for (int i = 1; i < pair->stages; i++) {
-        self->stage[i] = sum_of(pair, pair->table[i], i == pair->stages - 1);
+        self->stage[i] = nystrom_stage(pair, i);
         if (!(self->f[i] = host->alloc(host->ctx, self->base.length / 2 * sizeof(double))))
             return CS_STEP_FAIL;
     }
-    self->difference = sum_of(pair, pair->difference, false);
+    self->difference = nystrom_sum_of(pair->stages, pair->table, pair->difference, NULL);
     if (pair->lower_order)
-        self->lower_order = sum_of(pair, pair->lower_order, false);
+        self->lower_order = nystrom_sum_of(pair->stages, pair->table, pair->lower_order, NULL);
     return CS_STEP_OK;
 }

@@ -23,6 +23,27 @@ struct nystrom_pair {
                                             * see dop853.c; NULL: none */
 };
 
+/* The stages that a sum takes, with their weights in velocity and position, and the time of
+ * the sum in steps, for the free motion. */
+struct nystrom_sum {
+    double node;
+    int terms, stage[NYSTROM_STAGES];
+    double velocity[NYSTROM_STAGES], position[NYSTROM_STAGES];
+};
+
+/* The sum with weights b (stages) in velocity, and in position sum_i b_i a_ij or, with nodes,
+ * b_j (1 - c_j). a_ij may have a diagonal. The node is 0. */
+struct nystrom_sum nystrom_sum_of(int stages, const double (*table)[NYSTROM_STAGES],
+                                  const double *b, const double *nodes);
+
+/* z (6n) = y and its free motion, plus the sum of the f (3,n) each, in m/s2; with y NULL the
+ * sum alone. */
+void nystrom_combine(const struct cs_host *host, const struct nystrom_sum *sum,
+                     double *const *f, double h, const double *y, double *z);
+
+/* The sum of stage i of a pair; that of the last one leads to the new state. */
+struct nystrom_sum nystrom_stage(const struct nystrom_pair *pair, int i);
+
 /* create of a method's descriptor, with struct adaptive_options as its options. */
 enum cs_step nystrom_create(const struct cs_host *host, const void *options,
                             const struct nystrom_pair *pair, void **out);

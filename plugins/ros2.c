@@ -8,7 +8,10 @@
  * Rows of x eliminated, with A = M - g D - g^2 K:
  *   A kv = bv + g K bx,   kx = bx + g kv,   (bx, M^-1 bv) the right-hand side
  * and g^2 K p = M p - g D p - A p, so that it is the K of A: the exact one of a nearly closed
- * spring would be huge here and clamped there.
+ * spring would be huge here and clamped there. With w = kv + bx/g that is
+ *   A w = bv + M bx/g - D bx,
+ * without a product with A; where obstacles or held particles move, K bx is needed by itself,
+ * and kv, which is 0 where w is not, is solved for.
  *
  * Obstacles that move make F depend on t. With t as one more variable of y, whose k are 1 and
  * -1, the right-hand sides get g dF/dt and -g dF/dt; for contact that is K (v - w) in place of
@@ -28,6 +31,14 @@
 #include <math.h>
 #include <string.h>
 
+/* Lengths of a step over which the motion without forces is judged. The second stage takes the
+ * force at the end of that motion for all of the step: one that came just inside of contact,
+ * where its energy is below what the host refuses, got an impulse of up to 8 times its
+ * momentum, and an impact kept 0.26 of its energy. So the first step that ends inside must be
+ * short. Of 150 phases at 1 to 20 m/s all keep 0.98 to 1.01 with 1.1, 0.996 to 1.006 with 1.25.
+ */
+#define FREE_MOTION 1.25
+
 struct ros2_options {
     double dt, rtol;
 };
@@ -45,9 +56,18 @@ struct method {
     double *bx, *b;  /* (3,n) right-hand side */
     double *xn, *vn; /* (3,n) state of the second stage, then of the step's end */
     double *drift;   /* (3,n) in N: g dF/dt by obstacles that move; NULL: none does */
+    bool for_kv;     /* kv is solved for in this step, not w */
 };
 
-/* b += g K bx, as (M bx - g D bx - A bx) / g; work: (3,n) */
+static bool held_particles_move(const struct cs_view *view, const double *v) {
+    const size_t n = view->n;
+    bool move = false;
+    for (size_t i = 0; i < n; i++)
+        move |= !(view->inv_mass[i] > 0) && (v[i] != 0 || v[n + i] != 0 || v[2 * n + i] != 0);
+    return move;
+}
+
+/* b += M bx/g - D bx, less A bx/g for kv, which leaves b + g K bx; work: (3,n) */
 static void add_stiffness(struct method *self, double t, double g, const double *x,
                           const double *v, double *work) {
     const struct cs_host *host = self->base.fixed.host;
@@ -55,10 +75,13 @@ static void add_stiffness(struct method *self, double t, double g, const double 
     const size_t n = view->n;
     host->jvp(host->ctx, t, x, v, CS_PART_LINEARISED, NULL, self->bx, work);
     host->vector->linear_sum(3 * n, 1, self->b, -1, work, self->b);
-    host->matrix_product(host->ctx, self->bx, work);
+    if (self->for_kv) {
+        host->matrix_product(host->ctx, self->bx, work);
+        host->vector->linear_sum(3 * n, 1, self->b, -1 / g, work, self->b);
+    }
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
-            self->b[c * n + i] += (view->mass[i] * self->bx[c * n + i] - work[c * n + i]) / g;
+            self->b[c * n + i] += view->mass[i] * self->bx[c * n + i] / g;
 }
 
 /* A at the step's begin, and the drift: the right-hand side of a step of implicit Euler of
@@ -80,14 +103,18 @@ static void add_drift(struct method *self, double g) {
     }
 }
 
-/* kv from A kv = b, started from a free fall: kv = M^-1 b */
-static enum cs_step solve(struct method *self, double *kv) {
+/* kv from A kv = b, or from A w = b, started from a free fall: M^-1 b. */
+static enum cs_step solve(struct method *self, double g, double *kv) {
     const struct cs_host *host = self->base.fixed.host;
     const struct cs_view *view = host->view;
     for (size_t c = 0, k = 0; c < 3; c++)
         for (size_t i = 0; i < view->n; i++, k++)
             kv[k] = view->inv_mass[i] * self->b[k];
-    return host->solve(host->ctx, self->b, self->rtol, kv);
+    const enum cs_step status = host->solve(host->ctx, self->b, self->rtol, kv);
+    for (size_t c = 0, k = 0; c < 3 && !self->for_kv; c++)
+        for (size_t i = 0; i < view->n; i++, k++)
+            kv[k] -= view->inv_mass[i] > 0 ? self->bx[k] / g : 0;
+    return status;
 }
 
 /* True if friction or damping by contact acts at a state, and h omega > 1 there: the step
@@ -123,6 +150,7 @@ static enum cs_step take(struct method *self, struct span *span, double *x, doub
     const struct cs_view *view = host->view;
     const size_t n = view->n;
     double *k1 = self->k1, *k2 = self->k2, *bx = self->bx, *b = self->b;
+    self->for_kv = self->drift || held_particles_move(view, v);
     enum cs_step status = set_up(self, t, g, x, v);
     if (status != CS_STEP_OK)
         return status;
@@ -132,7 +160,7 @@ static enum cs_step take(struct method *self, struct span *span, double *x, doub
     memcpy(bx, v, 3 * n * sizeof *v);
     add_stiffness(self, t, g, x, v, k1);
     add_drift(self, g);
-    if ((status = solve(self, k1)) != CS_STEP_OK)
+    if ((status = solve(self, g, k1)) != CS_STEP_OK)
         return status;
     for (size_t k = 0; k < 3 * n; k++) {
         self->xn[k] = x[k] + h * (v[k] + g * k1[k]);
@@ -158,7 +186,7 @@ static enum cs_step take(struct method *self, struct span *span, double *x, doub
     add_stiffness(self, t, g, x, v, k2);
     for (size_t k = 0; self->drift && k < 3 * n; k++)
         b[k] -= self->drift[k];
-    if ((status = solve(self, k2)) != CS_STEP_OK)
+    if ((status = solve(self, g, k2)) != CS_STEP_OK)
         return status;
     /* kx = bx + g kv in either stage */
     for (size_t k = 0; k < 3 * n; k++) {
@@ -196,6 +224,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     if (!(*out = base))
         return CS_STEP_FAIL;
     struct method *self = (struct method *)base;
+    base->fixed.free_motion = FREE_MOTION;
     self->rtol = asked->rtol;
     double **const arrays[] = {&self->k1, &self->k2, &self->bx,   &self->b,
                                &self->xn, &self->vn, &self->drift};
@@ -208,7 +237,9 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
 const struct cs_integrator ros2 = {
     STEP_HALVING_METHOD(struct ros2_options, rows, step_halving_archive),
     .name = "ros2",
-    .summary = "Rosenbrock method: two linear solves with one matrix, L-stable, no Newton",
+    .summary = "Rosenbrock method: two linear solves with one matrix, L-stable, no Newton; "
+               "throws "
+               "what slips to and fro where a step is long against friction",
     .source = "Verwer et al. 1999",
     .order = 2,
     .order_damped = 2,

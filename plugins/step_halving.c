@@ -86,7 +86,7 @@ struct step_halving *step_halving_create(const struct cs_host *host, size_t byte
     self->step = step;
     if (fixed_step_guard(&self->fixed, NULL) != CS_STEP_OK)
         return NULL;
-    self->fixed.checks_free_motion = true;
+    self->fixed.free_motion = 1;
     self->fixed.max_depth =
         self->fixed.saved_state ? STEP_HALVINGS_IN_CONTACT : STEP_HALVINGS_MAX;
     return self;

@@ -47,6 +47,7 @@ struct sundials {
     double
         *y_before; /* (6n) the state before the step; NULL: no step is refused for its move */
     bool equal_steps;    /* without error control: no step is cut but to meet a frame */
+    bool judges_contact; /* a finished step is refused if it passes over contact by force */
     enum cs_step status; /* of the host's solver within the running call */
     char message[256];   /* the library's last */
 };

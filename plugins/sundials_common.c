@@ -53,12 +53,12 @@ static bool open_context(struct sundials *self) {
 }
 #endif
 
-/* True if the displacement from the state before the step to x carries surfaces through each
- * other. Both times are t: then max_step_fraction tests nothing else, and contact by force is
- * left to error control. False without limits. */
-static bool passes_through(const struct sundials *self, double t, const double *x) {
+/* True if the displacement from the state before the step, at t0, to x at t carries surfaces
+ * through each other, or passes over contact. With t for t0 max_step_fraction tests the first
+ * alone, and contact by force is left to error control. False without limits. */
+static bool passes_through(const struct sundials *self, double t0, double t, const double *x) {
     const struct cs_host *host = self->host;
-    return self->y_before && host->max_step_fraction(host->ctx, t, self->y_before, t, x) < 1;
+    return self->y_before && host->max_step_fraction(host->ctx, t0, self->y_before, t, x) < 1;
 }
 
 /* Turns forces into accelerations; true if one is NaN or infinite. Without a branch, for
@@ -79,7 +79,7 @@ int sundials_slope(const struct sundials *self, double t, N_Vector y, uint32_t p
     const size_t n = host->view->n;
     const double *x = sundials_data(y), *v = x + 3 * n;
     double *dx = sundials_data(slope), *dv = dx + 3 * n;
-    if (self->library->can_retry && passes_through(self, t, x))
+    if (self->library->can_retry && passes_through(self, t, t, x))
         return 1;
     host->force(host->ctx, t, x, v, parts, dv);
     if (moves)
@@ -165,7 +165,7 @@ enum cs_step sundials_advance(void *object, double t0, double t1, double *x, dou
         code = library->evolve(self->memory, t1, self->state, &t, library->one_step);
         if (code < 0 || self->status != CS_STEP_OK)
             return sundials_fail(self, code, before);
-        if (passes_through(self, t, x)) {
+        if (passes_through(self, self->judges_contact ? before : t, t, x)) {
             if ((code = restore_state(self, before, t, t1 - t0, x)) < 0 ||
                 (code = set_stop(self, limited, before, t1, x)) < 0)
                 return sundials_fail(self, code, before);

@@ -2,15 +2,13 @@
 /* The explicit midpoint method of template.c in C++17, to start a module of your own from. Its
  * bits are those of template.c, where the steps are explained.
  *
- *   c++ -std=c++17 -O2 -shared -fPIC $(pkg-config --cflags clothsim) -o template.so template.cpp
- *   clothsim run SCENE.json --plugin ./template.so --integrator midpoint:dt=0.0005
+ *   c++ -std=c++17 -O2 -shared -fPIC $(pkg-config --cflags clothsim) -o template.so
+ * template.cpp clothsim run SCENE.json --plugin ./template.so --integrator midpoint:dt=0.0005
  *
  * No exception may leave a call of the host: memory comes from host->alloc, never from new.
  * Manual: clothsim-integrator(7).
  */
-#include <clothsim/integrator.h>
-#include <algorithm>
-#include <cmath>
+#include <clothsim/driver.h>
 
 namespace {
 
@@ -19,16 +17,13 @@ struct options {
 };
 
 const cs_option rows[] = {
-    CS_OPTION(options, dt, "s", 0.0005, 1e-9, 1, "maximum step"),
+    CS_OPTION(options, dt, "s", 0.0005, 0, 1, "maximum step; 0: by the bounds of the state"),
 };
 
-/* The method's object: everything it remembers. */
-struct midpoint {
-    const cs_host *host;
-    double dt;
+/* The method's object: the driver, then everything that the method remembers. */
+struct midpoint : cs_driver {
     double *f;      /* (3,n) force in N */
     double *middle; /* (6n) the state half a step on: x, then v */
-    double *before; /* (6n) the state before a step */
 
     /* out = y + h (velocity, f/m), where y and out are positions followed by velocities. */
     void move(double h, const double *y, const double *velocity, double *out) const {
@@ -39,53 +34,25 @@ struct midpoint {
             out[3 * n + k] = y[3 * n + k] + h * f[k] * view.inv_mass[k % n];
         }
     }
-
-    void step(double t, double h, double *x, double *v) const {
-        double *vm = middle + 3 * static_cast<size_t>(host->view->n);
-        host->force(host->ctx, t, x, v, CS_PART_ALL, f);
-        move(h / 2, x, v, middle);
-        host->force(host->ctx, t + h / 2, middle, vm, CS_PART_ALL, f);
-        move(h, x, vm, x);
-    }
-
-    /* True if contact by force or a crossing asks for a shorter step than that to x1. */
-    bool is_refused(double t, double h, const double *x1) const {
-        return CS_HAS(host, max_step_fraction) && host->max_step_fraction &&
-               host->max_step_fraction(host->ctx, t, before, t + h, x1) < 1;
-    }
-
-    /* One step from t to `end`, with its commit; a refused one as two halves. */
-    cs_step take_step(double t, double h, double end, double *x, double *v) const {
-        const size_t size = 6 * static_cast<size_t>(host->view->n);
-        std::copy_n(x, size, before); // v follows x
-        move(h, x, v, middle);
-        bool refused = is_refused(t, h, middle), changed;
-        if (!refused) {
-            step(t, h, x, v);
-            refused = is_refused(t, h, x);
-        }
-        if (!refused)
-            return host->commit(host->ctx, end, h, x, v, &changed);
-        std::copy_n(before, size, x);
-        if (h < dt / 65536)
-            return host->fail(host->ctx, "no step at t = %.9g s passes contact", t);
-        const cs_step status = take_step(t, h / 2, t + h / 2, x, v);
-        return status == CS_STEP_OK ? take_step(t + h / 2, h / 2, end, x, v) : status;
-    }
-
-    /* From t0 to exactly t1, in equal steps not longer than dt. */
-    cs_step advance(double t0, double t1, double *x, double *v) const {
-        const double n = std::ceil((t1 - t0) / dt * (1 - 1e-9)), h = (t1 - t0) / n;
-        cs_step status = CS_STEP_OK;
-        for (double i = 0; i < n && status == CS_STEP_OK; i++)
-            status = take_step(t0 + i * h, h, i + 1 < n ? t0 + (i + 1) * h : t1, x, v);
-        return status;
-    }
 };
 
+cs_step step(cs_driver *driver, double t, double h, double *x, double *v) {
+    auto self = static_cast<midpoint *>(driver);
+    const cs_host *host = self->host;
+    double *vm = self->middle + 3 * static_cast<size_t>(host->view->n);
+    host->force(host->ctx, t, x, v, CS_PART_ALL, self->f);
+    self->move(h / 2, x, v, self->middle);
+    host->force(host->ctx, t + h / 2, self->middle, vm, CS_PART_ALL, self->f);
+    self->move(h, x, vm, x);
+    return CS_STEP_OK;
+}
+
+double limit(const cs_driver *, double omega, double delta) {
+    return 1 / (10 * omega + delta);
+}
+
 double *array(const cs_host *host, size_t rows) {
-    return static_cast<double *>(
-        host->alloc(host->ctx, rows * host->view->n * sizeof(double)));
+    return static_cast<double *>(host->alloc(host->ctx, rows * host->view->n * sizeof(double)));
 }
 
 cs_step create(const cs_host *host, const void *given, void **out) {
@@ -93,18 +60,13 @@ cs_step create(const cs_host *host, const void *given, void **out) {
     if (!self)
         return CS_STEP_FAIL;
     *out = self;
-    self->host = host;
-    self->dt = static_cast<const options *>(given)->dt;
+    self->step = step;
+    self->limit = limit;
     self->f = array(host, 3);
     self->middle = array(host, 6);
-    self->before = array(host, 6);
-    return self->f && self->middle && self->before ? CS_STEP_OK : CS_STEP_FAIL;
-}
-
-cs_step restart(void *, double, const double *, const double *) { return CS_STEP_OK; }
-
-cs_step advance(void *self, double t0, double t1, double *x, double *v) {
-    return static_cast<midpoint *>(self)->advance(t0, t1, x, v);
+    if (!self->f || !self->middle)
+        return CS_STEP_FAIL;
+    return cs_driver_init(self, host, static_cast<const options *>(given)->dt);
 }
 
 /* The claims of the method, which `clothsim conform` measures. */
@@ -120,8 +82,11 @@ const cs_integrator method = [] {
     made.n_options = sizeof rows / sizeof rows[0];
     made.options_size = sizeof(options);
     made.create = create;
-    made.restart = restart;
-    made.advance = advance;
+    made.needs = CS_NEED_BOUNDS;
+    made.restart = cs_driver_restart;
+    made.advance = cs_driver_advance;
+    made.stats = cs_driver_stats;
+    made.save = made.load = cs_driver_archive;
     return made;
 }();
 

@@ -286,7 +286,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         return CS_STEP_FAIL;
     if (take_contact(self, vectors) != CS_STEP_OK)
         return CS_STEP_FAIL;
-    self->loop.checks_free_motion = true;
+    self->loop.free_motion = 1;
     return fixed_step_guard(&self->loop, NULL);
 }
 

@@ -11,10 +11,10 @@
  *
  * Pinned particles need no special case: their inv_mass is 0, and their rows of f and df are 0
  * too. Their v is 0, or that of the path along which the scene moves them, and constant between
- * restarts: after a step h such a particle is at x + h v. commit places those on a path, and does
- * not set *changed for it; a module that moves one at rest, by a rounding too, ends the run. Where
- * the scene turns particles that it holds, all calls of the host that take t take x and v from
- * their arc at t, and commit sets both. Forces depend on t in this way.
+ * restarts: after a step h such a particle is at x + h v. commit places those on a path, and
+ * does not set *changed for it; a module that moves one at rest, by a rounding too, ends the
+ * run. Where the scene turns particles that it holds, all calls of the host that take t take x
+ * and v from their arc at t, and commit sets both. Forces depend on t in this way.
  *
  * The scene's events happen between two calls of advance. There x, v, view->mass,
  * view->inv_mass and the springs' constants may change in place, and then restart is called.
@@ -58,8 +58,7 @@ enum cs_step {
 /* Services that the host builds for the method. You pay only for those that you ask for. A call
  * whose need was not declared returns CS_STEP_FAIL, or leaves its output untouched. */
 enum cs_need {
-    /* jvp. */
-    CS_NEED_JVP = 1u << 0,
+    CS_NEED_JVP = 1u << 0, /* jvp */
     /* diagonal. */
     CS_NEED_DIAGONAL = 1u << 1,
     /* energy. */
@@ -73,7 +72,11 @@ enum cs_need {
     /* euler_finish: euler_setup steps particles in impact with colliders alone. */
     CS_NEED_REBOUNDS = 1u << 6,
     /* lag_friction and friction_potential. */
-    CS_NEED_LAGGED_FRICTION = 1u << 7
+    CS_NEED_LAGGED_FRICTION = 1u << 7,
+    /* With CS_NEED_SPRINGS: colours and the springs at each particle, in the view. */
+    CS_NEED_COLOURS = 1u << 8,
+    /* bounds_at in every scene. */
+    CS_NEED_BOUNDS = 1u << 9
 };
 
 /* Properties of the method. The program shows them, and `clothsim conform` tests them. */
@@ -91,7 +94,10 @@ enum cs_trait {
     CS_EXPLICIT_OUTER = 1u << 6,
     /* Its steps make energy where they are long against the springs, although it is implicit:
      * its default step holds on soft scenes only. */
-    CS_MAKES_ENERGY = 1u << 7
+    CS_MAKES_ENERGY = 1u << 7,
+    /* It needs smooth forces and equal steps: scenes with contact, events or corrections after
+     * a step are refused. */
+    CS_SMOOTH_ONLY = 1u << 8
 };
 
 /* The limit of the method's result, however small its own tolerances are. */
@@ -191,9 +197,9 @@ struct cs_host {
      * steps must not carry surfaces through each other, else NULL; and not in hosts whose size
      * ends before it: ask CS_HAS(host, bounds_at) first. */
 
-    /* [restart, advance] Bounds at a state, for automatic steps: omega in 1/s on the angular
-     * frequency, delta in 1/s on half the damping rate. Those of the view hold for the springs
-     * alone. */
+    /* [restart, advance] With CS_NEED_BOUNDS in every scene. Bounds at a state, for automatic
+     * steps: omega in 1/s on the angular frequency, delta in 1/s on half the damping rate.
+     * Those of the view hold for the springs alone. */
     void (*bounds_at)(void *ctx, double t, const double *x, const double *v, double *omega,
                       double *delta);
     /* [advance] The admissible fraction, 0..1, of the displacement from x0 (3,n) at t0 to x1 at
@@ -259,6 +265,16 @@ struct cs_host {
     void (*lag_friction)(void *ctx, double t, const double *x);
     /* [advance] R in W at v, and f (3,n) = -dR/dv in N: the lagged friction alone. */
     double (*friction_potential)(void *ctx, const double *v, double *f);
+
+    /* [advance] z (3,n) = B^-1 r with the preconditioner of the last solve_setup or
+     * euler_setup: symmetric, positive definite, and near A^-1. For methods with an iteration
+     * of their own. r (3,n) must be 0 on pinned particles; z then is. Needs CS_NEED_SOLVE. Not
+     * in hosts whose size ends before it: ask CS_HAS(host, precondition) first. */
+    void (*precondition)(void *ctx, const double *r, double *z);
+    /* For the whole run: at equal x and v forces may differ with t, by ramps, paths or key
+     * frames. False: the time that you pass has no effect, and df/dt is 0. Not in older hosts:
+     * ask CS_HAS(host, forces_depend_on_time) first. */
+    bool forces_depend_on_time;
 };
 
 /* Counts that only the method knows. */
@@ -270,21 +286,6 @@ struct cs_stats {
     uint64_t setups;
     /* Passes of its own over all springs, each about a force evaluation; late: ask CS_HAS. */
     uint64_t sweeps;
-};
-
-/* Says of an option that it has an effect only where another one, a choice, has certain values.
- * The host refuses an option that is given and has none. */
-struct cs_option_use {
-    /* Names of the option and of the choice. */
-    const char *option, *choice;
-    /* A bit for each value of the choice that the option has an effect with: 1u << number. */
-    uint32_t values;
-};
-
-/* Says that an option had another name in the last release. The host takes both, and reports
- * the old one on standard error. */
-struct cs_option_rename {
-    const char *old_name, *option;
 };
 
 /* The passage of a method's history into a checkpoint, or back. save and load make the same
@@ -385,10 +386,8 @@ struct cs_integrator {
 
 /* The symbol that a module exports: CS_EXPORT const struct cs_module clothsim_module. */
 struct cs_module {
-    /* CS_ABI. */
-    uint32_t abi;
-    /* sizeof(struct cs_integrator) at the module's build. */
-    uint32_t size;
+    /* CS_ABI, and sizeof(struct cs_integrator) at the module's build. */
+    uint32_t abi, size;
     /* The methods. */
     uint32_t n;
     const struct cs_integrator *const *integrators;

@@ -103,6 +103,21 @@ struct cs_table {
 
 /* The rows that integrator modules use. The option's type follows from the type of the field,
  * and a field of any other type does not compile. */
+/* Says of an option that it has an effect only where another one, a choice, has certain values.
+ * The host refuses an option that is given and has none. */
+struct cs_option_use {
+    /* Names of the option and of the choice. */
+    const char *option, *choice;
+    /* A bit for each value of the choice that the option has an effect with: 1u << number. */
+    uint32_t values;
+};
+
+/* Says that an option had another name in the last release. The host takes both, and reports
+ * the old one on standard error. */
+struct cs_option_rename {
+    const char *old_name, *option;
+};
+
 #ifdef __cplusplus
 template <typename field> struct cs_number_type;
 template <> struct cs_number_type<double> { static constexpr cs_type type = CS_REAL; };

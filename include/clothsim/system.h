@@ -107,6 +107,14 @@ struct cs_view {
     uint32_t n_colliders;
     /* (n_colliders, 3) in m, m/s and rad/s. */
     const double *collider_origin, *collider_velocity, *collider_spin;
+
+    /* Colours of particles: no spring joins two of one colour, so that those of one may be
+     * moved at the same time. colour_begin (n_colours + 1) are positions in colour_items (n),
+     * ascending within a colour; spring_begin (n + 1) those in spring_items (2 n_springs): the
+     * springs at each particle, ascending. Only with CS_NEED_COLOURS, else NULL. Later than the
+     * first release: ask CS_HAS(view, spring_items). */
+    uint32_t n_colours;
+    const uint32_t *colour_begin, *colour_items, *spring_begin, *spring_items;
 };
 
 #ifdef __cplusplus

@@ -4,9 +4,14 @@
  * fit the newest block opens a new block; the rest of the old one is lost. */
 #include "base/arena.h"
 
+#include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 enum { ALIGNMENT = 64, BLOCK_BYTES = 64 * 1024 };
 
@@ -105,4 +110,91 @@ void cs_arena_finish(struct cs_arena *arena) {
         arena->blocks = next;
     }
     *arena = (struct cs_arena){0};
+}
+
+enum { PATH_BYTES = 4200 };
+
+/* Reads the number after a key at the begin of a line, or the first number of the file for the
+ * key "". Returns NAN if there is none: "max" in a control group is none. */
+static double read_number(const char *path, const char *key) {
+    char line[256];
+    double value = (double)NAN;
+    FILE *file = fopen(path, "re");
+    while (file && isnan(value) && fgets(line, sizeof line, file))
+        if (!strncmp(line, key, strlen(key)) &&
+            sscanf(line + strlen(key), "%lf", &value) != 1 && !*key)
+            break;
+    if (file)
+        fclose(file);
+    return value;
+}
+
+/* Lowers *least to a smaller value; a NAN is unknown. */
+static void lower(double *least, double value, const char **limit, const char *name) {
+    if (!(value < *least))
+        return;
+    *least = value > 0 ? value : 0;
+    *limit = name;
+}
+
+/* Lowers *least by the limits of a control group and of those above it. Cached pages of files
+ * count as free. */
+static void lower_by_group(const char *folder, const char *group, const char *const names[3],
+                           double *least, const char **limit) {
+    char path[PATH_BYTES], file[PATH_BYTES + 64];
+    const size_t top = (size_t)snprintf(path, sizeof path, "%s", folder);
+    snprintf(path + top, sizeof path - top, "%s", strcmp(group, "/") ? group : "");
+    for (;;) {
+        double figures[3];
+        static const char *const keys[] = {"", "", "inactive_file "};
+        for (int k = 0; k < 3; k++) {
+            snprintf(file, sizeof file, "%s/%s", path, names[k]);
+            figures[k] = read_number(file, keys[k]);
+        }
+        lower(least, figures[0] - figures[1] + (figures[2] > 0 ? figures[2] : 0), limit,
+              "the memory limit of the control group");
+        char *end = strrchr(path + top, '/');
+        if (!end)
+            return;
+        *end = 0;
+    }
+}
+
+/* The groups of the process: "0::/PATH" of version 2, "N:...memory...:/PATH" of version 1. */
+static void lower_by_groups(const char *root, double *least, const char **limit) {
+    static const char *const names[][3] = {
+        {"memory.limit_in_bytes", "memory.usage_in_bytes", "memory.stat"},
+        {"memory.max", "memory.current", "memory.stat"}};
+    char path[PATH_BYTES], line[PATH_BYTES];
+    snprintf(path, sizeof path, "%s/proc/self/cgroup", root);
+    FILE *file = fopen(path, "re");
+    while (file && fgets(line, sizeof line, file)) {
+        char *kind = strchr(line, ':'), *group = kind ? strchr(kind + 1, ':') : NULL;
+        const bool unified = group == kind + 1;
+        line[strcspn(line, "\n")] = 0;
+        if (!group || (!unified && !strstr(kind, "memory")))
+            continue;
+        snprintf(path, sizeof path, "%s/sys/fs/cgroup%s", root, unified ? "" : "/memory");
+        lower_by_group(path, group + 1, names[unified], least, limit);
+    }
+    if (file)
+        fclose(file);
+}
+
+double cs_memory_left(const char *root, const char **limit) {
+    char path[PATH_BYTES];
+    double least = (double)INFINITY;
+    struct rlimit space, data;
+    snprintf(path, sizeof path, "%s/proc/self/statm", root);
+    const double taken = read_number(path, "") * (double)sysconf(_SC_PAGESIZE);
+    if (!getrlimit(RLIMIT_AS, &space) && space.rlim_cur != RLIM_INFINITY)
+        lower(&least, (double)space.rlim_cur - taken, limit, "the limit of address space");
+    if (!getrlimit(RLIMIT_DATA, &data) && data.rlim_cur != RLIM_INFINITY)
+        lower(&least, (double)data.rlim_cur, limit, "the limit of data");
+    lower_by_groups(root, &least, limit);
+    snprintf(path, sizeof path, "%s/proc/meminfo", root);
+    const double swap = read_number(path, "SwapFree:");
+    lower(&least, 1024 * (read_number(path, "MemAvailable:") + (swap > 0 ? swap : 0)), limit,
+          "the free memory of the machine");
+    return least;
 }

@@ -18,6 +18,12 @@ struct cs_arena {
     struct cs_arena_owned *adopted; /* objects to finish with it, newest first */
 };
 
+/* Returns the bytes that this process can still take: the least of what is left under the
+ * limits of its address space and data, under the memory limits of its control groups (both
+ * versions), and of the machine's free memory and swap. *limit names the least. Returns
+ * infinity if none is known. root: before /proc and /sys; "" but in tests. */
+double cs_memory_left(const char *root, const char **limit);
+
 /* Allocates bytes, zeroed and 64-byte aligned, which live until cs_arena_finish. bytes may be
  * 0; the result is a valid pointer. Returns NULL and CS_ERR_MEMORY in *error if out of memory.
  */

@@ -190,6 +190,13 @@ void cs_file_abandon(struct cs_file_out *out) {
     unlink(out->temporary);
 }
 
+enum cs_status cs_file_remove(const char *path, struct cs_error *error) {
+    return unlink(path) && errno != ENOENT
+               ? cs_fail(error, cs_file_status(errno), "cannot remove \"%s\": %s", path,
+                         strerror(errno))
+               : CS_OK;
+}
+
 /* Creates, writes and finishes a file. */
 static enum cs_status write_whole(const char *path, const void *bytes, size_t length,
                                   bool lasting, struct cs_error *error) {

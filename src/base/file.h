@@ -33,6 +33,9 @@ enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error);
 /* Gives up: closes and removes the temporary file. Safe on a zeroed or finished struct. */
 void cs_file_abandon(struct cs_file_out *out);
 
+/* Removes a file that is no longer needed, if it is there. CS_ERR_FILE. */
+enum cs_status cs_file_remove(const char *path, struct cs_error *error);
+
 /* Writes a whole file by the three calls above. */
 enum cs_status cs_file_write(const char *path, const void *bytes, size_t length,
                              struct cs_error *error);

@@ -27,17 +27,6 @@ int cs_status_exit_code(enum cs_status status) {
     return 6;
 }
 
-const char *cs_status_sentence(enum cs_status status) {
-    switch (status) {
-#define X(name, code, sentence)                                                                \
-    case name:                                                                                 \
-        return sentence;
-        CS_STATUS_LIST(X)
-#undef X
-    }
-    return "unknown status";
-}
-
 void cs_assert_failed(const char *fact, const char *file, int line) {
     fprintf(stderr, "clothsim: internal error: %s (%s:%d)\n", fact, file, line);
     abort();

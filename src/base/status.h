@@ -33,9 +33,8 @@ struct cs_error {
 enum cs_status cs_fail(struct cs_error *error, enum cs_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Exit code and sentence of a status. */
+/* Exit code of a status. */
 int cs_status_exit_code(enum cs_status status);
-const char *cs_status_sentence(enum cs_status status);
 
 /* Checks an invariant of the program: prints the place and aborts if it does not hold, in every
  * build. */

@@ -61,13 +61,18 @@ void cs_csv_end_row(struct cs_text *out, size_t from, const char *names) {
     cs_text_add(out, ",%.*s\n", CHECK_DIGITS, digits);
 }
 
-static void add_names(const struct cs_column *columns, uint32_t n, struct cs_text *out) {
+void cs_column_add_label(const struct cs_column *column, struct cs_text *out) {
+    const bool measured = *column->unit && strcmp(column->unit, "1") != 0;
+    cs_text_add(out, measured ? "%s in %s" : "%s", column->help, column->unit);
+}
+
+void cs_columns_add_names(const struct cs_column *columns, uint32_t n, struct cs_text *out) {
     for (uint32_t c = 0; c < n; c++)
         cs_csv_add_text(out, columns[c].name);
 }
 
 void cs_columns_print_names(const struct cs_column *columns, uint32_t n, struct cs_text *out) {
-    add_names(columns, n, out);
+    cs_columns_add_names(columns, n, out);
     cs_csv_end_names(out);
 }
 
@@ -90,7 +95,7 @@ void cs_columns_print_row(const struct cs_column *columns, uint32_t n, const voi
                           struct cs_text *out) {
     struct cs_text names = {0};
     const size_t from = out->length;
-    add_names(columns, n, &names);
+    cs_columns_add_names(columns, n, &names);
     add_fields(columns, n, row, out);
     out->failed |= names.failed;
     cs_csv_end_row(out, from, cs_text_get(&names));

@@ -29,14 +29,27 @@ void cs_csv_end_row(struct cs_text *out, size_t from, const char *names);
 /* C type of a column's member: char[size], double, bool. */
 enum cs_cell_type { CS_CELL_TEXT, CS_CELL_NUMBER, CS_CELL_FLAG };
 
-/* A column: a member of the struct that is a row. */
+/* A column: its description, and its member of the struct that is a row, if there is one. */
 struct cs_column {
-    const char *name;  /* as in the file */
-    const char *label; /* of an axis, with its unit; NULL: cannot be drawn */
+    const char *name; /* as in the file */
     enum cs_cell_type type;
+    const char *unit; /* SI, "1" for a ratio; "" for none */
+    const char *help; /* lower case, no full stop */
+    bool drawn;       /* can be an axis of a diagram */
     size_t offset, size;
 };
 
+/* Columns of a table whose rows are no struct. */
+#define CS_TEXT_COLUMN(name, help)                                                             \
+    { name, CS_CELL_TEXT, "", help, false, 0, 0 }
+#define CS_NUMBER_COLUMN(name, unit, help)                                                     \
+    { name, CS_CELL_NUMBER, unit, help, false, 0, 0 }
+
+/* Adds what an axis is called: the help, and the unit in words. */
+void cs_column_add_label(const struct cs_column *column, struct cs_text *out);
+
+/* Adds the names of n columns, after a comma unless they are the first of their line. */
+void cs_columns_add_names(const struct cs_column *columns, uint32_t n, struct cs_text *out);
 /* Append a line: the names of n columns, or the fields of a row; each with its end. */
 void cs_columns_print_names(const struct cs_column *columns, uint32_t n, struct cs_text *out);
 void cs_columns_print_row(const struct cs_column *columns, uint32_t n, const void *row,

@@ -40,22 +40,36 @@ void cs_text_add(struct cs_text *text, const char *format, ...) {
     text->length += (size_t)length;
 }
 
-void cs_text_add_real(struct cs_text *text, double value) {
-    if (!isfinite(value)) {
-        cs_text_add(text, "null");
-        return;
-    }
-    char digits[40];
+void cs_print_real(double value, char digits[CS_REAL_DIGITS]) {
     int precision = 0, before_point = 1;
     do
-        snprintf(digits, sizeof digits, "%.*g", ++precision, value);
+        snprintf(digits, CS_REAL_DIGITS, "%.*g", ++precision, value);
     while (precision < 17 && strtod(digits, NULL) != value);
     /* 640 and not 6.4e+02 */
     for (double rest = value < 0 ? -value : value; rest >= 10 && before_point < 7; rest /= 10)
         before_point++;
     if (precision < before_point)
-        snprintf(digits, sizeof digits, "%.*g", before_point, value);
+        snprintf(digits, CS_REAL_DIGITS, "%.*g", before_point, value);
+}
+
+void cs_text_add_real(struct cs_text *text, double value) {
+    char digits[CS_REAL_DIGITS] = "null";
+    if (isfinite(value))
+        cs_print_real(value, digits);
     cs_text_add(text, "%s", digits);
+}
+
+void cs_text_add_base64(struct cs_text *text, const void *bytes, size_t length) {
+    static const char digits[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const unsigned char *at = bytes;
+    for (size_t k = 0; k < length; k += 3) {
+        const unsigned b = k + 1 < length ? at[k + 1] : 0, c = k + 2 < length ? at[k + 2] : 0;
+        const unsigned three = (unsigned)at[k] << 16 | b << 8 | c;
+        cs_text_add(text, "%c%c%c%c", digits[three >> 18], digits[three >> 12 & 63],
+                    k + 1 < length ? digits[three >> 6 & 63] : '=',
+                    k + 2 < length ? digits[three & 63] : '=');
+    }
 }
 
 void cs_text_add_json(struct cs_text *text, const char *s) {

@@ -17,8 +17,16 @@ struct cs_text {
 void cs_text_add(struct cs_text *text, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+enum { CS_REAL_DIGITS = 40 };
+
+/* Prints the shortest decimal that reads back as a finite value. */
+void cs_print_real(double value, char digits[CS_REAL_DIGITS]);
+
 /* Appends the shortest decimal that reads back as value; inf and nan become null. */
 void cs_text_add_real(struct cs_text *text, double value);
+
+/* Adds bytes as base64 (RFC 4648). */
+void cs_text_add_base64(struct cs_text *text, const void *bytes, size_t length);
 
 /* Adds s in quotes with JSON's escapes. */
 void cs_text_add_json(struct cs_text *text, const char *s);

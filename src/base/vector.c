@@ -73,10 +73,13 @@ double cs_vector_sum(size_t n, double (*part)(const void *arg, size_t begin, siz
     return sum;
 }
 
-/* Eight lanes of a sum, and the same at any address in an array. */
-typedef double lanes __attribute__((vector_size(LANES * sizeof(double))));
+/* Four of the eight lanes of a sum, and the same at any address in an array. A vector of all
+ * eight would live in memory where the processor's own are shorter: with AVX2 each addition
+ * then waited for stores of another width. */
+enum { WIDTH = 4, VECTORS = LANES / WIDTH };
+typedef double lanes __attribute__((vector_size(WIDTH * sizeof(double))));
 typedef double loaded
-    __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
+    __attribute__((vector_size(WIDTH * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 /* Arguments of a kernel; b and z are for linear sums alone. */
 struct arrays {
@@ -84,10 +87,12 @@ struct arrays {
     double a, b, *z;
 };
 
-/* Adds the items after the last whole vector to the first lanes, and then the lanes pair by
- * pair. The vector comes by address, because how a vector is passed depends on the instruction
+#define load(from, k) (*(const loaded *)((from) + (k)*WIDTH))
+
+/* Adds the items after the last whole vectors to the first lanes, and then the lanes pair by
+ * pair. Vectors come by address, because how a vector is passed depends on the instruction
  * set. */
-CS_INLINE double sum_lanes(const lanes *whole, const double *rest, size_t n) {
+CS_INLINE double sum_lanes(const lanes whole[VECTORS], const double *rest, size_t n) {
     double s[LANES];
     memcpy(s, whole, sizeof s);
     for (size_t l = 0; l < n; l++)
@@ -100,13 +105,14 @@ CS_CLONES static double dot_part(const void *arg, size_t begin, size_t end) {
     const double *x = arrays->x + begin, *y = arrays->y + begin;
     const size_t n = end - begin;
     double rest[LANES];
-    lanes sum = {0};
+    lanes sum[VECTORS] = {0};
     size_t i = 0;
     for (; i + LANES <= n; i += LANES)
-        sum += *(const loaded *)(x + i) * *(const loaded *)(y + i);
+        for (size_t k = 0; k < VECTORS; k++)
+            sum[k] += load(x + i, k) * load(y + i, k);
     for (size_t l = 0; i + l < n; l++)
         rest[l] = x[i + l] * y[i + l];
-    return sum_lanes(&sum, rest, n - i);
+    return sum_lanes(sum, rest, n - i);
 }
 
 double cs_vector_dot(size_t n, const double *x, const double *y) {
@@ -120,15 +126,16 @@ CS_CLONES static double weighted_part(const void *arg, size_t begin, size_t end)
     const double *x = arrays->x + begin, *w = arrays->y + begin;
     const size_t n = end - begin;
     double rest[LANES];
-    lanes sum = {0};
+    lanes sum[VECTORS] = {0};
     size_t i = 0;
-    for (; i + LANES <= n; i += LANES) {
-        const lanes weighted = *(const loaded *)(x + i) * *(const loaded *)(w + i);
-        sum += weighted * weighted;
-    }
+    for (; i + LANES <= n; i += LANES)
+        for (size_t k = 0; k < VECTORS; k++) {
+            const lanes weighted = load(x + i, k) * load(w + i, k);
+            sum[k] += weighted * weighted;
+        }
     for (size_t l = 0; i + l < n; l++)
         rest[l] = x[i + l] * w[i + l] * (x[i + l] * w[i + l]);
-    return sum_lanes(&sum, rest, n - i);
+    return sum_lanes(sum, rest, n - i);
 }
 
 static double weighted_square(size_t n, const double *x, const double *w) {

@@ -2,6 +2,7 @@
  *
  *   options -> cs_advise_run: theory, probe runs, bisection -> table
  *   options with --error -> cs_compare_run -> the cheapest method and step for that error */
+#include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
@@ -12,6 +13,7 @@
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
 #include "study/compare/ranking.h"
+#include "study/contact_capacity.h"
 #include "study/process_pool.h"
 #include "study/stability/advise.h"
 #include "study/stability/stability_state.h"
@@ -215,10 +217,46 @@ static void advise_print(const struct cs_advise *advise, struct cs_text *out) {
     }
 }
 
+/* A number or null: no limit, or none known. */
+static void add_json_number(const char *name, double value, struct cs_text *out) {
+    cs_text_add(out, value > 0 && value < 1e100 ? ", \"%s\": %.9g" : ", \"%s\": null", name,
+                value);
+}
+
+static enum cs_status write_json(const struct cs_advise *advise, const char *path,
+                                 struct cs_error *error) {
+    static const char *const kinds[] = {
+        [CS_ADVICE_THEORY] = "theory",     [CS_ADVICE_LOWERED] = "bisected",
+        [CS_ADVICE_MEASURED] = "bisected", [CS_ADVICE_FRAME] = "no limit",
+        [CS_ADVICE_ADAPTIVE] = "adaptive", [CS_ADVICE_NONE] = "none",
+        [CS_ADVICE_REFUSED] = "refused"};
+    struct cs_text out = {0};
+    cs_json_write(&out, "{\n  'scene': %s,\n  'seconds': %g,\n  'rows': [",
+                  advise->session.scene, advise->seconds);
+    for (uint32_t k = 0; k < advise->n; k++) {
+        const struct cs_advice *row = advise->rows + k;
+        const bool fixed = row->kind != CS_ADVICE_ADAPTIVE && row->kind != CS_ADVICE_NONE &&
+                           row->kind != CS_ADVICE_REFUSED;
+        cs_json_write(&out, ",\n    {'method': %s, 'kind': %s", row->method, kinds[row->kind]);
+        add_json_number("limit", row->limit, &out);
+        add_json_number("advised", fixed ? row->safe : 0, &out);
+        add_json_number("found", row->measured, &out);
+        add_json_number("steps_per_frame", row->steps, &out);
+        add_json_number("seconds_per_frame", row->frame_cost, &out);
+        cs_json_write(&out, ", 'verdict': %s, 'message': %s}", cs_stability_word(row->verdict),
+                      row->message);
+    }
+    cs_text_add(&out, "\n  ]\n}\n");
+    return cs_print_file(path, &out, error);
+}
+
+#include <string.h>
+
 struct options {
     struct cs_advise study;
-    double error; /* m; 0: not asked for */
-    const char *folder;
+    double error;    /* m; 0: not asked for */
+    uint32_t frames; /* 0: by the time */
+    const char *folder, *json;
     bool quiet;
 };
 
@@ -241,13 +279,17 @@ static const struct cs_arg rows[] = {
     {"time", 't', "SECONDS",
      "simulated time that the steps must survive, the minimum for every run (default: 10)",
      CS_ARG_INTO(struct options, study.seconds)},
+    {"frames", 'n', "N", "the same time in frames", CS_ARG_INTO(struct options, frames),
+     .min = 1, .max = 1000000},
     {"budget", 0, "SECONDS", "maximum processor time of one run (default: 20)",
      CS_ARG_INTO(struct options, study.budget)},
     {"jobs", 'j', "N", "methods run in parallel (default: one per processor)",
      CS_ARG_INTO(struct options, study.workers), .min = 1, .max = CS_PROCESS_POOL_MAX},
+    {"json", 0, "FILE", "write the advice as JSON too; -: to standard output",
+     CS_ARG_INTO(struct options, json)},
     CS_ARG_SET(struct options, study.session),
     CS_ARG_PLUGIN(struct options, study.session),
-    {"quiet", 'q', NULL, "no progress", CS_ARG_INTO(struct options, quiet)},
+    CS_ARG_QUIET(struct options, quiet),
 };
 
 /* "NAME:options,NAME:options" of the requested methods; "" for all. */
@@ -286,11 +328,12 @@ static enum cs_status advise_for_error(struct cs_args *args, struct cs_error *er
                                            .runs = 15,
                                            .folder = options->folder,
                                            .cache = options->folder};
-    const double seconds = cs_args_is_given(args, "time") ? study->seconds : 0.5;
+    double seconds = cs_args_is_given(args, "time") ? study->seconds : 0.5;
+    settings.run.frames = options->frames;
     if (list.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of methods");
     else if (!add_modules(args, &settings, error) &&
-             !cs_recorded_run_count_frames(&settings.run, seconds, error) &&
+             !cs_session_fit_frames(&study->session, &settings.run.frames, &seconds, error) &&
              !cs_compare_run(&compare, &settings, error)) {
         cs_verdict_print_at(&compare, bound, &out);
         cs_compare_warn(&compare, "warning: ", &out);
@@ -309,19 +352,32 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
     struct cs_advise *study = &options->study;
     study->session.scene = args->operands[0];
+    if (study->n_methods == 1 && !strcmp(study->methods[0], "all"))
+        study->n_methods = 0;
     if (!study->workers)
         study->workers = cs_pool_processors(CS_PROCESS_POOL_MAX);
     /* one flag stops the current run and keeps further ones from starting */
     study->session.run.stop = study->stop = cs_interrupt_catch();
+    if (cs_args_refuse_both(args, "frames", "time", error))
+        return error->status;
+    if (options->error > 0 && options->json)
+        return cs_fail(
+            error, CS_ERR_USAGE,
+            "--json: with --error the report is compare.json's; use clothsim compare");
     if (options->error > 0)
         return advise_for_error(args, error);
+    if (options->frames &&
+        cs_session_fit_frames(&study->session, &options->frames, &study->seconds, error))
+        return error->status;
     study->progress = cs_progress_show;
     study->ctx = &progress;
     cs_progress_begin(&progress, "method", options->quiet);
     cs_advise_run(study, error);
     /* the line goes before anything is printed below it */
     cs_progress_end(&progress);
-    if (!error->status) {
+    if (!error->status && options->json)
+        write_json(study, options->json, error);
+    if (!error->status && !cs_print_is_stdout(options->json)) {
         advise_print(study, &out);
         cs_print_out(stdout, &out, error);
     }

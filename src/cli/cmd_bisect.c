@@ -17,8 +17,8 @@ struct own {
 
 struct options {
     struct own own[2];
-    const char *frames, *integrator, *threads; /* of both sides, as run reads them */
-    const char *const *sets, *const *plugins;  /* (n_sets), (n_plugins), likewise */
+    const char *frames, *time, *integrator, *threads; /* of both sides, as run reads them */
+    const char *const *sets, *const *plugins;         /* (n_sets), (n_plugins), likewise */
     uint32_t n_sets, n_plugins;
     double tolerance;
     bool quiet;
@@ -34,6 +34,8 @@ static const struct cs_arg rows[] = {
      CS_ARG_LIST(struct options, own[1].items, own[1].n)},
     {"frames", 'n', "N", "compare frames 1 to N (default: one second of frames)",
      CS_ARG_INTO(struct options, frames)},
+    {"time", 't', "SECONDS", "compare the frames of this simulated time",
+     CS_ARG_INTO(struct options, time)},
     {"integrator", 'i', "NAME[:KEY=VALUE,...]",
      "method and options of both runs, instead of the scene's",
      CS_ARG_INTO(struct options, integrator)},
@@ -45,8 +47,7 @@ static const struct cs_arg rows[] = {
     {"tolerance", 0, "NUMBER",
      "maximum difference of two numbers, in their own unit (default: 0, equal bits)",
      CS_ARG_INTO(struct options, tolerance)},
-    {"quiet", 'q', NULL, "print nothing if both runs are equal",
-     CS_ARG_INTO(struct options, quiet)},
+    CS_ARG_QUIET(struct options, quiet),
 };
 
 /* A growing command line; its words live as long as the arguments. */
@@ -108,6 +109,7 @@ static void add_common(struct line *line, const struct own *own, struct cs_error
     const bool method = both->integrator && !has_own(own, "integrator");
     const bool threads = both->threads && !has_own(own, "threads");
     add_each(line, "frames", &both->frames, both->frames != NULL, error);
+    add_each(line, "time", &both->time, both->time != NULL, error);
     add_each(line, "integrator", &both->integrator, method, error);
     add_each(line, "set", both->sets, both->n_sets, error);
     add_each(line, "plugin", both->plugins, both->n_plugins, error);
@@ -189,7 +191,8 @@ static enum cs_status bisect(struct cs_args *args, struct cs_error *error) {
     if (!strcmp(args->operands[0], "-"))
         return cs_fail(error, CS_ERR_USAGE,
                        "SCENE is read several times and cannot be standard input (-)");
-    if (make_line(&lines[0], &options->own[0], error) ||
+    if (cs_args_refuse_both(args, "frames", "time", error) ||
+        make_line(&lines[0], &options->own[0], error) ||
         make_line(&lines[1], &options->own[1], error))
         return error->status;
     const struct cs_bisect_settings settings = {

@@ -8,10 +8,11 @@
 #include "cli/line/print.h"
 #include "cli/manifest.h"
 #include "cli/run_output.h"
+#include "cli/show/screen.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
+#include "study/compare/mesh_error.h"
 #include "study/compare/ranking.h"
-#include "study/process_pool.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -24,10 +25,12 @@ enum { PATIENCE_SECONDS = 600 };
 struct options {
     struct cs_compare_settings compare;
     double seconds;
+    uint32_t frames;               /* 0: those that cover the seconds */
     const char *const *references; /* (n_references) */
     uint32_t n_references;
+    const char *mesh; /* LOW..HIGH; NULL: the scene's */
     enum cs_renderer_kind renderer;
-    bool pictures, strict, quiet;
+    bool show, strict, quiet;
 };
 static const struct options defaults = {
     .compare = {.accuracy = 1e-6, .runs = 40, .ranking_norm = CS_NORM_END, .folder = "compare"},
@@ -40,6 +43,8 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, compare.methods)},
     {"time", 't', "SECONDS", "simulated time (default: 0.5)",
      CS_ARG_INTO(struct options, seconds)},
+    {"frames", 'n', "N", "simulate frames 1 to N (default: by the time)",
+     CS_ARG_INTO(struct options, frames), .min = 1, .max = 1000000},
     CS_ARG_SET(struct options, compare.run.session),
     CS_ARG_PLUGIN(struct options, compare.run.session),
     {"out", 'o', "DIR",
@@ -63,6 +68,11 @@ static const struct cs_arg rows[] = {
     {"reference", 0, "NAME:KEY=VALUE,...",
      "method of the reference; give two of different families",
      CS_ARG_LIST(struct options, references, n_references)},
+    {"mesh", 0, "LOW..HIGH",
+     "compare on grids of LOW, 2 LOW, ... HIGH cells along the first row, each in a folder of "
+     "its "
+     "own, and print the error of each mesh, against the finest, beside that of the step",
+     CS_ARG_INTO(struct options, mesh)},
     {"cache", 0, "DIR", "folder of stored references (default: DIR of -o)",
      CS_ARG_INTO(struct options, compare.cache)},
     {"overwrite", 'y', NULL, "replace an existing compare.csv",
@@ -70,7 +80,7 @@ static const struct cs_arg rows[] = {
     {"pictures", 0, NULL,
      "draw the last frame of the methods at equal step and at equal cost, coloured by their "
      "error",
-     CS_ARG_INTO(struct options, pictures)},
+     CS_ARG_INTO(struct options, compare.pictures)},
     {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)",
      CS_ARG_INTO(struct options, renderer), .names = cs_renderer_names},
     {"shard", 0, "K/N", "run shard K of N of the cells; see: clothsim merge",
@@ -83,15 +93,17 @@ static const struct cs_arg rows[] = {
      "run each cell once more for its energy balance: the energy that the method gained or "
      "lost, and the work of each force",
      CS_ARG_INTO(struct options, compare.ledger)},
+    {"show", 0, NULL, "draw the diagram of error against work in the terminal",
+     CS_ARG_INTO(struct options, show)},
     {"strict", 0, NULL, "exit with 8 if a cell blew up or failed",
      CS_ARG_INTO(struct options, strict)},
-    {"quiet", 'q', NULL, "no progress and no rows, only the verdict",
-     CS_ARG_INTO(struct options, quiet)},
+    CS_ARG_QUIET(struct options, quiet),
 };
 
 /* Context of the callbacks of a comparison. */
 struct screen {
     struct cs_compare compare;
+    struct cs_screen terminal; /* opened by --show */
     struct cs_progress progress;
     bool quiet;
     struct cs_error error; /* of printing */
@@ -153,6 +165,16 @@ static enum cs_status set_reference(struct options *options, struct cs_error *er
     return CS_OK;
 }
 
+/* Frames of every run: as given, or those that cover the time; the length of a frame may come
+ * from --set. */
+static enum cs_status count_frames(struct options *options, struct cs_error *error) {
+    options->compare.run.frames = options->frames;
+    return options->frames
+               ? CS_OK
+               : cs_session_fit_frames(&options->compare.run.session,
+                                       &options->compare.run.frames, &options->seconds, error);
+}
+
 /* Completes the settings. The number of frames comes last, because its length may come from
  * --set. */
 static enum cs_status make_settings(struct cs_args *args, struct cs_error *error) {
@@ -162,56 +184,66 @@ static enum cs_status make_settings(struct cs_args *args, struct cs_error *error
     struct cs_compare_settings *settings = &options->compare;
     struct cs_session_settings *session = &settings->run.session;
     settings->cache = settings->cache ? settings->cache : settings->folder;
+    if (settings->methods && !strcmp(settings->methods, "all"))
+        settings->methods = NULL;
     session->scene = args->operands[0];
     session->run.stop = cs_interrupt_catch();
     if (set_reference(options, error) ||
         (settings->methods &&
          cs_cell_list_add_modules(settings->methods, &args->arena, &session->plugins,
                                   &session->n_plugins, error)) ||
-        cs_study_files_check(session, settings->folder, files, error))
+        cs_study_files_check(session, settings->folder, files, error) ||
+        cs_study_folder_check(session, settings->folder, error))
         return error->status;
-    /* last: the length of a frame may come from --set */
-    return cs_recorded_run_count_frames(&settings->run, options->seconds, error);
+    return count_frames(options, error);
 }
 
 static enum cs_status print_verdict(struct screen *screen, struct cs_error *error) {
     struct cs_ranking ranking;
-    struct cs_text text = {0};
+    struct cs_text text = {0}, verdict = {0};
     if (cs_ranking_make(&ranking, &screen->compare, error))
         return error->status;
     cs_text_add(&text, "\n");
-    cs_table_add_series(&screen->compare, &text);
+    cs_table_add_series(&screen->compare, !screen->quiet, &text);
     cs_text_add(&text, "\n");
-    cs_table_add_ledger(&screen->compare, &text);
-    if (screen->compare.settings->ledger)
+    if (screen->compare.settings->ledger && !screen->quiet) {
+        cs_table_add_ledger(&screen->compare, &text);
         cs_text_add(&text, "\n");
-    cs_verdict_print(&ranking, "", &screen->compare, &text);
-    cs_compare_warn(&screen->compare, "warning: ", &text);
+    }
+    cs_verdict_print(&ranking, "", &screen->compare, &verdict);
+    cs_compare_warn(&screen->compare, "warning: ", &verdict);
+    cs_print_sentences(cs_text_get(&verdict), &text);
+    text.failed |= verdict.failed;
+    cs_text_finish(&verdict);
     cs_ranking_finish(&ranking);
     return cs_print_out(stdout, &text, error);
 }
 
-/* Adds a word of the command, quoted if a shell needs it. */
-static void add_word(struct cs_text *out, const char *word) {
-    const bool plain = !word[strspn(word, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
-                                          "0123456789_-+./:=,")];
-    cs_text_add(out, " ");
-    for (const char *c = plain ? word : "'"; *c; c++)
-        cs_text_add(out, "%c", *c);
-    for (const char *c = plain ? "" : word; *c; c++)
-        cs_text_add(out, *c == '\'' ? "'\\''" : "%c", *c);
-    cs_text_add(out, "%s", plain ? "" : "'");
+/* Draws error against work, which is the same on every machine. */
+static enum cs_status print_diagram(struct screen *screen, struct cs_error *error) {
+    const struct cs_compare *compare = &screen->compare;
+    const bool known = cs_norm_is_known(compare->settings->ranking_norm, &compare->reference);
+    const struct cs_plot_settings settings = {
+        .cells = compare->cells.cells,
+        .n = compare->cells.n,
+        .x = cs_column_find("work"),
+        .y = cs_norm_column(known ? compare->settings->ranking_norm : CS_NORM_ENERGY),
+        .title = compare->scene};
+    struct cs_text text = {0};
+    cs_text_add(&text, "\n");
+    cs_screen_print_diagram(&screen->terminal, &settings, &text);
+    return cs_print_out(stdout, &text, error);
 }
 
 /* Rebuilds the command line, for the report. */
 static void add_command(const struct cs_args *args, struct cs_text *out) {
     cs_text_add(out, "clothsim compare");
     for (uint32_t k = 0; k < args->n_operands; k++)
-        add_word(out, args->operands[k]);
+        cs_print_shell_word(out, args->operands[k]);
     for (uint32_t k = 0; k < args->n_given; k++) {
         cs_text_add(out, " --%s", args->given[k].row->name);
         if (args->given[k].row->value)
-            add_word(out, args->given[k].value);
+            cs_print_shell_word(out, args->given[k].value);
     }
 }
 
@@ -226,36 +258,35 @@ static enum cs_status check_cells(const struct cs_compare *compare, struct cs_er
                : CS_OK;
 }
 
-static enum cs_status compare_here(void *ctx, struct cs_error *error) {
-    struct cs_args *args = ctx;
-    struct options *options = args->options;
+/* Makes and prints one comparison; takes its results for a level of a mesh unless it is NULL.
+ */
+static enum cs_status compare_once(struct options *options, struct cs_mesh_study *study,
+                                   struct cs_mesh_level *level, struct cs_error *error) {
     struct cs_compare_settings *settings = &options->compare;
     struct screen screen = {.quiet = options->quiet};
-    if (make_settings(args, error))
+    if (options->show && cs_screen_open(&screen.terminal, false, error))
         return error->status;
-    struct cs_text command = {0};
-    add_command(args, &command);
-    settings->command = cs_text_get(&command);
-    settings->reference_progress = show_reference;
-    settings->on_begin = show_begin;
-    settings->row = show_row;
-    settings->on_round = show_round;
     settings->ctx = &screen;
     cs_progress_begin(&screen.progress, "reference, run", screen.quiet);
     if (!cs_compare_run(&screen.compare, settings, error)) {
         cs_progress_end(&screen.progress);
-        /* files first: they must not be lost because printing failed */
-        if (!cs_compare_write_report(&screen.compare, error) &&
-            !print_verdict(&screen, error) && options->pictures)
-            cs_compare_contact_sheet_write(&screen.compare, options->renderer, error);
+        struct cs_error unseen = {0};
+        if (settings->pictures)
+            cs_compare_contact_sheet_write(&screen.compare, options->renderer, &unseen);
+        /* files first: they must not be lost because drawing or printing failed */
+        if (!cs_compare_write_report(&screen.compare, error) && !print_verdict(&screen, error))
+            *error = unseen;
+        if (!error->status && options->show)
+            print_diagram(&screen, error);
         if (!error->status)
             cs_manifest_write_study(settings->folder, error);
+        if (!error->status && level)
+            cs_mesh_level_store(study, level, &screen.compare, error);
         if (!error->status && options->strict)
             check_cells(&screen.compare, error);
     }
     cs_progress_end(&screen.progress);
     cs_compare_finish(&screen.compare);
-    cs_text_finish(&command);
     /* callbacks return nothing: errors of their printing are reported here */
     return error->status ? error->status
            : screen.error.status
@@ -263,20 +294,96 @@ static enum cs_status compare_here(void *ctx, struct cs_error *error) {
                : CS_OK;
 }
 
+/* Compares on each mesh of a scene, in FOLDER/SCENE-CELLS. */
+static enum cs_status compare_meshes(struct options *options, struct cs_mesh_study *study,
+                                     struct cs_error *error) {
+    struct cs_compare_settings *settings = &options->compare;
+    struct cs_session_settings *session = &settings->run.session;
+    const struct cs_session_settings given = *session;
+    const char *folder = settings->folder, *name = strrchr(session->scene, '/');
+    if (cs_mesh_study_begin(study, options->mesh, session, error))
+        return error->status;
+    name = name ? name + 1 : session->scene;
+    for (uint32_t k = 0; k < study->n && !error->status; k++) {
+        struct cs_mesh_level *level = study->levels + k;
+        struct cs_text text = {0}, below = {0};
+        // grids are overrides after those given
+        session->overrides = level->overrides;
+        session->n_overrides = level->n_overrides;
+        cs_text_add(&below, "%s/%.*s-%u", folder, (int)strcspn(name, "."), name, level->cells);
+        settings->folder = cs_text_get(&below);
+        cs_text_add(&text, "%s%s, %u cells\n", k ? "\n" : "", session->scene, level->cells);
+        if (!cs_print_out(stdout, &text, error))
+            compare_once(options, study, level, error);
+        cs_text_finish(&below);
+    }
+    settings->folder = folder;
+    *session = given;
+    if (!error->status)
+        cs_mesh_study_measure(study);
+    return error->status;
+}
+
+/* Several scenes, each on its meshes. */
+static enum cs_status compare_scenes(struct cs_args *args, struct cs_error *error) {
+    struct options *options = args->options;
+    struct cs_mesh_study *studies =
+        cs_arena_alloc_array(&args->arena, args->n_operands, sizeof *studies, error);
+    for (uint32_t k = 0; k < args->n_operands && !error->status; k++) {
+        options->compare.run.session.scene = args->operands[k];
+        if (!count_frames(options, error))
+            compare_meshes(options, studies + k, error);
+    }
+    struct cs_text text = {0};
+    if (!error->status && !cs_mesh_studies_report(studies, args->n_operands,
+                                                  options->compare.folder, &text, error))
+        cs_print_out(stdout, &text, error);
+    // failed ones too
+    for (uint32_t k = 0; studies && k < args->n_operands; k++)
+        cs_mesh_study_finish(studies + k);
+    return error->status;
+}
+
+static enum cs_status compare_here(void *ctx, struct cs_error *error) {
+    struct cs_args *args = ctx;
+    struct options *options = args->options;
+    struct cs_compare_settings *settings = &options->compare;
+    if (args->n_operands > 1 && !options->mesh)
+        return cs_fail(error, CS_ERR_USAGE, "found %u scenes, expected one, or --mesh",
+                       args->n_operands);
+    if (make_settings(args, error))
+        return error->status;
+    // the command is part of the report
+    struct cs_text command = {0};
+    add_command(args, &command);
+    settings->command = cs_text_get(&command);
+    settings->reference_progress = show_reference;
+    settings->on_begin = show_begin;
+    settings->row = show_row;
+    settings->on_round = show_round;
+    if (options->mesh)
+        compare_scenes(args, error);
+    else
+        compare_once(options, NULL, NULL, error);
+    cs_text_finish(&command);
+    return error->status;
+}
+
 static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
-    const struct options *options = args->options;
-    struct cs_isolate isolate = {
-        .seconds = PATIENCE_SECONDS, .task = compare_here, .ctx = args};
-    if (!cs_external_modules_requested(args, &options->compare.methods, 1))
-        return compare_here(args, error);
-    isolate.stop = cs_interrupt_catch();
-    return cs_isolate_run(&isolate, error);
+    struct options *options = args->options;
+    if (cs_args_refuse_both(args, "frames", "time", error))
+        return error->status;
+    options->compare.isolates_cells =
+        cs_external_modules_requested(args, &options->compare.methods, 1);
+    return options->compare.isolates_cells
+               ? cs_external_modules_isolate(args, PATIENCE_SECONDS, 0.5, compare_here, error)
+               : compare_here(args, error);
 }
 
 const struct cs_command cs_command_compare = {
     .name = "compare",
-    .operands = "SCENE",
-    .summary = "error against run time of integrators on a scene",
+    .operands = "SCENE...",
+    .summary = "error against run time of integrators: work-precision",
     .notes =
         "Each row is written to compare.csv as it finishes: the same command continues an\n"
         "interrupted comparison, and other methods are added to it. Contact by force and\n"
@@ -285,6 +392,6 @@ const struct cs_command cs_command_compare = {
         "Example: clothsim compare scenes/drum.json -i rk4,tr-bdf2:dt=1e-3..2e-2 -o cmp\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
-    .operands_max = 1,
+    .operands_max = 16,
     .main = compare,
 };

@@ -41,8 +41,7 @@ static const struct cs_arg rows[] = {
     {"only", 0, "CHECK[,...]", "run only these checks", CS_ARG_INTO(struct options, only)},
     {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
      CS_ARG_LIST(struct options, plugins, n_plugins)},
-    {"quiet", 'q', NULL, "print only claims that failed, and the count",
-     CS_ARG_INTO(struct options, quiet)},
+    CS_ARG_QUIET(struct options, quiet),
 };
 
 /* The rows so far. With a process for the modules both have it in memory that they share; where
@@ -100,11 +99,8 @@ static void add_number(struct cs_text *json, const char *key, double value) {
 
 /* Appends to the JSON, whichever process writes, and frees the text. */
 static void append(struct output *output, struct cs_text *json) {
-    if (output->json && !json->failed) {
-        fseek(output->json, 0, SEEK_END);
-        fputs(cs_text_get(json), output->json);
-    }
-    if (output->json && (json->failed || fflush(output->json)))
+    if (output->json && (json->failed || fseek(output->json, 0, SEEK_END) ||
+                         fputs(cs_text_get(json), output->json) < 0 || fflush(output->json)))
         cs_fail(&output->error, CS_ERR_FILE, "cannot store the card as JSON");
     cs_text_finish(json);
 }
@@ -250,13 +246,16 @@ static enum cs_status finish(struct output *output, struct cs_error *error) {
     if (output->json) {
         char piece[4096];
         cs_text_add(&json, "[");
-        rewind(output->json);
+        if (fseek(output->json, 0, SEEK_SET))
+            cs_fail(error, CS_ERR_FILE, "cannot read the card as JSON");
         for (size_t n; (n = fread(piece, 1, sizeof piece - 1, output->json)) > 0;) {
             piece[n] = 0;
             cs_text_add(&json, "%s", piece);
         }
         cs_text_add(&json, "\n]\n");
-        cs_print_file(output->options->json, &json, error);
+        if (!error->status)
+            cs_print_file(output->options->json, &json, error);
+        cs_text_finish(&json);
     }
     const uint32_t bad = counts[CS_VERDICT_FAIL] + counts[CS_VERDICT_STALE];
     if (bad > 0)

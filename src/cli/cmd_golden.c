@@ -8,6 +8,7 @@
 #include "sim/install_paths.h"
 #include "study/compare/compare_curves.h"
 #include "study/golden/golden.h"
+#include "study/recorded_run.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -16,6 +17,7 @@ struct options {
     struct cs_golden check;
     const struct cs_override *sets;
     uint32_t n_sets;
+    double seconds; /* of the run that is added; 0: not given */
     const char *json, *junit;
     bool image, github, quiet;
 };
@@ -26,6 +28,8 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, check.add.scene)},
     {"frames", 'n', "N", "frames of the run that is added",
      CS_ARG_INTO(struct options, check.add.frames), .min = 1, .max = UINT32_MAX},
+    {"time", 't', "SECONDS", "its simulated time, instead of -n",
+     CS_ARG_INTO(struct options, seconds)},
     {"integrator", 'i', "NAME[:KEY=VALUE,...]",
      "its integrator and options (default: the scene's)",
      CS_ARG_INTO(struct options, check.add.integrator), .methods = true},
@@ -52,8 +56,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, junit)},
     {"github", 0, NULL, "print rows that differ as annotations of GitHub",
      CS_ARG_INTO(struct options, github)},
-    {"quiet", 'q', NULL, "print only rows that differ, and the count",
-     CS_ARG_INTO(struct options, quiet)},
+    CS_ARG_QUIET(struct options, quiet),
 };
 
 /* Destination of the rows. */
@@ -164,10 +167,26 @@ static enum cs_status write_junit(const struct cs_golden *check, struct sink *si
     return cs_print_file(sink->options->junit, &out, error);
 }
 
+/* Frames of the run to be added, as given or by the time. */
+static enum cs_status take_frames(struct cs_args *args, struct cs_error *error) {
+    struct options *options = args->options;
+    struct cs_golden_run *run = &options->check.add;
+    const struct cs_session_settings session = {
+        .scene = run->scene, .overrides = options->sets, .n_overrides = options->n_sets};
+    if (cs_args_refuse_both(args, "frames", "time", error) || !run->scene ||
+        !(options->seconds > 0))
+        return error->status;
+    return cs_session_fit_frames(&session, &run->frames, &options->seconds, error);
+}
+
 /* Fills the run to be added from the options: overrides joined by semicolons, "-" for none. */
 static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
     struct cs_golden_run *run = &options->check.add;
+    const bool asked = run->frames || options->seconds > 0 || run->integrator ||
+                       options->n_sets || options->image;
+    if (take_frames(args, error))
+        return error->status;
     struct cs_text sets = {0};
     bool has_semicolon = false;
     for (uint32_t k = 0; k < options->n_sets; k++) {
@@ -175,11 +194,12 @@ static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
         cs_text_add(&sets, "%s%s=%s", k ? ";" : "", set->path, set->value);
         has_semicolon |= strchr(set->value, ';') != NULL;
     }
-    if (!run->scene && (run->frames || run->integrator || options->n_sets || options->image))
+    if (!run->scene && asked)
         cs_fail(error, CS_ERR_USAGE,
-                "-n, -i, -s and --image are for --add SCENE, which is missing");
+                "-n, -t, -i, -s and --image are for --add SCENE, which is missing");
     else if (run->scene && !run->frames)
-        cs_fail(error, CS_ERR_USAGE, "--add: the number of frames is missing, expected -n N");
+        cs_fail(error, CS_ERR_USAGE,
+                "--add: the number of frames is missing, expected -n N or -t SECONDS");
     else if (options->n_sets > CS_GOLDEN_SETS_MAX || sets.length >= CS_GOLDEN_SETS_BYTES)
         cs_fail(error, CS_ERR_USAGE,
                 "--set: found %u of them, %zu bytes, expected at most %d, %d", options->n_sets,

@@ -30,6 +30,7 @@ static const struct {
     {CS_SYMPLECTIC, "symplectic"},
     {CS_LIBRARY_BITS, "bit pattern depends on a library"},
     {CS_NOT_GALILEAN, "not Galilean"},
+    {CS_SMOOTH_ONLY, "motion without contact and events only"},
     {CS_EXPLICIT_OUTER, "forces other than springs explicit"},
     {CS_MAKES_ENERGY, "makes energy at long steps"},
 };

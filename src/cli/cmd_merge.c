@@ -31,7 +31,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, out)},
     {"overwrite", 'y', NULL, "replace the results of an earlier merge",
      CS_ARG_INTO(struct options, overwrite)},
-    {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
+    CS_ARG_QUIET(struct options, quiet),
 };
 
 /* Copies the provenance of a comparison; every part has the same. */
@@ -41,7 +41,8 @@ static enum cs_status copy_origin(const char *folder, const char *out, struct cs
     size_t length;
     snprintf(from, sizeof from, "%s/origin.json", folder);
     snprintf(to, sizeof to, "%s/origin.json", out);
-    if (access(from, F_OK) || cs_file_read(from, FILE_BYTES_MAX, &bytes, &length, error))
+    if (access(from, F_OK) || cs_manifest_check_file(folder, "origin.json", error) ||
+        cs_file_read(from, FILE_BYTES_MAX, &bytes, &length, error))
         return error->status;
     cs_file_write(to, bytes, length, error);
     free(bytes);

@@ -3,6 +3,7 @@
  *   compare.csv -> cells -> columns of the axes -> cs_plot_write: NAME.gp and pictures */
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "cli/show/screen.h"
 #include "study/compare/compare_cell.h"
 #include "study/compare/compare_curves.h"
 
@@ -12,7 +13,7 @@
 
 struct options {
     const char *x, *y, *family, *out, *title;
-    bool quiet;
+    bool show, quiet;
 };
 static const struct options defaults = {.x = "cpu", .y = "error"};
 
@@ -29,13 +30,15 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, out)},
     {"title", 0, "TEXT", "title above the diagram (default: FILE)",
      CS_ARG_INTO(struct options, title)},
-    {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
+    {"show", 0, NULL, "draw the diagram in the terminal, and write no files",
+     CS_ARG_INTO(struct options, show)},
+    CS_ARG_QUIET(struct options, quiet),
 };
 
 static enum cs_status read_axis(const char *option, const char *name,
                                 const struct cs_column **column, struct cs_error *error) {
     *column = cs_column_find(name);
-    return *column && (*column)->label
+    return *column && (*column)->drawn
                ? CS_OK
                : cs_arg_refuse_name(option, cs_column_axes(), name, error);
 }
@@ -64,12 +67,14 @@ static void split(const char *path, char folder[4096], const char **name) {
     snprintf(folder, 4096, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
 }
 
-static enum cs_status print_files(const char *path, bool drawn, struct cs_error *error) {
+static enum cs_status print_files(const char *path, const struct cs_gnuplot *gnuplot,
+                                  struct cs_error *error) {
     struct cs_text text = {0};
-    if (drawn)
+    if (gnuplot->drawn)
         cs_text_add(&text, "%s.gp, %s.png, %s.svg, %s.pdf\n", path, path, path, path);
     else
-        cs_text_add(&text, "%s.gp (gnuplot, which draws it, was not found)\n", path);
+        cs_text_add(&text, "%s.gp (gnuplot, which draws it, %s)\n", path,
+                    gnuplot->n_failed ? "failed" : "was not found");
     return cs_print_out(stdout, &text, error);
 }
 
@@ -79,7 +84,7 @@ static enum cs_status draw(struct cs_args *args, struct cs_plot_settings *settin
     const char *file = args->operands[0], *out = options->out, *title = options->title;
     const char *slash = strrchr(file, '/');
     char folder[4096], path[4096];
-    bool drawn;
+    struct cs_gnuplot gnuplot = {0};
     if (out)
         snprintf(path, sizeof path, "%s", out);
     else
@@ -96,9 +101,25 @@ static enum cs_status draw(struct cs_args *args, struct cs_plot_settings *settin
         return error->status;
     if (!*settings->name)
         return cs_fail(error, CS_ERR_USAGE, "--out: expected a file name without extension");
-    if (cs_plot_write(settings, folder, &drawn, error))
+    if (cs_plot_write(settings, folder, &gnuplot, error) ||
+        cs_print_gnuplot_warning(&gnuplot, error))
         return error->status;
-    return options->quiet ? CS_OK : print_files(path, drawn, error);
+    return options->quiet ? CS_OK : print_files(path, &gnuplot, error);
+}
+
+/* Draws in the terminal. */
+static enum cs_status show(struct cs_args *args, struct cs_plot_settings *settings,
+                           struct cs_error *error) {
+    const struct options *options = args->options;
+    struct cs_screen screen;
+    struct cs_text text = {0};
+    if (options->out)
+        return cs_fail(error, CS_ERR_USAGE, "--show writes no files: remove --show or --out");
+    if (cs_screen_open(&screen, false, error))
+        return error->status;
+    settings->title = options->title ? options->title : args->operands[0];
+    cs_screen_print_diagram(&screen, settings, &text);
+    return cs_print_out(stdout, &text, error);
 }
 
 /* Fails if the family has no series: an empty diagram would hide a mistake in its name. */
@@ -124,7 +145,7 @@ static enum cs_status plot(struct cs_args *args, struct cs_error *error) {
         return error->status;
     settings.cells = cells;
     if (!check_cells(&settings, args->operands[0], error))
-        draw(args, &settings, error);
+        (options->show ? show : draw)(args, &settings, error);
     free(cells);
     return error->status;
 }

@@ -28,7 +28,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_LIST(struct options, again.session.plugins, again.session.n_plugins)},
     {"threads", 0, "N", "threads that step the scene, 1 to 64 (default: as run)",
      CS_ARG_INTO(struct options, again.session.threads), .min = 1, .max = CS_POOL_THREADS_MAX},
-    {"quiet", 'q', NULL, "print only what differs", CS_ARG_INTO(struct options, quiet)},
+    CS_ARG_QUIET(struct options, quiet),
 };
 
 static bool ends_in(const char *text, const char *ending) {

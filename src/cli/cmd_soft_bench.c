@@ -32,7 +32,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, folder)},
     {"overwrite", 'y', NULL, "replace the files of an earlier run",
      CS_ARG_INTO(struct options, overwrite)},
-    {"quiet", 'q', NULL, "no progress and no tables", CS_ARG_INTO(struct options, quiet)},
+    CS_ARG_QUIET(struct options, quiet),
 };
 
 static enum cs_status write_one(const char *folder, const char *name,
@@ -47,12 +47,13 @@ static enum cs_status write_one(const char *folder, const char *name,
 
 static enum cs_status write_files(const char *folder, const struct cs_soft *soft,
                                   struct cs_error *error) {
-    bool drawn;
+    struct cs_gnuplot gnuplot = {0};
     if (write_one(folder, "soft.csv", cs_soft_print_csv, soft, error) ||
         write_one(folder, "soft.txt", cs_soft_print, soft, error) ||
         write_one(folder, "soft.gp", cs_soft_print_plot, soft, error))
         return error->status;
-    if (cs_gnuplot_run(folder, "soft.gp", &drawn, error))
+    if (cs_gnuplot_run(folder, "soft", &gnuplot, error) ||
+        cs_print_gnuplot_warning(&gnuplot, error))
         return error->status;
     return cs_manifest_write_study(folder, error);
 }

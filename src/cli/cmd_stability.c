@@ -9,9 +9,11 @@
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "cli/run_output.h"
 #include "cli/stability_map.h"
 #include "sim/install_paths.h"
 #include "study/process_pool.h"
+#include "study/recorded_run.h"
 #include "study/stability/extreme.h"
 
 #include <stdio.h>
@@ -26,7 +28,7 @@ static const struct cs_arg rows[] = {
      "methods, NAME:KEY=VALUE,...,NAME...; all: every method; may be repeated (default: the "
      "scene's own)",
      CS_ARG_LIST(struct cs_stability_options, methods, n_methods), .methods = true},
-    {"axis", 0, "NAME", "stiffness, damping, mass or resolution (default: stiffness)",
+    {"axis", 0, "NAME", "stiffness, damping, mass, resolution or young (default: stiffness)",
      CS_ARG_INTO(struct cs_stability_options, axis), .names = cs_axis_names},
     {"stiffness", 0, "LOW..HIGH",
      "vary the stiffness, in N/m of the stiffest kind of spring, others in proportion",
@@ -37,6 +39,11 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct cs_stability_options, values[CS_AXIS_MASS])},
     {"resolution", 0, "LOW..HIGH", "vary the resolution, in columns of the grid",
      CS_ARG_INTO(struct cs_stability_options, values[CS_AXIS_RESOLUTION])},
+    {"young", 0, "LOW..HIGH",
+     "vary the moduli of elastic membranes, in N/m of Young's modulus or of the warp, others "
+     "in "
+     "proportion",
+     CS_ARG_INTO(struct cs_stability_options, values[CS_AXIS_YOUNG])},
     {"dt", 0, "LOW..HIGH", "steps in s (default: around the expected border)",
      CS_ARG_INTO(struct cs_stability_options, dt)},
     {"columns", 0, "N", "values on the axis (default: 9)",
@@ -45,6 +52,8 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct cs_stability_options, map.rows), .min = 1, .max = CS_MAP_CELLS_MAX},
     {"time", 't', "SECONDS", "simulated time of a cell (default: 0.5)",
      CS_ARG_INTO(struct cs_stability_options, map.seconds)},
+    {"frames", 'n', "N", "simulated frames of a cell (default: by the time)",
+     CS_ARG_INTO(struct cs_stability_options, frames), .min = 1, .max = 1000000},
     {"budget", 0, "SECONDS", "maximum processor time of one cell (default: 5)",
      CS_ARG_INTO(struct cs_stability_options, map.budget)},
     {"jobs", 'j', "N", "cells run in parallel (default: one per processor)",
@@ -68,10 +77,11 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct cs_stability_options, map.shard)},
     {"json", 0, "FILE", "with --extreme: write the rows as JSON too; -: to standard output",
      CS_ARG_INTO(struct cs_stability_options, json)},
+    {"show", 0, NULL, "draw the map in the terminal, in colour, in place of its table",
+     CS_ARG_INTO(struct cs_stability_options, show)},
     {"strict", 0, NULL, "exit with 8 if a cell is unstable or its method failed",
      CS_ARG_INTO(struct cs_stability_options, strict)},
-    {"quiet", 'q', NULL, "no progress and no tables",
-     CS_ARG_INTO(struct cs_stability_options, quiet)},
+    CS_ARG_QUIET(struct cs_stability_options, quiet),
 };
 
 static enum cs_status read_range(const char *option, const char *text, struct cs_range *range,
@@ -225,14 +235,21 @@ static enum cs_status stability(struct cs_args *args, struct cs_error *error) {
     settings->session.run.stop = cs_interrupt_catch();
     if (!settings->workers)
         settings->workers = cs_pool_processors(CS_PROCESS_POOL_MAX);
-    if (read_axis(options, error))
+    if (read_axis(options, error) || cs_args_refuse_both(args, "frames", "time", error))
         return error->status;
     /* before the operand is checked: here it is only part of a name, and may be absent */
+    if (options->extreme && options->show)
+        return cs_fail(error, CS_ERR_USAGE, "--extreme makes no map for --show");
     if (options->extreme)
         return run_extreme(options, error);
     if (!settings->session.scene)
         return cs_fail(error, CS_ERR_USAGE,
                        "expected SCENE or --extreme (see: clothsim stability --help)");
+    if (cs_study_folder_check(&settings->session, settings->folder, error))
+        return error->status;
+    if (options->frames &&
+        cs_session_fit_frames(&settings->session, &options->frames, &settings->seconds, error))
+        return error->status;
     /* no method named: the scene's own */
     if (!options->n_methods)
         return cs_stability_map_one(options, error);

@@ -4,7 +4,11 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
+#include "cli/run_output.h"
+#include "sim/registry.h"
 #include "study/parameter_sweep.h"
+#include "study/process_pool.h"
+#include "study/recorded_run.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -13,19 +17,28 @@ struct options {
     struct cs_parameter_sweep product;
     const char *const *keys; /* (n_keys) as they were typed */
     uint32_t n_keys;
-    bool quiet;
+    double seconds; /* 0: not given */
+    double cell_megabytes;
+    bool status, strict, quiet;
 };
-static const struct options defaults = {.product = {.frames = 60, .folder = "sweep"}};
+static const struct options defaults = {
+    .product = {.frames = 60, .folder = "sweep", .jobs = 1}};
+
+/* s for one call into a module from outside, where cells have no limit. */
+enum { PATIENCE_SECONDS = 600 };
 
 static const struct cs_arg rows[] = {
     {"integrators", 'i', "LIST",
-     "methods, NAME:KEY=VALUE,...,NAME...; may be repeated (default: the scene's own)",
+     "methods, NAME:KEY=VALUE,...,NAME...; all: every method; may be repeated (default: the "
+     "scene's own)",
      CS_ARG_LIST(struct options, product.methods, product.n_methods), .methods = true},
     {"set", 's', "PATH=VALUE,VALUE,...",
      "values of a key of the scene; repeated: every combination is run",
      CS_ARG_LIST(struct options, keys, n_keys)},
     {"frames", 'n', "N", "simulate frames 1 to N (default: 60)",
      CS_ARG_INTO(struct options, product.frames), .min = 1, .max = 10000000},
+    {"time", 't', "SECONDS", "simulated time, instead of -n",
+     CS_ARG_INTO(struct options, seconds)},
     CS_ARG_PLUGIN(struct options, product.session),
     {"out", 'o', "DIR", "folder of sweep.csv (default: sweep)",
      CS_ARG_INTO(struct options, product.folder)},
@@ -33,7 +46,19 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, product.overwrite)},
     {"shard", 0, "K/N", "run shard K of N of the cells; see: clothsim merge",
      CS_ARG_INTO(struct options, product.shard)},
-    {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
+    {"jobs", 'j', "N", "run N cells at a time, each by one thread (default: 1)",
+     CS_ARG_INTO(struct options, product.jobs), .min = 1, .max = CS_PROCESS_POOL_MAX},
+    {"cell-seconds", 0, "SECONDS", "end a cell after this time; its row says failed",
+     CS_ARG_INTO(struct options, product.cell_seconds)},
+    {"cell-memory", 0, "MB", "address space of a cell; a row that needs more says failed",
+     CS_ARG_INTO(struct options, cell_megabytes)},
+    {"retry-failed", 0, NULL, "run failed cells again",
+     CS_ARG_INTO(struct options, product.retry_failed)},
+    {"status", 0, NULL, "count the cells that are there, and run none",
+     CS_ARG_INTO(struct options, status)},
+    {"strict", 0, NULL, "exit with 8 if a cell blew up, was refused or failed",
+     CS_ARG_INTO(struct options, strict)},
+    CS_ARG_QUIET(struct options, quiet),
 };
 
 /* Cuts the next value off at a comma outside of brackets and quotes: values may be JSON lists.
@@ -87,39 +112,105 @@ static enum cs_status read_keys(struct cs_args *args, const struct options *opti
     return error->status;
 }
 
+/* Puts the names of all methods in place of "all". */
+static enum cs_status name_methods(struct cs_args *args, struct cs_parameter_sweep *product,
+                                   struct cs_error *error) {
+    const struct cs_session_settings *session = &product->session;
+    struct cs_registry registry = {0};
+    uint32_t n = 0;
+    if (product->n_methods != 1 || strcmp(product->methods[0], "all") != 0)
+        return CS_OK;
+    cs_registry_add_files(&registry, session->plugins, session->n_plugins, error);
+    const char *const *names =
+        error->status ? NULL : cs_registry_names(&registry, true, &n, error);
+    const char **methods =
+        names ? cs_arena_alloc_array(&args->arena, n, sizeof *methods, error) : NULL;
+    for (uint32_t k = 0; methods && k < n; k++)
+        methods[k] = cs_arena_copy_text(&args->arena, names[k], error);
+    product->methods = methods;
+    product->n_methods = n;
+    cs_registry_finish(&registry);
+    return error->status;
+}
+
+/* Frames as given, or those of the time, which cells of other frame rates would not share. */
+static enum cs_status count_frames(struct cs_args *args, struct options *options,
+                                   struct cs_error *error) {
+    struct cs_parameter_sweep *product = &options->product;
+    if (cs_args_refuse_both(args, "frames", "time", error) || !(options->seconds > 0))
+        return error->status;
+    for (uint32_t k = 0; k < product->n_keys; k++)
+        if (!strcmp(product->keys[k].path, "time.fps"))
+            return cs_fail(error, CS_ERR_USAGE,
+                           "--time: cells of other time.fps have other frames; use --frames");
+    product->frames = 0;
+    return cs_session_fit_frames(&product->session, &product->frames, &options->seconds, error);
+}
+
+/* Prints the counts, the first refusal and the failed cells; these also if quiet. */
+static enum cs_status print_counts(const struct options *options, struct cs_error *error) {
+    const struct cs_parameter_sweep *product = &options->product;
+    const struct cs_parameter_sweep_counts *counts = &product->counts;
+    struct cs_text out = {.failed = product->failed.failed};
+    if (options->status)
+        cs_text_add(&out, "%u of %u cells are in %s/sweep.csv, %u are being run\n",
+                    counts->done, counts->cells, product->folder, counts->running);
+    else if (!options->quiet)
+        cs_text_add(&out, "%u of %u cells are in %s/sweep.csv, %u of them from earlier runs\n",
+                    counts->done, counts->cells, product->folder, counts->reused);
+    if (counts->refused && !options->quiet)
+        cs_text_add(&out, "warning: %u of them were refused; the first message: %s\n",
+                    counts->refused, counts->first_refusal);
+    cs_text_add(&out, "%s", cs_text_get(&product->failed));
+    return cs_print_out(stdout, &out, error);
+}
+
 static enum cs_status sweep(struct cs_args *args, struct cs_error *error) {
     struct cs_progress progress;
     struct options *options = args->options;
     struct cs_parameter_sweep *product = &options->product;
+    const struct cs_parameter_sweep_counts *counts = &product->counts;
+    struct cs_error unseen = {0};
     product->session.scene = args->operands[0];
     product->session.run.stop = cs_interrupt_catch();
     product->progress = cs_progress_show;
     product->ctx = &progress;
-    if (read_keys(args, options, product, error))
+    product->cell_bytes = 1e6 * options->cell_megabytes;
+    if (cs_external_modules_requested(args, product->methods, product->n_methods))
+        product->call_seconds = PATIENCE_SECONDS;
+    if (read_keys(args, options, product, error) || name_methods(args, product, error) ||
+        count_frames(args, options, error) ||
+        cs_study_folder_check(&product->session, product->folder, error))
         return error->status;
     cs_progress_begin(&progress, "cell", options->quiet);
-    if (!cs_parameter_sweep_run(product, error))
+    if (options->status)
+        cs_parameter_sweep_count(product, error);
+    else if (!cs_parameter_sweep_run(product, error))
         cs_manifest_write_study(product->folder, error);
     cs_progress_end(&progress);
-    if (error->status || options->quiet)
-        return error->status;
-    printf("%u of %u cells are in %s/sweep.csv, %u of them from earlier runs\n",
-           product->n_done, product->cells, product->folder, product->n_reused);
-    if (product->n_refused)
-        printf("warning: %u of them were refused or failed; the first message: %s\n",
-               product->n_refused, product->first_refusal.message);
-    return CS_OK;
+    if (counts->done || (options->status && !error->status))
+        print_counts(options, error->status ? &unseen : error);
+    cs_text_finish(&product->failed);
+    const uint32_t bad = counts->refused + counts->failed + counts->blown_up;
+    if (options->strict && bad)
+        cs_fail(error, CS_ERR_UNSTABLE, "%u of %u cells blew up, were refused or failed", bad,
+                counts->cells);
+    const struct cs_error *failure = &product->cell_failure;
+    return failure->status ? cs_fail(error, failure->status, "%s", failure->message)
+                           : error->status;
 }
 
 const struct cs_command cs_command_sweep = {
     .name = "sweep",
     .operands = "SCENE",
     .summary = "run a scene with every combination of values and methods",
-    .notes = "Each row is written as it finishes: the same command continues an interrupted\n"
-             "sweep, and several processes can fill one folder.\n"
-             "\n"
-             "Example: clothsim sweep scenes/hang.json -s bodies[0].springs.stretch=50,100,200 "
-             "\\\n             -i rk4 -i newmark:dt=0.005 -n 30 -o sweep\n",
+    .notes =
+        "Each row is written as it finishes: the same command continues an interrupted\n"
+        "sweep, and any number of processes can fill one folder. A cell that crashes, hangs\n"
+        "or reaches its limit is a row that says failed.\n"
+        "\n"
+        "Example: clothsim sweep scenes/hang.json -s bodies[0].springs.stretch=50,100,200 "
+        "\\\n             -i rk4 -i newmark:dt=0.005 -n 30 -o sweep\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
     .operands_max = 1,

@@ -11,7 +11,7 @@ struct options {
 static const struct options defaults = {false};
 
 static const struct cs_arg rows[] = {
-    {"quiet", 'q', NULL, "print only what differs", CS_ARG_INTO(struct options, quiet)},
+    CS_ARG_QUIET(struct options, quiet),
 };
 
 static enum cs_status check(const char *folder, bool quiet, uint32_t *bad,

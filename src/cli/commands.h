@@ -17,6 +17,12 @@ CS_COMMAND_LIST(X)
 enum cs_status cs_completion_print(const struct cs_command *const *commands, const char *shell,
                                    struct cs_text *out, struct cs_error *error);
 
+/* Adds the words, one per line, that `text` may become as a value of the option ("--name" or
+ * "-n"), or as an operand if there is no such option: methods and their options, paths of a
+ * scene, names. For files and numbers none. */
+void cs_completion_print_values(const struct cs_command *command, const char *option,
+                                const char *text, struct cs_text *out);
+
 /* Modules that were not installed with the program, which studies run in a
  * process of their own. */
 
@@ -25,5 +31,12 @@ enum cs_status cs_completion_print(const struct cs_command *const *commands, con
  * child process (study/process_pool.h). */
 bool cs_external_modules_requested(const struct cs_args *args, const char *const *texts,
                                    uint32_t n);
+
+/* Runs a command in a child process. seconds: that a call into a module may take, 0: any;
+ * stop_seconds: the same after the first signal to stop. */
+enum cs_status
+cs_external_modules_isolate(struct cs_args *args, double seconds, double stop_seconds,
+                            enum cs_status (*task)(void *ctx, struct cs_error *error),
+                            struct cs_error *error);
 
 #endif

@@ -5,6 +5,8 @@
 #include "base/ieee_check.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "cli/output_keys.h"
+#include "sim/install_paths.h"
 
 #include <signal.h>
 #include <string.h>
@@ -34,12 +36,12 @@ static enum cs_status unknown_command(const char *word, struct cs_error *error) 
         return cs_fail(error, CS_ERR_USAGE,
                        "unknown option \"%.60s\"; a command comes first (see: clothsim help)",
                        word);
-    const char *nearest = cs_nearest_word(word, names);
-    if (nearest)
-        return cs_fail(error, CS_ERR_USAGE,
-                       "unknown command \"%.60s\"; did you mean \"%s\"? (see: clothsim help)",
-                       word, nearest);
-    return cs_fail(error, CS_ERR_USAGE, "unknown command \"%.60s\" (see: clothsim help)", word);
+    /* a scene without a command */
+    const char *scene = strstr(word, ".json");
+    const char *nearest = scene ? "run SCENE" : cs_nearest_word(word, names);
+    return cs_fail(error, CS_ERR_USAGE, "unknown command \"%.60s\"%s%s%s (see: clothsim help)",
+                   word, nearest ? "; did you mean \"" : "", nearest ? nearest : "",
+                   nearest ? "\"?" : "");
 }
 
 static enum cs_status print_overview(FILE *file, struct cs_error *error) {
@@ -88,6 +90,32 @@ static enum cs_status print_completion(const char *shell, struct cs_error *error
     return error->status;
 }
 
+/* The schema of a file that the program writes. */
+static enum cs_status print_schema(const char *name, struct cs_error *error) {
+    struct cs_text out = {0};
+    if (!cs_output_print_schema(name, &out, error))
+        cs_print_out(stdout, &out, error);
+    cs_text_finish(&out);
+    return error->status;
+}
+
+/* The source of the section FILES of clothsim-files(5). */
+static enum cs_status print_files(struct cs_error *error) {
+    struct cs_text out = {0};
+    cs_output_print_manual(&out);
+    return cs_print_out(stdout, &out, error);
+}
+
+/* For the completion scripts: COMMAND, OPTION, WORD. */
+static enum cs_status print_values(char **argv, struct cs_error *error) {
+    const struct cs_command *command = find_command(argv[0]);
+    struct cs_text out = {0};
+    if (!command)
+        return unknown_command(argv[0], error);
+    cs_completion_print_values(command, argv[1], argv[2], &out);
+    return cs_print_out(stdout, &out, error);
+}
+
 /* Parses the arguments and runs the command, or prints its help. */
 static enum cs_status run_command(const struct cs_command *command, int argc, char **argv,
                                   struct cs_error *error) {
@@ -110,8 +138,16 @@ static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
                    : cs_fail(error, CS_ERR_USAGE, "expected a command");
     if (!strcmp(argv[1], "--version") || !strcmp(argv[1], "-V"))
         return print_version(error);
-    if (argc == 3 && !strcmp(argv[1], "--completion"))
-        return print_completion(argv[2], error);
+    /* without a name the message lists the names */
+    if (!strcmp(argv[1], "--completion") && argc <= 3)
+        return print_completion(argc == 3 ? argv[2] : "", error);
+    if (!strcmp(argv[1], "--schema") && argc <= 3)
+        return print_schema(argc == 3 ? argv[2] : "", error);
+    if (argc == 2 && !strcmp(argv[1], "--files"))
+        return print_files(error);
+    /* asked by the completion scripts, and by nobody else */
+    if (argc == 5 && !strcmp(argv[1], "--complete"))
+        return print_values(argv + 2, error);
     if (!strcmp(argv[1], "help") || !strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))
         return help(argc - 2, argv + 2, error);
     const struct cs_command *command = find_command(argv[1]);
@@ -124,6 +160,8 @@ int main(int argc, char **argv) {
     struct cs_error error = {0};
     const char *fault = cs_ieee_check();
     if (fault)
+        cs_print_message(fault);
+    if ((fault = cs_program_path_fault()))
         cs_print_message(fault);
     /* a file that grew too long comes back from the write as an error, and is reported */
     signal(SIGXFSZ, SIG_IGN);

@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { PATH_BYTES = 4096, NAME_BYTES = 256, FILE_BYTES_MAX = 1 << 30 };
 static const char head[] = "# clothsim manifest 1\n", tail[] = "# all of it ";
@@ -34,8 +35,8 @@ static bool is_of_run(const char *name) {
 }
 
 static bool is_of_study(const char *name) {
-    static const char *const endings[] = {".csv",   ".json", ".md",  ".txt", ".html",
-                                          ".state", ".gp",   ".png", ".pdf", ".svg"};
+    static const char *const endings[] = {".csv", ".json", ".md",  ".txt", ".html",   ".state",
+                                          ".gp",  ".png",  ".pdf", ".svg", ".partial"};
     const char *ending = strrchr(name, '.');
     bool found = false;
     for (size_t k = 0; ending && k < sizeof endings / sizeof *endings; k++)
@@ -217,5 +218,29 @@ enum cs_status cs_manifest_check(const char *folder, struct cs_text *out, uint32
     }
     free(written.entries);
     free(there.entries);
+    return error->status;
+}
+
+enum cs_status cs_manifest_check_file(const char *folder, const char *name,
+                                      struct cs_error *error) {
+    struct list written = {0};
+    struct entry entry = {.size = 0};
+    struct cs_text out = {0};
+    char path[PATH_BYTES];
+    uint32_t differing = 0;
+    // a part that is still being filled has none
+    snprintf(path, sizeof path, "%s/" CS_MANIFEST_NAME, folder);
+    snprintf(entry.name, sizeof entry.name, "%s", name);
+    if (access(path, F_OK) || read_list(folder, &written, error))
+        return error->status;
+    const struct entry *found =
+        written.n ? bsearch(&entry, written.entries, written.n, sizeof entry, by_name) : NULL;
+    if (found)
+        check_file(folder, found, &out, &differing);
+    if (differing)
+        cs_fail(error, CS_ERR_FILE, "%s/%s is not as it was written: copy it from another part",
+                folder, name);
+    cs_text_finish(&out);
+    free(written.entries);
     return error->status;
 }

@@ -23,6 +23,11 @@ enum cs_status cs_manifest_write(const char *folder, struct cs_error *error);
  * which then names the tables it has added to. */
 enum cs_status cs_manifest_write_study(const char *folder, struct cs_error *error);
 
+/* Checks one file against the manifest of its folder, if there is one that names it.
+ * CS_ERR_FILE. */
+enum cs_status cs_manifest_check_file(const char *folder, const char *name,
+                                      struct cs_error *error);
+
 /* Compares a folder with its manifest: adds a line for each file that has changed, is missing,
  * or is a run's and not in the manifest. *n: files listed; *differing: lines added. CS_ERR_FILE
  * if there is no manifest or if it is damaged. */

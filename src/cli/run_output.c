@@ -2,18 +2,25 @@
 #include "cli/run_output.h"
 
 #include "base/file.h"
+#include "cli/commands.h"
+#include "cli/line/print.h"
 #include "io/export/export.h"
 #include "io/file_conflicts.h"
 #include "io/npy.h"
+#include "sim/install_paths.h"
+#include "study/process_pool.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { PATH_BYTES = 4096, NUMBER_DIGITS = 5 };
@@ -162,7 +169,7 @@ enum cs_status cs_output_lock_folders(struct cs_output *output, const struct cs_
                                       const char *folder, cs_output_kind *is_ours,
                                       enum cs_output_earlier earlier, struct cs_error *error) {
     *output = (struct cs_output){0};
-    if ((earlier != CS_OUTPUT_KEEP && cs_folder_create(folder, error)) ||
+    if ((earlier != CS_OUTPUT_RESUME && cs_folder_create(folder, error)) ||
         lock_folder(output, other, folder, error))
         return error->status;
     /* checked again under the lock: a run may have ended here since */
@@ -207,4 +214,65 @@ enum cs_status cs_study_files_check(const struct cs_session_settings *session,
     }
     free(conflicts);
     return error->status;
+}
+
+enum cs_status cs_study_folder_check(const struct cs_session_settings *session,
+                                     const char *folder, struct cs_error *error) {
+    char found[CS_DATA_PATH_MAX], home[PATH_BYTES];
+    struct stat of_scene, of_results;
+    const char *scene = cs_scene_find(session->scene, found, sizeof found);
+    const char *slash = strrchr(scene, '/');
+    snprintf(home, sizeof home, "%.*s/", slash ? (int)(slash - scene) : 1, slash ? scene : ".");
+    if (stat(home, &of_scene) || stat(folder, &of_results) ||
+        of_scene.st_dev != of_results.st_dev || of_scene.st_ino != of_results.st_ino)
+        return CS_OK;
+    return cs_fail(error, CS_ERR_USAGE,
+                   "--out: \"%s\" is the folder of the scene, expected another one: results "
+                   "would lie among scenes",
+                   folder);
+}
+
+void cs_output_sweep_file(const char *path) {
+    enum { MINUTE = 60 }; /* a process on another machine may have the same number */
+    char folder[PATH_BYTES], left[PATH_BYTES];
+    const char *end = strrchr(path, '/'), *name = end ? end + 1 : path;
+    const size_t length = strlen(name);
+    struct stat info;
+    snprintf(folder, sizeof folder, "%.*s", end ? (int)(end - path) + 1 : 2, end ? path : "./");
+    DIR *entries = opendir(folder);
+    for (struct dirent *entry; entries && (entry = readdir(entries));) {
+        const char *rest = entry->d_name + length;
+        if (strncmp(entry->d_name, name, length) != 0 || strncmp(rest, ".tmp.", 5) != 0 ||
+            !rest[5] || rest[5 + strspn(rest + 5, "0123456789")])
+            continue;
+        const long process = strtol(rest + 5, NULL, 10);
+        const bool is_dead = process > INT_MAX || (kill((pid_t)process, 0) && errno == ESRCH);
+        if (is_dead &&
+            snprintf(left, sizeof left, "%s%s", folder, entry->d_name) < PATH_BYTES &&
+            !lstat(left, &info) && info.st_mtime + MINUTE < time(NULL))
+            unlink(left);
+    }
+    if (entries)
+        closedir(entries);
+}
+
+bool cs_external_modules_requested(const struct cs_args *args, const char *const *texts,
+                                   uint32_t n) {
+    const char *folders = getenv("CLOTHSIM_PLUGIN_PATH");
+    bool named = cs_args_is_given(args, "plugin") || (folders && *folders);
+    for (uint32_t k = 0; k < n; k++)
+        named |= texts[k] && (strchr(texts[k], '/') || strstr(texts[k], ".so"));
+    return named;
+}
+
+enum cs_status
+cs_external_modules_isolate(struct cs_args *args, double seconds, double stop_seconds,
+                            enum cs_status (*task)(void *ctx, struct cs_error *error),
+                            struct cs_error *error) {
+    const struct cs_isolate isolate = {.seconds = seconds,
+                                       .stop_seconds = stop_seconds,
+                                       .task = task,
+                                       .ctx = args,
+                                       .stop = cs_interrupt_catch()};
+    return cs_isolate_run(&isolate, error);
 }

@@ -25,7 +25,7 @@ enum cs_status cs_output_check(const char *folder, cs_output_kind *is_ours,
 enum cs_status cs_output_check_file(const char *path, struct cs_error *error);
 
 /* Treatment of files of an earlier run. */
-enum cs_output_earlier { CS_OUTPUT_REFUSE, CS_OUTPUT_REMOVE, CS_OUTPUT_KEEP };
+enum cs_output_earlier { CS_OUTPUT_REFUSE, CS_OUTPUT_REMOVE, CS_OUTPUT_RESUME };
 
 /* A folder that this process writes into, alone. */
 struct cs_output {
@@ -54,5 +54,12 @@ enum cs_status cs_output_state(const char *folder, uint32_t number, const double
 enum cs_status cs_study_files_check(const struct cs_session_settings *session,
                                     const char *folder, const char *const *names,
                                     struct cs_error *error);
+
+/* CS_ERR_USAGE if the folder is that of the session's scene: results would lie among scenes. */
+enum cs_status cs_study_folder_check(const struct cs_session_settings *session,
+                                     const char *folder, struct cs_error *error);
+
+/* Removes PATH.tmp.PID of killed processes beside a file, when they are older than a minute. */
+void cs_output_sweep_file(const char *path);
 
 #endif

@@ -5,6 +5,7 @@
 #include "cli/line/print.h"
 #include "cli/manifest.h"
 #include "cli/run_output.h"
+#include "cli/show/screen.h"
 #include "io/subprocess.h"
 #include "study/stability/stability_report.h"
 
@@ -20,15 +21,6 @@ static enum cs_status write_file(const struct cs_stability_options *options, con
         cs_file_write_text(path, text, error);
     cs_text_finish(text);
     return error->status;
-}
-
-/* true where gnuplot made NAME.png of NAME.gp */
-static bool draw(const char *folder, const char *name) {
-    char script[CS_SERIES_BYTES + 8];
-    bool drawn = false;
-    struct cs_error ignored = {0};
-    snprintf(script, sizeof script, "%s.gp", name);
-    return !cs_gnuplot_run(folder, script, &drawn, &ignored) && drawn;
 }
 
 /* Refuses a map whose files would overwrite the scene. */
@@ -47,7 +39,7 @@ static enum cs_status store_inputs(const struct cs_stability *map, const char *f
 }
 
 static enum cs_status write_files(const struct cs_stability_options *options,
-                                  const struct cs_stability *map, bool *drawn,
+                                  const struct cs_stability *map, struct cs_gnuplot *gnuplot,
                                   struct cs_error *error) {
     char name[CS_SERIES_BYTES];
     struct cs_text cells = {0}, borders = {0}, json = {0}, plot = {0};
@@ -63,9 +55,10 @@ static enum cs_status write_files(const struct cs_stability_options *options,
         write_file(options, name, ".json", &json, error);
     if (!error->status)
         write_file(options, name, ".gp", &plot, error);
+    /* the picture is made of the files above */
     if (!error->status)
-        *drawn = draw(options->map.folder, name);
-    if (!error->status)
+        cs_gnuplot_run(options->map.folder, name, gnuplot, error);
+    if (!error->status && !cs_print_gnuplot_warning(gnuplot, error))
         cs_manifest_write_study(options->map.folder, error);
     cs_text_finish(&borders);
     cs_text_finish(&json);
@@ -98,7 +91,10 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
     struct cs_stability map;
     struct cs_stability_settings asked = options->map;
     const bool quiet = options->quiet;
-    bool drawn = false;
+    struct cs_gnuplot gnuplot = {0};
+    struct cs_screen screen;
+    if (options->show && cs_screen_open(&screen, false, error))
+        return error->status;
     asked.progress = cs_progress_show;
     asked.ctx = &progress;
     cs_progress_begin(&progress, "cell", quiet);
@@ -111,19 +107,26 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
             "interrupted; finished cells are in %s, and the same command continues from there",
             map.journal.table.path);
     }
-    if (!error->status && !map.is_complete)
-        print_shard(&map, quiet);
-    else if (!error->status && !cs_folder_create(options->map.folder, error) &&
-             !store_inputs(&map, options->map.folder, error) &&
-             !write_files(options, &map, &drawn, error) && !quiet) {
+    if (!error->status && !map.is_complete) {
+        if (!cs_manifest_write_study(options->map.folder, error))
+            print_shard(&map, quiet);
+    } else if (!error->status && !cs_folder_create(options->map.folder, error) &&
+               !store_inputs(&map, options->map.folder, error) &&
+               !write_files(options, &map, &gnuplot, error) && (!quiet || options->show)) {
         struct cs_text out = {0};
         char name[CS_SERIES_BYTES];
         cs_series_file_name(map.series, name);
-        cs_stability_print_table(&map, &out);
-        /* gnuplot may be missing: the line then says that there is no picture */
-        cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json, .gp%s\n\n", map.wall,
-                    options->map.folder, name,
-                    drawn ? ", .png" : "; gnuplot not found: no picture");
+        if (options->show)
+            cs_screen_print_map(&screen, &map, &out);
+        else
+            cs_stability_print_table(&map, &out);
+        /* gnuplot may be missing or fail: the line then says that there is no picture */
+        if (!quiet)
+            cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json, .gp%s\n\n", map.wall,
+                        options->map.folder, name,
+                        gnuplot.drawn      ? ", .png"
+                        : gnuplot.n_failed ? "; no picture"
+                                           : "; gnuplot not found: no picture");
         cs_print_out(stdout, &out, error);
     }
     if (!error->status && options->strict)

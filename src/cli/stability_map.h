@@ -13,8 +13,9 @@ struct cs_stability_options {
     const char *values[CS_AXES]; /* LOW..HIGH of the axes, one of them at most, or NULL */
     const char *dt;              /* likewise */
     const char *json;            /* of the extreme scenes */
+    uint32_t frames;             /* 0: by the time */
     const char *catalogue;       /* their folder; NULL: the installed one */
-    bool overwrite, extreme, strict, quiet;
+    bool overwrite, extreme, show, strict, quiet;
 };
 
 /* Makes the map of one method, options->map.session.integrator, and writes its files. */

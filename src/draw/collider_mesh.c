@@ -51,7 +51,8 @@ bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now) 
     const struct cs_posed_collider *at = &solid->at;
     const bool deformed = memcmp(&at->path.t, &now->path.t, sizeof at->path.t);
     const bool moved = deformed || memcmp(at->centre, now->centre, sizeof at->centre) ||
-                       memcmp(at->axes, now->axes, sizeof at->axes);
+                       memcmp(at->axes, now->axes, sizeof at->axes) ||
+                       at->radius != now->radius;
     solid->at = *now;
     if (deformed && solid->n > 0)
         cs_collider_mesh_vertices(now, solid->mesh.positions);

@@ -26,7 +26,8 @@ enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *solids,
                                          const struct cs_posed_collider *colliders,
                                          struct cs_arena *arena, struct cs_error *error);
 
-/* Takes a collider's pose and key frame; returns true if it has moved, turned or deformed. */
+/* Takes a collider's pose and key frame; returns true if it has moved, turned, grown or
+ * deformed. */
 bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now);
 
 /* Fills `vertices` with a visible collider in world coordinates, counter-clockwise seen from

@@ -1,4 +1,4 @@
-/* Draws figures and some letters as strokes, the only lettering of a picture. */
+/* Draws figures and small letters as strokes, the only lettering of a picture. */
 #include "draw/glyph.h"
 
 #include <string.h>
@@ -35,7 +35,29 @@ static const struct glyph glyphs[] = {
     {'r', 3, "0400|031434"},
     {'s', 4, "43341403123241301001"},
     {'t', 3, "16112030|0434"},
+    {'m', 4, "0400|03142320|23344340"},
+    {'/', 4, "0046"},
     {'%', 4, "0046|0506161505|3031414030"},
+    {'b', 4, "0600|0314344341301001"},
+    {'d', 4, "4640|4334140301103041"},
+    {'g', 4, "441403021141|44413000"},
+    {'h', 4, "0600|0314344340"},
+    {'j', 2, "24211000|2626"},
+    {'k', 3, "0600|3402|1330"},
+    {'l', 1, "0600"},
+    {'m', 4, "0400|03142320|23344340"},
+    {'p', 4, "0400|043443423101"},
+    {'q', 4, "4440|441403021141"},
+    {'u', 4, "0401103041|4440"},
+    {'v', 4, "042044"},
+    {'w', 4, "0410223044"},
+    {'x', 4, "0440|0044"},
+    {'y', 4, "0422|4400"},
+    {'z', 4, "04440040"},
+    {':', 0, "0101|0404"},
+    {'=', 3, "0232|0434"},
+    {'_', 4, "0040"},
+    {',', 1, "1100"},
     {' ', 1, ""},
 };
 
@@ -71,6 +93,13 @@ void cs_glyph_add(struct cs_lines *lines, const char *text, double x, double y, 
         add(lines, glyph->strokes, x, y, unit);
         x -= unit * gap;
     }
+}
+
+double cs_glyph_width(const char *text, double height) {
+    double width = 0;
+    for (; *text; text++)
+        width += find(*text)->width + gap;
+    return width * height / 6;
 }
 
 /* Collects lines until a renderer draws them. */

@@ -1,4 +1,4 @@
-/* glyph.h - figures, and the letters of the bar: strokes, the only lettering of pictures. */
+/* glyph.h - figures and small letters: strokes, the only lettering of pictures. */
 #ifndef CS_DRAW_GLYPH_H
 #define CS_DRAW_GLYPH_H
 
@@ -43,8 +43,13 @@ void cs_lines_draw(struct cs_lines *lines, const struct cs_line_style *style);
 
 enum { CS_GLYPH_LINES = 16 }; /* no glyph has more strokes' lines */
 
-/* Adds the lines of a text of 0123456789.-+ N%acefinorst, right-aligned: x, y are the pixels of
- * the right end of the base line, height that of a figure. Other letters leave a gap. */
+/* Adds the lines of a text of figures, small letters, N and .-+%:=_, right-aligned: x, y are
+ * the pixels of the right end of the base line, height that of a figure. Other letters leave a
+ * gap.
+ */
 void cs_glyph_add(struct cs_lines *lines, const char *text, double x, double y, double height);
+
+/* Width in pixels of a text, with the gap before its first letter. */
+double cs_glyph_width(const char *text, double height);
 
 #endif

@@ -193,7 +193,15 @@ void cs_ground_aim(struct cs_ground *ground, const struct cs_view_block *block,
                             span[2] + span[3]};
     float box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     ground->fade_disc[1] = (float)height;
-    const bool bounded = ground->line_spacing <= 0 && cast(solid, block->light, height, box);
+    bool bounded = ground->line_spacing <= 0, lit = false;
+    for (int k = 0; k < (int)block->size[3]; k++) {
+        const float *light = block->lights[k].place;
+        // shadows are not made by light from below
+        if (!((double)light[1] > (light[3] > 0 ? height : 0.0)))
+            continue;
+        lit = true;
+        bounded = cast(solid, light, height, box) && bounded;
+    }
     // edges are blurred by some texels
     const float soft = (float)(0.08 * solid->radius);
     for (int c = 0; c < 4; c++) {
@@ -201,9 +209,8 @@ void cs_ground_aim(struct cs_ground *ground, const struct cs_view_block *block,
             c < 2 ? fmaxf(box[c] - soft, whole[c]) : fminf(box[c] + soft, whole[c]);
         ground->box[c] = bounded ? inside : whole[c];
     }
-    // shadows are not seen from below, nor made by light from there
-    const bool seen = (double)block->eye[1] > (block->eye[3] > 0 ? height : 0.0) &&
-                      (double)block->light[1] > (block->light[3] > 0 ? height : 0.0);
+    // nor are they seen from there
+    const bool seen = lit && (double)block->eye[1] > (block->eye[3] > 0 ? height : 0.0);
     if (ground->line_spacing <= 0 && !seen)
         ground->box[2] = ground->box[0];
 }

@@ -28,6 +28,12 @@ static const struct cs_look_kind strain = {.colours = CS_COLOURS_STRAIN,
                                            .unit = "",
                                            .factor = 100,
                                            .has_sign = true};
+static const struct cs_look_kind stress = {.colours = CS_COLOURS_STRESS,
+                                           .stops = strain_stops,
+                                           .title = "stress N/m",
+                                           .unit = "N/m",
+                                           .factor = 1,
+                                           .has_sign = true};
 static const struct cs_look_kind goals = {.colours = CS_COLOURS_FAINT, .goals = true};
 static const struct cs_look_kind crossings = {.colours = CS_COLOURS_CROSSINGS,
                                               .stops = mark_stops};
@@ -60,6 +66,7 @@ void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *ma
         break;
     case CS_COLOURS_FORCE:
     case CS_COLOURS_STRAIN:
+    case CS_COLOURS_STRESS:
     case CS_COLOURS_CROSSINGS:
         style->mode = CS_SURFACE_VALUE;
     }

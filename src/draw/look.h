@@ -15,6 +15,7 @@ enum cs_look_colours {
     CS_COLOURS_FAINT,    /* pale, behind lines */
     CS_COLOURS_FORCE,    /* N */
     CS_COLOURS_STRAIN,   /* 1 */
+    CS_COLOURS_STRESS,   /* N/m */
     CS_COLOURS_CROSSINGS /* marks of triangles: 0 or 1 */
 };
 

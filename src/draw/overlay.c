@@ -117,6 +117,26 @@ bool cs_overlay_hides(const struct cs_scene *scene, uint32_t body) {
            cs_scene_bodies(scene)[body].network.present;
 }
 
+/* Red discs with a light border in front of all, those of the neighbours first (cloth thesis,
+ * fig. 6.4). */
+static void marks_draw(const struct cs_overlay *overlay, struct cs_lines *lines,
+                       const double *x) {
+    static const uint32_t colours[2] = {0xffffff, 0xd0121b};
+    const struct cs_wireframe *net = &overlay->wireframe;
+    for (int k = 0; k < 4; k++) {
+        struct cs_line_style style = {.alpha = 1, .on_top = true};
+        cs_colour_linear(colours[k % 2], style.colour);
+        style.half_width = (k < 2 ? 3 : 5.5) * net->line_unit - k % 2 * net->line_unit;
+        for (uint32_t i = 0; i < net->system->view.n; i++)
+            if (overlay->marks[i] == 1 + k / 2) {
+                double place[3];
+                cs_mesh_position(net->system->view.n, x, i, place);
+                cs_lines_add(lines, place, place);
+            }
+        cs_lines_draw(lines, &style);
+    }
+}
+
 void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *frame) {
     const struct cs_render *render = &overlay->wireframe.system->scene->render;
     const struct cs_look_kind *look = cs_look_of(render->look);
@@ -134,6 +154,8 @@ void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *fr
         cs_wireframe_draw_goals(net, lines, frame->x, frame->goals);
     if (render->viewpoint_forces)
         viewpoint_forces_draw(net, lines, frame);
+    if (overlay->marks)
+        marks_draw(overlay, lines, frame->x);
     if (frame->title)
         cs_colour_bar_draw(&overlay->colour_bar, lines, frame);
 }

@@ -49,6 +49,7 @@ void cs_wireframe_draw_threads(const struct cs_wireframe *net, struct cs_lines *
 struct cs_overlay {
     struct cs_wireframe wireframe;
     struct cs_colour_bar colour_bar;
+    const uint8_t *marks;   /* of the canvas settings, which its owner sets; NULL: none */
     struct cs_lines *lines; /* borrowed: a renderer's, with its calls set */
 };
 

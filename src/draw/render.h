@@ -21,12 +21,17 @@ struct cs_canvas;
 
 /* Inputs of a canvas that stay the same for all its pictures. */
 struct cs_canvas_settings {
-    const struct cs_scene *scene;   /* checked; borrowed while the canvas lives */
+    const struct cs_scene *scene; /* checked; borrowed while the canvas lives */
+    bool scene_varies; /* lights, materials, colours or field of view change from picture to
+                          picture; else the scene stays as it is */
     const struct cs_system *system; /* borrowed while the canvas lives */
     const struct cs_image
         *textures; /* (scene->bodies.n), width 0: none; needed by create only */
     const struct cs_posed_collider
-        *colliders;   /* (scene->colliders.n), at the start; needed by create only */
+        *colliders; /* (scene->colliders.n), at the start; needed by create only */
+    /* (n) particles to mark by discs: 2 by a large one, 1 by a small one; borrowed while the
+     * canvas lives; NULL: none */
+    const uint8_t *marks;
     bool fast_render; /* of OpenGL: do not pin the CPU capabilities: 1.4 times faster, pixels
                   depend on the machine */
     uint32_t threads; /* that may draw at the same time; the picture does not depend on them */
@@ -50,7 +55,7 @@ struct cs_frame {
     const struct cs_posed_collider *colliders; /* (scene->colliders.n) at t */
 };
 
-#define CS_RENDERER_ABI 8u /* raised with every change of the structs above or below */
+#define CS_RENDERER_ABI 9u /* raised with every change of the structs above or below */
 /* A renderer; the module exports it as clothsim_renderer. */
 struct cs_renderer {
     unsigned abi;

@@ -3,6 +3,8 @@
 
 #include "draw/look.h"
 
+#include <math.h>
+
 /* y^2.4 = y^2 (y^2)^(1/5) for y in 0..1. Newton's iteration for r^5 = y^2 is
  *   r' = (4 r + y^2 / r^4) / 5.
  * From r = 1, above the root, it falls by at most a fifth per step until it is near. */
@@ -72,6 +74,36 @@ uint32_t cs_srgb_blend_on_white(const struct cs_srgb *tone, uint32_t colour) {
     for (int k = 0; k < 3; k++)
         light[k] = (clear + (255 - clear) * tone->linear[colour >> 8 * k & 255]) / 255;
     return cs_srgb_pack(tone, light[0], light[1], light[2]);
+}
+
+/* Mean of the linear light in a box (left, top, right, bottom) of a picture, by area. */
+static void shrink_pixel(const struct cs_srgb *tone, const struct cs_image *picture,
+                         const double box[4], uint8_t out[3]) {
+    double light[3] = {0}, area = 0;
+    for (uint32_t y = (uint32_t)box[1]; y < picture->height && y < box[3]; y++)
+        for (uint32_t x = (uint32_t)box[0]; x < picture->width && x < box[2]; x++) {
+            const double share = (fmin(x + 1, box[2]) - fmax(x, box[0])) *
+                                 (fmin(y + 1, box[3]) - fmax(y, box[1]));
+            const size_t i = (size_t)y * picture->width + x;
+            const double cover = picture->alpha ? picture->alpha[i] / 255.0 : 1;
+            for (int k = 0; k < 3; k++)
+                light[k] +=
+                    share * (1 - cover + cover * (double)tone->linear[picture->rgb[3 * i + k]]);
+            area += share;
+        }
+    for (int k = 0; k < 3; k++)
+        out[k] = (uint8_t)cs_srgb_encode(tone, (float)fmin(light[k] / area, 1));
+}
+
+void cs_srgb_shrink(const struct cs_srgb *tone, const struct cs_image *picture,
+                    const uint32_t size[2], size_t first, const struct cs_image *paper) {
+    const double sx = (double)picture->width / size[0], sy = (double)picture->height / size[1];
+    for (uint32_t y = 0; y < size[1]; y++)
+        for (uint32_t x = 0; x < size[0]; x++) {
+            const double box[4] = {x * sx, y * sy, (x + 1) * sx, (y + 1) * sy};
+            shrink_pixel(tone, picture, box,
+                         paper->rgb + 3 * (first + (size_t)y * paper->width + x));
+        }
 }
 
 /* Colour maps of looks, the ink of lines, and a conversion from sRGB to linear RGB. */

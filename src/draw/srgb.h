@@ -99,6 +99,12 @@ CS_INLINE void cs_srgb_store(const struct cs_srgb *tone, uint32_t colour,
     image->rgb[3 * i + 2] = (uint8_t)(colour >> 16);
 }
 
+/* Shrinks a picture to size (width, height), with its upper left corner at pixel `first` of
+ * `paper`: each pixel is the mean of the linear light in the box that it covers, by area. What
+ * is not opaque lies on white. */
+void cs_srgb_shrink(const struct cs_srgb *tone, const struct cs_image *picture,
+                    const uint32_t size[2], size_t first, const struct cs_image *paper);
+
 /* Colour maps of values, and the colours of lines and marks. */
 
 /* Sets six evenly spaced stops in linear RGB for the look's values, lowest first. Force runs

@@ -90,8 +90,8 @@ void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
     set_camera(view, &scene->render, extent);
 }
 
-/* A lamp, a given direction, or by default light from above, in front and the right. */
-static void set_light(struct cs_view_block *block, const struct cs_light *light) {
+/* Position of a lamp or direction to a sun; by default from above, in front and the right. */
+static void set_light_place(struct cs_view_light *block, const struct cs_light *light) {
     double place[3] = {0.35, 0.8, 0.5};
     double is_point = 0;
     if (!isnan(light->point[0])) {
@@ -103,10 +103,39 @@ static void set_light(struct cs_view_block *block, const struct cs_light *light)
     }
     if (is_point == 0)
         cs_normalise(place);
-    copy3(place, is_point, block->light);
-    copy3(light->ambient, 1, block->ambient);
-    copy3(light->diffuse, 1, block->diffuse);
-    copy3(light->specular, 1, block->specular);
+    copy3(place, is_point, block->place);
+}
+
+/* The sum of a light's diffuse colour. */
+static double brightness(const struct cs_light *light) {
+    return light->strength * (light->diffuse[0] + light->diffuse[1] + light->diffuse[2]);
+}
+
+static const struct cs_light *light_of(const struct cs_scene *scene, uint32_t k) {
+    return k ? (const struct cs_light *)scene->lights.items + (k - 1) : &scene->light;
+}
+
+static void set_lights(struct cs_view_state *view, const struct cs_scene *scene) {
+    double all = 0;
+    view->n_lights = 1 + scene->lights.n;
+    view->block.size[3] = (float)view->n_lights;
+    copy3(scene->light.ambient, 1, view->block.ambient);
+    for (uint32_t k = 0; k < view->n_lights; k++)
+        all += brightness(light_of(scene, k));
+    for (uint32_t k = 0; k < view->n_lights; k++) {
+        const struct cs_light *light = light_of(scene, k);
+        struct cs_view_light *block = view->block.lights + k;
+        double diffuse[3], specular[3];
+        for (int i = 0; i < 3; i++) {
+            diffuse[i] = light->strength * light->diffuse[i];
+            specular[i] = light->strength * light->specular[i];
+        }
+        set_light_place(block, light);
+        copy3(diffuse, 1, block->diffuse);
+        copy3(specular, 1, block->specular);
+        block->shadow_params[3] = (float)(all > 0 ? brightness(light) / all : 0);
+        view->casts[k] = light->shadow;
+    }
 }
 
 /* Colours of the picture's upper and lower edge. A gradient without a second colour gets a
@@ -129,6 +158,11 @@ static void set_background(struct cs_view_block *block,
     copy3(below, background->kind != CS_BACKGROUND_NONE, block->bottom_colour);
 }
 
+void cs_view_set_colours(struct cs_view_state *view, const struct cs_scene *scene) {
+    set_lights(view, scene);
+    set_background(&view->block, &scene->render.background);
+}
+
 void cs_view_init(struct cs_view_state *view, const struct cs_system *system,
                   const struct cs_posed_collider *colliders,
                   const struct cs_bounding_sphere *extent) {
@@ -140,8 +174,7 @@ void cs_view_init(struct cs_view_state *view, const struct cs_system *system,
         cs_camera_fit_picture(&view->fit, 0, NULL, &view->camera);
     }
     set_camera(view, &scene->render, extent);
-    set_light(&view->block, &scene->light);
-    set_background(&view->block, &scene->render.background);
+    cs_view_set_colours(view, scene);
     cs_colour_stops(scene->render.look, view->block.colour_stops);
 }
 
@@ -167,20 +200,20 @@ static struct cs_bounding_sphere coarse(const struct cs_bounding_sphere *solid) 
     return ball;
 }
 
-bool cs_light_frustum_fit(const struct cs_bounding_sphere *solid, struct cs_view_block *block) {
+void cs_light_frustum_fit(const struct cs_bounding_sphere *solid, struct cs_view_light *block) {
     static const double up[3] = {0, 1, 0};
     double eye[3], from[3], look[16], lens[16], both[16];
     const struct cs_bounding_sphere ball = coarse(solid), *lit = &ball;
-    const bool is_lamp = block->light[3] > 0;
+    const bool is_lamp = block->place[3] > 0;
     for (int i = 0; i < 3; i++) {
-        const double light = (double)block->light[i];
+        const double light = (double)block->place[i];
         eye[i] = is_lamp ? light : lit->centre[i] + 2 * lit->radius * light;
     }
     cs_subtract(eye, lit->centre, from);
     const double distance = cs_length(from), r = lit->radius;
     block->shadow_params[2] = distance > 1.05 * r;
     if (block->shadow_params[2] == 0)
-        return false;
+        return;
 
     // tangent cone of the sphere: sin a = r / d, so tan a = r / sqrt(d^2 - r^2)
     const double slope = r / sqrt(distance * distance - r * r);
@@ -193,7 +226,12 @@ bool cs_light_frustum_fit(const struct cs_bounding_sphere *solid, struct cs_view
     cs_matrix_to_float(both, block->world_to_light);
     block->shadow_params[0] = 1.0f / CS_SHADOW_SIDE;
     block->shadow_params[1] = (float)(2 * (is_lamp ? slope * distance : r) / CS_SHADOW_SIDE);
-    return true;
+}
+
+void cs_light_frusta_fit(const struct cs_bounding_sphere *solid, struct cs_view_state *view) {
+    for (uint32_t k = 0; k < view->n_lights; k++)
+        if (view->casts[k])
+            cs_light_frustum_fit(solid, view->block.lights + k);
 }
 
 /* Extends a box by a point. */

@@ -11,25 +11,33 @@
 
 enum { CS_VIEW_BINDING = 0, CS_VIEW_STOPS = 6 };
 
+/* A light in the uniform block View. */
+struct cs_view_light {
+    float world_to_light[16];      /* by columns, to the clip space of its shadow map */
+    float place[4];                /* w 1: position of a lamp; w 0: direction to the sun */
+    float diffuse[4], specular[4]; /* linear RGB, times its strength */
+    float shadow_params[4]; /* size of a shadow texel in 0..1 and in m; 1 where there is a
+                               shadow; fraction of the diffuse light of all */
+};
+
 /* The uniform block View of the shaders in std140 layout: mat4 and vec4 only. */
 struct cs_view_block {
-    float world_to_clip[16];  /* by columns */
-    float world_to_light[16]; /* by columns, to the clip space of the shadow map */
-    float eye[4];             /* w 1: position; w 0: direction to an orthographic eye */
-    float light[4];           /* w 1: position of a lamp; w 0: direction to the sun */
-    float ambient[4], diffuse[4], specular[4]; /* linear RGB of the light */
-    float size[4];                             /* width, height in pixels; near plane in m */
-    float shadow_params[4]; /* size of a shadow texel in 0..1 and in m; 1 where there is a
-                               shadow */
-    float sky[4];           /* what surfaces of some looks are tinted by */
+    float world_to_clip[16]; /* by columns */
+    float eye[4];            /* w 1: position; w 0: direction to an orthographic eye */
+    float ambient[4];        /* linear RGB of the light from everywhere */
+    float size[4];           /* width, height in pixels; near plane in m; number of lights */
+    float sky[4];            /* what surfaces of some looks are tinted by */
     float top_colour[4],
         bottom_colour[4]; /* background at the upper and the lower edge; 1: it covers */
     float colour_stops[CS_VIEW_STOPS][4]; /* the colour map, linear RGB, lowest first */
+    struct cs_view_light lights[CS_LIGHTS];
 };
 
 /* View of the current frame. */
 struct cs_view_state {
     struct cs_view_block block;
+    uint32_t n_lights;        /* of the block */
+    bool casts[CS_LIGHTS];    /* those that shall cast shadows */
     unsigned buffer;          /* of OpenGL, made by the first upload */
     double pixels_per_m;      /* at the camera's target */
     struct cs_camera camera;  /* of this frame */
@@ -49,6 +57,9 @@ void cs_view_init(struct cs_view_state *view, const struct cs_system *system,
                   const struct cs_posed_collider *colliders,
                   const struct cs_bounding_sphere *extent);
 
+/* Fills lights and background from a scene. */
+void cs_view_set_colours(struct cs_view_state *view, const struct cs_scene *scene);
+
 /* Returns true if the camera may change from frame to frame: it follows a path, or fits itself
  * to the bodies. */
 static inline bool cs_view_varies(const struct cs_scene *scene) {
@@ -63,15 +74,18 @@ void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
 /* Uploads the block as a uniform buffer; OpenGL only. */
 void cs_view_upload(struct cs_view_state *view);
 
-/* The frustum of the shadow map: a cone or box of light around all casters.
+/* The frusta of the shadow maps: a cone or box of light around all casters.
  */
 
 enum { CS_SHADOW_SIDE = 512 }; /* texels: coarse enough to blur the edges */
 
-/* Fits the light's frustum to the sphere `solid` of all casters. Writes world_to_light and
- * shadow_params (1 / side; texel size in m at the centre; 1 or 0: shadows on) into the view
- * block. Returns false, with shadows off, if the lamp is within 1.05 radii of the centre. */
-bool cs_light_frustum_fit(const struct cs_bounding_sphere *solid, struct cs_view_block *block);
+/* Fits a light's frustum to the sphere `solid` of all casters. Writes world_to_light and
+ * shadow_params[0..2]: 1 / side; texel size in m at the centre; 1 or 0: shadows on. They are
+ * off if a lamp is within 1.05 radii of the centre. */
+void cs_light_frustum_fit(const struct cs_bounding_sphere *solid, struct cs_view_light *light);
+
+/* Fits those of all lights of the view that cast shadows. */
+void cs_light_frusta_fit(const struct cs_bounding_sphere *solid, struct cs_view_state *view);
 
 /* Returns a sphere around the particles at x (3,n) and the visible colliders
  * (scene->colliders.n) but planes: around their bounding box, with a radius of 1 mm at least.

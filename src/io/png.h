@@ -16,7 +16,7 @@ struct cs_png_text {
 /* Buffers that consecutive pictures share: allocating them per picture costs up to a third of
  * the time of compression. */
 struct cs_png_encoder {
-    int level;     /* of compression, 0..9 (1: fast, 6: archive); the rest starts zeroed */
+    int level;     /* of compression, 0..9 (2: fast, 6: archive); the rest starts zeroed */
     size_t length; /* of rows, in bytes */
     uint8_t *rows, *packed; /* filtered rows; compressed rows; owned */
     void *packer;           /* compressor of libdeflate; owned */
@@ -45,7 +45,7 @@ static inline void cs_png_join(const struct cs_image *image, size_t y, uint8_t *
 }
 
 /* Writes a temporary file and renames it: RGB, or RGBA if the image has alpha, compressed at
- * `level` of 0..9 (1: fast, 6: archive), filter Sub, no time stamp. Equal pictures thus give
+ * `level` of 0..9 (2: fast, 6: archive), filter Sub, no time stamp. Equal pictures thus give
  * equal files with one build of the compressor. On failure CS_ERR_FILE and no file is left. */
 static inline enum cs_status cs_png_write(const char *path, const struct cs_image *image,
                                           int level, const struct cs_png_text *texts,

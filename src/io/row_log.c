@@ -111,8 +111,8 @@ static enum cs_status resume_whole(struct cs_row_log *log, struct cs_error *erro
                 "\"%s\": it does not begin with the rows that the checkpoint goes on with",
                 log->path);
     else if (!open_part(log, error)) {
-        rewind(whole);
-        if (!read_rows(log, whole, log->file) || fflush(log->file))
+        if (fseeko(whole, 0, SEEK_SET) || !read_rows(log, whole, log->file) ||
+            fflush(log->file))
             fail(log, error);
     }
     if (whole)
@@ -132,7 +132,9 @@ enum cs_status cs_row_log_resume(struct cs_row_log *log, const char *path,
 enum cs_status cs_row_log_copy(const struct cs_row_log *log, uint64_t bytes, FILE *out,
                                struct cs_error *error) {
     char block[1 << 14];
-    rewind(log->file);
+    if (fseeko(log->file, 0, SEEK_SET))
+        return cs_fail(error, cs_file_status(errno), "cannot read \"%s\": %s", log->part,
+                       strerror(errno));
     while (bytes > 0) {
         const size_t n = bytes < sizeof block ? (size_t)bytes : sizeof block;
         if (fread(block, 1, n, log->file) != n)
@@ -155,11 +157,12 @@ enum cs_status cs_row_log_finish(struct cs_row_log *log, struct cs_error *error)
     return error->status;
 }
 
-void cs_row_log_remove(struct cs_row_log *log) {
+enum cs_status cs_row_log_remove(struct cs_row_log *log, struct cs_error *error) {
     if (log->file && !is_stdout(log)) {
         fclose(log->file);
         if (*log->path)
-            unlink(log->part);
+            cs_file_remove(log->part, error);
     }
     log->file = NULL;
+    return error->status;
 }

@@ -48,7 +48,7 @@ enum cs_status cs_row_log_copy(const struct cs_row_log *log, uint64_t bytes, FIL
 /* Closes the file and gives it its name, without what follows the last whole row. CS_ERR_FILE.
  */
 enum cs_status cs_row_log_finish(struct cs_row_log *log, struct cs_error *error);
-/* Closes and removes it; safe on a closed log. */
-void cs_row_log_remove(struct cs_row_log *log);
+/* Closes and removes it; safe on a closed log. CS_ERR_FILE if it cannot be removed. */
+enum cs_status cs_row_log_remove(struct cs_row_log *log, struct cs_error *error);
 
 #endif

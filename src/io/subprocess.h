@@ -3,8 +3,10 @@
 #define CS_SUBPROCESS_H
 
 #include "base/status.h"
+#include "base/text.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <sys/types.h>
 
@@ -15,31 +17,40 @@ struct cs_subprocess_result {
 };
 
 /* Runs arguments[0], searched on PATH, in the working directory `folder`, and waits for it;
- * arguments end with NULL. quiet: its standard error is discarded. A program that is missing or
- * fails is reported in *end, not as a failure. CS_ERR_MEMORY. */
-enum cs_status cs_subprocess_run(const char *folder, const char *const *arguments, bool quiet,
-                                 struct cs_subprocess_result *end, struct cs_error *error);
+ * arguments end with NULL. A program that is missing or fails is reported in the result. */
+struct cs_subprocess_result cs_subprocess_run(const char *folder, const char *const *arguments);
 
-/* A child process whose standard output is read through a pipe. */
+/* A child process of which one stream is read through a pipe. */
 struct cs_subprocess {
     pid_t pid;    /* 0: none */
-    FILE *output; /* its standard output, owned */
+    int reason;   /* errno if it could not be started */
+    FILE *output; /* the stream, owned */
 };
 
-/* Starts arguments[0], searched on PATH; arguments end with NULL. CS_ERR_FILE, CS_ERR_MEMORY.
- */
-enum cs_status cs_subprocess_open(struct cs_subprocess *program, const char *const *arguments,
-                                  bool quiet, struct cs_error *error);
+/* Starts arguments[0], searched on PATH, in the working directory `folder`; arguments end with
+ * NULL. stream: 1 to read its standard output, 2 its standard error. CS_ERR_FILE,
+ * CS_ERR_MEMORY. */
+enum cs_status cs_subprocess_open(struct cs_subprocess *program, const char *folder,
+                                  const char *const *arguments, int stream,
+                                  struct cs_error *error);
 
 /* Waits for its end; kills it first if its output was not read to the end. Returns its exit
  * code, or -1 if a signal ended it. Safe on a zeroed one. */
 int cs_subprocess_close(struct cs_subprocess *program);
 
-/* Runs gnuplot on a script if the program is installed. */
+/* The end of one script or of several; zeroed at the start. */
+struct cs_gnuplot {
+    bool drawn;        /* the last script was */
+    uint32_t n_failed; /* scripts; a missing gnuplot has not failed */
+    char first[700];   /* the first that failed, and why */
+};
 
-/* Runs FOLDER/SCRIPT in the working directory FOLDER. *drawn: gnuplot ran and succeeded; it may
- * be missing or fail, which is no failure here. CS_ERR_MEMORY. */
-enum cs_status cs_gnuplot_run(const char *folder, const char *script, bool *drawn,
+/* Runs FOLDER/NAME.gp in the working directory FOLDER. gnuplot may be missing or fail, which is
+ * no failure here; after a failure no picture NAME.* remains. CS_ERR_MEMORY. */
+enum cs_status cs_gnuplot_run(const char *folder, const char *name, struct cs_gnuplot *gnuplot,
                               struct cs_error *error);
+
+/* Adds a line about the scripts that gnuplot could not draw, if there are any. */
+void cs_gnuplot_warn(const struct cs_gnuplot *gnuplot, const char *bullet, struct cs_text *out);
 
 #endif

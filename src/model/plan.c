@@ -160,6 +160,7 @@ static void plan_needs(struct cs_plan *plan, const struct cs_scene *scene, uint3
     const bool matched = cs_scene_first_matched(scene) < plan->n_bodies;
     decide(plan, CS_FEATURE_SPRING_LIST, needs & CS_NEED_SPRINGS, "the integrator asks for it",
            idle);
+    plan->colours = needs & CS_NEED_SPRINGS && needs & CS_NEED_COLOURS;
     decide(plan, CS_FEATURE_CLUSTERS, needs & CS_NEED_CLUSTERS && matched,
            "bodies have shape_matching, and the integrator asks for it",
            needs & CS_NEED_CLUSTERS ? "no body has shape_matching" : idle);
@@ -203,6 +204,24 @@ bool cs_plan_has_own_springs(const struct cs_integrator *method) {
            method->needs & (CS_NEED_SPRINGS | CS_NEED_CLUSTERS);
 }
 
+/* Says what makes a scene's motion not smooth: contact, what acts after a step, events and
+ * their forces (CS_PART_EXTERNAL). NULL: nothing. */
+static const char *what_is_not_smooth(const struct cs_scene *scene) {
+    static const enum cs_feature features[] = {CS_FEATURE_EVENTS, CS_FEATURE_VELOCITY_LOSS,
+                                               CS_FEATURE_STRAIN_LIMIT, CS_FEATURE_CROSSINGS};
+    if (scene->colliders.n > 0 || cs_scene_has_body_contact(scene))
+        return scene->colliders.n > 0 ? "the scene has colliders" : "bodies have contact";
+    struct cs_plan plan;
+    cs_plan_make(&plan, scene, 0, false);
+    for (size_t k = 0; k < sizeof features / sizeof *features; k++)
+        if (plan.rows[features[k]].built)
+            return plan.rows[features[k]].reason;
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        if (plan.forces[k].built && cs_terms[k]->part_bits & CS_PART_EXTERNAL)
+            return plan.forces[k].reason;
+    return NULL;
+}
+
 enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integrator *method,
                              struct cs_error *error) {
     const uint32_t matched = cs_scene_first_matched(scene);
@@ -236,6 +255,12 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
                        "seams: integrator \"%s\" treats all forces but springs explicitly, for "
                        "which stitches are too stiff; use another integrator",
                        method->name);
+    const char *acts = method->traits & CS_SMOOTH_ONLY ? what_is_not_smooth(scene) : NULL;
+    if (acts)
+        return cs_fail(error, CS_ERR_SCENE,
+                       "integrator \"%s\" needs motion without contact or events, but %s; "
+                       "use another integrator",
+                       method->name, acts);
     return CS_OK;
 }
 

@@ -9,8 +9,8 @@
 #include "model/plan.h"
 
 #include "model/contact/approach.h"
+#include "model/contact/bristle_law.h"
 #include "model/contact/ccd/crossings.h"
-#include "model/contact/friction_anchors.h"
 #include "model/event/event_state.h"
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"
@@ -92,6 +92,57 @@ static void build_spring_list(struct cs_system *system, struct cs_error *error) 
     system->view.damping = damping;
     system->view.kind = kind;
     system->view.axial = axial;
+}
+
+/* begin[k] of the items k < n whose numbers key (m) has: positions in a list sorted by key,
+ * which items then is, stably. begin (n + 1) must be 0. Entry e of the list is e / each. */
+static void sort_by_key(uint32_t n, const uint32_t *key, size_t m, uint32_t each,
+                        uint32_t *begin, uint32_t *items) {
+    for (size_t e = 0; e < m; e++)
+        begin[key[e] + 1]++;
+    for (uint32_t k = 0; k < n; k++)
+        begin[k + 1] += begin[k];
+    for (size_t e = m; e-- > 0;)
+        items[--begin[key[e] + 1]] = (uint32_t)(e / each);
+    // each begin + 1 is now the begin of its own key
+    memmove(begin, begin + 1, n * sizeof *begin);
+    begin[n] = (uint32_t)m;
+}
+
+/* The first colour that no coloured neighbour of particle i has; UINT32_MAX: none yet. */
+static uint32_t first_free_colour(const struct cs_view *view, const uint32_t *colour,
+                                  uint32_t i) {
+    uint32_t found = 0;
+    for (uint32_t k = view->spring_begin[i]; k < view->spring_begin[i + 1]; k++) {
+        const uint32_t *ends = view->ends + 2 * (size_t)view->spring_items[k];
+        if (colour[ends[ends[0] == i]] == found) {
+            found++;
+            k = view->spring_begin[i] - 1; // again, for the next colour
+        }
+    }
+    return found;
+}
+
+/* Springs by particle and particles by colour, greedily in the order of their numbers. */
+static void build_colours(struct cs_system *system, struct cs_error *error) {
+    struct cs_view *view = &system->view;
+    const size_t n = view->n, m = 2 * (size_t)view->n_springs;
+    uint32_t *words = cs_arena_alloc_array(&system->arena, 4 * n + m + 2, sizeof *words, error);
+    if (!words)
+        return;
+    uint32_t *colour = words, *items = colour + n, *spring_begin = items + n;
+    uint32_t *spring_items = spring_begin + n + 1, *begin = spring_items + m;
+    sort_by_key(view->n, view->ends, m, 2, spring_begin, spring_items);
+    view->spring_begin = spring_begin;
+    view->spring_items = spring_items;
+    memset(colour, 0xff, n * sizeof *colour);
+    for (uint32_t i = 0; i < n; i++) {
+        colour[i] = first_free_colour(view, colour, i);
+        view->n_colours = colour[i] >= view->n_colours ? colour[i] + 1 : view->n_colours;
+    }
+    sort_by_key(view->n_colours, colour, n, 1, begin, items);
+    view->colour_begin = begin;
+    view->colour_items = items;
 }
 
 /* Each particle's part of the surface in m2. */
@@ -220,6 +271,8 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
         cs_thread_partition_build(system, error);
     if (!error->status && begin(system, CS_FEATURE_SPRING_LIST))
         build_spring_list(system, error);
+    if (!error->status && system->plan.colours)
+        build_colours(system, error);
     if (!error->status && begin(system, CS_FEATURE_CLUSTERS))
         cs_shape_clusters_build(system, error);
     if (error->status)

@@ -27,7 +27,7 @@ double cs_scene_key_frame_speed(const struct cs_scene *scene) {
     return most;
 }
 
-const struct cs_collider *cs_scene_obstacle(const struct cs_scene *scene, uint32_t surface) {
+const struct cs_collider *cs_scene_collider_at(const struct cs_scene *scene, uint32_t surface) {
     return surface < scene->bodies.n ? NULL
                                      : cs_scene_colliders(scene) + (surface - scene->bodies.n);
 }
@@ -35,7 +35,7 @@ const struct cs_collider *cs_scene_obstacle(const struct cs_scene *scene, uint32
 /* Contact of a body with a collider that is a mesh, with the collider's friction. */
 static bool hits_obstacle(const struct cs_scene *scene, uint32_t a, uint32_t b,
                           double *friction) {
-    const struct cs_collider *collider = cs_scene_obstacle(scene, a < b ? b : a);
+    const struct cs_collider *collider = cs_scene_collider_at(scene, a < b ? b : a);
     *friction = collider->friction;
     return collider->mesh.present && (a < scene->bodies.n || b < scene->bodies.n);
 }

@@ -11,7 +11,7 @@
 uint32_t cs_scene_surfaces(const struct cs_scene *scene);
 
 /* Returns the collider of a surface; NULL if it is a body. */
-const struct cs_collider *cs_scene_obstacle(const struct cs_scene *scene, uint32_t surface);
+const struct cs_collider *cs_scene_collider_at(const struct cs_scene *scene, uint32_t surface);
 
 /* Returns true if a collider has key frames, and the largest speed in m/s of a vertex on any of
  * them; 0 if none has. */

@@ -8,9 +8,9 @@
 /* Tension per strain in the plane, in N/m: young and poisson, or the four others. */
 struct cs_membrane_keys {
     bool present;
-    double young, poisson;        /* isotropic; NAN: not given */
-    double warp, weft, shear;     /* orthotropic; NAN: not given */
-    double coupling;              /* of warp and weft */
+    double young, poisson;    /* isotropic; NAN: not given */
+    double warp, weft, shear; /* orthotropic; NAN: not given */
+    double coupling;          /* of warp and weft */
 };
 
 /* Moment per curvature, in N m: stiffness and poisson, or the four others. */
@@ -19,11 +19,13 @@ struct cs_bending_keys {
     double stiffness, poisson; /* isotropic; NAN: not given */
     double warp, weft, twist;  /* orthotropic; NAN: not given */
     double coupling;           /* of warp and weft */
+    double damping;            /* s: moment per rate of curvature over moment per curvature */
 };
 
-/* Law of force of a body instead of springs. */
+/* Law of force of a body instead of springs: a cloth of the library, or constants. */
 struct cs_elastic {
     bool present;
+    int32_t cloth; /* of the library; -1: none */
     struct cs_membrane_keys membrane;
     struct cs_bending_keys bending;
     double damping; /* s: stress per rate of strain over stress per strain */
@@ -40,5 +42,7 @@ struct cs_moduli {
 struct cs_moduli cs_membrane_moduli(const struct cs_elastic *elastic);
 /* Moduli of bending in N m; likewise, with the stiffness D: D (1, 1, p, (1 - p)/2). */
 struct cs_moduli cs_bending_moduli(const struct cs_elastic *elastic);
+/* Returns true if the body resists bending. */
+bool cs_elastic_bends(const struct cs_elastic *elastic);
 
 #endif

@@ -21,12 +21,33 @@ static const char *const changeable[] = {"bodies.springs.stretch",
                                          "bodies.mass.areal_density",
                                          "colliders.friction",
                                          "colliders.absorption",
+                                         "colliders.sphere.radius",
+                                         "colliders.capsule.radius",
+                                         "colliders.thickness",
+                                         "bodies.shape_matching.alpha",
+                                         "bodies.shape_matching.beta",
                                          "bodies.elastic.membrane.young",
                                          "bodies.elastic.membrane.shear",
                                          "bodies.elastic.bending.stiffness",
                                          "bodies.elastic.bending.twist",
+                                         "bodies.elastic.bending.damping",
                                          "bodies.elastic.damping",
                                          NULL};
+
+/* Numbers of the pictures that may change, by the start of their paths without indices. */
+static const char *const pictured[] = {"bodies.material.colour",
+                                       "bodies.material.back_colour",
+                                       "bodies.material.ambient",
+                                       "bodies.material.diffuse",
+                                       "bodies.material.specular",
+                                       "bodies.material.shininess",
+                                       "colliders.colour",
+                                       "camera.fov",
+                                       "light.",
+                                       "lights.",
+                                       "render.background.colour",
+                                       "render.background.below",
+                                       NULL};
 
 /* Prefixes of keys that cannot change, and why; the first that fits counts. */
 static const struct {
@@ -36,16 +57,14 @@ static const struct {
     {"bodies.cloth", "it defines the start of the body"},
     {"bodies.mesh", "it defines the start of the body"},
     {"bodies.network", "springs are created at the start"},
-    {"bodies.shape_matching", "shape matching is fixed during a run"},
+    {"bodies.shape_matching", "clusters are made at the start"},
+    {"bodies.thickness", "ranges of contact are set at the start"},
     {"bodies.pins", "use the events pin and release"},
-    {"bodies.material", "it affects the pictures, not the motion"},
-    {"camera", "it affects the pictures, not the motion"},
-    {"light", "it affects the pictures, not the motion"},
-    {"render", "it affects the pictures, not the motion"},
+    {"bodies.material", "textures are read at the start"},
+    {"camera", "use camera.path"},
+    {"render", "it holds for all pictures"},
     {"time", "frames are evenly spaced"},
-    {"colliders.colour", "it affects the pictures, not the motion"},
-    {"colliders.visible", "it affects the pictures, not the motion"},
-    {"colliders.thickness", "it is part of the collider's shape"},
+    {"colliders.visible", "it holds for all pictures"},
     {"colliders", "use the event move"},
     {"contact", "the contact law is fixed during a run"},
     {"events", "events cannot change events"},
@@ -141,11 +160,34 @@ static const struct cs_option *descend(struct walk *walk) {
     }
 }
 
+/* Returns true if a path without indices is of a number of the pictures. */
+static bool is_pictured(const char *plain) {
+    for (uint32_t k = 0; pictured[k]; k++)
+        if (!strncmp(plain, pictured[k], strlen(pictured[k])))
+            return true;
+    return false;
+}
+
+bool cs_event_key_is_picture(const char *path) {
+    char plain[CS_TEXT_MAX];
+    size_t n = 0;
+    bool inside = false;
+    for (; *path && n + 1 < sizeof plain; path++) {
+        inside = *path == '[' || (inside && *path != ']');
+        if (!inside && *path != ']')
+            plain[n++] = *path;
+    }
+    plain[n] = '\0';
+    return is_pictured(plain);
+}
+
 /* Checks that the number may change during a run. */
 static enum cs_status check_changeable(const struct walk *walk, const struct cs_option *row) {
     for (uint32_t k = 0; changeable[k]; k++)
         if (!strcmp(walk->plain, changeable[k]))
             return CS_OK;
+    if (is_pictured(walk->plain) && (row->type == CS_REAL || row->type == CS_VECTOR))
+        return CS_OK;
     for (uint32_t k = 0; k < sizeof fixed / sizeof *fixed; k++)
         if (!strncmp(walk->plain, fixed[k].start, strlen(fixed[k].start)))
             return cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: %s", walk->path,
@@ -176,11 +218,22 @@ static enum cs_status check_springs(const struct walk *walk, const struct cs_bod
                : CS_OK;
 }
 
+/* Returns true for a path of a collider's radius or thickness. */
+static bool grows(const char *path) {
+    return !strncmp(path, "colliders", 9) &&
+           (strstr(path, ".radius") || strstr(path, ".thickness"));
+}
+
 /* Checks that the scene has the number: an absent one cannot appear during a run. */
 static enum cs_status check_there(const struct walk *walk, const struct cs_scene *scene) {
     const double value = *(const double *)(const void *)walk->object;
     if (isnan(value))
         return cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: the scene has none",
+                       walk->path);
+    if (grows(walk->plain) && scene->contact.law != CS_CONTACT_FORCE)
+        return cs_fail(walk->error, CS_ERR_SCENE,
+                       "%.120s cannot change: contact.law project bounds the energy of pushes; "
+                       "expected contact.law force",
                        walk->path);
     if (!strcmp(walk->plain, "forces.wind.strength") && !scene->forces.wind.present)
         return cs_fail(walk->error, CS_ERR_SCENE,
@@ -215,6 +268,10 @@ bool cs_event_key_changes(const struct cs_scene *scene, const char *key) {
 
 bool cs_event_key_acts(const struct cs_scene *scene, double value, const char *key) {
     return value != 0 || cs_event_key_changes(scene, key);
+}
+
+bool cs_event_grows(const struct cs_event *event) {
+    return event->ramp.present && grows(event->ramp.key);
 }
 
 bool cs_event_changes_mass(const struct cs_event *event) {

@@ -16,12 +16,20 @@ struct cs_event_key {
 enum cs_status cs_event_key_find(struct cs_scene *scene, const char *path,
                                  struct cs_event_key *key, struct cs_error *error);
 
+/* Returns true for a key of the pictures: a ramp of it changes neither steps nor states, and
+ * pictures take its value at their time (study/frame_picture.h). */
+bool cs_event_key_is_picture(const char *path);
+
 /* Returns true if a ramp of the scene gives a value other than 0 to a key whose path contains
  * `key`. */
 bool cs_event_key_changes(const struct cs_scene *scene, const char *key);
 
 /* Returns true if a number of the scene is ever other than 0: now, or after a ramp of `key`. */
 bool cs_event_key_acts(const struct cs_scene *scene, double value, const char *key);
+
+/* Returns true if an event of a checked scene moves the surface of a collider by its radius or
+ * thickness. */
+bool cs_event_grows(const struct cs_event *event);
 
 /* Returns true if an event of a checked scene changes masses. */
 bool cs_event_changes_mass(const struct cs_event *event);

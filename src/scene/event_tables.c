@@ -40,7 +40,7 @@ const struct cs_table cs_pin_table = {ROWS(pin_rows),         .size = sizeof(str
 
 static const double absent3[3] = {ABSENT, ABSENT, ABSENT}, zero3[3] = {0, 0, 0};
 
-/* what an event acts on: the same two keys in each that acts on particles */
+/* The two keys of every event that acts on particles. */
 #define AIM_ROWS(s)                                                                            \
     {.name = "body",                                                                           \
      .unit = "",                                                                               \
@@ -116,7 +116,7 @@ static const struct cs_table viewpoint_force_table = {
 static const struct cs_option ramp_rows[] = {
     TEXT(struct cs_ramp, key,
          "path of a number of forces, springs, strain limit, friction or absorption, such as "
-         "bodies[0].springs.stretch or forces.gravity[1]"),
+         "bodies[0].springs.stretch or forces.gravity[1]; must be given"),
     REAL(struct cs_ramp, value, "", ABSENT, -1e12, 1e12,
          "new value, within the key's range; must be given"),
 };

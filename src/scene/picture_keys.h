@@ -1,4 +1,4 @@
-/* picture_keys.h - what a scene says of its pictures: camera, light, look, what is around. */
+/* picture_keys.h - the keys of pictures: camera, light, look, background, ground. */
 #ifndef CS_PICTURE_KEYS_H
 #define CS_PICTURE_KEYS_H
 
@@ -20,10 +20,13 @@ struct cs_camera {
 };
 
 /* one of point and direction */
+enum { CS_LIGHTS = 4 }; /* most of a scene: light and lights */
 struct cs_light {
     double point[3];     /* m; first component NAN: absent */
     double direction[3]; /* from which the light travels; first component NAN: absent */
     double ambient[3], diffuse[3], specular[3]; /* intensities, linear RGB */
+    double strength;                            /* factor of diffuse and specular */
+    bool shadow;                                /* it casts shadows */
 };
 
 /* X(NAME, name): the looks; what each shows is in draw/look.c. */
@@ -31,7 +34,7 @@ struct cs_light {
     X(LIT, lit)                                                                                \
     X(WIREFRAME, wireframe)                                                                    \
     X(SPRINGS, springs)                                                                        \
-    X(FORCE, force) X(STRAIN, strain) X(GOALS, goals) X(CROSSINGS, crossings)
+    X(FORCE, force) X(STRAIN, strain) X(GOALS, goals) X(CROSSINGS, crossings) X(STRESS, stress)
 
 enum cs_look {
 #define X(NAME, name) CS_LOOK_##NAME,
@@ -39,11 +42,17 @@ enum cs_look {
 #undef X
 };
 enum cs_background_kind { CS_BACKGROUND_GRADIENT, CS_BACKGROUND_FLAT, CS_BACKGROUND_NONE };
-/* what is behind everything; colours are linear RGB */
+/* Drawn behind everything; colours are linear RGB. */
 struct cs_background {
     int32_t kind; /* enum cs_background_kind */
     double colour[3];
     double below[3]; /* at the lower edge of a gradient; first component NAN: a darker colour */
+};
+
+/* particles that pictures mark */
+struct cs_marks {
+    int64_t body;
+    struct cs_list particles; /* struct cs_pin; empty: none */
 };
 
 enum cs_ground_kind { CS_GROUND_AUTO, CS_GROUND_NONE, CS_GROUND_SHADOW, CS_GROUND_GRID };
@@ -52,15 +61,17 @@ struct cs_render {
     int64_t size[2]; /* pixels: width, height */
     int64_t samples; /* of multisampling: 1 or 4 */
     int32_t look;    /* enum cs_look */
-    double range[2]; /* of the colours of looks force [N] and strain; NAN: from the frame */
+    double range[2]; /* of the colours of looks force [N], strain and stress [N/m]; NAN: from
+                        the frame */
     struct cs_background background;
     bool viewpoint_forces; /* show what viewpoint forces see, and from where */
     int32_t ground;        /* enum cs_ground_kind: what is drawn on a plane y = ground_height */
     double ground_height;  /* m; NAN: below all that moves */
+    struct cs_marks marks;
 };
 
-/* Of the camera, the light and the rest. */
-extern const struct cs_table cs_camera_table, cs_light_table, cs_render_table;
+/* The keys of camera, lights and looks. */
+extern const struct cs_table cs_camera_table, cs_light_table, cs_lights_table, cs_render_table;
 extern const char *const cs_look_names[];
 
 #endif

@@ -40,15 +40,24 @@ const struct cs_table cs_camera_table = {ROWS(camera_rows), .size = sizeof(struc
 
 static const double dim[3] = {0.16, 0.17, 0.19};
 static const double bright[3] = {1, 0.97, 0.92};
+/* rows of every light; only the first has an ambient one between them */
+#define PLACE_ROWS                                                                             \
+    VECTOR(struct cs_light, point, 3, "m", absent3, -BIG, BIG, "position of a lamp"),          \
+        VECTOR(struct cs_light, direction, 3, "", absent3, -BIG, BIG,                          \
+               "direction in which sunlight travels, instead of point")
+#define COLOUR_ROWS                                                                            \
+    VECTOR(struct cs_light, diffuse, 3, "", bright, 0, 10, "intensity id, linear RGB"),        \
+        VECTOR(struct cs_light, specular, 3, "", bright, 0, 10, "intensity is, linear RGB"),   \
+        REAL(struct cs_light, strength, "", 1, 0, 1000, "factor of diffuse and specular"),     \
+        BOOL(struct cs_light, shadow, 1, "it casts shadows")
 static const struct cs_option light_rows[] = {
-    VECTOR(struct cs_light, point, 3, "m", absent3, -BIG, BIG, "position of a lamp"),
-    VECTOR(struct cs_light, direction, 3, "", absent3, -BIG, BIG,
-           "direction in which sunlight travels, instead of point"),
+    PLACE_ROWS,
     VECTOR(struct cs_light, ambient, 3, "", dim, 0, 10, "intensity ia, linear RGB"),
-    VECTOR(struct cs_light, diffuse, 3, "", bright, 0, 10, "intensity id, linear RGB"),
-    VECTOR(struct cs_light, specular, 3, "", bright, 0, 10, "intensity is, linear RGB"),
+    COLOUR_ROWS,
 };
+static const struct cs_option further_rows[] = {PLACE_ROWS, COLOUR_ROWS};
 const struct cs_table cs_light_table = {ROWS(light_rows), .size = sizeof(struct cs_light)};
+const struct cs_table cs_lights_table = {ROWS(further_rows), .size = sizeof(struct cs_light)};
 
 #define X(NAME, name) #name,
 const char *const cs_look_names[] = {CS_LOOK_LIST(X) NULL};
@@ -70,6 +79,11 @@ static const struct cs_table background_table = {
     ROWS(background_rows), .size = sizeof(struct cs_background), .shorthand_text = "kind",
     .shorthand_list = "colour"};
 static const char *const ground_names[] = {"auto", "none", "shadow", "grid", NULL};
+static const struct cs_option mark_rows[] = {
+    INT(struct cs_marks, body, "", 0, 0, 4294967295.0, "number of the body from 0"),
+    LIST(struct cs_marks, particles, cs_pin_table, "of the body, named as in its pins"),
+};
+static const struct cs_table mark_table = {ROWS(mark_rows), .size = sizeof(struct cs_marks)};
 static const struct cs_option render_rows[] = {
     COUNTS(struct cs_render, size, 2, "pixels", vga, 16, 8192, "width and height"),
     INT(struct cs_render, samples, "", 4, 1, 4, "of multisampling, 1 or 4"),
@@ -87,5 +101,7 @@ static const struct cs_option render_rows[] = {
         "if the scene has no visible floor and nothing can fall without end, else none"),
     REAL(struct cs_render, ground_height, "m", ABSENT, -BIG, BIG,
          "y of the ground; absent: the floor's y, or below everything that moves"),
+    TABLE(struct cs_render, marks, mark_table,
+          "particles to mark by red discs, the first by a larger one"),
 };
 const struct cs_table cs_render_table = {ROWS(render_rows), .size = sizeof(struct cs_render)};

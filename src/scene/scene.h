@@ -13,10 +13,9 @@
 #include "base/status.h"
 #include "mesh/spring_network.h"
 #include "mesh/vertex_paths.h"
+#include "scene/body_keys.h"
 #include "scene/elastic_keys.h"
-#include "scene/pair_keys.h"
 #include "scene/picture_keys.h"
-#include "scene/pin_keys.h"
 
 #include <clothsim/option.h>
 
@@ -51,8 +50,8 @@ struct cs_mesh_source {
     int64_t detail;         /* divisions of a generated shape (trimesh_shape.c) */
     double scale[3];        /* factors of the coordinates of file or shape */
     struct cs_pose place;
-    double velocity[3]; /* m/s, of every free particle at time 0 */
-    double spin[3];     /* rad/s, about place.translate */
+    double velocity[3];              /* m/s, of every free particle at time 0 */
+    double spin[3];                  /* rad/s, about place.translate */
     struct cs_key_frames key_frames; /* of a collider */
     /* not in the tables: made by the reader, owned by the scene's arena; shared and constant */
     const struct cs_trimesh *geometry;
@@ -114,7 +113,7 @@ struct cs_body {
     struct cs_spring_law springs;
     struct cs_elastic elastic; /* instead of springs */
     struct cs_list pins;       /* struct cs_pin */
-    bool self_contact;   /* contact with itself; needs contact.law force */
+    bool self_contact;         /* contact with itself; needs contact.law force */
     double thickness;    /* m, range of its contact with bodies; 0: a fraction of its edges */
     double friction;     /* Coulomb coefficient of self-contact */
     double strain_limit; /* max length of a stretch spring / rest length; NAN: none */
@@ -321,6 +320,7 @@ struct cs_scene {
     struct cs_time time;
     struct cs_camera camera;
     struct cs_light light;
+    struct cs_list lights; /* struct cs_light, beside it */
     struct cs_render render;
 
     char integrator[64];                /* the "integrator" object is read apart */

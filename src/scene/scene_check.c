@@ -282,11 +282,48 @@ static enum cs_status check_camera(const struct cs_check *at, const struct cs_ca
     return check_camera_path(at, camera);
 }
 
-static enum cs_status check_light(const struct cs_check *at, struct cs_light *light) {
+static enum cs_status check_light(const struct cs_check *at, const char *path,
+                                  struct cs_light *light) {
     const bool point = !isnan(light->point[0]), direction = !isnan(light->direction[0]);
+    char key[CS_TEXT_MAX];
+    snprintf(key, sizeof key, "%s.direction", path);
     if (point && direction)
-        return cs_check_refuse(at, "light", "found point and direction, expected one of them");
-    return direction ? cs_check_unit(at, "light.direction", light->direction, 3) : CS_OK;
+        return cs_check_refuse(at, path, "found point and direction, expected one of them");
+    return direction ? cs_check_unit(at, key, light->direction, 3) : CS_OK;
+}
+
+/* Checks light and lights; only the first has a direction by default. */
+static enum cs_status check_lights(const struct cs_check *at, struct cs_scene *scene) {
+    struct cs_light *lights = scene->lights.items;
+    if (scene->lights.n >= CS_LIGHTS)
+        return cs_check_refuse(at, "lights", "found %u, expected at most %d", scene->lights.n,
+                               CS_LIGHTS - 1);
+    for (uint32_t k = 0; k < scene->lights.n; k++) {
+        char path[32];
+        snprintf(path, sizeof path, "lights[%u]", k);
+        if (isnan(lights[k].point[0]) && isnan(lights[k].direction[0]))
+            return cs_check_refuse(at, path, "expected a point or a direction");
+        if (check_light(at, path, lights + k))
+            return at->error->status;
+    }
+    return check_light(at, "light", &scene->light);
+}
+
+/* Checks that the body has the marked particles. */
+static enum cs_status check_marks(const struct cs_check *at, const struct cs_scene *scene) {
+    const struct cs_marks *marks = &scene->render.marks;
+    const struct cs_pin *pins = marks->particles.items;
+    char path[64], fault[200];
+    if (marks->body >= scene->bodies.n)
+        return cs_check_refuse(at, "render.marks.body", "found %lld, expected 0..%u",
+                               (long long)marks->body, scene->bodies.n - 1);
+    for (uint32_t k = 0; k < marks->particles.n; k++) {
+        snprintf(path, sizeof path, "render.marks.particles[%u]", k);
+        if (cs_shape_pin_fault(cs_scene_bodies(scene) + marks->body, pins + k, fault,
+                               sizeof fault))
+            return cs_check_refuse(at, path, "%s", fault);
+    }
+    return CS_OK;
 }
 
 /* Checks samples, range and background of the pictures. */
@@ -312,8 +349,9 @@ enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_
         check_sticking(&at, scene) || cs_seams_check(&at, scene) ||
         (scene->forces.wind.present &&
          cs_check_unit(&at, "forces.wind.direction", scene->forces.wind.direction, 3)) ||
-        check_camera(&at, &scene->camera) || check_light(&at, &scene->light) ||
-        check_render(&at, &scene->render) || cs_events_check(scene, path_out, error))
+        check_camera(&at, &scene->camera) || check_lights(&at, scene) ||
+        check_render(&at, &scene->render) || check_marks(&at, scene) ||
+        cs_events_check(scene, path_out, error))
         return error->status;
     return CS_OK;
 }

@@ -269,7 +269,7 @@ static const struct cs_table pair_table = {ROWS(pair_rows),
                                            .size = sizeof(struct cs_body_pair_keys)};
 static const char *const among_names[] = {"listed", "all", NULL};
 static const struct cs_option pairs_rows[] = {
-    CHOICE(struct cs_body_pairs_keys, among, among_names, CS_PAIRS_LISTED,
+    CHOICE(struct cs_body_pairs_keys, among, among_names, CS_PAIRS_NAMED,
            "listed: the pairs of list; all: every two bodies"),
     REAL(struct cs_body_pairs_keys, friction, "", 0, 0, 1000,
          "for all: Coulomb coefficient between two bodies that are not in the list"),
@@ -332,7 +332,9 @@ static const struct cs_option scene_rows[] = {
     LIST(struct cs_scene, events, cs_event_table, "changes at a time or over an interval"),
     TABLE(struct cs_scene, time, time_table, "frames"),
     TABLE(struct cs_scene, camera, cs_camera_table, "look-at camera"),
-    TABLE(struct cs_scene, light, cs_light_table, "one light, at a point or from a direction"),
+    TABLE(struct cs_scene, light, cs_light_table,
+          "the first light, at a point or from a direction"),
+    LIST(struct cs_scene, lights, cs_lights_table, "up to 3 further lights"),
     TABLE(struct cs_scene, render, cs_render_table, "picture"),
 };
 const struct cs_table cs_scene_table = {ROWS(scene_rows), .size = sizeof(struct cs_scene)};

@@ -15,8 +15,8 @@
 #include "sim/run_host.h"
 
 #include "base/vector.h"
+#include "model/contact/bristle_law.h"
 #include "model/contact/ccd/step_limit.h"
-#include "model/contact/friction_anchors.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/post_step/contact_projection.h"
 #include "model/system/seams.h"
@@ -61,6 +61,7 @@ static bool store_contact(struct cs_run_host *host, double t, const double *x, c
         cs_static_friction_clear(&contact->static_friction);
     const bool others = cs_contact_projection_update_sticking(contact, t, x, v);
     cs_host_pin(host, true);
+    cs_view_pages_update(&host->pages, &host->run->system->view);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
     return others;
 }

@@ -5,7 +5,10 @@
  * stack, write and _exit. */
 #include "sim/crash.h"
 
+#include "base/clock.h"
+
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,7 +25,19 @@ static const struct {
                {SIGFPE, ": it divided by zero"},
                {SIGILL, ": it executed an illegal instruction"},
                {SIGABRT, ": it aborted"}};
-enum { SIGNALS = sizeof signals / sizeof *signals, STACK = 65536, TEXT = 1024 };
+
+/* At most this is added to a waiting time by one look, s. */
+#define LONGEST_LOOK 0.2
+
+enum {
+    ENDED_BY_EXIT = -1,
+    ENDED_BY_CHANGE = -2,
+    SIGNALS = sizeof signals / sizeof *signals,
+    STACK = 65536,
+    TEXT = 1024
+};
+
+static const char IN_DESTROY[] = " in destroy";
 
 /* The log of this process, unless cs_crash_log_to gave another; and the handlers before ours.
  */
@@ -75,7 +90,7 @@ static struct cs_crash_call *find_call(void) {
     for (int k = 0; k < CS_CRASH_SIDES; k++) {
         struct cs_crash_call *call = calls->calls + k;
         const bool own_thread = call->kind && pthread_equal(call->thread, pthread_self());
-        const bool under_way = cs_crash_is_under_way(call);
+        const bool under_way = cs_crash_is_running(call);
         if (own_thread && under_way)
             return call;
         calls_modules |= own_thread;
@@ -114,6 +129,7 @@ static void report_exit(void) {
     if (!call)
         return;
     call->out_of_memory |= errno == ENOMEM;
+    call->signal = ENDED_BY_EXIT;
     write_report(call, "ended the program ", "");
 }
 
@@ -129,11 +145,28 @@ static void prepare(void) {
         sigaction(signals[k].number, &action, before + k);
 }
 
+/* The true standard output while calls write to standard error; 0: they do not. */
+static int output;
+
+void cs_crash_divert_output(void) {
+    output = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+}
+
+/* Writes what waits, and then points standard output elsewhere. Where the module left no way to
+ * do so, it is closed, which is noticed. */
+static void point_output(int file) {
+    fflush(stdout);
+    if (dup2(file, STDOUT_FILENO) < 0)
+        close(STDOUT_FILENO);
+}
+
 void cs_crash_watch(enum cs_crash_side side, const char *kind, const char *name,
                     const char *place) {
     static pthread_once_t prepared = PTHREAD_ONCE_INIT;
     struct cs_crash_call *call = calls->calls + side;
     pthread_once(&prepared, prepare);
+    if (output > 0 && side == CS_CRASH_METHOD)
+        point_output(STDERR_FILENO);
     /* not snprintf, which is slow for a call at every advance */
     const size_t length = strnlen(name, sizeof call->name - 1);
     memcpy(call->name, name, length);
@@ -142,6 +175,7 @@ void cs_crash_watch(enum cs_crash_side side, const char *kind, const char *name,
     call->place = place;
     call->thread = pthread_self();
     call->process = getpid();
+    atomic_store(&call->host_parity, 0);
     atomic_fetch_add(&call->call_parity, 1);
     errno = 0;
 }
@@ -153,7 +187,16 @@ void cs_crash_forget(enum cs_crash_side side) {
     if (call->process != getpid())
         _exit(cs_status_exit_code(CS_ERR_MODULE));
     call->out_of_memory |= starved;
+    if (output > 0 && side == CS_CRASH_METHOD)
+        point_output(output);
     atomic_fetch_add(&call->call_parity, 1);
+}
+
+_Noreturn void cs_crash_end(enum cs_crash_side side, const char *what) {
+    struct cs_crash_call *call = calls->calls + side;
+    call->place = what;
+    call->signal = ENDED_BY_CHANGE;
+    write_report(call, "changed ", IN_DESTROY);
 }
 
 void cs_crash_begin(enum cs_crash_side side) {
@@ -164,8 +207,44 @@ bool cs_crash_was_starved(enum cs_crash_side side) {
     return calls->calls[side].out_of_memory;
 }
 
+/* one thread writes: no locked instruction is needed */
+void cs_crash_note_host(void) {
+    atomic_uint *parity = &calls->calls[CS_CRASH_METHOD].host_parity;
+    const unsigned now = atomic_load_explicit(parity, memory_order_relaxed);
+    atomic_store_explicit(parity, now + 1, memory_order_relaxed);
+}
+
 void cs_crash_log_to(struct cs_crash_log *log) {
     calls = log;
+}
+
+/* Each entry and exit of a call increments its parity. The waiting time grows while that does
+ * not change, the silence while the host is not at work either. */
+double cs_crash_patience_look(struct cs_crash_patience *patience,
+                              const struct cs_crash_log *log) {
+    const double now = cs_clock_wall(), passed = now - patience->looked,
+                 step = passed < LONGEST_LOOK ? passed : LONGEST_LOOK;
+    patience->looked = now;
+    // an odd parity of the host is work that the method waits for
+    for (int k = 0; k < CS_CRASH_SIDES; k++) {
+        const unsigned call = atomic_load(&log->calls[k].call_parity);
+        const unsigned host = atomic_load(&log->calls[k].host_parity);
+        const bool same = call == patience->calls[k];
+        const bool mute = same && host == patience->hosts[k] && host % 2 == 0;
+        patience->waited[k] = same ? patience->waited[k] + step : 0;
+        patience->silent[k] = mute ? patience->silent[k] + step : 0;
+        patience->calls[k] = call;
+        patience->hosts[k] = host;
+    }
+    return step;
+}
+
+const struct cs_crash_call *cs_crash_find_silent(const struct cs_crash_patience *patience,
+                                                 const struct cs_crash_log *log, double limit) {
+    const struct cs_crash_call *call = log->calls + CS_CRASH_METHOD;
+    return limit > 0 && cs_crash_is_running(call) && patience->silent[CS_CRASH_METHOD] > limit
+               ? call
+               : NULL;
 }
 
 /* The call that crashed; else one that is under way; else any that was made. NULL: none. */
@@ -175,8 +254,7 @@ static const struct cs_crash_call *find_faulting_call(const struct cs_crash_log 
         const struct cs_crash_call *call = log->calls + k;
         if (call->signal)
             return call;
-        if (call->kind &&
-            (!best || (cs_crash_is_under_way(call) && !cs_crash_is_under_way(best))))
+        if (call->kind && (!best || (cs_crash_is_running(call) && !cs_crash_is_running(best))))
             best = call;
     }
     return best;
@@ -197,9 +275,13 @@ enum cs_status cs_crash_report_print(const struct cs_crash_log *log, int end,
     print_end(end, how);
     if (!call)
         return cs_fail(error, CS_ERR_INTERNAL, "the run was ended by %s", how);
-    if (call->signal)
+    if (call->signal == ENDED_BY_EXIT)
+        describe(call, "ended the program ", "", text);
+    else if (call->signal == ENDED_BY_CHANGE)
+        describe(call, "changed ", IN_DESTROY, text);
+    else if (call->signal)
         describe(call, "crashed ", signal_text(call->signal), text);
-    else if (cs_crash_is_under_way(call)) {
+    else if (cs_crash_is_running(call)) {
         snprintf(what, sizeof what, " with %s", how);
         describe(call, "ended the program ", what, text);
     } else {

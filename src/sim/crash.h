@@ -24,8 +24,9 @@ struct cs_crash_call {
     pthread_t thread;         /* that called */
     pid_t process;            /* that called: a fork of the module has another */
     atomic_uint call_parity;  /* begins and ends of calls: odd while one is under way */
-    int signal;               /* the fatal signal; 0: none */
-    bool out_of_memory;       /* memory ran out in it */
+    atomic_uint host_parity;  /* begins and ends of the host's work for it: odd while at work */
+    int signal; /* the fatal signal; 0: none; -1: it called exit; -2: it changed `place` */
+    bool out_of_memory; /* memory ran out in it */
 };
 
 /* The calls of both sides. Zeroed: no calls yet. */
@@ -43,20 +44,48 @@ void cs_crash_watch(enum cs_crash_side side, const char *kind, const char *name,
 /* The call is over. If it forked, the copy of the process ends here. */
 void cs_crash_forget(enum cs_crash_side side);
 
+/* Ends the program like a crash does, for a change of the process in destroy, which has no
+ * status: `integrator "rk4" changed the working folder in destroy`. what: a constant. */
+_Noreturn void cs_crash_end(enum cs_crash_side side, const char *what);
+
 /* Forgets failed allocations: another module, or another object of it, begins. */
 void cs_crash_begin(enum cs_crash_side side);
 /* Returns true if an allocation failed in a call since cs_crash_begin. Code that ignores that
  * may crash much later. */
 bool cs_crash_was_starved(enum cs_crash_side side);
 
+/* The host begins or ends work that the method asked for. */
+void cs_crash_note_host(void);
+
 /* Logs calls in *log from now on, memory that another process sees. That process then reports
  * how this one ended: this one stays silent. */
 void cs_crash_log_to(struct cs_crash_log *log);
 
+/* Sends what methods write to standard output from now on to standard error: that of this
+ * process has results. */
+void cs_crash_divert_output(void);
+
 /* True between watch and forget. */
-static inline bool cs_crash_is_under_way(const struct cs_crash_call *call) {
+static inline bool cs_crash_is_running(const struct cs_crash_call *call) {
     return atomic_load(&call->call_parity) % 2;
 }
+
+/* Times in s since the calls of a log last showed a sign, as a watcher counts them. Zeroed but
+ * for `looked`, the time by the clock. */
+struct cs_crash_patience {
+    unsigned calls[CS_CRASH_SIDES], hosts[CS_CRASH_SIDES]; /* parities at the last look */
+    double waited[CS_CRASH_SIDES];                         /* in the call that is under way */
+    double silent[CS_CRASH_SIDES]; /* in it, without work for it by the host */
+    double looked;
+};
+
+/* Looks at the log, and returns the time since the last look. A suspended machine does not
+ * count: a look adds 0.2 s at most. */
+double cs_crash_patience_look(struct cs_crash_patience *patience,
+                              const struct cs_crash_log *log);
+/* The call of a method that has asked the host for nothing for longer than a limit; or NULL. */
+const struct cs_crash_call *cs_crash_find_silent(const struct cs_crash_patience *patience,
+                                                 const struct cs_crash_log *log, double limit);
 
 /* Reports how a process ended, from the log of its calls. end: its status as wait gives it,
  * not a success. Returns CS_ERR_MODULE, CS_ERR_MEMORY if an allocation had failed, or

@@ -169,6 +169,15 @@ static void host_matrix_product(void *ctx, const double *p, double *y) {
     cs_stage_end(host, CS_STAGE_SOLVE, begin);
 }
 
+/* z = B^-1 r with the preconditioner of the last A. */
+static void host_precondition(void *ctx, const double *r, double *z) {
+    struct cs_run_host *host = ctx;
+    const struct cs_stage_start begin = cs_stage_begin(host);
+    const size_t n3 = 3 * (size_t)host->run->system->view.n;
+    cs_linear_precondition(&host->linear, r, sqrt(cs_vector_kernels.dot(n3, r, r)), z);
+    cs_stage_end(host, CS_STAGE_SOLVE, begin);
+}
+
 /* Bounds on frequency and half damping rate at a state, contact included. */
 static void host_bounds_at(void *ctx, double t, const double *x, const double *v, double *omega,
                            double *delta) {
@@ -176,7 +185,8 @@ static void host_bounds_at(void *ctx, double t, const double *x, const double *v
     cs_host_state_at(host, t, &x, &v);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
     const struct cs_stage_start begin = cs_stage_begin(host);
-    cs_spectral_bounds_rate(host->run->system, &at, host->bounds_work, omega, delta);
+    cs_spectral_bounds_rate(host->run->system, &at, cs_host_is_explicit(host),
+                            host->bounds_work, omega, delta);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }
 
@@ -220,8 +230,7 @@ static bool begin(struct cs_run_host *host, enum cs_feature feature) {
     return row->built;
 }
 
-/* Offers bounds_at, max_step_fraction and contact_blocks, only if the scene needs them: NULL
- * tells a method to leave them out. A scene with max_step_fraction has bounds_at too. */
+/* Offers bounds_at, max_step_fraction and contact_blocks, only if the scene needs them. */
 static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error) {
     const struct cs_system *system = host->run->system;
     const bool judged = cs_step_limit_applies(system) || host->contact.limits_steps;
@@ -234,7 +243,8 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
     if (system->collider_params || system->pairs || system->seams)
         host->table.contact_blocks = host_contact_blocks;
     // who asks for one may ask for the other
-    if (!judged && !cs_spectral_bounds_depend_on_state(system))
+    if (!judged && !cs_spectral_bounds_depend_on_state(system) &&
+        !(host->run->integrator->needs & CS_NEED_BOUNDS))
         return CS_OK;
     host->bounds_work =
         cs_arena_alloc_array(&host->arena, 2 * (size_t)system->view.n, sizeof(double), error);
@@ -346,6 +356,9 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .solve_setup = cs_host_solve_setup,
         .solve = host_solve,
         .matrix_product = host_matrix_product,
+        .precondition = host_precondition,
+        .forces_depend_on_time =
+            system->events || system->plan.rows[CS_FEATURE_KEY_FRAMES].built,
         .commit = cs_host_commit,
         .may_overstep = may_pass(system),
         .euler_setup = cs_host_euler_setup,

@@ -8,6 +8,10 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+#ifdef __linux__
+#include <stdlib.h>
+#include <sys/auxv.h>
+#endif
 #ifdef __APPLE__
 #include <mach-o/dyld.h>
 #elif defined(__FreeBSD__) || defined(__DragonFly__) || defined(__NetBSD__)
@@ -36,6 +40,19 @@ static bool find_build(char *path) {
     return false;
 }
 
+#ifdef __linux__
+/* The path that the program was started by, for a system without /proc, such as one in a
+ * chroot. Returns false if no file is there any more. */
+static bool find_started(char *path, size_t size) {
+    char found[PATH_MAX];
+    const char *started = (const char *)(uintptr_t)getauxval(AT_EXECFN);
+    if (!started || !realpath(started, found) || strlen(found) >= size)
+        return false;
+    strcpy(path, found);
+    return true;
+}
+#endif
+
 /* The path of the running program. Each system has its own call; systems without one may have
  * Linux's /proc. Returns false if the system does not tell. */
 static bool find_program(char *path, size_t size) {
@@ -48,38 +65,68 @@ static bool find_program(char *path, size_t size) {
 #elif defined(__NetBSD__)
     const int name[] = {CTL_KERN, KERN_PROC_ARGS, -1, KERN_PROC_PATHNAME};
     return sysctl(name, 4, path, &size, NULL, 0) == 0;
+#elif defined(__linux__)
+    return readlink("/proc/self/exe", path, size - 1) >= 0 || find_started(path, size);
 #else
     return readlink("/proc/self/exe", path, size - 1) >= 0;
 #endif
 }
 
-/* Writes the folder `in_build` of the build, or `installed` relative to the program, to out.
- * out stays as it is if the program's path is unknown, or in a build if in_build is NULL. */
-static const char *find(const char *in_build, const char *installed, char *out) {
-    char program[PATH_MAX] = "", build[PATH_MAX];
-    if (!find_program(program, sizeof program) || !parent_path(program))
+/* The path of the running program, found at the first call; "" if it is unknown. */
+static const char *program_path(void) {
+    static char path[PATH_MAX];
+    if (!*path && !find_program(path, sizeof path))
+        *path = 0;
+    return path;
+}
+
+/* A place of the program's files: in a build (NULL: none there), installed relative to the
+ * program, and as it was configured. */
+struct place {
+    const char *in_build, *installed, *configured;
+};
+
+static const struct place modules = {"plugins", CS_MODULES_FROM_PROGRAM, CS_MODULES_INSTALLED};
+static const struct place renderers = {"src/draw", CS_MODULES_FROM_PROGRAM "/render",
+                                       CS_MODULES_INSTALLED "/render"};
+static const struct place data = {NULL, CS_DATA_FROM_PROGRAM, CS_DATA_INSTALLED};
+
+/* Writes the folder of a place to out: of the build, or relative to the program; as configured
+ * if the program's path is unknown. out stays as it is where a build has none. */
+static const char *find(const struct place *place, char *out) {
+    char program[PATH_MAX], build[PATH_MAX];
+    memcpy(program, program_path(), sizeof program);
+    if (!parent_path(program)) {
+        snprintf(out, FOLDER_MAX, "%s", place->configured);
         return out;
+    }
     memcpy(build, program, sizeof build);
     if (!find_build(build))
-        snprintf(out, FOLDER_MAX, "%s/%s", program, installed);
-    else if (in_build)
-        snprintf(out, FOLDER_MAX, "%s/%s", build, in_build);
+        snprintf(out, FOLDER_MAX, "%s/%s", program, place->installed);
+    else if (place->in_build)
+        snprintf(out, FOLDER_MAX, "%s/%s", build, place->in_build);
     return out;
 }
 
 const char *cs_program_path(void) {
-    static char path[PATH_MAX];
-    return *path || find_program(path, sizeof path) ? path : "clothsim";
+    return *program_path() ? program_path() : "clothsim";
+}
+
+const char *cs_program_path_fault(void) {
+    return *program_path()
+               ? NULL
+               : "the system does not tell where this program is (no /proc): methods are taken "
+                 "from " CS_MODULES_INSTALLED ", scenes from " CS_DATA_INSTALLED;
 }
 
 const char *cs_module_folder(void) {
     static char folder[FOLDER_MAX];
-    return *folder ? folder : find("plugins", CS_MODULES_FROM_PROGRAM, folder);
+    return *folder ? folder : find(&modules, folder);
 }
 
 const char *cs_renderer_folder(void) {
     static char folder[FOLDER_MAX];
-    return *folder ? folder : find("src/draw", CS_MODULES_FROM_PROGRAM "/render", folder);
+    return *folder ? folder : find(&renderers, folder);
 }
 
 /* The path if it exists, or that of an installed file; else NULL. */
@@ -87,7 +134,7 @@ static const char *find_data(const char *path, char *out, size_t size) {
     char folder[FOLDER_MAX] = "";
     if (access(path, F_OK) == 0)
         return path;
-    if (*path == '/' || !*find(NULL, CS_DATA_FROM_PROGRAM, folder))
+    if (*path == '/' || !*find(&data, folder))
         return NULL;
     const int length = snprintf(out, size, "%s/%s", folder, path);
     return length > 0 && (size_t)length < size && access(out, F_OK) == 0 ? out : NULL;

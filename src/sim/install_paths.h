@@ -10,9 +10,13 @@ enum { CS_DATA_PATH_MAX = 8192 };
 /* The path of the running program; "clothsim" if the system does not tell. Static. */
 const char *cs_program_path(void);
 
+/* NULL, or a sentence: the program's path is unknown, and the folders below are those that were
+ * configured. */
+const char *cs_program_path_fault(void);
+
 /* The folders of integrator and renderer modules. In a build tree the build's, else the
  * installed ones. These are found relative to the program, so that an installed tree can be
- * moved. Absolute and static; "" if the program's path is unknown. */
+ * moved. Absolute and static. */
 const char *cs_module_folder(void);
 const char *cs_renderer_folder(void);
 

@@ -58,14 +58,6 @@ enum cs_status cs_method_find(struct cs_method *method, struct cs_registry *regi
     return error->status;
 }
 
-enum cs_status cs_method_read(struct cs_method *method, struct cs_registry *registry,
-                              const char *text, struct cs_error *error) {
-    const char *pairs;
-    return cs_method_find(method, registry, text, &pairs, error)
-               ? error->status
-               : cs_method_set_pairs(method, pairs, error);
-}
-
 enum cs_status cs_method_set_pairs(struct cs_method *method, const char *pairs,
                                    struct cs_error *error) {
     char *copy = pairs ? strdup(pairs) : NULL, *rest = copy;
@@ -85,7 +77,11 @@ enum cs_status cs_method_set_pairs(struct cs_method *method, const char *pairs,
 static enum cs_status unknown_option(const struct cs_method *method, const char *where,
                                      const char *key, enum cs_status status,
                                      struct cs_error *error) {
-    const char *nearest = cs_option_nearest(&method->table, key);
+    /* in a scene the method itself is a key beside its options */
+    const bool of_scene = strstr(where, "integrator.");
+    const char *nearest = of_scene && (!strcmp(key, "method") || !strcmp(key, "type"))
+                              ? "name"
+                              : cs_option_nearest(&method->table, key);
     return cs_fail(error, status, "%s: no such option%s%s%s (see: clothsim integrators %s)",
                    where, nearest ? "; did you mean \"" : "", nearest ? nearest : "",
                    nearest ? "\"?" : "", method->integrator->name);
@@ -97,7 +93,8 @@ static uint64_t bit_of(const struct cs_method *method, const struct cs_option *r
     return k < 64 ? UINT64_C(1) << k : 0;
 }
 
-bool cs_method_is_given(const struct cs_method *method, const struct cs_option *row) {
+/* True if an option was set, to its default or not. */
+static bool is_given(const struct cs_method *method, const struct cs_option *row) {
     return method->given & bit_of(method, row);
 }
 
@@ -139,7 +136,8 @@ enum cs_status cs_method_set(struct cs_method *method, const char *key, const ch
     return error->status;
 }
 
-int32_t cs_method_choice(const struct cs_method *method, const struct cs_option *choice) {
+/* The value of a CHOICE: its number among the names. */
+static int32_t choice_of(const struct cs_method *method, const struct cs_option *choice) {
     int32_t value;
     memcpy(&value, (const char *)method->options + choice->offset, sizeof value);
     return value;
@@ -157,8 +155,7 @@ static enum cs_status refuse_idle(const struct cs_method *method,
             cs_text_add(&expected, "%s%s=%s", *cs_text_get(&expected) ? " or " : "",
                         choice->name, choice->choices[k]);
     cs_fail(error, status, "%s: has no effect with %s=%s, expected %s", cs_text_get(&where),
-            choice->name, choice->choices[cs_method_choice(method, choice)],
-            cs_text_get(&expected));
+            choice->name, choice->choices[choice_of(method, choice)], cs_text_get(&expected));
     cs_text_finish(&where);
     cs_text_finish(&expected);
     return error->status;
@@ -173,14 +170,16 @@ enum cs_status cs_method_check(const struct cs_method *method, const char *place
         const struct cs_option *row = cs_option_find(&method->table, use->option),
                                *choice = cs_option_find(&method->table, use->choice);
         // defaults pass: printed options list every value, also those without effect
-        if (cs_method_is_given(method, row) && !cs_option_is_default(row, method->options) &&
-            !(use->values >> cs_method_choice(method, choice) & 1))
+        if (is_given(method, row) && !cs_option_is_default(row, method->options) &&
+            !(use->values >> choice_of(method, choice) & 1))
             return refuse_idle(method, use, choice, place, status, error);
     }
     return CS_OK;
 }
 
-const char *cs_method_after_series(const char *token) {
+/* The start of NAME in "SERIES=NAME:..."; NULL if there is no SERIES. Only a ':' after the
+ * '=' tells it from an option key=value. */
+static const char *after_series(const char *token) {
     const size_t name = strcspn(token, ",:=");
     const char *method = token + name + 1;
     return token[name] == '=' && method[strcspn(method, ",:=")] == ':' ? method : NULL;
@@ -188,7 +187,7 @@ const char *cs_method_after_series(const char *token) {
 
 /* True for key=value, as against NAME, NAME:... and SERIES=NAME:... . */
 static bool is_option(const char *token) {
-    return token[strcspn(token, ",:=")] == '=' && !cs_method_after_series(token);
+    return token[strcspn(token, ",:=")] == '=' && !after_series(token);
 }
 
 char *cs_method_split(char **list) {
@@ -254,7 +253,7 @@ enum cs_status cs_series_parse_name(const char **text, char name[CS_SERIES_BYTES
                                     struct cs_error *error) {
     static const char letters[] =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_+-";
-    const char *method = cs_method_after_series(*text);
+    const char *method = after_series(*text);
     const size_t length = method ? (size_t)(method - *text) - 1 : 0;
     *name = 0;
     if (!method)
@@ -288,7 +287,7 @@ void cs_method_add_options(const struct cs_method *method, const char *except,
         const void *options = method->options;
         // atol given at its default is not the same as atol left to a study
         const bool kept = !cs_option_is_default(row, options) ||
-                          (!strcmp(row->name, "atol") && cs_method_is_given(method, row));
+                          (!strcmp(row->name, "atol") && is_given(method, row));
         if (!kept || !strcmp(row->name, except))
             continue;
         cs_text_add(out, "%s%s=", any ? "," : "", row->name);

@@ -23,20 +23,14 @@ enum cs_status cs_method_init(struct cs_method *method, const struct cs_integrat
 /* Frees the options and zeroes the method. */
 void cs_method_finish(struct cs_method *method);
 
-/* Reads NAME or NAME:key=value,... over the defaults. A NAME with a '/' is a module file, and
- * stands for its first integrator. Every reader of methods uses these calls, so that one
- * mistake has one message. CS_ERR_USAGE with the nearest right name; the caller finishes the
- * method on failure too. */
-enum cs_status cs_method_read(struct cs_method *method, struct cs_registry *registry,
-                              const char *text, struct cs_error *error);
-
-/* The first half of cs_method_read: the integrator with its defaults. *pairs is the text
- * after the ':', or NULL. */
+/* Reads NAME of NAME:key=value,...: the integrator with its defaults. *pairs is the text after
+ * the ':', or NULL. A NAME with a '/' is a module file, and stands for its first integrator.
+ * Every reader of methods uses this call and the next, so that one mistake has one message.
+ * CS_ERR_USAGE with the nearest right name; the caller finishes the method on failure too. */
 enum cs_status cs_method_find(struct cs_method *method, struct cs_registry *registry,
                               const char *text, const char **pairs, struct cs_error *error);
 
-/* The second half: sets "key=value,key=value" and checks the result; pairs NULL sets nothing.
- */
+/* Sets "key=value,key=value" and checks the result; pairs NULL sets nothing. */
 enum cs_status cs_method_set_pairs(struct cs_method *method, const char *pairs,
                                    struct cs_error *error);
 
@@ -47,20 +41,10 @@ enum cs_status cs_method_set(struct cs_method *method, const char *key, const ch
                              const char *place, enum cs_status status, struct cs_error *error);
 
 /* Refuses a given option, other than its default, that has no effect with the values of the
- * others; place and status as above. Call it when all are set; cs_method_read and
- * cs_method_set_pairs do. */
+ * others; place and status as above. Call it when all are set; cs_method_set_pairs
+ * does. */
 enum cs_status cs_method_check(const struct cs_method *method, const char *place,
                                enum cs_status status, struct cs_error *error);
-
-/* True if an option was set, to its default or not. */
-bool cs_method_is_given(const struct cs_method *method, const struct cs_option *row);
-
-/* The value of a CHOICE: its number among the names. */
-int32_t cs_method_choice(const struct cs_method *method, const struct cs_option *choice);
-
-/* The start of NAME in "SERIES=NAME:..."; NULL if there is no SERIES. Only a ':' after the
- * '=' tells it from an option key=value. */
-const char *cs_method_after_series(const char *text);
 
 /* Adds "NAME:key=value,..." with every option that has a value. */
 void cs_method_describe(const struct cs_method *method, struct cs_text *out);

@@ -1,10 +1,16 @@
-/* process_state.c - reads and restores the process-wide state around foreign code. */
+/* process_state.c - reads and restores the process-wide state around foreign code, and copies
+ * the view of the system that it sees. */
 #include "sim/process_state.h"
 
+#include "sim/install_paths.h"
+
+#include <dlfcn.h>
 #include <fenv.h>
 #include <locale.h>
 #include <poll.h>
+#include <stddef.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -40,12 +46,14 @@ static void control_set(unsigned control) {
 const char cs_process_state_mode[] = "the floating-point mode";
 static const int numbers[CS_PROCESS_STATE_SIGNALS] = {SIGINT, SIGTERM};
 
-/* A bit for each of the streams 0, 1, 2 that is open: poll reports a closed one as POLLNVAL. */
+/* A bit for each of the streams 0, 1, 2 that is open: poll reports a closed one as POLLNVAL.
+ * None if no files are allowed. */
 static unsigned open_streams(void) {
     struct pollfd streams[] = {{.fd = 0}, {.fd = 1}, {.fd = 2}};
     enum { STREAMS = sizeof streams / sizeof *streams };
     unsigned open = 0;
-    poll(streams, STREAMS, 0);
+    if (poll(streams, STREAMS, 0) < 0)
+        return 0;
     for (unsigned k = 0; k < STREAMS; k++)
         open |= (unsigned)!(streams[k].revents & POLLNVAL) << k;
     return open;
@@ -124,4 +132,125 @@ const char *cs_process_state_restore(const struct cs_process_state *guard) {
            : open_streams() != guard->streams    ? "the open standard streams"
            : is_parent() && !guard->has_children ? "the set of processes"
                                                  : NULL;
+}
+
+/* --- the view on read-only pages --- */
+
+enum { ALIGNMENT = 64 };
+
+/* An array of a view. */
+struct part {
+    size_t offset; /* of its pointer in the view */
+    size_t bytes;
+    bool changes; /* while a run goes on */
+};
+enum { PARTS_MAX = 24 };
+
+/* The pointer of a part in a view. */
+static char *array_of(const struct cs_view *view, const struct part *part) {
+    char *array;
+    memcpy(&array, (const char *)view + part->offset, sizeof array);
+    return array;
+}
+
+/* Lists the arrays that are there. */
+static size_t list_parts(const struct cs_view *view, struct part parts[PARTS_MAX]) {
+    const size_t n = view->n, springs = view->n_springs, clusters = view->n_clusters;
+    const size_t items = clusters ? view->cluster_begin[clusters] : 0;
+    const size_t motion = 3 * (size_t)view->n_colliders;
+#define PART(name, count, changes)                                                             \
+    { offsetof(struct cs_view, name), (count) * sizeof *view->name, changes }
+    const struct part all[] = {
+        PART(mass, n, false),
+        PART(inv_mass, n, true),
+        PART(start, 3 * n, false),
+        PART(ends, 2 * springs, false),
+        PART(length, springs, false),
+        PART(stiffness, springs, true),
+        PART(damping, springs, true),
+        PART(kind, springs, false),
+        PART(axial, springs, false),
+        PART(cluster_begin, clusters + 1, false),
+        PART(cluster_items, items, false),
+        PART(cluster_alpha, clusters, true),
+        PART(cluster_beta, clusters, true),
+        PART(cluster_step, clusters, true),
+        PART(collider_origin, motion, true),
+        PART(collider_velocity, motion, true),
+        PART(collider_spin, motion, true),
+        PART(colour_begin, (size_t)view->n_colours + 1, false),
+        PART(colour_items, n, false),
+        PART(spring_begin, n + 1, false),
+        PART(spring_items, 2 * springs, false),
+    };
+#undef PART
+    size_t n_parts = 0;
+    // without its need a method has none of some
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+        if (array_of(view, all + k))
+            parts[n_parts++] = all[k];
+    return n_parts;
+}
+
+static size_t aligned(size_t bytes) {
+    return (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+}
+
+bool cs_view_pages_needed(const struct cs_integrator *integrator) {
+    static const char in_program[] = "";
+    const char *folder = cs_module_folder();
+    Dl_info of, own;
+    return dladdr(integrator, &of) && dladdr(in_program, &own) &&
+           of.dli_fbase != own.dli_fbase && of.dli_fname &&
+           strncmp(of.dli_fname, folder, strlen(folder)) != 0;
+}
+
+enum cs_status cs_view_pages_create(struct cs_view_pages *pages, const struct cs_view *view,
+                                    struct cs_error *error) {
+    struct part parts[PARTS_MAX];
+    const size_t n = list_parts(view, parts);
+    size_t bytes = aligned(sizeof *view);
+    for (size_t k = 0; k < n; k++)
+        bytes += aligned(parts[k].bytes);
+    char *memory =
+        mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a copy of the system");
+    *pages = (struct cs_view_pages){(struct cs_view *)(void *)memory, bytes};
+    // the view itself first, then its arrays, to which its pointers are set
+    memcpy(memory, view, sizeof *view);
+    size_t at = aligned(sizeof *view);
+    for (size_t k = 0; k < n; k++) {
+        const char *copy = memory + at;
+        memcpy(memory + at, array_of(view, parts + k), parts[k].bytes);
+        memcpy(memory + parts[k].offset, &copy, sizeof copy);
+        at += aligned(parts[k].bytes);
+    }
+    mprotect(memory, bytes, PROT_READ);
+    return CS_OK;
+}
+
+void cs_view_pages_update(struct cs_view_pages *pages, const struct cs_view *view) {
+    struct part parts[PARTS_MAX];
+    bool writable = false;
+    const size_t n = pages->view ? list_parts(view, parts) : 0;
+    // most calls change nothing: pages are opened at the first difference
+    for (size_t k = 0; k < n; k++) {
+        const char *from = array_of(view, parts + k);
+        char *to = array_of(pages->view, parts + k);
+        if (!parts[k].changes || !memcmp(from, to, parts[k].bytes))
+            continue;
+        if (!writable)
+            mprotect(pages->view, pages->bytes, PROT_READ | PROT_WRITE);
+        writable = true;
+        memcpy(to, from, parts[k].bytes);
+    }
+    if (writable)
+        mprotect(pages->view, pages->bytes, PROT_READ);
+}
+
+void cs_view_pages_finish(struct cs_view_pages *pages) {
+    if (pages->view)
+        munmap(pages->view, pages->bytes);
+    *pages = (struct cs_view_pages){0};
 }

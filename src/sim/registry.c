@@ -260,6 +260,8 @@ static const char *translate_name(const char *name) {
         {"implicit", "implicit-linearised\" or \"backward-euler"},
         {"verlet", "velocity-verlet\" or \"position-verlet"},
         {"stoermer-verlet", "position-verlet"},
+        {"stormer-verlet", "velocity-verlet\" or \"position-verlet"},
+        {"cvode", "cvode-bdf\" or \"cvode-adams"},
         {"leapfrog", "velocity-verlet"},
         {"midpoint", "implicit-midpoint"},
         {"trapezoidal", "newmark"},
@@ -270,7 +272,7 @@ static const char *translate_name(const char *name) {
         {"ode45", "dopri5"},
         {"bdf", "bdf2\" or \"cvode-bdf"},
         {"pbd", "xpbd"},
-        {"projective-dynamics", "fast-mass-spring"},
+        {"pd", "projective-dynamics"},
         {"hht", "newmark"},
         {"generalised-alpha", "newmark"},
         {"generalized-alpha", "newmark"}};
@@ -287,6 +289,10 @@ static enum cs_status unknown_name(struct cs_registry *registry, const char *nam
     const char *const *names = cs_registry_names(registry, true, &n, error);
     if (!names)
         return error->status;
+    if (!strcmp(name, "all"))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "found integrator \"all\", expected the name of one (all is for advise, "
+                       "compare, stability and sweep)");
     const char *other = translate_name(name);
     const char *nearest = other ? other : cs_nearest_word(name, names);
     const char *library = find_left_out(registry, name, error);

@@ -2,7 +2,7 @@
 #include "sim/run.h"
 
 #include "base/clock.h"
-#include "model/contact/friction_anchors.h"
+#include "model/contact/bristle_law.h"
 #include "model/system/seams.h"
 #include "sim/crash.h"
 #include "sim/run_host.h"
@@ -39,6 +39,7 @@ static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_err
     const char *name = run->integrator->name,
                *changed = cs_process_state_restore(&run->host->process_state);
     const bool starved = cs_crash_was_starved(CS_CRASH_METHOD);
+    run->is_process_changed |= changed != NULL;
     if (changed)
         return cs_fail(error, CS_ERR_MODULE, "integrator \"%s\" changed %s", name, changed);
     if (step == CS_STEP_OK || (step == CS_STEP_HALT && run->outcome != CS_RUNNING))
@@ -55,17 +56,25 @@ static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_err
 /* Marks the call into the method that begins, for the message if it brings the program down.
  * cs_crash_forget ends it. */
 static void watch(const struct cs_run *run, const char *place) {
+    cs_view_pages_update(&run->host->pages, &run->system->view);
     cs_crash_watch(CS_CRASH_METHOD, "integrator", run->integrator->name, place);
 }
 
-/* The method's restart at t, with particles pinned that static friction holds. */
+/* The method's restart at t, with particles pinned that static friction holds. A module from
+ * outside is held to the const of the state. */
 static enum cs_step restart(struct cs_run *run, double t) {
-    watch(run, "in restart");
+    const size_t n = run->host->pages.view ? 6 * (size_t)run->system->view.n : 0;
+    char before[CS_HASH_DIGITS], after[CS_HASH_DIGITS];
+    cs_hash_doubles(run->x, n, before);
     cs_host_pin(run->host, true);
+    watch(run, "in restart");
     const enum cs_step step = run->integrator->restart(run->host->self, t, run->x, run->v);
-    cs_host_pin(run->host, false);
     cs_crash_forget(CS_CRASH_METHOD);
-    return step;
+    cs_host_pin(run->host, false);
+    cs_hash_doubles(run->x, n, after);
+    return step == CS_STEP_OK && strcmp(before, after) != 0
+               ? run->host->table.fail(run->host, "it changed the state in restart")
+               : step;
 }
 
 /* Checks the post-conditions of an advance; a violation is a failure of the method. */
@@ -109,15 +118,22 @@ static void note_give_up(struct cs_run *run) {
 static enum cs_step advance(struct cs_run *run, double from, double to) {
     if (!run->host->settings.skip_advance_check)
         cs_advance_check_begin(&run->host->advance_check, run->system, from);
-    watch(run, "in advance");
     cs_host_pin(run->host, true);
+    watch(run, "in advance");
     const enum cs_step step =
         run->integrator->advance(run->host->self, from, to, run->x, run->v);
-    cs_host_pin(run->host, false);
     cs_crash_forget(CS_CRASH_METHOD);
+    cs_host_pin(run->host, false);
     if (step == CS_STEP_HALT)
         note_give_up(run);
     return step == CS_STEP_OK ? check_left(run, to) : step;
+}
+
+/* Adds the times since then to those inside the method. */
+static void count_time(struct cs_run *run, struct cs_stage_start begin) {
+    const struct cs_stage_start now = cs_stage_now();
+    run->advance_seconds += now.wall - begin.wall;
+    run->advance_cpu += now.cpu - begin.cpu;
 }
 
 /* Creates the method, counts its memory in run->method_bytes, and restarts it at 0. */
@@ -128,15 +144,25 @@ static enum cs_status start(struct cs_run *run, const void *options, struct cs_e
     cs_crash_begin(CS_CRASH_METHOD);
     host->creating = true;
     host->arena.part = &run->method_bytes;
+    if (cs_view_pages_needed(run->integrator) &&
+        cs_view_pages_create(&host->pages, &run->system->view, error))
+        return error->status;
+    if (host->pages.view)
+        host->table.view = host->pages.view;
+    const struct cs_stage_start begin = cs_stage_now();
     watch(run, "in create");
     const enum cs_step step = run->integrator->create(&host->table, options, &host->self);
     cs_crash_forget(CS_CRASH_METHOD);
     host->creating = false;
+    count_time(run, begin);
     return judge(run, step, error) ? error->status : cs_run_restart(run, 0, error);
 }
 
 enum cs_status cs_run_restart(struct cs_run *run, double t, struct cs_error *error) {
-    return judge(run, restart(run, t), error);
+    const struct cs_stage_start begin = cs_stage_now();
+    const enum cs_step step = restart(run, t);
+    count_time(run, begin);
+    return judge(run, step, error);
 }
 
 enum cs_status cs_run_advance(struct cs_run *run, double from, double to,
@@ -146,11 +172,11 @@ enum cs_status cs_run_advance(struct cs_run *run, double from, double to,
 
 enum cs_status cs_run_archive(struct cs_run *run, cs_archive_call *call,
                               const struct cs_archive *archive, struct cs_error *error) {
-    watch(run, "in save or load");
     cs_host_pin(run->host, true);
+    watch(run, "in save or load");
     const enum cs_step step = call(run->host->self, archive);
-    cs_host_pin(run->host, false);
     cs_crash_forget(CS_CRASH_METHOD);
+    cs_host_pin(run->host, false);
     return judge(run, step, error);
 }
 
@@ -208,11 +234,9 @@ static void count_method(struct cs_run *run) {
 /* The time of a frame is computed from its number: fps need not divide it without rounding. */
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
     const double next = (run->frame + 1) / run->system->scene->time.fps;
-    const double begin = cs_clock_wall();
-    const double begin_cpu = cs_clock_cpu();
+    const struct cs_stage_start begin = cs_stage_now();
     const enum cs_step step = advance_frame(run, next);
-    run->advance_seconds += cs_clock_wall() - begin;
-    run->advance_cpu += cs_clock_cpu() - begin_cpu;
+    count_time(run, begin);
     count_method(run);
     if (judge(run, step, error))
         return error->status;
@@ -280,11 +304,16 @@ void cs_run_finish(struct cs_run *run) {
     if (!run->host)
         return;
     if (run->integrator->destroy && run->host->self) {
+        const struct cs_process_state before = cs_process_state_save();
         watch(run, "in destroy");
         run->integrator->destroy(run->host->self);
         cs_crash_forget(CS_CRASH_METHOD);
+        const char *changed = cs_process_state_restore(&before);
+        if (changed)
+            cs_crash_end(CS_CRASH_METHOD, changed);
     }
     cs_arena_finish(&run->host->arena);
+    cs_view_pages_finish(&run->host->pages);
     free(run->host);
     *run = (struct cs_run){0};
 }

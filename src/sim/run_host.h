@@ -10,6 +10,7 @@
 #include "model/post_step/contact_projection.h"
 #include "model/solver/linear.h"
 #include "model/system/particle_system.h"
+#include "sim/crash.h"
 #include "sim/process_state.h"
 #include "sim/run_state.h"
 
@@ -130,7 +131,8 @@ struct cs_run_host {
     struct cs_advance_check advance_check;
     double *held;    /* two copies (6,n) of a state, for cs_host_held_at; NULL: nothing turns */
     double lag_time; /* s, of the friction that is lagged */
-    struct cs_arena arena; /* memory of the method and of the solver */
+    struct cs_arena arena;      /* memory of the method and of the solver */
+    struct cs_view_pages pages; /* what a module from outside sees of the system */
 };
 
 /* Fails the run with the reason why a linear solve did not end in CS_LINEAR_DONE. b (3,n) is
@@ -138,24 +140,30 @@ struct cs_run_host {
 enum cs_step cs_run_host_fail_solve(struct cs_run_host *host, enum cs_linear_end end,
                                     const double *b, uint64_t iterations, double residual);
 
-/* Times in s at the begin of a stage: of the wall, and of the process. */
+/* Times in s, such as at the begin of a stage: of the wall, and of the process. */
 struct cs_stage_start {
     double wall, cpu;
 };
 
+static inline struct cs_stage_start cs_stage_now(void) {
+    return (struct cs_stage_start){cs_clock_wall(), cs_clock_cpu()};
+}
+
 /* Without settings.timed no clock is read. */
 static inline struct cs_stage_start cs_stage_begin(const struct cs_run_host *host) {
-    return host->settings.timed ? (struct cs_stage_start){cs_clock_wall(), cs_clock_cpu()}
-                                : (struct cs_stage_start){0};
+    cs_crash_note_host();
+    return host->settings.timed ? cs_stage_now() : (struct cs_stage_start){0};
 }
 
 /* Adds the times since then to a stage. */
 static inline void cs_stage_end(struct cs_run_host *host, enum cs_stage stage,
                                 struct cs_stage_start begin) {
+    cs_crash_note_host();
     if (!host->settings.timed)
         return;
-    host->run->stage_seconds[stage] += cs_clock_wall() - begin.wall;
-    host->run->stage_cpu[stage] += cs_clock_cpu() - begin.cpu;
+    const struct cs_stage_start now = cs_stage_now();
+    host->run->stage_seconds[stage] += now.wall - begin.wall;
+    host->run->stage_cpu[stage] += now.cpu - begin.cpu;
 }
 
 /* Replaces x and v at t by a copy if held particles turn: there they are on their arc, which
@@ -179,8 +187,10 @@ static inline void cs_host_held_at(struct cs_run_host *host, int copy, double t,
 
 /* Sets ramped values to those at t, the time that the method asks about. */
 static inline void cs_move_values(struct cs_run_host *host, double t) {
-    if (host->run->system->events)
-        cs_events_move_values(host->run->system, t);
+    if (!host->run->system->events)
+        return;
+    cs_events_move_values(host->run->system, t);
+    cs_view_pages_update(&host->pages, &host->run->system->view);
 }
 
 /* Both, for a call of the method about (t, x, v). */
@@ -188,6 +198,12 @@ static inline void cs_host_state_at(struct cs_run_host *host, double t, const do
                                     const double **v) {
     cs_move_values(host, t);
     cs_host_held_at(host, 0, t, x, v);
+}
+
+/* True if the method takes explicit steps without error control: friction of contact limits
+ * them up to CS_FRICTION_RATE_RATIO only. */
+static inline bool cs_host_is_explicit(const struct cs_run_host *host) {
+    return !(host->run->integrator->traits & (CS_IMPLICIT | CS_ADAPTIVE));
 }
 
 /* host->commit. Corrects the state (x, v) that a step of length dt left at time t, books the

@@ -6,7 +6,7 @@
  * count too. */
 #include "sim/run.h"
 
-#include "model/contact/friction_anchors.h"
+#include "model/contact/bristle_law.h"
 #include "model/event/event_state.h"
 #include "model/system/seams.h"
 #include "sim/run_host.h"

@@ -87,6 +87,7 @@ struct cs_run {
     enum cs_outcome outcome;
     struct cs_blow_up blow_up; /* where outcome says so */
     const char *reason;        /* with CS_GAVE_UP: the method's, the host's text */
+    bool is_process_changed;   /* by the method: no other run is to follow in this process */
     struct cs_counts counts;
     double stage_seconds[CS_STAGES]; /* wall time; all 0 unless timed */
     double stage_cpu[CS_STAGES];     /* processor time of the process meanwhile; likewise */

@@ -27,7 +27,7 @@ static enum cs_status start(struct side *side, const struct cs_bisect_side *aske
     memcpy(arguments, asked->arguments, asked->n_arguments * sizeof *arguments);
     arguments[asked->n_arguments] = "--trace";
     arguments[asked->n_arguments + 1] = trace;
-    if (!cs_subprocess_open(&side->program, arguments, false, error))
+    if (!cs_subprocess_open(&side->program, ".", arguments, 1, error))
         side->trail.file = side->program.output;
     free(arguments);
     return error->status;
@@ -111,6 +111,13 @@ static void take_point(struct side *side, bool states, struct cs_error *error) {
         side->trail.point.step = 0;
 }
 
+/* The status of an end that is not the comparison's own: lack of memory, or of a file. */
+static enum cs_status status_of(int code, enum cs_status other) {
+    return code == cs_status_exit_code(CS_ERR_MEMORY) ? CS_ERR_MEMORY
+           : code == cs_status_exit_code(CS_ERR_FILE) ? CS_ERR_FILE
+                                                      : other;
+}
+
 /* Closes a program. One that ended by itself has reported why; one that never wrote a trace is
  * no clothsim. */
 static void end(struct side *side, struct cs_bisect_difference *found, int k,
@@ -120,13 +127,11 @@ static void end(struct side *side, struct cs_bisect_difference *found, int k,
     if (!side->program.pid)
         return;
     const int code = cs_subprocess_close(&side->program);
-    const bool memory = code == cs_status_exit_code(CS_ERR_MEMORY);
     if (!wrote && !error->status)
-        cs_fail(error, memory ? CS_ERR_MEMORY : CS_ERR_FILE,
-                "%s: %s wrote no trace, exit code %d", side->asked->name,
-                side->asked->arguments[0], code);
+        cs_fail(error, status_of(code, CS_ERR_FILE), "%s: %s wrote no trace, exit code %d",
+                side->asked->name, side->asked->arguments[0], code);
     else if (ended && code != 0 && !found->exists)
-        cs_fail(error, memory ? CS_ERR_MEMORY : CS_ERR_MODULE,
+        cs_fail(error, status_of(code, CS_ERR_MODULE),
                 "%s ended with exit code %d after frame %" PRIu32
                 ": both are equal up to there",
                 side->asked->name, code, side->trail.point.frame);

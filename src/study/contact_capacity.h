@@ -32,4 +32,15 @@ void cs_contact_capacity_warn(const struct cs_system *system, struct cs_text *ou
  * s, if that is many; dt 0: nothing. */
 void cs_contact_ranges_print(const struct cs_system *system, double dt, struct cs_text *out);
 
+/* Adds `before` and whether contact is a part of linear theory and of runs. Adds nothing for
+ * scenes without contact. */
+void cs_contact_note_add(const struct cs_scene *scene, const char *before, struct cs_text *out);
+
+/* Adds the energy in J that contact holds beside the one that comes, next
+ * to the kinetic energy of the heaviest particle at `speed` (m/s; 0: unknown). Adds the damping
+ * by friction, and what longer explicit steps do. Adds nothing for scenes without contact by
+ * force. */
+void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
+                                  struct cs_text *out);
+
 #endif

@@ -1,7 +1,6 @@
 /* Judges by the balance of energy whether a run is sound; the header derives the bounds. */
 #include "study/energy_monitor.h"
 
-#include "base/table.h"
 #include "model/event/event_state.h"
 #include "model/event/events.h"
 #include "model/force/terms.h"
@@ -23,8 +22,9 @@ enum { SAMPLES_MIN = 8, FAR_BEYOND = 100 };
 static const struct {
     const char *word, *help;
     char letter;
+    uint32_t colour;
 } verdicts[] = {
-#define X(name, word, letter, help) [name] = {word, help, letter},
+#define X(name, word, letter, colour, help) [name] = {word, help, letter, colour},
     CS_STABILITY_LIST(X)
 #undef X
 };
@@ -39,6 +39,10 @@ const char *cs_stability_help(enum cs_stability_verdict verdict) {
 
 char cs_stability_letter(enum cs_stability_verdict verdict) {
     return verdicts[verdict].letter;
+}
+
+uint32_t cs_stability_colour(enum cs_stability_verdict verdict) {
+    return verdicts[verdict].colour;
 }
 
 /* Length of a vector. */
@@ -318,9 +322,27 @@ void cs_energy_monitor_print(const struct cs_energy_monitor *monitor,
         cs_text_add(out, "; later %s", cs_stability_word(monitor->worst_verdict));
 }
 
+const struct cs_column cs_energy_monitor_columns[] = {
+    CS_NUMBER_COLUMN("frame", "1", "number of the frame; 0: the start"),
+    CS_NUMBER_COLUMN("t", "s", "simulated time"),
+    CS_NUMBER_COLUMN("kinetic", "J", "kinetic energy"),
+    CS_NUMBER_COLUMN("elastic", "J", "elastic energy"),
+    CS_NUMBER_COLUMN("gravity", "J", "potential energy of gravity"),
+    CS_NUMBER_COLUMN("energy", "J", "energy: all kinds"),
+    CS_NUMBER_COLUMN("largest_strain", "1", "largest strain of a spring"),
+    CS_NUMBER_COLUMN("largest_velocity", "m/s", "largest speed of a particle"),
+    CS_NUMBER_COLUMN("particle", "1", "index of the fastest particle"),
+    CS_NUMBER_COLUMN("fast_particles", "1", "particles above the limit of local instability"),
+    CS_TEXT_COLUMN("verdict", "verdict of this time, as of clothsim-stability(1)"),
+    CS_NUMBER_COLUMN("made", "J", "energy made by the integrator"),
+    CS_NUMBER_COLUMN("bound", "J", "energy above which it is a global instability"),
+};
+const uint32_t cs_energy_monitor_n_columns =
+    sizeof cs_energy_monitor_columns / sizeof *cs_energy_monitor_columns;
+
 void cs_energy_monitor_print_head(struct cs_text *out) {
-    cs_text_add(out, "frame,t,kinetic,elastic,gravity,energy,largest_strain,largest_velocity,"
-                     "particle,fast_particles,verdict,made,bound\n");
+    cs_columns_add_names(cs_energy_monitor_columns, cs_energy_monitor_n_columns, out);
+    cs_text_add(out, "\n");
 }
 
 void cs_energy_monitor_print_row(const struct cs_energy_monitor_row *row, uint32_t frame,

@@ -31,38 +31,45 @@
 #ifndef CS_ENERGY_MONITOR_H
 #define CS_ENERGY_MONITOR_H
 
+#include "base/table.h"
 #include "sim/energy_ledger.h"
 #include "sim/run.h"
 
 #include "model/force/diagnostics.h"
 
-/* X(name, word, letter of maps, what it means) from best to worst */
+/* X(name, word, letter of maps, colour of maps, what it means) from best to worst: green to red
+ * for eyes of every kind, then violet and greys */
 #define CS_STABILITY_LIST(X)                                                                   \
-    X(CS_STABILITY_BOUNDED, "bounded", '.', "no sign of instability")                          \
-    X(CS_STABILITY_DAMPED, "over-damped", 'd',                                                 \
+    X(CS_STABILITY_BOUNDED, "bounded", '.', 0x9fd3b5, "no sign of instability")                \
+    X(CS_STABILITY_DAMPED, "over-damped", 'd', 0xa9c9e8,                                       \
       "stable, but the mean kinetic energy is below half of the reference's")                  \
-    X(CS_STABILITY_SHORT, "not run to the end", '>',                                           \
+    X(CS_STABILITY_SHORT, "not run to the end", '>', 0xe3f1e8,                                 \
       "no sign of instability in the steps that a cell may take, fewer than its time needs")   \
-    X(CS_STABILITY_LOCAL, "local instability", 'l',                                            \
+    X(CS_STABILITY_LOCAL, "local instability", 'l', 0xf6d365,                                  \
       "particles too fast, by energy of the integrator; at half the step there are none")      \
-    X(CS_STABILITY_GLOBAL, "global instability", 'G',                                          \
+    X(CS_STABILITY_GLOBAL, "global instability", 'G', 0xe8825a,                                \
       "the integrator made more energy than the scene held and gave")                          \
-    X(CS_STABILITY_NOT_FINITE, "not finite", 'X', "a number of the state is not finite")       \
-    X(CS_STABILITY_FAILED, "solver failed", 'F', "the method failed and reported a reason")    \
-    X(CS_STABILITY_OVER_BUDGET, "over budget", 'b', "the time allowed for a cell ran out")     \
-    X(CS_STABILITY_UNJUDGED, "not judged", '?', "there is no reference run to compare with")
+    X(CS_STABILITY_NOT_FINITE, "not finite", 'X', 0x8e5c86,                                    \
+      "a number of the state is not finite")                                                   \
+    X(CS_STABILITY_FAILED, "solver failed", 'F', 0x7f858d,                                     \
+      "the method failed and reported a reason")                                               \
+    X(CS_STABILITY_OVER_BUDGET, "over budget", 'b', 0xdfe1e4,                                  \
+      "the time allowed for a cell ran out")                                                   \
+    X(CS_STABILITY_UNJUDGED, "not judged", '?', 0xf4f4f4,                                      \
+      "there is no reference run to compare with")
 
 enum cs_stability_verdict {
-#define X(name, word, letter, help) name,
+#define X(name, word, letter, colour, help) name,
     CS_STABILITY_LIST(X)
 #undef X
         CS_STABILITY_VERDICTS
 };
 
-/* Word, explanation and letter of a verdict. */
+/* Word, explanation, letter and colour 0xRRGGBB of a verdict. */
 const char *cs_stability_word(enum cs_stability_verdict verdict);
 const char *cs_stability_help(enum cs_stability_verdict verdict);
 char cs_stability_letter(enum cs_stability_verdict verdict);
+uint32_t cs_stability_colour(enum cs_stability_verdict verdict);
 
 /* True if the run shows no sign of instability. */
 static inline bool cs_stability_is_stable(enum cs_stability_verdict verdict) {
@@ -126,6 +133,10 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
 /* Adds "local instability from t = 0.35 s on: ..."; nothing if the run was sound. */
 void cs_energy_monitor_print(const struct cs_energy_monitor *monitor,
                              const struct cs_system *system, struct cs_text *out);
+
+/* The columns of its CSV. */
+extern const struct cs_column cs_energy_monitor_columns[];
+extern const uint32_t cs_energy_monitor_n_columns;
 
 /* Add the column names, and the CSV row of a sample. */
 void cs_energy_monitor_print_head(struct cs_text *out);

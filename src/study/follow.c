@@ -33,7 +33,8 @@ enum cs_status cs_follow_check(const struct cs_run *run, const char *interrupted
 
 enum cs_status cs_follow_result(const struct cs_run *run, const char *interrupted,
                                 struct cs_run_result *result, struct cs_error *error) {
-    const bool failed = error->status == CS_ERR_MODULE;
+    // a process that was changed must not go on with other runs
+    const bool failed = error->status == CS_ERR_MODULE && !run->is_process_changed;
     const char *text = run->reason ? run->reason : cs_outcome_text(run->outcome);
     *result = (struct cs_run_result){
         .outcome = failed ? CS_FAILED : run->outcome,

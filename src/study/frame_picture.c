@@ -6,6 +6,9 @@
 #include "base/pool.h"
 #include "io/png.h"
 #include "model/contact/ccd/crossings.h"
+#include "model/elastic/membrane_strain.h"
+#include "model/event/event_state.h"
+#include "scene/shape.h"
 #include "sim/crash.h"
 
 #include <math.h>
@@ -41,12 +44,114 @@ static enum cs_status read_textures(struct cs_picture *picture, struct cs_error 
     return CS_OK;
 }
 
+/* Replaces the items of a list by a copy; an empty one has none. */
+static void copy_list(struct cs_list *list, size_t size, struct cs_error *error) {
+    void *items = malloc((list->n + 1) * size);
+    if (!items)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours of pictures");
+    else if (list->n)
+        memcpy(items, list->items, list->n * size);
+    list->items = items;
+}
+
+static double begin_of(const struct cs_event *event) {
+    return isnan(event->at) ? event->from : event->at;
+}
+
+/* Adds a ramp behind those that begin no later. */
+static void add_ramp(struct cs_picture *picture, const struct cs_event *event,
+                     struct cs_error *error) {
+    struct cs_event_key key;
+    uint32_t k = picture->n_ramps;
+    if (cs_event_key_find(&picture->drawn, event->ramp.key, &key, error))
+        return;
+    const struct cs_picture_ramp ramp = {.value = key.value,
+                                         .from = begin_of(event),
+                                         .to = isnan(event->at) ? event->to : event->at,
+                                         .start = *key.value,
+                                         .last = event->ramp.value};
+    for (; k > 0 && picture->ramps[k - 1].from > ramp.from; k--)
+        picture->ramps[k] = picture->ramps[k - 1];
+    picture->ramps[k] = ramp;
+    picture->n_ramps++;
+}
+
+/* Gives the pictures a scene of their own if ramps change its looks. */
+static enum cs_status make_ramps(struct cs_picture *picture, struct cs_error *error) {
+    const struct cs_event *events = cs_scene_events(picture->scene);
+    uint32_t n = 0;
+    for (uint32_t e = 0; e < picture->scene->events.n; e++)
+        n += cs_event_is_picture(events + e);
+    if (n == 0)
+        return CS_OK;
+    picture->drawn = *picture->scene;
+    copy_list(&picture->drawn.bodies, sizeof(struct cs_body), error);
+    copy_list(&picture->drawn.colliders, sizeof(struct cs_collider), error);
+    copy_list(&picture->drawn.lights, sizeof(struct cs_light), error);
+    picture->ramps = calloc(n, sizeof *picture->ramps);
+    if (!picture->ramps)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours of pictures");
+    for (uint32_t e = 0; e < picture->scene->events.n && !error->status; e++)
+        if (cs_event_is_picture(events + e))
+            add_ramp(picture, events + e, error);
+    picture->scene = &picture->drawn;
+    return error->status;
+}
+
+/* Sets all ramped numbers to those at t: each ramp goes on from what the one before left. */
+static void set_ramps(struct cs_picture *picture, double t) {
+    for (uint32_t k = 0; k < picture->n_ramps; k++)
+        *picture->ramps[k].value = picture->ramps[k].start;
+    for (uint32_t k = 0; k < picture->n_ramps; k++) {
+        const struct cs_picture_ramp *ramp = picture->ramps + k;
+        if (t >= ramp->to)
+            *ramp->value = ramp->last;
+        else if (t > ramp->from)
+            *ramp->value +=
+                (ramp->last - *ramp->value) * (t - ramp->from) / (ramp->to - ramp->from);
+    }
+    for (uint32_t k = 0; picture->n_ramps && k < picture->scene->colliders.n; k++)
+        picture->colliders[k].collider = cs_scene_colliders(picture->scene) + k;
+}
+
+static void free_ramps(struct cs_picture *picture) {
+    if (picture->scene != &picture->drawn)
+        return;
+    free(picture->drawn.bodies.items);
+    free(picture->drawn.colliders.items);
+    free(picture->drawn.lights.items);
+    free(picture->ramps);
+}
+
 /* Allocates marks of triangles if the look shows crossings. Returns false if out of memory. */
 static bool take_marks(struct cs_picture *picture) {
     if (cs_look_of(picture->scene->render.look)->colours != CS_COLOURS_CROSSINGS)
         return true;
     picture->triangle_marks = calloc((size_t)picture->system->surfaces->n_triangles + 1, 1);
     return picture->triangle_marks;
+}
+
+/* Marks the particles of render.marks, the first of them by 2. */
+static enum cs_status make_marks(struct cs_picture *picture, struct cs_error *error) {
+    const struct cs_marks *marks = &picture->scene->render.marks;
+    const struct cs_body_range *range = picture->system->bodies + marks->body;
+    const uint32_t n = picture->system->view.n;
+    struct cs_body body = cs_scene_bodies(picture->scene)[marks->body];
+    if (marks->particles.n == 0)
+        return CS_OK;
+    bool *named = calloc(n, sizeof *named);
+    picture->marks = calloc(n, 1);
+    body.pins = marks->particles;
+    for (int pass = 0; pass < 2 && named && picture->marks; pass++) {
+        cs_shape_pin(&body, n, range->first, picture->system->start, named + range->first);
+        for (uint32_t i = 0; i < n; i++)
+            picture->marks[i] = (uint8_t)(picture->marks[i] + named[i]);
+        memset(named, 0, n * sizeof *named);
+        body.pins.n = 1;
+    }
+    free(named);
+    return named && picture->marks ? CS_OK
+                                   : cs_fail(error, CS_ERR_MEMORY, "out of memory for marks");
 }
 
 /* Allocates the copies of the state that the scene's look needs. */
@@ -99,6 +204,8 @@ static void forget(struct cs_error *error) {
 static void make_canvas(void *object) {
     struct cs_picture *picture = object;
     const struct cs_canvas_settings settings = {.scene = picture->scene,
+                                                .scene_varies = picture->n_ramps > 0,
+                                                .marks = picture->marks,
                                                 .system = picture->system,
                                                 .textures = picture->textures,
                                                 .colliders = picture->colliders,
@@ -126,7 +233,8 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
                                struct cs_error *error) {
     *picture =
         (struct cs_picture){.scene = system->scene, .system = system, .fast_render = fast};
-    if (!read_textures(picture, error) && !alloc_arrays(picture, error) &&
+    if (!read_textures(picture, error) && !make_marks(picture, error) &&
+        !make_ramps(picture, error) && !alloc_arrays(picture, error) &&
         !open_renderer(kind, &picture->renderer, error)) {
         /* what viewpoint forces see is drawn from the events, which move on with the run */
         const bool apart = beside && !picture->scene->render.viewpoint_forces;
@@ -143,8 +251,11 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
 
 void cs_picture_values(const struct cs_system *system, const struct cs_run *run, double *scalar,
                        double *work) {
-    if (cs_look_of(system->scene->render.look)->colours == CS_COLOURS_FORCE)
+    const enum cs_look_colours colours = cs_look_of(system->scene->render.look)->colours;
+    if (colours == CS_COLOURS_FORCE)
         cs_diagnostics_particle_force(system, run->t, run->x, run->v, scalar, work);
+    else if (colours == CS_COLOURS_STRESS)
+        cs_membranes_particle_stress(system, run->x, scalar);
     else
         cs_diagnostics_particle_strain(system, run->x, scalar);
 }
@@ -194,6 +305,7 @@ void cs_picture_begin(struct cs_picture *picture, const struct cs_run *run,
     memcpy(picture->x, run->x, 3 * n * sizeof *picture->x);
     memcpy(picture->inv_mass, picture->system->inv_mass, n * sizeof *picture->inv_mass);
     cs_posed_colliders_at(picture->system, run->t, picture->colliders);
+    set_ramps(picture, run->t);
     if (picture->scalar)
         measure(picture, run);
     if (picture->triangle_marks)
@@ -233,8 +345,10 @@ void cs_picture_close(struct cs_picture *picture) {
     free(picture->scalar);
     free(picture->work);
     free(picture->goals);
+    free(picture->marks);
     free(picture->triangle_marks);
     free(picture->colliders);
+    free_ramps(picture);
     *picture = (struct cs_picture){0};
 }
 

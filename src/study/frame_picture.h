@@ -12,9 +12,19 @@
 #include "sim/install_paths.h"
 #include "sim/run.h"
 
+/* A ramp of a number that only pictures show (cs_event_key_is_picture). */
+struct cs_picture_ramp {
+    double *value;          /* in `drawn` */
+    double from, to, start; /* s, s, the number before all ramps */
+    double last;            /* the number from `to` on */
+};
+
 /* Pictures of one run; zeroed: closed. Must not move in memory while open. */
 struct cs_picture {
-    const struct cs_scene *scene;   /* borrowed */
+    const struct cs_scene *scene;  /* borrowed, or `drawn` */
+    struct cs_scene drawn;         /* with the numbers of its ramps at t; its lists are owned */
+    struct cs_picture_ramp *ramps; /* (n_ramps), owned, by their begin */
+    uint32_t n_ramps;
     const struct cs_system *system; /* borrowed */
     const struct cs_renderer *renderer;
     struct cs_canvas *canvas;  /* owned */
@@ -22,6 +32,7 @@ struct cs_picture {
     double *x, *inv_mass;      /* (3,n), (n), owned: the run as it was at begin */
     double *scalar, *work;     /* (n), (3,n), owned; NULL unless the look colours by a value */
     double *goals;             /* (3,n), owned; NULL unless the look shows them */
+    uint8_t *marks;            /* (n) of particles, owned; NULL unless the scene marks some */
     uint8_t *triangle_marks;   /* of triangles, owned; NULL unless the look shows them */
     struct cs_posed_collider
         *colliders;  /* (scene->colliders.n), owned: as they were at begin */

@@ -1,237 +1,208 @@
 /* Runs the Cartesian product of values and methods, and stores one row per cell. */
 #include "study/parameter_sweep.h"
 
-#include "base/hash.h"
-#include "model/force/diagnostics.h"
-#include "scene/file/scene_read.h"
-#include "sim/module.h"
-#include "study/follow.h"
-#include "study/provenance_write.h"
-#include "study/sweep_rows.h"
+#include "study/process_pool.h"
+#include "study/sweep_cell.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-/* One cell of a sweep: its values, its key, its run, its row.
- *
- * The number of a cell is a mixed-radix number: the last key is its fastest digit, the first
- * key a slow one, and the method the slowest. */
-
-/* The last key changes first, and the method last. Zeroed: closed. */
-struct cs_parameter_sweep_cell {
-    uint32_t number;
-    struct cs_override overrides[CS_PARAMETER_AXES_MAX];
-    const char *method;        /* NULL: the scene's own */
-    struct cs_session session; /* up to the plan, unless it was refused */
-    struct cs_error refusal;   /* why it was */
-    char key[CS_HASH_DIGITS];
+/* The result that the process of a cell hands over. */
+struct cell_row {
+    char key[CS_HASH_DIGITS]; /* "": it has not come so far */
+    enum cs_status failure;   /* why the row says "failed" */
+    size_t length;            /* of the line */
+    char line[];              /* (row_bytes) */
 };
 
-/* True for errors that concern this cell only, which become a row. */
-static bool is_own_fault(const struct cs_error *failure) {
-    return failure->status == CS_ERR_SCENE || failure->status == CS_ERR_MODULE;
+/* A sweep under way. */
+struct sweep_work {
+    struct cs_parameter_sweep *product;
+    struct cs_sweep_rows *rows;
+    uint32_t at;      /* the next cell to look at */
+    size_t row_bytes; /* that a row may have */
+    struct cell_row *slots[CS_PROCESS_POOL_MAX];
+    uint32_t cells[CS_PROCESS_POOL_MAX]; /* that the slots run */
+};
+
+/* Bytes of the longest row: quotes double at most, and the rest is bounded. */
+static size_t longest_row(const struct cs_parameter_sweep *product) {
+    size_t bytes = 8192, longest = 0;
+    for (uint32_t k = 0; k < product->n_keys; k++, bytes += 2 * longest + 3, longest = 0)
+        for (uint32_t v = 0; v < product->keys[k].n; v++)
+            if (strlen(product->keys[k].values[v]) > longest)
+                longest = strlen(product->keys[k].values[v]);
+    for (uint32_t m = 0; m < product->n_methods; m++)
+        if (2 * strlen(product->methods[m]) > longest)
+            longest = 2 * strlen(product->methods[m]);
+    return bytes + longest;
 }
 
-/* Splits the number of the cell into the indices of its values. */
-static void choose_values(struct cs_parameter_sweep_cell *cell,
-                          const struct cs_parameter_sweep *product) {
-    uint32_t rest = cell->number;
-    for (uint32_t k = product->n_keys; k-- > 0;) {
-        const struct cs_parameter_axis *key = product->keys + k;
-        cell->overrides[k] = (struct cs_override){key->path, key->values[rest % key->n]};
-        rest /= key->n;
+/* Chooses the next cell that has no row, belongs to the shard, and that no other process runs.
+ */
+static bool next_cell(void *ctx, uint32_t slot, struct cs_error *error) {
+    struct sweep_work *work = ctx;
+    const struct cs_parameter_sweep *product = work->product;
+    while (work->at < product->counts.cells && !error->status) {
+        const uint32_t number = work->at++;
+        if (work->rows->lines[number] || !cs_shard_holds(&product->shard, number) ||
+            !cs_sweep_rows_lock_cell(work->rows, number, product->folder, error))
+            continue;
+        work->cells[slot] = number;
+        memset(work->slots[slot], 0, sizeof *work->slots[slot]);
+        return true;
     }
-    cell->method = product->n_methods ? product->methods[rest] : NULL;
+    return false;
 }
 
-/* Adds hashes of scene and module, which identify equal cells whatever their text. */
-static void add_meaning(struct cs_parameter_sweep_cell *cell, struct cs_text *all,
-                        struct cs_error *error) {
-    struct cs_session *session = &cell->session;
-    const struct cs_registry_entry *found;
-    char scene[CS_HASH_DIGITS] = "", module[CS_HASH_DIGITS] = "";
-    if (cs_scene_hash(&session->scene, &session->method.table, session->method.options, scene,
-                      error) ||
-        cs_registry_find(&session->registry, session->method.integrator->name, &found, error) ||
-        cs_module_hash(found->file, module, error))
-        return;
-    cs_text_add(all, "|%s|%s", scene, module);
-}
-
-static void add_refusal(const struct cs_parameter_sweep_cell *cell, uint32_t n_keys,
-                        struct cs_text *all) {
-    cs_text_add(all, "|%s|%s", cell->method ? cell->method : "", cell->refusal.message);
-    for (uint32_t k = 0; k < n_keys; k++)
-        cs_text_add(all, "|%s=%s", cell->overrides[k].path, cell->overrides[k].value);
-}
-
-static enum cs_status make_key(struct cs_parameter_sweep_cell *cell,
-                               const struct cs_parameter_sweep *product,
-                               struct cs_error *error) {
-    struct cs_text all = {0};
-    cs_text_add(&all, "%s|%u", CS_VERSION, product->frames);
-    if (cell->refusal.status)
-        add_refusal(cell, product->n_keys, &all);
-    else
-        add_meaning(cell, &all, error);
-    if (all.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the key of a cell");
-    else
-        cs_hash_bytes(cs_text_get(&all), all.length, cell->key);
-    cs_text_finish(&all);
-    return error->status;
-}
-
-/* Reads the scene with the cell's values and computes its key: a hash of the resolved scene
- * with its mesh files, of method, options and module, of frames and version. The key of a
- * refused cell hashes the request and the reason. A refusal is no error here. CS_ERR_USAGE and
- * other errors that are not the cell's own; CS_ERR_MEMORY. */
-static enum cs_status parameter_sweep_cell_open(struct cs_parameter_sweep_cell *cell,
-                                                const struct cs_parameter_sweep *product,
-                                                uint32_t number, struct cs_error *error) {
-    struct cs_session_settings asked = product->session;
-    *cell = (struct cs_parameter_sweep_cell){.number = number};
-    choose_values(cell, product);
-    asked.overrides = cell->overrides;
-    asked.n_overrides = product->n_keys;
-    asked.integrator = cell->method;
-    if (cs_session_open_plan(&cell->session, &asked, &cell->refusal) &&
-        !is_own_fault(&cell->refusal))
-        return cs_fail(error, cell->refusal.status, "%s", cell->refusal.message);
-    return make_key(cell, product, error);
-}
-
-/* Closes the cell's session. */
-static void parameter_sweep_cell_close(struct cs_parameter_sweep_cell *cell) {
-    cs_session_close(&cell->session);
-}
-
-/* Adds the names of the columns, without the end of the line. */
-static void parameter_sweep_add_head(const struct cs_parameter_sweep *product,
-                                     struct cs_text *out) {
-    cs_text_add(out, "cell");
-    for (uint32_t k = 0; k < product->n_keys; k++)
-        cs_csv_add_text(out, product->keys[k].path);
-    cs_text_add(out, ",integrator,outcome,frames,time,steps,evals,iterations,kinetic,elastic,"
-                     "energy,strain,hash,cpu,machine,version,note,key");
-}
-
-/* Adds outcome, counts and figures of the run. */
-static void add_result(const struct cs_session *session, const char *outcome, double cpu,
-                       struct cs_text *out) {
-    const struct cs_run *run = &session->run;
-    const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
-    char hash[CS_HASH_DIGITS];
-    cs_run_hash(run, hash);
-    cs_csv_add_text(out, outcome);
-    cs_text_add(out, ",%u", run->frame);
-    cs_csv_add_number(out, run->t);
-    cs_text_add(out, ",%llu,%llu,%llu", (unsigned long long)run->counts.steps,
-                (unsigned long long)run->counts.forces,
-                (unsigned long long)run->counts.solve_iterations);
-    cs_csv_add_number(out, energy.kinetic);
-    cs_csv_add_number(out, energy.elastic);
-    cs_csv_add_number(out, cs_energy_total(&energy));
-    cs_csv_add_number(out, cs_diagnostics_strain(run->system, run->x));
-    cs_csv_add_text(out, hash);
-    cs_csv_add_number(out, cpu);
-}
-
-/* Adds a refusal by scene or method as a row. Errors of the command line are passed on. */
-static enum cs_status add_failure(struct cs_parameter_sweep *product,
-                                  const struct cs_error *failure, struct cs_text *out,
-                                  struct cs_error *error) {
-    if (!is_own_fault(failure))
-        return cs_fail(error, failure->status, "%s", failure->message);
-    if (!product->n_refused++)
-        product->first_refusal = *failure;
-    cs_csv_add_text(out, failure->status == CS_ERR_SCENE ? "refused" : "failed");
-    cs_text_add(out, ",,,,,,,,,,,");
-    return CS_OK;
-}
-
-/* Runs from the plan to the last frame. Returns the processor time in s of the frames. */
-static double run_frames(struct cs_parameter_sweep_cell *cell, uint32_t frames) {
-    struct cs_session *session = &cell->session;
-    struct cs_error *failure = &cell->refusal;
-    struct cs_follow follow = {.run = &session->run, .last = frames};
-    if (!failure->status && !cs_session_build(session, failure) &&
-        !cs_session_begin(session, NULL, failure))
-        cs_follow_next(&follow, failure);
-    return follow.cpu;
-}
-
-/* Runs the cell and adds its row, under these names. A refusal by scene or method is a row, and
- * counted. CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
-static enum cs_status parameter_sweep_cell_run(struct cs_parameter_sweep_cell *cell,
-                                               struct cs_parameter_sweep *product,
-                                               const char *names, struct cs_text *out,
-                                               struct cs_error *error) {
-    const struct cs_session *session = &cell->session;
-    const struct cs_integrator *integrator = session->method.integrator;
-    char machine[CS_MACHINE_NAME];
-    cs_text_add(out, "%u", cell->number);
-    for (uint32_t k = 0; k < product->n_keys; k++)
-        cs_csv_add_text(out, cell->overrides[k].value);
-    const double cpu = run_frames(cell, product->frames);
-    cs_csv_add_text(out, cell->method ? cell->method : integrator ? integrator->name : "");
-    cs_follow_check(&session->run, "; finished rows are saved", error);
-    if (!error->status && cell->refusal.status)
-        add_failure(product, &cell->refusal, out, error);
-    else if (!error->status)
-        add_result(session, cs_outcome_text(session->run.outcome), cpu, out);
-    cs_machine_name(machine);
-    cs_csv_add_text(out, machine);
-    cs_csv_add_text(out, CS_VERSION);
-    cs_csv_add_text(out, session->run.reason ? session->run.reason : cell->refusal.message);
-    cs_csv_add_text(out, cell->key);
-    cs_csv_end_row(out, 0, names);
-    if (out->failed && !error->status)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for a row");
-    return error->status;
-}
-
-/* Runs one cell, unless its row exists or it belongs to another shard. */
-static enum cs_status do_cell(struct cs_parameter_sweep *product,
-                              const struct cs_sweep_rows *rows, uint32_t number,
-                              struct cs_error *error) {
-    struct cs_parameter_sweep_cell cell;
+/* In the process of a cell: runs it and hands its row over. */
+static enum cs_status run_cell(void *ctx, uint32_t slot, struct cs_error *error) {
+    const struct sweep_work *work = ctx;
+    struct cell_row *row = work->slots[slot];
+    struct cs_sweep_cell cell;
     struct cs_text line = {0};
-    const char *taken = rows->lines[number];
-    if (!taken && !cs_shard_holds(&product->shard, number))
-        return CS_OK;
-    if (parameter_sweep_cell_open(&cell, product, number, error))
+    if (cs_sweep_cell_open(&cell, work->product, work->cells[slot], error))
         return error->status;
-    product->n_reused += taken != NULL;
-    if (taken && strcmp(cs_sweep_row_key(taken), cell.key) != 0)
-        cs_fail(error, CS_ERR_USAGE,
-                "%s belongs to a different sweep; choose another folder with --out, or "
-                "--overwrite to replace it",
-                rows->table.path);
-    else if (!taken &&
-             !parameter_sweep_cell_run(&cell, product, cs_text_get(&rows->names), &line, error))
-        cs_row_table_append(&rows->table, line.bytes, line.length, error);
+    memcpy(row->key, cell.key, sizeof row->key);
+    cs_sweep_cell_run(&cell, work->product, cs_text_get(&work->rows->names), &line, error);
+    cs_sweep_cell_close(&cell);
+    if (!error->status && line.length > work->row_bytes)
+        cs_fail(error, CS_ERR_INTERNAL, "a row of %zu bytes", line.length);
+    if (!error->status) {
+        row->failure = cell.refusal.status;
+        row->length = line.length;
+        memcpy(row->line, line.bytes, line.length);
+    }
     cs_text_finish(&line);
-    parameter_sweep_cell_close(&cell);
     return error->status;
+}
+
+/* Stores the row of a cell, or of its failure. An interrupted one has none. */
+static void end_cell(void *ctx, uint32_t slot, const struct cs_error *result,
+                     struct cs_error *error) {
+    struct sweep_work *work = ctx;
+    const struct cell_row *row = work->slots[slot];
+    struct cs_parameter_sweep *product = work->product;
+    const volatile sig_atomic_t *stop = product->session.run.stop;
+    const uint32_t number = work->cells[slot];
+    const enum cs_status failure = result->status ? result->status : row->failure;
+    struct cs_text line = {0};
+    if (result->status)
+        cs_sweep_cell_add_lost(number, product, result->message, row->key,
+                               cs_text_get(&work->rows->names), &line);
+    else
+        cs_text_add(&line, "%.*s", (int)row->length, row->line);
+    /* a cell that stops though nobody asked for it has failed */
+    if (result->status != CS_ERR_INTERRUPT || !(stop && *stop))
+        cs_sweep_rows_append(work->rows, number, &line, error);
+    cs_sweep_rows_unlock_cell(work->rows, number);
+    cs_text_finish(&line);
+    if (failure && failure != CS_ERR_SCENE && failure != CS_ERR_MODULE &&
+        failure != CS_ERR_INTERRUPT)
+        cs_fail(&product->cell_failure, failure, "cell %u failed%s%s", number,
+                result->status ? ": " : "; its row says why", result->message);
+    if (product->progress)
+        product->progress(product->ctx, work->at, product->counts.cells);
+}
+
+/* In a process of its own: compares the keys of the rows that are there with the cells. */
+static enum cs_status verify_rows(void *ctx, struct cs_error *error) {
+    const struct sweep_work *work = ctx;
+    for (uint32_t k = 0; k < work->product->counts.cells && !error->status; k++) {
+        const char *line = work->rows->lines[k];
+        struct cs_sweep_cell cell;
+        /* a cell that failed before it was read has no key */
+        if (!line || !*cs_sweep_row_key(line))
+            continue;
+        if (!cs_sweep_cell_open(&cell, work->product, k, error) &&
+            strcmp(cs_sweep_row_key(line), cell.key) != 0)
+            cs_fail(error, CS_ERR_USAGE,
+                    "%s belongs to a different sweep; choose another folder with --out, or "
+                    "--overwrite to replace it",
+                    work->rows->table.path);
+        cs_sweep_cell_close(&cell);
+    }
+    return error->status;
+}
+
+/* Runs all cells that are left. */
+static enum cs_status run_cells(struct sweep_work *work, struct cs_error *error) {
+    const struct cs_parameter_sweep *product = work->product;
+    struct cs_isolate_queue queue = {.limits = {.seconds = product->call_seconds,
+                                                .task_seconds = product->cell_seconds,
+                                                .stop_seconds = 0.5,
+                                                .bytes = product->cell_bytes,
+                                                .is_cell = true,
+                                                .stop = product->session.run.stop},
+                                     .n_slots = product->jobs ? product->jobs : 1,
+                                     .ctx = work,
+                                     .next = next_cell,
+                                     .task = run_cell,
+                                     .ended = end_cell};
+    const size_t bytes = sizeof **work->slots + (work->row_bytes = longest_row(product));
+    for (uint32_t k = 0; k < queue.n_slots && !error->status; k++)
+        work->slots[k] = cs_process_pool_shared_alloc(bytes, error);
+    if (!error->status)
+        cs_isolate_queue_run(&queue, error);
+    for (uint32_t k = 0; k < queue.n_slots; k++)
+        cs_process_pool_shared_free(work->slots[k], bytes);
+    return queue.limits.stop && *queue.limits.stop
+               ? cs_fail(error, CS_ERR_INTERRUPT, "interrupted; finished rows are saved")
+               : error->status;
 }
 
 /* Writes the first line of a new file, or adds the rows of an old one. */
 static enum cs_status begin(struct cs_parameter_sweep *product, struct cs_sweep_rows *rows,
                             struct cs_error *error) {
-    parameter_sweep_add_head(product, &rows->names);
-    if (cs_sweep_rows_reserve(rows, product->cells, error) ||
+    cs_sweep_add_names(product, &rows->names);
+    if (cs_sweep_rows_reserve(rows, product->counts.cells, error) ||
         cs_row_table_lock(&rows->table, error))
         return error->status;
-    if (product->overwrite || !cs_sweep_rows_read(rows, product->folder, error))
+    if (!product->overwrite)
+        cs_sweep_rows_read(rows, product->folder, error);
+    if (product->retry_failed)
+        cs_sweep_rows_drop_failed(rows, product->n_keys);
+    if (!error->status)
         cs_sweep_rows_write(rows, error);
     cs_row_table_unlock(&rows->table);
-    if (!error->status && rows->n > product->cells)
+    product->counts.reused = cs_sweep_rows_count(rows);
+    if (!error->status && rows->n > product->counts.cells)
         cs_fail(error, CS_ERR_USAGE,
                 "%s belongs to a different sweep; choose another folder with --out, or "
                 "--overwrite to replace it",
                 rows->table.path);
     return error->status;
+}
+
+/* Counts the rows by their outcomes, and describes the first failed ones. */
+static void count_rows(struct cs_parameter_sweep *product, const struct cs_sweep_rows *rows) {
+    enum { SHOWN = 10 };
+    struct cs_parameter_sweep_counts *counts = &product->counts;
+    counts->done = cs_sweep_rows_count(rows);
+    for (uint32_t k = 0; k < rows->n; k++) {
+        struct cs_sweep_fields fields;
+        char *line = rows->lines[k] ? strdup(rows->lines[k]) : NULL;
+        if (line && cs_sweep_row_cut(line, product->n_keys, &fields)) {
+            counts->blown_up += !strncmp(fields.outcome, "blew up", 7);
+            if (!strcmp(fields.outcome, "refused") && !counts->refused++)
+                snprintf(counts->first_refusal, sizeof counts->first_refusal, "%s",
+                         fields.note);
+            if (!strcmp(fields.outcome, "failed") && ++counts->failed <= SHOWN) {
+                cs_text_add(&product->failed, "failed: cell %u (", k);
+                for (uint32_t v = 0; v < product->n_keys; v++)
+                    cs_text_add(&product->failed, "%s%s=%s", v ? ", " : "",
+                                product->keys[v].path, fields.values[v]);
+                cs_text_add(&product->failed, "%s%s): %s\n",
+                            product->n_keys && *fields.method ? ", " : "", fields.method,
+                            fields.note);
+            }
+        }
+        free(line);
+    }
+    if (counts->failed > SHOWN)
+        cs_text_add(&product->failed, "failed: %u more\n", counts->failed - SHOWN);
 }
 
 /* Adds what this and other processes have appended since; the rows are written in order when
@@ -241,8 +212,8 @@ static enum cs_status end(struct cs_parameter_sweep *product, struct cs_sweep_ro
     if (cs_row_table_lock(&rows->table, error))
         return error->status;
     cs_sweep_rows_read(rows, product->folder, error);
-    product->n_done = cs_sweep_rows_count(rows);
-    if (!error->status && product->n_done == product->cells)
+    count_rows(product, rows);
+    if (!error->status && product->counts.done == product->counts.cells)
         cs_sweep_rows_write(rows, error);
     cs_row_table_unlock(&rows->table);
     return error->status;
@@ -255,59 +226,100 @@ static enum cs_status count(struct cs_parameter_sweep *product, struct cs_error 
     if (cells > CS_PARAMETER_SWEEP_CELLS_MAX)
         return cs_fail(error, CS_ERR_USAGE, "%.0f cells, expected at most %d", cells,
                        CS_PARAMETER_SWEEP_CELLS_MAX);
-    product->cells = (uint32_t)cells;
+    product->counts = (struct cs_parameter_sweep_counts){.cells = (uint32_t)cells};
     return CS_OK;
 }
 
-/* Reads the scene with one key set, or with none; a refusal by the scene is left in *refusal.
- */
+/* Reads the scene with one key set or with none, by a method; a refusal by the scene is left in
+ * *refusal. */
 static enum cs_status try_override(const struct cs_parameter_sweep *product,
-                                   const struct cs_override *key, struct cs_error *refusal,
-                                   struct cs_error *error) {
+                                   const struct cs_override *key, const char *method,
+                                   struct cs_error *refusal, struct cs_error *error) {
     struct cs_session_settings asked = product->session;
     struct cs_session session = {0};
     asked.overrides = key;
     asked.n_overrides = key != NULL;
-    asked.integrator = product->n_methods ? product->methods[0] : NULL;
+    asked.integrator = method;
     *refusal = (struct cs_error){0};
-    if (cs_session_open_plan(&session, &asked, refusal) && !is_own_fault(refusal))
+    if (cs_session_open_plan(&session, &asked, refusal) && refusal->status != CS_ERR_SCENE)
         cs_fail(error, refusal->status, "%s", refusal->message);
     cs_session_close(&session);
     return error->status;
 }
 
-/* Refuses a key that the scene takes with none of its values: it is misspelt, or its values
- * are. Of a scene that is refused by itself nothing can be said. */
-static enum cs_status check_keys(const struct cs_parameter_sweep *product,
-                                 struct cs_error *error) {
+/* In a process of its own: refuses a key that the scene takes with none of its values: it is
+ * misspelt, or its values are; and a method that cannot be loaded. Of a scene that is refused
+ * by itself nothing can be said. */
+static enum cs_status check_keys(void *ctx, struct cs_error *error) {
+    const struct cs_parameter_sweep *product = ctx;
+    const char *method = product->n_methods ? product->methods[0] : NULL;
     struct cs_error refusal;
-    if (try_override(product, NULL, &refusal, error) || refusal.status)
+    for (uint32_t k = product->n_methods; k-- > 1 && !error->status;)
+        try_override(product, NULL, product->methods[k], &refusal, error);
+    if (error->status || try_override(product, NULL, method, &refusal, error) || refusal.status)
         return error->status;
     for (uint32_t k = 0; k < product->n_keys && !error->status; k++) {
         const struct cs_parameter_axis *key = product->keys + k;
-        refusal.status = CS_ERR_SCENE;
-        for (uint32_t v = 0; v < key->n && refusal.status && !error->status; v++)
-            try_override(product, &(struct cs_override){key->path, key->values[v]}, &refusal,
-                         error);
-        if (refusal.status && !error->status)
+        bool taken = false;
+        for (uint32_t v = 0; v < key->n && !error->status; v++) {
+            try_override(product, &(struct cs_override){key->path, key->values[v]}, method,
+                         &refusal, error);
+            taken |= !refusal.status;
+        }
+        if (!taken && !error->status)
             cs_fail(error, refusal.status, "%s", refusal.message);
     }
     return error->status;
 }
 
+/* Runs a check that may load modules in a process of its own. */
+static enum cs_status check_apart(const struct cs_parameter_sweep *product,
+                                  enum cs_status (*check)(void *ctx, struct cs_error *error),
+                                  void *ctx, struct cs_error *error) {
+    const struct cs_isolate isolate = {.seconds = product->call_seconds,
+                                       .stop_seconds = 0.5,
+                                       .is_cell = true,
+                                       .task = check,
+                                       .ctx = ctx,
+                                       .stop = product->session.run.stop};
+    return cs_isolate_run(&isolate, error);
+}
+
+/* Standard input is read once, and processes begun later have it too. */
+static void read_input(const struct cs_parameter_sweep *product) {
+    struct cs_scene scene;
+    struct cs_error unseen = {0};
+    if (!strcmp(product->session.scene, "-") &&
+        !cs_scene_read(&scene, product->session.scene, NULL, 0, &unseen))
+        cs_scene_finish(&scene);
+}
+
 enum cs_status cs_parameter_sweep_run(struct cs_parameter_sweep *product,
                                       struct cs_error *error) {
+    read_input(product);
     struct cs_sweep_rows rows = {0};
-    if (count(product, error) || check_keys(product, error))
+    struct sweep_work work = {.product = product, .rows = &rows};
+    if (count(product, error) || check_apart(product, check_keys, product, error))
         return error->status;
-    if (!cs_sweep_rows_open(&rows, product->folder, error) && !begin(product, &rows, error)) {
-        for (uint32_t k = 0; k < product->cells && !error->status; k++) {
-            do_cell(product, &rows, k, error);
-            if (product->progress)
-                product->progress(product->ctx, k + 1, product->cells);
-        }
-        if (!error->status)
-            end(product, &rows, error);
+    if (!cs_sweep_rows_open(&rows, product->folder, error) && !begin(product, &rows, error) &&
+        !(product->counts.reused && check_apart(product, verify_rows, &work, error)) &&
+        !run_cells(&work, error))
+        end(product, &rows, error);
+    cs_sweep_rows_finish(&rows);
+    return error->status;
+}
+
+enum cs_status cs_parameter_sweep_count(struct cs_parameter_sweep *product,
+                                        struct cs_error *error) {
+    struct cs_sweep_rows rows = {0};
+    cs_sweep_add_names(product, &rows.names);
+    if (!count(product, error) && !access(product->folder, F_OK) &&
+        !cs_sweep_rows_reserve(&rows, product->counts.cells, error) &&
+        !cs_sweep_rows_open(&rows, product->folder, error) &&
+        !cs_sweep_rows_read(&rows, product->folder, error)) {
+        count_rows(product, &rows);
+        for (uint32_t k = 0; k < product->counts.cells; k++)
+            product->counts.running += cs_sweep_rows_is_locked(&rows, k);
     }
     cs_sweep_rows_finish(&rows);
     return error->status;

@@ -20,6 +20,9 @@
 #include <malloc.h>
 #endif
 
+/* s that a worker may go on after the request to stop */
+#define STOP_SECONDS 0.5
+
 /* Memory that all workers share. */
 struct shared {
     atomic_uint next;
@@ -86,6 +89,13 @@ static void report(const struct cs_process_pool *workers) {
                           __atomic_load_n(workers->ticks, __ATOMIC_RELAXED));
 }
 
+/* A worker as the caller sees it. */
+struct worker {
+    pid_t process; /* 0: none */
+    struct cs_crash_patience patience;
+    double stopping; /* s since it was asked to stop */
+};
+
 /* Takes over the error of a worker that ended. Death by SIGPROF is the time limit, and no
  * error; any other death is reported as a crash. */
 static void collect(struct shared *shared, uint32_t worker, int end, struct cs_error *error) {
@@ -101,17 +111,19 @@ static void collect(struct shared *shared, uint32_t worker, int end, struct cs_e
         atomic_store(&shared->next, UINT32_MAX / 2);
 }
 
-/* Forks a worker. Returns its process in the parent, < 0 if there is none. */
-static pid_t start(struct cs_process_pool *workers, struct shared *shared, uint32_t worker) {
+/* Forks a worker. Its process is < 0 if there is none. */
+static void start(struct cs_process_pool *workers, struct shared *shared, uint32_t number,
+                  struct worker *worker) {
+    *worker = (struct worker){.patience.looked = cs_clock_wall()};
     /* that of the worker before, which was ended in a task */
-    shared->logs[worker] = (struct cs_crash_log){0};
-    const pid_t child = fork();
-    if (child)
-        return child;
-    cs_crash_log_to(shared->logs + worker);
+    shared->logs[number] = (struct cs_crash_log){0};
+    worker->process = fork();
+    if (worker->process)
+        return;
+    cs_crash_log_to(shared->logs + number);
     store_memory();
-    serve(workers, shared, worker);
-    atomic_store(shared->done + worker, true);
+    serve(workers, shared, number);
+    atomic_store(shared->done + number, true);
     _exit(0);
 }
 
@@ -122,29 +134,46 @@ static bool wants_another(const struct cs_process_pool *workers, struct shared *
            atomic_load(&shared->next) < workers->n_tasks;
 }
 
-/* Passes a request to stop on to all workers. */
-static void terminate_workers(const struct cs_process_pool *workers, const pid_t *children,
-                              uint32_t n) {
-    for (uint32_t k = 0; workers->stop && *workers->stop && k < n; k++)
-        if (children[k] > 0)
-            kill(children[k], SIGTERM);
+/* Passes a request to stop on, and ends a worker that does not stop or whose method hangs. */
+static void hold_to_limits(const struct cs_process_pool *workers, struct shared *shared,
+                           uint32_t number, struct worker *worker) {
+    const struct cs_crash_log *log = shared->logs + number;
+    const double step = cs_crash_patience_look(&worker->patience, log);
+    const struct cs_crash_call *hung =
+        cs_crash_find_silent(&worker->patience, log, workers->silence_max);
+    const bool stops = workers->stop && *workers->stop;
+    if (stops)
+        kill(worker->process, (worker->stopping += step) > STOP_SECONDS ? SIGKILL : SIGTERM);
+    else if (hung && !shared->errors[number].status) {
+        cs_fail(shared->errors + number, CS_ERR_MODULE,
+                "%s \"%s\" hung %s: it was ended after %g s", hung->kind, hung->name,
+                hung->place, workers->silence_max);
+        kill(worker->process, SIGKILL);
+    }
 }
 
 /* Waits for all workers. Polls every 20 ms, so progress shows and signals are noticed. */
-static void wait_for(struct cs_process_pool *workers, struct shared *shared, pid_t *children,
-                     uint32_t n, struct cs_error *error) {
+static void wait_for(struct cs_process_pool *workers, struct shared *shared,
+                     struct worker *children, uint32_t n, struct cs_error *error) {
     const struct timespec pause = {.tv_nsec = 20000000};
     uint32_t left = n;
     while (left) {
         for (uint32_t k = 0; k < n; k++) {
+            struct worker *child = children + k;
             int end = 0;
-            if (children[k] <= 0 || waitpid(children[k], &end, WNOHANG) != children[k])
+            if (child->process <= 0)
                 continue;
+            if (waitpid(child->process, &end, WNOHANG) != child->process) {
+                hold_to_limits(workers, shared, k, child);
+                continue;
+            }
             collect(shared, k, end, error);
-            children[k] = wants_another(workers, shared, end) ? start(workers, shared, k) : 0;
-            left -= children[k] <= 0;
+            // one that was ended by its limit of time leaves the other tasks
+            child->process = 0;
+            if (wants_another(workers, shared, end))
+                start(workers, shared, k, child);
+            left -= child->process <= 0;
         }
-        terminate_workers(workers, children, n);
         if (left)
             nanosleep(&pause, NULL);
         report(workers);
@@ -153,7 +182,7 @@ static void wait_for(struct cs_process_pool *workers, struct shared *shared, pid
 
 enum cs_status cs_process_pool_run(struct cs_process_pool *workers, struct cs_error *error) {
     struct shared *shared = cs_process_pool_shared_alloc(sizeof *shared, error);
-    pid_t children[CS_PROCESS_POOL_MAX];
+    struct worker children[CS_PROCESS_POOL_MAX];
     uint32_t n = 0;
     if (!shared)
         return error->status;
@@ -161,8 +190,8 @@ enum cs_status cs_process_pool_run(struct cs_process_pool *workers, struct cs_er
     /* what waits in the buffers is not to be written twice */
     fflush(NULL);
     while (n < workers->n_workers && n < workers->n_tasks && n < CS_PROCESS_POOL_MAX) {
-        children[n] = start(workers, shared, n);
-        if (children[n] < 0) {
+        start(workers, shared, n, children + n);
+        if (children[n].process < 0) {
             if (!n)
                 cs_fail(error, CS_ERR_MEMORY, "cannot start a worker: %s", strerror(errno));
             break;
@@ -175,146 +204,5 @@ enum cs_status cs_process_pool_run(struct cs_process_pool *workers, struct cs_er
         cs_fail(error, CS_ERR_INTERRUPT, "interrupted");
     }
     cs_process_pool_shared_free(shared, sizeof *shared);
-    return error->status;
-}
-
-/* Runs a task in a forked process and reports how it ended. */
-
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
-
-/* Interval between two checks of the calls. */
-enum { PAUSE_NANOSECONDS = 20000000 };
-
-#define LONGEST_LOOK 0.2 /* s */
-
-/* Memory that both processes share. */
-struct isolate_shared {
-    struct cs_crash_log log;
-    struct cs_error error; /* of the task */
-    atomic_bool done;      /* the task has returned: the error is complete */
-};
-
-/* Waiting times of the calls, by which hung ones are found. */
-struct patience {
-    unsigned edges[CS_CRASH_SIDES];
-    double waited[CS_CRASH_SIDES]; /* s */
-    double looked;                 /* s, by the clock */
-    bool told;                     /* the child was asked to stop */
-};
-
-/* The child: runs the task and exits without atexit handlers. */
-static _Noreturn void isolate_serve(const struct cs_isolate *isolate,
-                                    struct isolate_shared *isolate_shared, pid_t parent) {
-    struct cs_error error = {0};
-#ifdef __linux__
-    /* also when the parent is killed: nobody else would tell how it ended */
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-#endif
-    if (getppid() != parent)
-        _exit(cs_status_exit_code(CS_ERR_INTERRUPT));
-    cs_crash_log_to(&isolate_shared->log);
-    isolate->task(isolate->ctx, &error);
-    if ((fflush(stdout) || ferror(stdout)) && !error.status)
-        cs_fail(&error, CS_ERR_FILE, "cannot write to standard output");
-    isolate_shared->error = error;
-    atomic_store(&isolate_shared->done, true);
-    /* not exit: what modules left to be done there is not waited for */
-    _exit(0);
-}
-
-/* Returns the call that has lasted too long, or NULL.
- *
- * Each entry and exit of a call increments its counter: an odd value means "inside". The
- * waiting time grows while the counter does not change. Each check adds at most LONGEST_LOOK,
- * so a suspended machine does not count as waiting. */
-static const struct cs_crash_call *
-find_timed_out_call(const struct cs_isolate *isolate,
-                    const struct isolate_shared *isolate_shared, struct patience *patience) {
-    const double now = cs_clock_wall(), passed = now - patience->looked;
-    /* while both were stopped, nobody waited */
-    const double step = passed < LONGEST_LOOK ? passed : LONGEST_LOOK;
-    patience->looked = now;
-    for (int k = 0; k < CS_CRASH_SIDES; k++) {
-        const struct cs_crash_call *call = isolate_shared->log.calls + k;
-        const unsigned edges = atomic_load(&call->call_parity);
-        patience->waited[k] = edges == patience->edges[k] ? patience->waited[k] + step : 0;
-        patience->edges[k] = edges;
-        if (edges % 2 && patience->waited[k] > isolate->seconds)
-            return call;
-    }
-    return NULL;
-}
-
-/* Passes a request to stop on to the child, once. */
-static void pass_on_stop(const struct cs_isolate *isolate, pid_t child,
-                         struct patience *patience) {
-    if (!isolate->stop || !*isolate->stop || patience->told)
-        return;
-    patience->told = true;
-    kill(child, SIGTERM);
-}
-
-/* Waits until the child is dead, and returns its wait status. SIGCHLD ends a pause early. A
- * hung child is killed. */
-static int isolate_wait_for(const struct cs_isolate *isolate,
-                            const struct isolate_shared *isolate_shared, pid_t child,
-                            const sigset_t *death, struct cs_error *error) {
-    const struct timespec pause = {.tv_nsec = PAUSE_NANOSECONDS};
-    struct patience patience = {0};
-    int end = 0;
-    while (waitpid(child, &end, WNOHANG) != child) {
-        const struct cs_crash_call *hung =
-            find_timed_out_call(isolate, isolate_shared, &patience);
-        if (hung) {
-            cs_fail(error, CS_ERR_MODULE, "%s \"%s\" hung %s: it was ended after %g s",
-                    hung->kind, hung->name, hung->place, isolate->seconds);
-            kill(child, SIGKILL);
-            waitpid(child, &end, 0);
-            return end;
-        }
-        pass_on_stop(isolate, child, &patience);
-        sigtimedwait(death, NULL, &pause);
-    }
-    return end;
-}
-
-/* Forks, waits and collects the error of the task. */
-static enum cs_status run(const struct cs_isolate *isolate,
-                          struct isolate_shared *isolate_shared, struct cs_error *error) {
-    sigset_t death, before;
-    const pid_t parent = getpid();
-    /* where it is ignored, as some callers leave it, children could not be waited for */
-    signal(SIGCHLD, SIG_DFL);
-    sigemptyset(&death);
-    sigaddset(&death, SIGCHLD);
-    sigprocmask(SIG_BLOCK, &death, &before);
-    /* what waits in the buffers is not to be written twice */
-    fflush(NULL);
-    const pid_t child = fork();
-    if (child <= 0)
-        sigprocmask(SIG_SETMASK, &before, NULL);
-    if (!child)
-        isolate_serve(isolate, isolate_shared, parent);
-    if (child < 0)
-        return cs_fail(error, CS_ERR_MEMORY, "cannot start another process: %s",
-                       strerror(errno));
-    const int end = isolate_wait_for(isolate, isolate_shared, child, &death, error);
-    sigprocmask(SIG_SETMASK, &before, NULL);
-    if (error->status)
-        return error->status;
-    if (!atomic_load(&isolate_shared->done))
-        return cs_crash_report_print(&isolate_shared->log, end, error);
-    *error = isolate_shared->error;
-    return error->status;
-}
-
-enum cs_status cs_isolate_run(const struct cs_isolate *isolate, struct cs_error *error) {
-    struct isolate_shared *isolate_shared =
-        cs_process_pool_shared_alloc(sizeof *isolate_shared, error);
-    if (isolate_shared)
-        run(isolate, isolate_shared, error);
-    cs_process_pool_shared_free(isolate_shared, sizeof *isolate_shared);
     return error->status;
 }

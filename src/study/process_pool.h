@@ -9,6 +9,7 @@
 #include "base/status.h"
 
 #include <signal.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -32,35 +33,66 @@ struct cs_process_pool {
     uint32_t *ticks;         /* of the pool: in memory that all workers see while it runs */
     double task_seconds_max; /* of processor time for a task, which is then left as it is; 0:
                                 any */
-    const volatile sig_atomic_t *stop; /* set: the workers are asked to stop; may be NULL */
+    /* s that a method may keep from the host; 0: any */
+    double silence_max;
+    /* set: the workers are asked to stop, and ended if they do not; may be NULL */
+    const volatile sig_atomic_t *stop;
 };
 
 /* Advances the progress; callable from every worker. */
 void cs_process_pool_tick(struct cs_process_pool *workers, uint32_t ticks);
 
 /* Runs all tasks and returns when they are done. The first error stops further tasks.
- * CS_ERR_MODULE if a worker crashed; CS_ERR_INTERRUPT; CS_ERR_MEMORY if no worker can be
- * started. */
+ * CS_ERR_MODULE if a worker crashed or hung; CS_ERR_INTERRUPT; CS_ERR_MEMORY if no worker can
+ * be started. */
 enum cs_status cs_process_pool_run(struct cs_process_pool *workers, struct cs_error *error);
 
-/* Runs a task that calls foreign code in a child process and turns its death into
- * an error message.
+/* Runs tasks that call foreign code in child processes, one process a task, and turns their
+ * deaths into error messages.
  *
- * The child does the whole task in the same order of steps. Only its status comes back; results
- * are in files. */
+ * A child does the whole task in the same order of steps. Only its status comes back; results
+ * are in files or in shared memory. It ends with this process. */
 
-/* Request for a task. */
+/* The limits of a child. */
 struct cs_isolate {
-    double seconds; /* that one call into a module may take */
+    double seconds;      /* that one call into a module may take; 0: any */
+    double task_seconds; /* that all of it may take; 0: any */
+    /* that a call, or all of a cell, may go on after the request to stop; 0: any */
+    double stop_seconds;
+    double bytes; /* address space; 0: any */
+    /* one of many: its standard output is standard error, and the kernel ends it before others
+     * when the machine has no memory left */
+    bool is_cell;
     enum cs_status (*task)(void *ctx, struct cs_error *error);
     void *ctx;
     const volatile sig_atomic_t *stop; /* set: the process is asked to stop; may be NULL */
 };
 
-/* Runs the task in a child of this process and waits for it. The child ends with this process.
- * Returns the status of the task. If the child died or a call took longer than `seconds`,
- * returns CS_ERR_MODULE (or the status of a memory failure) and names the module and the call.
- * Changes of memory by the task are lost. CS_ERR_MEMORY if no process can be started. */
+/* Runs the task in a child of this process and waits for it. Returns the status of the task. If
+ * the child died or took longer than its limits, returns CS_ERR_MODULE (or the status of a
+ * memory failure) and names the module and the call; CS_ERR_INTERRUPT if it was killed because
+ * it did not stop. Changes of memory by the task are lost. CS_ERR_MEMORY if no process can be
+ * started. */
 enum cs_status cs_isolate_run(const struct cs_isolate *isolate, struct cs_error *error);
+
+/* Tasks of the same limits, several at a time, each in a child of its own. */
+struct cs_isolate_queue {
+    struct cs_isolate limits; /* without task and ctx */
+    uint32_t n_slots;         /* tasks at a time, up to CS_PROCESS_POOL_MAX */
+    void *ctx;
+    /* in this process: chooses the next task of a free slot; false: none is left */
+    bool (*next)(void *ctx, uint32_t slot, struct cs_error *error);
+    /* in the child */
+    enum cs_status (*task)(void *ctx, uint32_t slot, struct cs_error *error);
+    /* in this process: takes the result; an error of its own ends the queue */
+    void (*ended)(void *ctx, uint32_t slot, const struct cs_error *result,
+                  struct cs_error *error);
+};
+
+/* Runs tasks until none is left. An error of next or ended kills those under way. After a
+ * request to stop no task is begun, and CS_ERR_INTERRUPT is returned when all have ended.
+ * CS_ERR_MEMORY if no process can be started. */
+enum cs_status cs_isolate_queue_run(const struct cs_isolate_queue *queue,
+                                    struct cs_error *error);
 
 #endif

@@ -28,17 +28,21 @@ void cs_recorded_run_describe_changes(const struct cs_scene *scene, struct cs_te
         }
 }
 
-enum cs_status cs_recorded_run_count_frames(struct cs_recorded_run_settings *settings,
-                                            double seconds, struct cs_error *error) {
+enum cs_status cs_session_fit_frames(const struct cs_session_settings *settings,
+                                     uint32_t *frames, double *seconds,
+                                     struct cs_error *error) {
     struct cs_session session;
-    struct cs_session_settings asked = settings->session;
+    struct cs_session_settings asked = *settings;
     asked.integrator = "velocity-verlet";
     if (cs_session_open_plan(&session, &asked, error))
         return error->status;
-    const double frames = cs_follow_frames(&session.scene, seconds);
-    if (!(frames <= 1e6))
-        cs_fail(error, CS_ERR_USAGE, "--time: %g s are more than 1000000 frames", seconds);
-    settings->frames = (uint32_t)frames;
+    const double cover = cs_follow_frames(&session.scene, *seconds);
+    if (*frames)
+        *seconds = *frames / session.scene.time.fps;
+    else if (cover <= 1e6)
+        *frames = (uint32_t)cover;
+    else
+        cs_fail(error, CS_ERR_USAGE, "--time: %g s are more than 1000000 frames", *seconds);
     cs_session_close(&session);
     return error->status;
 }

@@ -77,10 +77,10 @@ enum cs_status cs_recorded_run_open(struct cs_recorded_run *recording,
                                     const struct cs_recorded_run_settings *settings,
                                     const char *integrator, struct cs_error *error);
 
-/* Sets settings->frames to the whole frames that cover a time in s. CS_ERR_USAGE for more than
- * a million; errors of the scene. */
-enum cs_status cs_recorded_run_count_frames(struct cs_recorded_run_settings *settings,
-                                            double seconds, struct cs_error *error);
+/* Completes a length of simulated time: *frames 0: the whole frames that cover *seconds, at
+ * most a million (CS_ERR_USAGE), else *seconds is their time. Errors of the scene. */
+enum cs_status cs_session_fit_frames(const struct cs_session_settings *settings,
+                                     uint32_t *frames, double *seconds, struct cs_error *error);
 
 /* Adds the corrections of a scene that are switched off, as words ("contact, strain limit");
  * nothing if there are none. The scene must not come from cs_recorded_run_open, which has

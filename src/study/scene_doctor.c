@@ -8,9 +8,8 @@
 #include "model/force/diagnostics.h"
 #include "scene/body_pairs.h"
 #include "study/contact_capacity.h"
-#include "study/idle_keys.h"
 #include "study/overlap_warning.h"
-#include "study/path_findings.h"
+#include "study/scene_findings.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 /* Takes a scene to a running method: the only path, for every command and study. */
 #include "study/session.h"
 
+#include "base/arena.h"
 #include "base/options.h"
 #include "base/pool.h"
 #include "model/plan.h"
@@ -198,10 +199,76 @@ static enum cs_status open_plan(struct cs_session *session,
     return CS_OK;
 }
 
+/* Systems of at least BUILD_PARTICLES are checked against the memory of the machine; TWIN_SIDE
+ * particles along a row keep the effects of edges below 5 % of the bytes. */
+enum { BUILD_PARTICLES = 65536, TWIN_SIDE = 96 };
+
+/* Reads the scene with its grids cut to TWIN_SIDE particles a side. */
+static enum cs_status open_twin(const struct cs_session *session, struct cs_session *twin,
+                                struct cs_arena *arena, struct cs_error *error) {
+    const struct cs_body *bodies = cs_scene_bodies(&session->scene);
+    struct cs_session_settings settings = session->settings;
+    const uint32_t n = settings.n_overrides + session->scene.bodies.n;
+    struct cs_override *overrides = cs_arena_alloc_array(arena, n, sizeof *overrides, error);
+    for (uint32_t k = 0; overrides && k < settings.n_overrides; k++)
+        overrides[k] = settings.overrides[k];
+    for (uint32_t b = 0; overrides && b < session->scene.bodies.n; b++) {
+        const int64_t *grid = bodies[b].cloth.grid;
+        char path[64], value[64];
+        if (bodies[b].mesh.present)
+            continue;
+        snprintf(path, sizeof path, "bodies[%u].cloth.grid", b);
+        snprintf(value, sizeof value, "[%d,%d]", (int)fmin((double)grid[0], TWIN_SIDE),
+                 (int)fmin((double)grid[1], TWIN_SIDE));
+        overrides[settings.n_overrides++] = (struct cs_override){
+            cs_arena_copy_text(arena, path, error), cs_arena_copy_text(arena, value, error)};
+    }
+    settings.overrides = overrides;
+    settings.threads = 0;
+    settings.run = (struct cs_run_settings){0};
+    return error->status ? error->status : open_plan(twin, &settings, error);
+}
+
+/* Predicts the bytes of the built system and its method: those of its twin per particle, or of
+ * the state alone where the scene does not allow for a twin. */
+static double predict_bytes(const struct cs_session *session) {
+    enum { STATE_DOUBLES = 11 }; /* state, start, mass and its inverse */
+    struct cs_session twin = {0};
+    struct cs_arena arena = {0};
+    struct cs_error unseen = {0};
+    double each = STATE_DOUBLES * sizeof(double);
+    if (!open_twin(session, &twin, &arena, &unseen) &&
+        !cs_system_build(&twin.system, &twin.scene, &twin.plan, &unseen) &&
+        !cs_session_begin(&twin, NULL, &unseen))
+        each = (double)cs_run_bytes(&twin.run) / twin.plan.n;
+    cs_session_close(&twin);
+    cs_arena_finish(&arena);
+    return each * session->plan.n;
+}
+
+/* Refuses a large system that the machine has no memory for, before it is built. The prediction
+ * is taken with a tenth off: what might just fit is built. */
+static enum cs_status check_memory(const struct cs_session *session, struct cs_error *error) {
+    const char *limit = NULL;
+    if (session->plan.n < BUILD_PARTICLES)
+        return CS_OK;
+    const double left = cs_memory_left("", &limit), bytes = predict_bytes(session);
+    return 0.9 * bytes <= left
+               ? CS_OK
+               : cs_fail(
+                     error, CS_ERR_MEMORY,
+                     "out of memory: %u particles with integrator \"%s\" take about %.0f MB, "
+                     "and %s leaves %.0f MB",
+                     session->plan.n, session->method.integrator->name, 1e-6 * bytes, limit,
+                     1e-6 * left);
+}
+
 enum cs_status cs_session_build(struct cs_session *session, struct cs_error *error) {
     cs_run_finish(&session->run);
     cs_system_finish(&session->system);
     struct cs_error said = {0};
+    if (check_memory(session, error))
+        return error->status;
     // what only the built system tells is a fault of the scene too
     if (cs_system_build(&session->system, &session->scene, &session->plan, &said))
         return said.status == CS_ERR_SCENE ? refuse(session, said.status, said.message, error)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# bench.sh BENCH REPORT - the sections that need no other program, on small sizes: each writes a
+# bench.sh BENCH REPORT - the sections that need no program of others, on small sizes: each writes a
 # file with the columns that it declares, and every figure in it is a number above 0.
 set -eu
 
@@ -34,17 +34,18 @@ columns() {
         }')" ""
 }
 
-"$bench" --quick --csv "$work/csv" limits kernels steps thesis pairs pictures >"$work/tables" 2>"$work/progress"
+"$bench" --quick --csv "$work/csv" limits kernels steps thesis pairs contact pictures >"$work/tables" 2>"$work/progress"
 columns limits 2 loop,kib,median_ns,min_ns,max_ns,gb_a_s 5
 columns kernels 2 sheet,kernel,median_ns,min_ns,max_ns,spring_ns,limit_ns,bound_by,to_limit 42
 columns steps 5 method,sheet,stiffness,h,steps,median_ms,min_ms,max_ms,ns_particle,forces,to_limit,iterations,peak_mib 13
 columns thesis 3 method,steps,r,total_ms,median_ms,max_ms,forces_ms,integration_ms,contact_ms,limit_ms,normals_ms,times_thesis 16
 columns pairs 3 sheet,state,stage,median_ns,min_ns,max_ns,number,each_ns,to_springs 33
+columns contact 3 scene,set,frames,steps,median_s,min_s,max_s,ms_a_step 7
 columns pictures 4 scene,look,size,by,median_ms,min_ms,max_ms,first_ms 4
-expect "sections printed" "$(grep -c '^[a-z]*: ' "$work/tables")" 6
+expect "sections printed" "$(grep -c '^[a-z]*: ' "$work/tables")" 7
 
 # a section that was not asked for leaves nothing behind
-expect "files" "$(ls "$work/csv" | tr '\n' ' ')" "kernels.csv limits.csv pairs.csv pictures.csv steps.csv thesis.csv "
+expect "files" "$(ls "$work/csv" | tr '\n' ' ')" "contact.csv kernels.csv limits.csv pairs.csv pictures.csv steps.csv thesis.csv "
 
 code=0
 "$bench" speed >"$work/out" 2>&1 || code=$?
@@ -53,7 +54,7 @@ expect "wrong name" "$(cat "$work/out")" 'bench: no section "speed" (see: bench 
 
 # the same results twice: no gain anywhere; half the time: twice as fast
 "$report" "$work/csv" "$work/csv" >"$work/same"
-expect "gains of the same" "$(grep -c '| (1\.00) |' "$work/same")" 113
+expect "gains of the same" "$(grep -c '| (1\.00) |' "$work/same")" 120
 mkdir "$work/half"
 printf '# keys: 1\n# measured: median_ns\n# date: d\n# version: v\n# machine: m\n# compiler: c\n# threads: 1\n# mode: full\nloop,median_ns,min_ns\nthis,%s\n' \
     8,6 >"$work/half/limits.csv"

@@ -56,6 +56,15 @@ for document in README.md docs/tutorial.md; do
     done
 done
 
+# the number of methods, where no library that some of them need is missing
+if "$program" integrators cvode-bdf >"$work/log" 2>&1 && "$program" integrators fast-mass-spring >>"$work/log" 2>&1; then
+    methods=$("$program" integrators | grep -c '^[a-z]')
+    echo "$methods methods are listed" >"$work/log"
+    code=0
+    grep -q "[^0-9]$methods integrators as plugins" "$source/README.md" || code=1
+    told "README.md: number of integrators" $code
+fi
+
 # what takes long, and golden tables, which have a test, are left out of the short one
 run() { # SHELL DOCUMENT FILTER
     script_of "$source/$2" | sed "$3" >"$work/script"

@@ -53,7 +53,7 @@ sort -k1,1 "$work/options" | awk '
     $1 != "help" { n[$1]++; of[$1] = of[$1] " " $NF; letter[$1] = NF == 3 ? $2 " " : "" }
     END { for (name in n) if (n[name] > 1) print letter[name] "--" name of[name] }' |
     sort >"$work/a"
-sed -n '/^# SHARED OPTIONS/,/^# FILES/p' "$root/man/clothsim.1.scd" | tr -d '*' | awk '
+sed -n '/^# SHARED OPTIONS/,/^# WHY/p' "$root/man/clothsim.1.scd" | tr -d '*' | awk '
     /^-/ { name = $0; sub(/ _.*/, "", name); next }
     /^\t/ { text = text $0; if (/\.$/) { sub(/.*:/, "", text); gsub(/[,.\t]/, " ", text)
         gsub(/ +/, " ", text); sub(/ $/, "", text); if (name !~ /--help/) print name text; text = "" } }' |

@@ -38,6 +38,7 @@ for page in "$root"/man/*.scd; do
         first && /^\/\* [a-z]*\.c / { into = folder "/" $2 }
         { first = 0 }
         into { print > into; next }
+        wanted && sub(/ \\$/, "") { printf "%s", $0 > (folder "/examples"); next }
         wanted { print > (folder "/examples") }' "$page"
     if ! [ -s "$folder/examples" ]; then
         [ "$speed" = quick ] || continue

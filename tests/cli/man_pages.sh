@@ -29,8 +29,9 @@ for page; do
     # headings of the source without markup, as scdoc quotes those of several words
     sed -n '/^```$/,/^```$/!s/^##* //p' "$root/man/$name.scd" >"$work/source"
     sed -n 's/^\.S[HS] //p' "$page" | tr -d '"' >"$work/page"
-    if [ "$name" = clothsim-scene.5 ]; then
-        grep -vF '[]' "$work/page" | grep -vxE '[a-z]+(\.[a-z]+)*' >"$work/own" || true
+    # headings that the program has made
+    if [ "$name" = clothsim-scene.5 ] || [ "$name" = clothsim-files.5 ]; then
+        tr -d '\\' <"$work/page" | grep -vF '[]' | grep -vxE '[a-z_]+(\.[a-z]+)*' >"$work/own" || true
         mv "$work/own" "$work/page"
     fi
     diff "$work/source" "$work/page" >"$work/wrong" || true

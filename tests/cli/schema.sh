@@ -68,15 +68,18 @@ forms = {"contact": [["\"force\"", "{\"law\": \"force\"}"]],
          "camera": [["\"auto\"", "{\"frame\": \"auto\"}"]],
          "render.background": [["\"none\"", "{\"kind\": \"none\"}"],
                                ["[0.1, 0.2, 0.3]", "{\"colour\": [0.1, 0.2, 0.3]}"]],
+         "bodies[].elastic": [["\"denim\"", "{\"cloth\": \"denim\"}"]],
          "bodies[].elastic.bending": [["0.001", "{\"stiffness\": 0.001}"]],
          "integrator": [["\"rk4\"", "{\"name\": \"rk4\"}"]]}
 forms |= {path: particles for path in (
     "bodies[].pins[]", "seams[].particles[]", "seams[].to.particles[]", "events[].impact.particles[]",
-    "events[].grab.particles[]", "events[].pin.particles[]", "events[].release.particles[]")}
+    "events[].grab.particles[]", "events[].pin.particles[]", "events[].release.particles[]",
+    "render.marks.particles[]")}
 def short_keys(node, path):
     found = {path} if "anyOf" in node else set()
-    for name, child in node.get("properties", {}).items():
-        found |= short_keys(child, path + "." * bool(path) + name)
+    for form in [node] + node.get("anyOf", []):
+        for name, child in form.get("properties", {}).items():
+            found |= short_keys(child, path + "." * bool(path) + name)
     return found | (short_keys(node["items"], path + "[]") if isinstance(node.get("items"), dict) else set())
 unknown = short_keys(schema, "") ^ set(forms)
 if unknown:
@@ -85,6 +88,8 @@ if unknown:
 def base(path):
     scene = {"bodies": [{"cloth": {"grid": [3, 3], "place": {"translate": [2.0 * k, 0, 0]}},
                          "mass": {"total": 1}, "pins": [8]} for k in range(2)], "render": {}}
+    if "marks" in path:
+        scene["render"] = {"marks": {"particles": [5]}}
     if "elastic" in path:
         scene["bodies"][0]["elastic"] = {"membrane": {"young": 100}}
     if path.startswith("seams"):

@@ -81,7 +81,8 @@ slurm() {
     daemon munged munged --foreground --force --socket="$work/munge.socket" \
         --key-file="$work/munge.key" --pid-file="$work/munge.pid" --log-file="$work/munge.log" \
         --seed-file="$work/munge.seed"
-    sed -e "s|HOST|$host|" -e "s|WORK|$work|" -e "s|CPUS|$(nproc)|" "$here/slurm.conf.in" \
+    memory=$(awk '/^MemTotal/ { print int($2 / 1024) }' /proc/meminfo)
+    sed -e "s|HOST|$host|" -e "s|WORK|$work|" -e "s|CPUS|$(nproc)|" -e "s|MEGABYTES|$memory|" "$here/slurm.conf.in" \
         >"$work/slurm.conf"
     export SLURM_CONF="$work/slurm.conf"
     await 20 test -S "$work/munge.socket"

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""same.py SERIAL OTHER - both sweep.csv have the same rows, but for processor time and machine."""
+"""same.py SERIAL OTHER - both sweep.csv have the same rows, but for processor time, machine and the check of both."""
 import csv
 import sys
 
 
 def rows(path):
     with open(path, newline="") as file:
-        return [{k: v for k, v in row.items() if k not in ("cpu", "machine")}
+        return [{k: v for k, v in row.items() if k not in ("cpu", "machine", "check")}
                 for row in csv.DictReader(file)]
 
 

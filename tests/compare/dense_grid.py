@@ -56,11 +56,13 @@ def compare(program, path, methods, folder, cache, runs):
 
 
 def dense_values(cell, fps):
-    """Ten times as many values as a sweep has, an octave or a decade of tolerance about the cell."""
+    """Ten times as many values as a sweep has, an octave or a decade of tolerance about the cell,
+    and all numbers of steps next to it: near the stability limit errors fall from one to the next."""
     if cell["control"] == "rtol":
         return [min(cell["value"] * 10 ** (0.05 * k), 0.1) for k in range(-10, 15)]
     steps = 1 / (fps * cell["value"])
-    return [1 / fps / n for n in sorted({max(1, round(steps * 2 ** (0.1 * k))) for k in range(-12, 8)})]
+    near = {max(1, round(steps) + k) for k in range(-3, 3)}
+    return [1 / fps / n for n in sorted(near | {max(1, round(steps * 2 ** (0.1 * k))) for k in range(-12, 8)})]
 
 
 def cost_at(rows, bound, column):

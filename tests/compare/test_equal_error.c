@@ -8,9 +8,10 @@
 
 /* A method: error = scale (dt / frame)^order below the limit, cost = seconds per step. Adaptive
  * ones have rtol in place of dt / frame, cost = seconds rtol^(-1/order), and errors that jump
- * by `noise` from one tolerance to the next. */
+ * by `noise` from one tolerance to the next. Up to `border` times the limit runs finish with an
+ * error of 0.3. */
 struct planted {
-    double order, scale, limit, seconds, evals, noise;
+    double order, scale, limit, seconds, evals, noise, border;
     bool adaptive;
 };
 
@@ -36,13 +37,16 @@ static void run_planted(struct cs_cell *cell) {
     const double steps = cell->adaptive ? pow(cell->value, -1 / of->order)
                                         : ceil(1 / (FPS * cell->value) - 1e-6);
     const double h = 1 / steps;
-    const bool holds = h <= of->limit * (1 + 1e-9);
+    const bool holds = h <= of->limit * (1 + 1e-9),
+               finishes = holds || h <= of->limit * of->border;
     snprintf(cell->outcome, sizeof cell->outcome, "%s",
-             holds ? "finished" : "blew up: not finite");
+             finishes ? "finished" : "blew up: not finite");
     cell->steps = steps;
     cell->step = h / FPS;
     cell->cpu = of->seconds * steps;
     cell->work = of->evals * steps;
+    if (finishes)
+        cell->error = 0.3;
     if (holds)
         cell->error =
             of->scale * pow(h, of->order) * (1 + of->noise * (hash_of(cell->value) - 0.5));
@@ -239,6 +243,79 @@ TEST(factors_are_those_of_a_dense_grid) {
                   tally.factors);
     ck_assert_msg(tally.runs < 8 * tally.factors, "%u runs for %u factors", tally.runs,
                   tally.factors);
+}
+
+/* Errors of 3e-7 and 6e-7 at the limit and of 0.3 beyond it: at errors in between both methods
+ * cost what their limits do, to a step. */
+TEST(border_of_stability_leaves_intervals_narrow) {
+    static const struct planted pair[] = {
+        {.order = 2,
+         .scale = 7.5e-4,
+         .limit = 0.02,
+         .border = 1.1,
+         .seconds = 1e-4,
+         .evals = 1},
+        {.order = 4, .scale = 0.23, .limit = 0.04, .border = 1.1, .seconds = 4e-4, .evals = 4}};
+    struct cs_ranking ranking;
+    struct cs_error error = {0};
+    begin(pair);
+    sweep(2, 1);
+    search();
+    plant_times();
+    ck_assert(!cs_ranking_make(&ranking, &compare, &error));
+    ck_assert_uint_gt(ranking.n, 5);
+    for (uint32_t k = 1; k < 5; k++) {
+        const struct cs_rank *rank = ranking.ranks + k;
+        ck_assert(rank->has_factor);
+        ck_assert_msg(rank->work.low <= 2 && 1.92 <= rank->work.high &&
+                          rank->work.high < 1.1 * rank->work.low,
+                      "1e%d: %g to %g", rank->exponent, rank->work.low, rank->work.high);
+    }
+    cs_ranking_finish(&ranking);
+    cs_rounds_finish(&compare.rounds);
+    cs_cell_list_finish(&compare.cells);
+}
+
+/* Errors and work of cvode-adams and dop853 on scenes/self_compare.json, which stand still at
+ * three tolerances and fall afterwards, and of a method at its rounding. */
+TEST(errors_that_stand_still_for_a_while_are_no_rounding) {
+    static const struct {
+        double error, work;
+        bool rounding;
+    } rows[] = {{1.69e-5, 1008, false}, {1.49e-6, 1203, false}, {1.64e-6, 1270, false},
+                {1.39e-6, 1539, false}, {1.81e-7, 1564, false}, {1.14e-7, 1708, false},
+                {1.08e-7, 1756, false}, {9.1e-8, 1948, false},  {2e-9, 2500, false},
+                {1.9e-9, 5000, false},  {2.2e-9, 10000, false}, {2.1e-9, 20000, true}};
+    struct cs_cell cells[sizeof rows / sizeof *rows];
+    for (uint32_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        cs_cell_init(cells + k, "a");
+        cells[k].error = rows[k].error;
+        cells[k].work = rows[k].work;
+        ck_assert_int_eq(cs_cell_is_rounding(cells + k, k + 1, 0.4), rows[k].rounding);
+    }
+}
+
+/* A runner-up whose single time is far off is timed in rounds all the same, by its work. */
+TEST(runner_up_near_by_work_is_timed) {
+    for (int work = 2; work <= 4; work += 2) {
+        const struct planted pair[] = {
+            {.order = 2, .scale = 0.3, .limit = 1, .seconds = 1e-4, .evals = 1},
+            {.order = 2, .scale = 0.3, .limit = 1, .seconds = 4e-4, .evals = work}};
+        struct cs_ranking ranking;
+        struct cs_error error = {0};
+        begin(pair);
+        sweep(2, 1);
+        search();
+        ck_assert(!cs_ranking_make(&ranking, &compare, &error));
+        ck_assert_uint_gt(ranking.n, 3);
+        for (uint32_t k = 0; k < ranking.n; k++)
+            if (ranking.ranks[k].runner_up)
+                ck_assert_int_eq(
+                    ranking.is_contender[ranking.ranks[k].runner_up - compare.cells.cells],
+                    work <= 3);
+        cs_ranking_finish(&ranking);
+        cs_cell_list_finish(&compare.cells);
+    }
 }
 
 /* The verdict names the row that is not at the error, and gives no number. */

@@ -4,7 +4,6 @@
 #include "../suite.h"
 #include "model/force/terms.h"
 #include "study/conform/conform_checks.h"
-#include "study/conform/conform_probe.h"
 
 #include <math.h>
 #include <stdlib.h>

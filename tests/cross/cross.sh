@@ -1,8 +1,9 @@
 #!/bin/sh
-# cross.sh [MACHINE-COMPILER-LEVEL ...] - some golden rows (rows.tsv) with these builds, or with those
-# below: machines of both byte orders and of 32 and 64 bits, two compilers, two C libraries, all levels
-# of optimisation, and each with 1, 4 and 16 threads. Others than amd64 run under qemu-user. Clang is
-# not asked for mips: Debian's finds gcc's own headers there.
+# cross.sh [MACHINE-COMPILER-LEVEL ...] - some golden rows with these builds, or with those below: the runs
+# that rows.tsv lists, and the pictures that it names, drawn by cpu. Machines of both byte orders and of
+# 32 and 64 bits, two compilers, two C libraries, all levels of optimisation, each with 1, 4 and 16
+# threads. Others than amd64 run under qemu-user. Clang is not asked for mips: Debian's finds gcc's own
+# headers there.
 set -eu
 cd "$(dirname "$0")/../.."
 folder=$PWD/build/cross threads="1 4 16"
@@ -38,17 +39,23 @@ build() {
         -Dwerror=true -Doptimization="${1##*-O}" -Ddebug=false -Dsundials=disabled -Dcholmod=disabled \
         -Drender=disabled -Ddeflate=disabled -Dman=disabled -Dtests=disabled || return 1
     ninja -C "$build" clothsim $(ninja -C "$build" -t targets all | sed -n 's/: .*//p' |
-        grep -xE 'plugins/[^/]*[.]so')
+        grep -xE '(plugins/[^/]*|src/draw/render-cpu)[.]so')
 }
 
 mkdir -p "$folder/table/golden"
 ln -sfn "$PWD/scenes" "$folder/table/scenes"
-awk -F '\t' 'NR == FNR { wanted[$1, $2, $3]; n++; next }
-    FNR == 1 || (($1, $2, $4) in wanted && $6 == "any") { print; found += FNR > 1 }
-    END { exit found != n }' tests/cross/rows.tsv golden/hash.tsv >"$folder/table/golden/hash.tsv" || {
-    echo "cross.sh: a row of rows.tsv is not in golden/hash.tsv, or is there twice" >&2
-    exit 1
+ln -sfn "$PWD/golden/image" "$folder/table/golden/image"
+# selected TABLE FIELDS KEY: rows of a golden table that rows.tsv names in lines of so many fields
+selected() {
+    awk -F '\t' -v fields="$2" "NR == FNR { if (NF == fields) { wanted[\$0]; n++ } next }
+        FNR == 1 || ($3) in wanted { print; found += FNR > 1 }
+        END { exit found != n }" tests/cross/rows.tsv "golden/$1" >"$folder/table/golden/$1" || {
+        echo "cross.sh: a row of rows.tsv is not in golden/$1, or is there twice" >&2
+        exit 1
+    }
 }
+selected hash.tsv 3 '$6 == "any" ? $1 FS $2 FS $4 : ""'
+selected image.tsv 1 '$5'
 for name; do
     (build "$name") >"$folder/$name.log" 2>&1 || { tail -n 40 "$folder/$name.log" >&2 && exit 1; }
 done
@@ -68,7 +75,7 @@ done | xargs -P "$(nproc)" -L 1 sh -c '
     name=$1 n=$2
     shift 2
     code=0
-    found=$("$@" golden --hashes --quiet --threads "$n" --folder "$0/table/golden" 2>&1) || code=$?
+    found=$("$@" golden --renderer cpu --quiet --threads "$n" --folder "$0/table/golden" 2>&1) || code=$?
     printf "%-16s %2d threads: %s\n" "$name" "$n" "$found"
     exit $code' "$folder"
 set -- "$@"

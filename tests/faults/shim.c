@@ -20,8 +20,9 @@
 #include <string.h>
 #include <unistd.h>
 
-enum kind { MEMORY, WRITE, RENAME, FSYNC, THREAD, OPEN, KINDS };
-static const char *const names[] = {"memory", "write", "rename", "fsync", "thread", "open"};
+enum kind { MEMORY, WRITE, RENAME, FSYNC, THREAD, OPEN, LSEEK, UNLINK, MODULE, KINDS };
+static const char *const names[] = {"memory", "write", "rename", "fsync", "thread",
+                                    "open",   "lseek", "unlink", "module"};
 
 static unsigned long wanted; /* 0: none fails */
 static int kind;
@@ -150,6 +151,57 @@ int fsync(int file) {
     return -1;
 }
 
+static bool cannot_move(void) {
+    if (!fails(LSEEK))
+        return false;
+    errno = EIO;
+    return true;
+}
+
+off64_t lseek64(int file, off64_t offset, int whence) {
+    REAL(lseek64)
+    return cannot_move() ? -1 : real(file, offset, whence);
+}
+
+off_t lseek(int file, off_t offset, int whence) {
+    return lseek64(file, offset, whence);
+}
+
+int fseeko64(FILE *file, off64_t offset, int whence) {
+    REAL(fseeko64)
+    return cannot_move() ? -1 : real(file, offset, whence);
+}
+
+int fseeko(FILE *file, off_t offset, int whence) {
+    return fseeko64(file, offset, whence);
+}
+
+int fseek(FILE *file, long offset, int whence) {
+    return fseeko64(file, offset, whence);
+}
+
+void rewind(FILE *file) {
+    if (!fseeko64(file, 0, SEEK_SET))
+        clearerr(file);
+}
+
+static bool may_not_remove(void) {
+    if (!fails(UNLINK))
+        return false;
+    errno = EACCES;
+    return true;
+}
+
+int unlink(const char *path) {
+    REAL(unlink)
+    return may_not_remove() ? -1 : real(path);
+}
+
+int remove(const char *path) {
+    REAL(remove)
+    return may_not_remove() ? -1 : real(path);
+}
+
 int pthread_create(pthread_t *restrict thread, const pthread_attr_t *restrict attributes,
                    void *(*work)(void *), void *restrict argument) {
     REAL(pthread_create)
@@ -163,13 +215,22 @@ static bool has_no_descriptor(void) {
     return true;
 }
 
+/* the loader opens modules by itself: these are read for their hash */
+static bool is_unreadable_module(const char *path) {
+    const char *ending = strrchr(path, '.');
+    if (!ending || strcmp(ending, ".so") != 0 || !fails(MODULE))
+        return false;
+    errno = EACCES;
+    return true;
+}
+
 int open64(const char *path, int flags, ...) {
     REAL(open64)
     va_list rest;
     va_start(rest, flags);
     const mode_t mode = flags & (O_CREAT | O_TMPFILE) ? va_arg(rest, mode_t) : 0;
     va_end(rest);
-    return has_no_descriptor() ? -1 : real(path, flags, mode);
+    return has_no_descriptor() || is_unreadable_module(path) ? -1 : real(path, flags, mode);
 }
 
 int open(const char *path, int flags, ...) {

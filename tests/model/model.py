@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The equation of motion, written from docs/theory.md and clothsim-contact(7) alone.
+"""The equation of motion, written from docs/theory.md and docs/contact.md alone.
 
 Springs, gravity, drag; contact by force with spheres, planes, boxes, capsules and meshes, between
 bodies and of a body with itself; smooth friction and damping. Every pair is looked at in every
@@ -11,7 +11,9 @@ import json
 from pathlib import Path
 
 import numpy as np
-from scipy.integrate import DOP853
+from scipy.integrate import solve_ivp
+
+from surfaces import Surface, read_grid, read_mesh, read_obj
 
 TINY = 1e-30  # complex step
 
@@ -88,62 +90,6 @@ def gradient(distance, p, *args):
     return np.real(d[12 * n:]), np.imag(d[:12 * n]).reshape(12, n).T.reshape(n, 4, 3) / TINY, np.real(weights[12 * n:])
 
 
-class Surface:
-    """Triangles of a body or a mesh collider; `first` is the number of its first point."""
-
-    def __init__(self, triangles, first, n):
-        self.triangles, self.points = triangles + first, np.arange(first, first + n)
-        sides = np.sort(np.concatenate([self.triangles[:, [k, (k + 1) % 3]] for k in range(3)]), axis=1)
-        self.edges, index, count = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
-        # (t, 3) of side k of a triangle: whether another triangle has it, and that one's third vertex
-        index = index.reshape(3, -1).T
-        self.inner = count[index] == 2
-        third = np.roll(self.triangles, -2, axis=1)
-        total = np.zeros(len(self.edges), int)
-        np.add.at(total, index, third)
-        self.across = np.where(self.inner, total[index] - third, -1)
-        fans = np.bincount(self.triangles.ravel(), minlength=first + n)
-        self.share = np.where(np.isin(self.triangles, self.edges[count == 1]), 0, 1 / fans[self.triangles])
-        self.joined = {tuple(edge) for edge in self.edges} | {tuple(edge[::-1]) for edge in self.edges}
-
-
-def read_obj(path):
-    rows = [line.split() for line in Path(path).read_text().splitlines()]
-    return (np.array([r[1:4] for r in rows if r[:1] == ["v"]], float),
-            np.array([[word.split("/")[0] for word in r[1:4]] for r in rows if r[:1] == ["f"]], int) - 1)
-
-
-def read_grid(body, _):
-    """Positions at rest, which are those at the start, triangles, ends of springs."""
-    cloth, (columns, rows) = body["cloth"], body["cloth"]["grid"]
-    number = np.arange(rows * columns).reshape(rows, columns)
-    a = (np.arange(columns) / (columns - 1) - 0.5) * cloth["size"][0]
-    b = (np.arange(rows) / (rows - 1) - 0.5) * cloth["size"][1]
-    across, down = (grid.ravel() for grid in np.meshgrid(a, b))
-    flat = cloth.get("start", "hanging") == "flat"
-    own = np.stack([across, 0 * down if flat else -down, down if flat else 0 * down], axis=1)
-    kinds = []
-    for kind, steps in (("stretch", ((0, 1), (1, 0))), ("shear", ((1, 1), (1, -1))), ("bend", ((0, 2), (2, 0)))):
-        for i, j in steps:
-            low, high = max(0, -j), columns - max(0, j)
-            kinds.append((kind, np.stack([number[:rows - i, low:high].ravel(),
-                                          number[i:, low + j:high + j].ravel()], axis=1)))
-    corner = number[:-1, :-1].ravel()  # a cell's triangles share the diagonal from top right to bottom left
-    below = corner + columns
-    cells = np.stack([corner, below, corner + 1, corner + 1, below, below + 1], 1).reshape(-1, 3)
-    return own, cells, kinds
-
-
-def read_mesh(body, folder):
-    """The same of a mesh: springs along edges, and across them between the third vertices."""
-    own, triangles = read_obj(folder / body["mesh"]["file"])
-    surface = Surface(triangles, 0, len(own))
-    third = np.roll(triangles, -2, axis=1)
-    across = np.stack([third, surface.across], -1)[surface.inner]
-    bends = np.unique(across[across[:, 0] < across[:, 1]], axis=0)
-    return own, triangles, [("stretch", surface.edges), ("bend", bends)]
-
-
 class Model:
     def __init__(self, path):
         self.scene = scene = json.loads(Path(path).read_text())
@@ -204,8 +150,7 @@ class Model:
                               for p, s, t in points]).reshape(-1, 3)
             yield D, mu, rows, inner, share, np.array(edges, int).reshape(-1, 4)
 
-    def near(self, x, rows, split, D):
-        """Which pairs have boxes nearer than D."""
+    def near(self, x, rows, split, D):  # which pairs have boxes nearer than D
         p = x[rows]
         low = p[:, :split].min(1) - p[:, split:].max(1), p[:, split:].min(1) - p[:, :split].max(1)
         return np.all(np.maximum(*low) < D, axis=1)
@@ -268,11 +213,7 @@ class Model:
     def add_collider(self, f, x, v, c):
         d = np.real(self.collider_distance(c, x))
         inside = np.flatnonzero(d < c["thickness"])
-        g = np.empty((len(inside), 3))
-        for k in range(3):
-            moved = x[inside].astype(complex)
-            moved[:, k] += 1j * TINY
-            g[:, k] = np.imag(self.collider_distance(c, moved)) / TINY
+        g = np.stack([np.imag(self.collider_distance(c, x[inside] + way)) for way in 1j * TINY * np.eye(3)], 1) / TINY
         F, K = barrier(d[inside], c["thickness"], self.law["stiffness"])
         square, approach = dot(g, g), dot(g, v[inside])
         T = v[inside] - g * (approach / square)[:, None]
@@ -295,7 +236,7 @@ class Model:
             self.add_meeting(f, x, v, *meeting)
         return f
 
-    def run(self, frames, rtol=3e-12):
+    def run(self, frames, rtol=1e-13):
         """Positions (n, 3) of all particles after so many frames."""
         fixed, n, fps = self.x[self.n:], self.n, self.scene.get("time", {}).get("fps", 60)
 
@@ -304,8 +245,6 @@ class Model:
             f = self.force(np.concatenate([x, fixed]), np.concatenate([v, 0 * fixed]))[:n]
             return np.concatenate([(v * self.free[:, None]).ravel(), (f * self.free[:, None] / self.mass[:, None]).ravel()])
         start = np.concatenate([self.x[:n].ravel(), self.v[:n].ravel()])
-        solver = DOP853(rate, 0, start, frames / fps, rtol=rtol, atol=1e-14, max_step=2e-3)
-        while solver.t < frames / fps:
-            if solver.step():
-                raise ArithmeticError("DOP853 failed")
-        return solver.y[:3 * n].reshape(n, 3)
+        found = solve_ivp(rate, (0, frames / fps), start, "DOP853", rtol=rtol, atol=1e-14, max_step=2e-3)
+        assert found.success, found.message
+        return found.y[:3 * n, -1].reshape(n, 3)

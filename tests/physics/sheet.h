@@ -16,9 +16,9 @@ static inline double sheet_random(uint64_t *seed) {
 }
 
 /* Writes a sheet in the xy plane, from 0 to w and from 0 to h, as "sheet.obj". Columns below
- * `still` do not move. */
-static inline void sheet_write(enum sheet_pattern pattern, int columns, int rows, double w,
-                               double h, int still) {
+ * `still` do not move. radius: of a cylinder along y that it is rolled onto; 0: none. */
+static inline void sheet_write_rolled(enum sheet_pattern pattern, int columns, int rows,
+                                      double w, double h, int still, double radius) {
     static double X[130 * 130], Y[130 * 130];
     const double dx = w / (columns - 1), dy = h / (rows - 1);
     const double jitter = pattern == SHEET_IRREGULAR ? 0.5 : 0;
@@ -29,7 +29,11 @@ static inline void sheet_write(enum sheet_pattern pattern, int columns, int rows
         const bool in_x = c >= still && c > 0 && c + 1 < columns, in_y = r > 0 && r + 1 < rows;
         X[i] = dx * (c + (in_x ? jitter * sheet_random(&seed) : 0));
         Y[i] = dy * (r + (in_x && in_y ? jitter * sheet_random(&seed) : 0));
-        fprintf(file, "v %.17g %.17g 0\n", X[i], Y[i]);
+        if (radius > 0)
+            fprintf(file, "v %.17g %.17g %.17g\n", radius * sin(X[i] / radius), Y[i],
+                    radius * (1 - cos(X[i] / radius)));
+        else
+            fprintf(file, "v %.17g %.17g 0\n", X[i], Y[i]);
     }
     for (int r = 0; r + 1 < rows; r++)
         for (int c = 0; c + 1 < columns; c++) {
@@ -41,6 +45,11 @@ static inline void sheet_write(enum sheet_pattern pattern, int columns, int rows
                     (forth ? a : b) + 1, e + 1, d + 1);
         }
     fclose(file);
+}
+
+static inline void sheet_write(enum sheet_pattern pattern, int columns, int rows, double w,
+                               double h, int still) {
+    sheet_write_rolled(pattern, columns, rows, w, h, still, 0);
 }
 
 #endif

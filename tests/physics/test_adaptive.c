@@ -55,10 +55,11 @@ static struct error error_of(const char *integrator) {
  * tolerance must be 300 in the error at least. */
 TEST(errors_follow_the_tolerance) {
     static const char *const methods[] = {
-        "dopri5:",           "dop853:",           "cvode-adams:",      "cvode-bdf:",
-        "ark-erk:order=2,",  "ark-erk:order=3,",  "ark-erk:order=4,",  "ark-erk:order=5,",
-        "ark-erk:order=6,",  "ark-erk:order=8,",  "ark-dirk:order=3,", "ark-dirk:order=4,",
-        "ark-dirk:order=5,", "ark-imex:order=3,", "ark-imex:order=4,", "ark-imex:order=5,"};
+        "dopri5:",           "dop853:",           "esdirk:",           "cvode-adams:",
+        "cvode-bdf:",        "ark-erk:order=2,",  "ark-erk:order=3,",  "ark-erk:order=4,",
+        "ark-erk:order=5,",  "ark-erk:order=6,",  "ark-erk:order=8,",  "ark-dirk:order=3,",
+        "ark-dirk:order=4,", "ark-dirk:order=5,", "ark-imex:order=3,", "ark-imex:order=4,",
+        "ark-imex:order=5,"};
     // a method of order 2 takes a hundred times the steps of the others at 1e-8
     static const double tolerances[2][3] = {{1e-4, 1e-6, 1e-8}, {1e-3, 1e-5, 1e-7}};
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
@@ -96,6 +97,7 @@ TEST(tables_have_their_order) {
                 {"ark-dirk:rtol=1e-12,linear_rtol=1e-12,order=3,", 3, 1.5625e-4},
                 {"ark-dirk:rtol=1e-12,linear_rtol=1e-12,order=4,", 4, 1e-3},
                 {"ark-dirk:rtol=1e-12,linear_rtol=1e-12,order=5,", 5, 5e-4},
+                {"esdirk:rtol=1e-12,newton_rtol=1e-3,", 4, 1e-3},
                 {"ark-imex:rtol=1e-12,linear_rtol=1e-12,order=3,", 3, 5e-4},
                 {"ark-imex:rtol=1e-12,linear_rtol=1e-12,order=4,", 4, 1e-3},
                 {"ark-imex:rtol=1e-12,linear_rtol=1e-12,order=5,", 5, 1e-3}};
@@ -135,9 +137,12 @@ TEST(first_steps_from_rest_are_short) {
 /* An explicit one-step method, two multistep ones and a pair of our own share nothing but the
  * force: on a cloth that swings and wrinkles they meet to 1e-8 m. */
 TEST(families_agree) {
-    static const char *const methods[] = {
-        "cvode-bdf:rtol=1e-11,max_order=5", "cvode-adams:rtol=1e-11", "dopri5:rtol=1e-10",
-        "dop853:rtol=1e-11", "ark-dirk:order=5,rtol=1e-9,linear_rtol=1e-6"};
+    static const char *const methods[] = {"cvode-bdf:rtol=1e-11,max_order=5",
+                                          "cvode-adams:rtol=1e-11",
+                                          "dopri5:rtol=1e-10",
+                                          "dop853:rtol=1e-11",
+                                          "esdirk:rtol=1e-10",
+                                          "ark-dirk:order=5,rtol=1e-9,linear_rtol=1e-6"};
     static double reference[VALUES_MAX], state[VALUES_MAX];
     end_state("ark-erk:order=8,rtol=1e-12", HANG, 15, reference);
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {

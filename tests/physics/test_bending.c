@@ -282,3 +282,45 @@ TEST(strips_of_triangles_hang_near_the_elastica) {
         ck_assert_msg(fabs(error) < 0.02, "pattern %d: %g", pattern, error);
     }
 }
+
+/* --- a strip between two bars --- */
+
+/* Sag of an inextensible strip of length 1 over a span: 2 a sinh(span/(2 a)) = 1 for its
+ * parameter a, by bisection. */
+static double catenary(double span) {
+    double low = 1e-3, high = 5;
+    for (int k = 0; k < 60; k++) {
+        const double u = 0.5 * (low + high);
+        *(sinh(u) / u < 1 / span ? &low : &high) = u;
+    }
+    return span / (2 * low) * (cosh(low) - 1);
+}
+
+/* Without stiffness against bending a strip hangs as a catenary. Its weight of 0.3 N stretches
+ * it by 1e-4, which is 3e-4 of the sag. */
+TEST(strip_hangs_as_a_catenary) {
+    const double span = 0.8, exact = catenary(span);
+    struct fixture strip;
+    double lowest_y = 0;
+    ck_assert_double_eq_tol(exact, 0.265438, 1e-6);
+    fixture_open(
+        &strip, "backward-euler:rtol=1e-9",
+        "{\"bodies\": [{\"cloth\": {\"grid\": [33, 2], \"size\": [1, 0.1], \"start\": "
+        "\"flat\", \"stretch\": [%g, 1]}, \"pins\": [\"left\", \"right\"], \"mass\": "
+        "{\"areal_density\": 0.3}, \"elastic\": {\"membrane\": {\"young\": 3e4, \"poisson\": "
+        "0}}}], \"time\": {\"fps\": 1}}",
+        span);
+    const size_t n = strip.n;
+    // hung up as a parabola, so that nothing buckles
+    for (size_t i = 0; i < n; i++) {
+        const double s = 2 * strip.x[i] / span;
+        strip.x[n + i] -= exact * (1 - s * s);
+    }
+    fixture_start(&strip);
+    fixture_frames(&strip, 40);
+    for (size_t i = 0; i < n; i++)
+        lowest_y = fmin(lowest_y, strip.x[n + i]);
+    ck_assert_msg(fabs(-lowest_y / exact - 1) < 2e-3, "sag %.6g instead of %.6g", -lowest_y,
+                  exact);
+    fixture_close(&strip);
+}

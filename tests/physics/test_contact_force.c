@@ -79,11 +79,15 @@ TEST(blocks_slide_and_creep_as_the_law_says) {
 /* At one step a frame, whatever the step is against m ev/(mu N): what rests may creep for 30 s
  * and be 0.2 mm away. */
 TEST(what_rests_creeps_by_less_than_a_fifth_of_a_millimetre) {
+    // at their defaults these let it creep 1.3 to 80 times as fast
+    static const char *const accurate[] = {"ark-dirk:rtol=1e-6", "ark-imex:rtol=1e-6",
+                                           "cvode-bdf:rtol=1e-6", NULL};
     const double ev = 5e-6, tangent = 0.2, mu = 0.3;
     const struct methods methods = methods_find(
         &(struct methods_query){.test = "small creep",
                                 .with = CS_IMPLICIT,
-                                .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN});
+                                .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN,
+                                .more = accurate});
     ck_assert_uint_ge(methods.n, 8);
     for (size_t m = 0; m < methods.n; m++) {
         struct fixture block;

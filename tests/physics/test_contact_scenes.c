@@ -126,10 +126,9 @@ static double tie(const char *method, uint32_t frames, double *odds) {
 TEST(knot_is_tight) {
     static const char *const quick[] = {"implicit-linearised:dt=0.004",
                                         "implicit-linearised:dt=0.002"};
-    static const char *const slow[] = {"implicit-linearised:dt=0.001",
-                                       "implicit-linearised:dt=0.002",
-                                       "implicit-linearised:dt=0.004",
-                                       "backward-euler:dt=0.004,iterations=100"};
+    static const char *const slow[] = {
+        "implicit-linearised:dt=0.001", "implicit-linearised:dt=0.002",
+        "implicit-linearised:dt=0.004", "backward-euler:dt=0.004,iterations=100"};
     double odds;
     const uint32_t frames = suite_all ? 105 : 8;
     const double first = tie(suite_all ? slow[0] : quick[0], frames, &odds);

@@ -26,13 +26,18 @@
     " \"pins\": [\"top-left\", 7]}, {\"cloth\": {\"grid\": [4, 3], \"size\": [0.6, 0.5], "     \
     "\"place\": {\"translate\": [0, 0, 4]}}, \"mass\": {\"areal_density\": 0.4}, "             \
     "\"elastic\": "                                                                            \
-    "{\"membrane\": {\"young\": 60, \"poisson\": 0.3}, \"bending\": 0.04, \"damping\": "       \
+    "{\"membrane\": {\"young\": 60, \"poisson\": 0.3}, \"bending\": {\"stiffness\": 0.04, "    \
+    "\"damping\": 0.02}, \"damping\": "                                                        \
     "0.01}, "                                                                                  \
     "\"pins\": [\"bottom-left\"]}, {\"cloth\": {\"grid\": [3, 3], \"size\": [0.4, 0.5], "      \
     "\"place\": {\"translate\": [0, 0, 6]}}, \"mass\": {\"areal_density\": 0.4}, "             \
     "\"elastic\": "                                                                            \
     "{\"membrane\": {\"warp\": 60, \"weft\": 40, \"shear\": 3, \"coupling\": 9}, "             \
-    "\"bending\": {\"warp\": 0.03, \"weft\": 0.05, \"twist\": 0.01, \"coupling\": -0.02}}}],"  \
+    "\"bending\": {\"warp\": 0.03, \"weft\": 0.05, \"twist\": 0.01, \"coupling\": -0.02}}}, "  \
+    "{\"mesh\": {\"shape\": \"box\", \"detail\": 3, \"place\": {\"translate\": [0, 0, "        \
+    "8]}}, "                                                                                   \
+    "\"mass\": {\"areal_density\": 0.4}, \"elastic\": {\"membrane\": {\"young\": 60}, "        \
+    "\"bending\": {\"stiffness\": 0.04, \"damping\": 0.02}}}],"                                \
     " \"events\": [{\"from\": 0, \"to\": 1, \"impact\": {\"impulse\": 1, \"direction\": [1, "  \
     "2, 3]}}],"                                                                                \
     " \"colliders\": [{\"sphere\": {\"centre\": [0.1, -0.05, -0.5], \"radius\": 0.35},"        \
@@ -48,7 +53,7 @@
     " \"weights\": [0.2, 0.3, 0.5]}, \"stiffness\": 40, \"damping\": 0.4}],"                   \
     " \"forces\": {" FORCES "%s}}"
 
-enum { N = 41, VALUES = 3 * N };
+enum { N = 97, VALUES = 3 * N };
 #define STEP 1e-6
 
 #define STATE_OF(cloth, p)                                                                     \

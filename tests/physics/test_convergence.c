@@ -55,12 +55,13 @@ static int levels_of(const struct method_asked *method) {
 }
 
 TEST(all_converge_to_one_solution) {
-    static const char *const more[] = {"bdf2:rtol=1e-13,solve=linear",
-                                       "newmark:rtol=1e-13,variant=hht",
-                                       "gauss:rtol=1e-13,order=6",
-                                       "gauss:rtol=1e-13,order=8",
-                                       "newmark:rtol=1e-13,variant=generalised-alpha,rho_inf=0.5",
-                                       NULL};
+    static const char *const more[] = {
+        "bdf2:rtol=1e-13,solve=linear",
+        "newmark:rtol=1e-13,variant=hht",
+        "gauss:rtol=1e-13,order=6",
+        "gauss:rtol=1e-13,order=8",
+        "newmark:rtol=1e-13,variant=generalised-alpha,rho_inf=0.5",
+        NULL};
     const struct methods methods = methods_find(&(struct methods_query){
         .test = "one solution", .rtol = 1e-12, .residual = 1e-13, .more = more});
     double start[VALUES], reference[VALUES], state[VALUES];

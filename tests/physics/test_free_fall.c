@@ -56,8 +56,8 @@ TEST(methods_fall_to_their_discrete_value) {
 
 /* An adaptive method falls to the exact value, within its tolerance. */
 TEST(adaptive_methods_fall_to_the_exact_value) {
-    const struct methods methods =
-        methods_find(&(struct methods_query){.with = CS_ADAPTIVE, .rtol = 1e-8});
+    const struct methods methods = methods_find(
+        &(struct methods_query){.test = "free fall", .with = CS_ADAPTIVE, .rtol = 1e-8});
     for (size_t k = 0; k < methods.n; k++) {
         double spread;
         const double found = fall(methods.list[k].text, 6, 60, &spread);

@@ -2,6 +2,7 @@
  * motion in a moving frame, the bound on their frequency, the order of the methods. */
 #include "base/pool.h"
 #include "methods.h"
+#include "model/elastic/membrane_strain.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "sheet.h"
@@ -178,7 +179,7 @@ TEST(rigid_motion_is_not_damped) {
         for (size_t k = 0; k < 3 * 81; k++)
             largest = fmax(largest, fabs(f[k]));
         for (size_t k = 0; k < 3 * 81; k++)
-            ck_assert_double_lt(fabs(moving[k] - f[k]), 1e-14 * largest);
+            ck_assert_double_lt(fabs(moving[k] - f[k]), 1e-15 * largest);
         fixture_close(&sheet);
     }
 }
@@ -342,6 +343,22 @@ TEST(strain_is_the_principal_one) {
         cs_diagnostics_particle_strain(sheet.system, sheet.x, strain);
         for (int i = 0; i < 81; i++)
             ck_assert_double_eq_tol(strain[i], 0.1, 1e-12);
+        fixture_close(&sheet);
+    }
+}
+
+/* The same stretch is one of tension along a line: the stress is Young's modulus times Green's
+ * strain, and the other principal stress is 0. */
+TEST(stress_is_the_principal_one) {
+    for (int pattern = -1; pattern <= SHEET_IRREGULAR; pattern++) {
+        struct fixture sheet;
+        double F[2][2], stress[81];
+        open_sheet(&sheet, 8, pattern);
+        stretch(M_PI / 5, (1.1 * 1.1 - 1) / 2, F);
+        deform(&sheet, F);
+        cs_membranes_particle_stress(sheet.system, sheet.x, stress);
+        for (int i = 0; i < 81; i++)
+            ck_assert_double_eq_tol(stress[i], 1200 * (1.1 * 1.1 - 1) / 2, 1e-9);
         fixture_close(&sheet);
     }
 }

@@ -290,3 +290,45 @@ TEST(a_step_may_be_a_frame) {
         }
     }
 }
+
+/* The preconditioner as a call: symmetric, positive, near the inverse; with blocks (8 x 8) and
+ * with multigrid (30 x 30, a stiff step). */
+TEST(preconditioner_is_offered) {
+    enum { MOST = 3 * 30 * 30 };
+    static double a[MOST], b[MOST], za[MOST], zb[MOST], back[MOST];
+    for (int k = 0; k < 2; k++) {
+        const int side = k ? 30 : 8;
+        const double h = k ? 1 / 60.0 : 1e-4;
+        struct fixture cloth;
+        fixture_open(
+            &cloth, "backward-euler",
+            "{\"bodies\": [{\"cloth\": {\"grid\": [%d, %d]}, \"mass\": {\"total\": 0.3}, "
+            "\"springs\": {\"stretch\": 5000}, \"pins\": [\"top-left\"]}]}",
+            side, side);
+        fixture_start(&cloth);
+        const struct cs_host *host = cs_run_calls(&cloth.session.run);
+        ck_assert_int_eq(
+            host->solve_setup(host->ctx, 0, cloth.x, cloth.v, 1, -h, -h * h, CS_SOLVE_PSD),
+            CS_STEP_OK);
+        const size_t n3 = 3 * cloth.n;
+        double ab = 0, ba = 0, aa = 0, bb = 0, left = 0, whole = 0;
+        for (size_t i = 0; i < n3; i++) {
+            const bool free = cloth.system->inv_mass[i % cloth.n] > 0;
+            a[i] = free ? (double)(i * 7919 % 1009) / 1009 - 0.5 : 0;
+            b[i] = free ? (double)(i * 104729 % 997) / 997 - 0.5 : 0;
+        }
+        host->precondition(host->ctx, a, za);
+        host->precondition(host->ctx, b, zb);
+        host->matrix_product(host->ctx, zb, back);
+        for (size_t i = 0; i < n3; i++) {
+            ab += a[i] * zb[i], ba += b[i] * za[i], aa += a[i] * za[i], bb += b[i] * zb[i];
+            left += (b[i] - back[i]) * (b[i] - back[i]), whole += b[i] * b[i];
+            ck_assert(cloth.system->inv_mass[i % cloth.n] > 0 || zb[i] == 0);
+        }
+        ck_assert_msg(aa > 0 && bb > 0 && fabs(ab - ba) < 1e-5 * sqrt(aa * bb),
+                      "side %d: %.9g and %.9g, norms %.9g and %.9g", side, ab, ba, aa, bb);
+        ck_assert_msg(left < (k ? 1 : 1e-2) * whole, "side %d: %.3g of the residual left", side,
+                      sqrt(left / whole));
+        fixture_close(&cloth);
+    }
+}

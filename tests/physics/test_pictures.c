@@ -297,3 +297,81 @@ TEST(a_renderer_that_fails_is_told) {
         fixture_close(&cloth);
     }
 }
+
+/* Ramps of light, colour and field of view end in the picture of the scene that has their
+ * values, and change no bit of the state. */
+TEST(ramps_of_pictures) {
+    static const char scene[] =
+        "{\"bodies\": [{\"cloth\": {\"grid\": [6, 5]}, \"mass\": {\"total\": 0.1}, \"pins\":"
+        " [\"top\"], \"material\": {\"colour\": [%s, 0.2, 0.2]}}], \"colliders\": [{\"sphere\":"
+        " {\"centre\": [0, -0.2, -0.6]}, \"colour\": [0.4, %s, 0.4]}], \"camera\": {\"frame\":"
+        " \"given\", \"fov\": %s}, \"light\": {\"strength\": %s}, \"lights\": [{\"point\":"
+        " [1, %s, 1], \"shadow\": false}], \"render\": {\"size\": [64, 48]}, \"events\": [%s]}";
+    static const char ramps[] =
+        "{\"from\": 0.01, \"to\": 0.05, \"ramp\": {\"key\": \"bodies[0].material.colour[0]\","
+        " \"value\": 0.1}}, {\"at\": 0.03, \"ramp\": {\"key\": \"colliders[0].colour[1]\","
+        " \"value\": 0.9}}, {\"from\": 0, \"to\": 0.1, \"ramp\": {\"key\": \"camera.fov\","
+        " \"value\": 30}}, {\"from\": 0, \"to\": 0.02, \"ramp\": {\"key\": \"light.strength\","
+        " \"value\": 0.9}}, {\"from\": 0.02, \"to\": 0.1, \"ramp\": {\"key\": "
+        "\"light.strength\","
+        " \"value\": 0.4}}, {\"from\": 0, \"to\": 0.1, \"ramp\": {\"key\":"
+        " \"lights[0].point[1]\", \"value\": 2}}";
+    struct fixture ramped, plain;
+    struct cs_image images[3];
+    for (int k = 0; k < 3; k++)
+        images[k] = (struct cs_image){64, 48, malloc(3 * 64 * 48), NULL};
+    fixture_open(&ramped, "velocity-verlet:dt=0.001", scene, "0.8", "0.1", "50", "0.1", "0",
+                 ramps);
+    fixture_open(&plain, "velocity-verlet:dt=0.001", scene, "0.1", "0.9", "30", "0.4", "2", "");
+    fixture_start(&ramped);
+    fixture_start(&plain);
+    fixture_frames(&ramped, 6);
+    fixture_frames(&plain, 6);
+    ck_bits(ramped.x, plain.x, 6 * plain.n, "states");
+    fixture_close(&ramped);
+    fixture_close(&plain);
+    fixture_open(&ramped, "velocity-verlet:dt=0.001", scene, "0.8", "0.1", "50", "0.1", "0",
+                 ramps);
+    fixture_draw(&ramped, 6, images);
+    fixture_open(&plain, "velocity-verlet:dt=0.001", scene, "0.1", "0.9", "30", "0.4", "2", "");
+    fixture_draw(&plain, 6, images + 1);
+    fixture_open(&ramped, "velocity-verlet:dt=0.001", scene, "0.8", "0.1", "50", "0.1", "0",
+                 ramps);
+    fixture_draw(&ramped, 3, images + 2);
+    ck_assert(!memcmp(images[0].rgb, images[1].rgb, cs_image_bytes(images)));
+    ck_assert(memcmp(images[0].rgb, images[2].rgb, cs_image_bytes(images)) != 0);
+    for (int k = 0; k < 3; k++)
+        free(images[k].rgb);
+}
+
+/* Lights add up: two suns of half the strength are one sun, to a byte; a light without shadow
+ * is no darker anywhere than with it. */
+TEST(lights_add_up) {
+    static const char scene[] =
+        "{\"bodies\": [{\"cloth\": {\"grid\": [6, 5], \"start\": \"flat\"}, \"mass\": "
+        "{\"total\":"
+        " 0.1}, \"pins\": [\"edges\"]}], \"colliders\": [{\"floor\": {\"height\": -0.5}}],"
+        " \"camera\": {\"frame\": \"given\"}, \"light\": {\"direction\": [-1, -2, -1],"
+        " \"strength\": %s, \"shadow\": %s}%s, \"render\": {\"size\": [64, 48]}}";
+    static const char *const others[3][3] = {
+        {"1", "true", ""},
+        {"0.5", "true", ", \"lights\": [{\"direction\": [-1, -2, -1], \"strength\": 0.5}]"},
+        {"1", "false", ""}};
+    struct cs_image images[3];
+    for (int k = 0; k < 3; k++) {
+        struct fixture cloth;
+        images[k] = (struct cs_image){64, 48, malloc(3 * 64 * 48), NULL};
+        fixture_open(&cloth, "velocity-verlet:dt=0.001", scene, others[k][0], others[k][1],
+                     others[k][2]);
+        fixture_draw(&cloth, 1, images + k);
+    }
+    int brighter = 0;
+    for (size_t i = 0; i < cs_image_bytes(images); i++) {
+        ck_assert_int_le(abs(images[0].rgb[i] - images[1].rgb[i]), 1);
+        ck_assert_int_ge(images[2].rgb[i], images[0].rgb[i]);
+        brighter += images[2].rgb[i] > images[0].rgb[i];
+    }
+    ck_assert_int_gt(brighter, 100);
+    for (int k = 0; k < 3; k++)
+        free(images[k].rgb);
+}

@@ -1,7 +1,9 @@
 /* Ramps: values that change over an interval, or at once. */
 #include "eventful.h"
 
+#include "model/contact/posed_collider.h"
 #include "model/event/events.h"
+#include "model/force/diagnostics.h"
 #include "model/plan.h"
 
 #include <math.h>
@@ -161,4 +163,88 @@ TEST(factored_matrix_follows_ramps) {
         ck_assert_double_eq_tol(factored.x[i], euler.x[i], 1e-9);
     fixture_close(&euler);
     fixture_close(&factored);
+}
+
+/* A ball whose radius goes from 0.2 to 0.5 m within 0.1 to 0.4 s: 1 m/s along its normals. */
+TEST(radius_follows_its_ramp) {
+    static const char scene[] =
+        "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3]}, \"mass\": {\"total\": 1},"
+        " \"pins\": [\"top\"]}], \"contact\": \"force\", \"colliders\": [{\"floor\":"
+        " {\"height\": -9}}, {\"sphere\": {\"centre\": [5, 0, 0], \"radius\": 0.2}}],"
+        " \"events\": [{\"from\": 0.1, \"to\": 0.4, \"ramp\": {\"key\":"
+        " \"colliders[1].sphere.radius\", \"value\": 0.5}}]}";
+    const double p[3] = {5, 0.6, 0.8};
+    struct fixture cloth;
+    struct cs_posed_collider ball;
+    double v[3];
+    fixture_open(&cloth, "velocity-verlet:dt=0.001", "%s", scene);
+    fixture_start(&cloth);
+    fixture_frames(&cloth, 12); /* 0.2 s */
+    for (int k = 0; k <= 2; k++) {
+        cs_posed_collider_at(cloth.system, 1, 0.2 + 0.1 * k, &ball);
+        ck_assert_double_eq_tol(ball.radius, 0.3 + 0.1 * k, 1e-14);
+        cs_posed_collider_velocity(&ball, p, v);
+        ck_assert_double_eq_tol(v[1], 0.6, 1e-14);
+        ck_assert_double_eq_tol(v[2], 0.8, 1e-14);
+    }
+    fixture_frames(&cloth, 18); /* 0.5 s */
+    cs_posed_collider_at(cloth.system, 1, 0.5, &ball);
+    cs_posed_collider_velocity(&ball, p, v);
+    ck_assert(ball.radius == 0.5 && v[1] == 0 && v[2] == 0);
+    fixture_close(&cloth);
+}
+
+/* A ball that swells below a sheet lifts it, and does not come through: after 0.1 s all of it
+ * is farther out than the ball, and it holds more energy than before. */
+TEST(swelling_lifts_a_sheet) {
+    static const char scene[] =
+        "{\"bodies\": [{\"cloth\": {\"grid\": [9, 9], \"size\": [0.4, 0.4], \"start\": "
+        "\"flat\","
+        " \"place\": {\"translate\": [0.01, 0.21, 0.02]}}, \"mass\": {\"total\": 0.1},"
+        " \"springs\": {\"stretch\": 100, \"shear\": 30, \"bend\": 1}}], \"contact\":"
+        " {\"law\": \"force\", \"stiffness\": 200}, \"colliders\": [{\"sphere\": {\"centre\":"
+        " [0, 0, 0], \"radius\": 0.2},"
+        " \"thickness\": 0.02}], \"events\": [{\"from\": 0, \"to\": 0.1, \"ramp\": {\"key\":"
+        " \"colliders[0].sphere.radius\", \"value\": 0.22}}, {\"from\": 0, \"to\": 0.1, "
+        "\"ramp\":"
+        " {\"key\": \"colliders[0].thickness\", \"value\": 0.03}}]}";
+    struct fixture cloth;
+    fixture_open(&cloth, "velocity-verlet:dt=1e-4", "%s", scene);
+    fixture_start(&cloth);
+    struct cs_energy before = cs_diagnostics_energy(cloth.system, 0, cloth.x, cloth.v);
+    fixture_frames(&cloth, 6);
+    struct cs_energy after = cs_diagnostics_energy(cloth.system, 0.1, cloth.x, cloth.v);
+    double lowest = HUGE_VAL;
+    for (size_t i = 0; i < cloth.n; i++) {
+        const double *x = cloth.x;
+        lowest = fmin(lowest, sqrt(x[i] * x[i] + x[cloth.n + i] * x[cloth.n + i] +
+                                   x[2 * cloth.n + i] * x[2 * cloth.n + i]));
+    }
+    ck_assert_double_gt(lowest, 0.22);
+    ck_assert_double_gt(after.kinetic + after.elastic + after.gravity + after.other,
+                        before.kinetic + before.elastic + before.gravity + before.other);
+    fixture_close(&cloth);
+}
+
+/* alpha and beta of bodies that keep their shape: a ramp at the start is the scene that has its
+ * values, to the bit. */
+TEST(shape_matching_follows_ramps) {
+    static const char scene[] =
+        "{\"bodies\": [{\"mesh\": {\"shape\": \"box\", \"detail\": 3, \"spin\": [1, 2, 3]},"
+        " \"shape_matching\": {\"alpha\": %s, \"beta\": %s}, \"mass\": {\"total\": 1}}],"
+        " \"colliders\": [{\"floor\": {\"height\": -0.6}}], \"events\": [%s]}";
+    struct fixture ramped, plain;
+    fixture_open(
+        &ramped, "shape-matching:dt=0.01", scene, "0.2", "0",
+        "{\"at\": 0, \"ramp\": {\"key\": \"bodies[0].shape_matching.alpha\", \"value\":"
+        " 0.7}}, {\"at\": 0, \"ramp\": {\"key\": \"bodies[0].shape_matching.beta\","
+        " \"value\": 0.5}}");
+    fixture_open(&plain, "shape-matching:dt=0.01", scene, "0.7", "0.5", "");
+    fixture_start(&ramped);
+    fixture_start(&plain);
+    fixture_frames(&ramped, 20);
+    fixture_frames(&plain, 20);
+    ck_bits(ramped.x, plain.x, 6 * plain.n, "alpha and beta");
+    fixture_close(&ramped);
+    fixture_close(&plain);
 }

@@ -24,6 +24,7 @@ struct target {
 
 /* a range that is short against speed times step */
 static const struct target plane = {"\"floor\": {\"height\": 0}", 0.002, 8};
+static const struct target small = {"\"floor\": {\"height\": 0}", 0.002, 4};
 /* Pairs of surfaces. A speed that takes them through each other is a crossing and no bounce: a
  * longer range. */
 static const struct target mesh = {
@@ -36,13 +37,12 @@ static const struct bounds {
     double least, most, pairs;
     const char *reason;
 } own_bounds[] = {
-    {"backward-euler", 0.15, 1, 0.05, "dissipates: a step that is long against range/speed"},
-    {"bdf2", 0.9, 1.08, 0.9, "a step after one of another length is of order 1"},
+    {"backward-euler", 0.35, 1, 0.05, "dissipates: a step that is long against range/speed"},
     {"implicit-linearised", 0.97, 1.01, 0, "pairs: as backward-euler, without its iteration"},
-    {"position-verlet", 0.75, 1.3, 0.9, "its v is that of half a step before"},
-    {"symplectic-euler", 0.75, 1.15, 0.9, "its energy swings by the first order of h"},
-    {"velocity-verlet", 0.9, 1.08, 0.9, "its energy swings by the second order of h"},
-    {"xpbd", 0.15, 1, 0.05, "dissipates as backward-euler"},
+    {"position-verlet", 0.9, 1.06, 0.9, "its v is that of half a step before"},
+    {"symplectic-euler", 0.9, 1.06, 0.9, "its energy swings by the first order of h"},
+    {"vbd", 0.35, 1, 0.05, "dissipates as backward-euler"},
+    {"xpbd", 0.35, 1, 0.05, "dissipates as backward-euler"},
 };
 
 static struct bounds bounds_of(const char *method) {
@@ -92,6 +92,33 @@ TEST(thrown_sheets_come_back_with_their_energy) {
         for (size_t s = 0; s < LENGTH(speeds); s++)
             for (size_t p = 0; p < LENGTH(phases); p++)
                 check(methods.list[m].text, &plane, speeds[s], phases[p]);
+}
+
+/* A long step that ends just inside of contact: the force there, over the whole step or half of
+ * it, once threw single sheets back with up to four times their energy, which the long steps
+ * afterwards then lost. Of 40 phases ros2 kept 0.42 at the least, velocity-verlet 0.68, rk4
+ * 0.75, composition 0.8. */
+TEST(impacts_keep_their_energy_at_every_phase) {
+    const struct methods methods = methods_find(&(struct methods_query){
+        .test = "bounce", .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN});
+    for (size_t m = 0; m < methods.n; m++)
+        for (int k = 1; k <= 40; k++)
+            check(methods.list[m].text, &small, 10, 1 + fmod(0.6180339887498949 * k, 1));
+}
+
+/* A state deep in contact may be off by less than the tolerance: with nothing but error control
+ * one throw in 30 of these came back with up to 8000 times its energy. */
+TEST(error_control_is_not_all_that_bdf_has_in_contact) {
+    const uint32_t bdf = CS_IMPLICIT | CS_MULTISTEP;
+    const struct methods methods = methods_find(
+        &(struct methods_query){.test = "bounce", .with = CS_ADAPTIVE, .rtol = 1e-3});
+    for (size_t m = 0; m < methods.n; m++)
+        for (int k = 1; k <= 100 && (methods.list[m].traits & bdf) == bdf; k++) {
+            const char *method = methods.list[m].text;
+            const double share = kept(method, &small, 1, 1 + fmod(0.6180339887498949 * k, 1));
+            ck_assert_msg(share > 0.85 && share < 1.1, "%s, throw %d: %.4f of the energy kept",
+                          method, k, share);
+        }
 }
 
 /* Explicit methods would take thousands of steps. */
@@ -212,8 +239,15 @@ static void throw_obliquely(const char *method, double friction, double phase, d
  * 3 - 4 mu along the floor. */
 TEST(impacts_lose_what_friction_takes) {
     static const double frictions[] = {0, 0.1, 0.3, 0.6, 1};
-    static const char *const methods[] = {"implicit-linearised", "implicit-linearised:dt=0.004",
-                                          "implicit-linearised:dt=0.001", "dopri5"};
+    // the last ones do not resolve friction (CS_FRICTION_RATE_RATIO)
+    enum { RESOLVED = 4 };
+    static const char *const methods[] = {"implicit-linearised",
+                                          "implicit-linearised:dt=0.004",
+                                          "implicit-linearised:dt=0.001",
+                                          "dopri5",
+                                          "velocity-verlet",
+                                          "symplectic-euler",
+                                          "rk4"};
     for (size_t m = 0; m < LENGTH(methods); m++)
         for (size_t f = 0; f < LENGTH(frictions); f++)
             for (double phase = 1.1; phase < 2; phase += 0.4) {
@@ -223,6 +257,9 @@ TEST(impacts_lose_what_friction_takes) {
                 ck_assert_msg(fabs(mean[0] - expected) < 0.03 * 3,
                               "%s, friction %g: %.4f m/s along, expected %g", methods[m],
                               frictions[f], mean[0], expected);
-                ck_assert_double_eq_tol(mean[1], 2, 0.03);
+                // symplectic-euler comes up at 2.10 m/s where friction is resolved too
+                ck_assert_msg(fabs(mean[1] - 2) < (m < RESOLVED ? 0.03 : 0.11),
+                              "%s, friction %g: %.4f m/s up", methods[m], frictions[f],
+                              mean[1]);
             }
 }

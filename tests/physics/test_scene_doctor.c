@@ -1,8 +1,8 @@
 /* Traps of scenes that end with exit code 0 and a good-looking table: each is found before the
  * first step, and the proposed value removes the finding. */
 #include "fixture.h"
-#include "study/idle_keys.h"
 #include "study/scene_doctor.h"
+#include "study/scene_findings.h"
 
 #include <string.h>
 

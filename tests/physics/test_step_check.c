@@ -2,8 +2,8 @@
  * there are, one after the other, whatever the list is that answers. */
 #include "fixture.h"
 
-#include "model/contact/broad_phase/candidates.h"
-#include "model/contact/broad_phase/swept_aabb.h"
+#include "model/contact/broad_phase/candidate_list.h"
+#include "model/contact/broad_phase/primitive_search.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/step_check.h"
 

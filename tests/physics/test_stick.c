@@ -5,7 +5,7 @@
 
 #include "base/pool.h"
 #include "model/contact/barrier_law.h"
-#include "model/contact/friction_anchors.h"
+#include "model/contact/bristle_law.h"
 #include "sim/run.h"
 
 #include <math.h>
@@ -25,8 +25,8 @@ static double furthest(const double *a, const double *b, size_t n) {
 /* Nothing moves from 1 s to 3 s, below 1e-9 mm; where a tolerance lets the rest tremble, the
  * anchors at least do not move by a bit. */
 TEST(rest_is_exact) {
-    const struct methods methods =
-        methods_find(&(struct methods_query){.without = CS_EXPLICIT_OUTER});
+    const struct methods methods = methods_find(
+        &(struct methods_query){.test = "exact rest", .without = CS_EXPLICIT_OUTER});
     ck_assert_uint_ge(methods.n, 9);
     for (size_t m = 0; m < methods.n; m++) {
         const struct method_asked *method = methods.list + m;

@@ -2,13 +2,14 @@
  * differences, its matrix, its bounds and its energy; and what scenes without it do not pay. */
 #include "fixture.h"
 
-#include "model/contact/friction_anchors.h"
+#include "model/contact/bristle_law.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "model/solver/linear.h"
 #include "sim/energy_ledger.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* A sheet that wraps a ball, a rod and a box, with contact samples on all of them; %g: three
@@ -157,14 +158,14 @@ TEST(matrix_is_symmetric_and_positive) {
     "\"place\": {\"translate\": [0, 0.009, 0]}}, \"mass\": {\"total\": 0.1}, \"springs\": "    \
     "{\"stretch\": 0, \"shear\": 0, \"bend\": 0}}], \"colliders\": [{\"floor\": {}, "          \
     "\"thickness\": 0.02, \"friction\": %g}], \"contact\": {\"law\": \"force\", "              \
-    "\"start\": \"allow\", \"friction_law\": \"%s\", \"stiffness\": %g}%s}"
+    "\"start\": \"allow\", \"friction_law\": \"%s\", \"stiffness\": %g%s}"
 
 /* k_t = k, and c_t = 2 sqrt(k m): the block, the bounds and the force. */
 TEST(bristle_is_critically_damped) {
     struct fixture plate;
     double f[12], kxx[24], dvv[24], work[8], omega, delta;
     const double k = 80, c = 2 * sqrt(k * 0.025);
-    fixture_open(&plate, "implicit-linearised", FLAT, 1.0, "stick", k, "");
+    fixture_open(&plate, "implicit-linearised", FLAT, 1.0, "stick", k, "}");
     fixture_start(&plate);
     for (int i = 0; i < 4; i++)
         plate.x[i] += 1e-4, plate.v[8 + i] = 2e-3;
@@ -186,12 +187,38 @@ TEST(bristle_is_critically_damped) {
     fixture_close(&plate);
 }
 
+/* Smooth friction of a plate at rest counts in full for a method that resolves it, and for the
+ * step of an explicit one up to 64 times the frequency of the contact, beside its damper. */
+TEST(friction_limits_explicit_steps_so_far) {
+    static const struct { double ev, tau; } of[] = {{1e-2, 0}, {1e-4, 0}, {1e-4, 2e-3}};
+    for (size_t k = 0; k < LENGTH(of); k++) {
+        struct fixture plate;
+        char more[80];
+        double work[8], w, all, step;
+        snprintf(more, sizeof more, ", \"friction_speed\": %g, \"damping\": %g}", of[k].ev,
+                 of[k].tau);
+        fixture_open(&plate, "velocity-verlet", FLAT, 0.3, "smooth", 80.0, more);
+        fixture_start(&plate);
+        const struct cs_eval at = {.x = plate.x, .v = plate.v, .parts = CS_PART_ALL};
+        cs_spectral_bounds_rate(plate.system, &at, false, work, &w, &all);
+        cs_spectral_bounds_rate(plate.system, &at, true, work, &w, &step);
+        const struct cs_barrier law = cs_barrier_at(0.009, 0.02, 80);
+        const double damper = of[k].tau * law.stiffness / (2 * 0.025);
+        const double friction = 0.3 * law.force / of[k].ev / (2 * 0.025);
+        ck_assert_double_eq_tol(w, sqrt(law.stiffness / 0.025), 1e-9 * w);
+        ck_assert_double_eq_tol(all, damper + friction, 1e-9 * all);
+        ck_assert_double_eq_tol(step, damper + fmin(friction, 32 * w), 1e-9 * step);
+        ck_assert(k == 0 ? friction < 32 * w : friction > 32 * w);
+        fixture_close(&plate);
+    }
+}
+
 /* Above the limit the force is mu N, against the trial; a step then leaves the spring at the
  * limit, and a point out of range takes its anchor along. */
 TEST(anchor_follows_a_point_that_slips) {
     struct fixture plate;
     double f[12], again[12], normal[12];
-    fixture_open(&plate, "rk4", FLAT, 0.3, "stick", 80.0, "");
+    fixture_open(&plate, "rk4", FLAT, 0.3, "stick", 80.0, "}");
     fixture_start(&plate);
     for (int i = 0; i < 4; i++)
         plate.x[i] += 0.01, plate.v[i] = 0.5;
@@ -220,7 +247,7 @@ TEST(ledger_closes) {
     struct cs_error error = {0};
     struct fixture plate;
     fixture_open(&plate, "dopri5:rtol=1e-10,atol=1e-12", FLAT, 0.8, "stick", 80.0,
-                 ", \"events\": [{\"from\": 0, \"to\": 1, \"impact\": {\"direction\": [1, 0, "
+                 "}, \"events\": [{\"from\": 0, \"to\": 1, \"impact\": {\"direction\": [1, 0, "
                  "0], \"impulse\": 0.2}}]");
     plate.session.settings.run.ledger = &ledger;
     cs_energy_ledger_open(&ledger, plate.system, 0, &error);
@@ -244,7 +271,7 @@ TEST(smooth_scenes_have_no_anchors) {
     static const char *const laws[] = {"smooth", "stick"};
     for (size_t k = 0; k < LENGTH(laws); k++) {
         struct fixture plate;
-        fixture_open(&plate, "rk4", FLAT, 0.3, laws[k], 80.0, "");
+        fixture_open(&plate, "rk4", FLAT, 0.3, laws[k], 80.0, "}");
         fixture_start(&plate);
         const struct cs_plan_row *row =
             plate.session.run.plan.rows + CS_FEATURE_FRICTION_ANCHORS;
@@ -255,7 +282,7 @@ TEST(smooth_scenes_have_no_anchors) {
         ck_assert(!cs_run_calls(&plate.session.run)->may_overstep);
         fixture_close(&plate);
         // where nothing can ever slide there is no anchor
-        fixture_open(&plate, "rk4", FLAT, 0.0, laws[k], 80.0, "");
+        fixture_open(&plate, "rk4", FLAT, 0.0, laws[k], 80.0, "}");
         ck_assert_ptr_null(plate.system->friction_anchors);
         fixture_close(&plate);
     }

@@ -239,6 +239,28 @@ static bool may_pass(const char *more) {
     return passes;
 }
 
+/* whether the time that a method passes has an effect on the forces of a scene that goes on so
+ */
+TEST(time_dependence_is_told) {
+    static const struct {
+        const char *more;
+        bool depends;
+    } rows[] = {{"}], \"forces\": {\"drag\": 0.1}", false},
+                {"}], \"colliders\": [{\"floor\": {\"height\": -9}}]", false},
+                {"}], \"events\": [{\"from\": 0, \"to\": 1, \"ramp\": {\"key\": "
+                 "\"forces.drag\", \"value\": 1}}]",
+                 true}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct fixture cloth;
+        fixture_open(&cloth, "velocity-verlet", HANGING, rows[k].more, 60);
+        fixture_start(&cloth);
+        ck_assert_msg(cs_run_calls(&cloth.session.run)->forces_depend_on_time ==
+                          rows[k].depends,
+                      "%s", rows[k].more);
+        fixture_close(&cloth);
+    }
+}
+
 TEST(what_acts_between_steps_is_told) {
     static const char *const acting[] = {
         ", \"strain_limit\": 1.1}]",

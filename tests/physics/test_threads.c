@@ -88,6 +88,16 @@ TEST(states_are_the_same_to_the_bit) {
     }
 }
 
+TEST(methods_for_smooth_motion_are_the_same_to_the_bit) {
+    check_bits(
+        "symmetric-multistep",
+        "{\"bodies\": [{\"cloth\": {\"grid\": [300, 20], \"size\": [3, 0.2], \"bump\":"
+        " 0.01}, \"mass\": {\"total\": 1}, \"springs\": {\"damping\": 0.001}, \"pins\":"
+        " [\"top\"]}, {\"mesh\": {\"shape\": \"sphere\", \"detail\": 9}, \"network\": "
+        "{\"springs\": 3}, \"mass\": {\"total\":"
+        " 0.5}, \"springs\": {\"stretch\": 40, \"bend\": 3}}], \"time\": {\"fps\": 20}}");
+}
+
 /* what the kernels give one by one, end to end, each in so many rows (3,n): the first is the
  * whole force, the last ones diagonal blocks, force with blocks */
 enum { BLOCKS = 4, BOTH = 1 + BLOCKS, KERNELS = 12 + BLOCKS + BOTH };

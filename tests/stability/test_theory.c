@@ -74,6 +74,30 @@ TEST(fastest_motion_of_a_chain) {
     fixture_close(&chain);
 }
 
+/* Linear theory leaves out friction, and no damper of an elastic body: at rest the damping of a
+ * membrane is `damping` times its stiffness. */
+TEST(elastic_dampers_limit_steps) {
+    struct fixture sheet;
+    struct cs_theory theory;
+    struct cs_theory_limit limit;
+    struct cs_error error = {0};
+    fixture_open(&sheet, "symplectic-euler",
+                 "{\"bodies\": [{\"cloth\": {\"grid\": [7, 7], \"size\": [1, 1]}, \"pins\": "
+                 "[\"top\"], \"mass\": {\"areal_density\": 0.2}, \"elastic\": {\"membrane\": "
+                 "{\"young\": 2e4}, \"damping\": 1e-4}}]}");
+    const struct cs_method *method = &sheet.session.method;
+    ck_assert_int_eq(
+        cs_theory_init(&theory, sheet.system, method->integrator, method->options, 0, &error),
+        CS_OK);
+    ck_assert_int_eq(cs_theory_at(&theory, sheet.x, &limit, &error), CS_OK);
+    ck_assert_double_eq_tol(limit.mode.damping_rate / limit.mode.omega_squared, 1e-4, 1e-9);
+    // explicit dampers: h^2 w^2 + 2 h c = 4, instead of h = 2/w
+    const double w = sqrt(limit.mode.omega_squared), c = limit.mode.damping_rate;
+    ck_assert_double_eq_tol(limit.dt * limit.dt * w * w + 2 * limit.dt * c, 4, 0.02);
+    cs_theory_finish(&theory);
+    fixture_close(&sheet);
+}
+
 /* Pulled apart by hand, one particle in a sound cloth is a local instability; thrown apart as a
  * whole, it is a global one. */
 TEST(watch_tells_local_from_global) {

@@ -1,22 +1,68 @@
 #!/usr/bin/env python3
-"""links.py ROOT - every link between documents, and every file of the tree that a document names in
-backquotes, is there."""
+"""links.py ROOT - every link between documents, with the heading that it names, and every file of the
+tree that a document names in backquotes, is there; tables are those of Markdown; pages have at most
+so many words, outside of blocks of code and of clothsim(1)'s table of shared options."""
 import pathlib
 import re
 import sys
 
 root = pathlib.Path(sys.argv[1])
-LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
+LINK = re.compile(r"\]\(([^)\s]+)[^)]*\)")
 PATH = re.compile(r"`((?:src|plugins|include|docs|scenes|tests|man|bench|examples|debian)/[\w./-]+)`")
+WORDS = {"README.md": 500, "tutorial.md": 800, "guide.md": 2000, "speed.md": 750, "theory.md": 3500}
+MAN_WORDS = 700
+PAGE_WORDS = {"man/clothsim-contact.7.scd": 1000, "man/clothsim-scene.5.scd": 1500}
+RESULT_WORDS, RESULT_ROWS = 600, 20
 checked, wrong = 0, []
-for document in [root / "README.md", root / "CONTRIBUTING.md", *sorted(root.glob("docs/*.md"))]:
+
+
+def count(path, most):
+    """Holds a page to its limit."""
+    text = re.sub(r"^```.*?^```", "", path.read_text(), flags=re.M | re.S)
+    words = len(re.sub(r"^# SHARED OPTIONS.*?(?=^# )", "", text, flags=re.M | re.S).split())
+    if words > most:
+        wrong.append(f"{path.relative_to(root)}: {words} words, at most {most}")
+
+
+def headings(path):
+    """Anchors of a document's headings: words in lower case, joined by hyphens."""
+    if not path.is_file():
+        return []
+    found = re.findall(r"^#+ (.*)", path.read_text(), re.M)
+    return [re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in found]
+
+
+for document in [root / "README.md", root / "CONTRIBUTING.md", *sorted(root.glob("docs/**/*.md"))]:
     text = document.read_text()
-    links = [document.parent / m for m in LINK.findall(text) if "://" not in m]
+    links = []
+    if re.search(r"^(\|\[|:\[|\|  \w|:  )", text, re.M):
+        wrong.append(f"{document.relative_to(root)}: a table in the notation of scdoc")
+    for link in LINK.findall(text):
+        name, _, heading = link.partition("#")
+        links += [document.parent / name] if name and "://" not in link else []
+        if heading and "://" not in link and heading not in headings(document.parent / name if name else document):
+            wrong.append(f"{document.relative_to(root)}: no heading {link}")
+    if document.name in WORDS:
+        count(document, WORDS[document.name])
     paths = [root / m for m in PATH.findall(text) if not re.search(r"NAME|DATE", m)]
     for path in links + paths:
         checked += 1
         if not path.exists():
             wrong.append(f"{document.relative_to(root)}: no {path.relative_to(root)}")
+for page in sorted(root.glob("man/*.1.scd")):
+    count(page, MAN_WORDS)
+for name, most in PAGE_WORDS.items():
+    count(root / name, most)
+for page in sorted([*root.glob("docs/results/*.md"), *root.glob("docs/notes/*.md")]):
+    text = page.read_text()
+    if page.parent.name == "results":
+        count(page, RESULT_WORDS)
+    if not re.search(r"\d (November|December) 20\d\d", text):
+        wrong.append(f"{page.relative_to(root)}: no date")
+    tables = re.findall(r"^(?:\|.*\n)+", text, flags=re.M)
+    rows = max((table.count("\n") - 2 for table in tables), default=0)
+    if rows > RESULT_ROWS:
+        wrong.append(f"{page.relative_to(root)}: a table of {rows} rows, at most {RESULT_ROWS}")
 print("\n".join(wrong))
 print(f"{checked} places, {len(wrong)} wrong")
 sys.exit(bool(wrong) or checked < 50)

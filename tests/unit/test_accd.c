@@ -38,8 +38,7 @@ static double sampled(enum cs_pair_kind kind, const double p[4][3], int cuts) {
 TEST(distances_are_the_least_ones) {
     uint64_t state = 5;
     for (int round = 0; round < 600; round++) {
-        const enum cs_pair_kind kind =
-            round % 2 ? CS_PAIR_POINT_TRIANGLE : CS_PAIR_EDGE_EDGE;
+        const enum cs_pair_kind kind = round % 2 ? CS_PAIR_POINT_TRIANGLE : CS_PAIR_EDGE_EDGE;
         double p[4][3];
         points(&state, 1, p);
         // flat and near parallel ones among them
@@ -74,16 +73,14 @@ TEST(shares_are_below_the_touch) {
             for (int k = 0; k < 4; k++)
                 moves[k][0] += moved;
             const double touch = 0.5 / (0.5 + past);
-            const double share =
-                cs_accd_safe_fraction(CS_PAIR_POINT_TRIANGLE, (const double(*)[3])p,
-                                      (const double(*)[3])moves, 1);
+            const double share = cs_accd_safe_fraction(
+                CS_PAIR_POINT_TRIANGLE, (const double(*)[3])p, (const double(*)[3])moves, 1);
             ck_assert_double_lt(share, touch);
             ck_assert_double_gt(share, 0.89 * touch);
             const double edges[4][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0.5}, {0, 1, 0.5}};
             const double towards[4][3] = {
                 {0, 0, 0}, {0, 0, 0}, {0, 0, -0.5 - past}, {0, 0, -0.5 - past}};
-            const double other =
-                cs_accd_safe_fraction(CS_PAIR_EDGE_EDGE, edges, towards, 1);
+            const double other = cs_accd_safe_fraction(CS_PAIR_EDGE_EDGE, edges, towards, 1);
             ck_assert_double_lt(other, touch);
             ck_assert_double_gt(other, 0.89 * touch);
         }
@@ -94,8 +91,7 @@ TEST(nothing_is_closed_up_to_the_share) {
     uint64_t state = 11;
     int cut = 0;
     for (int round = 0; round < 4000; round++) {
-        const enum cs_pair_kind kind =
-            round % 2 ? CS_PAIR_POINT_TRIANGLE : CS_PAIR_EDGE_EDGE;
+        const enum cs_pair_kind kind = round % 2 ? CS_PAIR_POINT_TRIANGLE : CS_PAIR_EDGE_EDGE;
         double p[4][3], moves[4][3], at[4][3];
         points(&state, 1, p);
         points(&state, 1.5, moves);

@@ -108,3 +108,44 @@ TEST(text_is_copied) {
     ck_assert_str_eq(cs_arena_copy_text(&arena, "", &error), "");
     cs_arena_finish(&arena);
 }
+
+static void write_text(const char *path, const char *text) {
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+/* a machine made of files: the least limit counts, and is named */
+TEST(memory_left_is_the_least_that_is_known) {
+    static const char *const folders[] = {
+        "m",        "m/proc",          "m/proc/self",       "m/sys",
+        "m/sys/fs", "m/sys/fs/cgroup", "m/sys/fs/cgroup/a", "m/sys/fs/cgroup/a/b"};
+    const char *limit = "";
+    ck_assert(cs_memory_left("m", &limit) > 1e30);
+    for (size_t k = 0; k < sizeof folders / sizeof *folders; k++)
+        ck_assert_int_eq(mkdir(folders[k], 0755), 0);
+    write_text("m/proc/meminfo",
+               "MemTotal: 9000 kB\nMemAvailable: 2000 kB\nSwapFree: 500 kB\n");
+    ck_assert_double_eq(cs_memory_left("m", &limit), 2500 * 1024);
+    ck_assert_str_eq(limit, "the free memory of the machine");
+    // a group without a limit below one with: what it uses but can drop counts as free
+    write_text("m/proc/self/cgroup", "3:cpu:/a\n0::/a/b\n");
+    write_text("m/sys/fs/cgroup/a/b/memory.max", "max\n");
+    write_text("m/sys/fs/cgroup/a/b/memory.current", "1000\n");
+    ck_assert_double_eq(cs_memory_left("m", &limit), 2500 * 1024);
+    write_text("m/sys/fs/cgroup/a/memory.max", "1000000\n");
+    write_text("m/sys/fs/cgroup/a/memory.current", "400000\n");
+    write_text("m/sys/fs/cgroup/a/memory.stat", "anon 7\ninactive_file 1000\n");
+    ck_assert_double_eq(cs_memory_left("m", &limit), 601000);
+    ck_assert_str_eq(limit, "the memory limit of the control group");
+    // one that is used up
+    write_text("m/sys/fs/cgroup/a/b/memory.max", "900\n");
+    ck_assert_double_eq(cs_memory_left("m", &limit), 0);
+    // the first version
+    ck_assert_int_eq(mkdir("m/sys/fs/cgroup/memory", 0755), 0);
+    write_text("m/proc/self/cgroup", "7:cpu,memory:/elsewhere\n");
+    write_text("m/sys/fs/cgroup/memory/memory.limit_in_bytes", "5000\n");
+    write_text("m/sys/fs/cgroup/memory/memory.usage_in_bytes", "1000\n");
+    ck_assert_double_eq(cs_memory_left("m", &limit), 4000);
+}

@@ -1,6 +1,6 @@
 /* Flat parts of grids: the bound of how far their parts are from each other, against all pairs
  * there are; and the clusters that are made of blocks, and found in cells. */
-#include "model/contact/broad_phase/aabb_cluster_build.h"
+#include "model/contact/broad_phase/aabb_clusters.h"
 #include "model/contact/narrow_phase/active_contacts.h"
 #include "unit.h"
 

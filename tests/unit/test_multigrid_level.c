@@ -100,8 +100,8 @@ TEST(translations_cost_the_same_on_every_level) {
     }
 }
 
-/* The theorem of multigrid_level.h, by power iteration: (A p).(D^-1 A p) / p.(A p) is below the
- * largest eigenvalue of D^-1 A and comes near to it. */
+/* The theorem of multigrid_hierarchy.h, by power iteration: (A p).(D^-1 A p) / p.(A p) is below
+ * the largest eigenvalue of D^-1 A and comes near to it. */
 TEST(smoother_bound_holds_on_every_level) {
     for (int kind = 0; kind < KINDS; kind++)
         for (double k = 100; k < 1e9; k *= 1e3) {

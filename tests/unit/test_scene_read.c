@@ -136,10 +136,10 @@ TEST(messages_name_the_place) {
          "s.json:1:24: camera.eye[1]: found null, expected a number"},
         {"{\"render\": {\"look\": \"strian\"}}",
          "s.json:1:21: render.look: unknown choice \"strian\"; did you mean \"strain\"? "
-         "(lit, wireframe, springs, force, strain, goals, crossings)"},
+         "(lit, wireframe, springs, force, strain, goals, crossings, stress)"},
         {"{\"render\": {\"look\": 3}}",
          "s.json:1:21: render.look: found 3, expected one of lit, "
-         "wireframe, springs, force, strain, goals, crossings"},
+         "wireframe, springs, force, strain, goals, crossings, stress"},
         {"{\"render\": {\"ground\": 1}}",
          "s.json:1:23: render.ground: found 1, expected one of auto, none, shadow, grid"},
         {"{\"render\": {\"viewpoint_forces\": 1}}",

@@ -201,7 +201,7 @@ TEST(schema_says_what_the_tables_say) {
     ck_assert_str_eq(cs_json_text(FIND(grid, "items", "type")), "integer");
     ck_assert_ptr_nonnull(FIND(root, "properties", "integrator", "anyOf"));
     ck_assert_uint_eq(
-        cs_json_count(FIND(root, "properties", "render", "properties", "look", "enum")), 7);
+        cs_json_count(FIND(root, "properties", "render", "properties", "look", "enum")), 8);
     cs_json_destroy(root);
     cs_text_finish(&text);
 }
@@ -222,7 +222,7 @@ TEST(manual_has_every_key) {
     cs_scene_print_manual(&text);
     assert_in_manual(&cs_scene_table, cs_text_get(&text));
     static const char *const parts[] = {
-        "\n## bodies[].cloth.place\n", "must be given\n\tcolumns and rows.\n",
+        "\n## bodies[].cloth.place\n", "required\n\tcolumns and rows.\n",
         "A plain string stands for an object with *at* alone.",
         "A plain list stands for an object with *colour* alone.",
         "Exactly one must be given of: *particle*, *areal_density*, *total*, *degree*.",

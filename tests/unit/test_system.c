@@ -102,6 +102,43 @@ TEST(spring_list_is_the_runs) {
     sheet_close(&sheet);
 }
 
+/* no spring joins particles of one colour; the lists have each particle and each end once */
+TEST(colours_part_the_springs) {
+    struct sheet sheet;
+    sheet_open(&sheet, CS_NEED_SPRINGS | CS_NEED_COLOURS,
+               "{\"bodies\": [" BODY(
+                   "\"particle\": 1",
+                   "") ", {\"cloth\": {\"grid\": [7, 5]}, \"mass\": {\"particle\": 1}}]}");
+    const struct cs_view *view = &sheet.system.view;
+    uint32_t colour[64] = {0}, seen = 0, ends = 0;
+    ck_assert_uint_le(view->n, 64);
+    for (uint32_t c = 0; c < view->n_colours; c++)
+        for (uint32_t k = view->colour_begin[c]; k < view->colour_begin[c + 1]; k++, seen++) {
+            ck_assert(k == view->colour_begin[c] ||
+                      view->colour_items[k - 1] < view->colour_items[k]);
+            colour[view->colour_items[k]] = c + 1;
+        }
+    ck_assert_uint_eq(seen, view->n);
+    for (uint32_t i = 0; i < view->n; i++)
+        ck_assert_uint_gt(colour[i], 0);
+    for (uint32_t s = 0; s < view->n_springs; s++)
+        ck_assert_uint_ne(colour[view->ends[2 * s]], colour[view->ends[2 * s + 1]]);
+    for (uint32_t i = 0; i < view->n; i++)
+        for (uint32_t k = view->spring_begin[i]; k < view->spring_begin[i + 1]; k++, ends++) {
+            const uint32_t s = view->spring_items[k];
+            ck_assert(view->ends[2 * s] == i || view->ends[2 * s + 1] == i);
+            ck_assert(k == view->spring_begin[i] || view->spring_items[k - 1] < s);
+        }
+    ck_assert_uint_eq(ends, 2 * view->n_springs);
+    // a grid with stretch, shear and bend springs needs six at least; greedily few more
+    ck_assert_uint_le(view->n_colours, 12);
+    sheet_close(&sheet);
+
+    sheet_open(&sheet, CS_NEED_SPRINGS, SCENE("\"particle\": 1", ""));
+    ck_assert_ptr_null(sheet.system.view.colour_begin);
+    sheet_close(&sheet);
+}
+
 /* no wind, no area law, no need for springs: no arrays */
 TEST(what_is_not_needed_is_not_there) {
     struct sheet sheet;

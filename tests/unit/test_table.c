@@ -13,9 +13,9 @@ struct row {
     bool found;
 };
 static const struct cs_column columns[] = {
-    {"name", NULL, CS_CELL_TEXT, offsetof(struct row, name), sizeof(char[8])},
-    {"value", NULL, CS_CELL_NUMBER, offsetof(struct row, value), sizeof(double)},
-    {"found", NULL, CS_CELL_FLAG, offsetof(struct row, found), sizeof(bool)},
+    {"name", CS_CELL_TEXT, "", "", false, offsetof(struct row, name), sizeof(char[8])},
+    {"value", CS_CELL_NUMBER, "1", "", false, offsetof(struct row, value), sizeof(double)},
+    {"found", CS_CELL_FLAG, "", "", false, offsetof(struct row, found), sizeof(bool)},
 };
 
 TEST(rows_read_back) {

@@ -13,6 +13,18 @@ static void check_real(double value, const char *expected) {
     cs_text_finish(&text);
 }
 
+/* the test vectors of RFC 4648, section 10 */
+TEST(base64_of_rfc_4648) {
+    static const char *const coded[] = {"",         "Zg==",     "Zm8=",    "Zm9v",
+                                        "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"};
+    for (size_t n = 0; n < sizeof coded / sizeof *coded; n++) {
+        struct cs_text out = {0};
+        cs_text_add_base64(&out, "foobar", n);
+        ck_assert_str_eq(cs_text_get(&out), coded[n]);
+        cs_text_finish(&out);
+    }
+}
+
 TEST(reals_are_short) {
     check_real(0, "0");
     check_real(-0.0, "-0");

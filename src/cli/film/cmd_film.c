@@ -1,7 +1,8 @@
 /* clothsim film: makes one film of the pictures of a run by ffmpeg, or a contact sheet.
  *
  *   run.json -> pictures, rate and range -> check that all are there -> ffmpeg -> rename
- *   run.json -> evenly spaced pictures -> shrunk tiles with times -> one PNG */
+ *   run.json -> evenly spaced pictures -> shrunk tiles with times -> one PNG
+ *   several runs -> a folder of tiled pictures beside the film -> ffmpeg -> removed */
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/commands.h"
@@ -23,7 +24,7 @@ struct options {
     const char *out, *grid;
     double rate;
     uint32_t tile;
-    bool overwrite, quiet;
+    bool show, titles, overwrite, quiet;
 };
 static const struct options defaults = {.tile = 320};
 
@@ -38,9 +39,13 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, grid)},
     {"tile", 0, "PIXELS", "maximum width of a picture on a sheet (default: 320)",
      CS_ARG_INTO(struct options, tile), .min = 16, .max = 4096},
+    {"show", 0, NULL, "play the pictures in the terminal, and write no film",
+     CS_ARG_INTO(struct options, show)},
+    {"titles", 0, NULL, "write method, cost and error above each run",
+     CS_ARG_INTO(struct options, titles)},
     {"overwrite", 'y', NULL, "replace an existing film or sheet",
      CS_ARG_INTO(struct options, overwrite)},
-    {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
+    CS_ARG_QUIET(struct options, quiet),
 };
 
 /* Input and destination of a film. ffmpeg writes to `part`, which is renamed to `out`. */
@@ -48,8 +53,9 @@ struct film {
     const char *folder;
     double rate; /* pictures a second */
     bool webm;
-    bool has_gaps; /* between the pictures' numbers, of a run by an older version */
-    bool clear;    /* the pictures have alpha */
+    bool has_gaps;      /* between the pictures' numbers, of a run by an older version */
+    bool clear;         /* the pictures have alpha */
+    bool awaits_ffmpeg; /* set where it was not found: the message names the folder */
     char out[PATH_BYTES], part[PATH_BYTES + 16]; /* absolute: ffmpeg works in the folder */
 };
 
@@ -140,16 +146,15 @@ static enum cs_status refuse(const struct film *film, const char *const *argumen
     return error->status;
 }
 
-static enum cs_status make(const struct film *film, struct cs_error *error) {
+static enum cs_status make(struct film *film, struct cs_error *error) {
     const volatile sig_atomic_t *stop = cs_interrupt_catch();
     const char *arguments[ARGUMENTS];
-    struct cs_subprocess_result end;
     char rate[32];
     snprintf(rate, sizeof rate, "%.15g", film->rate);
     fill(film, rate, film->part, arguments);
-    if (cs_subprocess_run(film->folder, arguments, false, &end, error))
-        return error->status;
+    const struct cs_subprocess_result end = cs_subprocess_run(film->folder, arguments);
     if (!end.was_found) {
+        film->awaits_ffmpeg = true;
         fill(film, rate, film->out, arguments);
         return refuse(film, arguments, error);
     }
@@ -187,6 +192,67 @@ static enum cs_status make_film(const struct cs_args *args, const struct cs_film
         return error->status;
     cs_text_add(told, "%s: %g pictures per second\n", film.out, film.rate);
     return CS_OK;
+}
+
+enum { RUNS_MAX = 8 };
+
+static enum cs_status write_tiles(const struct cs_film_tiles *tiles, const char *folder,
+                                  uint32_t n, struct cs_error *error) {
+    const struct cs_png_text text = {"Software", "clothsim " CS_VERSION};
+    const volatile sig_atomic_t *stop = cs_interrupt_catch();
+    char path[PATH_BYTES + 16];
+    for (uint32_t k = 0; k < n && !error->status; k++) {
+        struct cs_image image = {0};
+        snprintf(path, sizeof path, "%.4000s/frame_%05u.png", folder, k + 1);
+        if (*stop)
+            cs_fail(error, CS_ERR_INTERRUPT, "interrupted; no film was written");
+        else if (!cs_film_tiles_make(tiles, k, &image, error))
+            cs_png_write(path, &image, 1, &text, 1, error);
+        free(image.rgb);
+    }
+    return error->status;
+}
+
+/* Removes the pictures of tiles, which ffmpeg alone needs. */
+static void remove_tiles(const char *folder, uint32_t n) {
+    char path[PATH_BYTES + 16];
+    for (uint32_t k = 0; k < n; k++) {
+        snprintf(path, sizeof path, "%.4000s/frame_%05u.png", folder, k + 1);
+        remove(path);
+    }
+    rmdir(folder);
+}
+
+/* Makes the film of several runs, which must show the same times. */
+static enum cs_status tile_film(const struct cs_args *args,
+                                const struct cs_film_report *reports, struct cs_text *told,
+                                struct cs_error *error) {
+    const struct options *options = args->options;
+    char folder[PATH_BYTES];
+    const struct cs_film_tiles tiles = {(uint32_t)args->n_operands, options->tile,
+                                        args->operands, reports, options->titles};
+    struct film film = {.folder = folder,
+                        .rate = options->rate > 0 ? options->rate : cs_film_rate(reports)};
+    uint32_t n = 0;
+    if (!options->out)
+        return cs_fail(error, CS_ERR_USAGE, "expected --out FILE for a film of several runs");
+    for (uint32_t r = 0; r < tiles.n; r++) {
+        n = reports[r].n > n ? reports[r].n : n;
+        if (cs_film_rate(reports + r) != cs_film_rate(reports))
+            return cs_fail(error, CS_ERR_FILE,
+                           "%s: found %g pictures per second, expected %g as in %s",
+                           tiles.folders[r], cs_film_rate(reports + r), cs_film_rate(reports),
+                           tiles.folders[0]);
+    }
+    snprintf(folder, sizeof folder, "%.4000s.tiles", options->out);
+    if (set_output_path(options, &film, error) || cs_folder_create(folder, error))
+        return error->status;
+    if (!write_tiles(&tiles, folder, n, error) && !make(&film, error))
+        cs_text_add(told, "%s: %u runs, %g pictures per second\n", film.out, tiles.n,
+                    film.rate);
+    if (!film.awaits_ffmpeg)
+        remove_tiles(folder, n);
+    return error->status;
 }
 
 enum { MOST_TILES = 1000 };
@@ -243,17 +309,41 @@ static enum cs_status make_sheet(const struct cs_args *args,
     return error->status;
 }
 
+static enum cs_status show(const struct cs_args *args, const struct cs_film_report *report,
+                           struct cs_error *error) {
+    static const char *const others[] = {"out", "sheet", "tile"};
+    const struct options *options = args->options;
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+        if (cs_args_is_given(args, others[k]))
+            return cs_fail(error, CS_ERR_USAGE, "--show writes no files: remove --show or --%s",
+                           others[k]);
+    return cs_film_show(args->operands[0], report,
+                        options->rate > 0 ? options->rate : cs_film_rate(report), error);
+}
+
 static enum cs_status film(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
-    struct cs_film_report report;
+    struct cs_film_report reports[RUNS_MAX] = {{.fps = 0}};
     struct cs_text told = {0};
-    if (cs_film_report_read(args->operands[0], &report, error))
-        return error->status;
-    if (options->grid)
-        make_sheet(args, &report, &told, error);
-    else
-        make_film(args, &report, &told, error);
-    cs_film_report_finish(&report);
+    const bool several = args->n_operands > 1 || options->titles;
+    if (several && options->show)
+        return cs_fail(error, CS_ERR_USAGE, "--show plays one run without --titles");
+    if (several && options->grid)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--sheet takes one run without --titles, found %u runs",
+                       (unsigned)args->n_operands);
+    for (uint32_t r = 0; r < args->n_operands && !error->status; r++)
+        cs_film_report_read(args->operands[r], reports + r, error);
+    if (!error->status && several)
+        tile_film(args, reports, &told, error);
+    else if (!error->status && options->show)
+        show(args, reports, error);
+    else if (!error->status && options->grid)
+        make_sheet(args, reports, &told, error);
+    else if (!error->status)
+        make_film(args, reports, &told, error);
+    for (uint32_t r = 0; r < args->n_operands; r++)
+        cs_film_report_finish(reports + r);
     if (!error->status && !options->quiet)
         return cs_print_out(stdout, &told, error);
     cs_text_finish(&told);
@@ -262,12 +352,13 @@ static enum cs_status film(struct cs_args *args, struct cs_error *error) {
 
 const struct cs_command cs_command_film = {
     .name = "film",
-    .operands = "DIR",
+    .operands = "DIR [DIR ...]",
     .summary = "make a film or a contact sheet of the pictures of a run",
-    .notes = "DIR is the folder that clothsim run wrote. ffmpeg makes the film.\n\n"
+    .notes = "DIR is a folder that clothsim run wrote; several stand side by side, the first\n"
+             "being what --titles compare with. ffmpeg makes the film.\n\n"
              "Example: clothsim film out -o cloth.webm\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
-    .operands_max = 1,
+    .operands_max = RUNS_MAX,
     .main = film,
 };

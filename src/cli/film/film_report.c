@@ -49,6 +49,21 @@ static bool read_picture(const struct cs_json *frame, struct cs_film_picture *pi
     return true;
 }
 
+/* Reads the method up to its second option, a number of it with at most six digits, and its
+ * cost. */
+static void read_cost(const struct cs_json *root, struct cs_film_report *report) {
+    const struct cs_json *method = cs_json_find_kind(root, "method", CS_JSON_TEXT);
+    const char *text = method ? cs_json_text(method) : "";
+    const size_t head = strcspn(text, "="), length = strcspn(text, ",");
+    char *end = NULL;
+    const double value = head < length ? strtod(text + head + 1, &end) : 0;
+    if (end && end == text + length)
+        snprintf(report->method, sizeof report->method, "%.*s=%.6g", (int)head, text, value);
+    else
+        snprintf(report->method, sizeof report->method, "%.*s", (int)length, text);
+    report->seconds = number_of(cs_json_find(root, "seconds"), "method");
+}
+
 static enum cs_status read_pictures(const struct cs_json *root, struct cs_film_report *report,
                                     struct cs_error *error) {
     const struct cs_json *scene = cs_json_find(root, "scene"),
@@ -57,6 +72,7 @@ static enum cs_status read_pictures(const struct cs_json *root, struct cs_film_r
     const struct cs_json *render = cs_json_find(scene, "render");
     report->look = look_of(render);
     report->clear = is_clear(render);
+    read_cost(root, report);
     if (!frames || !(report->fps > 0))
         return CS_OK;
     report->pictures = calloc((size_t)cs_json_count(frames) + 1, sizeof *report->pictures);

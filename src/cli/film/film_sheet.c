@@ -1,109 +1,29 @@
 /* Lays pictures out on a sheet: white paper, dark ink. */
 #include "cli/film/film_sheet.h"
+#include "cli/film/image_lines.h"
 
+#include "base/file.h"
 #include "base/image.h"
+#include "base/serialise.h"
 #include "draw/colour_bar.h"
 #include "draw/glyph.h"
 #include "draw/srgb.h"
+#include "io/npy.h"
 #include "io/png.h"
+#include "scene/scene.h"
 #include "study/frame_picture.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Draws flat lines, figures and the colour bar on an image in memory. */
-
-struct cs_image_lines {
-    struct cs_lines lines; /* first: see cs_lines */
-    struct cs_image *image;
-    const struct cs_srgb *srgb; /* both borrowed */
-    double left, top;           /* pixels of the image where the pen's own begin */
-    int32_t look;               /* whose colours a ramp has */
-};
-
-static void blend(const struct cs_image_lines *pen, long x, long y, uint32_t over,
-                  double share) {
-    const struct cs_image *image = pen->image;
-    if (x < 0 || y < 0 || x >= (long)image->width || y >= (long)image->height || share <= 0)
-        return;
-    uint8_t *rgb = image->rgb + 3 * ((size_t)y * image->width + (size_t)x);
-    const uint32_t under = rgb[0] | (uint32_t)rgb[1] << 8 | (uint32_t)rgb[2] << 16;
-    const uint32_t mixed = cs_srgb_blend(under, over, (uint32_t)(255 * share + 0.5));
-    for (int k = 0; k < 3; k++)
-        rgb[k] = (uint8_t)(mixed >> 8 * k);
-}
-
-static double distance(const double p[2], const double a[2], const double b[2]) {
-    const double way[2] = {b[0] - a[0], b[1] - a[1]}, to[2] = {p[0] - a[0], p[1] - a[1]};
-    const double squared = way[0] * way[0] + way[1] * way[1];
-    const double along = squared > 0 ? (way[0] * to[0] + way[1] * to[1]) / squared : 0;
-    const double t = fmin(fmax(along, 0), 1);
-    const double dx = to[0] - t * way[0], dy = to[1] - t * way[1];
-    return sqrt(dx * dx + dy * dy);
-}
-
-/* covers a pixel as far as its centre is inside, over the width of a pixel */
-static void cover_pixel(const struct cs_image_lines *pen, const double a[2], const double b[2],
-                        double half, uint32_t colour, double alpha) {
-    const long reach = (long)half + 1;
-    const long right = (long)fmax(a[0], b[0]) + reach, below = (long)fmax(a[1], b[1]) + reach;
-    for (long y = (long)fmin(a[1], b[1]) - reach; y <= below; y++)
-        for (long x = (long)fmin(a[0], b[0]) - reach; x <= right; x++) {
-            const double centre[2] = {(double)x + 0.5, (double)y + 0.5};
-            const double inside = half + 0.5 - distance(centre, a, b);
-            blend(pen, x, y, colour, alpha * fmin(fmax(inside, 0), 1));
-        }
-}
-
-static void draw(struct cs_lines *lines, const struct cs_line_style *style) {
-    const struct cs_image_lines *pen = (const struct cs_image_lines *)lines;
-    const uint32_t colour =
-        cs_srgb_pack(pen->srgb, style->colour[0], style->colour[1], style->colour[2]);
-    for (uint32_t k = 0; k < lines->n; k++) {
-        const float *ends = lines->ends[k];
-        const double a[2] = {pen->left + (double)ends[0], pen->top + (double)ends[1]};
-        const double b[2] = {pen->left + (double)ends[3], pen->top + (double)ends[4]};
-        cover_pixel(pen, a, b, style->half_width, colour, style->alpha);
-    }
-}
-
-/* the colour at a share of the map, from 0 at its lowest stop */
-static uint32_t colour_at(const struct cs_image_lines *pen, double share) {
-    float stops[6][4], mixed[3];
-    cs_colour_stops(pen->look, stops);
-    const double at = 5 * fmin(fmax(share, 0), 1);
-    const int stop = at < 4 ? (int)at : 4;
-    const float t = (float)(at - stop);
-    for (int c = 0; c < 3; c++)
-        mixed[c] = stops[stop][c] + t * (stops[stop + 1][c] - stops[stop][c]);
-    return cs_srgb_pack(pen->srgb, mixed[0], mixed[1], mixed[2]);
-}
-
-static void ramp(struct cs_lines *lines, const double box[4]) {
-    const struct cs_image_lines *pen = (const struct cs_image_lines *)lines;
-    for (long y = (long)(box[1] + 0.5); y < (long)(box[1] + box[3] + 0.5); y++) {
-        const double share = 1 - ((double)y + 0.5 - box[1]) / box[3];
-        const uint32_t colour = colour_at(pen, share);
-        for (long x = (long)(box[0] + 0.5); x < (long)(box[0] + box[2] + 0.5); x++)
-            blend(pen, (long)pen->left + x, (long)pen->top + y, colour, 1);
-    }
-}
-
-/* Prepares for so many lines at a time. CS_ERR_MEMORY. */
-static enum cs_status image_lines_init(struct cs_image_lines *pen, uint32_t capacity,
-                                       struct cs_image *image, const struct cs_srgb *tone,
-                                       struct cs_arena *arena, struct cs_error *error) {
-    *pen = (struct cs_image_lines){
-        .lines = {.draw = draw, .ramp = ramp}, .image = image, .srgb = tone};
-    return cs_lines_init(&pen->lines, capacity, arena, error);
-}
+#include <unistd.h>
 
 enum {
     PATH_BYTES = 4096,
     GAP = 8,
     CAPTION = 16,
+    LETTER = 8, /* height of a figure */
     BAR_WIDTH = 92,
     BAR_HEIGHT = 480,
     MOST = 16384
@@ -172,7 +92,8 @@ static enum cs_status init_sheet_image(struct layout *layout, const struct cs_im
     layout->height = (uint32_t)fmax(floor(scale * first->height + 0.5), 1);
     const uint64_t width = GAP + (uint64_t)sheet->columns * (layout->width + GAP) +
                            (sheet->colour_bar ? BAR_WIDTH : 0);
-    const uint64_t height = GAP + (uint64_t)sheet->rows * (layout->height + CAPTION + GAP);
+    const uint64_t height =
+        GAP + (uint64_t)sheet->rows * (layout->height + sheet->captions * CAPTION + GAP);
     if (width > MOST || height > MOST)
         return cs_fail(error, CS_ERR_FILE,
                        "a sheet of %llu x %llu pixels is too large, expected at most %d x %d",
@@ -185,45 +106,21 @@ static enum cs_status init_sheet_image(struct layout *layout, const struct cs_im
     return CS_OK;
 }
 
-/* Mean of the linear light in the box that a pixel of the sheet covers, by area. */
-static void shrink_pixel(const struct layout *layout, const struct cs_image *picture,
-                         const double box[4], uint8_t out[3]) {
-    double light[3] = {0}, area = 0;
-    for (uint32_t y = (uint32_t)box[1]; y < picture->height && y < box[3]; y++)
-        for (uint32_t x = (uint32_t)box[0]; x < picture->width && x < box[2]; x++) {
-            const double share = (fmin(x + 1, box[2]) - fmax(x, box[0])) *
-                                 (fmin(y + 1, box[3]) - fmax(y, box[1]));
-            const uint8_t *rgb = picture->rgb + 3 * ((size_t)y * picture->width + x);
-            for (int k = 0; k < 3; k++)
-                light[k] += share * (double)layout->tone.linear[rgb[k]];
-            area += share;
-        }
-    for (int k = 0; k < 3; k++)
-        out[k] = (uint8_t)cs_srgb_encode(&layout->tone, (float)fmin(light[k] / area, 1));
-}
-
-static void shrink(const struct layout *layout, const struct cs_image *picture, uint32_t left,
-                   uint32_t top) {
-    const double sx = (double)picture->width / layout->width,
-                 sy = (double)picture->height / layout->height;
-    for (uint32_t y = 0; y < layout->height; y++)
-        for (uint32_t x = 0; x < layout->width; x++) {
-            const double box[4] = {x * sx, y * sy, (x + 1) * sx, (y + 1) * sy};
-            const size_t at = (size_t)(top + y) * layout->image->width + left + x;
-            shrink_pixel(layout, picture, box, layout->image->rgb + 3 * at);
-        }
+/* right: pixels of the right end; top: of the caption's box */
+static void write_text(struct layout *layout, const char *text, double right, double top) {
+    struct cs_line_style style = {.alpha = 0.85, .half_width = 0.6, .flat = true};
+    const double white[3] = {1, 1, 1};
+    cs_colour_ink(white, style.colour);
+    layout->pen.left = layout->pen.top = 0;
+    cs_glyph_add(&layout->pen.lines, text, right, top + CAPTION - 4.0, LETTER);
+    cs_lines_draw(&layout->pen.lines, &style);
 }
 
 static void write_time(struct layout *layout, uint32_t tile, uint32_t left, uint32_t top) {
     char text[40];
-    struct cs_line_style style = {.alpha = 0.85, .half_width = 0.6, .flat = true};
-    const double white[3] = {1, 1, 1};
     snprintf(text, sizeof text, "%.3g s",
              picture_of(layout, tile)->frame / layout->report->fps);
-    cs_colour_ink(white, style.colour);
-    layout->pen.left = layout->pen.top = 0;
-    cs_glyph_add(&layout->pen.lines, text, left + layout->width - 2.0, top + CAPTION - 4.0, 8);
-    cs_lines_draw(&layout->pen.lines, &style);
+    write_text(layout, text, left + layout->width - 2.0, top);
 }
 
 static enum cs_status put_tile(struct layout *layout, const char *folder, uint32_t tile,
@@ -235,7 +132,9 @@ static enum cs_status put_tile(struct layout *layout, const char *folder, uint32
     if (read_picture(layout, folder, tile, &picture, error))
         return error->status;
     if (picture.width == first->width && picture.height == first->height)
-        shrink(layout, &picture, left, top);
+        cs_srgb_shrink(&layout->tone, &picture,
+                       (const uint32_t[]){layout->width, layout->height},
+                       (size_t)top * layout->image->width + left, layout->image);
     else
         cs_fail(error, CS_ERR_FILE,
                 "%s/frame_%05u.png: found %u x %u pixels, expected %u x %u as in the first",
@@ -283,13 +182,105 @@ enum cs_status cs_contact_sheet_make(struct cs_contact_sheet *sheet, const char 
     struct cs_arena arena = {0};
     struct cs_image first = {0};
     *image = (struct cs_image){0};
+    sheet->captions = 1;
     choose_grid(sheet, report->n);
     sheet->colour_bar = has_one_range(report);
     cs_srgb_make(&layout.tone);
     if (!read_picture(&layout, folder, 0, &first, error) &&
         !init_sheet_image(&layout, &first, error) &&
-        !image_lines_init(&layout.pen, CS_COLOUR_BAR_LINES, image, &layout.tone, &arena, error))
+        !cs_image_lines_init(&layout.pen, CS_COLOUR_BAR_LINES, image, &layout.tone, &arena,
+                             error))
         put_tiles(&layout, folder, &first, error);
+    free(first.rgb);
+    cs_arena_finish(&arena);
+    if (error->status) {
+        free(image->rgb);
+        *image = (struct cs_image){0};
+    }
+    return error->status;
+}
+
+/* Positions (n,3) of a frame, as run --states writes them; NULL: there are none. The caller
+ * frees them. */
+static double *read_state(const char *folder, double frame, size_t *n) {
+    char path[PATH_BYTES], *bytes = NULL;
+    size_t length = 0;
+    struct cs_error absent = {0};
+    snprintf(path, sizeof path, "%.4000s/x_%05.0f.npy", folder, frame);
+    if (access(path, R_OK) || cs_file_read(path, (size_t)CS_PARTICLES_MAX * 24 + CS_NPY_HEAD,
+                                           &bytes, &length, &absent))
+        return NULL;
+    *n = length > CS_NPY_HEAD ? (length - CS_NPY_HEAD) / sizeof(double) : 0;
+    double *x = malloc(*n * sizeof *x + 1);
+    for (size_t i = 0; x && i < *n; i++) {
+        uint64_t word;
+        memcpy(&word, bytes + CS_NPY_HEAD + i * sizeof word, sizeof word);
+        x[i] = cs_double_from_le64(word);
+    }
+    free(bytes);
+    return x;
+}
+
+/* m, root mean square distance of the particles of two runs at a frame; NAN: unknown. */
+static double distance_of_runs(const char *a, const char *b, double frame) {
+    size_t n = 0, m = 0;
+    double *x = read_state(a, frame, &n), *y = read_state(b, frame, &m), squared = 0;
+    for (size_t i = 0; x && y && i < n && n == m; i++)
+        squared += (x[i] - y[i]) * (x[i] - y[i]);
+    const bool known = x && y && n == m && n > 0;
+    free(x);
+    free(y);
+    return known ? sqrt(3 * squared / (double)n) : (double)NAN;
+}
+
+/* Method; then cost and error, or what the others are compared with. */
+static void write_title(struct layout *layout, const struct cs_film_tiles *tiles, uint32_t run,
+                        double frame, double left) {
+    const struct cs_film_report *report = tiles->reports + run;
+    char text[120];
+    const double error =
+        run ? distance_of_runs(tiles->folders[0], tiles->folders[run], frame) : (double)NAN;
+    write_text(layout, report->method, left + cs_glyph_width(report->method, LETTER), GAP);
+    int n = snprintf(text, sizeof text, "%.3g s", report->seconds);
+    if (!isnan(error))
+        snprintf(text + n, sizeof text - (size_t)n, ", error %.1e m", error);
+    write_text(layout, text, left + cs_glyph_width(text, LETTER), GAP + CAPTION);
+}
+
+static enum cs_status put_run(struct layout *layout, const struct cs_film_tiles *tiles,
+                              uint32_t run, uint32_t k, struct cs_error *error) {
+    const struct cs_film_report *report = tiles->reports + run;
+    const struct cs_film_picture *at = report->pictures + (k < report->n ? k : report->n - 1);
+    const uint32_t head = tiles->titles ? 2 * CAPTION : 0;
+    const uint32_t left = GAP + run * (layout->width + GAP);
+    char path[PATH_BYTES];
+    struct cs_image picture;
+    snprintf(path, sizeof path, "%.4000s/frame_%05u.png", tiles->folders[run], at->number);
+    if (cs_png_read_on_white(path, &picture, error))
+        return error->status;
+    cs_srgb_shrink(&layout->tone, &picture, (const uint32_t[]){layout->width, layout->height},
+                   (size_t)(GAP + head) * layout->image->width + left, layout->image);
+    free(picture.rgb);
+    if (tiles->titles)
+        write_title(layout, tiles, run, at->frame, left);
+    return CS_OK;
+}
+
+enum cs_status cs_film_tiles_make(const struct cs_film_tiles *tiles, uint32_t k,
+                                  struct cs_image *image, struct cs_error *error) {
+    struct cs_contact_sheet sheet = {
+        .columns = tiles->n, .rows = 1, .tile = tiles->tile, .captions = tiles->titles ? 2 : 0};
+    struct layout layout = {.sheet = &sheet, .report = tiles->reports, .image = image};
+    struct cs_arena arena = {0};
+    struct cs_image first = {0};
+    *image = (struct cs_image){0};
+    cs_srgb_make(&layout.tone);
+    if (!read_picture(&layout, tiles->folders[0], 0, &first, error) &&
+        !init_sheet_image(&layout, &first, error) &&
+        !cs_image_lines_init(&layout.pen, CS_COLOUR_BAR_LINES, image, &layout.tone, &arena,
+                             error))
+        for (uint32_t run = 0; run < tiles->n && !error->status; run++)
+            put_run(&layout, tiles, run, k, error);
     free(first.rgb);
     cs_arena_finish(&arena);
     if (error->status) {

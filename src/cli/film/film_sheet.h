@@ -21,6 +21,8 @@ struct cs_film_report {
     double fps;                       /* of the scene */
     int32_t look;                     /* enum cs_look */
     bool clear;                       /* the pictures have alpha */
+    char method[64];                  /* with its first option, for titles */
+    double seconds;                   /* of the method */
     uint32_t n;                       /* at least one */
     struct cs_film_picture *pictures; /* (n), owned */
 };
@@ -35,11 +37,18 @@ void cs_film_report_finish(struct cs_film_report *report);
 /* Pictures a second: the scene's frames over those between the first two pictures. */
 double cs_film_rate(const struct cs_film_report *report);
 
+/* Plays the pictures in the terminal at `rate` per second, until the last or an interruption.
+ * Those that a slow terminal would show too late are left out, but for the last.
+ * CS_ERR_USAGE: no terminal; CS_ERR_FILE, CS_ERR_MEMORY, CS_ERR_INTERRUPT. */
+enum cs_status cs_film_show(const char *folder, const struct cs_film_report *report,
+                            double rate, struct cs_error *error);
+
 /* Layout of a sheet. */
 struct cs_contact_sheet {
     uint32_t columns, rows; /* at most; then as they came out */
     uint32_t tile;          /* pixels of a picture's width at most */
     bool colour_bar;        /* set by make: it has a colour bar */
+    uint32_t captions;      /* set by make: lines of text at each picture */
 };
 
 /* Makes a sheet of pictures that are evenly spaced over a run, from the first to the last, each
@@ -50,5 +59,20 @@ struct cs_contact_sheet {
 enum cs_status cs_contact_sheet_make(struct cs_contact_sheet *sheet, const char *folder,
                                      const struct cs_film_report *report,
                                      struct cs_image *image, struct cs_error *error);
+
+/* Pictures of several runs side by side at one time, with titles above if asked for: the
+ * method, its seconds, and the root mean square distance to the first run, where both wrote
+ * their states into their folders (run --states). */
+struct cs_film_tiles {
+    uint32_t n, tile;                     /* runs; pixels of a picture's width at most */
+    const char *const *folders;           /* (n) borrowed */
+    const struct cs_film_report *reports; /* (n) borrowed */
+    bool titles;
+};
+
+/* Makes the image of picture k of all runs, or of the last of a run that has fewer. The caller
+ * frees image->rgb. CS_ERR_FILE, as for sheets; CS_ERR_MEMORY. */
+enum cs_status cs_film_tiles_make(const struct cs_film_tiles *tiles, uint32_t k,
+                                  struct cs_image *image, struct cs_error *error);
 
 #endif

@@ -76,28 +76,27 @@ static bool is_called(const struct cs_arg *row, const char *word, size_t length)
     return (whole == length || singular) && !strncmp(row->name, word, length);
 }
 
-/* Finds the row of "--name", "--name=value", "-n" or "-nvalue", and the attached value. */
-static const struct cs_arg *find_row(const struct cs_command *command, const char *word,
-                                     const char **attached) {
-    *attached = NULL;
+/* Finds the row of "--name" or "--name=value", and the attached value. */
+static const struct cs_arg *find_long(const struct cs_command *command, const char *word,
+                                      const char **attached) {
+    const size_t length = strcspn(word + 2, "=");
     for (uint32_t r = 0; r < command->n_rows; r++) {
         const struct cs_arg *row = command->rows + r;
-        if (word[1] == '-') {
-            const size_t length = strcspn(word + 2, "=");
-            const bool old = is_old_name(row, word + 2, length);
-            if (!old && !is_called(row, word + 2, length))
-                continue;
-            if (old)
-                cs_old_name_report("--", row->old_name, row->name);
-            *attached = word[2 + length] ? word + 3 + length : NULL;
-            return row;
-        }
-        if (row->short_name != word[1])
+        const bool old = is_old_name(row, word + 2, length);
+        if (!old && !is_called(row, word + 2, length))
             continue;
-        if (word[2])
-            *attached = word + 2;
+        if (old)
+            cs_old_name_report("--", row->old_name, row->name);
+        *attached = word[2 + length] ? word + 3 + length : NULL;
         return row;
     }
+    return NULL;
+}
+
+static const struct cs_arg *find_short(const struct cs_command *command, char letter) {
+    for (uint32_t r = 0; r < command->n_rows; r++)
+        if (command->rows[r].short_name == letter)
+            return command->rows + r;
     return NULL;
 }
 
@@ -108,13 +107,22 @@ bool cs_args_is_given(const struct cs_args *args, const char *name) {
     return false;
 }
 
-/* Takes the option at argv[*i], and its value if that is the next word. */
-static enum cs_status take_option(struct cs_args *args, int argc, char **argv, int *i,
-                                  struct cs_error *error) {
-    const char *attached;
-    const struct cs_arg *row = find_row(args->command, argv[*i], &attached);
-    if (!row || (!row->value && attached && argv[*i][1] != '-'))
-        return unknown_option(args->command, argv[*i], error);
+/* The words after a command, and which one is read. */
+struct words {
+    char **argv;
+    int n, at;
+};
+
+enum cs_status cs_args_refuse_both(const struct cs_args *args, const char *a, const char *b,
+                                   struct cs_error *error) {
+    return cs_args_is_given(args, a) && cs_args_is_given(args, b)
+               ? cs_fail(error, CS_ERR_USAGE, "--%s and --%s cannot both be given", a, b)
+               : CS_OK;
+}
+
+/* Stores an option and its value: the attached one, or the next word. */
+static enum cs_status store(struct cs_args *args, const struct cs_arg *row,
+                            const char *attached, struct words *words, struct cs_error *error) {
     if (!row->repeatable && cs_args_is_given(args, row->name))
         return cs_fail(error, CS_ERR_USAGE, "--%s is given more than once", row->name);
     const char *value = attached;
@@ -125,16 +133,46 @@ static enum cs_status take_option(struct cs_args *args, int argc, char **argv, i
         value = "";
     } else if (!attached) {
         /* two dashes are the next option: its name is hardly meant as a value */
-        if (*i + 1 >= argc || !strncmp(argv[*i + 1], "--", 2))
+        if (words->at + 1 >= words->n || !strncmp(words->argv[words->at + 1], "--", 2))
             return cs_fail(error, CS_ERR_USAGE, "--%s needs a value: --%s %s", row->name,
                            row->name, row->value);
-        value = argv[++*i];
+        value = words->argv[++words->at];
     }
     if (row->value && !*value)
         return cs_fail(error, CS_ERR_USAGE, "--%s needs a value: --%s %s", row->name, row->name,
                        row->value);
     args->given[args->n_given++] = (struct cs_arg_value){row, value};
     return CS_OK;
+}
+
+/* Takes the letters of "-qyn3": switches, and at the end one with a value, which is the rest of
+ * the word or the next word. */
+static enum cs_status take_letters(struct cs_args *args, struct words *words,
+                                   struct cs_error *error) {
+    const char *word = words->argv[words->at];
+    for (const char *letter = word + 1; *letter && !error->status; letter++) {
+        const struct cs_arg *row = find_short(args->command, *letter);
+        args->help |= *letter == 'h';
+        if (*letter == 'h')
+            continue;
+        if (!row)
+            return unknown_option(args->command, word, error);
+        if (row->value)
+            return store(args, row, letter[1] ? letter + 1 : NULL, words, error);
+        store(args, row, NULL, words, error);
+    }
+    return error->status;
+}
+
+/* Takes the options of a word, and the value if that is the next word. */
+static enum cs_status take_option(struct cs_args *args, struct words *words,
+                                  struct cs_error *error) {
+    const char *word = words->argv[words->at], *attached = NULL;
+    if (word[1] != '-')
+        return take_letters(args, words, error);
+    const struct cs_arg *row = find_long(args->command, word, &attached);
+    return row ? store(args, row, attached, words, error)
+               : unknown_option(args->command, word, error);
 }
 
 /* True if --help or -h occurs before "--": it takes precedence over all errors. */
@@ -161,17 +199,26 @@ static enum cs_status check_operands(const struct cs_args *args, struct cs_error
 static enum cs_status sort(struct cs_args *args, int argc, char **argv,
                            struct cs_error *error) {
     bool options = true;
-    for (int i = 0; i < argc; i++) {
-        if (options && !strcmp(argv[i], "--"))
+    for (struct words words = {argv, argc, 0}; words.at < argc; words.at++) {
+        const char *word = argv[words.at];
+        if (options && !strcmp(word, "--"))
             options = false;
         /* a lone "-" is an operand */
-        else if (options && argv[i][0] == '-' && argv[i][1]) {
-            if (take_option(args, argc, argv, &i, error))
+        else if (options && word[0] == '-' && word[1]) {
+            if (take_option(args, &words, error))
                 return error->status;
         } else
-            args->operands[args->n_operands++] = argv[i];
+            args->operands[args->n_operands++] = word;
     }
-    return check_operands(args, error);
+    return args->help ? CS_OK : check_operands(args, error);
+}
+
+/* Most options that the words can give: a bundle of letters gives one by letter. */
+static size_t count_options(int argc, char **argv) {
+    size_t n = 0;
+    for (int i = 0; i < argc; i++)
+        n += argv[i][0] == '-' ? strlen(argv[i]) : 0;
+    return n;
 }
 
 enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *command, int argc,
@@ -180,12 +227,12 @@ enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *comm
     args->help = asks_for_help(argc, argv);
     if (args->help)
         return CS_OK;
-    /* no word gives more than one option or operand */
-    args->given = cs_arena_alloc_array(&args->arena, (size_t)argc, sizeof *args->given, error);
+    args->given = cs_arena_alloc_array(&args->arena, count_options(argc, argv) + 1,
+                                       sizeof *args->given, error);
     args->operands =
         cs_arena_alloc_array(&args->arena, (size_t)argc, sizeof *args->operands, error);
     args->options = cs_arena_alloc(&args->arena, command->size, error);
-    if (error->status || sort(args, argc, argv, error))
+    if (error->status || sort(args, argc, argv, error) || args->help)
         return error->status;
     memcpy(args->options, command->defaults, command->size);
     for (uint32_t i = 0; i < args->n_given && !error->status; i++)

@@ -78,6 +78,13 @@ struct cs_arg {
         "plugin", 'p', "FILE", "load an integrator module; may be repeated",                   \
             CS_ARG_LIST(struct_, session.plugins, session.n_plugins)                           \
     }
+/* The same in every command that has it. */
+#define CS_ARG_QUIET(struct_, field)                                                           \
+    {                                                                                          \
+        "quiet", 'q', NULL,                                                                    \
+            "no progress and no tables: the answer, and what fails or differs",                \
+            CS_ARG_INTO(struct_, field)                                                        \
+    }
 
 /* Reads one value of an option into its field of the command's struct. Items of lists live as
  * long as the arena. CS_ERR_USAGE, CS_ERR_MEMORY. */
@@ -137,6 +144,10 @@ void cs_args_finish(struct cs_args *args);
 
 /* True if the option of that long name was given. */
 bool cs_args_is_given(const struct cs_args *args, const char *name);
+
+/* Fails with CS_ERR_USAGE if both of these options were given. */
+enum cs_status cs_args_refuse_both(const struct cs_args *args, const char *a, const char *b,
+                                   struct cs_error *error);
 
 /* Adds the text of `clothsim COMMAND --help`. */
 void cs_command_print_help(const struct cs_command *command, struct cs_text *out);

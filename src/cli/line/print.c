@@ -5,15 +5,38 @@
 
 #include <errno.h>
 #include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
-enum { SCREEN_COLUMNS = 80 };
+/* Narrower windows cut words of lines that are made for LEAST_COLUMNS. Where less than TEXT_MIN
+ * is left for the right column, it starts on lines of its own, from NARROW_COLUMN on. */
+enum { SCREEN_COLUMNS = 80, LEAST_COLUMNS = 40, TEXT_MIN = 24, NARROW_COLUMN = 6 };
+
+/* Columns of the terminal on standard output; 0: none, or of unknown size. */
+static size_t terminal_columns(void) {
+    struct winsize size = {0};
+    if (!isatty(STDOUT_FILENO) || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) || !size.ws_col)
+        return 0;
+    return size.ws_col < LEAST_COLUMNS ? LEAST_COLUMNS : size.ws_col;
+}
 
 /* Adds n blanks. */
 static void add_blanks(struct cs_text *out, size_t n) {
     cs_text_add(out, "%*s", (int)n, "");
 }
 
-void cs_print_hanging(const char *left, const char *right, size_t column, struct cs_text *out) {
+/* Length of the next word; of one longer than a line, up to the last comma or slash. A path
+ * from the root stays whole, so that it can be copied. */
+static size_t next_word(const char *text, size_t room) {
+    const size_t word = strcspn(text, " ");
+    size_t part = word < room || *text == '/' ? word : room;
+    while (part < word && part > 0 && text[part - 1] != ',' && text[part - 1] != '/')
+        part--;
+    return part ? part : word;
+}
+
+void cs_print_wrapped(const char *left, const char *right, size_t column, size_t width,
+                      struct cs_text *out) {
     size_t at = strlen(left);
     cs_text_add(out, "%s", left);
     /* a left part that reaches into the right column has a line of its own */
@@ -23,9 +46,9 @@ void cs_print_hanging(const char *left, const char *right, size_t column, struct
     }
     bool first = true;
     while (*right) {
-        const size_t word = strcspn(right, " ");
+        const size_t word = next_word(right, width - column);
         /* the first word of a line is never wrapped, however long it is */
-        if (!first && at + 1 + word > SCREEN_COLUMNS) {
+        if (!first && at + 1 + word > width) {
             cs_text_add(out, "\n");
             at = 0;
             first = true;
@@ -38,6 +61,35 @@ void cs_print_hanging(const char *left, const char *right, size_t column, struct
         right += word + strspn(right + word, " ");
     }
     cs_text_add(out, "\n");
+}
+
+void cs_print_hanging(const char *left, const char *right, size_t column, struct cs_text *out) {
+    const size_t columns = terminal_columns();
+    const size_t width = columns && columns < SCREEN_COLUMNS ? columns : SCREEN_COLUMNS;
+    cs_print_wrapped(left, right, column + TEXT_MIN > width ? NARROW_COLUMN : column, width,
+                     out);
+}
+
+void cs_print_row(const char *left, const char *right, size_t column, struct cs_text *out) {
+    const size_t columns = terminal_columns(), length = strlen(right);
+    if (columns && column + length > columns)
+        cs_print_wrapped(left, right, column, columns, out);
+    else
+        cs_text_add(out, "%-*s%s\n", (int)column, left, right);
+}
+
+void cs_print_sentences(const char *lines, struct cs_text *out) {
+    for (size_t length; *lines; lines += length + (lines[length] == '\n')) {
+        struct cs_text word = {0}, rest = {0};
+        const size_t first = strcspn(lines, " \n"), right = first + (lines[first] == ' ');
+        length = strcspn(lines, "\n");
+        cs_text_add(&word, "%.*s", (int)first, lines);
+        cs_text_add(&rest, "%.*s", (int)(length - right), lines + right);
+        cs_print_row(cs_text_get(&word), cs_text_get(&rest), right, out);
+        out->failed |= word.failed || rest.failed;
+        cs_text_finish(&word);
+        cs_text_finish(&rest);
+    }
 }
 
 enum cs_status cs_print_out(FILE *file, struct cs_text *text, struct cs_error *error) {
@@ -67,6 +119,13 @@ void cs_print_lines(const char *before, const char *lines, struct cs_text *out) 
     }
 }
 
+enum cs_status cs_print_gnuplot_warning(const struct cs_gnuplot *gnuplot,
+                                        struct cs_error *error) {
+    struct cs_text text = {0};
+    cs_gnuplot_warn(gnuplot, "clothsim: warning: ", &text);
+    return cs_print_out(stderr, &text, error);
+}
+
 bool cs_print_is_stdout(const char *path) {
     return path && !strcmp(path, "-");
 }
@@ -74,4 +133,15 @@ bool cs_print_is_stdout(const char *path) {
 enum cs_status cs_print_file(const char *path, struct cs_text *text, struct cs_error *error) {
     return cs_print_is_stdout(path) ? cs_print_out(stdout, text, error)
                                     : cs_file_write_text(path, text, error);
+}
+
+void cs_print_shell_word(struct cs_text *out, const char *word) {
+    const bool plain = !word[strspn(word, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                                          "0123456789_-+./:=,")];
+    cs_text_add(out, " ");
+    for (const char *c = plain ? word : "'"; *c; c++)
+        cs_text_add(out, "%c", *c);
+    for (const char *c = plain ? "" : word; *c; c++)
+        cs_text_add(out, *c == '\'' ? "'\\''" : "%c", *c);
+    cs_text_add(out, "%s", plain ? "" : "'");
 }

@@ -4,15 +4,29 @@
 
 #include "base/status.h"
 #include "base/text.h"
+#include "io/subprocess.h"
 
 #include <signal.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 
-/* Adds `left`, then `right` from `column` on, wrapped at 80 columns with a hanging indent. If
- * left is too long, right starts on the next line. Ends with one line break. */
+/* Adds `left`, then `right` from `column` on, wrapped with a hanging indent: at 80 columns, or
+ * at those of a narrower terminal on standard output, from 40 on. If left is too long, right
+ * starts on the next line. Ends with one line break. */
 void cs_print_hanging(const char *left, const char *right, size_t column, struct cs_text *out);
+
+/* The same for lines of `width` characters. A word that is longer than a line breaks after a
+ * comma or a slash. */
+void cs_print_wrapped(const char *left, const char *right, size_t column, size_t width,
+                      struct cs_text *out);
+
+/* Adds `left`, padded to `column`, and `right` as one line. If the window of the terminal on
+ * standard output is narrower, it is wrapped as by cs_print_wrapped. */
+void cs_print_row(const char *left, const char *right, size_t column, struct cs_text *out);
+
+/* Adds lines of words in the same way, each with its first word at its left. */
+void cs_print_sentences(const char *lines, struct cs_text *out);
 
 /* Writes a finished text to stdout or stderr and flushes it; frees the text in any case.
  * CS_ERR_MEMORY if the text failed, CS_ERR_FILE if it could not be written. */
@@ -23,6 +37,11 @@ enum cs_status cs_print_file(const char *path, struct cs_text *text, struct cs_e
 
 /* Writes "clothsim: message" to stderr in one line; control characters become "?". */
 void cs_print_message(const char *message);
+
+/* Prints on standard error what gnuplot could not draw, if there is anything. CS_ERR_FILE,
+ * CS_ERR_MEMORY. */
+enum cs_status cs_print_gnuplot_warning(const struct cs_gnuplot *gnuplot,
+                                        struct cs_error *error);
 
 /* Adds each line of a text after a word: "hint: ". */
 void cs_print_lines(const char *before, const char *lines, struct cs_text *out);
@@ -58,5 +77,8 @@ void cs_progress_end(struct cs_progress *progress);
  * one after two seconds or more ends the program at once. Writing to a closed pipe becomes an
  * error of the write (SIGPIPE is ignored). */
 const volatile sig_atomic_t *cs_interrupt_catch(void);
+
+/* Adds a blank and a word of a command line, quoted if a shell needs it. */
+void cs_print_shell_word(struct cs_text *out, const char *word);
 
 #endif

@@ -2,8 +2,9 @@
  *
  *   options -> cs_job_settings -> --range auto: one run without pictures -> cs_job_run
  *   -> run.json and --json -> manifest -> table -> messages on the outcome
- * With --isolate everything happens in a child process, and a crash of a module or a hung call
- * becomes an error message. A blow-up is a result: it is reported and exits with 0, unless
+ * With --isolate, or a module from outside, everything happens in a child process, and a crash
+ * of a module or a hung call becomes an error message. A blow-up is a result: it is reported
+ * and exits with 0, unless
  * --strict asks for an error. */
 #include "base/file.h"
 #include "base/pool.h"
@@ -11,30 +12,34 @@
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
 #include "model/force/diagnostics.h"
-#include "study/process_pool.h"
 
 #include <string.h>
+#include <strings.h>
 
-enum { MOST_FRAMES = 10000000 };
+/* s that a call of a module from outside may go on after the first signal to stop: a step of a
+ * large scene, after which the run saves itself. */
+enum { STOP_SECONDS = 10 };
 
 /* The options as given; read_settings derives the rest of the job's settings. */
 struct options {
     struct cs_job_settings job;
     const char *checkpoint, *resume, *trace, *export, *values, *range;
     double isolate; /* s; 0: not */
-    bool strict;
+    bool strict, mark_instability;
 };
 static const struct options defaults = {
     .job = {.session = {.render = true, .threads = CS_THREADS_AUTO},
             .frames = CS_FRAMES_DEFAULT,
             .frame_interval = 1,
             .folder = "out",
-            .level = 1}};
+            .level = 2}};
 
 static const struct cs_arg rows[] = {
     {"frames", 'n', "N",
      "simulate frames 1 to N; 0: the start alone (default: one second of frames)",
-     CS_ARG_INTO(struct options, job.frames), .min = 0, .max = MOST_FRAMES},
+     CS_ARG_INTO(struct options, job.frames), .min = 0, .max = CS_FRAMES_MAX},
+    {"time", 't', "SECONDS", "simulate that time, in whole frames",
+     CS_ARG_INTO(struct options, job.seconds)},
     {"integrator", 'i', "NAME[:KEY=VALUE,...]",
      "method and its options, instead of the scene's (see: clothsim integrators)",
      CS_ARG_INTO(struct options, job.session.integrator)},
@@ -47,9 +52,11 @@ static const struct cs_arg rows[] = {
     {"overwrite", 'y', NULL, "replace the files of an earlier run",
      CS_ARG_INTO(struct options, job.overwrite)},
     {"no-render", 0, NULL, "draw nothing", CS_ARG_INTO(struct options, job.session.render)},
+    {"show", 0, NULL, "show each picture in the terminal",
+     CS_ARG_INTO(struct options, job.show)},
     {"every", 0, "K",
      "draw and export frames K, 2K, 3K ... only, numbered 1, 2, 3 ... (default: 1)",
-     CS_ARG_INTO(struct options, job.frame_interval), .min = 1, .max = MOST_FRAMES},
+     CS_ARG_INTO(struct options, job.frame_interval), .min = 1, .max = CS_FRAMES_MAX},
     {"checkpoint", 0, "EVERY",
      "write DIR/run.checkpoint every so many frames, or seconds as in 30s",
      CS_ARG_INTO(struct options, checkpoint)},
@@ -97,14 +104,18 @@ static const struct cs_arg rows[] = {
      "range of the colours of looks force and strain in all pictures: MIN,MAX, or auto, which "
      "runs the scene twice (default: the range of each frame)",
      CS_ARG_INTO(struct options, range)},
+    {"mark-instability", 0, NULL,
+     "mark the particle where an instability begins, and its neighbours, in all pictures; runs "
+     "the scene twice",
+     CS_ARG_INTO(struct options, mark_instability)},
     {"fast-render", 0, NULL,
      "use all instructions of the processor; pixels then depend on the machine",
      CS_ARG_INTO(struct options, job.fast_render)},
-    {"png-level", 0, "LEVEL", "compression, 0 to 9 (default: 1)",
+    {"png-level", 0, "LEVEL", "compression, 0 to 9 (default: 2)",
      CS_ARG_INTO(struct options, job.level), .min = 0, .max = 9},
     {"strict", 0, NULL, "exit with 8 if the run blew up or gave up",
      CS_ARG_INTO(struct options, strict)},
-    {"quiet", 'q', NULL, "no progress and no table", CS_ARG_INTO(struct options, job.quiet)},
+    CS_ARG_QUIET(struct options, job.quiet),
 };
 
 /* Reads --checkpoint and --resume. A resumed run continues in its folder with its interval,
@@ -134,7 +145,8 @@ static enum cs_status check_stream(const struct cs_job_settings *settings,
                    {"--json -", cs_print_is_stdout(settings->json)},
                    {"--monitor -", cs_print_is_stdout(settings->monitor_file)},
                    {"--ledger -", cs_print_is_stdout(settings->ledger)},
-                   {"--trace", settings->trace.is_requested}};
+                   {"--trace", settings->trace.is_requested},
+                   {"--show", settings->show}};
     const char *first = NULL;
     for (size_t k = 0; k < sizeof outputs / sizeof *outputs; k++) {
         if (outputs[k].asks && first)
@@ -146,14 +158,22 @@ static enum cs_status check_stream(const struct cs_job_settings *settings,
     return CS_OK;
 }
 
+static enum cs_status check_show(const struct cs_job_settings *settings,
+                                 struct cs_error *error) {
+    return settings->show && !settings->session.render
+               ? cs_fail(error, CS_ERR_USAGE, "--show needs pictures: remove --no-render")
+               : CS_OK;
+}
+
 /* Refuses the name of a film or a picture, where a folder is meant. */
 static enum cs_status check_folder(const char *folder, struct cs_error *error) {
-    static const char *const endings[] = {".mp4", ".webm", ".mkv", ".gif", ".png", NULL};
+    static const char *const endings[] = {".mp4", ".webm", ".mkv", ".avi",  ".mov",
+                                          ".gif", ".png",  ".jpg", ".jpeg", NULL};
     const char *ending = folder ? strrchr(folder, '.') : NULL;
     for (int k = 0; ending && endings[k]; k++)
-        if (!strcmp(ending, endings[k]))
+        if (!strcasecmp(ending, endings[k]))
             return cs_fail(error, CS_ERR_USAGE,
-                           "--output: found \"%s\", expected a folder, which is filled with "
+                           "--out: found \"%s\", expected a folder, which is filled with "
                            "pictures; clothsim film makes a film of them",
                            folder);
     return CS_OK;
@@ -167,9 +187,11 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_error *error
     settings->session.run.stop = cs_interrupt_catch();
     if (read_checkpoints(args, options, error) ||
         (options->trace && cs_run_trace_read(options->trace, &settings->trace, error)) ||
-        check_stream(settings, error) || check_folder(settings->folder, error) ||
+        check_stream(settings, error) || check_show(settings, error) ||
+        check_folder(settings->folder, error) ||
         cs_run_export_read(options->export, options->values, &settings->export, error))
         return error->status;
+    settings->out = settings->folder;
     if (!settings->session.render && !cs_job_makes_checkpoints(settings) &&
         !settings->export.formats)
         settings->folder = NULL;
@@ -233,7 +255,8 @@ static enum cs_status run_here(void *ctx, struct cs_error *error) {
     struct cs_job job = {0};
     struct cs_run_range range = {0};
     if (read_settings(args, error) ||
-        (options->range && cs_run_range_set(&range, options->range, &options->job, error)))
+        (options->range && cs_run_range_set(&range, options->range, &options->job, error)) ||
+        (options->mark_instability && cs_run_marks_set(&range, &options->job, error)))
         return error->status;
     cs_job_run(&job, &options->job, error);
     /* a failed step leaves the report of the frames before; its own message stands */
@@ -250,11 +273,13 @@ static enum cs_status run_here(void *ctx, struct cs_error *error) {
 
 static enum cs_status run(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
-    struct cs_isolate isolate = {.task = run_here, .ctx = args, .seconds = options->isolate};
-    if (!(isolate.seconds > 0))
-        return run_here(args, error);
-    isolate.stop = cs_interrupt_catch();
-    return cs_isolate_run(&isolate, error);
+    const char *method = options->job.session.integrator;
+    if (cs_args_refuse_both(args, "frames", "time", error))
+        return error->status;
+    return options->isolate > 0 || cs_external_modules_requested(args, &method, 1)
+               ? cs_external_modules_isolate(args, options->isolate, STOP_SECONDS, run_here,
+                                             error)
+               : run_here(args, error);
 }
 
 const struct cs_command cs_command_run = {

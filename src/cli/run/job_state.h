@@ -6,12 +6,14 @@
 #include "base/text.h"
 #include "cli/run/run_checkpoint.h"
 #include "cli/run_output.h"
+#include "cli/show/screen.h"
 #include "draw/render.h"
 #include "io/export/export.h"
 #include "io/frame_writer.h"
 #include "io/row_log.h"
 #include "sim/energy_ledger.h"
 #include "sim/run.h"
+#include "study/follow.h"
 #include "study/frame_picture.h"
 #include "study/recorded_run.h"
 #include "study/session.h"
@@ -27,13 +29,16 @@ struct cs_run_trace {
 };
 
 #define CS_FRAMES_DEFAULT UINT32_MAX
+enum { CS_FRAMES_MAX = 10000000 };
 
 /* Request for a run; texts are borrowed. */
 struct cs_job_settings {
     struct cs_session_settings session;
-    uint32_t frames;           /* 0: the start alone; CS_FRAMES_DEFAULT: one second of them */
-    uint32_t frame_interval;   /* draw every n-th frame */
-    const char *folder;        /* of pictures, checkpoints, exports; NULL: none */
+    uint32_t frames;         /* 0: the start alone; CS_FRAMES_DEFAULT: one second of them */
+    double seconds;          /* above 0: as many frames as cover it, instead */
+    uint32_t frame_interval; /* draw every n-th frame */
+    const char *folder;      /* of pictures, checkpoints, exports; NULL: none */
+    const char *out;         /* the same as it was asked for: made for a file that lies in it */
     const char *states, *json; /* json "-": stdout; NULL: none */
     const char *monitor_file;  /* CSV of energy, strain and velocity; NULL: none */
     const char *ledger;        /* CSV of where energy went; NULL: none */
@@ -43,6 +48,7 @@ struct cs_job_settings {
     struct cs_run_trace trace;                /* zeroed: none */
     bool resume;                              /* go on from the checkpoint in the folder */
     struct cs_export_settings export;         /* into the folder, as often as pictures */
+    bool show;                                /* pictures in the terminal */
     bool fast_render, hash, overwrite, quiet;
 };
 
@@ -50,6 +56,8 @@ struct cs_job_settings {
 static inline uint32_t cs_job_frames(const struct cs_job_settings *settings,
                                      const struct cs_scene *scene) {
     const double second = floor(scene->time.fps + 0.5);
+    if (settings->seconds > 0)
+        return (uint32_t)fmin(cs_follow_frames(scene, settings->seconds), CS_FRAMES_MAX);
     return settings->frames != CS_FRAMES_DEFAULT ? settings->frames
            : second < 1                          ? 1
                                                  : (uint32_t)second;
@@ -106,6 +114,7 @@ struct cs_job {
     const struct cs_job_settings *settings;
     struct cs_session session;
     struct cs_picture picture;
+    struct cs_screen screen; /* open where pictures are shown */
     struct cs_frame_writer *writer;
     uint32_t frames;                    /* asked for; 0: the start is the only result */
     struct cs_row_log frame_log;        /* rows of the report; open where JSON is written */
@@ -224,10 +233,11 @@ enum cs_status cs_run_json_close(struct cs_job *job, struct cs_error *error);
 /* Adds "blew up: ... at t = ... s, particle ..." or "finished". */
 void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out);
 
-/* An override of render.range; zeroed: nothing found. */
+/* Overrides of render.range and render.marks; zeroed: nothing found. */
 struct cs_run_range {
     char value[80];
-    struct cs_override *overrides; /* owned: those of the settings, and render.range */
+    struct cs_text marks;          /* owned */
+    struct cs_override *overrides; /* owned: those of the settings, and these */
 };
 
 /* Adds an override of render.range to the settings, which then borrow it. text is "MIN,MAX", or
@@ -236,7 +246,13 @@ struct cs_run_range {
 enum cs_status cs_run_range_set(struct cs_run_range *range, const char *text,
                                 struct cs_job_settings *settings, struct cs_error *error);
 
-/* Frees the override; the settings must not be used after it. */
+/* Runs the scene once without pictures, and adds an override of render.marks: the particle
+ * where an instability began, and its neighbours by stretch and shear springs. Says so if there
+ * was none. */
+enum cs_status cs_run_marks_set(struct cs_run_range *range, struct cs_job_settings *settings,
+                                struct cs_error *error);
+
+/* Frees the overrides; the settings must not be used after it. */
 void cs_run_range_finish(struct cs_run_range *range);
 
 #endif

@@ -102,7 +102,7 @@ static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
     struct cs_run *run = &job->session.run;
     struct cs_follow follow = {.run = run, .last = job->frames, .every = 1};
     struct cs_progress progress;
-    cs_progress_begin(&progress, "frame", job->settings->quiet);
+    cs_progress_begin(&progress, "frame", job->settings->quiet || job->settings->show);
     while (cs_follow_next(&follow, error)) {
         look(job);
         if (!cs_run_outputs_at(job, CS_RUN_FRAME, error))
@@ -177,6 +177,10 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
         cs_checkpointer_check_interval(&job->session, &settings->checkpoint, error) ||
         cs_run_outputs_check(job, error) || cs_run_outputs_open(job, error))
         return error->status;
+    const double covering = cs_follow_frames(&job->session.scene, settings->seconds);
+    if (covering > CS_FRAMES_MAX)
+        return cs_fail(error, CS_ERR_USAGE, "--time: %g s are more than %d frames",
+                       settings->seconds, (int)CS_FRAMES_MAX);
     job->frames = cs_job_frames(settings, &job->session.scene);
     if (warn(job, error) || begin(job, error))
         return error->status;

@@ -5,6 +5,7 @@
 #include "base/pool.h"
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
+#include "cli/run_output.h"
 #include "study/contact_capacity.h"
 #include "study/provenance_write.h"
 
@@ -216,8 +217,10 @@ enum cs_status cs_report_write_json(struct cs_job *job, struct cs_error *error) 
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the report");
     if (!error->status && settings->session.render)
         write_file(job, &report, cs_text_get(&path), error);
-    if (!error->status && settings->json)
+    if (!error->status && settings->json) {
+        cs_output_sweep_file(settings->json);
         write_file(job, &report, settings->json, error);
+    }
     cs_text_finish(&report);
     cs_text_finish(&path);
     if (!error->status)
@@ -228,8 +231,7 @@ enum cs_status cs_report_write_json(struct cs_job *job, struct cs_error *error) 
 enum cs_status cs_run_json_close(struct cs_job *job, struct cs_error *error) {
     if (cs_job_makes_checkpoints(job->settings))
         return cs_row_log_finish(&job->frame_log, error);
-    cs_row_log_remove(&job->frame_log);
-    return error->status;
+    return cs_row_log_remove(&job->frame_log, error);
 }
 
 /* Opens the rows: beside the pictures or checkpoints, or without a name. */

@@ -1,6 +1,7 @@
 /* Holds the list of a run's outputs and walks it. */
 #include "cli/run/job_state.h"
 
+#include "base/file.h"
 #include "cli/manifest.h"
 #include "io/file_conflicts.h"
 #include "study/provenance_write.h"
@@ -88,15 +89,23 @@ enum cs_status cs_run_outputs_at(struct cs_job *job, enum cs_run_stage stage,
     return error->status;
 }
 
+/* True if the file lies in the folder of -o, which need not be there yet. */
+static bool is_in_folder(const char *path, const char *folder) {
+    const size_t length = folder ? strlen(folder) : 0;
+    return length > 0 && !strncmp(path, folder, length) && path[length] == '/';
+}
+
 enum cs_status cs_run_outputs_open(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
-    const enum cs_output_earlier earlier = settings->resume      ? CS_OUTPUT_KEEP
+    const enum cs_output_earlier earlier = settings->resume      ? CS_OUTPUT_RESUME
                                            : settings->overwrite ? CS_OUTPUT_REMOVE
                                                                  : CS_OUTPUT_REFUSE;
     const struct cs_output *other = NULL;
     cs_run_outputs_at(job, CS_RUN_OPEN, error);
     for (int k = 0; k < OUTPUTS && !error->status; k++) {
         const char *path = path_of(job, outputs[k]);
+        if (path && !outputs[k]->is_ours && is_in_folder(path, settings->out))
+            cs_folder_create(settings->out, error);
         if (!path || !outputs[k]->is_ours)
             continue;
         cs_output_lock_folders(&job->folders[k], other, path, outputs[k]->is_ours, earlier,

@@ -19,6 +19,8 @@ static enum cs_status open_renderer(struct cs_job *job, struct cs_error *error) 
     const struct cs_job_settings *settings = job->settings;
     if (!settings->session.render)
         return CS_OK;
+    if (settings->show && cs_screen_open(&job->screen, true, error))
+        return error->status;
     if (cs_picture_open(&job->picture, &job->session.system, settings->renderer,
                         settings->fast_render, has_processors(), error))
         return error->status;
@@ -61,6 +63,15 @@ static void print_range(const struct cs_job_picture *picture, const struct cs_sc
     cs_text_add(range, " %s", cs_look_of(scene->render.look)->unit);
 }
 
+/* Shows the last image in the terminal. */
+static enum cs_status show(struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_picture *picture = &job->has_begun;
+    char caption[80];
+    snprintf(caption, sizeof caption, "frame %u of %u, %.4g s", picture->frame, job->frames,
+             picture->time);
+    return cs_screen_show_image(&job->screen, picture->image, caption, error);
+}
+
 /* Submits the last image as frame_NUMBER.png, with its texts. */
 static enum cs_status give(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_picture *picture = &job->has_begun;
@@ -100,7 +111,7 @@ static enum cs_status end_picture(struct cs_job *job, struct cs_error *error) {
         return CS_OK;
     const enum cs_status status = cs_picture_end(&job->picture, error);
     job->wait_seconds += cs_clock_wall() - start;
-    if (!status && !give(job, error))
+    if (!status && !(job->settings->show && show(job, error)) && !give(job, error))
         job->n_drawn++;
     job->has_begun.image = NULL;
     return error->status;

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static void take(void *ctx, const struct cs_trace_record *point) {
     cs_trace_stream_write(ctx, point);
@@ -17,7 +18,7 @@ enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *trail,
     const bool number = strspn(value, "0123456789") == length && length > 0 && length < 9;
     trail->frame = number ? (uint32_t)strtoul(value, NULL, 10) : 0;
     trail->is_requested = true;
-    trail->trace = (struct cs_trace){.emit = take, .ctx = stdout};
+    trail->trace = (struct cs_trace){.emit = take};
     return trail->frame || !strcmp(value, "frames")
                ? CS_OK
                : cs_fail(error, CS_ERR_USAGE,
@@ -27,7 +28,8 @@ enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *trail,
 }
 
 /* Writes x and v of the present frame as two records. */
-static void write_state(const struct cs_run *run) {
+static void write_state(const struct cs_job *job) {
+    const struct cs_run *run = &job->session.run;
     struct cs_trace_record point = {.frame = run->frame,
                                     .step = run->counts.steps,
                                     .t = run->t,
@@ -35,10 +37,10 @@ static void write_state(const struct cs_run *run) {
                                     .name = "x",
                                     .values = run->x,
                                     .n = 3 * (size_t)run->system->view.n};
-    cs_trace_stream_write(stdout, &point);
+    cs_trace_stream_write(job->trace.trace.ctx, &point);
     point.name = "v";
     point.values = run->v;
-    cs_trace_stream_write(stdout, &point);
+    cs_trace_stream_write(job->trace.trace.ctx, &point);
 }
 
 /* Enables the full trace for the requested frame only. */
@@ -46,15 +48,26 @@ static void expect_frame(struct cs_run_trace *trail, const struct cs_run *run) {
     trail->trace.enabled = trail->frame == run->frame + 1;
 }
 
-/* Begins the stream with the start state, before the first frame. */
+static enum cs_status refuse_output(struct cs_error *error) {
+    return cs_fail(error, CS_ERR_FILE, "cannot write to standard output");
+}
+
+/* Begins the stream with the start state, before the first frame. It has a descriptor of its
+ * own: during calls of a module from outside, standard output is diverted (sim/crash.h). */
 static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
-    const struct cs_run *run = &job->session.run;
     if (!job->trace.is_requested)
         return CS_OK;
-    cs_trace_stream_begin(stdout);
-    write_state(run);
-    expect_frame(&job->trace, run);
-    return error->status;
+    const int output = dup(STDOUT_FILENO);
+    FILE *file = output < 0 ? NULL : fdopen(output, "wb");
+    if (!file) {
+        close(output);
+        return refuse_output(error);
+    }
+    job->trace.trace.ctx = file;
+    cs_trace_stream_begin(file);
+    write_state(job);
+    expect_frame(&job->trace, &job->session.run);
+    return CS_OK;
 }
 
 /* Writes the state after a frame: after every frame, or after the traced one only. */
@@ -64,14 +77,12 @@ static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
     if (!trail->is_requested)
         return CS_OK;
     if (!trail->frame || trail->frame == run->frame)
-        write_state(run);
+        write_state(job);
     expect_frame(&job->trace, run);
-    return fflush(stdout) || ferror(stdout)
-               ? cs_fail(error, CS_ERR_FILE, "cannot write to standard output")
-               : CS_OK;
+    return fflush(trail->trace.ctx) || ferror(trail->trace.ctx) ? refuse_output(error) : CS_OK;
 }
 
-/* Writes when and where a run blew up. */
+/* Writes when and where a run blew up, and closes the stream. */
 static enum cs_status end(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     const double where[] = {run->blow_up.particle, run->blow_up.energy};
@@ -82,9 +93,14 @@ static enum cs_status end(struct cs_job *job, struct cs_error *error) {
                                           .name = "end",
                                           .values = where,
                                           .n = 2};
-    if (job->trace.is_requested && cs_outcome_is_blow_up(run->outcome))
-        cs_trace_stream_write(stdout, &point);
-    return error->status;
+    FILE *file = job->trace.trace.ctx;
+    if (!file)
+        return error->status;
+    if (cs_outcome_is_blow_up(run->outcome))
+        cs_trace_stream_write(file, &point);
+    const bool failed = ferror(file);
+    job->trace.trace.ctx = NULL;
+    return fclose(file) || failed ? refuse_output(error) : error->status;
 }
 
 const struct cs_run_output cs_run_output_trace = {

@@ -5,6 +5,7 @@
 #include "draw/cpu/band_pass.h"
 
 #include <math.h>
+#include <string.h>
 
 void cs_band_pass_bin(struct cs_band_pass *drawing) {
     const struct cs_triangles *all = &drawing->triangles;
@@ -18,6 +19,15 @@ void cs_band_pass_bin(struct cs_band_pass *drawing) {
 
 static float value_at(const struct cs_plane_equation *slope, float x, float y) {
     return slope->value + slope->d_dx * x + slope->d_dy * y;
+}
+
+// the same in four pixels of a row
+CS_INLINE cs_f4 values_at(const struct cs_plane_equation *slope, cs_f4 x, float y) {
+    return slope->value + slope->d_dx * x + slope->d_dy * y;
+}
+
+CS_INLINE void put_four(cs_f4 from, float *to) {
+    *(cs_f4_unaligned *)to = from;
 }
 
 /* Squared texels per pixel: the longer of the steps along a row and along a column (rho^2 of
@@ -60,28 +70,51 @@ static float along_of(const struct cs_band_pass *drawing, const struct cs_triang
                       const struct cs_shading_material *coat, int x, int y) {
     const float *depth = drawing->shading.rays.depth;
     const float up = (float)(drawing->shading.height - 1 - y) + 0.5f;
-    const float z = t->depth.value + t->depth.d_dx * ((float)x + 0.5f) + t->depth.d_dy * up;
+    const float z = value_at(&t->depth, (float)x + 0.5f, up);
     return depth[0] + z * (depth[1] - depth[0]) - coat->depth_bias;
 }
 
-// adds the fragment of a triangle at a pixel; shading writes its colour to colours[out] later
-static void add_fragment(const struct cs_band_pass *drawing, const struct cs_triangle *t, int x,
-                         int y, uint32_t out, struct cs_tile_buffer *tiles) {
-    struct cs_fragments *f = slot_of(drawing, t, tiles);
-    const float across = (float)(x - t->left), down = (float)(y - t->top);
-    const float inverse = value_at(&t->inverse, across, down);
-    const int i = f->n++;
-    f->x[i] = (float)x;
-    f->y[i] = (float)y;
-    // the middle of a pixel may lie beyond the edge, and there beyond the horizon
-    f->inverse[i] = inverse > 1e-6f ? inverse : 1e-6f;
-    for (int k = 0; k < f->material->attributes; k++)
-        f->attributes[k][i] = value_at(t->attributes + k, across, down);
-    if (drawing->shading.rays.parallel)
-        f->view_depth[i] = along_of(drawing, t, f->material, x, y);
-    if (f->material->mode == CS_SURFACE_TEXTURED)
-        f->texels[i] = texels_of(drawing, t, f->material->mips, x, y);
-    f->colour_index[i] = out;
+// n pixels of row y from x on
+struct spot {
+    int x, y, n;
+    size_t pixel; // index of the first in the tile buffer
+    uint32_t sky; // index of the colour of the sky in their row
+};
+
+/* Adds the fragments of a triangle at a spot; shading writes their colours to colours[out] and
+ * those after it later. */
+static void add_fragments(const struct cs_band_pass *drawing, const struct cs_triangle *t,
+                          const struct spot *spot, uint32_t out, struct cs_tile_buffer *tiles) {
+    for (int x = spot->x, end = x + spot->n, y = spot->y, count; x < end; x += count) {
+        struct cs_fragments *f = slot_of(drawing, t, tiles);
+        const int first = f->n;
+        const float down = (float)(y - t->top);
+        count = cs_min(end - x, CS_FRAGMENTS - first);
+        f->n += count;
+        // in fours: what is written beyond the last one, the next ones overwrite
+        for (int i = 0; i < count; i += 4) {
+            const cs_f4 columns = (cs_f4){0, 1, 2, 3} + (float)(x + i);
+            const cs_f4 across = columns - (float)t->left, least = (cs_f4){0} + 1e-6f;
+            const cs_f4 inverse = values_at(&t->inverse, across, down);
+            put_four(columns, f->x + first + i);
+            put_four((cs_f4){0} + (float)y, f->y + first + i);
+            // the middle of a pixel may lie beyond the edge, and there beyond the horizon
+            put_four((cs_f4)cs_select(inverse > least, (cs_i4)inverse, (cs_i4)least),
+                     f->inverse + first + i);
+            for (int k = 0; k < f->material->attributes; k++)
+                put_four(values_at(t->attributes + k, across, down),
+                         f->attributes[k] + first + i);
+        }
+        for (int i = 0; i < count; i++)
+            f->colour_index[first + i] = out++;
+        for (int i = 0; drawing->shading.rays.parallel && i < count; i++)
+            f->view_depth[first + i] = along_of(drawing, t, f->material, x + i, y);
+        // both pixels of a block of 2 x 2 have the same
+        for (int i = 0; f->material->mode == CS_SURFACE_TEXTURED && i < count; i++)
+            f->texels[first + i] = i && ((x + i) & 1)
+                                       ? f->texels[first + i - 1]
+                                       : texels_of(drawing, t, f->material->mips, x + i, y);
+    }
 }
 
 /* The square behind square `id` at a sample: the last one drawn before it that was nearest
@@ -105,14 +138,8 @@ static int32_t find_behind(const struct cs_band_pass *drawing, int32_t id, int x
     return behind;
 }
 
-struct spot {
-    int x, y;
-    size_t pixel; // its index in the tile buffer
-    uint32_t sky; // index of the colour of the sky in its row
-};
-
-/* Adds the fragment of triangle `id`. A fading one also needs the colour behind it: another
- * fragment, found recursively, or the sky. Pairs are listed from back to front. */
+/* Adds the fragments of triangle `id`. A fading one, at one pixel, also needs the colour behind
+ * it: another fragment, found recursively, or the sky. Pairs are listed from back to front. */
 static void add_shown(const struct cs_band_pass *drawing, int32_t id, const struct spot *spot,
                       int sample, uint32_t out, struct cs_tile_buffer *tiles) {
     const struct cs_triangle *t = drawing->triangles.items + id;
@@ -127,7 +154,7 @@ static void add_shown(const struct cs_band_pass *drawing, int32_t id, const stru
         }
         tiles->blend_pairs[tiles->n_blend_pairs++] = (struct cs_blend_pair){out, under};
     }
-    add_fragment(drawing, t, spot->x, spot->y, out, tiles);
+    add_fragments(drawing, t, spot, out, tiles);
 }
 
 // a pixel whose samples show several triangles: one fragment of each, colours in a row
@@ -154,18 +181,34 @@ static void add_mixed(const struct cs_band_pass *drawing, cs_i4 shown, const str
             add_shown(drawing, shown[samples[k]], spot, samples[k], first + k, tiles);
 }
 
-// a pixel of one triangle in all samples, the usual case, has one colour
-static void add_pixel(const struct cs_band_pass *drawing, cs_i4 shown, const struct spot *spot,
-                      struct cs_tile_buffer *tiles) {
-    const int32_t id = shown[0];
-    if (((shown[1] ^ id) | (shown[2] ^ id) | (shown[3] ^ id)) != 0) {
-        add_mixed(drawing, shown, spot, tiles);
+static bool shows_only(cs_i4 shown, int32_t id) {
+    return ((shown[0] ^ id) | (shown[1] ^ id) | (shown[2] ^ id) | (shown[3] ^ id)) == 0;
+}
+
+/* Adds the pixel where the spot begins and all after it that show the same triangle or sky in
+ * all samples, which is the usual case, with one colour each. Sets spot->n. */
+static void add_pixels(const struct cs_band_pass *drawing, struct spot *spot,
+                       struct cs_tile_buffer *tiles) {
+    const cs_i4 *shown = tiles->samples.triangle_ids + spot->pixel;
+    const int32_t id = (*shown)[0];
+    const bool is_sky = id == CS_NOTHING;
+    uint32_t *first = tiles->first_colour + spot->pixel;
+    spot->n = 1;
+    if (!shows_only(*shown, id)) {
+        add_mixed(drawing, *shown, spot, tiles);
         return;
     }
-    tiles->sample_codes[spot->pixel] = 0;
-    tiles->first_colour[spot->pixel] = id == CS_NOTHING ? spot->sky : tiles->n_colours++;
-    if (id != CS_NOTHING)
-        add_shown(drawing, id, spot, 0, tiles->first_colour[spot->pixel], tiles);
+    // what fades asks for the surface behind each of its pixels
+    if (is_sky || !(drawing->materials[drawing->triangles.items[id].surface].fade_radius > 0))
+        while (spot->n < tiles->samples.width - spot->x && shows_only(shown[spot->n], id))
+            spot->n++;
+    memset(tiles->sample_codes + spot->pixel, 0, (size_t)spot->n);
+    for (int i = 0; i < spot->n; i++)
+        first[i] = is_sky ? spot->sky : tiles->n_colours + (uint32_t)i;
+    if (is_sky)
+        return;
+    tiles->n_colours += (uint32_t)spot->n;
+    add_shown(drawing, id, spot, 0, *first, tiles);
 }
 
 // colour of the sky in a row: linear from top to bottom, or transparent without background
@@ -193,11 +236,9 @@ static void show(const struct cs_band_pass *drawing, uint32_t band,
     for (int row = 0; row < on->rows; row++) {
         const uint32_t sky = tiles->n_colours++;
         tiles->colours[sky] = sky_colour(drawing, on->top + row);
-        for (int x = 0; x < on->width; x++) {
-            const size_t pixel = (size_t)row * (size_t)on->width + (size_t)x;
-            const struct spot spot = {x, on->top + row, pixel, sky};
-            add_pixel(drawing, on->triangle_ids[pixel], &spot, tiles);
-        }
+        struct spot spot = {0, on->top + row, 1, (size_t)row * (size_t)on->width, sky};
+        for (; spot.x < on->width; spot.x += spot.n, spot.pixel += (size_t)spot.n)
+            add_pixels(drawing, &spot, tiles);
     }
     for (int i = 0; i < CS_FRAGMENT_SLOTS; i++)
         cs_shade(&drawing->shading, tiles->slots + i, tiles->colours);
@@ -218,183 +259,4 @@ void cs_band_pass_draw(const struct cs_band_pass *drawing, uint32_t band,
         cs_grid_draw(&drawing->grid, (int32_t)drawing->n_fixed, drawing->sample_pattern, tiles);
     cs_thick_lines_draw(&drawing->thick_lines, band, drawing->sample_pattern, tiles);
     cs_tile_buffer_resolve(tiles, drawing->shading.srgb, drawing->image);
-}
-
-/* Blends the lines of the ground and the shadows on it over a band.
- *
- * The ground is a plane y = height. A pixel's ray eye + t d meets it at t = (height - eye_y) /
- * d_y; no triangle's planes are needed. The opacity of its ink is
- *   near^2 (dark + (1 - dark) 0.55 lines)
- * near falls from 1 in the centre to 0 at the radius of the fade disc; dark is the shadow's
- * strength times the fraction of hidden light; lines is the coverage by the grid.
- *
- * Lines are a pixel wide at any distance: the ground's extent per pixel is measured as in
- * OpenGL, by differences in blocks of 2 x 2 pixels from the bottom. */
-
-enum { N = CS_FRAGMENTS };
-
-/* Pixels to be blended together. */
-struct cells {
-    int n;
-    uint32_t pixels[N];
-    uint8_t masks[N];
-    float x[N], y[N];
-};
-
-// the point of the ground that a pixel shows; false above the horizon
-static bool find_position(const struct cs_grid *grid, float x, float y, float place[3]) {
-    const struct cs_rays *rays = &grid->shading->rays;
-    const float height = grid->ground.fade_disc[1], above = height - rays->eye[1];
-    float d[3];
-    cs_ray_direction(grid->shading, x, y, d);
-    const float fall = rays->parallel ? -rays->back[1] : d[1];
-    const float way = rays->parallel ? above - d[1] : above;
-    const float t = fall < 0 || fall > 0 ? way / fall : -1;
-    cs_ray_point(grid->shading, x, y, t, place);
-    place[1] = height;
-    return rays->parallel ? fall < 0 : t > 0;
-}
-
-static float away(float a) {
-    return a < 0 ? -a : a;
-}
-
-/* Coverage of a pixel by lines in steps of `step`. at: position across each axis of the ground;
- * wide: extent of a pixel along it. A line fades linearly over the pixel at its border. */
-static float cover(const float at[2], const float wide[2], float step, float half_width) {
-    float most = 0;
-    for (int i = 0; i < 2; i++) {
-        const float place = at[i] / step, least = 1e-6f;
-        const float pixel = wide[i] / step > least ? wide[i] / step : least;
-        const float off = away(place - floorf(place + 0.5f)) / pixel;
-        // where lines come close they melt into a tint instead of a moire pattern
-        const float c =
-            cs_clamp(half_width + 0.5f - off, 0, 1) * cs_clamp(0.5f / pixel - 0.6f, 0, 1);
-        most = c > most ? c : most;
-    }
-    return most;
-}
-
-// coverage by fine lines and by every tenth, stronger one
-static float lines_at(const struct cs_grid *grid, float x, float y, const float p[3]) {
-    const int size = grid->shading->height;
-    const float beside_x = (float)((int)x ^ 1);
-    const float beside_y = (float)(size - 1 - ((size - 1 - (int)y) ^ 1));
-    const float pitch = grid->ground.line_spacing, at[2] = {p[0], p[2]};
-    float a[3], b[3];
-    find_position(grid, beside_x, y, a);
-    find_position(grid, x, beside_y, b);
-    const float wide[2] = {away(a[0] - p[0]) + away(b[0] - p[0]),
-                           away(a[2] - p[2]) + away(b[2] - p[2])};
-    const float fine = 0.5f * cover(at, wide, pitch, 0.45f);
-    const float coarse = cover(at, wide, 10 * pitch, 0.7f);
-    return fine > coarse ? fine : coarse;
-}
-
-/* Blends over the samples of the mask. If all samples share a colour they keep sharing one: a
- * new colour, since other pixels may share the old one. */
-static void blend_pixel(struct cs_tile_buffer *tiles, size_t pixel, unsigned mask, uint32_t ink,
-                        uint32_t share) {
-    if (mask != 15 || tiles->sample_codes[pixel] != 0) {
-        cs_tile_buffer_blend(tiles, pixel, mask, ink, share);
-        return;
-    }
-    const uint32_t laid = tiles->n_colours++;
-    tiles->colours[laid] =
-        cs_srgb_blend(tiles->colours[tiles->first_colour[pixel]], ink, share);
-    tiles->first_colour[pixel] = laid;
-}
-
-/* Blends the collected pixels: positions, one shadow query for all, opacities. */
-static void blend_grid(const struct cs_grid *grid, struct cells *cells,
-                       struct cs_tile_buffer *tiles) {
-    static const float up[N] = {0}; // x and z of the normals
-    float places[3][N], ones[N], shares[N];
-    const float *span = grid->ground.fade_disc;
-    bool seen[N];
-    for (int i = 0; i < cells->n; i++) {
-        float p[3];
-        seen[i] = find_position(grid, cells->x[i], cells->y[i], p);
-        for (int k = 0; k < 3; k++)
-            places[k][i] = p[k];
-        ones[i] = 1;
-    }
-    const struct cs_shadow_query lit = {.positions = {places[0], places[1], places[2]},
-                                        .normals = {up, ones, up},
-                                        .n_dot_l = ones,
-                                        .visibility = shares,
-                                        .n = cells->n};
-    cs_shadow_map_sample(grid->shading->shadow_map, &lit);
-    for (int i = 0; i < cells->n; i++) {
-        const float p[3] = {places[0][i], places[1][i], places[2][i]};
-        const float dx = p[0] - span[0], dz = p[2] - span[2];
-        const float near = cs_clamp(1 - sqrtf(dx * dx + dz * dz) / span[3], 0, 1);
-        const float dark = grid->ground.shadow * (1 - shares[i]);
-        if (!seen[i] || !(near > 0))
-            continue;
-        const float lines =
-            grid->ground.line_spacing > 0 ? lines_at(grid, cells->x[i], cells->y[i], p) : 0;
-        const float share = near * near * (dark + (1 - dark) * 0.55f * lines);
-        const uint32_t byte = (uint32_t)(share * 255 + 0.5f);
-        if (byte)
-            blend_pixel(tiles, cells->pixels[i], cells->masks[i], grid->ink, byte);
-    }
-    cells->n = 0;
-}
-
-// samples of a pixel that show the ground: in front of the sky or of what never moves
-static unsigned mask_of(const struct cs_tile_buffer *tiles, size_t at, int32_t moving) {
-    const struct cs_samples *on = &tiles->samples, *ground = &tiles->ground;
-    const cs_i4 lies = (ground->triangle_ids[at] >= 0) & (on->triangle_ids[at] < moving) &
-                       (ground->depth[at] >= on->depth[at]);
-    return (unsigned)(lies[0] & 1) | (unsigned)(lies[1] & 2) | (unsigned)(lies[2] & 4) |
-           (unsigned)(lies[3] & 8);
-}
-
-// the part of a band that the rectangle may touch
-struct window {
-    int left, right, top, bottom;
-};
-
-// fills the rectangle into the samples of the ground; returns the part of the band
-static struct window fill(const struct cs_grid *grid, const struct cs_sample_pattern *pattern,
-                          struct cs_tile_buffer *tiles) {
-    const int last = tiles->samples.top + tiles->samples.rows - 1;
-    struct window in = {tiles->samples.width, -1, last + 1, -1};
-    for (size_t i = 0; i < grid->square.n; i++) {
-        const struct cs_triangle *t = grid->square.items + i;
-        in.left = cs_min(in.left, t->left);
-        in.right = cs_max(in.right, t->right);
-        in.top = cs_min(in.top, t->top);
-        in.bottom = cs_max(in.bottom, t->bottom);
-    }
-    in.top = cs_max(in.top, tiles->samples.top);
-    in.bottom = cs_min(in.bottom, last);
-    if (in.top > in.bottom)
-        return in;
-    cs_tile_buffer_clear_ground(tiles);
-    for (size_t i = 0; i < grid->square.n; i++)
-        cs_raster_fill(grid->square.items + i, (int32_t)i, pattern, &tiles->ground);
-    return in;
-}
-
-void cs_grid_draw(const struct cs_grid *grid, int32_t moving,
-                  const struct cs_sample_pattern *pattern, struct cs_tile_buffer *tiles) {
-    const struct window in = fill(grid, pattern, tiles);
-    struct cells cells = {.n = 0};
-    for (int y = in.top; y <= in.bottom; y++)
-        for (int x = in.left; x <= in.right; x++) {
-            const size_t at =
-                (size_t)(y - tiles->samples.top) * (size_t)tiles->samples.width + (size_t)x;
-            const unsigned mask = mask_of(tiles, at, moving);
-            if (!mask)
-                continue;
-            cells.pixels[cells.n] = (uint32_t)at;
-            cells.masks[cells.n] = (uint8_t)mask;
-            cells.x[cells.n] = (float)x;
-            cells.y[cells.n++] = (float)y;
-            if (cells.n == N)
-                blend_grid(grid, &cells, tiles);
-        }
-    blend_grid(grid, &cells, tiles);
 }

@@ -23,8 +23,10 @@ struct cs_canvas {
     struct cs_view_state view;
     struct cs_clip_transform lens; /* of the camera */
     struct cs_srgb tone;
-    struct cs_shadow_map lightmap;
-    struct cs_triangles light_fixed, light_moving; /* casters: colliders; bodies */
+    struct cs_shadow_map lightmaps[CS_LIGHTS];
+    struct cs_triangles light_fixed[CS_LIGHTS]; /* casters: colliders */
+    struct cs_triangles light_moving;           /* bodies, for one light after the other */
+    uint32_t light;                             /* that one */
     struct cs_collider_geometry solids;
     struct cs_body_geometry *bodies; /* (scene->bodies.n) */
     struct cs_band_pass drawing;
@@ -88,7 +90,7 @@ static void init_view(struct cs_canvas *canvas) {
     drawing->shading.width = width;
     drawing->shading.height = height;
     drawing->shading.view = &canvas->view.block;
-    drawing->shading.shadow_map = &canvas->lightmap;
+    drawing->shading.shadow_maps = canvas->lightmaps;
     drawing->shading.srgb = &canvas->tone;
     drawing->sample_pattern =
         scene->render.samples > 1 ? &cs_sample_pattern_four : &cs_sample_pattern_one;
@@ -152,12 +154,16 @@ static enum cs_status init_boards(struct cs_canvas *canvas, struct cs_error *err
 static enum cs_status init(struct cs_canvas *canvas, struct cs_error *error) {
     struct cs_band_pass *drawing = &canvas->drawing;
     init_view(canvas);
-    if (cs_shadow_map_init(&canvas->lightmap, &canvas->arena, error) != CS_OK ||
-        init_surfaces(canvas, error) != CS_OK || init_boards(canvas, error) != CS_OK ||
+    for (uint32_t l = 0; l < canvas->view.n_lights; l++)
+        if (canvas->view.casts[l])
+            cs_shadow_map_init(canvas->lightmaps + l, &canvas->arena, error);
+    if (error->status != CS_OK || init_surfaces(canvas, error) != CS_OK ||
+        init_boards(canvas, error) != CS_OK ||
         cs_bins_init(&drawing->bins, drawing->shading.height, error) != CS_OK ||
         cs_thick_lines_init(&drawing->thick_lines, &drawing->shading, &canvas->lens, error) !=
             CS_OK)
         return error->status;
+    canvas->overlay.marks = canvas->settings.marks;
     return cs_overlay_init(&canvas->overlay, canvas->settings.system, canvas->view.pixels_per_m,
                            &drawing->thick_lines.lines, &canvas->arena, error);
 }
@@ -165,7 +171,8 @@ static enum cs_status init(struct cs_canvas *canvas, struct cs_error *error) {
 static void destroy(struct cs_canvas *canvas) {
     if (!canvas)
         return;
-    cs_triangles_finish(&canvas->light_fixed);
+    for (int l = 0; l < CS_LIGHTS; l++)
+        cs_triangles_finish(canvas->light_fixed + l);
     cs_triangles_finish(&canvas->light_moving);
     cs_triangles_finish(&canvas->drawing.triangles);
     cs_triangles_finish(&canvas->drawing.grid.square);
@@ -202,7 +209,8 @@ static void share(struct cs_canvas *canvas, uint32_t blocks,
 
 static void draw_stripe(void *arg, uint32_t stripe) {
     struct cs_canvas *canvas = arg;
-    cs_shadow_map_draw(&canvas->lightmap, stripe, &canvas->light_fixed, &canvas->light_moving);
+    cs_shadow_map_draw(canvas->lightmaps + canvas->light, stripe,
+                       canvas->light_fixed + canvas->light, &canvas->light_moving);
 }
 
 /* Places the ground below this frame and makes its triangles. */
@@ -225,26 +233,26 @@ static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
     aim_camera(canvas);
 }
 
-/* Draws the shadow map. Triangles of colliders are kept from frame to frame as long as neither
- * they nor the light frustum move. */
-static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_sphere *solid,
-                        bool moved) {
+/* Draws the shadow map of light l. Triangles of colliders are kept from frame to frame as long
+ * as neither they nor the light frustum move. */
+static void draw_shadow(struct cs_canvas *canvas, uint32_t l, bool moved) {
     const struct cs_triangle_kind kind = {.attributes = 0};
-    cs_light_frustum_fit(solid, &canvas->view.block);
-    const bool changed = cs_shadow_map_set_frustum(&canvas->lightmap, &canvas->view.block);
-    if (!canvas->lightmap.enabled)
+    const struct cs_view_light *light = canvas->view.block.lights + l;
+    struct cs_shadow_map *map = canvas->lightmaps + l;
+    const bool changed = cs_shadow_map_set_frustum(map, light);
+    if (!map->enabled)
         return;
     if (changed || moved) {
-        canvas->light_fixed.n = 0;
-        cs_collider_geometry_add_shadow(&canvas->solids, &canvas->lightmap.transform,
-                                        canvas->view.block.light, &canvas->light_fixed);
+        canvas->light_fixed[l].n = 0;
+        cs_collider_geometry_add_shadow(&canvas->solids, &map->transform, light->place,
+                                        canvas->light_fixed + l);
     }
+    canvas->light = l;
     canvas->light_moving.n = 0;
     for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++)
-        cs_body_geometry_add(canvas->bodies + b, &canvas->lightmap.transform, &kind,
-                             &canvas->light_moving);
+        cs_body_geometry_add(canvas->bodies + b, &map->transform, &kind, &canvas->light_moving);
     share(canvas, CS_SHADOW_MAP_STRIPES, draw_stripe);
-    cs_shadow_map_bound(&canvas->lightmap);
+    cs_shadow_map_bound(map);
 }
 
 /* Appends the triangles of bodies after those of colliders, and bins all by band. */
@@ -276,9 +284,21 @@ static void draw_bands(void *arg, uint32_t tiles) {
 // growing lists record a failure instead of reporting it: asked once per picture
 static bool out_of_memory(const struct cs_canvas *canvas) {
     const struct cs_band_pass *drawing = &canvas->drawing;
-    return canvas->light_fixed.failed || canvas->light_moving.failed ||
-           drawing->triangles.failed || drawing->grid.square.failed || drawing->bins.failed ||
-           drawing->thick_lines.failed || drawing->thick_lines.bins.failed;
+    for (int l = 0; l < CS_LIGHTS; l++)
+        if (canvas->light_fixed[l].failed)
+            return true;
+    return canvas->light_moving.failed || drawing->triangles.failed ||
+           drawing->grid.square.failed || drawing->bins.failed || drawing->thick_lines.failed ||
+           drawing->thick_lines.bins.failed;
+}
+
+/* Takes lights, background and materials of bodies from a scene whose values change; those of
+ * colliders follow with their triangles. */
+static void restyle(struct cs_canvas *canvas) {
+    const struct cs_scene *scene = canvas->settings.scene;
+    cs_view_set_colours(&canvas->view, scene);
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        cs_body_geometry_restyle(canvas->bodies + b, scene, b);
 }
 
 static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *frame,
@@ -287,11 +307,13 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
     image->width = (uint32_t)drawing->shading.width;
     image->height = (uint32_t)drawing->shading.height;
     drawing->image = image;
+    if (canvas->settings.scene_varies)
+        restyle(canvas);
     for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++)
         cs_body_geometry_update(canvas->bodies + b, canvas->settings.system->view.n, frame);
     const struct cs_bounding_sphere solid =
         cs_scene_extent_solid(canvas->settings.system, frame->x, frame->colliders);
-    const bool varies = cs_view_varies(canvas->settings.scene);
+    const bool varies = canvas->settings.scene_varies || cs_view_varies(canvas->settings.scene);
     bool moved = false;
     for (uint32_t i = 0; i < canvas->solids.n; i++)
         moved = cs_solid_move(canvas->solids.of + i, frame->colliders + i) || moved;
@@ -300,7 +322,9 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
     if (moved || varies)
         add_solids(canvas);
     blend_ground(canvas, &solid);
-    draw_shadow(canvas, &solid, moved);
+    cs_light_frusta_fit(&solid, &canvas->view);
+    for (uint32_t l = 0; l < canvas->view.n_lights; l++)
+        draw_shadow(canvas, l, moved);
     add_bodies(canvas);
     drawing->thick_lines.n = 0;
     cs_overlay_draw(&canvas->overlay, frame);

@@ -133,18 +133,25 @@ enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
     const struct cs_image *image = settings->textures ? settings->textures + b : &none;
     const struct cs_material *material = &cs_scene_bodies(settings->scene)[b].material;
     const bool textured = image->width > 0;
-    struct cs_surface_style style;
     if (cs_mesh_init(&body->mesh, settings->system, b, textured, arena, error))
         return error->status;
     body->clip_vertices =
         cs_arena_alloc_array(arena, body->mesh.n_vertices, sizeof *body->clip_vertices, error);
     body->hidden = cs_overlay_hides(settings->scene, b);
     body->material = coat;
-    cs_style_cloth(&style, material, textured, settings->scene->render.look);
-    cs_shading_material_make(coat, &style);
+    body->textured = textured;
+    cs_body_geometry_restyle(body, settings->scene, b);
     if (error->status == CS_OK && coat->mode == CS_SURFACE_TEXTURED)
         init_texture(body, image, material->texture_repeat, arena, error);
     return error->status;
+}
+
+void cs_body_geometry_restyle(struct cs_body_geometry *body, const struct cs_scene *scene,
+                              uint32_t b) {
+    struct cs_surface_style style;
+    cs_style_cloth(&style, &cs_scene_bodies(scene)[b].material, body->textured,
+                   scene->render.look);
+    cs_shading_material_make(body->material, &style);
 }
 
 void cs_body_geometry_update(struct cs_body_geometry *body, uint32_t n,

@@ -35,6 +35,7 @@ struct cs_body_geometry {
     float *uv;                            /* (n_vertices, 2); NULL without a texture */
     struct cs_clip_vertex *clip_vertices; /* (n_vertices) of the last projection */
     bool hidden;                          /* drawn as lines instead; it still casts shadow */
+    bool textured;
 };
 
 /* Allocates from the arena and fills the material `coat`. CS_ERR_MEMORY. */
@@ -42,6 +43,10 @@ enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
                                      const struct cs_canvas_settings *settings, uint32_t b,
                                      struct cs_shading_material *coat, struct cs_arena *arena,
                                      struct cs_error *error);
+
+/* Takes the colours of the material from the scene. */
+void cs_body_geometry_restyle(struct cs_body_geometry *body, const struct cs_scene *scene,
+                              uint32_t b);
 
 /* Takes positions and values of a frame of n particles. */
 void cs_body_geometry_update(struct cs_body_geometry *body, uint32_t n,

@@ -2,9 +2,9 @@
  * that colour by a value: the formulas of the OpenGL shaders, over arrays.
  *
  * With unit vectors n (normal), l (to the light), v (to the eye) and h = (l + v) / |l + v|:
- *   colour = a(n, v) fold k_a A b + V (k_d max(n.l, 0) D b + k_s max(n.h, 0)^s S)
- * b is the base colour, A, D, S the ambient, diffuse and specular light, V the visibility of
- * the light (shadow_map.h). All of them are linear; sRGB is encoded last.
+ *   colour = a(n, v) fold k_a A b + sum over lights V (k_d max(n.l, 0) D b + k_s max(n.h, 0)^s
+ * S) b is the base colour, A, D, S the ambient, diffuse and specular light, V the visibility of
+ * a light (shadow_map.h). All of them are linear; sRGB is encoded last.
  *
  * Interpolation: planes hold 1/w and attribute/w (triangle.c). The view depth of a fragment is
  * t = 1/(1/w), its position is eye + t d with the ray d of its pixel, and an attribute is
@@ -94,8 +94,7 @@ CS_INLINE void find_normals(const struct cs_fragments *f, struct work *w) {
 }
 
 // directions to the light and n.l; light[3] is 1 for a lamp at a place, 0 for one at infinity
-CS_INLINE void find_light(const struct cs_shading_context *shading, struct work *w) {
-    const float *lamp = shading->view->light;
+CS_INLINE void find_light(const float lamp[4], struct work *w) {
     const float x = lamp[0], y = lamp[1], z = lamp[2], near = lamp[3];
     for (int i = 0; i < N; i++) {
         const float a = x - near * w->place[0][i], b = y - near * w->place[1][i];
@@ -180,24 +179,37 @@ CS_INLINE void find_folds(const struct cs_fragments *f, float folds[N]) {
         folds[i] = 1 / sqrtf(folds[i]);
 }
 
-CS_INLINE void shade_lit(const struct cs_shading_context *shading, const struct cs_fragments *f,
-                         struct work *w) {
+/* Adds the light number l of the view. */
+CS_INLINE void add_light(const struct cs_shading_context *shading, int l,
+                         const struct cs_fragments *f, struct work *w) {
     const struct cs_shading_material *coat = f->material;
-    float folds[N];
-    find_folds(f, folds);
-    find_light(shading, w);
+    const struct cs_view_light *light = shading->view->lights + l;
+    find_light(light->place, w);
     const struct cs_shadow_query lit = {.positions = {w->place[0], w->place[1], w->place[2]},
                                         .normals = {w->normal[0], w->normal[1], w->normal[2]},
                                         .n_dot_l = w->facing,
                                         .visibility = w->share,
                                         .n = f->n};
-    cs_shadow_map_sample(shading->shadow_map, &lit);
+    cs_shadow_map_sample(shading->shadow_maps + l, &lit);
     for (int i = f->n; i < N; i++)
         w->share[i] = 0;
     find_shine(coat, w);
     for (int k = 0; k < 3; k++) {
-        const float ambient = shading->view->ambient[k], diffuse = shading->view->diffuse[k];
-        const float specular = shading->view->specular[k];
+        const float diffuse = light->diffuse[k], specular = light->specular[k];
+        for (int i = 0; i < N; i++) {
+            const float facing = w->facing[i] > 0 ? w->facing[i] : 0;
+            w->colour[k][i] += w->share[i] * (coat->diffuse * facing * diffuse * w->base[k][i] +
+                                              coat->specular * w->shine[i] * specular);
+        }
+    }
+}
+
+CS_INLINE void shade_lit(const struct cs_shading_context *shading, const struct cs_fragments *f,
+                         struct work *w) {
+    float folds[N];
+    find_folds(f, folds);
+    for (int k = 0; k < 3; k++) {
+        const float ambient = shading->view->ambient[k];
         for (int i = 0; i < N; i++) {
             // ambient light is 1 on an upright surface seen straight on; more from above and
             // less towards the outline, or folds without direct light would be one flat patch
@@ -205,14 +217,12 @@ CS_INLINE void shade_lit(const struct cs_shading_context *shading, const struct 
                                  w->normal[1][i] * w->view[1][i] +
                                  w->normal[2][i] * w->view[2][i];
             const float around = 0.7f + 0.3f * across + 0.35f * w->normal[1][i];
-            const float facing = w->facing[i] > 0 ? w->facing[i] : 0;
-            const float base = w->base[k][i];
-            w->colour[k][i] =
-                (around > 0 ? around : 0) * folds[i] * coat->ambient * ambient * base +
-                w->share[i] * (coat->diffuse * facing * diffuse * base +
-                               coat->specular * w->shine[i] * specular);
+            w->colour[k][i] = (around > 0 ? around : 0) * folds[i] * f->material->ambient *
+                              ambient * w->base[k][i];
         }
     }
+    for (int l = 0; l < (int)shading->view->size[3]; l++)
+        add_light(shading, l, f, w);
 }
 
 // |n.v|: 1 seen straight on, 0 at the outline
@@ -311,4 +321,17 @@ void cs_shade(const struct cs_shading_context *shading, struct cs_fragments *f,
             (255 - cover) << 24;
     }
     f->n = 0;
+}
+
+void cs_shade_lit_fraction(const struct cs_shading_context *shading,
+                           const struct cs_shadow_query *lit) {
+    float one[N];
+    struct cs_shadow_query query = *lit;
+    query.visibility = one;
+    for (int l = 0; l < (int)shading->view->size[3]; l++) {
+        const float fraction = shading->view->lights[l].shadow_params[3];
+        cs_shadow_map_sample(shading->shadow_maps + l, &query);
+        for (int i = 0; i < lit->n; i++)
+            lit->visibility[i] = (l ? lit->visibility[i] : 0) + fraction * one[i];
+    }
 }

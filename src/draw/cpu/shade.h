@@ -7,7 +7,7 @@
 #include "draw/mipmap.h"
 #include "draw/srgb.h"
 
-enum { CS_FRAGMENTS = 256 };
+enum { CS_FRAGMENTS = 256, CS_FRAGMENTS_PADDED = CS_FRAGMENTS + 4 };
 
 /* A surface style (surface_style.h) in the form and precision that shading needs. */
 struct cs_shading_material {
@@ -32,7 +32,7 @@ struct cs_shading_context {
     struct cs_rays rays;
     int width, height;
     const struct cs_view_block *view;
-    const struct cs_shadow_map *shadow_map;
+    const struct cs_shadow_map *shadow_maps; /* one for each light of the view */
     const struct cs_srgb *srgb;
 };
 
@@ -40,12 +40,12 @@ struct cs_shading_context {
  * arrays). */
 struct cs_fragments {
     const struct cs_shading_material *material;
-    uint32_t key;                           /* of the surface and side, to find the slot */
-    int n, side;                            /* fragments; 0: front, 1: back */
-    float x[CS_FRAGMENTS], y[CS_FRAGMENTS]; /* pixels from the top left */
-    float inverse[CS_FRAGMENTS];            /* 1/w */
+    uint32_t key; /* of the surface and side, to find the slot */
+    int n, side;  /* fragments; 0: front, 1: back */
+    float x[CS_FRAGMENTS_PADDED], y[CS_FRAGMENTS_PADDED]; /* pixels from the top left */
+    float inverse[CS_FRAGMENTS_PADDED];                   /* 1/w */
     float view_depth[CS_FRAGMENTS]; /* m along the view, of parallel rays: they have no w */
-    float attributes[CS_ATTRIBUTES][CS_FRAGMENTS]; /* divided by w */
+    float attributes[CS_ATTRIBUTES][CS_FRAGMENTS_PADDED]; /* divided by w */
     float texels[CS_FRAGMENTS];          /* squared texels per pixel, of textured surfaces */
     uint32_t colour_index[CS_FRAGMENTS]; /* index in `colours` of the result */
 };
@@ -54,6 +54,11 @@ struct cs_fragments {
  * red, green, blue as sRGB bytes from the lowest on, and 255 - opacity in the highest. */
 void cs_shade(const struct cs_shading_context *shading, struct cs_fragments *fragments,
               uint32_t *colours);
+
+/* Fills lit->visibility with the fraction of the diffuse light of all lights that comes
+ * through; at most CS_FRAGMENTS positions. */
+void cs_shade_lit_fraction(const struct cs_shading_context *shading,
+                           const struct cs_shadow_query *lit);
 
 /* Direction of the ray through the middle of pixel (x, y): 1 m along it is 1 m along the view.
  * For parallel rays this is the offset of the origin from the eye. */

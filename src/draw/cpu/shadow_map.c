@@ -13,8 +13,10 @@
  *
  * Self-shadowing: a plane whose normal makes the angle a with the light rises by d tan a over d
  * texels. A position moved by o along the normal is o / cos a above its plane, as measured
- * along the light. It clears texels up to d = o / sin a; project() moves by (0.4 + 2.6 sin a)
- * texels, and a window reaches d = 1.4 + 1 along a row.
+ * along the light. It clears texels up to d = o / sin a, and a window reaches d = 1.4 + 1 along
+ * a row, 3.4 along a diagonal. The normal is interpolated: if it leans by b from that of the
+ * triangle, d = o cos b / sin(a + b). project() moves by (1.5 + 4 sin a) texels, which clears
+ * the diagonal for b up to 23 degrees at a = 0 and 31 degrees from a = 30 degrees on.
  */
 #include "draw/cpu/shadow_map.h"
 
@@ -44,16 +46,16 @@ enum cs_status cs_shadow_map_init(struct cs_shadow_map *map, struct cs_arena *ar
     return CS_OK;
 }
 
-bool cs_shadow_map_set_frustum(struct cs_shadow_map *map, const struct cs_view_block *block) {
+bool cs_shadow_map_set_frustum(struct cs_shadow_map *map, const struct cs_view_light *light) {
     const struct cs_shadow_map old = *map;
-    map->enabled = block->shadow_params[2] > 0;
+    map->enabled = light->shadow_params[2] > 0;
     if (!map->enabled)
         return false;
     // the frustum of a lamp starts at a positive distance: half of it still keeps w above 0
-    const bool is_lamp = block->light[3] > 0;
-    cs_clip_transform_make(&map->transform, block->world_to_light, is_lamp ? 1e-6f : 0,
+    const bool is_lamp = light->place[3] > 0;
+    cs_clip_transform_make(&map->transform, light->world_to_light, is_lamp ? 1e-6f : 0,
                            CS_SHADOW_SIDE, CS_SHADOW_SIDE);
-    map->texel_size = block->shadow_params[1];
+    map->texel_size = light->shadow_params[1];
     return !old.enabled || memcmp(&old.transform, &map->transform, sizeof map->transform) != 0;
 }
 
@@ -175,7 +177,7 @@ CS_INLINE void project(const struct cs_shadow_map *map, const struct cs_shadow_q
     }
     for (int i = 0; i < n; i++) {
         // off the surface by as much as a slope rises under the texels that are read
-        const float off = (0.4f + 2.6f * sqrtf(slant[i])) * texel;
+        const float off = (1.5f + 4 * sqrtf(slant[i])) * texel;
         const float a = lit->positions[0][from + i] + off * lit->normals[0][from + i];
         const float b = lit->positions[1][from + i] + off * lit->normals[1][from + i];
         const float c = lit->positions[2][from + i] + off * lit->normals[2][from + i];

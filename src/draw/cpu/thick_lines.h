@@ -1,5 +1,5 @@
-/* thick_lines.h - a band of pixels, and lines with round ends and the colour bar over its
- * surfaces. */
+/* thick_lines.h - a band of pixels, and lines with round ends, the colour bar and the ground
+ * over its surfaces. */
 #ifndef CS_CPU_THICK_LINES_H
 #define CS_CPU_THICK_LINES_H
 
@@ -7,6 +7,7 @@
 #include "draw/cpu/raster.h"
 #include "draw/cpu/shade.h"
 #include "draw/glyph.h"
+#include "draw/ground.h"
 
 /* Pixels of a band of rows while it is drawn: visible fragments first, then lines and fading
  * surfaces over them, at last the mean of the samples. Most pixels show one fragment in all
@@ -161,5 +162,20 @@ void cs_thick_lines_draw(const struct cs_thick_lines *strokes, uint32_t band,
 
 /* Frees the memory. */
 void cs_thick_lines_finish(struct cs_thick_lines *strokes);
+
+/* Blends the ground over a band: shadows, and lines of a grid. */
+
+/* The ground in one picture. */
+struct cs_grid {
+    struct cs_ground ground;
+    uint32_t ink;                             /* packed colour of lines and shadows */
+    struct cs_triangles square;               /* its rectangle as the camera sees it */
+    const struct cs_shading_context *shading; /* borrowed */
+};
+
+/* Blends the ground over the samples of a band, but not over triangles from index `moving` on:
+ * those are bodies, which stand on it. The tile buffer has samples of the ground. */
+void cs_grid_draw(const struct cs_grid *grid, int32_t moving,
+                  const struct cs_sample_pattern *pattern, struct cs_tile_buffer *tiles);
 
 #endif

@@ -57,9 +57,12 @@ void cs_tile_buffer_resolve(const struct cs_tile_buffer *tiles, const struct cs_
                             struct cs_image *image) {
     const size_t n = (size_t)tiles->samples.width * (size_t)tiles->samples.rows;
     const size_t first = (size_t)tiles->samples.top * (size_t)tiles->samples.width;
+    // copies, which stores of bytes cannot change
+    const struct cs_image to = *image;
+    const struct cs_tile_buffer from = *tiles;
     for (size_t i = 0; i < n; i++) {
-        const uint32_t *colours = tiles->colours + tiles->first_colour[i],
-                       code = tiles->sample_codes[i];
+        const uint32_t *colours = from.colours + from.first_colour[i],
+                       code = from.sample_codes[i];
         // one colour for all samples needs no mean: decoding and encoding it would not change
         // it
         uint32_t c = *colours;
@@ -68,6 +71,6 @@ void cs_tile_buffer_resolve(const struct cs_tile_buffer *tiles, const struct cs_
                                          colours[code >> 4 & 3], colours[code >> 6]};
             c = cs_srgb_mean(tone, samples);
         }
-        cs_srgb_store(tone, c, image, first + i);
+        cs_srgb_store(tone, c, &to, first + i);
     }
 }

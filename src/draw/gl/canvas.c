@@ -22,40 +22,44 @@
 struct cs_gl_colliders {
     struct cs_collider_geometry solids;
     struct cs_surface *surfaces; /* (n) as seen from the camera */
-    struct cs_surface *shadows;  /* (n) as seen from the light */
-    const struct cs_view_block *view;
+    struct cs_surface *shadows;  /* (n_lights, n) as seen from each light */
+    const struct cs_view_state *view;
 };
 
-/* Fills and uploads a collider for the camera, and for the light unless it is a plane. */
+/* Fills and uploads a collider for the camera, and for the lights unless it is a plane. */
 static void upload(struct cs_gl_colliders *colliders, uint32_t i) {
     const struct cs_collider_geometry *solids = &colliders->solids;
     const struct cs_solid *solid = solids->of + i;
     if (solid->n == 0)
         return;
-    cs_solids_fill(solids, i, colliders->view->eye);
+    cs_solids_fill(solids, i, colliders->view->block.eye);
     cs_surface_upload(colliders->surfaces + i, solids->vertices, solid->n);
     if (cs_shape_is_endless(solid->at.shape))
         return;
-    cs_solids_fill(solids, i, colliders->view->light);
-    cs_surface_upload(colliders->shadows + i, solids->vertices, solid->n);
+    for (uint32_t l = 0; l < colliders->view->n_lights; l++) {
+        cs_solids_fill(solids, i, colliders->view->block.lights[l].place);
+        cs_surface_upload(colliders->shadows + l * solids->n + i, solids->vertices, solid->n);
+    }
 }
 
 /* Makes the buffers from the colliders' poses at the start (scene->colliders.n). view is
- * borrowed, for camera and light. CS_ERR_MEMORY. */
+ * borrowed, for camera and lights. CS_ERR_MEMORY. */
 static enum cs_status gl_colliders_init(struct cs_gl_colliders *colliders,
                                         const struct cs_system *system,
-                                        const struct cs_view_block *view,
+                                        const struct cs_view_state *view,
                                         const struct cs_posed_collider *obstacles,
                                         struct cs_arena *arena, struct cs_error *error) {
     const uint32_t n = system->scene->colliders.n;
     colliders->view = view;
     colliders->surfaces = cs_arena_alloc_array(arena, n, sizeof *colliders->surfaces, error);
-    colliders->shadows = cs_arena_alloc_array(arena, n, sizeof *colliders->shadows, error);
+    colliders->shadows = cs_arena_alloc_array(arena, (size_t)n * view->n_lights,
+                                              sizeof *colliders->shadows, error);
     if (cs_collider_geometry_init(&colliders->solids, system, obstacles, arena, error))
         return error->status;
+    for (uint32_t k = 0; k < n * view->n_lights; k++)
+        cs_surface_init(colliders->shadows + k, NULL, 0);
     for (uint32_t i = 0; i < n; i++) {
         cs_surface_init(colliders->surfaces + i, NULL, 0);
-        cs_surface_init(colliders->shadows + i, NULL, 0);
         upload(colliders, i);
     }
     return CS_OK;
@@ -89,67 +93,13 @@ static void gl_colliders_draw(const struct cs_gl_colliders *colliders,
         }
 }
 
-/* Draws all but planes into the shadow map, whose program is in use. */
-static void gl_colliders_draw_shadow(const struct cs_gl_colliders *colliders) {
+/* Draws all but planes into the shadow map of light l, whose program is in use. */
+static void gl_colliders_draw_shadow(const struct cs_gl_colliders *colliders, uint32_t l) {
     for (uint32_t i = 0; i < colliders->solids.n; i++) {
         const struct cs_posed_collider *obstacle = &colliders->solids.of[i].at;
         if (obstacle->collider->visible && !cs_shape_is_endless(obstacle->shape))
-            cs_surface_draw(colliders->shadows + i);
+            cs_surface_draw(colliders->shadows + l * colliders->solids.n + i);
     }
-}
-
-/* Shadow map through OpenGL: depth seen from the light. */
-
-/* OpenGL names: program without colour, frame buffer, depth texture. */
-struct cs_shadow {
-    unsigned program, frame, texture;
-};
-
-/* The texture compares: a sample returns the lit fraction of four texels, blended (Reeves
- * 1987). */
-static void make_texture(struct cs_shadow *shadow) {
-    gl.GenTextures(1, &shadow->texture);
-    gl.ActiveTexture(GL_TEXTURE1);
-    gl.BindTexture(GL_TEXTURE_2D, shadow->texture);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, CS_SHADOW_SIDE, CS_SHADOW_SIDE, 0,
-                  GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, NULL);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-}
-
-/* Makes the map. CS_ERR_MODULE if the driver cannot. */
-static enum cs_status shadow_init(struct cs_shadow *shadow, struct cs_error *error) {
-    if (cs_shader_make(&cs_shader_shadow, &shadow->program, error) != CS_OK)
-        return error->status;
-    make_texture(shadow);
-    gl.GenFramebuffers(1, &shadow->frame);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, shadow->frame);
-    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow->texture,
-                            0);
-    gl.DrawBuffer(GL_NONE);
-    gl.ReadBuffer(GL_NONE);
-    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        return cs_fail(error, CS_ERR_MODULE, "the driver cannot draw a shadow");
-    return CS_OK;
-}
-
-/* Starts the map: everything drawn until the next frame buffer casts shadow. */
-static void shadow_begin(const struct cs_shadow *shadow) {
-    gl.BindFramebuffer(GL_FRAMEBUFFER, shadow->frame);
-    gl.Viewport(0, 0, CS_SHADOW_SIDE, CS_SHADOW_SIDE);
-    gl.DepthMask(GL_TRUE);
-    gl.Enable(GL_DEPTH_TEST);
-    gl.Clear(GL_DEPTH_BUFFER_BIT);
-    gl.UseProgram(shadow->program);
-}
-
-/* Binds the map to texture unit 1, as the surface program samples it. */
-static void shadow_bind(const struct cs_shadow *shadow) {
-    gl.ActiveTexture(GL_TEXTURE1);
-    gl.BindTexture(GL_TEXTURE_2D, shadow->texture);
 }
 
 /* Choice of Mesa's driver, and of the CPU instructions that it may use. */
@@ -191,6 +141,7 @@ struct cs_cloth_picture {
 /* A renderer's state for one scene. */
 struct cs_canvas {
     const struct cs_scene *scene; /* borrowed, as the system */
+    bool scene_varies;
     const struct cs_system *system;
     struct cs_context *context; /* owns all OpenGL objects */
     struct cs_arena arena;      /* owns all other memory */
@@ -273,8 +224,8 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
     if (cs_framebuffer_init(&canvas->target, render, &canvas->arena, error) != CS_OK ||
         cs_sky_and_ground_init(&canvas->backdrop, &ground, error) != CS_OK ||
         cs_surface_program_init(&canvas->program, error) != CS_OK ||
-        shadow_init(&canvas->shadow, error) != CS_OK ||
-        gl_colliders_init(&canvas->colliders, canvas->system, &canvas->view.block,
+        cs_shadow_init(&canvas->shadow, canvas->view.n_lights, error) != CS_OK ||
+        gl_colliders_init(&canvas->colliders, canvas->system, &canvas->view,
                           settings->colliders, &canvas->arena, error) != CS_OK ||
         init_cloths(canvas, settings->textures, error) != CS_OK ||
         cs_gl_lines_init(&canvas->lines, error) != CS_OK ||
@@ -300,6 +251,8 @@ static enum cs_status create(const struct cs_canvas_settings *settings,
     if (!*canvas)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a canvas");
     (*canvas)->scene = settings->scene;
+    (*canvas)->scene_varies = settings->scene_varies;
+    (*canvas)->overlay.marks = settings->marks;
     (*canvas)->system = settings->system;
     if (init(*canvas, settings, error) == CS_OK)
         return CS_OK;
@@ -315,23 +268,25 @@ static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
     cs_overlay_aim(&canvas->overlay, canvas->view.pixels_per_m);
 }
 
-/* Places ground and light for the frame, uploads the view, and draws the shadow map. */
+/* Places ground and lights for the frame, uploads the view, and draws the shadow maps. */
 static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_sphere *solid) {
     if (canvas->backdrop.ground.present)
         cs_ground_aim(&canvas->backdrop.ground, &canvas->view.block, solid);
-    const bool has_shadow = cs_light_frustum_fit(solid, &canvas->view.block);
+    cs_light_frusta_fit(solid, &canvas->view);
     cs_view_upload(&canvas->view);
-    if (!has_shadow)
-        return;
-    shadow_begin(&canvas->shadow);
-    gl_colliders_draw_shadow(&canvas->colliders);
-    for (uint32_t b = 0; b < canvas->scene->bodies.n; b++)
-        cs_surface_draw(&canvas->cloths[b].surface);
+    for (uint32_t l = 0; l < canvas->view.n_lights; l++) {
+        if (!(canvas->view.block.lights[l].shadow_params[2] > 0))
+            continue;
+        cs_shadow_begin(&canvas->shadow, l);
+        gl_colliders_draw_shadow(&canvas->colliders, l);
+        for (uint32_t b = 0; b < canvas->scene->bodies.n; b++)
+            cs_surface_draw(&canvas->cloths[b].surface);
+    }
 }
 
 /* Draws everything from back to front of what blends: ground over colliders, lines over all. */
 static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
-    shadow_bind(&canvas->shadow);
+    cs_shadow_bind(&canvas->shadow);
     cs_framebuffer_begin(&canvas->target);
     cs_sky_and_ground_draw_sky(&canvas->backdrop);
     gl_colliders_draw(&canvas->colliders, &canvas->program);
@@ -346,6 +301,18 @@ static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
     cs_overlay_draw(&canvas->overlay, frame);
 }
 
+/* Takes lights, background and materials of bodies from a scene whose values change. */
+static void restyle(struct cs_canvas *canvas) {
+    cs_view_set_colours(&canvas->view, canvas->scene);
+    for (uint32_t b = 0; b < canvas->scene->bodies.n; b++) {
+        struct cs_surface_style *style = &canvas->cloths[b].style;
+        const unsigned texture = style->texture;
+        cs_style_cloth(style, &cs_scene_bodies(canvas->scene)[b].material,
+                       style->mode == CS_SURFACE_TEXTURED, canvas->scene->render.look);
+        style->texture = texture;
+    }
+}
+
 static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *frame,
                             struct cs_image *image, struct cs_error *error) {
     if (cs_context_use(canvas->context, error) != CS_OK)
@@ -357,7 +324,9 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
     }
     const struct cs_bounding_sphere solid =
         cs_scene_extent_solid(canvas->system, frame->x, frame->colliders);
-    const bool varies = cs_view_varies(canvas->scene);
+    const bool varies = canvas->scene_varies || cs_view_varies(canvas->scene);
+    if (canvas->scene_varies)
+        restyle(canvas);
     if (varies)
         move_camera(canvas, frame, &solid);
     gl_colliders_move(&canvas->colliders, frame->colliders, varies);

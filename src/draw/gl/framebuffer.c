@@ -157,3 +157,55 @@ void cs_framebuffer_read(const struct cs_framebuffer *target, struct cs_image *i
             cs_srgb_store(target->srgb, colour_of(target, (size_t)row * (size_t)w + (size_t)x),
                           image, out++);
 }
+
+/* Shadow maps. */
+
+/* The texture compares: a sample returns the lit fraction of four texels, blended (Reeves
+ * 1987). */
+static void make_texture(unsigned *texture) {
+    gl.GenTextures(1, texture);
+    gl.ActiveTexture(GL_TEXTURE1);
+    gl.BindTexture(GL_TEXTURE_2D, *texture);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, CS_SHADOW_SIDE, CS_SHADOW_SIDE, 0,
+                  GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, NULL);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+}
+
+enum cs_status cs_shadow_init(struct cs_shadow *shadow, uint32_t n, struct cs_error *error) {
+    if (cs_shader_make(&cs_shader_shadow, &shadow->program, error) != CS_OK)
+        return error->status;
+    shadow->number = gl.GetUniformLocation(shadow->program, "number");
+    for (uint32_t l = 0; l < n; l++) {
+        make_texture(shadow->textures + l);
+        gl.GenFramebuffers(1, shadow->frames + l);
+        gl.BindFramebuffer(GL_FRAMEBUFFER, shadow->frames[l]);
+        gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D,
+                                shadow->textures[l], 0);
+        gl.DrawBuffer(GL_NONE);
+        gl.ReadBuffer(GL_NONE);
+        if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+            return cs_fail(error, CS_ERR_MODULE, "the driver cannot draw a shadow");
+    }
+    return CS_OK;
+}
+
+void cs_shadow_begin(const struct cs_shadow *shadow, uint32_t l) {
+    gl.BindFramebuffer(GL_FRAMEBUFFER, shadow->frames[l]);
+    gl.Viewport(0, 0, CS_SHADOW_SIDE, CS_SHADOW_SIDE);
+    gl.DepthMask(GL_TRUE);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.Clear(GL_DEPTH_BUFFER_BIT);
+    gl.UseProgram(shadow->program);
+    gl.Uniform1i(shadow->number, (GLint)l);
+}
+
+void cs_shadow_bind(const struct cs_shadow *shadow) {
+    for (unsigned l = 0; l < CS_LIGHTS; l++) {
+        gl.ActiveTexture(GL_TEXTURE1 + l);
+        gl.BindTexture(GL_TEXTURE_2D, shadow->textures[l]);
+    }
+}

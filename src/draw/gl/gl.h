@@ -93,6 +93,23 @@ void cs_framebuffer_begin(const struct cs_framebuffer *target);
  * (cs_srgb_mean); the resolve of drivers averages bytes. */
 void cs_framebuffer_read(const struct cs_framebuffer *target, struct cs_image *image);
 
+/* Shadow maps through OpenGL: depth seen from each light. */
+
+/* OpenGL names: program without colour and its uniform, frame buffers, depth textures. */
+struct cs_shadow {
+    unsigned program, frames[CS_LIGHTS], textures[CS_LIGHTS];
+    int number;
+};
+
+/* Makes the maps of n lights. CS_ERR_MODULE if the driver cannot. */
+enum cs_status cs_shadow_init(struct cs_shadow *shadow, uint32_t n, struct cs_error *error);
+
+/* Starts the map of light l: everything drawn until the next frame buffer casts shadow. */
+void cs_shadow_begin(const struct cs_shadow *shadow, uint32_t l);
+
+/* Binds the maps to texture units from 1 on, as the surface program samples them. */
+void cs_shadow_bind(const struct cs_shadow *shadow);
+
 /* Lines and the colour bar's rectangle through OpenGL. */
 
 /* OpenGL names and uniform locations; a renderer's cs_lines. */

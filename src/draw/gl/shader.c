@@ -4,6 +4,7 @@
 #include "draw/view.h"
 
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 #define GLSL(...) #__VA_ARGS__ "\n"
@@ -13,20 +14,23 @@ static const char head[] = "#version 330 core\n";
 
 // the fields are those of struct cs_view_block
 static const char common[] = GLSL(
+    struct Light {
+        mat4 to_clip;
+        vec4 place;
+        vec4 diffuse;
+        vec4 specular;
+        vec4 shade;
+    };
     layout(std140) uniform View {
         mat4 world_to_clip;
-        mat4 world_to_light;
         vec4 eye;
-        vec4 light;
-        vec4 light_ambient;
-        vec4 light_diffuse;
-        vec4 light_specular;
+        vec4 ambient;
         vec4 size;
-        vec4 shade;
         vec4 sky;
         vec4 above;
         vec4 below;
         vec4 stops[6];
+        Light lights[4];
     };
     vec3 encode(vec3 c) {
         vec3 curve = 1.055 * pow(max(c, 0.0031308), vec3(1.0 / 2.4)) - 0.055;
@@ -39,15 +43,25 @@ static const char common[] = GLSL(
     }
 );
 
-// share of the light that comes through, for fragment shaders; facing: n . direction of the light,
-// shade: size of a shadow texel in
-// the light's picture, then in m, then 1 where there is a shadow
+// share of light k that comes through, for fragment shaders; facing: n . direction of the light,
+// shade: size of a shadow texel in the light's picture, then in m, then 1 where there is a shadow
 static const char shadow[] = GLSL(
-    uniform sampler2DShadow depth;
-    float lit_share(vec3 p, vec3 n, float facing) {
+    uniform sampler2DShadow depth0;
+    uniform sampler2DShadow depth1;
+    uniform sampler2DShadow depth2;
+    uniform sampler2DShadow depth3;
+    float tap(int k, vec3 q) {
+        if (k == 0)
+            return texture(depth0, q);
+        if (k == 1)
+            return texture(depth1, q);
+        return k == 2 ? texture(depth2, q) : texture(depth3, q);
+    }
+    float lit_share(int k, vec3 p, vec3 n, float facing) {
+        vec4 shade = lights[k].shade;
         // off the surface by as much as a slope rises under the texels that are read
-        float off = 0.4 + 2.6 * sqrt(max(1.0 - facing * facing, 0.0));
-        vec4 at = world_to_light * vec4(p + off * shade.y * n, 1.0);
+        float off = 1.5 + 4.0 * sqrt(max(1.0 - facing * facing, 0.0));
+        vec4 at = lights[k].to_clip * vec4(p + off * shade.y * n, 1.0);
         vec3 q = at.xyz / at.w * 0.5 + 0.5;
         bool outside = any(lessThan(q, vec3(0.0))) || any(greaterThan(q.xy, vec2(1.0)));
         if (shade.z < 0.5 || at.w <= 0.0 || outside)
@@ -57,7 +71,7 @@ static const char shadow[] = GLSL(
         float sum = 0.0;
         for (int i = -1; i <= 1; i++)
             for (int j = -1; j <= 1; j++)
-                sum += texture(depth, vec3(q.xy + 1.4 * shade.x * vec2(i, j), q.z));
+                sum += tap(k, vec3(q.xy + 1.4 * shade.x * vec2(i, j), q.z));
         return sum / 9.0;
     }
 );
@@ -102,7 +116,11 @@ static void bind_inputs(GLuint program) {
         gl.UniformBlockBinding(program, block, CS_VIEW_BINDING);
     gl.UseProgram(program);
     gl.Uniform1i(gl.GetUniformLocation(program, "picture"), 0);
-    gl.Uniform1i(gl.GetUniformLocation(program, "depth"), 1);
+    for (int k = 0; k < CS_LIGHTS; k++) {
+        char name[8];
+        snprintf(name, sizeof name, "depth%d", k);
+        gl.Uniform1i(gl.GetUniformLocation(program, name), 1 + k);
+    }
 }
 
 enum cs_status cs_shader_make(const struct cs_shader_text *text, unsigned *program,

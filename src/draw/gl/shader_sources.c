@@ -73,7 +73,10 @@ static const char ground_fragment[] = OVERLAY_GLSL(
         if (pitch > 0.0)
             cover = max(0.5 * lines(pitch, 0.45), lines(10.0 * pitch, 0.7));
         // what lies in shadow is inked too, so that things stand on the ground
-        float dark = shadow_ink * (1.0 - lit_share(place, vec3(0.0, 1.0, 0.0), 1.0));
+        float lit = 0.0;
+        for (int k = 0; k < int(size.w); k++)
+            lit += lights[k].shade.w * lit_share(k, place, vec3(0.0, 1.0, 0.0), 1.0);
+        float dark = shadow_ink * (1.0 - lit);
         colour = vec4(encode(ink), fade * (dark + (1.0 - dark) * 0.55 * cover));
     }
 );
@@ -229,14 +232,16 @@ static const char surface_fragment[] = GLSL(
         // and less in folds, whose values those of vertices are here
         float deep = max(gl_FrontFacing ? value : -value, 0.0);
         around *= inversesqrt(1.0 + deep * deep);
-        vec3 c = max(around, 0.0) * coefficients.x * light_ambient.rgb * base;
-        vec3 l = normalize(light.xyz - light.w * place);
-        float facing = dot(n, l);
-        if (facing > 0.0) {
-            float share = lit_share(place, n, facing);
-            float shine = pow(max(dot(n, normalize(l + v)), 0.0), coefficients.w);
-            c += share * (coefficients.y * facing * light_diffuse.rgb * base +
-                          coefficients.z * shine * light_specular.rgb);
+        vec3 c = max(around, 0.0) * coefficients.x * ambient.rgb * base;
+        for (int k = 0; k < int(size.w); k++) {
+            vec3 l = normalize(lights[k].place.xyz - lights[k].place.w * place);
+            float facing = dot(n, l);
+            if (facing > 0.0) {
+                float share = lit_share(k, place, n, facing);
+                float shine = pow(max(dot(n, normalize(l + v)), 0.0), coefficients.w);
+                c += share * (coefficients.y * facing * lights[k].diffuse.rgb * base +
+                              coefficients.z * shine * lights[k].specular.rgb);
+            }
         }
         return c;
     }
@@ -263,8 +268,9 @@ static const char surface_fragment[] = GLSL(
 
 static const char shadow_vertex[] = GLSL(
     layout(location = 0) in vec3 in_place;
+    uniform int number;
     void main() {
-        gl_Position = world_to_light * vec4(in_place, 1.0);
+        gl_Position = lights[number].to_clip * vec4(in_place, 1.0);
     }
 );
 

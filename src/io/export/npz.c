@@ -9,11 +9,13 @@
  * Arrays with N samples: times (N), frames (N), positions and other fields (N, n, components),
  * faces, lines, offsets of bodies, uv; the same of colliders with the prefix "collider_". Of
  * seams: stitches (S, 4) and stitch_weights (S, 4). */
+#include "base/file.h"
 #include "base/serialise.h"
 #include "io/export/writer.h"
 #include "io/npy.h"
 #include "model/system/seams.h"
 
+#include <errno.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -292,11 +294,14 @@ static enum cs_status finish(void *state, const struct cs_export_source *source,
         return error->status;
     }
     cs_zip_finish(&zip);
+    if (zip.seek_error) {
+        cs_file_abandon(&out);
+        return cs_fail(error, cs_file_status(zip.seek_error), "cannot write \"%s\": %s", path,
+                       strerror(zip.seek_error));
+    }
     if (cs_file_finish(&out, error))
         return error->status;
-    if (!goes_on)
-        unlink(npz->part.path);
-    return CS_OK;
+    return goes_on ? CS_OK : cs_file_remove(npz->part.path, error);
 }
 
 static void close_part(void *state) {

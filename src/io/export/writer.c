@@ -15,7 +15,7 @@ static enum cs_status fail(const struct cs_append_file *grown, const char *verb,
                    strerror(errno));
 }
 
-/* of a run that goes on: what came after its checkpoint goes */
+/* Drops what a resumed run had written after its checkpoint. */
 static enum cs_status truncate_to(struct cs_append_file *grown, uint64_t kept,
                                   struct cs_error *error) {
     struct stat info;

@@ -223,6 +223,7 @@ struct cs_zip_member {
 struct cs_zip {
     FILE *file;      /* borrowed, seekable; failures to write are found when it is finished */
     uint64_t offset; /* bytes written */
+    int seek_error;  /* errno of a failed seek, which ferror does not show; 0: none */
     unsigned n;
     struct cs_zip_member members[CS_ZIP_MEMBERS_MAX];
 };
@@ -237,7 +238,8 @@ void cs_zip_put(struct cs_zip *zip, const void *bytes, size_t n);
 /* Ends the member, whose bytes are all written: completes its header. */
 void cs_zip_end(struct cs_zip *zip);
 
-/* Writes the central directory; the caller finishes the file. */
+/* Writes the central directory; the caller finishes the file, or abandons it after a
+ * seek_error. */
 void cs_zip_finish(struct cs_zip *zip);
 
 #endif

@@ -20,6 +20,7 @@
 #include "io/export/writer.h"
 
 #include <endian.h>
+#include <errno.h>
 #include <string.h>
 #include <zlib.h>
 
@@ -93,11 +94,12 @@ void cs_zip_put(struct cs_zip *zip, const void *bytes, size_t n) {
 void cs_zip_end(struct cs_zip *zip) {
     struct cs_zip_member *member = zip->members + zip->n - 1;
     const uint64_t end = zip->offset;
-    /* the checksum is known only now; a failed seek shows in what follows, or when the file is
-     * finished */
-    if (!fseeko(zip->file, (off_t)member->offset, SEEK_SET))
-        put_header(zip, member);
-    fseeko(zip->file, (off_t)end, SEEK_SET);
+    /* the checksum is known only now */
+    if (fseeko(zip->file, (off_t)member->offset, SEEK_SET))
+        zip->seek_error = errno;
+    put_header(zip, member);
+    if (fseeko(zip->file, (off_t)end, SEEK_SET))
+        zip->seek_error = errno;
     zip->offset = end;
 }
 

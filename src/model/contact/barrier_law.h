@@ -7,7 +7,7 @@
  *   K =  psi'' = (k/6) (1-y)^2 (1+2y+3y^2) / y^3       K(D/2) = 0.92 k
  *
  * psi has three continuous derivatives at y = 1 and F two, which keeps the order of methods up
- * to 4 in the mean of many contacts. Below y = 1/1000 the stiffness stays what it is there,
+ * to 4 in the mean of many contacts. Below y = 1/1000 the stiffness stays at its value there,
  * 1.67e8 k, so that a trial state that has passed through still has a finite force. To get
  * there a pair must take up 83.0 k D^2.
  *

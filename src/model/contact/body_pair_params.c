@@ -30,7 +30,7 @@ static double thickness_of(const struct cs_system *system, uint32_t body,
                            struct cs_error *error) {
     const double given = cs_scene_bodies(system->scene)[body].thickness;
     const double thickness =
-        given > 0 ? given : CS_THICKNESS_SHARE * shortest_edge(system, body);
+        given > 0 ? given : CS_THICKNESS_FRACTION * shortest_edge(system, body);
     if (!(thickness > 0 && isfinite(thickness)))
         cs_fail(error, CS_ERR_SCENE,
                 "bodies[%u].thickness: 0, but the body has no edge to derive it from; expected "
@@ -44,7 +44,7 @@ static double thickness_of(const struct cs_system *system, uint32_t body,
  */
 static double range_between(const struct cs_system *system, uint32_t a, uint32_t b,
                             struct cs_error *error) {
-    const struct cs_collider *collider = cs_scene_obstacle(system->scene, b);
+    const struct cs_collider *collider = cs_scene_collider_at(system->scene, b);
     if (collider && collider->thickness > 0)
         return collider->thickness;
     const double first = thickness_of(system, a, error);
@@ -93,7 +93,7 @@ void cs_body_pair_table_update_friction(const struct cs_system *system,
     const uint32_t n_bodies = system->scene->bodies.n;
     for (uint32_t b = n_bodies; b < body_pairs->n_bodies; b++)
         for (uint32_t a = 0; a < n_bodies; a++) {
-            const double mu = cs_scene_obstacle(system->scene, b)->friction;
+            const double mu = cs_scene_collider_at(system->scene, b)->friction;
             body_pairs->params_version +=
                 body_pairs->params[(size_t)a * body_pairs->n_bodies + b].friction != mu;
             body_pairs->params[(size_t)a * body_pairs->n_bodies + b].friction = mu;

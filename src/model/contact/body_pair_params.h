@@ -8,7 +8,7 @@
 /* Default thickness in units of a body's shortest edge. In a flat grid, triangles without a
  * common vertex are at least 0.7 of an edge apart, so that a sheet at rest does not touch
  * itself. */
-#define CS_THICKNESS_SHARE 0.4
+#define CS_THICKNESS_FRACTION 0.4
 
 /* Parameters of two bodies, of one with itself, or of a body and a collider. */
 struct cs_body_pair_params {

@@ -101,9 +101,15 @@ void cs_bristle_add_jvp(const struct cs_point_contact *contact,
                  dload / trial.length * trial.force[c];
 }
 
-void cs_bristle_add_block(const struct cs_point_contact *contact,
-                          const struct cs_bristle *bristle, const struct cs_matrix *matrix,
-                          double b[6]) {
+/* b (6) += the symmetric part that the solver uses, with s = min(1, mu N/|trial|) and e =
+ * trial/|trial|:
+ *
+ *   -(ck k_t + cd c_t) s (I - n n^T - e e^T)      e e^T only where it slips
+ *
+ * Left out: the change of the load and of the normal. It is never negative with cd, ck <= 0.
+ * bound: leaves out e e^T too, an upper bound. */
+static void add_block(const struct cs_point_contact *contact, const struct cs_bristle *bristle,
+                      const struct cs_matrix *matrix, double b[6]) {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const struct trial trial = trial_of(contact, bristle);
     const double *g = contact->g, *e = trial.force;
@@ -186,7 +192,7 @@ void cs_bristle_add_matrix(const struct cs_point_contact *contact,
     const double *g = contact->g;
     struct chord chord;
     if (!matrix->chord || !find_chord(bristle, &trial, pull, g, matrix->bound, &chord)) {
-        cs_bristle_add_block(contact, bristle, matrix, b);
+        add_block(contact, bristle, matrix, b);
         return;
     }
     // cd = -h and ck = -h^2 are in c and p
@@ -203,7 +209,7 @@ void cs_bristle_add_approach(const struct cs_point_contact *contact,
     const struct cs_matrix elastic = {.ck = matrix->ck, .bound = matrix->bound};
     const double *v = contact->v;
     double b[6] = {0};
-    cs_bristle_add_block(contact, bristle, &elastic, b);
+    add_block(contact, bristle, &elastic, b);
     y[0] += b[0] * v[0] + b[1] * v[1] + b[2] * v[2];
     y[1] += b[1] * v[0] + b[3] * v[1] + b[4] * v[2];
     y[2] += b[2] * v[0] + b[4] * v[1] + b[5] * v[2];

@@ -9,7 +9,7 @@
  * k_t = k, the stiffness of the contact, and c_t = 2 sqrt(k_t m) damps a point of mass m
  * critically: without it explicit methods ring on at some 10 mm/s. Below the limit the point
  * rests exactly; above it the force is mu N, whatever the speed. After a step in which it slips
- * the anchor follows (friction_anchors.h), so that
+ * the anchor follows (below), so that
  *
  *   k_t |P (x - a)| <= mu N
  *
@@ -29,6 +29,7 @@
 #ifndef CS_BRISTLE_LAW_H
 #define CS_BRISTLE_LAW_H
 
+#include "model/contact/collider_params.h"
 #include "model/contact/friction_chord.h"
 
 /* The bristle of one contact point. */
@@ -48,17 +49,6 @@ void cs_bristle_add_force(const struct cs_point_contact *contact,
 void cs_bristle_add_jvp(const struct cs_point_contact *contact,
                         const struct cs_bristle *bristle,
                         const struct cs_point_contact_motion *move, double df[3]);
-
-/* b (6) += the symmetric part that the solver uses, with s = min(1, mu N/|trial|) and e =
- * trial/|trial|:
- *
- *   -(ck k_t + cd c_t) s (I - n n^T - e e^T)      e e^T only where it slips
- *
- * Left out: the change of the load and of the normal. It is never negative with cd, ck <= 0.
- * bound: leaves out e e^T too, an upper bound. */
-void cs_bristle_add_block(const struct cs_point_contact *contact,
-                          const struct cs_bristle *bristle, const struct cs_matrix *matrix,
-                          double b[6]);
 
 /* The same for any matrix. One with matrix->chord, of a method that is linear in a step, has
  * friction by the chord from now to the end of the step (friction_chord.h), and pull is what
@@ -93,5 +83,50 @@ void cs_bristle_raise_bound(const struct cs_bristle *bristle, double *stiffness,
  * the P (x - a) that an anchor must leave. */
 bool cs_bristle_slips(const struct cs_point_contact *contact, const struct cs_bristle *bristle,
                       double stretch[3]);
+
+/* Anchors of friction that sticks, as a part of the state.
+ *
+ * Every particle and every contact sample has an anchor on every collider with friction that
+ * is no mesh. Anchors stay where they are in the frame of their collider, which
+ * carries them along, during a step with all its trials. After each accepted step, in commit,
+ * the anchor of a point that slips follows it, and the anchor of a point out of range is the
+ * point itself. Checkpoints and hashes of a state contain them. */
+
+struct cs_contact_sample_point;
+
+/* Anchors of all points on colliders, in m in the frame of their collider. The system's arena
+ * owns the arrays. */
+struct cs_friction_anchors {
+    /* (n_values) all anchors: what a checkpoint and the hash of a state contain */
+    double *values;
+    size_t n_values;
+    /* (colliders) for each (3,n) of the particles within values; NULL: no friction there */
+    double **particles;
+    /* (3, points) of contact samples within values; NULL: there are none */
+    double *samples;
+};
+
+/* Allocates system->friction_anchors for a scene with contact.friction_law "stick", after its
+ * forces are built. CS_ERR_MEMORY. */
+enum cs_status cs_friction_anchors_build(struct cs_system *system, struct cs_error *error);
+
+/* Puts all anchors where their points are at t: the start of a run. Nothing without anchors.
+ */
+void cs_friction_anchors_start(const struct cs_system *system, double t, const double *x);
+
+/* Moves the anchors of points that slip or are out of range, after an accepted step that ended
+ * in (x, v) at t. With all threads. Nothing without anchors. */
+void cs_friction_anchors_commit(const struct cs_system *system, double t, const double *x,
+                                const double *v);
+
+/* Sets the bristle of a particle at x (3,n), or of a contact sample at p, on a collider.
+ * Returns false if there is no friction or the collider is a mesh. */
+bool cs_bristle_of_particle(const struct cs_system *system, uint32_t collider,
+                            const struct cs_posed_collider_law *near, const double *x,
+                            size_t particle, struct cs_bristle *bristle);
+bool cs_bristle_of_sample(const struct cs_system *system,
+                          const struct cs_posed_collider_law *near,
+                          const struct cs_contact_sample_point *point, const double p[3],
+                          struct cs_bristle *bristle);
 
 #endif

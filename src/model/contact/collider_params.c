@@ -56,7 +56,7 @@ enum cs_status cs_collider_params_table_build(struct cs_system *system,
         cs_arena_alloc_array(&system->arena, scene->colliders.n, sizeof *pairings, error);
     for (uint32_t c = 0; pairings && c < scene->colliders.n; c++) {
         const double thickness = cs_scene_colliders(scene)[c].thickness;
-        pairings[c].range = thickness > 0 ? thickness : CS_RANGE_SHARE * shortest;
+        pairings[c].range = thickness > 0 ? thickness : CS_RANGE_FRACTION * shortest;
         // the stiffness divides by it
         if (!(pairings[c].range > 0))
             return cs_fail(
@@ -85,6 +85,9 @@ void cs_posed_collider_law_at(const struct cs_system *system, uint32_t collider,
         .friction_speed = scene->contact.friction_speed,
         .damping = scene->contact.damping};
     cs_posed_collider_at(system, collider, t, &near->collider);
+    // a ramp may change it
+    if (near->collider.collider->thickness > 0)
+        near->params.range = near->collider.collider->thickness;
 }
 
 bool cs_posed_collider_law_is_plain(const struct cs_posed_collider_law *near) {
@@ -92,7 +95,7 @@ bool cs_posed_collider_law_is_plain(const struct cs_posed_collider_law *near) {
     const double *spin = pose->spin;
     const enum cs_shape_bounds bounds = pose->shape->bounds;
     return (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE) && spin[0] == 0 &&
-           spin[1] == 0 && spin[2] == 0 && near->sticking_friction == 0;
+           spin[1] == 0 && spin[2] == 0 && pose->growth == 0 && near->sticking_friction == 0;
 }
 
 /* A bounding test precedes the smooth distance, which costs far more. */

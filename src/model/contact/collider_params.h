@@ -9,7 +9,7 @@
 
 /* Default range in units of the shortest spring: a spring at rest does not reach through a thin
  * collider from one range to the other. */
-#define CS_RANGE_SHARE 0.4
+#define CS_RANGE_FRACTION 0.4
 
 /* Parameters of one collider. */
 struct cs_collider_params {
@@ -24,7 +24,7 @@ enum cs_status cs_collider_params_softest(struct cs_system *system, double *k,
                                           struct cs_error *error);
 
 /* Sets system->collider_params, one per collider, after the springs were built. k:
- * cs_approach_stiffness; range: the collider's thickness, or CS_RANGE_SHARE of the shortest
+ * cs_approach_stiffness; range: the collider's thickness, or CS_RANGE_FRACTION of the shortest
  * spring. The system's arena owns it. CS_ERR_SCENE if a value is neither given nor to be
  * derived; CS_ERR_MEMORY. */
 enum cs_status cs_collider_params_table_build(struct cs_system *system, struct cs_error *error);

@@ -1,6 +1,6 @@
 /* friction_anchors.c - where bristles hang: anchors in the frames of colliders, which follow
  * after each step. */
-#include "model/contact/friction_anchors.h"
+#include "model/contact/bristle_law.h"
 
 #include "base/pool.h"
 #include "base/vec3.h"

@@ -261,7 +261,7 @@ CS_INLINE void cs_pair_distance_slope(const struct cs_pair_distance *s,
  *   g_v = -L2 n + z2 r0 - l2 y + (m2/s2) v
  *   g_w = n + y
  *
- * The sum of g over the points is 0, and so is that of p x g: forces along g have no resultant
+ * The sums of g and of p x g over the points are 0: forces along g have no resultant
  * or moment. */
 CS_INLINE void cs_pair_distance_gradient(const struct cs_pair_distance *s, double g[4][3]) {
     struct cs_pair_distance_gradients at;

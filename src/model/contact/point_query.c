@@ -1,8 +1,8 @@
-/* The law of point_contact.h with friction that sticks (friction_anchors.h) or acts by its
+/* The law of point_contact.h with friction that sticks (bristle_law.h) or acts by its
  * chord (friction_chord.h), at one point. */
 #include "model/contact/point_query.h"
 
-#include "model/contact/friction_anchors.h"
+#include "model/contact/bristle_law.h"
 #include "model/contact/friction_chord.h"
 
 #include <math.h>

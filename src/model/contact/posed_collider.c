@@ -85,6 +85,9 @@ static void move(struct cs_posed_collider *out, const struct cs_collider_motion 
         out->velocity[c] = motion->rate[c];
         out->spin[c] = motion->spin[c];
     }
+    out->growth = motion->growth;
+    if (motion->radius_changes)
+        out->radius = motion->radius_begin + motion->radius_rate * (t - motion->t_growth);
 }
 
 /* Pose at t of a collider that has moved by motion; NULL: not at all. */
@@ -126,6 +129,12 @@ void cs_posed_collider_velocity(const struct cs_posed_collider *obstacle, const 
     cs_vec3_cross(w, arm, turned);
     for (int c = 0; c < 3; c++)
         v[c] = obstacle->velocity[c] + turned[c];
+    if (obstacle->growth != 0) {
+        double normal[3];
+        obstacle->shape->distance(obstacle, 0, p, normal);
+        for (int c = 0; c < 3; c++)
+            v[c] += obstacle->growth * normal[c];
+    }
 }
 
 void cs_posed_collider_vertex(const struct cs_posed_collider *obstacle, uint32_t i, double p[3],

@@ -17,6 +17,10 @@ struct cs_collider_motion {
     double rotation[9];
     double spin[3]; /* rad/s */
     uint32_t event; /* number of the event that moves it + 1; 0: none */
+    /* While a ramp changes the radius: radius_begin + radius_rate (t - t_growth) in m and m/s.
+     * growth: its rate and that of the thickness; 0: neither changes. */
+    bool radius_changes;
+    double t_growth, radius_begin, radius_rate, growth;
 };
 
 /* Poses of all colliders at t in the scene's order: out (scene->colliders.n); or of collider k
@@ -101,8 +105,8 @@ static inline bool cs_posed_collider_hits_segment(const struct cs_posed_collider
     return obstacle->shape->meets_line(obstacle, from, way, share);
 }
 
-/* v = velocity in m/s of the collider's matter at p: velocity + spin x (p - rotation_centre).
- */
+/* v = velocity in m/s of the collider's matter at p: velocity + spin x (p - rotation_centre),
+ * and growth along the normal. */
 void cs_posed_collider_velocity(const struct cs_posed_collider *obstacle, const double p[3],
                                 double v[3]);
 

@@ -3,8 +3,8 @@
 
 #include "base/vec3.h"
 #include "base/vector.h"
+#include "model/contact/bristle_law.h"
 #include "model/contact/collider_params.h"
-#include "model/contact/friction_anchors.h"
 
 #include <math.h>
 #include <string.h>

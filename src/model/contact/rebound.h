@@ -37,7 +37,7 @@
 #ifndef CS_CONTACT_REBOUND_H
 #define CS_CONTACT_REBOUND_H
 
-#include "model/contact/rebound_list.h"
+#include "model/contact/step_check.h"
 #include "model/spring/spring_runs.h"
 #include "model/system/particle_system.h"
 

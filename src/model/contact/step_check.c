@@ -5,7 +5,6 @@
 #include "model/contact/barrier_law.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/posed_collider.h"
-#include "model/contact/rebound_list.h"
 
 #include <clothsim/clones.h>
 #include <math.h>

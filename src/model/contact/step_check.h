@@ -7,6 +7,34 @@
 #include "model/contact/collider_params.h"
 #include "model/contact/posed_collider.h"
 
+/* Fraction of a particle's energy that a step with impacts may miss at particles that are not
+ * in impact: those are loaded by more than their contact, and need no restitution. Beside
+ * CS_UNRESOLVED_ENERGY_MAX of methods without impacts. To their energy is added this fraction
+ * of psi(D/2), as all of it is to that of pairs (contact_pairs.h): else particles that barely
+ * touch, with energies far below what contact holds, would cut steps for all. */
+#define CS_UNRESOLVED_BESIDE_REBOUNDS 0.1
+#define CS_SPARE_BESIDE_REBOUNDS      0.02
+
+/* One particle in impact. */
+struct cs_rebound {
+    uint32_t collider;   /* its number + 1; 0: the particle is not in impact */
+    double g[3];         /* gradient of the distance */
+    double stiffness;    /* N/m, K1 */
+    double drag;         /* N s/m, r */
+    double impulse[3];   /* N s, b beyond that of all other forces */
+    double displacement; /* m along g, beyond h v' */
+    double distance;     /* m, d1 */
+    double energy;       /* J, E */
+};
+
+/* The particles in impact of one step. */
+struct cs_rebounds {
+    struct cs_rebound *list; /* (n) by particle */
+    double *change; /* (3,n) m/s, of the velocity in the flight; 0 where there is none */
+    bool any;       /* a particle is in impact */
+    bool judged;    /* the last step was finished: the next test of a step is its own */
+};
+
 /* A method knows at most force and stiffness of contact at the start of a step. For a particle
  * that moves straight from x0 at t0 to x1 at t1, with the decrease s of its distance d,
  *
@@ -39,7 +67,7 @@ struct cs_collider_step {
 void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_system *system,
                           uint32_t collider, double t0, double t1);
 /* Sets unresolved_max and spare_energy for the particles of a step with impacts that are not in
- * impact (rebound_list.h). Does nothing in scenes without impacts. */
+ * impact (struct cs_rebounds). Does nothing in scenes without impacts. */
 void cs_collider_step_set_beside_rebounds(struct cs_collider_step *passing);
 
 /* Returns whether `count` particles from `begin` on, and all points between them, stay out of

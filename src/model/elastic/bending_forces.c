@@ -1,8 +1,11 @@
 /* Bending forces f = -K x in two passes: the moments A D k of each stencil, by all threads, and
- * then at each particle the sum of its weights times moments, in one order. */
+ * then at each particle the sum of its weights times moments, in one order. Bodies that are
+ * curved at rest, and damping: normal_curvature.c. */
 #include "model/elastic/bending_forces.h"
 
 #include "base/pool.h"
+#include "model/elastic/bending_sums.h"
+#include "model/elastic/normal_curvature.h"
 
 #include <clothsim/clones.h>
 #include <math.h>
@@ -22,6 +25,11 @@ static struct cs_moduli moduli_of(const struct cs_system *system,
     return cs_bending_moduli(&cs_scene_bodies(system->scene)[bending->body].elastic);
 }
 
+/* Stencils of a mesh whose energy is quadratic. */
+static uint32_t mesh_stencils(const struct cs_bending *bending) {
+    return bending->columns || bending->rest ? 0 : bending->n;
+}
+
 /* Particles of a body in a block, counted from its first; false: none. */
 static bool find_range(const struct cs_bending *bending, const struct cs_block *block,
                        uint32_t range[2]) {
@@ -33,65 +41,138 @@ static bool find_range(const struct cs_bending *bending, const struct cs_block *
     return begin < end;
 }
 
-/* --- moments of a grid --- */
+/* --- grids --- */
 
-/* Factors of one row of particles: of differences along and across it, of curvatures in moments
- * inside and at the row's ends, of twists. */
+/* In a row of particles let E be the second difference along it, one-sided at its ends, and N
+ * the one across it. The force is the second difference along the row of X, the moment along
+ * it, plus the one across of Z: of the moment across and of the twist, since the twists of
+ * cells are differences of E between rows. */
+
+/* Factors of E and N in X, in Z, and in Z at the ends of the row, with the area and the weights
+ * of the sum; in rows at rims there is no N. */
 struct row_law {
-    double along, across;
-    struct cs_moduli inner;
-    double end_weft, twist;
+    double X[2], Z[2], end[2];
 };
 
-/* The law of a row. On a row that is a rim `across` is 0. */
-static struct row_law law_of(const struct cs_bending *bending, const struct cs_moduli *moduli,
-                             uint32_t row) {
-    const uint32_t w = bending->columns;
+static struct row_law law_of(const struct cs_bending *bending, uint32_t row, double factor,
+                             const struct cs_moduli *moduli) {
     const double dx = bending->spacing[0], dy = bending->spacing[1];
-    const bool across = row > 0 && row + 1 < bending->rows;
+    const double along = 1 / (dx * dx), across = row > 0 ? 1 / (dy * dy) : 0;
+    const double twist = factor * (4 * moduli->shear / (dx * dy)), by = factor / (dy * dy);
     struct cs_bending_stencil end, inner;
-    cs_bending_stencil_at(bending, moduli, row * w, &end);
-    cs_bending_stencil_at(bending, moduli, row * w + (w > 2), &inner);
-    return (struct row_law){.along = 1 / (dx * dx),
-                            .across = across ? 1 / (dy * dy) : 0,
-                            .inner = inner.moduli,
-                            .end_weft = end.moduli.weft,
-                            .twist = 2 * moduli->shear};
+    cs_bending_stencil_at(bending, moduli, row * bending->columns, &end);
+    cs_bending_stencil_at(bending, moduli, row * bending->columns + (bending->columns > 2),
+                          &inner);
+    const struct cs_moduli *D = &inner.moduli;
+    return (struct row_law){
+        {factor * along * D->warp * along, factor * along * D->coupling * across},
+        {by * D->coupling * along + twist, by * D->weft * across},
+        {twist, by * end.moduli.weft * across}};
 }
 
-/* The moments of one component p of a row in X, Y and T; up, down: the rows beside it, or p
- * where there is none, which makes the twists 0. */
-CS_CLONES static void row_moments(const struct row_law *of, size_t w,
-                                  const double *const rows[3], double *restrict X,
-                                  double *restrict Y, double *restrict T) {
+/* Columns of a piece of a grid, whose moments are on the stack. */
+enum { COLUMNS = 128 };
+
+/* Columns [begin, end) of a grid w wide. */
+struct columns {
+    size_t begin, end, w;
+};
+
+/* Moments of one component in a row of a piece, from its first column on; X also before and
+ * after it. At the ends of rows and beyond X is 0. */
+struct moments {
+    double before, X[COLUMNS + 1], Z[COLUMNS];
+};
+
+/* Differences at column i of component p of a row; up, down: the rows beside it. */
+CS_INLINE double along_row(const double *const rows[3], size_t i) {
+    return (rows[1][i - 1] - rows[1][i]) + (rows[1][i + 1] - rows[1][i]);
+}
+
+CS_INLINE double across_row(const double *const rows[3], size_t i) {
+    return (rows[0][i] - rows[1][i]) + (rows[2][i] - rows[1][i]);
+}
+
+CS_CLONES static void row_moments(const struct row_law *of, const struct columns *at,
+                                  const double *const rows[3], struct moments *to) {
     const struct row_law law = *of;
-    const double *up = rows[0], *p = rows[1], *down = rows[2];
-    for (size_t i = 1; i + 1 < w; i++) {
-        const double x = law.along * ((p[i - 1] - p[i]) + (p[i + 1] - p[i]));
-        const double y = law.across * ((up[i] - p[i]) + (down[i] - p[i]));
-        X[i] = law.inner.warp * x + law.inner.coupling * y;
-        Y[i] = law.inner.coupling * x + law.inner.weft * y;
+    const double *const p[3] = {rows[0], rows[1], rows[2]};
+    const size_t w = at->w, begin = at->begin, end = at->end, last = end - begin;
+    const size_t left = begin > 0 ? begin : 1, right = end < w ? end : w - 1;
+    double *X = to->X, *Z = to->Z;
+    to->before = X[0] = X[last - 1] = X[last] = 0;
+    CS_INDEPENDENT
+    for (size_t i = left; i < right; i++) {
+        const double E = along_row(p, i), N = across_row(p, i);
+        X[i - begin] = law.X[0] * E + law.X[1] * N;
+        Z[i - begin] = law.Z[0] * E + law.Z[1] * N;
     }
-    for (size_t i = 0; i < w; i += w - 1) {
-        X[i] = 0;
-        Y[i] = law.end_weft * law.across * ((up[i] - p[i]) + (down[i] - p[i]));
-    }
-    for (size_t i = 0; i + 1 < w; i++)
-        T[i] = law.twist * ((p[i] - p[i + 1]) - (down[i] - down[i + 1]));
-    T[w - 1] = 0;
+    // one-sided at the ends of the row
+    if (begin == 0)
+        Z[0] = law.end[0] * (p[1][1] - p[1][0]) + law.end[1] * across_row(p, 0);
+    if (end == w)
+        Z[last - 1] =
+            law.end[0] * (p[1][w - 2] - p[1][w - 1]) + law.end[1] * across_row(p, w - 1);
+    if (begin > 1)
+        to->before = law.X[0] * along_row(p, begin - 1) + law.X[1] * across_row(p, begin - 1);
+    if (end + 1 < w)
+        X[last] = law.X[0] * along_row(p, end) + law.X[1] * across_row(p, end);
 }
 
-static void grid_moments(const struct job *job, const struct cs_bending *bending,
-                         const struct cs_moduli *moduli, uint32_t row) {
-    const struct row_law law = law_of(bending, moduli, row);
-    const size_t w = bending->columns, at = (size_t)row * w, plane = bending->count;
-    for (size_t c = 0; c < 3; c++) {
-        const double *p = job->p + c * job->system->view.n + bending->first + at;
-        const double *const rows[3] = {row > 0 ? p - w : p, p,
-                                       row + 1 < bending->rows ? p + w : p};
-        double *X = bending->moments + c * plane + at;
-        row_moments(&law, w, rows, X, X + 3 * plane, X + 6 * plane);
+/* y += the second differences of X along and of Z across. */
+CS_CLONES static void add_row(const struct moments *at, const double *up, const double *down,
+                              size_t count, double *restrict y) {
+    const double *X = at->X, *Z = at->Z;
+    y[0] += ((at->before - X[0]) + (X[1] - X[0])) + ((up[0] - Z[0]) + (down[0] - Z[0]));
+    for (size_t i = 1; i < count; i++)
+        y[i] += ((X[i - 1] - X[i]) + (X[i + 1] - X[i])) + ((up[i] - Z[i]) + (down[i] - Z[i]));
+}
+
+/* Rows [begin, end) of one component of a piece of a grid. */
+struct grid_rows {
+    const struct row_law *laws; /* of rows at rims, and inside */
+    struct columns columns;
+    uint32_t n, begin, end; /* n: all rows */
+    const double *p;
+    double *y;
+};
+
+/* Moments of the row before, of the row, and of the next take turns in three buffers. */
+static void add_rows(const struct grid_rows *at) {
+    const size_t w = at->columns.w;
+    struct moments ring[3];
+    for (uint32_t next = at->begin > 0 ? at->begin - 1 : 0; next <= at->end; next++) {
+        const double *p = at->p + next * w;
+        const bool is_inside = next > 0 && next + 1 < at->n;
+        const double *const rows[3] = {is_inside ? p - w : p, p, is_inside ? p + w : p};
+        if (next < at->n)
+            row_moments(at->laws + is_inside, &at->columns, rows, ring + next % 3);
+        if (next <= at->begin)
+            continue;
+        const uint32_t row = next - 1;
+        const struct moments *own = ring + row % 3;
+        add_row(own, (row > 0 ? ring + (row - 1) % 3 : own)->Z,
+                (next < at->n ? ring + next % 3 : own)->Z, at->columns.end - at->columns.begin,
+                at->y + row * w + at->columns.begin);
     }
+}
+
+/* Rows [begin, end) of a grid. */
+static void add_grid(const struct job *job, const struct cs_bending *bending, uint32_t begin,
+                     uint32_t end) {
+    const struct cs_moduli moduli = moduli_of(job->system, bending);
+    const struct row_law laws[2] = {law_of(bending, 0, job->factor, &moduli),
+                                    law_of(bending, bending->rows > 2, job->factor, &moduli)};
+    const size_t n = job->system->view.n, w = bending->columns;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t at = 0; at < w; at += COLUMNS)
+            add_rows(&(struct grid_rows){laws,
+                                         {at, at + COLUMNS < w ? at + COLUMNS : w, w},
+                                         bending->rows,
+                                         begin,
+                                         end,
+                                         job->p + c * n + bending->first,
+                                         job->y + c * n + bending->first});
 }
 
 /* --- moments of a mesh --- */
@@ -123,7 +204,7 @@ static void mesh_block(void *arg, uint32_t number) {
     const struct job *job = arg;
     for (uint32_t b = 0, first = 0; b < job->system->bendings->n; b++) {
         const struct cs_bending *bending = job->system->bendings->bodies + b;
-        const uint32_t blocks = bending->columns ? 0 : (bending->n + PIECE - 1) / PIECE;
+        const uint32_t blocks = (mesh_stencils(bending) + PIECE - 1) / PIECE;
         const struct cs_moduli moduli = moduli_of(job->system, bending);
         if (number >= first && number < first + blocks)
             for (uint32_t s = (number - first) * PIECE;
@@ -133,73 +214,16 @@ static void mesh_block(void *arg, uint32_t number) {
     }
 }
 
-static void grid_block(void *arg, uint32_t number) {
-    const struct job *job = arg;
-    const struct cs_system *system = job->system;
-    const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
-    for (uint32_t b = 0; b < system->bendings->n; b++) {
-        const struct cs_bending *bending = system->bendings->bodies + b;
-        const struct cs_moduli moduli = moduli_of(system, bending);
-        uint32_t range[2];
-        if (bending->columns && find_range(bending, &block, range))
-            for (uint32_t row = range[0] / bending->columns; row < range[1] / bending->columns;
-                 row++)
-                grid_moments(job, bending, &moduli, row);
-    }
-}
-
 static void find_moments(struct job *job) {
     uint32_t blocks = 0;
     for (uint32_t b = 0; b < job->system->bendings->n; b++) {
         const struct cs_bending *bending = job->system->bendings->bodies + b;
-        blocks += bending->columns ? 0 : (bending->n + PIECE - 1) / PIECE;
+        blocks += (mesh_stencils(bending) + PIECE - 1) / PIECE;
     }
-    cs_pool_run(job->system->springs.n_blocks, grid_block, job);
     cs_pool_run(blocks, mesh_block, job);
 }
 
 /* --- sums at particles --- */
-
-/* Moments of one component at a row and its neighbours. Where a neighbour lacks, its moments
- * are those of a rim, which are 0. */
-struct moment_rows {
-    const double *X, *Y, *up, *down; /* up, down: Y of the rows beside it */
-    const double *T, *above;         /* above: T of the row before it */
-    double along, across, twist;     /* weights times the factor of the sum */
-};
-
-/* y += weights times moments. X and T end in a 0 in every row, and T begins after one: what
- * stands before a row's first particle and after its last is 0. */
-CS_CLONES static void add_row(const struct moment_rows *of, size_t w, double *restrict y) {
-    const struct moment_rows at = *of;
-    for (size_t i = 0; i < w; i++) {
-        const double *X = at.X + i, *T = at.T + i, *above = at.above + i;
-        y[i] += at.along * ((X[-1] - X[0]) + (X[1] - X[0])) +
-                at.across * ((at.up[i] - at.Y[i]) + (at.down[i] - at.Y[i])) +
-                at.twist * ((T[0] - T[-1]) - (above[0] - above[-1]));
-    }
-}
-
-/* One component of a row of a grid. */
-static void add_grid_row(const struct cs_bending *bending, const double *moments, uint32_t row,
-                         double factor, double *y) {
-    const size_t w = bending->columns, plane = 3 * (size_t)bending->count, at = (size_t)row * w;
-    const double dx = bending->spacing[0], dy = bending->spacing[1];
-    const double *Y = moments + plane + at, *T = moments + 2 * plane;
-    const bool is_first = row == 0, is_last = row + 1 == bending->rows;
-    const struct moment_rows rows = {
-        .X = moments + at,
-        .Y = Y,
-        .up = is_first ? Y : Y - w,
-        .down = is_last ? Y : Y + w,
-        .T = T + at,
-        .above = is_first ? T + bending->count - w : T + at - w,
-        .along = factor / (dx * dx),
-        .across = factor / (dy * dy),
-        .twist = factor * 2 / (dx * dy),
-    };
-    add_row(&rows, w, y);
-}
 
 static void add_mesh_particle(const struct job *job, const struct cs_bending *bending,
                               uint32_t i) {
@@ -219,145 +243,104 @@ static void add_mesh_particle(const struct job *job, const struct cs_bending *be
 
 /* y += factor K p at a block. */
 static void add_block(const struct job *job, const struct cs_block *block) {
-    const size_t n = job->system->view.n;
     for (uint32_t b = 0; b < job->system->bendings->n; b++) {
         const struct cs_bending *bending = job->system->bendings->bodies + b;
         uint32_t range[2];
-        if (!find_range(bending, block, range))
+        if (bending->rest || !find_range(bending, block, range))
             continue;
         for (uint32_t i = range[0]; !bending->columns && i < range[1]; i++)
             add_mesh_particle(job, bending, i);
-        for (uint32_t i = range[0]; bending->columns && i < range[1]; i += bending->columns)
-            for (size_t c = 0; c < 3; c++)
-                add_grid_row(bending, bending->moments + c * bending->count,
-                             i / bending->columns, job->factor,
-                             job->y + c * n + bending->first + i);
+        if (bending->columns)
+            add_grid(job, bending, range[0] / bending->columns, range[1] / bending->columns);
     }
+}
+
+/* Positions, or their direction, whose force is asked for; NULL: none, the force of velocities
+ * alone, or without the elastic part. */
+static const double *direction_of(const struct cs_eval *at) {
+    const double *p = at->dx || at->dv ? at->dx : at->x;
+    return at->parts & CS_PART_POTENTIAL ? p : NULL;
 }
 
 void cs_bendings_prepare(const struct cs_system *system, const struct cs_eval *at) {
-    struct job job = {.system = system, .p = at->dx ? at->dx : at->x};
-    if (at->dx || !at->dv)
+    struct job job = {.system = system, .p = direction_of(at)};
+    if (job.p)
         find_moments(&job);
+    if (system->bendings->normal.x)
+        cs_normal_curvature_prepare(system, at);
 }
 
 void cs_bendings_add(const struct cs_system *system, const struct cs_eval *at, double *f) {
-    const struct job job = {.system = system, .factor = -1, .y = f};
-    if (at->dx || !at->dv)
+    const struct job job = {.system = system, .p = direction_of(at), .factor = -1, .y = f};
+    if (job.p)
         add_block(&job, at->block);
+    if (system->bendings->normal.x)
+        cs_normal_curvature_add(system, at->block, -1, f);
 }
 
-/* --- energy, bounds, matrix: stencil by stencil --- */
-
-/* D k of a stencil for a weight each, or a component of k. */
-static void multiply(const struct cs_moduli *moduli, const double k[3], double out[3]) {
-    out[0] = moduli->warp * k[0] + moduli->coupling * k[1];
-    out[1] = moduli->coupling * k[0] + moduli->weft * k[1];
-    out[2] = moduli->shear * k[2];
-}
-
-static double stencil_energy(const struct cs_bending_stencil *stencil, size_t n,
-                             const double *x) {
-    double energy = 0;
-    for (size_t c = 0; c < 3; c++) {
-        const double *p = x + c * n;
-        double k[3] = {0, 0, 0}, M[3];
-        for (uint32_t j = 1; j < stencil->n; j++)
-            for (int a = 0; a < 3; a++)
-                k[a] += stencil->weights[a][j] * (p[stencil->at[j]] - p[stencil->at[0]]);
-        multiply(&stencil->moduli, k, M);
-        energy += 0.5 * (k[0] * M[0] + k[1] * M[1] + k[2] * M[2]);
-    }
-    return energy;
-}
-
-double cs_bendings_energy(const struct cs_system *system, const double *x) {
-    double sum = 0;
-    for (uint32_t b = 0; b < system->bendings->n; b++) {
-        const struct cs_bending *bending = system->bendings->bodies + b;
-        const struct cs_moduli moduli = moduli_of(system, bending);
-        for (uint32_t s = 0; s < bending->n; s++) {
-            struct cs_bending_stencil stencil;
-            cs_bending_stencil_at(bending, &moduli, s, &stencil);
-            sum += stencil_energy(&stencil, system->view.n, x);
-        }
-    }
-    return sum;
-}
-
-/* Adds rows of a stencil's matrix: its diagonal, or the sum of magnitudes. */
-static void add_rows(const struct cs_bending_stencil *stencil, bool diagonal, double *sums) {
-    for (uint32_t i = 0; i < stencil->n; i++)
-        for (uint32_t j = diagonal ? i : 0; j < (diagonal ? i + 1 : stencil->n); j++) {
-            const double(*b)[CS_BENDING_POINTS] = stencil->weights;
-            double M[3];
-            multiply(&stencil->moduli, (const double[3]){b[0][j], b[1][j], b[2][j]}, M);
-            sums[stencil->at[i]] += fabs(b[0][i] * M[0] + b[1][i] * M[1] + b[2][i] * M[2]);
-        }
-}
-
-static void add_body_rows(const struct cs_bending *bending, const struct cs_moduli *moduli,
-                          bool diagonal, double *sums) {
-    for (uint32_t s = 0; s < bending->n; s++) {
-        struct cs_bending_stencil stencil;
-        cs_bending_stencil_at(bending, moduli, s, &stencil);
-        add_rows(&stencil, diagonal, sums);
-    }
-}
-
-/* Finds diagonal and row sums of K where the moduli are not those that they were found for. */
-static void update_rows(const struct cs_system *system) {
-    struct cs_bendings *all = system->bendings;
-    for (uint32_t b = 0; b < all->n; b++) {
-        const struct cs_bending *bending = all->bodies + b;
-        const struct cs_moduli moduli = moduli_of(system, bending);
-        const struct cs_moduli *of = all->moduli + b;
-        if (of->warp == moduli.warp && of->weft == moduli.weft &&
-            of->coupling == moduli.coupling && of->shear == moduli.shear)
-            continue;
-        memset(all->diagonal + bending->first, 0, bending->count * sizeof *all->diagonal);
-        memset(all->row_sums + bending->first, 0, bending->count * sizeof *all->row_sums);
-        add_body_rows(bending, &moduli, true, all->diagonal);
-        add_body_rows(bending, &moduli, false, all->row_sums);
-        all->moduli[b] = moduli;
-    }
-}
-
-void cs_bendings_add_bound(const struct cs_system *system, double *sums) {
-    update_rows(system);
-    for (uint32_t i = 0; i < system->view.n; i++)
-        sums[i] += system->bendings->row_sums[i];
-}
+/* --- the matrix --- */
 
 /* A stencil of m points is at most m times its diagonal: what matrix->bound asks for. */
 void cs_bendings_prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
                                 bool kept) {
     struct cs_bendings *all = system->bendings;
     const double factor = -matrix->ck * (matrix->bound && !kept ? CS_BENDING_POINTS : 1);
-    update_rows(system);
+    cs_bendings_update_rows(system);
     for (uint32_t i = 0; i < system->view.n; i++)
         all->blocks[i] = factor * all->diagonal[i];
     if (kept)
         all->kept = -matrix->ck;
+    if (all->normal.x)
+        cs_normal_curvature_prepare_matrix(system, matrix, kept);
+}
+
+void cs_bendings_add_blocks(const struct cs_system *system, size_t begin, size_t end,
+                            double *blocks) {
+    const struct cs_bendings *all = system->bendings;
+    const size_t n = system->view.n;
+    for (size_t c = 0; c < 6; c += c ? 2 : 3)
+        for (size_t i = begin; i < end; i++)
+            blocks[c * n + i] += all->blocks[i];
+    for (size_t c = 0; all->normal.x && c < 6; c++)
+        for (size_t i = begin; i < end; i++)
+            blocks[c * n + i] += all->normal.blocks[c * n + i];
+}
+
+/* y -= the diagonal blocks of the kept matrix times p. */
+static void take_blocks_out(const struct job *job, const struct cs_block *block) {
+    static const size_t entries[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+    const struct cs_bendings *all = job->system->bendings;
+    const size_t n = job->system->view.n;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = c * n + block->begin, k = block->begin; k < block->end; i++, k++)
+            job->y[i] -= all->kept * all->diagonal[k] * job->p[i];
+    for (size_t c = 0; all->normal.x && c < 3; c++)
+        for (size_t d = 0; d < 3; d++)
+            for (size_t k = block->begin; k < block->end; k++)
+                job->y[c * n + k] -=
+                    all->normal.kept[entries[c][d] * n + k] * job->p[d * n + k];
 }
 
 static void product_block(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_system *system = job->system;
-    const struct cs_bendings *all = system->bendings;
     const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
     add_block(job, &block);
-    for (size_t c = 0; job->apart && c < 3; c++)
-        for (size_t i = c * system->view.n + block.begin, k = block.begin; k < block.end;
-             i++, k++)
-            job->y[i] -= all->kept * all->diagonal[k] * job->p[i];
+    if (system->bendings->normal.x)
+        cs_normal_curvature_add(system, &block, 1, job->y);
+    if (job->apart)
+        take_blocks_out(job, &block);
 }
 
+/* y += A p of the matrix kept last; apart: without its diagonal blocks, and with its damping.
+ */
 static void add_product(const struct cs_system *system, const double *p, bool apart,
                         double *y) {
     struct job job = {
         .system = system, .p = p, .factor = system->bendings->kept, .y = y, .apart = apart};
     find_moments(&job);
+    if (system->bendings->normal.x)
+        cs_normal_curvature_prepare_product(system, p, !apart);
     cs_pool_run(system->springs.n_blocks, product_block, &job);
 }
 

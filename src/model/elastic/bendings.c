@@ -3,6 +3,7 @@
 
 #include "base/vec3.h"
 #include "mesh/trimesh.h"
+#include "scene/event_key.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,7 +15,8 @@ struct patch {
     uint32_t points[CS_BENDING_POINTS]; /* corners, then beyond edge k: corner k to k + 1 */
     bool is_rim[3];
     double X[CS_BENDING_POINTS], Y[CS_BENDING_POINTS]; /* m, along warp and weft */
-    double area, height; /* m2; m, of the highest point over the plane */
+    double area, normal[3];                            /* m2; of length 1 */
+    bool is_curved;
 };
 
 /* The corner beyond an edge of triangle t, from corner a to b: of the triangle that has the
@@ -43,8 +45,27 @@ static void find_points(const struct cs_trimesh *mesh, uint32_t t, struct patch 
     }
 }
 
-/* Axes as those of a membrane (membranes_build.c): the warp along x, or along y where the
- * triangle faces along x. */
+/* Turns the point beyond edge k about that edge into the plane of the triangle. d: the points
+ * from corner 0 on; normal: the unit normal. */
+static void unfold(double d[CS_BENDING_POINTS][3], size_t k, const double normal[3]) {
+    const double *from = d[k], *to = d[(k + 1) % 3];
+    double edge[3], beyond[3], out[3], along, across = 0;
+    for (int c = 0; c < 3; c++) {
+        edge[c] = to[c] - from[c];
+        beyond[c] = d[3 + k][c] - from[c];
+    }
+    cs_vec3_normalise(edge);
+    cs_vec3_cross(edge, normal, out);
+    along = cs_vec3_dot(beyond, edge);
+    for (int c = 0; c < 3; c++)
+        across += (beyond[c] - along * edge[c]) * (beyond[c] - along * edge[c]);
+    for (int c = 0; c < 3; c++)
+        d[3 + k][c] = from[c] + along * edge[c] + sqrt(across) * out[c];
+}
+
+/* Axes as those of a membrane (membranes.c): the warp along x, or along y where the triangle
+ * faces along x. Points beyond an edge that lie off the plane, by more than the rounding of a
+ * file's numbers, are unfolded into it. */
 static void lay_flat(const struct cs_trimesh *mesh, struct patch *patch) {
     double d[CS_BENDING_POINTS][3], normal[3], warp[3], weft[3];
     for (size_t k = 0; k < CS_BENDING_POINTS; k++)
@@ -60,12 +81,16 @@ static void lay_flat(const struct cs_trimesh *mesh, struct patch *patch) {
         warp[c] = (c == axis) - normal[axis] * normal[c];
     cs_vec3_normalise(warp);
     cs_vec3_cross(normal, warp, weft);
-    patch->height = 0;
-    for (int k = 0; k < CS_BENDING_POINTS; k++) {
+    patch->is_curved = false;
+    for (size_t k = 0; k < CS_BENDING_POINTS; k++) {
+        const bool is_off = fabs(cs_vec3_dot(d[k], normal)) > 1e-6 * sqrt(patch->area);
+        if (is_off)
+            unfold(d, k - 3, normal);
+        patch->is_curved |= is_off;
         patch->X[k] = cs_vec3_dot(d[k], warp);
         patch->Y[k] = cs_vec3_dot(d[k], weft);
-        patch->height = fmax(patch->height, fabs(cs_vec3_dot(d[k], normal)));
     }
+    memcpy(patch->normal, normal, sizeof normal);
 }
 
 /* Solves Q^T u = e, 6x6, by elimination with pivots; Q is destroyed. Returns false if Q is
@@ -158,43 +183,67 @@ static void sum_hinges(const struct patch *patch, double weights[3][CS_BENDING_P
 
 /* Lists the stencils at each particle; points that a rim lacks are the first, with weights 0.
  */
-static void list_incident(struct cs_bending *bending) {
-    uint32_t *begin = bending->incident_begin;
-    const uint32_t n = CS_BENDING_POINTS * bending->n;
-    for (uint32_t k = 0; k < n; k++)
-        begin[bending->points[k] + 1]++;
-    for (uint32_t i = 0; i < bending->count; i++)
-        begin[i + 1] += begin[i];
-    for (uint32_t k = 0; k < n; k++)
-        bending->incident[begin[bending->points[k]]++] =
-            8 * (k / CS_BENDING_POINTS) + k % CS_BENDING_POINTS;
-    for (uint32_t i = bending->count; i > 0; i--)
-        begin[i] = begin[i - 1];
-    begin[0] = 0;
+static enum cs_status list_incident(struct cs_bending *bending, struct cs_arena *arena,
+                                    struct cs_error *error) {
+    const struct cs_moduli any = {1, 1, 0, 1};
+    const size_t count = bending->count;
+    uint32_t *begin = cs_arena_alloc_array(arena, count + 1, sizeof *begin, error);
+    uint32_t *incident = cs_arena_alloc_array(arena, CS_BENDING_POINTS * (size_t)bending->n,
+                                              sizeof *incident, error);
+    for (int fill = 0; fill < 2 && !error->status; fill++) {
+        for (uint32_t s = 0; s < bending->n; s++) {
+            struct cs_bending_stencil of;
+            cs_bending_stencil_at(bending, &any, s, &of);
+            for (uint32_t j = 0; j < of.n; j++) {
+                const uint32_t i = of.at[j] - bending->first;
+                if (fill)
+                    incident[begin[i]++] = 8 * s + j;
+                else
+                    begin[i + 1]++;
+            }
+        }
+        /* counts become starts; filling moves each start to the next, and back at the end */
+        for (size_t i = 0; !fill && i < count; i++)
+            begin[i + 1] += begin[i];
+        for (size_t i = count; fill && i > 0; i--)
+            begin[i] = begin[i - 1];
+    }
+    if (!error->status)
+        begin[0] = 0;
+    bending->incident_begin = begin;
+    bending->incident = incident;
+    return error->status;
 }
 
-static enum cs_status fill_mesh(struct cs_bending *bending, const struct cs_trimesh *mesh,
-                                struct cs_error *error) {
+/* Curvatures at rest along the normal. */
+static void find_rest(const struct cs_trimesh *mesh, const struct patch *patch,
+                      double weights[3][CS_BENDING_POINTS], double rest[3]) {
+    for (size_t a = 0; a < 3; a++)
+        for (size_t j = 1; j < CS_BENDING_POINTS; j++)
+            for (size_t c = 0; c < 3; c++)
+                rest[a] += weights[a][j] * patch->normal[c] *
+                           (mesh->positions[c * mesh->n + patch->points[j]] -
+                            mesh->positions[c * mesh->n + patch->points[0]]);
+}
+
+static void fill_mesh(struct cs_bending *bending, const struct cs_trimesh *mesh) {
+    bool is_curved = false;
     for (uint32_t t = 0; t < bending->n; t++) {
         struct patch patch;
         double weights[3][CS_BENDING_POINTS];
-        // flat up to rounding of the file's numbers
         find_points(mesh, t, &patch);
         lay_flat(mesh, &patch);
-        if (patch.height > 1e-6 * sqrt(patch.area))
-            return cs_fail(error, CS_ERR_SCENE,
-                           "bodies[%u].elastic.bending: the mesh is not flat at triangle %u, "
-                           "expected a flat one, or no bending",
-                           bending->body, t);
         if (!fit_quadratic(&patch, weights))
             sum_hinges(&patch, weights);
         memcpy(bending->points + CS_BENDING_POINTS * (size_t)t, patch.points,
                sizeof patch.points);
         memcpy(bending->weights + CS_BENDING_WEIGHTS * (size_t)t, weights, sizeof weights);
         bending->areas[t] = patch.area;
+        find_rest(mesh, &patch, weights, bending->rest + 3 * (size_t)t);
+        is_curved |= patch.is_curved;
     }
-    list_incident(bending);
-    return CS_OK;
+    if (!is_curved)
+        bending->rest = NULL;
 }
 
 static enum cs_status build_mesh(struct cs_bending *bending, const struct cs_trimesh *mesh,
@@ -206,11 +255,10 @@ static enum cs_status build_mesh(struct cs_bending *bending, const struct cs_tri
         cs_arena_alloc_array(arena, CS_BENDING_WEIGHTS * n, sizeof(double), error);
     bending->areas = cs_arena_alloc_array(arena, n, sizeof(double), error);
     bending->moments = cs_arena_alloc_array(arena, 9 * n, sizeof(double), error);
-    bending->incident_begin =
-        cs_arena_alloc_array(arena, bending->count + 1, sizeof *bending->incident_begin, error);
-    bending->incident =
-        cs_arena_alloc_array(arena, CS_BENDING_POINTS * n, sizeof *bending->incident, error);
-    return error->status ? error->status : fill_mesh(bending, mesh, error);
+    bending->rest = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
+    if (!error->status)
+        fill_mesh(bending, mesh);
+    return error->status ? error->status : list_incident(bending, arena, error);
 }
 
 /* --- grids, and all --- */
@@ -222,11 +270,7 @@ static enum cs_status build_grid(struct cs_bending *bending, const struct cs_clo
     bending->n = 2 * bending->count;
     for (int k = 0; k < 2; k++)
         bending->spacing[k] = cloth->size[k] / (double)(cloth->grid[k] - 1);
-    /* one before and one after, which are 0: kernels read beyond the ends of rows */
-    double *moments =
-        cs_arena_alloc_array(arena, 9 * (size_t)bending->count + 2, sizeof(double), error);
-    bending->moments = moments ? moments + 1 : NULL;
-    return error->status;
+    return bending->damped ? list_incident(bending, arena, error) : CS_OK;
 }
 
 enum cs_status cs_bendings_build(struct cs_system *system, struct cs_error *error) {
@@ -242,12 +286,16 @@ enum cs_status cs_bendings_build(struct cs_system *system, struct cs_error *erro
     all->blocks = cs_arena_alloc_array(arena, system->view.n, sizeof(double), error);
     all->row_sums = cs_arena_alloc_array(arena, system->view.n, sizeof(double), error);
     for (uint32_t b = 0; b < n_bodies && !error->status; b++) {
-        if (!bodies[b].elastic.present || !bodies[b].elastic.bending.present)
+        if (!cs_elastic_bends(&bodies[b].elastic))
             continue;
         // bodies without bending take no room
         struct cs_bending *bending = all->bodies + all->n++;
         *bending = (struct cs_bending){
-            .body = b, .first = system->bodies[b].first, .count = system->bodies[b].count};
+            .body = b,
+            .first = system->bodies[b].first,
+            .count = system->bodies[b].count,
+            .damped = cs_event_key_acts(system->scene, bodies[b].elastic.bending.damping,
+                                        "bodies.elastic.bending.damping")};
         if (bodies[b].mesh.present)
             build_mesh(bending, bodies[b].mesh.geometry, arena, error);
         else
@@ -272,8 +320,10 @@ static void particle_stencil(const struct cs_bending *bending, const struct cs_m
     const bool rim = !along || !across;
     *stencil = (struct cs_bending_stencil){
         .n = 5,
-        .at = {at, along ? at - 1 : at, along ? at + 1 : at, across ? at - w : at,
-               across ? at + w : at},
+        // beyond a rim the particle itself, with the weight 0
+        .at = {at, at - (column > 0), at + (column + 1 < w), row > 0 ? at - w : at,
+               row + 1 < bending->rows ? at + w : at},
+        .ends = {1, 2, 3, 4},
         .weights = {{-2 * p, p, p, 0, 0}, {-2 * q, 0, 0, q, q}},
         .moduli = {.warp = area * (moduli->warp - (rim ? other / moduli->weft : 0)),
                    .weft = area * (moduli->weft - (rim ? other / moduli->warp : 0)),
@@ -290,6 +340,7 @@ static void cell_stencil(const struct cs_bending *bending, const struct cs_modul
         return;
     *stencil = (struct cs_bending_stencil){.n = 4,
                                            .at = {at, at + 1, at + w, at + w + 1},
+                                           .ends = {0, 3, 2, 1},
                                            .weights = {{0}, {0}, {k, -k, -k, k}},
                                            .moduli = {.shear = area * moduli->shear}};
 }
@@ -304,13 +355,17 @@ void cs_bending_stencil_at(const struct cs_bending *bending, const struct cs_mod
         cell_stencil(bending, moduli, s - bending->count, stencil);
         return;
     }
+    // of a mesh: as stored
     const double area = bending->areas[s];
     *stencil =
         (struct cs_bending_stencil){.n = CS_BENDING_POINTS,
+                                    .ends = {0, 1, 0, 2},
                                     .moduli = {area * moduli->warp, area * moduli->weft,
                                                area * moduli->coupling, area * moduli->shear}};
     for (size_t j = 0; j < CS_BENDING_POINTS; j++)
         stencil->at[j] = bending->first + bending->points[CS_BENDING_POINTS * (size_t)s + j];
     memcpy(stencil->weights, bending->weights + CS_BENDING_WEIGHTS * (size_t)s,
            sizeof stencil->weights);
+    if (bending->rest)
+        memcpy(stencil->rest, bending->rest + 3 * (size_t)s, sizeof stencil->rest);
 }

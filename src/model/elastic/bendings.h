@@ -1,5 +1,6 @@
-/* bendings.h - linear bending of sheets that are flat at rest: curvature as sums of positions
- * with constant weights.
+/* bendings.h - bending of sheets: curvature as sums of positions with constant weights. Those
+ * of a mesh that is curved at rest are of the triangles beyond the edges unfolded into the
+ * plane of the triangle; its energy, and damping, are in normal_curvature.h.
  *
  * A stencil has weights b_aj of its particles j for each curvature a of XX, YY, 2 XY in the
  * cloth's axes, and an area A. With the moduli D (scene/elastic_keys.h):
@@ -30,13 +31,25 @@ struct cs_bending {
     uint32_t body, first, count; /* of particles */
     uint32_t columns, rows;      /* of a grid; 0: a mesh */
     uint32_t n;                  /* stencils: of a grid, one a particle and one a cell */
+    bool damped;                 /* by its damping, or by a ramp of it */
     double spacing[2];           /* m, of a grid */
-    double *moments;             /* (9, count) of a grid, (9, n) of a mesh: A D k in N m2 */
     /* of a mesh */
-    uint32_t *points;         /* (n, 6) particles within the body; unused: the first again */
-    double *weights, *areas;  /* (n, 3, 6) in 1/m2, (n) in m2 */
+    double *moments;         /* (9, n): A D k in N m2 */
+    uint32_t *points;        /* (n, 6) particles within the body; unused: the first again */
+    double *weights, *areas; /* (n, 3, 6) in 1/m2, (n) in m2 */
+    double *rest;            /* (n, 3) in 1/m, where it is curved at rest; NULL: flat */
+    double *forces;          /* (n, 6, 3) N, on the points along normals; NULL: none act */
+    /* of a mesh, and with forces of a grid */
     uint32_t *incident_begin; /* (count + 1) */
     uint32_t *incident;       /* stencils at a particle, ascending: 8 t + its place */
+};
+
+/* The part of the matrix along normals; arrays are NULL where no forces act along them. */
+struct cs_normal_matrix {
+    double *blocks;   /* (6, particles) diagonal blocks of the matrix prepared last */
+    double *x, *kept; /* of the one kept last: (3, particles) m, and its diagonal blocks */
+    double ck, cd;
+    bool psd;
 };
 
 /* All bendings of a system, whose arena owns the arrays. */
@@ -48,16 +61,18 @@ struct cs_bendings {
     double *blocks;           /* (particles) the diagonal in the matrix prepared last */
     struct cs_moduli *moduli; /* (n) of the two above */
     double kept;              /* -ck of the matrix kept last */
+    struct cs_normal_matrix normal;
 };
 
 /* A stencil with its weights; D_ab times the area: 11, 22, 12, 33. */
 struct cs_bending_stencil {
     uint32_t n, at[CS_BENDING_POINTS]; /* particles of the system */
-    double weights[3][CS_BENDING_POINTS];
+    uint32_t ends[4];                  /* points of two differences across it: from, to */
+    double weights[3][CS_BENDING_POINTS], rest[3];
     struct cs_moduli moduli;
 };
 
-/* Builds system->bendings. Fails with CS_ERR_SCENE for a mesh that is not flat. */
+/* Builds system->bendings. CS_ERR_MEMORY. */
 enum cs_status cs_bendings_build(struct cs_system *system, struct cs_error *error);
 
 /* Stencil s of a body. */

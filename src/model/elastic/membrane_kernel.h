@@ -22,10 +22,10 @@ struct membrane_corners {
 /* Input and output of a kernel. */
 struct membrane_rows {
     struct membrane_corners x, v, dx, dv;
-    const double *rest;     /* of the first triangle */
-    size_t rest_stride;     /* 0: all have the rest shape of the first */
-    const double *tensions; /* of the matrix: three rows, every tension_step-th number */
-    size_t tensions_stride, tension_step;
+    const double *rest; /* of the first triangle */
+    size_t rest_stride;
+    const double *tensions; /* of the matrix: three rows */
+    size_t tensions_stride;
     double *out; /* nine rows: forces on corners 0, 1, 2 */
     size_t out_stride, count;
 };
@@ -42,8 +42,8 @@ struct membrane_vector {
     double x, y, z;
 };
 
-/* Forms of a kernel: rest shapes of a mesh, one for each triangle; with damping. */
-enum membrane_form { MEMBRANE_LISTED = 1, MEMBRANE_DAMPED = 2 };
+/* Form of a kernel: with damping. */
+enum membrane_form { MEMBRANE_DAMPED = 1 };
 
 /* Differences of positions and velocities over the edges of a triangle. */
 struct membrane_element {
@@ -97,15 +97,11 @@ CS_INLINE void membrane_tension_of_stress(const double *rest, size_t stride, con
                rest[(6 + i) * stride] * s[2];
 }
 
-/* t = K q; `listed` is the constant that tells a mesh from a grid. */
+/* t = K q of triangle i. */
 CS_INLINE void membrane_tension(const struct membrane_law *law,
                                 const struct membrane_rows *rows, size_t i, const double q[3],
-                                const bool listed, double t[3]) {
+                                double t[3]) {
     double s[3];
-    if (!listed) {
-        membrane_tension_by_k(law->K, q, t);
-        return;
-    }
     membrane_stress(&law->moduli, rows->rest + i, rows->rest_stride, q, s);
     membrane_tension_of_stress(rows->rest + i, rows->rest_stride, s, t);
 }
@@ -126,19 +122,17 @@ CS_INLINE void membrane_store(const struct membrane_rows *rows, size_t i,
 CS_INLINE void membrane_state(const struct membrane_law *law, const struct membrane_rows *rows,
                               size_t i, const unsigned form, struct membrane_element *edges,
                               double t[3]) {
-    const bool listed = form & MEMBRANE_LISTED;
     double q[3];
     membrane_edges(&rows->x, i, edges->d);
     if (form & MEMBRANE_DAMPED)
         membrane_edges(&rows->v, i, edges->w);
     for (size_t k = 0; k < 3; k++) {
-        const double rest = rows->rest[listed ? (CS_MEMBRANE_P + k) * rows->rest_stride + i
-                                              : CS_MEMBRANE_P + k];
+        const double rest = rows->rest[(CS_MEMBRANE_P + k) * rows->rest_stride + i];
         q[k] = law->elastic * (membrane_dot(edges->d[k], edges->d[k]) - rest);
         if (form & MEMBRANE_DAMPED)
             q[k] += law->damping * (2 * membrane_dot(edges->d[k], edges->w[k]));
     }
-    membrane_tension(law, rows, i, q, listed, t);
+    membrane_tension(law, rows, i, q, t);
 }
 
 /* The force of triangle i: r = t d. */
@@ -170,7 +164,7 @@ CS_INLINE void membrane_jvp(const struct membrane_law *law, const struct membran
             q[k] += law->damping *
                     (2 * (membrane_dot(dd[k], at.w[k]) + membrane_dot(at.d[k], dw[k])));
     }
-    membrane_tension(law, rows, i, q, form & MEMBRANE_LISTED, dt);
+    membrane_tension(law, rows, i, q, dt);
     for (size_t k = 0; k < 3; k++)
         r[k] = (struct membrane_vector){dt[k] * at.d[k].x + t[k] * dd[k].x,
                                         dt[k] * at.d[k].y + t[k] * dd[k].y,
@@ -181,8 +175,7 @@ CS_INLINE void membrane_jvp(const struct membrane_law *law, const struct membran
 /* Its part of A p, for the vector p in dx: r = -(K 2 elastic d.u) d - t u with the stored
  * tensions t. Edges pull as in a force, so the sign is in u. */
 CS_INLINE void membrane_product(const struct membrane_law *law,
-                                const struct membrane_rows *rows, size_t i,
-                                const unsigned form) {
+                                const struct membrane_rows *rows, size_t i) {
     struct membrane_vector d[3], u[3], r[3];
     double q[3], dt[3];
     membrane_edges(&rows->x, i, d);
@@ -191,9 +184,9 @@ CS_INLINE void membrane_product(const struct membrane_law *law,
         u[k] = (struct membrane_vector){-u[k].x, -u[k].y, -u[k].z};
     for (size_t k = 0; k < 3; k++)
         q[k] = law->elastic * (2 * membrane_dot(d[k], u[k]));
-    membrane_tension(law, rows, i, q, form & MEMBRANE_LISTED, dt);
+    membrane_tension(law, rows, i, q, dt);
     for (size_t k = 0; k < 3; k++) {
-        const double t = rows->tensions[k * rows->tensions_stride + i * rows->tension_step];
+        const double t = rows->tensions[k * rows->tensions_stride + i];
         r[k] =
             (struct membrane_vector){dt[k] * d[k].x + t * u[k].x, dt[k] * d[k].y + t * u[k].y,
                                      dt[k] * d[k].z + t * u[k].z};

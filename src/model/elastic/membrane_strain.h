@@ -1,4 +1,4 @@
-/* membrane_strain.h - strains of membranes. */
+/* membrane_strain.h - strains and stresses of membranes. */
 #ifndef CS_MEMBRANE_STRAIN_H
 #define CS_MEMBRANE_STRAIN_H
 
@@ -12,5 +12,8 @@ double cs_membranes_largest_strain(const struct cs_system *system, const double 
 /* out (n): the principal strain of largest magnitude among a particle's triangles, with its
  * sign, where it is larger than what is there. */
 void cs_membranes_particle_strain(const struct cs_system *system, const double *x, double *out);
+/* out (n): likewise of the elastic stress of St. Venant and Kirchhoff, in N per m of the sheet
+ * at rest; 0 outside membranes. */
+void cs_membranes_particle_stress(const struct cs_system *system, const double *x, double *out);
 
 #endif

@@ -6,6 +6,7 @@
  * / (m T) acts. */
 #include "model/event/event_state.h"
 
+#include "model/system/shape_clusters.h"
 #include "scene/shape.h"
 
 #include <math.h>
@@ -210,4 +211,5 @@ void cs_event_refresh_springs(struct cs_system *system) {
             damping[runs[r].first + i] = law->damping;
         }
     }
+    cs_shape_clusters_refresh(system);
 }

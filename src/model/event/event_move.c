@@ -10,6 +10,7 @@
 #include "scene/body_pairs.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* No shift, no spin, the unit rotation, for ever. */
@@ -20,7 +21,8 @@ bool cs_event_moves_any(const struct cs_scene *scene) {
     if (cs_scene_has_key_frames(scene))
         return true;
     for (uint32_t e = 0; e < scene->events.n; e++)
-        if (cs_scene_events(scene)[e].move.present && scene->colliders.n > 0)
+        if ((cs_scene_events(scene)[e].move.present && scene->colliders.n > 0) ||
+            cs_event_grows(cs_scene_events(scene) + e))
             return true;
     return false;
 }
@@ -131,6 +133,30 @@ void cs_event_follow_move(struct cs_system *system, uint32_t event, double t) {
         motion->shift_begin[c] = state->origin[c] + state->chord_from[c];
         motion->shift_end[c] = state->origin[c] + state->chord_to[c];
         motion->rate[c] = state->rate[c];
+    }
+}
+
+void cs_event_follow_growth(struct cs_system *system) {
+    const struct cs_events *events = system->events;
+    for (uint32_t k = 0; system->motions && k < system->scene->colliders.n; k++) {
+        system->motions[k].radius_changes = false;
+        system->motions[k].growth = 0;
+    }
+    for (uint32_t e = 0; system->motions && e < events->scene.events.n; e++) {
+        const struct cs_event *event = cs_scene_events(&events->scene) + e;
+        const struct cs_event_state *state = events->states + e;
+        if (!state->active || !cs_event_grows(event))
+            continue;
+        const char *index = strchr(event->ramp.key, '[') + 1;
+        struct cs_collider_motion *motion = system->motions + strtoul(index, NULL, 10);
+        const double rate = (state->last - state->first) / (state->end - state->begin);
+        motion->growth += rate;
+        if (!strstr(event->ramp.key, ".radius"))
+            continue;
+        motion->radius_changes = true;
+        motion->t_growth = state->begin;
+        motion->radius_begin = state->first;
+        motion->radius_rate = rate;
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/serialise.h"
 #include "model/system/particle_system.h"
+#include "scene/event_key.h"
 
 /* Visibility: the particles that are seen through a rectangle from a
  * viewpoint.
@@ -157,7 +158,7 @@ void cs_event_set_value(struct cs_system *system, uint32_t event, double t);
 void cs_event_sum_pushes(struct cs_system *system);
 
 /* Recomputes stiffness and damping of the springs from the scene's values: those of the runs
- * that forces use, and those of the list in the view. */
+ * that forces use, and those of the list in the view; and alpha and beta of clusters. */
 void cs_event_refresh_springs(struct cs_system *system);
 
 /* Events that move colliders; for events.c and event_apply.c. */
@@ -177,6 +178,9 @@ void cs_event_end_move(struct cs_system *system, uint32_t event, double t);
 /* Makes the collider follow the chord of the event that begins at t; call it after
  * cs_event_next_leg. Its rotation up to t is stored first. */
 void cs_event_follow_move(struct cs_system *system, uint32_t event, double t);
+
+/* Makes colliders follow the ramps of their radius and thickness that are active. */
+void cs_event_follow_growth(struct cs_system *system);
 
 /* Writes the motion of all colliders to the view: velocity, spin, and the origin that makes
  * origin + t velocity the centre at time t. */
@@ -215,6 +219,11 @@ struct cs_event_path {
 };
 
 struct cs_event_path cs_event_path_of(const struct cs_event *event);
+
+/* True for a ramp of a number that only pictures show: it has no times here. */
+static inline bool cs_event_is_picture(const struct cs_event *event) {
+    return event->ramp.present && cs_event_key_is_picture(event->ramp.key);
+}
 
 /* An upper bound of the number of times: two per event, and one per chord. */
 size_t cs_event_times_count(const struct cs_scene *scene);

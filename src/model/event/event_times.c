@@ -71,6 +71,8 @@ static uint32_t collect(const struct cs_scene *scene, double *times) {
     const struct cs_event *list = cs_scene_events(scene);
     uint32_t n = 0;
     for (uint32_t e = 0; e < scene->events.n; e++) {
+        if (cs_event_is_picture(list + e))
+            continue;
         times[n++] = cs_event_time_snap(scene, begin_of(list + e));
         times[n++] = cs_event_time_snap(scene, end_of(list + e));
         const struct cs_event_path path = cs_event_path_of(list + e);
@@ -85,14 +87,18 @@ void cs_event_times_fill(struct cs_events *events) {
     const struct cs_event *list = cs_scene_events(&events->scene);
     const uint32_t n = collect(&events->scene, events->times);
     double *times = events->times;
+    /* none: the first segment has no end */
+    if (n == 0)
+        times[0] = HUGE_VAL;
     qsort(times, n, sizeof *times, compare);
     events->n_times = 1;
     for (uint32_t k = 1; k < n; k++)
         if (times[k] - times[events->n_times - 1] > CS_EVENT_SAME)
             times[events->n_times++] = times[k];
     for (uint32_t e = 0; e < events->scene.events.n; e++) {
-        events->states[e].begin = entry_of(events, begin_of(list + e));
-        events->states[e].end = entry_of(events, end_of(list + e));
+        const bool never = cs_event_is_picture(list + e);
+        events->states[e].begin = never ? (double)NAN : entry_of(events, begin_of(list + e));
+        events->states[e].end = never ? (double)NAN : entry_of(events, end_of(list + e));
     }
 }
 

@@ -155,7 +155,7 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
     for (uint32_t e = 0; e < events->scene.events.n && !error->status; e++) {
         /* ramps point into the copy of the scene, which they may change */
         struct cs_event_key key;
-        if (list[e].ramp.present &&
+        if (list[e].ramp.present && !cs_event_is_picture(list + e) &&
             !cs_event_key_find(&events->scene, list[e].ramp.key, &key, error))
             events->states[e].value = key.value;
     }
@@ -257,6 +257,7 @@ static void end_segment(struct cs_system *system, double t) {
         if (event->move.present)
             cs_event_follow_move(system, e, t);
     }
+    cs_event_follow_growth(system);
     cs_event_show_moves(system);
     cs_event_find_held(system, t);
     list_pinned(system);
@@ -294,9 +295,15 @@ void cs_events_move_values(struct cs_system *system, double t) {
 double cs_events_speed(const struct cs_system *system) {
     const struct cs_events *events = system->events;
     double squared = 0;
+    double growth = 0;
     for (uint32_t e = 0; e < events->scene.events.n; e++) {
-        const double *rate = events->states[e].rate;
+        const struct cs_event_state *state = events->states + e;
+        const double *rate = state->rate;
         squared = fmax(squared, rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]);
+        if (state->active && state->value &&
+            cs_event_grows(cs_scene_events(&events->scene) + e))
+            growth =
+                fmax(growth, fabs((state->last - state->first) / (state->end - state->begin)));
     }
-    return sqrt(squared) + fmax(cs_event_angular_speed(system), events->held_speed);
+    return sqrt(squared) + growth + fmax(cs_event_angular_speed(system), events->held_speed);
 }

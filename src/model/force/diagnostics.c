@@ -165,17 +165,21 @@ static void take_largest(const struct cs_system *system, const struct cs_gershgo
     }
 }
 
+/* Adds the bounds of one force: at a state, or those for the whole run. */
+static void add_term(const struct cs_system *system, const struct cs_term *term,
+                     const struct cs_eval *at, const struct cs_gershgorin *sums) {
+    if (at && term->add_state_bound)
+        term->add_state_bound(system, at, sums);
+    else if (term->add_bound)
+        term->add_bound(system, sums);
+}
+
 void cs_spectral_bounds_at(const struct cs_system *system, const struct cs_eval *at,
                            double *work, double *omega, double *delta) {
     const struct cs_gershgorin sums = start_sums(system, work);
     double squared;
-    for (uint32_t k = 0; k < system->n_terms; k++) {
-        const struct cs_term *term = system->terms[k];
-        if (at && term->add_state_bound)
-            term->add_state_bound(system, at, &sums);
-        else if (term->add_bound)
-            term->add_bound(system, &sums);
-    }
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        add_term(system, system->terms[k], at, &sums);
     take_largest(system, &sums, &squared, delta);
     *omega = sqrt(squared);
 }
@@ -200,23 +204,35 @@ bool cs_spectral_bounds_depend_on_state(const struct cs_system *system) {
     return false;
 }
 
-void cs_spectral_bounds_rate(const struct cs_system *system, const struct cs_eval *at,
-                             double *work, double *omega, double *delta) {
-    double squared;
-    if (any_varies(system)) {
-        cs_spectral_bounds_at(system, at, work, omega, delta);
-        *omega = fmax(*omega, system->view.omega);
-        *delta = fmax(*delta, system->view.delta);
-        return;
+/* Takes friction as far as it limits the step of an explicit method. sums: of contact alone,
+ * where a damper has contact.damping times the stiffness, and friction the rest. */
+static void limit_friction(const struct cs_system *system, const struct cs_gershgorin *sums) {
+    const double tau = system->scene->contact.damping;
+    for (size_t i = 0; i < system->view.n; i++) {
+        const double k = sums->stiffness[i];
+        const double most = tau * k + CS_FRICTION_RATE_RATIO * sqrt(k * system->mass[i]);
+        sums->damping[i] = fmin(sums->damping[i], most);
     }
+}
+
+void cs_spectral_bounds_rate(const struct cs_system *system, const struct cs_eval *at,
+                             bool is_explicit, double *work, double *omega, double *delta) {
     const struct cs_gershgorin sums = start_sums(system, work);
+    const bool varies = any_varies(system);
+    double squared;
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (has_rate(system->terms[k]))
-            system->terms[k]->add_state_bound(system, at, &sums);
+            add_term(system, system->terms[k], at, &sums);
+    if (is_explicit)
+        limit_friction(system, &sums);
+    for (uint32_t k = 0; k < system->n_terms && varies; k++)
+        if (!has_rate(system->terms[k]))
+            add_term(system, system->terms[k], at, &sums);
     take_largest(system, &sums, &squared, delta);
+    const double least = system->view.omega;
     // triangle inequality: the bounds of omega^2 and of delta add up
-    *omega = sqrt(system->view.omega * system->view.omega + squared);
-    *delta += system->view.delta;
+    *omega = varies ? fmax(sqrt(squared), least) : sqrt(least * least + squared);
+    *delta = varies ? fmax(*delta, system->view.delta) : *delta + system->view.delta;
 }
 
 void cs_spectral_bounds_set(struct cs_system *system, double *work) {

@@ -11,10 +11,12 @@
 #ifndef CS_TERM_LIST_MORE
 #define CS_TERM_LIST_MORE(X)
 #endif
+// the formatter would move the list at each run
+// clang-format off
 #define CS_TERM_LIST(X)                                                                        \
-    X(springs) X(membrane) X(bending)                                                          \
-    X(gravity)                                                                                 \
-    X(drag) X(wind) X(push) X(seams) X(contact) X(pairs) X(cover) CS_TERM_LIST_MORE(X)
+    X(springs) X(membrane) X(bending) X(gravity) X(drag) X(wind) X(push) X(seams) X(contact)   \
+    X(pairs) X(cover) CS_TERM_LIST_MORE(X)
+// clang-format on
 
 #define X(name) extern const struct cs_term cs_term_##name;
 CS_TERM_LIST(X)

@@ -4,7 +4,7 @@
  * State of a particle: free and in front; pushed, if a projection moved it in this commit;
  * resting, if that projection stopped it completely on a collider at rest (resting_on is set);
  * sticking, if static friction holds it from the next step on. A push without rest clears
- * resting_on, and so does a commit without contact. */
+ * resting_on, as does a commit without contact. */
 #include "model/post_step/contact_projection.h"
 
 #include "base/vec3.h"

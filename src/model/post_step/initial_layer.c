@@ -137,7 +137,7 @@ static void measure_pairs(const struct search *search, struct interface *at) {
 
 /* Sets all but a and b. */
 static void measure(const struct search *search, struct interface *at) {
-    const struct cs_collider *collider = cs_scene_obstacle(search->system->scene, at->b);
+    const struct cs_collider *collider = cs_scene_collider_at(search->system->scene, at->b);
     *at = (struct interface){.a = at->a, .b = at->b};
     if (collider && !collider->mesh.present)
         measure_collider(search, at);
@@ -161,7 +161,7 @@ static bool find(const struct search *search, struct interface *at) {
     double friction;
     for (uint32_t a = 0; a < scene->bodies.n; a++)
         for (uint32_t b = a + 1; b < scene->bodies.n + scene->colliders.n; b++) {
-            const struct cs_collider *collider = cs_scene_obstacle(scene, b);
+            const struct cs_collider *collider = cs_scene_collider_at(scene, b);
             if (collider && !collider->mesh.present
                     ? !search->system->collider_params
                     : !pairs || !cs_scene_bodies_collide(scene, a, b, &friction))

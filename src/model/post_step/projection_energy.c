@@ -9,6 +9,99 @@
 #include <math.h>
 #include <string.h>
 
+/* Solves A u = 0 at the particles that were not pushed, by conjugate
+ * gradients restricted to them: residuals and directions are 0 elsewhere (Baraff, Witkin 1998,
+ * sec. 5.3). */
+
+/* Relative residual, and the largest number of iterations. The response shapes a correction
+ * whose energy is checked afterwards, so that few digits suffice. Chosen by trial. */
+#define RTOL 1e-2
+
+enum { ITERATIONS_MAX = 300 };
+
+/* Prepares the solver; nothing for a system without springs. The arena owns its memory.
+ * CS_ERR_MEMORY. */
+static enum cs_status response_init(struct cs_elastic_response *response,
+                                    struct cs_system *system, struct cs_arena *arena,
+                                    struct cs_error *error) {
+    *response = (struct cs_elastic_response){0};
+    if (system->springs.n == 0 || cs_temporary_pins_init(&response->pins, system, arena, error))
+        return error->status;
+    return cs_linear_init(&response->linear, system, arena, error);
+}
+
+/* Returns whether springs are so stiff for a step of dt s that pushing a particle without its
+ * neighbours may store more energy than the step brought: dt omega > 1. */
+static bool response_is_needed(const struct cs_elastic_response *response, double dt) {
+    const struct cs_system *system = response->linear.system;
+    return system && dt * system->view.omega > 1;
+}
+
+/* Sets a vector to 0 at pinned particles; pushed ones are pinned at that time. */
+static void clear_pinned(const struct cs_system *system, double *p) {
+    const size_t n = system->view.n;
+    for (uint32_t k = 0; k < system->n_pinned; k++)
+        for (size_t c = 0; c < 3; c++)
+            p[c * n + system->pinned[k]] = 0;
+}
+
+/* Sets u to 0 at particles that were not pushed: the start of the iteration. */
+static void clear_free(const struct cs_system *system, const bool *pushed, double *u) {
+    const size_t n = system->view.n;
+    for (size_t i = 0; i < n; i++)
+        if (!pushed[i])
+            u[i] = u[n + i] = u[2 * n + i] = 0;
+}
+
+/* Preconditioned conjugate gradients (Saad 2003) from the pushes in u. The first residual -A u
+ * is not 0 at pushed particles either. The preconditioned one is, because clear_pinned follows
+ * the preconditioner; all directions are therefore 0 there too. */
+static void solve(struct cs_elastic_response *response, double *u) {
+    struct cs_linear *linear = &response->linear;
+    const struct cs_system *system = linear->system;
+    const size_t n3 = 3 * (size_t)system->view.n;
+    double *r = linear->r, *z = linear->z, *p = linear->p, *q = linear->q;
+    cs_linear_mul(linear, u, q);
+    cs_vector_kernels.linear_sum(n3, -1, q, 0, q, r);
+    double norm = sqrt(cs_vector_dot(n3, r, r)), before = 0;
+    const double goal = RTOL * norm;
+    for (int k = 0; k < ITERATIONS_MAX && norm > goal; k++) {
+        cs_linear_precondition(linear, r, norm, z);
+        clear_pinned(system, z);
+        const double now = cs_vector_dot(n3, r, z);
+        if (!(now > 0))
+            break;
+        cs_vector_kernels.linear_sum(n3, 1, z, k > 0 ? now / before : 0, k > 0 ? p : z, p);
+        before = now;
+        cs_linear_mul(linear, p, q);
+        const double curvature = cs_vector_dot(n3, p, q);
+        if (!(curvature > 0))
+            break;
+        cs_vector_kernels.linear_sum(n3, 1, u, now / curvature, p, u);
+        cs_vector_kernels.linear_sum(n3, 1, r, -now / curvature, q, r);
+        norm = sqrt(cs_vector_dot(n3, r, r));
+        response->iterations++;
+    }
+}
+
+/* u (3,n) in m holds the pushes of the particles marked in pushed (n), and anything elsewhere.
+ * Sets the other free particles to where they would be, had the pushes been forces in an
+ * implicit Euler step of dt: the u with the smallest u^T A u / 2 for given pushes,
+ *
+ *   A = M + dt D + dt^2 K   at the state (x, v) of *matrix
+ *
+ * by conjugate gradients. A direction without stiffness, or 300 iterations, end it early; u is
+ * then between start and solution. Pinned particles do not move. */
+static void response_solve(struct cs_elastic_response *response, const struct cs_matrix *matrix,
+                           const bool *pushed, double *u) {
+    cs_temporary_pins_set(&response->pins, pushed);
+    cs_linear_setup(&response->linear, matrix);
+    response->solves++;
+    clear_free(response->linear.system, pushed, u);
+    solve(response, u);
+    cs_temporary_pins_clear(&response->pins, pushed);
+}
+
 /* Fraction of the energy lost since first contact that one commit may return, to lift particles
  * that are still behind a surface. Chosen by trial. */
 #define GIVEN_BACK 0.01
@@ -136,7 +229,7 @@ static void apply_elastic_response(struct cs_projection_energy *balance,
                                      .psd = true};
     cs_vector_kernels.linear_sum(3 * n, 1, blow->corrected, -1, blow->x, u);
     balance->velocity_per_push = find_rate(blow, n, u);
-    cs_elastic_response_solve(&balance->elastic_response, &matrix, blow->is_pushed, u);
+    response_solve(&balance->elastic_response, &matrix, blow->is_pushed, u);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++) {
             if (blow->is_pushed[i])
@@ -211,8 +304,7 @@ bool cs_projection_energy_limit(struct cs_projection_energy *balance,
     struct cs_energy_with_scale found = energy_after(balance, blow);
     if (found.total > energy_allowed(balance)) {
         const double allowed = find_allowed(balance, blow);
-        if (found.total > allowed &&
-            cs_elastic_response_is_needed(&balance->elastic_response, blow->dt)) {
+        if (found.total > allowed && response_is_needed(&balance->elastic_response, blow->dt)) {
             apply_elastic_response(balance, blow);
             found = energy_after(balance, blow);
         }
@@ -242,9 +334,8 @@ enum cs_status cs_projection_energy_init(struct cs_projection_energy *balance,
         (struct cs_projection_energy){.system = system, .energy_scale = gravity_scale(system)};
     balance->work =
         cs_arena_alloc_array(arena, 3 * (size_t)system->view.n, sizeof(double), error);
-    return error->status
-               ? error->status
-               : cs_elastic_response_init(&balance->elastic_response, system, arena, error);
+    return error->status ? error->status
+                         : response_init(&balance->elastic_response, system, arena, error);
 }
 
 void cs_projection_energy_serialise(struct cs_projection_energy *balance,
@@ -256,85 +347,4 @@ void cs_projection_energy_serialise(struct cs_projection_energy *balance,
     CS_SERIALISER(record, balance->n_scaled_commits);
     CS_SERIALISER(record, balance->elastic_response.solves);
     CS_SERIALISER(record, balance->elastic_response.iterations);
-}
-
-/* Solves A u = 0 at the particles that were not pushed, by conjugate
- * gradients restricted to them: residuals and directions are 0 elsewhere (Baraff, Witkin 1998,
- * sec. 5.3). */
-
-/* Relative residual, and the largest number of iterations. The response shapes a correction
- * whose energy is checked afterwards, so that few digits suffice. Chosen by trial. */
-#define RTOL 1e-2
-
-enum { ITERATIONS_MAX = 300 };
-
-enum cs_status cs_elastic_response_init(struct cs_elastic_response *response,
-                                        struct cs_system *system, struct cs_arena *arena,
-                                        struct cs_error *error) {
-    *response = (struct cs_elastic_response){0};
-    if (system->springs.n == 0 || cs_temporary_pins_init(&response->pins, system, arena, error))
-        return error->status;
-    return cs_linear_init(&response->linear, system, arena, error);
-}
-
-bool cs_elastic_response_is_needed(const struct cs_elastic_response *response, double dt) {
-    const struct cs_system *system = response->linear.system;
-    return system && dt * system->view.omega > 1;
-}
-
-/* Sets a vector to 0 at pinned particles; pushed ones are pinned at that time. */
-static void clear_pinned(const struct cs_system *system, double *p) {
-    const size_t n = system->view.n;
-    for (uint32_t k = 0; k < system->n_pinned; k++)
-        for (size_t c = 0; c < 3; c++)
-            p[c * n + system->pinned[k]] = 0;
-}
-
-/* Sets u to 0 at particles that were not pushed: the start of the iteration. */
-static void clear_free(const struct cs_system *system, const bool *pushed, double *u) {
-    const size_t n = system->view.n;
-    for (size_t i = 0; i < n; i++)
-        if (!pushed[i])
-            u[i] = u[n + i] = u[2 * n + i] = 0;
-}
-
-/* Preconditioned conjugate gradients (Saad 2003) from the pushes in u. The first residual -A u
- * is not 0 at pushed particles either. The preconditioned one is, because clear_pinned follows
- * the preconditioner; all directions are therefore 0 there too. */
-static void solve(struct cs_elastic_response *response, double *u) {
-    struct cs_linear *linear = &response->linear;
-    const struct cs_system *system = linear->system;
-    const size_t n3 = 3 * (size_t)system->view.n;
-    double *r = linear->r, *z = linear->z, *p = linear->p, *q = linear->q;
-    cs_linear_mul(linear, u, q);
-    cs_vector_kernels.linear_sum(n3, -1, q, 0, q, r);
-    double norm = sqrt(cs_vector_dot(n3, r, r)), before = 0;
-    const double goal = RTOL * norm;
-    for (int k = 0; k < ITERATIONS_MAX && norm > goal; k++) {
-        cs_linear_precondition(linear, r, norm, z);
-        clear_pinned(system, z);
-        const double now = cs_vector_dot(n3, r, z);
-        if (!(now > 0))
-            break;
-        cs_vector_kernels.linear_sum(n3, 1, z, k > 0 ? now / before : 0, k > 0 ? p : z, p);
-        before = now;
-        cs_linear_mul(linear, p, q);
-        const double curvature = cs_vector_dot(n3, p, q);
-        if (!(curvature > 0))
-            break;
-        cs_vector_kernels.linear_sum(n3, 1, u, now / curvature, p, u);
-        cs_vector_kernels.linear_sum(n3, 1, r, -now / curvature, q, r);
-        norm = sqrt(cs_vector_dot(n3, r, r));
-        response->iterations++;
-    }
-}
-
-void cs_elastic_response_solve(struct cs_elastic_response *response,
-                               const struct cs_matrix *matrix, const bool *pushed, double *u) {
-    cs_temporary_pins_set(&response->pins, pushed);
-    cs_linear_setup(&response->linear, matrix);
-    response->solves++;
-    clear_free(response->linear.system, pushed, u);
-    solve(response, u);
-    cs_temporary_pins_clear(&response->pins, pushed);
 }

@@ -13,7 +13,7 @@
 /* One pass of the strain limit over a grid, vectorised.
  *
  * A pass goes along all rows, each from its first spring to its last, then down: all springs
- * from the first row to the second, and so on. A backward pass is the exact reverse. Springs
+ * from the first row to the second, etc. A backward pass is the exact reverse. Springs
  * that are handled side by side share no particle (different rows, or all springs between two
  * rows), so that the width of vectors does not change a bit of the result. */
 

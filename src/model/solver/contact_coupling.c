@@ -66,6 +66,68 @@ enum cs_status cs_coupling_init(struct cs_hierarchy *hierarchy, struct cs_arena 
     return error->status;
 }
 
+/* --- the blocks --- */
+/* The four points of a pair; numbers from view.n on belong to colliders. */
+static const uint32_t *points_of(const struct cs_pairs *pairs, uint32_t chunk, size_t pair) {
+    return pairs->solver_matrix.contacts->chunks[chunk].points[pair];
+}
+
+/* block = along g g^T + rub C, with C = `of` the friction block. Component by component, for
+ * speed. */
+static void set_block(const double g[3], double along, double rub, const double of[6],
+                      double block[6]) {
+    block[0] = along * (g[0] * g[0]) + rub * of[0];
+    block[1] = along * (g[0] * g[1]) + rub * of[1];
+    block[2] = along * (g[0] * g[2]) + rub * of[2];
+    block[3] = along * (g[1] * g[1]) + rub * of[3];
+    block[4] = along * (g[1] * g[2]) + rub * of[4];
+    block[5] = along * (g[2] * g[2]) + rub * of[5];
+}
+
+/* Sets both blocks of the terms. With gradients g_k, normal stiffness c and friction block F:
+ *
+ *   diagonal     c g_v g_v^T + w_v^2 F      at the vertex v
+ *   unit weight  c g_m g_m^T / w_m^2 + F    at the vertex m of the largest weight
+ *
+ * Where the distance is not bent, g_k = w_k n with one normal n, and both agree up to w_v^2. */
+static void set_blocks(double g[4][3], const struct cs_pair_matrix_terms *part,
+                       struct cs_pair_vertex_terms *share) {
+    const double *weight = part->weight, own = weight[share->vertex];
+    uint32_t most = 0;
+    for (uint32_t k = 1; k < 4; k++)
+        most = weight[k] * weight[k] > weight[most] * weight[most] ? k : most;
+    memcpy(share->weight, weight, sizeof share->weight);
+    set_block(g[share->vertex], part->gradient_weight, own * own, part->block,
+              share->diagonal_block);
+    set_block(g[most], part->gradient_weight / (weight[most] * weight[most]), 1, part->block,
+              share->unit_weight_block);
+}
+
+/* Adds the second derivative of the distance, which an exact matrix has, to the diagonal block.
+ */
+static void add_turn(const struct cs_pair_hessian *full, struct cs_pair_vertex_terms *share) {
+    static const uint32_t row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    const uint32_t first = 3 * share->vertex;
+    for (int e = 0; e < 6; e++)
+        share->diagonal_block[e] += full->m[first + row[e]][first + column[e]];
+}
+
+/* Reads the terms of a pair, of either kind of stored matrix, for one of its vertices. */
+static void read_vertex(const struct cs_pairs *pairs, const struct cs_pair_vertex *corner,
+                        struct cs_pair_vertex_terms *share) {
+    const struct cs_pair_matrix *kept = &pairs->solver_matrix;
+    struct cs_pair_matrix_terms part;
+    double g[4][3];
+    memcpy(share->points, points_of(pairs, corner->chunk, corner->pair), sizeof share->points);
+    share->vertex = corner->vertex;
+    cs_pair_factors_read(kept->contacts->chunks[corner->chunk].kind,
+                         kept->chunks[corner->chunk].factors + corner->pair / CS_PAIR_LANES,
+                         (int)(corner->pair % CS_PAIR_LANES), g, &part);
+    set_blocks(g, &part, share);
+    if (kept->exact)
+        add_turn(kept->chunks[corner->chunk].hessians + corner->pair, share);
+}
+
 /* --- from pairs --- */
 
 /* Tells whether all four points of a pair are particles, not vertices of a collider. */
@@ -137,7 +199,7 @@ static void add_springs(const struct cs_coupling *coupling,
 static void add_corner(const struct cs_coupling *coupling, struct cs_extra_springs_chunk *piece,
                        const struct cs_pair_vertex *corner) {
     struct cs_pair_vertex_terms share;
-    cs_pair_vertices_read(coupling->pairs, corner, &share);
+    read_vertex(coupling->pairs, corner, &share);
     const double trace =
         share.unit_weight_block[0] + share.unit_weight_block[3] + share.unit_weight_block[5];
     if (!is_inner(coupling->pairs, share.points) || (trace >= 0 && trace < coupling->trace_min))
@@ -229,11 +291,6 @@ size_t cs_pair_vertices_count(const struct cs_pairs *pairs) {
 
 /* --- by particles --- */
 
-/* The four points of a pair; numbers from view.n on belong to colliders. */
-static const uint32_t *points_of(const struct cs_pairs *pairs, uint32_t chunk, size_t pair) {
-    return pairs->solver_matrix.contacts->chunks[chunk].points[pair];
-}
-
 /* Makes room for all vertices and zeroes the starts. Returns false if out of memory. */
 static bool reserve(struct cs_pair_vertices *corners, const struct cs_pairs *pairs) {
     const size_t n = pairs->system->view.n + (size_t)2;
@@ -276,61 +333,4 @@ bool cs_pair_vertices_find(struct cs_pair_vertices *corners, const struct cs_pai
         starts[i + 2] += starts[i + 1];
     visit(pairs, starts + 1, corners->items);
     return true;
-}
-
-/* --- the blocks --- */
-
-/* block = along g g^T + rub C, with C = `of` the friction block. Component by component, for
- * speed. */
-static void set_block(const double g[3], double along, double rub, const double of[6],
-                      double block[6]) {
-    block[0] = along * (g[0] * g[0]) + rub * of[0];
-    block[1] = along * (g[0] * g[1]) + rub * of[1];
-    block[2] = along * (g[0] * g[2]) + rub * of[2];
-    block[3] = along * (g[1] * g[1]) + rub * of[3];
-    block[4] = along * (g[1] * g[2]) + rub * of[4];
-    block[5] = along * (g[2] * g[2]) + rub * of[5];
-}
-
-/* Sets both blocks of the terms. With gradients g_k, normal stiffness c and friction block F:
- *
- *   diagonal     c g_v g_v^T + w_v^2 F      at the vertex v
- *   unit weight  c g_m g_m^T / w_m^2 + F    at the vertex m of the largest weight
- *
- * Where the distance is not bent, g_k = w_k n with one normal n, and both agree up to w_v^2. */
-static void set_blocks(double g[4][3], const struct cs_pair_matrix_terms *part,
-                       struct cs_pair_vertex_terms *share) {
-    const double *weight = part->weight, own = weight[share->vertex];
-    uint32_t most = 0;
-    for (uint32_t k = 1; k < 4; k++)
-        most = weight[k] * weight[k] > weight[most] * weight[most] ? k : most;
-    memcpy(share->weight, weight, sizeof share->weight);
-    set_block(g[share->vertex], part->gradient_weight, own * own, part->block,
-              share->diagonal_block);
-    set_block(g[most], part->gradient_weight / (weight[most] * weight[most]), 1, part->block,
-              share->unit_weight_block);
-}
-
-/* Adds the second derivative of the distance, which an exact matrix has, to the diagonal block.
- */
-static void add_turn(const struct cs_pair_hessian *full, struct cs_pair_vertex_terms *share) {
-    static const uint32_t row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
-    const uint32_t first = 3 * share->vertex;
-    for (int e = 0; e < 6; e++)
-        share->diagonal_block[e] += full->m[first + row[e]][first + column[e]];
-}
-
-void cs_pair_vertices_read(const struct cs_pairs *pairs, const struct cs_pair_vertex *corner,
-                           struct cs_pair_vertex_terms *share) {
-    const struct cs_pair_matrix *kept = &pairs->solver_matrix;
-    struct cs_pair_matrix_terms part;
-    double g[4][3];
-    memcpy(share->points, points_of(pairs, corner->chunk, corner->pair), sizeof share->points);
-    share->vertex = corner->vertex;
-    cs_pair_factors_read(kept->contacts->chunks[corner->chunk].kind,
-                         kept->chunks[corner->chunk].factors + corner->pair / CS_PAIR_LANES,
-                         (int)(corner->pair % CS_PAIR_LANES), g, &part);
-    set_blocks(g, &part, share);
-    if (kept->exact)
-        add_turn(kept->chunks[corner->chunk].hessians + corner->pair, share);
 }

@@ -75,10 +75,6 @@ struct cs_pair_vertex_terms {
                                     of the largest weight, whose gradient is bent least */
 };
 
-/* Reads the terms of a pair, of either kind of stored matrix, for one of its vertices. */
-void cs_pair_vertices_read(const struct cs_pairs *pairs, const struct cs_pair_vertex *corner,
-                           struct cs_pair_vertex_terms *share);
-
 /* Gives all levels of a hierarchy the arrays that extra springs need, but for joint_parents,
  * which it fills for its own cells. Returns CS_ERR_MEMORY if out of memory. */
 enum cs_status cs_coupling_init(struct cs_hierarchy *hierarchy, struct cs_arena *arena,

@@ -7,8 +7,8 @@
  *
  * A spring may be negative if others make up for it, as in the energy of a contact pair
  * (contact_coupling.h). The diagonal D of the smoother contains only the positive ones. That is
- * enough: the bound of multigrid_level.h says that the positive springs' A is at most 2 D, and
- * a negative spring only makes A smaller. */
+ * enough: the bound of multigrid_hierarchy.h says that the positive springs' A is at most 2 D,
+ * and a negative spring only makes A smaller. */
 #ifndef CS_EXTRA_SPRINGS_H
 #define CS_EXTRA_SPRINGS_H
 

@@ -162,8 +162,8 @@ bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix) {
     linear->levels_failed = false;
     cs_springs_factor(&system->springs, view->n, matrix, linear->factors);
     cs_terms_prepare_matrix(system, matrix, true);
-    linear->stiff = cs_multigrid_is_used(system->scene) && linear->multigrid.n > 0 &&
-                    is_stiff(linear);
+    linear->stiff =
+        cs_multigrid_is_used(system->scene) && linear->multigrid.n > 0 && is_stiff(linear);
     linear->levels_are_set = linear->stiff;
     cs_vector_parallel_for(view->n, set_mass, linear);
     if (linear->stiff)

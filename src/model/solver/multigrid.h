@@ -8,8 +8,8 @@
  *   x1 = S r,   x2 = x1 + C (r - A x1),   x = x2 + S (r - A x2)
  *   x = (2 S - S A S + (I - S A) C (I - A S)) r
  *
- * S A has its eigenvalues in (0, 2), see multigrid_level.h, so 2 S - S A S = S (2 S^-1 - A) S
- * is positive definite. The last term is symmetric and not negative.
+ * S A has its eigenvalues in (0, 2), see multigrid_hierarchy.h, so 2 S - S A S = S (2 S^-1 - A)
+ * S is positive definite. The last term is symmetric and not negative.
  *
  * Aggregates and their halved springs: multigrid_hierarchy.h. Contact of a body with itself and
  * with other bodies: contact_coupling.h. Contact with colliders is in the diagonal blocks

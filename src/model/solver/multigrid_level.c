@@ -6,7 +6,7 @@
  * level that does not fit the cache is therefore fetched about once per smoother, not once per
  * sweep. CS_LANES = 16 cells are computed at a time. Each lane has its own arithmetic, and
  * results do not depend on the vector width. */
-#include "model/solver/multigrid_level.h"
+#include "model/solver/multigrid_hierarchy.h"
 
 #include "base/pool.h"
 #include "model/solver/extra_springs.h"
@@ -18,7 +18,7 @@
 enum {
     /* Smallest block of a loop, in cells, a multiple of CS_LANES. Up to 256 cells per row, the
      * blocks at work in all loops of a smoother fit a processor's own cache (measured with
-     * 1 MiB per processor, docs/speed.md). */
+     * 1 MiB per processor, docs/notes). */
     CELLS = 512,
     CELLS_FEW = 128, /* the same on levels that would have too few blocks for the threads */
     LOOPS = 4,       /* most loops of a smoother, with its last product */

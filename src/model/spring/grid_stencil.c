@@ -9,18 +9,17 @@ struct tile {
     const struct spring_job *job;
     const struct row_stencil *fan;
     const struct stencil_kernel *kernel;
+    size_t parts; /* results per spring */
+    /* rows of a direction, and from one to the next; zeros if the direction does not exist */
+    const double *results[CS_DIRECTIONS];
+    size_t strides[CS_DIRECTIONS];
     size_t start, count;
     _Alignas(64) double rows[CS_DIRECTIONS * NUMBERS_PER_SPRING_MAX * PADDED_TILE];
 };
 
-/* Results per spring. */
-CS_INLINE size_t parts_of(const struct tile *tile) {
-    return tile->kernel->n_force + tile->kernel->n_dfdx + tile->kernel->n_dfdv;
-}
-
 /* Results of a direction; entry i belongs to particle i of the tile. */
 CS_INLINE double *rows_of(struct tile *tile, unsigned way) {
-    return tile->rows + way * parts_of(tile) * PADDED_TILE + MARGIN;
+    return tile->rows + way * tile->parts * PADDED_TILE + MARGIN;
 }
 
 /* Particles of the row that begin a spring of a direction are [begin_of, end_of): the leftmost
@@ -76,7 +75,7 @@ CS_INLINE struct stencil_input in_of(const struct tile *tile) {
 CS_INLINE void clear_margins(struct tile *tile) {
     static const unsigned before[] = {CS_DIRECTION_RIGHT, CS_DIRECTION_RIGHT_TWO,
                                       CS_DIRECTION_DOWN_RIGHT};
-    for (size_t k = 0; k < parts_of(tile); k++) {
+    for (size_t k = 0; k < tile->parts; k++) {
         for (size_t b = 0; b < 3 && tile->start == 0; b++) {
             double *rows = rows_of(tile, before[b]) + k * PADDED_TILE;
             rows[-1] = rows[-2] = 0;
@@ -85,20 +84,22 @@ CS_INLINE void clear_margins(struct tile *tile) {
     }
 }
 
-/* Zeroes the results of springs that do not exist, at the ends of the row. */
+/* Zeroes the results of springs that do not exist, at the ends of the row: at most one or two
+ * a tile. Of a tile of one particle, the margin before it holds 0 already. Stores one by one,
+ * because a loop over so few entries becomes a call of memset. */
 CS_INLINE void drop_none(struct tile *tile, unsigned way) {
-    const size_t columns = tile->fan->first->columns, stop = tile->start + tile->count;
-    const size_t begin = begin_of(way), end = end_of(way, columns);
-    double *rows = rows_of(tile, way);
-    for (size_t k = 0; k < parts_of(tile); k++, rows += PADDED_TILE) {
-        for (size_t i = tile->start; i < begin; i++)
-            rows[i - tile->start] = 0;
-        for (size_t i = end > tile->start ? end : tile->start; i < stop; i++)
-            rows[i - tile->start] = 0;
-    }
+    const size_t end = end_of(way, tile->fan->first->columns), stop = tile->start + tile->count;
+    const size_t parts = tile->parts, none = stop > end ? stop - end : 0;
+    double *rows = rows_of(tile, way), *last = rows + tile->count - 1;
+    for (size_t k = 0; k < parts && tile->start < begin_of(way); k++)
+        rows[k * PADDED_TILE] = 0;
+    for (size_t k = 0; k < parts && none > 0; k++)
+        last[k * PADDED_TILE] = 0;
+    for (size_t k = 0; k < parts && none > 1; k++)
+        *(last + k * PADDED_TILE - 1) = 0;
 }
 
-/* Computes those of the directions [first, last) that exist, side by side. */
+/* Computes those of the directions [first, last) that exist, side by side if the kernel can. */
 CS_INLINE void make_directions(struct tile *tile, const struct stencil_input *in,
                                unsigned first, unsigned last) {
     struct stencil_direction ways[DIRECTIONS_AT_ONCE];
@@ -106,8 +107,11 @@ CS_INLINE void make_directions(struct tile *tile, const struct stencil_input *in
     for (unsigned way = first; way < last; way++)
         if (tile->fan->directions[way])
             ways[n++] = direction_of(tile, way);
-    if (n > 0)
+    if (n > 0 && tile->kernel->passes[n - 1])
         tile->kernel->passes[n - 1](in, ways, 0, tile->count);
+    else
+        for (unsigned k = 0; k < n; k++)
+            tile->kernel->passes[0](in, ways + k, 0, tile->count);
     for (unsigned way = first; way < last; way++)
         if (tile->fan->directions[way])
             drop_none(tile, way);
@@ -147,7 +151,7 @@ CS_INLINE void make_tile(struct tile *tile, const bool at[3]) {
 CS_INLINE void carry_over_overlap(struct tile *tile) {
     for (unsigned way = 0; way < CS_DIRECTION_DOWN_TWO; way++) {
         double *rows = rows_of(tile, way);
-        for (size_t k = 0; k < parts_of(tile) && tile->fan->directions[way];
+        for (size_t k = 0; k < tile->parts && tile->fan->directions[way];
              k++, rows += PADDED_TILE) {
             rows[-2] = rows[TILE - 2];
             rows[-1] = rows[TILE - 1];
@@ -155,13 +159,9 @@ CS_INLINE void carry_over_overlap(struct tile *tile) {
     }
 }
 
-/* Row k of a direction's results, moved back by some particles; zeros if the direction does not
- * exist. */
-CS_INLINE const double *row_of(struct tile *tile, unsigned way, size_t k, size_t back) {
-    static const _Alignas(64) double zeros[PADDED_TILE];
-    return (tile->fan->directions[way] ? rows_of(tile, way) + k * PADDED_TILE
-                                       : zeros + MARGIN) -
-           back;
+/* Row k of a direction's results, moved back by some particles. */
+CS_INLINE const double *row_of(const struct tile *tile, unsigned way, size_t k, size_t back) {
+    return tile->results[way] + k * tile->strides[way] - back;
 }
 
 /* Adds to the tile's own particles: the springs that they begin, and those of their row that
@@ -233,6 +233,16 @@ CS_INLINE void add_tile(struct tile *tile, const bool at[3]) {
                                     : job->at.dfdv_blocks + (k - kernel->n_dfdx) * job->n);
 }
 
+/* Finds the rows of each direction, the same for all tiles of a row. */
+CS_INLINE void find_rows(struct tile *tile) {
+    static const _Alignas(64) double zeros[PADDED_TILE];
+    for (unsigned way = 0; way < CS_DIRECTIONS; way++) {
+        const bool exists = tile->fan->directions[way];
+        tile->results[way] = exists ? rows_of(tile, way) : zeros + MARGIN;
+        tile->strides[way] = exists ? PADDED_TILE : 0;
+    }
+}
+
 /* Tiles go from left to right, as the overlap requires. */
 CS_CLONES void cs_grid_stencil_add(const struct spring_job *job, const struct cs_block *block,
                                    const struct row_stencil *stencil,
@@ -241,6 +251,8 @@ CS_CLONES void cs_grid_stencil_add(const struct spring_job *job, const struct cs
     bool at[3];
     struct tile tile;
     tile.job = job, tile.fan = stencil, tile.kernel = kernel;
+    tile.parts = kernel->n_force + kernel->n_dfdx + kernel->n_dfdv;
+    find_rows(&tile);
     for (uint32_t down = 0; down < 3; down++)
         at[down] = is_in(block, first->row + down * first->columns);
     for (size_t left = first->columns; left > 0; left -= tile.count) {

@@ -24,7 +24,7 @@
 
 /* Sizes of a tile and of its results. */
 enum {
-    TILE = 64,  /* particles per tile; 32 took 1.1 of the time at 64 x 64 (docs/speed.md) */
+    TILE = 64,  /* particles per tile; 32 took 1.1 of the time at 64 x 64 (docs/notes) */
     MARGIN = 8, /* more than any spring reaches along the row, and a whole vector */
     PADDED_TILE = MARGIN + TILE + MARGIN,
     NUMBERS_PER_SPRING_MAX = 15, /* most results per spring: force 3, df/dx 6, df/dv 6 */
@@ -54,10 +54,10 @@ struct stencil_input {
 typedef void stencil_pass(const struct stencil_input *in, const struct stencil_direction *ways,
                           size_t begin, size_t end);
 
-/* A kernel, compiled for one, two and three directions. Its results per spring follow one
- * another: those of the force, for job->to; of df/dx, for at.dfdx_blocks; of df/dv, for
- * at.dfdv_blocks. A particle gets those of the springs that it begins. The other ends get the
- * same of blocks, and the opposite of forces. */
+/* A kernel, compiled for one, two and three directions, or for one alone (the others NULL). Its
+ * results per spring follow one another: those of the force, for job->to; of df/dx, for
+ * at.dfdx_blocks; of df/dv, for at.dfdv_blocks. A particle gets those of the springs that it
+ * begins. The other ends get the same of blocks, and the opposite of forces. */
 struct stencil_kernel {
     stencil_pass *passes[DIRECTIONS_AT_ONCE];
     size_t n_force, n_dfdx, n_dfdv;
@@ -180,5 +180,11 @@ CS_INLINE void stencil_springs(const struct stencil_input in, const struct stenc
     CS_STENCIL_PASS(name##_3, spring, forces_ + stiff_ + damped_, 3, 1, 2)                     \
     static const struct stencil_kernel name = {                                                \
         {name##_1, name##_2, name##_3}, forces_, stiff_, damped_}
+
+/* The same for one direction at a time: for results that are seldom asked for. Two and three
+ * take five times as long to compile. */
+#define CS_STENCIL_KERNEL_ALONE(name, spring, forces_, stiff_, damped_)                        \
+    CS_STENCIL_PASS(name##_1, spring, forces_ + stiff_ + damped_, 1, 0, 0)                     \
+    static const struct stencil_kernel name = {{name##_1}, forces_, stiff_, damped_}
 
 #endif

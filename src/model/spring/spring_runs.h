@@ -17,8 +17,8 @@
 
 #include <clothsim/system.h>
 
-/* Kinds of springs. A grid's diagonals are shear springs; so are the inner springs of a
- * network. */
+/* Kinds of springs. A grid's diagonals and the inner springs of a network are shear
+ * springs. */
 enum cs_spring_kind { CS_SPRING_STRETCH, CS_SPRING_SHEAR, CS_SPRING_BEND, CS_SPRING_KINDS };
 
 /* Forward directions of the springs that begin at a grid's particle, in the order in which the

@@ -174,22 +174,23 @@ CS_INLINE void make_spring(const struct stencil_input *in, const struct stencil_
 }
 
 /* A kernel for one set of results, with how many numbers it makes of force, df/dx and df/dv. */
-#define KERNEL(name, what, forces, stiff, damped)                                              \
+#define KERNEL(define, name, what, forces, stiff, damped)                                      \
     CS_INLINE void name##_spring(const struct stencil_input *in,                               \
                                  const struct stencil_direction *way, size_t i, double *out) { \
         make_spring(in, way, i, what, out);                                                    \
     }                                                                                          \
-    CS_STENCIL_KERNEL(name, name##_spring, forces, stiff, damped)
+    define(name, name##_spring, forces, stiff, damped)
 
-KERNEL(undamped_force, FORCE, 3, 0, 0);
-KERNEL(axial_force, FORCE | AXIAL, 3, 0, 0);
-KERNEL(relative_force, FORCE | RELATIVE, 3, 0, 0);
-KERNEL(undamped_blocks, STIFF, 0, SYM, 0);
-KERNEL(axial_blocks, STIFF | DAMPED, 0, SYM, SYM);
-KERNEL(relative_blocks, STIFF | STEADY, 0, SYM, 1);
-KERNEL(undamped_both, FORCE | STIFF, 3, SYM, 0);
-KERNEL(axial_both, FORCE | AXIAL | STIFF | DAMPED, 3, SYM, SYM);
-KERNEL(relative_both, FORCE | RELATIVE | STIFF | STEADY, 3, SYM, 1);
+KERNEL(CS_STENCIL_KERNEL, undamped_force, FORCE, 3, 0, 0);
+KERNEL(CS_STENCIL_KERNEL, axial_force, FORCE | AXIAL, 3, 0, 0);
+KERNEL(CS_STENCIL_KERNEL, relative_force, FORCE | RELATIVE, 3, 0, 0);
+/* no method of ours asks for blocks without the force */
+KERNEL(CS_STENCIL_KERNEL_ALONE, undamped_blocks, STIFF, 0, SYM, 0);
+KERNEL(CS_STENCIL_KERNEL_ALONE, axial_blocks, STIFF | DAMPED, 0, SYM, SYM);
+KERNEL(CS_STENCIL_KERNEL_ALONE, relative_blocks, STIFF | STEADY, 0, SYM, 1);
+KERNEL(CS_STENCIL_KERNEL, undamped_both, FORCE | STIFF, 3, SYM, 0);
+KERNEL(CS_STENCIL_KERNEL, axial_both, FORCE | AXIAL | STIFF | DAMPED, 3, SYM, SYM);
+KERNEL(CS_STENCIL_KERNEL, relative_both, FORCE | RELATIVE | STIFF | STEADY, 3, SYM, 1);
 
 /* The kernel for a row's damper and for the results that the evaluation wants. */
 static const struct stencil_kernel *choose(const struct spring_job *job,

@@ -93,7 +93,8 @@ CS_INLINE void elastic_and_damping(const struct stencil_input *in,
 
 CS_STENCIL_KERNEL(moved_jvp, moved, 3, 0, 0);
 CS_STENCIL_KERNEL(turned_jvp, rotated, 3, 0, 0);
-CS_STENCIL_KERNEL(both_jvp, elastic_and_damping, 3, 0, 0);
+/* no method of ours asks for both at once */
+CS_STENCIL_KERNEL_ALONE(both_jvp, elastic_and_damping, 3, 0, 0);
 
 /* The kernel for the given directions. */
 static const struct stencil_kernel *choose_jvp(const struct spring_job *job,

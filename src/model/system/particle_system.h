@@ -56,6 +56,7 @@ enum { CS_TERMS_MAX = 16 };
 /* The features of a scene with a method, decided before anything is built. */
 struct cs_plan {
     uint32_t n, n_springs, n_bodies;
+    bool colours; /* CS_NEED_COLOURS, in the row of the list of springs */
     uint32_t n_surface_springs,
         n_network_springs; /* springs on the surfaces of meshes, of networks in them */
     size_t state_bytes;    /* arrays that belong to no row: state, masses, pins */

@@ -70,9 +70,13 @@ static inline uint32_t cs_seams_merged(const struct cs_system *system, uint32_t 
  */
 static inline bool cs_seams_join_pair(const struct cs_system *system, const uint32_t points[4],
                                       bool edges) {
-    uint32_t at[4];
-    for (int k = 0; k < 4; k++)
-        at[k] = cs_seams_merged(system, points[k]);
+    const uint32_t *at = points;
+    uint32_t merged[4];
+    if (system->seams) {
+        for (int k = 0; k < 4; k++)
+            merged[k] = cs_seams_merged(system, points[k]);
+        at = merged;
+    }
     return at[0] == at[2] || at[0] == at[3] ||
            (edges ? at[1] == at[2] || at[1] == at[3] : at[0] == at[1]);
 }

@@ -216,6 +216,19 @@ enum cs_status cs_shape_clusters_build(struct cs_system *system, struct cs_error
     return CS_OK;
 }
 
+void cs_shape_clusters_refresh(struct cs_system *system) {
+    /* the system owns both arrays; its views of them are read-only */
+    double *alpha = (double *)system->view.cluster_alpha;
+    double *beta = (double *)system->view.cluster_beta;
+    for (uint32_t b = 0, k = 0; b < system->scene->bodies.n && alpha; b++) {
+        const struct cs_shape_matching *of = &cs_scene_bodies(system->scene)[b].shape_matching;
+        for (uint32_t i = 0; of->present && i < of->parts->n; i++, k++) {
+            alpha[k] = of->alpha;
+            beta[k] = of->beta;
+        }
+    }
+}
+
 /* Moment of a cluster about its centre of mass at time 0, by axis:
  *
  *   sum m (q - centre)^2 = sum m q^2 - (sum m q)^2 / sum m */

@@ -32,6 +32,9 @@ enum cs_status cs_shape_clusters_make(const struct cs_body *body,
  * CS_ERR_MEMORY if out of memory. */
 enum cs_status cs_shape_clusters_build(struct cs_system *system, struct cs_error *error);
 
+/* Sets alpha and beta of the clusters to the scene's values, which ramps change. */
+void cs_shape_clusters_refresh(struct cs_system *system);
+
 /* Bound in J on the energy that a deformation stores: the energy of all clusters if each
  * collapsed to a point, with the stiffness m alpha / step^2 per particle. A cluster without a
  * step uses the frame's. */

@@ -81,7 +81,7 @@ static void own_edges(struct cs_surfaces *surfaces, uint32_t body) {
  * no mesh. */
 static struct cs_body_range range_of(const struct cs_system *system, uint32_t body,
                                      const struct cs_surfaces *surfaces) {
-    const struct cs_collider *collider = cs_scene_obstacle(system->scene, body);
+    const struct cs_collider *collider = cs_scene_collider_at(system->scene, body);
     if (!collider)
         return system->bodies[body];
     const struct cs_trimesh *mesh = collider->mesh.geometry;

@@ -12,6 +12,34 @@
 #include <stdio.h>
 #include <string.h>
 
+static bool is_between(unsigned char c, unsigned char low, unsigned char high) {
+    return c >= low && c <= high;
+}
+
+/* Returns the bytes of the first character of a zero-terminated text, 0 if it is not valid:
+ * overlong forms and surrogates are not. Well-formed sequences (the Unicode Standard, table
+ * 3-7); second bytes are 80..bf unless given:
+ *   00..7f  c2..df  e0 a0..bf  e1..ec, ee..ef  ed 80..9f  f0 90..bf  f1..f3  f4 80..8f */
+static size_t utf8_length(const char *text) {
+    const unsigned char *s = (const unsigned char *)text;
+    if (s[0] < 0x80)
+        return 1;
+    if (is_between(s[0], 0xc2, 0xdf))
+        return is_between(s[1], 0x80, 0xbf) ? 2 : 0;
+    if (is_between(s[0], 0xe0, 0xef)) {
+        const unsigned char low = s[0] == 0xe0 ? 0xa0 : 0x80, high = s[0] == 0xed ? 0x9f : 0xbf;
+        return is_between(s[1], low, high) && is_between(s[2], 0x80, 0xbf) ? 3 : 0;
+    }
+    if (is_between(s[0], 0xf0, 0xf4)) {
+        const unsigned char low = s[0] == 0xf0 ? 0x90 : 0x80, high = s[0] == 0xf4 ? 0x8f : 0xbf;
+        return is_between(s[1], low, high) && is_between(s[2], 0x80, 0xbf) &&
+                       is_between(s[3], 0x80, 0xbf)
+                   ? 4
+                   : 0;
+    }
+    return 0;
+}
+
 /* State of a check: everything before `at` is valid. */
 struct check {
     const char *text; /* ends with a zero, which no rule accepts: it stops every loop */
@@ -123,7 +151,7 @@ static bool check_text(struct check *check) {
         if (c < 0x20)
             return fail_at(check, check->at,
                            "found control character 0x%02x in a string, expected an escape", c);
-        const size_t length = cs_utf8_length(check->text + check->at);
+        const size_t length = utf8_length(check->text + check->at);
         if (!length)
             return fail_at(check, check->at, "found byte 0x%02x, which is not UTF-8", c);
         if (c != '\\')
@@ -257,7 +285,9 @@ bool cs_json_check(const char *text, size_t length, struct cs_json_fault *fault)
     if (length > CS_JSON_BYTES_MAX)
         return fail_at(&check, 0, "found %zu bytes, expected at most %d", length,
                        CS_JSON_BYTES_MAX);
-    if (!strncmp(text, "\xff\xfe", 2) || !strncmp(text, "\xfe\xff", 2))
+    /* with a byte-order mark, or by the zero byte of a first letter */
+    if (!strncmp(text, "\xff\xfe", 2) || !strncmp(text, "\xfe\xff", 2) ||
+        (length > 1 && !text[0] != !text[1]))
         return fail_at(&check, 0, "found UTF-16, expected UTF-8");
     if (!strncmp(text, "\xef\xbb\xbf", 3))
         return fail_at(&check, 0, "found a byte-order mark, expected UTF-8 without one");
@@ -275,40 +305,9 @@ void cs_json_locate(const char *text, size_t offset, uint32_t *line, uint32_t *c
     }
 }
 
-/* Checks UTF-8 and cuts long texts between characters.
- *
- * Well-formed sequences (the Unicode Standard, table 3-7); second bytes are 80..bf unless
- * given:
- *   00..7f    c2..df    e0 a0..bf    e1..ec, ee..ef    ed 80..9f    f0 90..bf    f1..f3    f4
- * 80..8f */
-
-static bool is_between(unsigned char c, unsigned char low, unsigned char high) {
-    return c >= low && c <= high;
-}
-
-size_t cs_utf8_length(const char *text) {
-    const unsigned char *s = (const unsigned char *)text;
-    if (s[0] < 0x80)
-        return 1;
-    if (is_between(s[0], 0xc2, 0xdf))
-        return is_between(s[1], 0x80, 0xbf) ? 2 : 0;
-    if (is_between(s[0], 0xe0, 0xef)) {
-        const unsigned char low = s[0] == 0xe0 ? 0xa0 : 0x80, high = s[0] == 0xed ? 0x9f : 0xbf;
-        return is_between(s[1], low, high) && is_between(s[2], 0x80, 0xbf) ? 3 : 0;
-    }
-    if (is_between(s[0], 0xf0, 0xf4)) {
-        const unsigned char low = s[0] == 0xf0 ? 0x90 : 0x80, high = s[0] == 0xf4 ? 0x8f : 0xbf;
-        return is_between(s[1], low, high) && is_between(s[2], 0x80, 0xbf) &&
-                       is_between(s[3], 0x80, 0xbf)
-                   ? 4
-                   : 0;
-    }
-    return 0;
-}
-
 bool cs_utf8_is_plain(const char *s) {
     while (*s) {
-        const size_t length = cs_utf8_length(s);
+        const size_t length = utf8_length(s);
         if (!length || (unsigned char)*s < 0x20)
             return false;
         s += length;
@@ -320,7 +319,7 @@ void cs_utf8_add_short(struct cs_text *out, const char *s) {
     enum { LONGEST = 48 };
     char kept[LONGEST + 1];
     size_t n = 0, length;
-    while (s[n] && (length = cs_utf8_length(s + n)) && n + length <= LONGEST) {
+    while (s[n] && (length = utf8_length(s + n)) && n + length <= LONGEST) {
         memcpy(kept + n, s + n, length);
         n += length;
     }

@@ -36,10 +36,6 @@ size_t cs_json_skip_text(const char *text, size_t at);
 
 /* Checks that a text is valid UTF-8, and cuts it between characters. */
 
-/* Returns the bytes of the first character of a zero-terminated text, 0 if it is not valid:
- * overlong forms and surrogates are not. */
-size_t cs_utf8_length(const char *text);
-
 /* Returns true if s is valid UTF-8 without control characters. */
 bool cs_utf8_is_plain(const char *s);
 

@@ -4,6 +4,7 @@
 
 #include "scene/file/json_check.h"
 
+#include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -176,6 +177,16 @@ static bool is_bare_word(const char *value) {
     return !strchr("{[\"+-.0123456789", value[strspn(value, " \t\r\n")]) || !*value;
 }
 
+/* A hint for a number that is no JSON; "" without one. */
+static const char *number_hint(const char *value) {
+    if (!isdigit((unsigned char)*value) && *value != '-')
+        return "";
+    if (strstr(value, ".."))
+        return "; a range is for compare and stability, a list of values for sweep";
+    return strpbrk(value, "xX, ") ? "; a list has brackets, as in [640, 480], a decimal a point"
+                                  : "";
+}
+
 /* Parses the value of an override: JSON, or else a bare word. */
 static enum cs_status make_value(const char *path, const char *value, struct cs_json **made,
                                  struct cs_error *error) {
@@ -199,8 +210,8 @@ static enum cs_status make_value(const char *path, const char *value, struct cs_
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for --set");
     if (status)
         return cs_fail(error, CS_ERR_USAGE,
-                       "--set %s: the value is not JSON: %s (at column %zu)", path,
-                       fault.message, fault.offset + 1);
+                       "--set %s: the value is not JSON: %s (at column %zu)%s", path,
+                       fault.message, fault.offset + 1, number_hint(value));
     return CS_OK;
 }
 

@@ -70,7 +70,7 @@ static enum cs_status begin_keys(const struct input *in, uint64_t n_keys) {
                     (unsigned long long)n_keys, paths->n, NUMBERS_MAX / 3 / paths->n);
     paths->n_keys = (uint32_t)n_keys;
     paths->positions = cs_arena_alloc_array(
-        in->arena, n_keys, 3 * (size_t)paths->n * sizeof *paths->positions, in->error);
+        in->arena, paths->n_keys, 3 * (size_t)paths->n * sizeof *paths->positions, in->error);
     return in->error->status;
 }
 
@@ -163,7 +163,7 @@ static bool next_member(const struct input *in, size_t *at, struct member *out) 
     rest -= name_bytes + extra_bytes;
     if (out->bytes > rest)
         return false;
-    *at = in->length - rest + out->bytes;
+    *at = in->length - rest + (size_t)out->bytes;
     return true;
 }
 
@@ -227,7 +227,7 @@ static enum cs_status read_npz(const struct input *in) {
         return in->error->status;
     if (npy.bytes - begin != 3 * bytes * shape[0] * shape[1])
         return fail(in, "%.60s has another size than its header says", array);
-    if (npy.crc != crc32_z(0, npy.data, npy.bytes))
+    if (npy.crc != crc32_z(0, npy.data, (size_t)npy.bytes))
         return fail(in, "%.60s is damaged: its checksum differs", array);
     return set_positions(in, npy.data + begin, bytes);
 }

@@ -6,16 +6,32 @@
 #include <stdio.h>
 #include <string.h>
 
-/* adds text in which nothing is markup to scdoc */
-static void add_escaped(struct cs_text *out, const char *text) {
-    for (; *text; text++)
+/* adds n bytes of text in which nothing is markup to scdoc */
+static void add_escaped(struct cs_text *out, const char *text, size_t n) {
+    for (const char *end = text + n; text < end; text++)
         cs_text_add(out, strchr("\\*_", *text) ? "\\%c" : "%c", *text);
 }
 
-/* "must be given", the default, or nothing where it may be absent */
-static void add_need(const struct cs_option *row, struct cs_text *out) {
-    if (cs_table_needs_row(row)) {
-        cs_text_add(out, "; must be given");
+/* the list that the check of a scene needs, and not its table, which reads any length */
+#define NEEDED_LIST "bodies"
+/* how help ends of other rows that are checked after reading, beside other rows */
+#define NEEDED_HELP "; must be given"
+
+/* the length of a row's help without NEEDED_HELP */
+static size_t help_length(const struct cs_option *row) {
+    const char *needed = strstr(row->help, NEEDED_HELP);
+    return needed ? (size_t)(needed - row->help) : strlen(row->help);
+}
+
+static bool is_needed(const struct cs_option *row, const char *path) {
+    return cs_table_needs_row(row) || row->help[help_length(row)] ||
+           (!*path && !strcmp(row->name, NEEDED_LIST));
+}
+
+/* "required", the default, or nothing where it may be absent */
+static void add_need(const struct cs_option *row, const char *path, struct cs_text *out) {
+    if (is_needed(row, path)) {
+        cs_text_add(out, "; required");
     } else if (cs_option_is_optional(row)) {
         cs_text_add(out, "; may be absent");
     } else if (row->type != CS_TABLE) {
@@ -25,14 +41,14 @@ static void add_need(const struct cs_option *row, struct cs_text *out) {
 }
 
 /* one key: what it takes, and what it means */
-static void manual_add_row(const struct cs_option *row, struct cs_text *out) {
+static void manual_add_row(const struct cs_option *row, const char *path, struct cs_text *out) {
     struct cs_text takes = {0};
     cs_option_print_expected(row, &takes);
-    add_need(row, &takes);
+    add_need(row, path, &takes);
     cs_text_add(out, "*%s*: ", row->name);
-    add_escaped(out, cs_text_get(&takes));
+    add_escaped(out, cs_text_get(&takes), strlen(cs_text_get(&takes)));
     cs_text_add(out, "\n\t");
-    add_escaped(out, row->help);
+    add_escaped(out, row->help, help_length(row));
     cs_text_add(out, ".\n\n");
     out->failed = out->failed || takes.failed;
     cs_text_finish(&takes);
@@ -61,7 +77,7 @@ static void manual_add_table(const struct cs_table *table, const char *path,
                              struct cs_text *out) {
     add_rules(table, out);
     for (uint32_t r = 0; r < table->n; r++)
-        manual_add_row(table->rows + r, out);
+        manual_add_row(table->rows + r, path, out);
     for (uint32_t r = 0; r < table->n; r++) {
         const struct cs_option *row = table->rows + r;
         char inner[256];
@@ -70,7 +86,7 @@ static void manual_add_table(const struct cs_table *table, const char *path,
         snprintf(inner, sizeof inner, "%s%s%s%s", path, *path ? "." : "", row->name,
                  row->type == CS_LIST ? "[]" : "");
         cs_text_add(out, "## ");
-        add_escaped(out, inner);
+        add_escaped(out, inner, strlen(inner));
         cs_text_add(out, "\n\n");
         manual_add_table(row->table, inner, out);
     }
@@ -212,5 +228,5 @@ void cs_scene_print_schema(struct cs_text *out) {
     add_integrator(out);
     cs_text_add(out, "\n  }");
     add_other_keys(STEP, out);
-    cs_json_write(out, ",\n  'required': ['bodies']\n}\n");
+    cs_json_write(out, ",\n  'required': ['" NEEDED_LIST "']\n}\n");
 }

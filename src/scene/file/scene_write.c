@@ -1,9 +1,12 @@
-/* Prints a scene as JSON with every value that it holds, defaults included. */
+/* Prints a scene as JSON with every value that it holds, defaults included; and hashes what it
+ * means: XXH3 (128 bits) over sorted "path=value" lines, defaults left out. */
 #include "scene/file/scene_read.h"
 
 #include "base/json_writer.h"
 #include "base/options.h"
+#include "mesh/trimesh.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { STEP = 2 };
@@ -84,4 +87,117 @@ void cs_scene_print(const struct cs_scene *scene, const struct cs_table *integra
     print_rows(&cs_scene_table, scene, indent + STEP, out);
     print_integrator(scene, integrator_table, integrator_options, indent + STEP, out);
     cs_text_add(out, "\n%*s}", indent, "");
+}
+
+/* Adds a value in the form that is hashed. */
+static void add_value(const struct cs_option *row, const void *object, struct cs_text *out) {
+    const double *values = (const double *)(const void *)((const char *)object + row->offset);
+    if (row->type != CS_REAL && row->type != CS_VECTOR) {
+        cs_option_print(row, object, out);
+        return;
+    }
+    for (uint32_t i = 0; i < row->count; i++) {
+        cs_text_add(out, "%s", i ? "," : "");
+        cs_text_add_real(out, values[i] + 0.0); // -0 + 0 is 0
+    }
+}
+
+/* Adds the lines of one row: of a table, of a list, or of a value that is not the default. */
+static void add_row(const struct cs_option *row, const void *object, const char *path,
+                    struct cs_text *out) {
+    const void *field = (const char *)object + row->offset;
+    struct cs_text inner = {0};
+    if (row->type == CS_TABLE) {
+        /* presence alone has a meaning, even if every value is the default */
+        if (row->table->optional)
+            cs_text_add(out, "%s%s={}\n", path, row->name);
+        cs_text_add(&inner, "%s%s.", path, row->name);
+        cs_scene_add_canonical(row->table, field, cs_text_get(&inner), out);
+    } else if (row->type == CS_LIST) {
+        /* every element has a line of its own, or lists of defaults would all look alike */
+        const struct cs_list *list = field;
+        for (uint32_t i = 0; i < list->n; i++) {
+            struct cs_text item = {0};
+            cs_text_add(out, "%s%s[%u]={}\n", path, row->name, i);
+            cs_text_add(&item, "%s%s[%u].", path, row->name, i);
+            cs_scene_add_canonical(row->table, (const char *)list->items + i * row->table->size,
+                                   cs_text_get(&item), out);
+            out->failed |= item.failed;
+            cs_text_finish(&item);
+        }
+        /* a default has no line, so that a new key changes no scene's hash */
+    } else if (!cs_option_is_default(row, object)) {
+        cs_text_add(out, "%s%s=", path, row->name);
+        add_value(row, object, out);
+        cs_text_add(out, "\n");
+    }
+    out->failed |= inner.failed;
+    cs_text_finish(&inner);
+}
+
+void cs_scene_add_canonical(const struct cs_table *table, const void *object, const char *path,
+                            struct cs_text *out) {
+    for (uint32_t r = 0; r < table->n; r++)
+        if (cs_option_is_set(table->rows + r, object))
+            add_row(table->rows + r, object, path, out);
+}
+
+/* Adds the hash of a mesh's file, since its contents count. */
+static void add_file(const struct cs_mesh_source *mesh, const char *list, uint32_t number,
+                     struct cs_text *out) {
+    if (mesh->present && *mesh->file)
+        cs_text_add(out, "%s[%u].mesh.file is %s\n", list, number, mesh->geometry->file_hash);
+    if (mesh->present && mesh->paths)
+        cs_text_add(out, "%s[%u].mesh.key_frames.file is %s\n", list, number,
+                    mesh->paths->file_hash);
+}
+
+static void add_files(const struct cs_scene *scene, struct cs_text *out) {
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        add_file(&cs_scene_bodies(scene)[b].mesh, "bodies", b, out);
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        add_file(&cs_scene_colliders(scene)[c].mesh, "colliders", c, out);
+}
+
+/* Orders lines by their bytes, independent of the locale. */
+static int by_bytes(const void *left, const void *right) {
+    return strcmp(*(const char *const *)left, *(const char *const *)right);
+}
+
+/* Adds the lines of the text, sorted; the text is cut up. */
+static void add_sorted(char *text, struct cs_text *out) {
+    size_t n = 0;
+    for (const char *c = text; *c; c++)
+        n += *c == '\n';
+    char **lines = calloc(n + 1, sizeof *lines);
+    out->failed |= !lines;
+    for (size_t k = 0; k < n && lines; k++)
+        lines[k] = strsep(&text, "\n");
+    if (lines)
+        qsort(lines, n, sizeof *lines, by_bytes);
+    for (size_t k = 0; k < n && lines; k++)
+        cs_text_add(out, "%s\n", lines[k]);
+    free(lines);
+}
+
+enum cs_status cs_scene_hash(const struct cs_scene *scene,
+                             const struct cs_table *integrator_table,
+                             const void *integrator_options, char digits[CS_HASH_DIGITS],
+                             struct cs_error *error) {
+    struct cs_text lines = {0}, sorted = {0};
+    *digits = 0;
+    cs_scene_add_canonical(&cs_scene_table, scene, "", &lines);
+    cs_text_add(&lines, "integrator=%s\n", scene->integrator);
+    cs_scene_add_canonical(integrator_table, integrator_options, "integrator.", &lines);
+    add_files(scene, &lines);
+    cs_text_add(&sorted, "clothsim scene 1\n");
+    if (!lines.failed)
+        add_sorted(lines.bytes, &sorted);
+    if (lines.failed || sorted.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the hash of a scene");
+    else
+        cs_hash_bytes(sorted.bytes, sorted.length, digits);
+    cs_text_finish(&lines);
+    cs_text_finish(&sorted);
+    return error->status;
 }

@@ -155,15 +155,31 @@ static const char *nearest_key(const struct cs_table *table, const char *apart,
 
 /* Keys of other programs: the key of this table, else of another one, or NULL. */
 static const char *translate_key(const char *key, const struct cs_table *table) {
-    static const char *const keys[][2] = {
-        {"name", "about"},           {"title", "about"},        {"description", "about"},
-        {"dt", "integrator.dt"},     {"step", "integrator.dt"}, {"timestep", "integrator.dt"},
-        {"method", "integrator"},    {"solver", "integrator"},  {"structural", "stretch"},
-        {"flexion", "bend"},         {"diagonal", "shear"},     {"pinned", "pins"},
-        {"fixed", "pins"},           {"position", "eye"},       {"position", "centre"},
-        {"position", "place"},       {"look_at", "target"},     {"width", "size"},
-        {"height", "size"},          {"resolution", "size"},    {"restitution", "absorption"},
-        {"density", "areal_density"}};
+    static const char *const keys[][2] = {{"name", "about"},
+                                          {"title", "about"},
+                                          {"description", "about"},
+                                          {"dt", "integrator.dt"},
+                                          {"step", "integrator.dt"},
+                                          {"timestep", "integrator.dt"},
+                                          {"method", "integrator"},
+                                          {"solver", "integrator"},
+                                          {"structural", "stretch"},
+                                          {"flexion", "bend"},
+                                          {"diagonal", "shear"},
+                                          {"pinned", "pins"},
+                                          {"fixed", "pins"},
+                                          {"position", "eye"},
+                                          {"position", "centre"},
+                                          {"position", "place"},
+                                          {"look_at", "target"},
+                                          {"width", "size"},
+                                          {"height", "size"},
+                                          {"resolution", "size"},
+                                          {"restitution", "absorption"},
+                                          {"density", "areal_density"},
+                                          {"rotation", "rotate"},
+                                          {"orientation", "rotate"},
+                                          {"translation", "translate"}};
     const char *other = NULL;
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (strcmp(key, keys[i][0]))
@@ -238,8 +254,13 @@ static enum cs_status fail_unknown(struct cs_json_context *context,
     struct cs_text other = {0};
     suggest_key(table, apart, cs_json_key(member), &other);
     const bool any = other.length && !other.failed;
+    /* a key that is right elsewhere, without a path: the scene's own */
+    const bool top = any && !strcmp(cs_text_get(&other), cs_json_key(member));
     cs_json_context_fail(context, member, true, "unknown key%s%s%s",
-                         any ? "; did you mean \"" : "", cs_text_get(&other), any ? "\"?" : "");
+                         any ? "; did you mean \"" : "", cs_text_get(&other),
+                         top   ? "\" at the top of the scene?"
+                         : any ? "\"?"
+                               : "");
     cs_text_finish(&other);
     return context->error->status;
 }

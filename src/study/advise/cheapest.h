@@ -12,9 +12,9 @@
  *   3. theory: a fixed explicit method takes no step beyond its stability limit
  * (theory.h), an adaptive one none beyond the longest of these limits, others take one per
  * frame. By 1 it could cost as little as with an order one higher (one lower, if it is more
- * accurate than needed), by 2 a quarter. A cell that blew up is followed by half its step, at its
- * price. A candidate is run as long as it could cost less than twice the best, and less than
- * the best of its family.
+ * accurate than needed), by 2 a quarter. A cell that blew up is followed by half its step, at
+ * its price. A candidate is run as long as it could cost less than twice the best, and less
+ * than the best of its family.
  *
  * The first cell of a fixed explicit method has the longest stable step; of another one that
  * which the family predicts, else a frame, or an rtol of the error over the motion. When every

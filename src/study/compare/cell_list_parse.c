@@ -185,12 +185,10 @@ enum { DEFAULT_STEPS = 20, MOST_POINTS = 64 };
 
 /* Appends "name=value" to a list of options. */
 static void add_option(char *options, size_t size, const char *name, double value) {
-    struct cs_text number = {0};
+    char number[CS_REAL_DIGITS];
     const size_t used = strlen(options);
-    cs_text_add_real(&number, value);
-    snprintf(options + used, size - used, "%s%s=%s", used ? "," : "", name,
-             cs_text_get(&number));
-    cs_text_finish(&number);
+    cs_print_real(value, number);
+    snprintf(options + used, size - used, "%s%s=%s", used ? "," : "", name, number);
 }
 
 /* The declared order, or the value of an option for it. */

@@ -13,6 +13,7 @@
 #include "study/compare/compare_results.h"
 #include "study/compare/compare_state.h"
 #include "study/compare/equal_error.h"
+#include "study/process_pool.h"
 #include "study/provenance_write.h"
 #include "study/reference/compare_reference.h"
 
@@ -214,22 +215,6 @@ static void report_row(struct cs_compare *compare, const struct cs_cell *cell, b
         compare->settings->row(compare->settings->ctx, cell, taken);
 }
 
-/* Fraction of the error before that counts as no fall: rounding. */
-#define NO_FALL 0.8
-/* Growth of the work over two cells from which on steps became shorter: half of that of
- * order 12. Looser tolerances of a method whose steps contact cuts are the same run. */
-#define SHORTER 1.1
-
-/* True if error k of the cells is that of rounding: twice in a row it hardly fell, though steps
- * became shorter. Far from the motion, because long steps may not fall either. */
-static bool is_rounding(const struct cs_compare *compare, uint32_t k) {
-    const struct cs_cell *cell = compare->cells.cells + k;
-    return k > 1 && cs_cell_same_series(cell, cell - 2) &&
-           cell[-2].error < 1e-3 * compare->reference.motion_scale &&
-           cell->work > SHORTER * cell[-2].work && cell->error > NO_FALL * cell[-1].error &&
-           cell[-1].error > NO_FALL * cell[-2].error;
-}
-
 /* True if the cells after cell k in its series need not be run: they take longer, and no power
  * of 10 above the bar is left to be passed. A range that was asked for is run whole. */
 static bool is_ended(const struct cs_compare *compare, uint32_t k) {
@@ -239,13 +224,52 @@ static bool is_ended(const struct cs_compare *compare, uint32_t k) {
                          : bar > 0                    ? pow(10, ceil(log10(bar)))
                                                       : 0;
     return !*cell->outcome || !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET)) ||
-           (cell->open && (cell->error <= least || is_rounding(compare, k)));
+           (cell->open && (cell->error <= least ||
+                           cs_cell_is_rounding(cell, k + 1, compare->reference.motion_scale)));
+}
+
+struct cell_apart {
+    const struct cs_compare *compare;
+    struct cs_cell *shared;
+};
+
+static enum cs_status measure_shared(void *ctx, struct cs_error *error) {
+    const struct cell_apart *apart = ctx;
+    return cs_compare_measure(apart->compare, apart->shared, error);
+}
+
+/* Runs a cell in a process of its own, which is ended at ten times the budget. A process that
+ * dies is a failed cell. */
+static enum cs_status measure_apart(const struct cs_compare *compare, struct cs_cell *cell,
+                                    struct cs_error *error) {
+    struct cell_apart apart = {compare, cs_process_pool_shared_alloc(sizeof *cell, error)};
+    const struct cs_isolate isolate = {.task_seconds = 5 + 10 * compare->budget,
+                                       .stop_seconds = 0.5,
+                                       .is_cell = true,
+                                       .task = measure_shared,
+                                       .ctx = &apart,
+                                       .stop = compare->settings->run.session.run.stop};
+    struct cs_error result = {0};
+    if (!apart.shared)
+        return error->status;
+    *apart.shared = *cell;
+    if (!cs_isolate_run(&isolate, &result))
+        *cell = *apart.shared;
+    else if (isolate.stop && *isolate.stop)
+        cs_fail(error, CS_ERR_INTERRUPT, "interrupted; finished rows are saved");
+    else {
+        snprintf(cell->outcome, sizeof cell->outcome, "%s", cs_outcome_text(CS_FAILED));
+        snprintf(cell->note, sizeof cell->note, "%.239s", result.message);
+    }
+    cs_process_pool_shared_free(apart.shared, sizeof *cell);
+    return error->status;
 }
 
 /* Runs a cell, appends its row and reports it. */
 static enum cs_status measure(struct cs_compare *compare, struct cs_compare_results *ledger,
                               struct cs_cell *cell, struct cs_error *error) {
-    if (!cs_compare_measure(compare, cell, error) &&
+    const bool apart = compare->settings->isolates_cells;
+    if (!(apart ? measure_apart : cs_compare_measure)(compare, cell, error) &&
         !cs_compare_results_append(ledger, cell, error))
         report_row(compare, cell, false);
     return error->status;

@@ -25,10 +25,17 @@ void cs_table_add_row(const struct cs_compare *compare, const struct cs_cell *ce
                       struct cs_text *out);
 
 /* Adds one line per series: observed order, largest stable step, achieved tolerance. */
-void cs_table_add_series(const struct cs_compare *compare, struct cs_text *out);
+void cs_table_add_series(const struct cs_compare *compare, bool all, struct cs_text *out);
 
 /* Adds the energy balance of each cell, as far as it is known. */
 void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out);
+
+/* Names of the columns of the energy balance, by enum cs_ledger_work. */
+extern const char *const cs_table_work_names[];
+
+/* True if a column of the energy balance has an entry; the method's own work is always shown.
+ */
+bool cs_table_shows_work(const struct cs_compare *compare, int work);
 
 /* Makes the comparison and fills compare.csv. If there is no valid reference, the cells have
  * costs and counts only: that is a result. On failure the finished rows stay in compare.csv.
@@ -42,13 +49,17 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
 /* Frees all results; a zeroed object is allowed. */
 void cs_compare_finish(struct cs_compare *compare);
 
+/* Adds the page: command, reference, verdict, warnings, pictures, diagrams as SVG, tables,
+ * machine. */
+void cs_compare_print_html(const struct cs_compare *compare, const struct cs_ranking *ranking,
+                           struct cs_text *out);
+
 /* Writes the files of a comparison besides compare.csv: JSON, Markdown,
  * diagrams. */
 
 /* Writes compare.json, compare.md, error_time.gp and error_work.gp, and compare.html on
  * request; PNG, SVG and PDF of the diagrams if gnuplot is found. CS_ERR_FILE, CS_ERR_MEMORY. */
-enum cs_status cs_compare_write_report(const struct cs_compare *compare,
-                                       struct cs_error *error);
+enum cs_status cs_compare_write_report(struct cs_compare *compare, struct cs_error *error);
 
 /* Contact sheets: the last frame of each method, with particles coloured by
  * their distance to the reference. */
@@ -58,9 +69,14 @@ enum cs_status cs_compare_write_report(const struct cs_compare *compare,
  * of each method within a cost that all can keep). Colours are powers of ten from the
  * reference's bar to the largest error. Nothing is drawn without errors of position.
  * CS_ERR_MODULE (renderer), CS_ERR_FILE, CS_ERR_MEMORY, CS_ERR_INTERRUPT. */
-enum cs_status cs_compare_contact_sheet_write(const struct cs_compare *compare,
+enum cs_status cs_compare_contact_sheet_write(struct cs_compare *compare,
                                               enum cs_renderer_kind kind,
                                               struct cs_error *error);
+/* Add the pictures that it has written to a report, if settings->pictures: as strips with one
+ * colour bar, the pictures in the page; as links to the sheets. */
+void cs_compare_contact_sheet_add_html(const struct cs_compare *compare, struct cs_text *out);
+void cs_compare_contact_sheet_add_markdown(const struct cs_compare *compare,
+                                           struct cs_text *out);
 
 /* Reproduces a row of a comparison. */
 

@@ -9,70 +9,75 @@
 /* Columns that a file may have. */
 enum { FIELDS_MAX = 128 };
 
-/* Rows of the table of columns, named after their fields; only columns with a label can be
- * drawn. */
-#define TEXT(field)                                                                            \
+/* Rows of the table of columns, named after their fields; AXIS rows can be drawn. */
+#define FIELD(field, type, unit, help, drawn)                                                  \
     {                                                                                          \
-#field, NULL, CS_CELL_TEXT, offsetof(struct cs_cell, field),                           \
+#field, type, unit, help, drawn, offsetof(struct cs_cell, field),                      \
             sizeof((struct cs_cell *)0)->field                                                 \
     }
-#define NUMBER(field, label)                                                                   \
-    { #field, label, CS_CELL_NUMBER, offsetof(struct cs_cell, field), sizeof(double) }
+#define TEXT(field, help)         FIELD(field, CS_CELL_TEXT, "", help, false)
+#define NUMBER(field, unit, help) FIELD(field, CS_CELL_NUMBER, unit, help, false)
+#define AXIS(field, unit, help)   FIELD(field, CS_CELL_NUMBER, unit, help, true)
 
 const struct cs_column cs_columns[] = {
-    TEXT(series),
-    TEXT(method),
-    TEXT(fixed),
-    TEXT(options),
-    TEXT(family),
-    TEXT(control),
-    NUMBER(value, "step in s, or tolerance"),
-    NUMBER(target, NULL),
-    {"adaptive", NULL, CS_CELL_FLAG, offsetof(struct cs_cell, adaptive), sizeof(bool)},
-    TEXT(outcome),
-    NUMBER(time, NULL),
-    NUMBER(step, "mean step in s"),
-    NUMBER(error, "position error at the end in m (RMS)"),
-    NUMBER(max_error, "largest position error at the end in m"),
-    NUMBER(path_error, "position error over all frames in m (RMS)"),
-    NUMBER(max_path_error, "position error of the worst particle over all frames in m"),
-    NUMBER(velocity_error, "velocity error at the end in m/s (RMS)"),
-    NUMBER(energy_error, "energy error / largest kinetic energy"),
-    NUMBER(centre_error, "error of the centre of mass in m"),
-    NUMBER(box_error, "error of the bounding box in m"),
-    NUMBER(strain, "largest strain"),
-    NUMBER(crossings, "edges through triangles, maximum over all frames"),
-    NUMBER(bar, NULL),
-    NUMBER(order, NULL),
-    NUMBER(achieved, "achieved error / (requested tolerance x motion)"),
-    NUMBER(work, "force evaluations, Jacobian products, solver iterations and sweeps"),
-    NUMBER(evals, "force evaluations"),
-    NUMBER(jvps, "Jacobian products"),
-    NUMBER(solves, "linear solves"),
-    NUMBER(iterations, "iterations of the linear solver"),
-    NUMBER(sweeps, "passes of the method itself over the springs"),
-    NUMBER(setups, "matrices set up"),
-    NUMBER(steps, "steps"),
-    NUMBER(rejected, "rejected steps"),
-    NUMBER(newton, "nonlinear iterations"),
-    NUMBER(clamped, NULL),
-    NUMBER(cpu, "processor time in s"),
-    NUMBER(cpu_low, NULL),
-    NUMBER(cpu_high, NULL),
-    NUMBER(wall, "wall time in s"),
-    NUMBER(runs, NULL),
-    NUMBER(outliers, NULL),
-    TEXT(note),
-    TEXT(key),
-    TEXT(state_hash),
-    TEXT(module),
+    TEXT(series, "curve of the row: a method with its options, under one name"),
+    TEXT(method, "integrator"),
+    TEXT(fixed, "options that all rows of the series share"),
+    TEXT(options, "all options of the row that are not at their defaults"),
+    TEXT(family, "explicit, implicit or approximate, adaptive explicit or adaptive implicit"),
+    TEXT(control, "option that varies along the series: dt, rtol, or nothing"),
+    AXIS(value, "", "step in s, or tolerance"),
+    NUMBER(target, "m", "error that the value was sought for; empty in the sweep"),
+    FIELD(adaptive, CS_CELL_FLAG, "", "the method chooses its own steps", false),
+    TEXT(outcome, "finished, blew up, over budget, gave up, failed or refused"),
+    NUMBER(time, "s", "simulated time that was reached"),
+    AXIS(step, "s", "mean step"),
+    AXIS(error, "m", "position error at the end (RMS)"),
+    AXIS(max_error, "m", "largest position error at the end"),
+    AXIS(path_error, "m", "position error over all frames (RMS)"),
+    AXIS(max_path_error, "m", "position error of the worst particle over all frames"),
+    AXIS(velocity_error, "m/s", "velocity error at the end (RMS)"),
+    AXIS(energy_error, "1", "energy error / largest kinetic energy"),
+    AXIS(centre_error, "m", "error of the centre of mass"),
+    AXIS(box_error, "m", "error of the bounding box"),
+    AXIS(strain, "1", "largest strain"),
+    AXIS(crossings, "1", "edges through triangles, maximum over all frames"),
+    NUMBER(bar, "m", "error of the reference itself"),
+    NUMBER(order, "1", "slope of log(error) over log(step) from the row before, if steady"),
+    AXIS(achieved, "1", "achieved error / (requested tolerance x motion)"),
+    AXIS(work, "1", "force evaluations, Jacobian products, solver iterations and sweeps"),
+    AXIS(evals, "1", "force evaluations"),
+    AXIS(jvps, "1", "Jacobian products"),
+    AXIS(solves, "1", "linear solves"),
+    AXIS(iterations, "1", "iterations of the linear solver"),
+    AXIS(sweeps, "1", "passes of the method itself over the springs"),
+    AXIS(setups, "1", "matrices set up"),
+    AXIS(steps, "1", "steps"),
+    AXIS(rejected, "1", "rejected steps"),
+    AXIS(newton, "1", "nonlinear iterations"),
+    NUMBER(clamped, "1", "set-ups of the solver that left out negative stiffness"),
+    AXIS(cpu, "s", "processor time"),
+    NUMBER(cpu_low, "s", "lower quartile of the processor time over the rounds"),
+    NUMBER(cpu_high, "s", "upper quartile of the processor time over the rounds"),
+    AXIS(wall, "s", "wall time"),
+    NUMBER(runs, "1", "rounds that were timed"),
+    NUMBER(outliers, "1", "rounds far above the median"),
+    TEXT(note, "reason or remarks of the method"),
+    TEXT(key, "hash of everything that the row depends on, but for the machine"),
+    TEXT(state_hash, "hash of the state at the end, as of clothsim run --hash"),
+    TEXT(module, "hash of the module's file"),
 #define X(name, column)                                                                        \
-    {"ledger_" column, NULL, CS_CELL_NUMBER,                                                   \
-     offsetof(struct cs_cell, ledger) + CS_WORK_##name * sizeof(double), sizeof(double)},
+    {"ledger_" column,                                                                         \
+     CS_CELL_NUMBER,                                                                           \
+     "J",                                                                                      \
+     "work of " column " by the end, with --ledger: see ledger.csv",                           \
+     false,                                                                                    \
+     offsetof(struct cs_cell, ledger) + CS_WORK_##name * sizeof(double),                       \
+     sizeof(double)},
     CS_LEDGER_WORK_LIST(X)
 #undef X
-        TEXT(machine),
-    TEXT(version),
+        TEXT(machine, "machine that timed the row"),
+    TEXT(version, "version of clothsim that timed it"),
 };
 const uint32_t cs_n_columns = sizeof cs_columns / sizeof *cs_columns;
 
@@ -101,7 +106,7 @@ const char *const *cs_column_axes(void) {
     static const char *names[sizeof cs_columns / sizeof *cs_columns + 1];
     uint32_t n = 0;
     for (uint32_t c = 0; c < cs_n_columns; c++)
-        if (cs_columns[c].label)
+        if (cs_columns[c].drawn)
             names[n++] = cs_columns[c].name;
     return names;
 }
@@ -110,6 +115,25 @@ double cs_cell_number(const struct cs_cell *cell, const struct cs_column *column
     double value;
     memcpy(&value, (const char *)cell + column->offset, sizeof value);
     return value;
+}
+
+void cs_options_add_short(const char *options, struct cs_text *out) {
+    while (*options) {
+        const size_t name = strcspn(options, "=,"), length = strcspn(options, ",");
+        char value[64];
+        double number;
+        /* a word, such as the name of a variant, stays */
+        const bool has_value = options[name] == '=' && length - name < sizeof value;
+        snprintf(value, sizeof value, "%.*s", has_value ? (int)(length - name) - 1 : 0,
+                 options + name + 1);
+        if (has_value && cs_parse_real(value, &number))
+            cs_text_add(out, "%.*s=%.6g", (int)name, options, number);
+        else
+            cs_text_add(out, "%.*s", (int)length, options);
+        options += length;
+        if (*options)
+            cs_text_add(out, "%c", *options++);
+    }
 }
 
 void cs_cell_init(struct cs_cell *cell, const char *method) {
@@ -133,6 +157,23 @@ void cs_cell_name_machine(struct cs_cell *cell, const char *here) {
 
 bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b) {
     return !strcmp(a->series, b->series);
+}
+
+/* Fraction of the error before that counts as no fall. Error control in contact stands still
+ * twice in a row, at tolerances half a decade apart, and falls again. */
+#define NO_FALL 0.8
+enum { STANDS = 3 };
+/* Growth of the work over these cells from which on steps became shorter: a third of that of
+ * order 12. Looser tolerances of a method whose steps contact cuts are the same run. */
+#define SHORTER 1.1
+
+bool cs_cell_is_rounding(const struct cs_cell *cell, uint32_t n, double motion) {
+    bool stands = n > STANDS && cs_cell_same_series(cell, cell - STANDS) &&
+                  cell[-STANDS].error < 1e-3 * motion &&
+                  cell->work > SHORTER * cell[-STANDS].work;
+    for (int k = 0; stands && k < STANDS; k++)
+        stands = cell[-k].error > NO_FALL * cell[-k - 1].error;
+    return stands;
 }
 
 bool cs_cell_is_finished(const struct cs_cell *cell) {

@@ -74,6 +74,9 @@ const char *const *cs_column_axes(void);
 /* Value of a cell in a column of numbers. */
 double cs_cell_number(const struct cs_cell *cell, const struct cs_column *column);
 
+/* Adds options as readers want them: "dt=0.00208333" for "dt=0.0020833333333333333". */
+void cs_options_add_short(const char *options, struct cs_text *out);
+
 /* Makes a cell without results; its series is named after the method. */
 void cs_cell_init(struct cs_cell *cell, const char *method);
 /* Makes rows of another machine a series of their own, "NAME@HOST": times of two machines are
@@ -81,6 +84,10 @@ void cs_cell_init(struct cs_cell *cell, const char *method);
 void cs_cell_name_machine(struct cs_cell *cell, const char *here);
 /* True if two cells are on one curve. */
 bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b);
+/* True if the error of the n-th cell of a list, counted from 1, is that of rounding: three
+ * times in a row it hardly fell, though steps became shorter. Far from the motion (m), because
+ * long steps may not fall either. */
+bool cs_cell_is_rounding(const struct cs_cell *cell, uint32_t n, double motion);
 /* True if the run reached its last frame. */
 bool cs_cell_is_finished(const struct cs_cell *cell);
 /* True if the method failed or gave up: the note says why. */

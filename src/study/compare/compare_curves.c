@@ -12,8 +12,7 @@ const char *const cs_curve_colours[CS_CURVE_COLOURS] = {
 
 /* Only errors of position have an error bar of the reference. */
 static bool is_position_error(const struct cs_column *column) {
-    return strstr(column->name, "error") && strstr(column->label, "in m") &&
-           !strstr(column->label, "m/s");
+    return strstr(column->name, "error") && !strcmp(column->unit, "m");
 }
 
 bool cs_curves_point(const struct cs_plot_settings *settings, const struct cs_cell *cell,

@@ -7,6 +7,7 @@
 #ifndef CS_COMPARE_CURVES_H
 #define CS_COMPARE_CURVES_H
 
+#include "io/subprocess.h"
 #include "study/compare/compare_cell.h"
 
 enum {
@@ -104,10 +105,10 @@ uint32_t cs_curves_ticks(const double range[2], struct cs_tick ticks[CS_TICKS_MA
  * is a cross at the upper edge; a ring marks a cell in which edges went through triangles. */
 void cs_plot_print(const struct cs_plot_settings *settings, struct cs_text *out);
 
-/* Writes FOLDER/NAME.gp, and the pictures if gnuplot is found. *drawn: they were made.
- * CS_ERR_FILE, CS_ERR_MEMORY. */
+/* Writes FOLDER/NAME.gp, and the pictures if gnuplot is found and does not fail. CS_ERR_FILE,
+ * CS_ERR_MEMORY. */
 enum cs_status cs_plot_write(const struct cs_plot_settings *settings, const char *folder,
-                             bool *drawn, struct cs_error *error);
+                             struct cs_gnuplot *gnuplot, struct cs_error *error);
 
 /* Prints cells as a log-log diagram in SVG, without another program. */
 

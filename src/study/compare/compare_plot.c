@@ -2,7 +2,6 @@
 #include "study/compare/compare_curves.h"
 
 #include "base/file.h"
-#include "io/subprocess.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -34,8 +33,11 @@ static void print_head(const struct cs_curves *curves, struct cs_text *out) {
     cs_text_add(out, "# gnuplot %s.gp makes %s.png, .svg and .pdf\n", settings->name,
                 settings->name);
     cs_text_add(out, "set title \"%s\" noenhanced\n", settings->title);
-    cs_text_add(out, "set xlabel \"%s\"\nset ylabel \"%s\"\n", settings->x->label,
-                settings->y->label);
+    cs_text_add(out, "set xlabel \"");
+    cs_column_add_label(settings->x, out);
+    cs_text_add(out, "\"\nset ylabel \"");
+    cs_column_add_label(settings->y, out);
+    cs_text_add(out, "\"\n");
     cs_text_add(out, "set encoding utf8\nset logscale xy\nset tics scale 1,0.5\n"
                      "set border lw 1.2 lc rgb \"#404040\"\n"
                      "set grid xtics ytics mxtics mytics lt 1 lw 0.8 lc rgb \"#cfcfcf\", lt 1 "
@@ -205,18 +207,15 @@ void cs_plot_print(const struct cs_plot_settings *settings, struct cs_text *out)
 }
 
 enum cs_status cs_plot_write(const struct cs_plot_settings *settings, const char *folder,
-                             bool *drawn, struct cs_error *error) {
-    struct cs_text script = {0}, name = {0}, path = {0};
-    *drawn = false;
+                             struct cs_gnuplot *gnuplot, struct cs_error *error) {
+    struct cs_text script = {0}, path = {0};
     cs_plot_print(settings, &script);
-    cs_text_add(&name, "%s.gp", settings->name);
-    cs_text_add(&path, "%s/%s", folder, cs_text_get(&name));
-    if (script.failed || name.failed || path.failed)
+    cs_text_add(&path, "%s/%s.gp", folder, settings->name);
+    if (script.failed || path.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a diagram");
     else if (!cs_file_write(cs_text_get(&path), cs_text_get(&script), script.length, error))
-        cs_gnuplot_run(folder, cs_text_get(&name), drawn, error);
+        cs_gnuplot_run(folder, settings->name, gnuplot, error);
     cs_text_finish(&script);
-    cs_text_finish(&name);
     cs_text_finish(&path);
     return error->status;
 }

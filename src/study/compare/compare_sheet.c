@@ -2,16 +2,20 @@
 #include "study/compare/compare.h"
 
 #include "base/file.h"
+#include "draw/look.h"
 #include "io/png.h"
-#include "io/subprocess.h"
 #include "sim/install_paths.h"
+#include "study/compare/compare_curves.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-enum { TILE_WIDTH = 400, TILE_HEIGHT = 300, TILES_MAX = 64, COLUMNS = 5 };
+enum { TILE_WIDTH = 400, TILE_HEIGHT = 300, TILES_MAX = 64, COLUMNS = 5, SHEETS = 2 };
+/* colours of a map; pixels of a sheet for the bar; bytes of a tile's file, at most */
+enum { STOPS = 6, BAR_HEIGHT = 70, TILE_BYTES_MAX = 1 << 22 };
 
 /* The cells of one sheet, one per series at most. */
 struct sheet {
@@ -20,6 +24,18 @@ struct sheet {
     uint32_t n;
     double range[2]; /* log10 m */
 };
+
+static const char *title_of(const struct sheet *sheet) {
+    return !strcmp(sheet->kind, "equal_step") ? "Equal step" : "Equal cost";
+}
+
+/* FOLDER/pictures/KIND_SERIES.png */
+static void tile_path(const struct sheet *sheet, const struct cs_cell *cell,
+                      const struct cs_compare *compare, char *path, size_t size) {
+    char file[CS_SERIES_BYTES];
+    cs_series_file_name(cell->series, file);
+    snprintf(path, size, "%s/pictures/%s_%s.png", compare->settings->folder, sheet->kind, file);
+}
 
 /* True for the first cell of a series. */
 static bool is_first_of_series(const struct cs_compare *compare, uint32_t k) {
@@ -115,20 +131,32 @@ static enum cs_status paint(struct cs_recorded_run *recording, const struct cs_f
     return error->status;
 }
 
-/* Runs a cell again and draws its last frame: a comparison stores no states of its cells. */
+/* Draws the reference. frame: of a method, with distances of 0. */
+static enum cs_status draw_reference(const struct sheet *sheet,
+                                     const struct cs_compare *compare,
+                                     struct cs_recorded_run *recording, struct cs_frame frame,
+                                     enum cs_renderer_kind kind, struct cs_error *error) {
+    const struct cs_trajectory *track = &compare->reference.trajectory;
+    char path[4400];
+    snprintf(path, sizeof path, "%s/pictures/%s_reference.png", compare->settings->folder,
+             sheet->kind);
+    frame.x = cs_trajectory_state(track, track->frames);
+    return paint(recording, &frame, frame.colliders, kind, path, error);
+}
+
+/* Runs a cell again and draws its last frame: a comparison stores no states of its cells. The
+ * reference is drawn with the first. */
 static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell *cell,
                                 const struct cs_compare *compare, enum cs_renderer_kind kind,
                                 struct cs_error *error) {
-    char integrator[CS_CELL_INTEGRATOR], file[CS_SERIES_BYTES], path[4400];
+    char integrator[CS_CELL_INTEGRATOR], path[4400];
     struct cs_recorded_run recording;
     struct cs_trajectory track = {0};
     struct cs_recorded_run_result end;
     double *distance = calloc(compare->particles, sizeof *distance);
     struct cs_posed_collider *obstacles = NULL;
     cs_cell_integrator(cell, integrator, sizeof integrator);
-    cs_series_file_name(cell->series, file);
-    snprintf(path, sizeof path, "%s/pictures/%s_%s.png", compare->settings->folder, sheet->kind,
-             file);
+    tile_path(sheet, cell, compare, path, sizeof path);
     if (!distance)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours");
     else if (!cs_recorded_run_open(&recording, &compare->settings->run, integrator, error)) {
@@ -152,6 +180,10 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
                                            .inv_mass = system->inv_mass,
                                            .colliders = obstacles};
             paint(&recording, &frame, obstacles, kind, path, error);
+            for (uint32_t i = 0; i < compare->particles; i++)
+                distance[i] = sheet->range[0];
+            if (!error->status && cell == sheet->cells[0])
+                draw_reference(sheet, compare, &recording, frame, kind, error);
         }
         cs_trajectory_finish(&track);
         cs_recorded_run_close(&recording);
@@ -161,22 +193,45 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
     return error->status;
 }
 
+/* gnuplot's colour bar below the tiles, once for all. */
+static void print_bar(const struct sheet *sheet, double height, struct cs_text *out) {
+    const uint32_t *stops = cs_look_of(CS_LOOK_FORCE)->stops;
+    const double low = sheet->range[0], high = sheet->range[1];
+    /* thin rectangles: an image would be interpolated by some viewers */
+    cs_text_add(out, "set palette defined (");
+    for (int k = 0; k < STOPS; k++)
+        cs_text_add(out, "%s%d \"#%06x\"", k ? ", " : "", k, stops[k]);
+    cs_text_add(out,
+                ")\nunset colorbox\nunset title\nset size noratio\nset border\n"
+                "set lmargin at screen 0.3\nset rmargin at screen 0.7\n"
+                "set bmargin at screen %g\nset tmargin at screen %g\n"
+                "set xtics 1 format \"10^{%%.0f}\" out nomirror\n"
+                "set xlabel \"distance to the reference in m\" offset 0,0.6\n"
+                "set samples 256\nset cbrange [%g:%g]\n"
+                "plot [%g:%g] [0:1] sample [%g:%g] \"+\" using 1:(0.5):(%g):(0.5):1 "
+                "with boxxyerror fc palette fs solid\n",
+                46 / height, 60 / height, low, high, low, high, low, high, (high - low) / 256);
+}
+
 /* gnuplot script that assembles the tiles. */
 static void print_script(const struct sheet *sheet, const struct cs_compare *compare,
                          struct cs_text *out) {
-    const uint32_t lines = (sheet->n + COLUMNS - 1) / COLUMNS;
+    const uint32_t lines = (sheet->n + COLUMNS) / COLUMNS;
+    const uint32_t columns = sheet->n < COLUMNS ? sheet->n + 1 : COLUMNS;
+    const double height = 60 + lines * 275 + BAR_HEIGHT;
     cs_text_add(
         out,
-        "set terminal pngcairo size %d,%u font \"DejaVu Sans,11\"\n"
+        "set terminal pngcairo size %u,%.0f font \"DejaVu Sans,11\"\n"
         "set output \"%s.png\"\n"
-        "set multiplot layout %u,%d title \"%s at %.4g s: distance to the reference from "
-        "10^{%.0f} m (dark) to 10^{%.0f} m (bright)\"\n"
-        "unset key\nunset border\nunset tics\nset size ratio -1\n"
-        "set lmargin 0\nset rmargin 0\nset bmargin 0\n",
-        COLUMNS * 320, 60 + lines * 275, sheet->kind, lines, COLUMNS,
-        !strcmp(sheet->kind, "equal_step") ? "Equal step" : "Equal cost", compare->time,
-        sheet->range[0], sheet->range[1]);
+        "set multiplot layout %u,%u margins 0,1,%g,%g spacing 0,%g title \"%s at %.4g s\"\n"
+        "unset key\nunset border\nunset tics\nset size ratio -1\n",
+        columns * 320, height, sheet->kind, lines, columns, BAR_HEIGHT / height,
+        1 - 75 / height, 35 / height, title_of(sheet), compare->time);
     /* paths are relative: gnuplot runs in the folder of the script */
+    cs_text_add(out,
+                "set title \"reference\\nknown to %.1e m\" noenhanced\n"
+                "plot \"pictures/%s_reference.png\" binary filetype=png with rgbimage\n",
+                compare->reference.error_bar, sheet->kind);
     for (uint32_t k = 0; k < sheet->n; k++) {
         const struct cs_cell *cell = sheet->cells[k];
         char file[CS_SERIES_BYTES];
@@ -187,51 +242,135 @@ static void print_script(const struct sheet *sheet, const struct cs_compare *com
                     cell->series, cell->control, cell->value, 1e3 * cell->cpu, cell->error,
                     sheet->kind, file);
     }
+    print_bar(sheet, height, out);
     cs_text_add(out, "unset multiplot\n");
 }
 
-/* Range of colours in log10 m: from the smallest error, or the reference's bar, to the largest.
- */
-static void set_range(struct sheet *sheet, const struct cs_compare *compare) {
+/* Range of colours in log10 m, one for all sheets: from the smallest error, or the reference's
+ * bar, to the largest. */
+static void set_range(struct sheet sheets[SHEETS], const struct cs_compare *compare) {
     double least = HUGE_VAL, most = 0;
-    for (uint32_t k = 0; k < sheet->n; k++) {
-        least = fmin(least, sheet->cells[k]->error);
-        most = fmax(most, sheet->cells[k]->max_error);
+    for (int s = 0; s < SHEETS; s++)
+        for (uint32_t k = 0; k < sheets[s].n; k++) {
+            least = fmin(least, sheets[s].cells[k]->error);
+            most = fmax(most, sheets[s].cells[k]->max_error);
+        }
+    for (int s = 0; s < SHEETS; s++) {
+        sheets[s].range[0] = floor(log10(fmax(least, compare->reference.error_bar)));
+        sheets[s].range[1] = fmax(ceil(log10(most)), sheets[s].range[0] + 1);
     }
-    sheet->range[0] = floor(log10(fmax(least, compare->reference.error_bar)));
-    sheet->range[1] = fmax(ceil(log10(most)), sheet->range[0] + 1);
 }
 
-static enum cs_status write_sheet(struct sheet *sheet, const struct cs_compare *compare,
+/* Chooses the cells of both sheets and their range; none without errors of position. */
+static void choose_sheets(struct sheet sheets[SHEETS], const struct cs_compare *compare) {
+    sheets[0] = (struct sheet){.kind = "equal_step"};
+    sheets[1] = (struct sheet){.kind = "equal_cost"};
+    if (!compare->reference.pointwise)
+        return;
+    choose_step(sheets + 0, compare);
+    choose_cost(sheets + 1, compare);
+    set_range(sheets, compare);
+}
+
+static enum cs_status write_sheet(struct sheet *sheet, struct cs_compare *compare,
                                   enum cs_renderer_kind kind, struct cs_error *error) {
     struct cs_text script = {0};
-    char name[32], path[4200];
-    bool drawn;
-    /* before the tiles, which all share it */
-    set_range(sheet, compare);
+    char path[4200];
     snprintf(path, sizeof path, "%s/pictures", compare->settings->folder);
     if (sheet->n == 0 || cs_folder_create(path, error))
         return error->status;
     for (uint32_t k = 0; k < sheet->n && !error->status; k++)
         draw_tile(sheet, sheet->cells[k], compare, kind, error);
     print_script(sheet, compare, &script);
-    snprintf(name, sizeof name, "%s.gp", sheet->kind);
-    snprintf(path, sizeof path, "%s/%s", compare->settings->folder, name);
+    snprintf(path, sizeof path, "%s/%s.gp", compare->settings->folder, sheet->kind);
     if (!error->status && !cs_file_write_text(path, &script, error))
-        cs_gnuplot_run(compare->settings->folder, name, &drawn, error);
+        cs_gnuplot_run(compare->settings->folder, sheet->kind, &compare->gnuplot, error);
     cs_text_finish(&script);
     return error->status;
 }
 
-enum cs_status cs_compare_contact_sheet_write(const struct cs_compare *compare,
+enum cs_status cs_compare_contact_sheet_write(struct cs_compare *compare,
                                               enum cs_renderer_kind kind,
                                               struct cs_error *error) {
-    struct sheet step = {.kind = "equal_step"}, cost = {.kind = "equal_cost"};
-    if (!compare->reference.pointwise)
-        return CS_OK;
-    choose_step(&step, compare);
-    choose_cost(&cost, compare);
-    if (!write_sheet(&step, compare, kind, error))
-        write_sheet(&cost, compare, kind, error);
+    struct sheet sheets[SHEETS];
+    choose_sheets(sheets, compare);
+    for (int s = 0; s < SHEETS && !error->status; s++)
+        write_sheet(sheets + s, compare, kind, error);
     return error->status;
+}
+
+/* --- in reports --- */
+
+/* Begins a figure with the picture of a file; false, and nothing added, where it cannot be
+ * read. */
+static bool begin_figure(const char *path, struct cs_text *out) {
+    char *bytes;
+    size_t length;
+    struct cs_error unread = {0};
+    if (cs_file_read(path, TILE_BYTES_MAX, &bytes, &length, &unread))
+        return false;
+    /* in the page itself: it needs no other file */
+    cs_text_add(out, "<figure><img alt=\"\" src=\"data:image/png;base64,");
+    cs_text_add_base64(out, bytes, length);
+    cs_text_add(out, "\"><figcaption>");
+    free(bytes);
+    return true;
+}
+
+/* Adds the reference and the tiles of a sheet with their captions. */
+static void add_strip(const struct sheet *sheet, const struct cs_compare *compare,
+                      struct cs_text *out) {
+    char path[4400];
+    cs_text_add(out, "<h3>%s</h3>\n<div class=\"strip\">\n", title_of(sheet));
+    snprintf(path, sizeof path, "%s/pictures/%s_reference.png", compare->settings->folder,
+             sheet->kind);
+    if (begin_figure(path, out))
+        cs_text_add(out, "reference<br>known to %.1e m</figcaption></figure>\n",
+                    compare->reference.error_bar);
+    for (uint32_t k = 0; k < sheet->n; k++) {
+        const struct cs_cell *cell = sheet->cells[k];
+        tile_path(sheet, cell, compare, path, sizeof path);
+        if (!begin_figure(path, out))
+            continue;
+        cs_svg_add_text(out, cell->series);
+        cs_text_add(out, "<br>%s %.3g, %.3g ms, error %.1e m</figcaption></figure>\n",
+                    cell->control, cell->value, 1e3 * cell->cpu, cell->error);
+    }
+    cs_text_add(out, "</div>\n");
+}
+
+void cs_compare_contact_sheet_add_html(const struct cs_compare *compare, struct cs_text *out) {
+    const uint32_t *stops = cs_look_of(CS_LOOK_FORCE)->stops;
+    struct sheet sheets[SHEETS];
+    choose_sheets(sheets, compare);
+    if (!compare->settings->pictures || !sheets[1].n)
+        return;
+    /* one bar for both strips, which have one range */
+    cs_text_add(out,
+                "<h2>Pictures</h2>\n<div class=\"bar\"><span>1e%.0f m</span>"
+                "<i style=\"background:linear-gradient(90deg",
+                sheets->range[0]);
+    for (int k = 0; k < STOPS; k++)
+        cs_text_add(out, ",#%06x", stops[k]);
+    cs_text_add(out,
+                ")\"></i><span>1e%.0f m: distance to the reference after %.4g s</span></div>\n",
+                sheets->range[1], compare->time);
+    for (int s = 0; s < SHEETS; s++)
+        add_strip(sheets + s, compare, out);
+}
+
+void cs_compare_contact_sheet_add_markdown(const struct cs_compare *compare,
+                                           struct cs_text *out) {
+    struct sheet sheets[SHEETS];
+    choose_sheets(sheets, compare);
+    if (!compare->settings->pictures)
+        return;
+    /* without gnuplot there are the tiles, and no sheet of them */
+    for (int s = 0; s < SHEETS; s++) {
+        char path[4200];
+        snprintf(path, sizeof path, "%s/%s.png", compare->settings->folder, sheets[s].kind);
+        if (sheets[s].n && !access(path, F_OK))
+            cs_text_add(out, "## %s\n\n![%s](%s.png)\n\n", title_of(sheets + s),
+                        title_of(sheets + s), sheets[s].kind);
+    }
 }

@@ -3,6 +3,7 @@
 #define CS_COMPARE_STATE_H
 
 #include "base/table.h"
+#include "io/subprocess.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_cell.h"
 #include "study/compare/timing_rounds.h"
@@ -62,16 +63,18 @@ typedef enum cs_status cs_compare_next(void *ctx, struct cs_compare *compare,
 /* Request for a comparison. All pointers are borrowed. */
 struct cs_compare_settings {
     struct cs_recorded_run_settings run;
-    const char *methods;       /* list as in cell_list_parse.h; NULL: all */
-    const char *reference[2];  /* "NAME:options" of its families, or NULL */
-    double accuracy;           /* m, see compare_reference.h */
-    double budget;             /* s of processor time that one run may take; 0: see below */
-    uint32_t runs;             /* rounds of timed runs, at most; up to CS_ROUNDS_MAX */
+    const char *methods;      /* list as in cell_list_parse.h; NULL: all */
+    const char *reference[2]; /* "NAME:options" of its families, or NULL */
+    double accuracy;          /* m, see compare_reference.h */
+    double budget;            /* s of processor time that one run may take; 0: see below */
+    bool isolates_cells;      /* each first run in a process of its own: modules from outside */
+    uint32_t runs;            /* rounds of timed runs, at most; up to CS_ROUNDS_MAX */
     enum cs_norm ranking_norm; /* error norm of the ranking */
     double bound;              /* the one error to rank at; 0: all powers of 10 */
     const char *folder;        /* for compare.csv */
     const char *command;       /* that repeats it, for the report; may be NULL */
     bool html;                 /* one HTML file as well */
+    bool pictures;             /* contact sheets as well */
     bool ledger;               /* each method is run once more, to say where energy went */
     struct cs_shard shard;     /* of the cells; zeroed: all */
     const char *cache;         /* folder of references */
@@ -94,6 +97,7 @@ struct cs_compare {
     char scene[256];         /* path as given */
     char machine[CS_MACHINE_NAME];
     struct cs_text switched_off; /* what was switched off, "" nothing */
+    struct cs_gnuplot gnuplot;   /* what it could not draw */
     struct cs_text provenance; /* origin.json: everything a row depends on besides its method */
     bool contact;              /* by force: a part of the equation of motion */
     uint32_t particles, springs, n_event_times; /* cuts: times of events */

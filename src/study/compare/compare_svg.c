@@ -198,6 +198,14 @@ static void add_omitted_series(const struct cs_curves *curves, struct cs_text *o
                 any ? ". <code>clothsim plot --family</code> draws them.</p>\n" : "");
 }
 
+static void add_label(const struct cs_column *column, struct cs_text *out) {
+    struct cs_text label = {0};
+    cs_column_add_label(column, &label);
+    cs_svg_add_text(out, cs_text_get(&label));
+    out->failed |= label.failed;
+    cs_text_finish(&label);
+}
+
 /* Box and labels of the axes. */
 static void add_frame(const struct cs_curves *curves, struct cs_text *out) {
     cs_text_add(out,
@@ -206,12 +214,12 @@ static void add_frame(const struct cs_curves *curves, struct cs_text *out) {
                 LEFT, TOP, RIGHT - LEFT, BOTTOM - TOP);
     cs_text_add(out, "<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">", (LEFT + RIGHT) / 2,
                 BOTTOM + 42);
-    cs_svg_add_text(out, curves->settings->x->label);
+    add_label(curves->settings->x, out);
     cs_text_add(out,
                 "</text>\n<text transform=\"translate(20 %d) rotate(-90)\" "
                 "text-anchor=\"middle\">",
                 (TOP + BOTTOM) / 2);
-    cs_svg_add_text(out, curves->settings->y->label);
+    add_label(curves->settings->y, out);
     cs_text_add(out, "</text>\n");
 }
 

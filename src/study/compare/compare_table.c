@@ -13,8 +13,11 @@ void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *ou
                 compare->scene, compare->particles, compare->springs, compare->time,
                 compare->settings->run.frames, compare->contact ? ", contact by force" : "",
                 *changes ? "; off: " : "", changes);
-    cs_text_add(out, "reference  %s\n   against %s\n", reference->methods[1],
-                reference->methods[3]);
+    cs_text_add(out, "reference  ");
+    cs_options_add_short(reference->methods[1], out);
+    cs_text_add(out, "\n   against ");
+    cs_options_add_short(reference->methods[3], out);
+    cs_text_add(out, "\n");
     /* without a reference the figures below have no meaning */
     if (!reference->families_agree) {
         cs_text_add(out, "  no reference: %s\n", reference->reason);
@@ -127,23 +130,24 @@ static void add_series(const struct cs_cell *cells, uint32_t n, int width,
     cs_text_add(out, "\n");
 }
 
-void cs_table_add_series(const struct cs_compare *compare, struct cs_text *out) {
+void cs_table_add_series(const struct cs_compare *compare, bool all, struct cs_text *out) {
     const struct cs_cell_list *sweep = &compare->cells;
     for (uint32_t first = 0, k = 1; k <= sweep->n; k++)
         if (k == sweep->n || !cs_cell_same_series(sweep->cells + k, sweep->cells + first)) {
-            add_series(sweep->cells + first, k - first, name_width(compare), out);
+            if (all || !strcmp(sweep->cells[first].outcome, "refused"))
+                add_series(sweep->cells + first, k - first, name_width(compare), out);
             first = k;
         }
 }
 
-static const char *const works[] = {
+const char *const cs_table_work_names[] = {
 #define X(name, column) column,
     CS_LEDGER_WORK_LIST(X)
 #undef X
 };
 
-/* True if a column of the ledger has an entry; the method's own work is always shown. */
-static bool is_shown(const struct cs_cell_list *sweep, int work) {
+bool cs_table_shows_work(const struct cs_compare *compare, int work) {
+    const struct cs_cell_list *sweep = &compare->cells;
     bool shown = false, any = false;
     for (uint32_t k = 0; k < sweep->n; k++) {
         any |= cs_cell_has_ledger(sweep->cells + k);
@@ -155,12 +159,12 @@ static bool is_shown(const struct cs_cell_list *sweep, int work) {
 void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out) {
     const struct cs_cell_list *sweep = &compare->cells;
     const int width = name_width(compare);
-    if (!is_shown(sweep, CS_WORK_INTEGRATOR))
+    if (!cs_table_shows_work(compare, CS_WORK_INTEGRATOR))
         return;
     cs_text_add(out, "%-*s %-14s", width, "J since the start", "");
     for (int w = 0; w < CS_WORKS; w++)
-        if (is_shown(sweep, w))
-            cs_text_add(out, " %10s", works[w]);
+        if (cs_table_shows_work(compare, w))
+            cs_text_add(out, " %10s", cs_table_work_names[w]);
     cs_text_add(out, "\n");
     for (uint32_t k = 0; k < sweep->n; k++) {
         const struct cs_cell *cell = sweep->cells + k;
@@ -168,7 +172,7 @@ void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out) 
             continue;
         add_control(cell, width, out);
         for (int w = 0; w < CS_WORKS; w++)
-            if (is_shown(sweep, w))
+            if (cs_table_shows_work(compare, w))
                 cs_text_add(out, " %10.2e", cell->ledger[w]);
         cs_text_add(out, "\n");
     }

@@ -157,17 +157,36 @@ static bool is_free(const struct cs_cell *coarser, const struct cs_cell *cell) {
 
 /* Widens left and luck of a method with error control by its noise. Each cell with an error
  * near the bound gives an estimate of the work there, along the slope; they differ, because
- * errors jump from one tolerance to the next. */
+ * errors jump from one tolerance to the next. The n estimates show less than the whole range
+ * of the noise, by 1/(n - 1) of what they span at either end if it is uniform (the unbiased
+ * estimates of both ends; Lloyd 1952, rectangular distribution). */
 static void add_noise(const struct cs_choice *choice, const struct cs_cell *first,
                       const struct cs_cell *end, struct cs_standing *standing) {
+    double most = 0, least = 0;
+    uint32_t n = 0;
     for (const struct cs_cell *at = first; at < end; at++) {
         const double apart = log(error_of(at, choice) / choice->bound);
         if (!cs_choice_is_ranked(at, choice) || fabs(apart) > log(NOISE_RANGE))
             continue;
         const double more = log(at->work / standing->cell->work) + standing->slope * apart;
-        standing->luck = fmax(standing->luck, more);
-        standing->left = fmax(standing->left, -more);
+        most = fmax(most, more);
+        least = fmin(least, more);
+        n++;
     }
+    const double beyond = n > 1 && standing->cell->adaptive ? (most - least) / (n - 1) : 0;
+    standing->luck = fmax(standing->luck, most + beyond);
+    standing->left = fmax(standing->left, beyond - least);
+}
+
+/* Lowers the slope of fixed steps to that between the neighbours that have the bound between
+ * them. Near the stability limit errors fall a thousandfold from one number of steps to the
+ * next, and the slope of smaller errors would say that a longer step may save as much. */
+static void bound_slope(const struct cs_choice *choice, struct cs_standing *standing) {
+    const struct cs_cell *cell = standing->cell, *coarser = standing->coarser;
+    const double between = log(cell->work / coarser->work) /
+                           log(error_of(coarser, choice) / error_of(cell, choice));
+    if (takes_steps(cell) && between > 0)
+        standing->slope = fmin(standing->slope, between);
 }
 
 /* Sets relation, slope, left and luck. */
@@ -185,6 +204,8 @@ static void find_relation(const struct cs_choice *choice, const struct cs_cell *
         standing->relation = CS_BOUND_BELOW;
     else if (equal || (coarser && cs_choice_is_ranked(coarser, choice))) {
         standing->relation = CS_BOUND_AT;
+        if (!equal)
+            bound_slope(choice, standing);
         standing->left =
             standing->slope * (log(choice->bound / error) + log1p(bar_of(choice) / error));
         add_noise(choice, first, end, standing);

@@ -6,7 +6,8 @@
 #include <string.h>
 
 /* Cells up to FAR times the cost of the best are contenders, in the first round FAR_NEXT times,
- * and the runner-up up to FAR_NEXT times. Chosen by trial. */
+ * and the runner-up up to FAR_NEXT times, by work too: a single time may be far off. Chosen by
+ * trial. */
 #define FAR      1.5
 #define FAR_NEXT 3
 
@@ -79,7 +80,8 @@ static void mark_contenders(struct cs_ranking *ranking, const struct cs_rank *ra
         if (standing.cell && standing.cell->cpu <= far * rank->best->cpu)
             ranking->is_contender[standing.cell - sweep->cells] = true;
     }
-    if (rank->runner_up && rank->runner_up->cpu <= FAR_NEXT * rank->best->cpu)
+    if (rank->runner_up && (rank->runner_up->cpu <= FAR_NEXT * rank->best->cpu ||
+                            rank->runner_up->work <= FAR_NEXT * rank->best->work))
         ranking->is_contender[rank->runner_up - sweep->cells] = true;
 }
 

@@ -190,6 +190,21 @@ void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct 
         cs_text_add(out, "no row finished\n");
 }
 
+/* Names the first failed cells, with their notes. */
+static void add_failed(const struct cs_compare *compare, const char *bullet,
+                       struct cs_text *out) {
+    char integrator[CS_CELL_INTEGRATOR];
+    uint32_t shown = 0;
+    for (uint32_t k = 0; k < compare->cells.n && shown < 3; k++) {
+        const struct cs_cell *cell = compare->cells.cells + k;
+        if (!cs_cell_has_failed(cell))
+            continue;
+        cs_cell_integrator(cell, integrator, sizeof integrator);
+        cs_text_add(out, "%s%s: %s\n", bullet, integrator, cell->note);
+        shown++;
+    }
+}
+
 /* Number of cells per kind of warning. */
 struct tally {
     uint32_t brief, unquiet, spread, over, failed, blown, below;
@@ -240,12 +255,14 @@ void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
     add(out, bullet, stats.over, "over budget",
         ": their series end there (a larger --budget lets them go on)");
     add(out, bullet, stats.failed, "failed or gave up", ": the notes in compare.csv say why");
+    add_failed(compare, bullet, out);
     add(out, bullet, stats.brief, "ran for less than 5 ms",
         ": trust the counts rather than the times, or take a longer --time");
     add(out, bullet, stats.spread, "with quartiles further apart than 10 %",
         ": close other programs, or take more --runs");
     add(out, bullet, stats.unquiet, "with outliers in more than a fifth of the runs",
         ": something else used the processor now and then");
+    cs_gnuplot_warn(&compare->gnuplot, bullet, out);
     if (getloadavg(&load, 1) == 1 && load > 0.75 * (double)processors)
         cs_text_add(out,
                     "%sthe machine is busy (load %.1f on %ld processors): factors near 1 are "

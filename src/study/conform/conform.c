@@ -48,11 +48,16 @@ static bool is_in(const char *list, const char *name) {
     return false;
 }
 
-/* Fails if a name of the list is no check. */
-static enum cs_status check_names(const char *list, struct cs_error *error) {
-    const char *names[CHECKS + 1] = {NULL};
+const char *const *cs_conform_check_names(void) {
+    static const char *names[CHECKS + 1];
     for (uint32_t k = 0; k < CHECKS; k++)
         names[k] = checks[k].name;
+    return names;
+}
+
+/* Fails if a name of the list is no check. */
+static enum cs_status check_names(const char *list, struct cs_error *error) {
+    const char *const *names = cs_conform_check_names();
     while (list && !error->status) {
         const size_t length = strcspn(list, ",");
         uint32_t k = 0;
@@ -70,8 +75,18 @@ static enum cs_status check_names(const char *list, struct cs_error *error) {
     return error->status;
 }
 
+/* Runs check k. One whose scene the method refuses does not apply. */
+static void run(const struct cs_conform *card, uint32_t k, struct cs_conform_row *row) {
+    *card->refused = false;
+    checks[k].run(card, row);
+    if (*card->refused)
+        cs_row_skip(row, "it is refused with contact and events");
+}
+
 enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error) {
+    bool refused;
     card->memory_error = error;
+    card->refused = &refused;
     check_names(card->only_checks, error);
     for (uint32_t k = 0; k < CHECKS && !error->status; k++) {
         if (card->only_checks && !is_in(card->only_checks, checks[k].name))
@@ -84,11 +99,12 @@ enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error)
         if (checks[k].of == CS_CONFORM_SPRINGS && card->method->fidelity == CS_FIDELITY_OTHER)
             cs_row_skip(&row, "another model: it does not follow the motion of springs");
         else
-            checks[k].run(card, &row);
+            run(card, k, &row);
         apply_expected_failures(card->method, &row);
         if (!error->status)
             card->report(card->ctx, &row);
     }
+    card->refused = NULL;
     return error->status;
 }
 

@@ -1,4 +1,4 @@
-/* conform_checks.h - lists the checks of a card; each file of checks is a group.
+/* conform_checks.h - shared parts of the checks of a card; each file of checks is a group.
  *
  *   motion    exact motions and conserved momenta               conform_motion.c
  *   order     oscillators, order, tolerance, limit, events      conform_order.c
@@ -6,21 +6,195 @@
  *   energy    symmetry in time, bounded energy                  conform_motion.c
  *   contact   incline, rest, bounce, impacts, crossings         conform_contact.c
  *   rules     descriptor, imports, commits, pins, failures      conform_rules.c
- *   fidelity  the limit of a method's iterations                conform_fidelity.c
+ *   fidelity  the limit of a method's iterations                conform_order.c
  *   host      memory, threads, cuts, resume                     conform_host.c
  *
  * An error is measured against a closed form, an invariant or the independent method of
- * conform_checks.h. It is never measured against the same method at a smaller step, because
+ * conform_reference.c. It is never measured against the same method at a smaller step, because
  * a wrong limit would then pass. */
 #ifndef CS_CONFORM_CHECKS_H
 #define CS_CONFORM_CHECKS_H
 
-#include "study/conform/conform_card.h"
+#include "base/status.h"
+#include "base/text.h"
+#include "study/perturb.h"
+#include "study/session.h"
+#include "study/trajectory_error.h"
 
 #include <clothsim/integrator.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* A card in the making: the method, its rows, and the statement of a result.
+ */
+
+/* X(name, text) of the verdicts on a claim. */
+#define CS_VERDICT_LIST(X)                                                                     \
+    X(CS_VERDICT_PASS, "pass")                                                                 \
+    X(CS_VERDICT_FAIL, "FAIL")                                                                 \
+    X(CS_VERDICT_EXPECTED, "expected")                                                         \
+    X(CS_VERDICT_STALE, "STALE")                                                               \
+    X(CS_VERDICT_NONE, "n/a")
+enum cs_verdict {
+#define X(name, text) name,
+    CS_VERDICT_LIST(X)
+#undef X
+        CS_VERDICTS
+};
+/* Text of a verdict in reports. */
+const char *cs_verdict_text(enum cs_verdict verdict);
+
+/* Result of one check. */
+struct cs_conform_row {
+    const char *check; /* its name */
+    enum cs_verdict verdict;
+    double figure, bound; /* passes where figure <= bound; both NAN: nothing was measured */
+    char note[320];       /* what the figure is, or why there is none */
+};
+
+struct cs_conform_cache;
+
+/* A card: the tested method, its settings and the counts of verdicts. Pointers are borrowed. */
+struct cs_conform {
+    const struct cs_integrator *method;
+    const void *options; /* filled, before the checks' own; NULL: the defaults */
+    /* the method that CS_FIDELITY_IMPLICIT_EULER is compared with; NULL: none */
+    const struct cs_integrator *implicit_euler;
+    const char *only_checks; /* names with commas between them; NULL: all */
+    /* references that earlier cards have run, and where this one's go; NULL: none are kept */
+    struct cs_conform_cache *cache;
+    /* set where the method refuses a check's scene by CS_SMOOTH_ONLY; set by check */
+    bool *refused;
+    /* lack of memory, which is no fault of the method's: it ends the card; set by check */
+    struct cs_error *memory_error;
+    /* called before each check; false: the check is left out. May be NULL. */
+    bool (*begin)(void *ctx, const char *check);
+    /* called after each check */
+    void (*report)(void *ctx, const struct cs_conform_row *row);
+    void *ctx;
+};
+
+/* States a figure that must not exceed its bound; NAN fails. If a check states several, the row
+ * keeps the first that fails, else the one that uses most of its bound. */
+void cs_row_state(struct cs_conform_row *row, double figure, double bound, const char *format,
+                  ...) __attribute__((format(printf, 4, 5)));
+/* Marks the check as not applicable, with the reason. */
+void cs_row_skip(struct cs_conform_row *row, const char *reason);
+/* Marks the check as failed without a figure; an earlier failure stays. */
+void cs_row_fail(struct cs_conform_row *row, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Runs a small scene in memory with one method, for one check. */
+
+/* A scene with a method, and how its run ended. Must not move in memory while open. */
+struct cs_probe {
+    struct cs_session session; /* opened up to the system, the run begun by cs_probe_run */
+    size_t n;                  /* particles */
+    double *x, *v;             /* (3,n): the state; to be moved before the first frame only */
+    double frame;              /* s */
+    bool has_ended;            /* blew up or failed: error says how */
+    struct cs_error error;
+    struct cs_error *memory_error; /* of the card */
+
+    /* called within every commit once it has been done; may be NULL. Moves the state or only
+     * looks; returns whether it moved. */
+    bool (*on_commit)(struct cs_probe *probe, double t, double dt, double *x, double *v);
+    void *on_commit_ctx;
+};
+
+/* Reads the scene from printf text and builds it for the given method, of the card or another
+ * one. The card's own method gets the card's options. The first body gets shape matching if the
+ * method needs clusters. Returns false on failure: the probe has ended and error says why; all
+ * further calls then do nothing. cs_probe_close must be called in any case. */
+bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
+                   const struct cs_integrator *method, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/* Closes the session. Lack of memory is passed on to the card, because it is no fault of the
+ * method. */
+void cs_probe_close(struct cs_probe *probe);
+
+/* True if the method has an option of that name that is a number. */
+bool cs_method_has(const struct cs_integrator *method, const char *name);
+
+/* Sets an option to the value, or to the nearest one in its range. Returns false if the method
+ * has no such option. */
+bool cs_probe_set(struct cs_probe *probe, const char *name, double value);
+
+/* Set the accuracy: `dt` in s, or `rtol` of an adaptive method. Inner tolerances (`rtol` of a
+ * fixed step, `linear_rtol`, `newton_rtol`) are set to 1e-12, so the measured error is that of
+ * the time integration. `iterations` is set high if the fidelity is CS_FIDELITY_IMPLICIT_EULER.
+ * Options that a method lacks are skipped. */
+void cs_probe_set_step(struct cs_probe *probe, double dt);
+void cs_probe_set_tolerance(struct cs_probe *probe, double rtol);
+
+/* Returns the claimed order of the card's method: that of its descriptor, or of its option
+ * `order` if it has one. */
+uint32_t cs_probe_order(const struct cs_conform *card, bool damped);
+
+/* True if the accuracy can be set; else the row is skipped. */
+bool cs_probe_can_be_set(const struct cs_conform *card, struct cs_conform_row *row);
+
+/* Sets level 0 or 1 of accuracy: h and h/8, or relative tolerances of 1e-5 and 1e-7. Returns
+ * the expected error as a fraction of a motion of rate w (1/s) for a method of that order: (h
+ * w)^order, or CS_TOLERANCE_FACTOR times the tolerance. */
+double cs_probe_set_level(struct cs_probe *probe, double h, double w, uint32_t order,
+                          int level);
+/* Allowed ratio of the global error of an adaptive method to its tolerance, which controls the
+ * local error of each step only. */
+#define CS_TOLERANCE_FACTOR 1000
+
+/* Runs that many frames; begins the run at the first call. Returns false if the run ended
+ * early: error says how. */
+bool cs_probe_run(struct cs_probe *probe, uint32_t frames);
+
+/* Returns the kinetic and potential energy in J. */
+double cs_probe_energy(const struct cs_probe *probe);
+
+/* The drum: a stretched sheet in a fixed frame, the scene that orders are
+ * measured on.
+ *
+ * A method shows its order only where the force is smooth along the motion: here springs stay
+ * stretched by about 5 % and contact, if any, stays in range. */
+
+/* Size of the scene: 7 by 7 particles, with pinned edges. */
+enum { CS_DRUM_FRAMES = 3, CS_DRUM_PARTICLES = 49, CS_DRUM_VALUES = 3 * CS_DRUM_PARTICLES };
+#define CS_DRUM_FRAME 0.1 /* s */
+#define CS_DRUM_OMEGA 70  /* 1/s, near the bound on its frequencies */
+
+/* Variant of the drum. Zeroed: undamped, free, by the method's own choice of steps. */
+struct cs_drum {
+    double damping;         /* N s/m, axial */
+    bool fixed_steps;       /* steps of a given length, also of a method that can choose its
+                               own: by dt, or by frames of one step at its loosest tolerance */
+    bool has_velocity_jump; /* all velocities are turned and halved at the end of the first
+                               frame */
+    bool has_contact;       /* a plane behind it is always in range, with friction */
+};
+
+/* Returns the longest step in s that orders are measured from: the largest whole part of a
+ * frame with h CS_DRUM_OMEGA <= 1/4. */
+double cs_drum_step(void);
+
+/* Opens the scene; the accuracy must still be set. Returns false if it cannot be opened:
+ * probe->error says why. cs_probe_close must be called in any case. */
+bool cs_drum_open(struct cs_probe *probe, const struct cs_conform *card,
+                  const struct cs_integrator *method, const struct cs_drum *drum);
+
+/* Runs the given method, of the card or another one, over CS_DRUM_FRAMES. step_or_rtol: the
+ * step in s, a whole part of a frame, or the tolerance of an adaptive method unless
+ * drum->fixed_steps. state: (2, CS_DRUM_VALUES), positions then velocities at the end. Returns
+ * false if the run ended early, or took more steps than the given length asks for: the row says
+ * why. */
+bool cs_drum_state(const struct cs_conform *card, const struct cs_integrator *method,
+                   const struct cs_drum *drum, double step_or_rtol, double *state,
+                   struct cs_conform_row *row);
+
+/* Reference state at the end, from the cache or by a run. scale: root mean square of its
+ * displacement (m) and of its change of velocity (m/s) since the start, which make errors
+ * relative. Returns false if there is none: the row says why. */
+bool cs_drum_reference(const struct cs_conform *card, const struct cs_drum *drum, double *state,
+                       double scale[2], struct cs_conform_row *row);
 
 /* CS_CONFORM_SPRINGS: the check compares with the motion of springs, which a method of another
  * model (CS_FIDELITY_OTHER) does not follow. It is skipped for such a method. */
@@ -88,11 +262,11 @@ CS_CONFORM_LIST(X)
  * A reference does not depend on the tested method, so one run of each serves all cards that a
  * command makes. */
 
-struct cs_conform_kept;
+struct cs_conform_cached;
 
 /* Empty when zeroed. */
 struct cs_conform_cache {
-    struct cs_conform_kept *first; /* owned */
+    struct cs_conform_cached *first; /* owned */
 };
 
 /* Returns the n values stored under that name, which the cache owns, or NULL if there are none,

@@ -8,7 +8,6 @@
  * On a steeper slope it accelerates by g (sin a - mu cos a), once v is large against ev. */
 #include "model/contact/barrier_law.h"
 #include "study/conform/conform_checks.h"
-#include "study/conform/conform_probe.h"
 
 #include <math.h>
 #include <string.h>
@@ -67,7 +66,7 @@
 /* Energy that an impact may gain. position-verlet, whose v is half a step late, shows up to
  * 0.31; methods that are unstable without damping gain 0.5 and more. */
 #define GAIN_MAX 0.4
-enum { PHASES = 8, THROW_FRAMES = 4 };
+enum { PHASES = 40, THROW_FRAMES = 4 };
 
 /* Two thin sheets, the smaller one thrown at the larger one: in a step of a frame it would move
  * 85 times their thickness. Meshes of unequal size, so that no two points meet. */

@@ -1,6 +1,4 @@
 /* Runs the drum, a stretched sheet in a fixed frame, and its reference solution. */
-#include "study/conform/conform_drum.h"
-
 #include "study/conform/conform_checks.h"
 
 #include <math.h>

@@ -8,7 +8,6 @@
  * order fails at the fine level. */
 #include "model/plan.h"
 #include "study/conform/conform_checks.h"
-#include "study/conform/conform_probe.h"
 
 #include <math.h>
 #include <string.h>

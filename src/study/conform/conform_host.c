@@ -6,7 +6,6 @@
 #include "base/vector.h"
 #include "sim/run.h"
 #include "study/conform/conform_checks.h"
-#include "study/conform/conform_probe.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,6 @@
 /* Checks motions that are known in closed form: free fall, translation, rotation, and the
  * momenta of a free sheet. */
 #include "study/conform/conform_checks.h"
-#include "study/conform/conform_drum.h"
-#include "study/conform/conform_probe.h"
 
 #include <math.h>
 #include <string.h>

@@ -12,8 +12,8 @@
 #include <string.h>
 
 /* One reference; the newest is first in the list. */
-struct cs_conform_kept {
-    struct cs_conform_kept *next;
+struct cs_conform_cached {
+    struct cs_conform_cached *next;
     char name[64];
     size_t n;
     double values[];
@@ -21,33 +21,33 @@ struct cs_conform_kept {
 
 const double *cs_conform_cache_find(const struct cs_conform_cache *cache, const char *name,
                                     size_t n) {
-    for (const struct cs_conform_kept *kept = cache ? cache->first : NULL; kept;
-         kept = kept->next)
-        if (kept->n == n && !strcmp(kept->name, name))
-            return kept->values;
+    for (const struct cs_conform_cached *cached = cache ? cache->first : NULL; cached;
+         cached = cached->next)
+        if (cached->n == n && !strcmp(cached->name, name))
+            return cached->values;
     return NULL;
 }
 
 void cs_conform_cache_store(struct cs_conform_cache *cache, const char *name,
                             const double *values, size_t n) {
-    struct cs_conform_kept *kept = NULL;
+    struct cs_conform_cached *cached = NULL;
     // a truncated name could match another one
-    if (cache && strlen(name) < sizeof kept->name)
-        kept = malloc(sizeof *kept + n * sizeof *values);
-    if (!kept)
+    if (cache && strlen(name) < sizeof cached->name)
+        cached = malloc(sizeof *cached + n * sizeof *values);
+    if (!cached)
         return;
-    strcpy(kept->name, name);
-    kept->n = n;
-    memcpy(kept->values, values, n * sizeof *values);
-    kept->next = cache->first;
-    cache->first = kept;
+    strcpy(cached->name, name);
+    cached->n = n;
+    memcpy(cached->values, values, n * sizeof *values);
+    cached->next = cache->first;
+    cache->first = cached;
 }
 
 void cs_conform_cache_finish(struct cs_conform_cache *cache) {
-    for (struct cs_conform_kept *kept = cache->first; kept;) {
-        struct cs_conform_kept *next = kept->next;
-        free(kept);
-        kept = next;
+    for (struct cs_conform_cached *cached = cache->first; cached;) {
+        struct cs_conform_cached *next = cached->next;
+        free(cached);
+        cached = next;
     }
     cache->first = NULL;
 }

@@ -30,7 +30,7 @@
 
 /* The same sheet, elastic. */
 #define ELASTIC(values, events)                                                                \
-    "{\"bodies\": [{" CLOTH ", \"elastic\": {" values "}}], \"forces\": {" NO_GRAVITY           \
+    "{\"bodies\": [{" CLOTH ", \"elastic\": {" values "}}], \"forces\": {" NO_GRAVITY          \
     "}, \"events\": [" events "], " FIVE_FRAMES "}"
 
 /* Springs so soft that dampers determine the motion; a pinned edge causes relative velocities.
@@ -126,6 +126,8 @@ const struct cs_force_scene cs_force_scenes[] = {
      ELASTIC("\"membrane\": {\"young\": 1, \"poisson\": 0.3}, \"damping\": 0.1", ""), 9, true, true},
     {"force-bending", "bending",
      ELASTIC("\"membrane\": {\"young\": 0.01, \"poisson\": 0}, \"bending\": {\"stiffness\": 0.1}", ""), 9, false, true},
+    {"force-bending", "bending with damping",
+     ELASTIC("\"membrane\": {\"young\": 0.01, \"poisson\": 0}, \"bending\": {\"stiffness\": 0.1, \"damping\": 0.1}", ""), 9, true, true},
 
     {"force-damping", "axial dampers", DAMPERS("axial"), 8, true, true},
     {"force-damping", "relative dampers", DAMPERS("relative"), 8, true, true},
@@ -197,6 +199,9 @@ const struct cs_force_scene cs_force_scenes[] = {
     {"time-dependence", "a ramp of bending",
      ELASTIC("\"membrane\": {\"young\": 0.01, \"poisson\": 0}, \"bending\": {\"stiffness\": 0.1}",
              "{" RAMP("bodies[0].elastic.bending.stiffness", "0.05") "}"), 9, false, true},
+    {"time-dependence", "a ramp of the damping of bending",
+     ELASTIC("\"membrane\": {\"young\": 0.01, \"poisson\": 0}, \"bending\": {\"stiffness\": 0.1}",
+             "{" RAMP("bodies[0].elastic.bending.damping", "0.3") "}"), 9, true, true},
     {"time-dependence", "ramps of shear and twist",
      ELASTIC("\"membrane\": {\"warp\": 1, \"weft\": 0.8, \"shear\": 0.3},"
              " \"bending\": {\"warp\": 0.1, \"weft\": 0.05, \"twist\": 0.04}",

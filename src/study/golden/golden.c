@@ -12,6 +12,53 @@
 #include <string.h>
 #include <unistd.h>
 
+/* Opens the session of a golden row and steps it to the row's frame. */
+
+/* Splits "path=value;path=value" in place. Returns the number of overrides. */
+static uint32_t split_overrides(char *text, struct cs_override *overrides) {
+    uint32_t n = 0;
+    char *pair;
+    while (n < CS_GOLDEN_SETS_MAX && (pair = strsep(&text, ";"))) {
+        char *equals = strchr(pair, '=');
+        if (!equals)
+            continue;
+        *equals = 0;
+        overrides[n++] = (struct cs_override){pair, equals + 1};
+    }
+    return n;
+}
+
+/* Steps a row's run to its last frame. On success the session is open and the caller closes it.
+ */
+static enum cs_status step_golden(const struct cs_golden *golden,
+                                  const struct cs_golden_run *run, bool render,
+                                  struct cs_session *session, struct cs_error *error) {
+    char scene[1280], text[CS_GOLDEN_SETS_BYTES];
+    struct cs_override overrides[CS_GOLDEN_SETS_MAX];
+    /* scenes are named from the folder above the golden one, which is often this one */
+    const bool here = *golden->folder != '.' && !strchr(golden->folder, '/');
+    snprintf(scene, sizeof scene, "%s%s%s", here ? "" : golden->folder, here ? "" : "/../",
+             run->scene);
+    /* a copy, which split_overrides cuts up */
+    snprintf(text, sizeof text, "%s", run->overrides);
+    const struct cs_session_settings settings = {
+        .scene = scene,
+        .overrides = overrides,
+        .n_overrides = split_overrides(text, overrides),
+        .integrator = strcmp(run->integrator, "-") ? run->integrator : NULL,
+        .render = render,
+        .threads = golden->threads,
+        .run = {.stop = golden->stop},
+    };
+    if (cs_session_open(session, &settings, error))
+        return error->status;
+    struct cs_follow follow = {.run = &session->run, .last = run->frames};
+    cs_follow_next(&follow, error);
+    if (cs_follow_check(&session->run, "", error))
+        cs_session_close(session);
+    return error->status;
+}
+
 /* Checks one picture in two levels. */
 
 static void path_of(const struct cs_golden *golden, const struct cs_golden_row *row,
@@ -41,6 +88,15 @@ static enum cs_status write_evidence(const struct cs_golden *golden,
         write_image(golden, row, ".difference.png", &amplified, error);
     free(amplified.rgb);
     return error->status;
+}
+
+/* Removes the evidence of an earlier check. */
+static void remove_evidence(const struct cs_golden *golden, const struct cs_golden_row *row) {
+    char path[1024];
+    path_of(golden, row, ".actual.png", path);
+    remove(path);
+    path_of(golden, row, ".difference.png", path);
+    remove(path);
 }
 
 /* Fills row->message if the picture does not pass. */
@@ -111,8 +167,9 @@ static enum cs_status check_with(const struct cs_golden *golden, enum cs_rendere
 static enum cs_status check_image(struct cs_golden *golden, struct cs_golden_row *row,
                                   struct cs_error *error) {
     struct cs_session session;
-    if (cs_golden_step(golden, &row->run, true, &session, error))
+    if (step_golden(golden, &row->run, true, &session, error))
         return error->status;
+    remove_evidence(golden, row);
     for (int kind = 0; cs_renderer_names[kind] && !error->status; kind++)
         if (golden->renderers >> kind & 1)
             check_with(golden, (enum cs_renderer_kind)kind, &session, row, error);
@@ -137,7 +194,7 @@ static enum cs_status check_hash(struct cs_golden *golden, struct cs_golden_row 
                                  struct cs_error *error) {
     struct cs_session session;
     struct cs_error failed = {0};
-    if (cs_golden_step(golden, &row->run, false, &session, &failed)) {
+    if (step_golden(golden, &row->run, false, &session, &failed)) {
         /* only a build without a library may lack an integrator, and only where the row names
          * the library */
         row->skipped = failed.status == CS_ERR_USAGE && strcmp(row->note, "any") != 0;
@@ -253,48 +310,4 @@ enum cs_status cs_golden_check(struct cs_golden *golden, struct cs_error *error)
     if (golden->images && golden->add.scene && cs_folder_create(folder, error))
         return error->status;
     return golden->images ? check_table(golden, &images, error) : CS_OK;
-}
-
-/* Opens the session of a golden row and steps it to the row's frame. */
-
-/* Splits "path=value;path=value" in place. Returns the number of overrides. */
-static uint32_t split_overrides(char *text, struct cs_override *overrides) {
-    uint32_t n = 0;
-    char *pair;
-    while (n < CS_GOLDEN_SETS_MAX && (pair = strsep(&text, ";"))) {
-        char *equals = strchr(pair, '=');
-        if (!equals)
-            continue;
-        *equals = 0;
-        overrides[n++] = (struct cs_override){pair, equals + 1};
-    }
-    return n;
-}
-
-enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_golden_run *run,
-                              bool render, struct cs_session *session, struct cs_error *error) {
-    char scene[1280], text[CS_GOLDEN_SETS_BYTES];
-    struct cs_override overrides[CS_GOLDEN_SETS_MAX];
-    /* scenes are named from the folder above the golden one, which is often this one */
-    const bool here = *golden->folder != '.' && !strchr(golden->folder, '/');
-    snprintf(scene, sizeof scene, "%s%s%s", here ? "" : golden->folder, here ? "" : "/../",
-             run->scene);
-    /* a copy, which split_overrides cuts up */
-    snprintf(text, sizeof text, "%s", run->overrides);
-    const struct cs_session_settings settings = {
-        .scene = scene,
-        .overrides = overrides,
-        .n_overrides = split_overrides(text, overrides),
-        .integrator = strcmp(run->integrator, "-") ? run->integrator : NULL,
-        .render = render,
-        .threads = golden->threads,
-        .run = {.stop = golden->stop},
-    };
-    if (cs_session_open(session, &settings, error))
-        return error->status;
-    struct cs_follow follow = {.run = &session->run, .last = run->frames};
-    cs_follow_next(&follow, error);
-    if (cs_follow_check(&session->run, "", error))
-        cs_session_close(session);
-    return error->status;
 }

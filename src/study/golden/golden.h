@@ -29,11 +29,6 @@ struct cs_golden {
     uint32_t broken; /* of the failed ones: those whose run failed */
 };
 
-/* Steps a row's run to its last frame. On success the session is open and the caller closes it.
- */
-enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_golden_run *run,
-                              bool render, struct cs_session *session, struct cs_error *error);
-
 /* Recomputes every row. Rows that differ are counted in failed and reported, with *.actual.png
  * and *.difference.png beside a golden image; with accept_all the tables and images are
  * rewritten. A row whose run fails is counted in failed, and the others go on; a run that is

@@ -27,11 +27,11 @@ static const char *const *const families[2] = {one_step, other};
 /* Replaces "dt=@0.04" by that fraction of 2/omega in s. */
 static void fill_step(const char *pattern, double omega, char *out, size_t size) {
     const char *at = strchr(pattern, '@');
-    struct cs_text number = {0};
-    cs_text_add_real(&number, at ? 2 / omega * strtod(at + 1, NULL) : 0);
+    char number[CS_REAL_DIGITS] = "";
+    if (at)
+        cs_print_real(2 / omega * strtod(at + 1, NULL), number);
     snprintf(out, size, "%.*s%s", at ? (int)(at - pattern) : (int)strlen(pattern), pattern,
-             at ? cs_text_get(&number) : "");
-    cs_text_finish(&number);
+             number);
 }
 
 /* True if the method is available and accepts the scene. */

@@ -252,6 +252,7 @@ enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error) {
                          .task = advise_task,
                          .progress = report,
                          .progress_ctx = advise,
+                         .silence_max = 5 + 2 * advise->budget,
                          .stop = advise->stop}};
     if (cs_session_open_system(&advise->was_opened, &advise->session, error) ||
         list_methods(advise, error))

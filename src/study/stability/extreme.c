@@ -233,6 +233,7 @@ static enum cs_status run_all(struct catalogue *catalogue, struct cs_error *erro
         .progress = progress,
         .progress_ctx = catalogue,
         /* a run ends itself at its budget: only a step that never ends is cut off */
+        .silence_max = 5 + 2 * catalogue->extreme->budget,
         .task_seconds_max = 2 * catalogue->extreme->budget + 1,
         .stop = catalogue->extreme->stop};
     return cs_process_pool_run(&workers, error);

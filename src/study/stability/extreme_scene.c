@@ -15,7 +15,8 @@ enum { MOST_BYTES = 1 << 20 };
 
 const char *const cs_class_names[] = {"explicit", "implicit", "adaptive", NULL};
 
-enum cs_class cs_class_of(const struct cs_integrator *integrator) {
+/* Class of a method, from its traits. */
+static enum cs_class class_of(const struct cs_integrator *integrator) {
     if (integrator->traits & CS_ADAPTIVE)
         return CS_CLASS_ADAPTIVE;
     return integrator->traits & CS_IMPLICIT ? CS_CLASS_IMPLICIT : CS_CLASS_EXPLICIT;
@@ -82,7 +83,7 @@ const char *cs_extreme_expected(const struct cs_extreme_scene *scene,
     for (uint32_t k = 0; k < scene->n_per_method; k++)
         if (!strcmp(scene->per_method[k].method, integrator->name))
             return scene->per_method[k].expected;
-    return scene->expected[cs_class_of(integrator)];
+    return scene->expected[class_of(integrator)];
 }
 
 /* Reads "x-extreme": seconds, dt, and one expectation per class. */
@@ -114,8 +115,8 @@ static enum cs_status take_values(struct cs_extreme_scene *scene, const struct c
 }
 
 /* Parses the file for "x-extreme" only; the session reads the scene itself later. */
-enum cs_status cs_extreme_scene_read(struct cs_extreme_scene *scene, const char *folder,
-                                     const char *file, struct cs_error *error) {
+static enum cs_status read_scene(struct cs_extreme_scene *scene, const char *folder,
+                                 const char *file, struct cs_error *error) {
     char *text;
     size_t length;
     struct cs_json *root = NULL;
@@ -162,7 +163,7 @@ enum cs_status cs_extreme_scenes(const char *folder, struct cs_extreme_scene **s
             break;
         }
         *scenes = larger;
-        cs_extreme_scene_read(*scenes + (*n)++, folder, entry->d_name, error);
+        read_scene(*scenes + (*n)++, folder, entry->d_name, error);
     }
     closedir(entries);
     if (!*n && !error->status)

@@ -10,8 +10,6 @@
  */
 enum cs_class { CS_CLASS_EXPLICIT, CS_CLASS_IMPLICIT, CS_CLASS_ADAPTIVE, CS_CLASSES };
 extern const char *const cs_class_names[]; /* closed by NULL */
-/* Class of a method, from its traits. */
-enum cs_class cs_class_of(const struct cs_integrator *integrator);
 
 /* Head of a catalogue scene. Texts are copied: a scene can be moved in memory. */
 struct cs_extreme_scene {
@@ -23,11 +21,6 @@ struct cs_extreme_scene {
     } per_method[16]; /* methods that are not like their class */
     uint32_t n_per_method;
 };
-
-/* Reads FOLDER/FILE and checks its "x-extreme". CS_ERR_FILE, CS_ERR_SCENE; *scene is then
- * incomplete. */
-enum cs_status cs_extreme_scene_read(struct cs_extreme_scene *scene, const char *folder,
-                                     const char *file, struct cs_error *error);
 
 /* Reads all scenes (*.json) of a folder, sorted by name. *scenes is malloc'd (n) and the
  * caller's, after a failure too. Returns CS_ERR_FILE if there are none; CS_ERR_SCENE,

@@ -5,18 +5,29 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *const cs_axis_names[] = {"stiffness", "damping", "mass", "resolution", NULL};
+const char *const cs_axis_names[] = {"stiffness",  "damping", "mass",
+                                     "resolution", "young",   NULL};
 
 const char *cs_axis_unit(enum cs_axis axis) {
-    static const char *const units[CS_AXES] = {"N/m", "N s/m", "kg", "columns"};
+    static const char *const units[CS_AXES] = {"N/m", "N s/m", "kg", "columns", "N/m"};
     return units[axis];
+}
+
+/* Young's modulus, or that of the warp; 0 without elastic. */
+static double young_of(const struct cs_elastic *elastic) {
+    const double young = elastic->membrane.young;
+    return isnan(young) ? cs_membrane_moduli(elastic).warp : young;
 }
 
 /* The stiffest of the three kinds of springs stands for all: they are scaled together. */
 double cs_axis_scene_value(const struct cs_system *system, enum cs_axis axis) {
     const struct cs_body *body = cs_scene_bodies(system->scene);
     switch (axis) {
+    case CS_AXIS_YOUNG:
+        return young_of(&body->elastic);
     case CS_AXIS_STIFFNESS:
+        if (body->elastic.present)
+            return 0;
         return fmax(body->springs.stretch, fmax(body->springs.shear, body->springs.bend));
     case CS_AXIS_DAMPING:
         return body->springs.damping;
@@ -80,11 +91,26 @@ static void add_grid(struct growing *to, const int64_t *grid, double factor) {
     add(to, "cloth.grid", value);
 }
 
+/* Appends the constants of a measured cloth instead of its name, those of its membrane times
+ * factor. */
+static void add_measured(struct growing *to, const struct cs_elastic *elastic, double factor) {
+    const struct cs_moduli C = cs_membrane_moduli(elastic), D = cs_bending_moduli(elastic);
+    char value[512];
+    snprintf(value, sizeof value,
+             "{\"membrane\": {\"warp\": %.17g, \"weft\": %.17g, \"shear\": %.17g, "
+             "\"coupling\": %.17g}, \"bending\": {\"warp\": %.17g, \"weft\": %.17g, "
+             "\"twist\": %.17g}, \"damping\": %.17g}",
+             C.warp * factor, C.weft * factor, C.shear * factor, C.coupling * factor, D.warp,
+             D.weft, D.shear, elastic->damping);
+    add(to, "elastic", value);
+}
+
 /* Appends the overrides of one body: its values on the axis times factor. Values that the scene
  * does not set (NAN) stay unset, so the key that the scene uses for mass decides. */
 static void add_scaled(struct growing *to, const struct cs_body *body, enum cs_axis axis,
                        double value, double factor) {
     const struct cs_spring_law *law = &body->springs;
+    const struct cs_membrane_keys *membrane = &body->elastic.membrane;
     const struct cs_mass *mass = &body->mass;
     const struct {
         enum cs_axis axis;
@@ -96,14 +122,23 @@ static void add_scaled(struct growing *to, const struct cs_body *body, enum cs_a
         {CS_AXIS_STIFFNESS, "springs.bend", law->bend * factor},
         /* a body without damping gets that of the axis */
         {CS_AXIS_DAMPING, "springs.damping", law->damping > 0 ? law->damping * factor : value},
+        {CS_AXIS_YOUNG, "elastic.membrane.young", membrane->young * factor},
+        {CS_AXIS_YOUNG, "elastic.membrane.warp", membrane->warp * factor},
+        {CS_AXIS_YOUNG, "elastic.membrane.weft", membrane->weft * factor},
+        {CS_AXIS_YOUNG, "elastic.membrane.shear", membrane->shear * factor},
+        {CS_AXIS_YOUNG, "elastic.membrane.coupling",
+         isnan(membrane->warp) ? (double)NAN : membrane->coupling * factor},
         {CS_AXIS_MASS, "mass.particle", mass->particle * factor},
         {CS_AXIS_MASS, "mass.areal_density", mass->areal_density * factor},
         {CS_AXIS_MASS, "mass.total", mass->total * factor},
         {CS_AXIS_MASS, "mass.degree", mass->degree * factor},
     };
     for (uint32_t k = 0; k < sizeof rows / sizeof *rows; k++)
-        if (rows[k].axis == axis && !isnan(rows[k].value))
+        if (rows[k].axis == axis && !isnan(rows[k].value) &&
+            !(body->elastic.present && !strncmp(rows[k].key, "springs.", 8)))
             add_real(to, rows[k].key, rows[k].value);
+    if (axis == CS_AXIS_YOUNG && body->elastic.present && body->elastic.cloth >= 0)
+        add_measured(to, &body->elastic, factor);
     if (axis == CS_AXIS_RESOLUTION)
         add_grid(to, body->cloth.grid, factor);
 }

@@ -9,7 +9,6 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #define ENDING ".partial"
 
@@ -144,9 +143,8 @@ enum cs_status cs_journal_append_boundary(const struct cs_stability *map, uint32
     return append(map, &record, error);
 }
 
-void cs_journal_remove(const struct cs_stability *map) {
-    if (*map->journal.table.path)
-        unlink(map->journal.table.path);
+enum cs_status cs_journal_remove(const struct cs_stability *map, struct cs_error *error) {
+    return *map->journal.table.path ? cs_file_remove(map->journal.table.path, error) : CS_OK;
 }
 
 /* True for a file name with the ending of journals and a stem. */

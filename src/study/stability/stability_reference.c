@@ -56,7 +56,7 @@ static bool is_tightest(struct way *way, const struct cs_eval *at) {
     double w, delta;
     if (!cs_spectral_bounds_depend_on_state(way->system))
         return false;
-    cs_spectral_bounds_rate(way->system, at, way->theory->modes.dx, &w, &delta);
+    cs_spectral_bounds_rate(way->system, at, false, way->theory->modes.dx, &w, &delta);
     const double limit = limit_by_rate(w, 2 * way->system->view.delta);
     if (!(limit < TIGHTER * way->smallest_rate))
         return false;

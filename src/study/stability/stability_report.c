@@ -3,7 +3,7 @@
 #include "study/stability/stability_report.h"
 
 #include "base/json_writer.h"
-#include "base/table.h"
+#include "study/contact_capacity.h"
 #include "study/stability/stability_state.h"
 
 #include <math.h>
@@ -219,20 +219,47 @@ static void add_cell(const struct cs_stability *map, uint32_t c, uint32_t r,
     cs_text_add(out, "\n");
 }
 
+const struct cs_column cs_stability_columns[] = {
+    CS_NUMBER_COLUMN("dt", "s", "step"),
+    CS_TEXT_COLUMN("verdict", "how the cell ended: see clothsim-stability(1)"),
+    CS_NUMBER_COLUMN("verdict_number", "1", "the same as a number, from 0 in that order"),
+    CS_NUMBER_COLUMN("energy_drift", "1", "drift of the energy of a run that ended"),
+    CS_NUMBER_COLUMN("time", "s", "when the verdict showed; the end of a stable run"),
+    CS_NUMBER_COLUMN("particles", "1", "most particles at a time of a local instability"),
+    CS_NUMBER_COLUMN("cell_left", "", "edge of the cell in a diagram, in the axis' unit"),
+    CS_NUMBER_COLUMN("cell_right", "", "edge of the cell in a diagram, in the axis' unit"),
+    CS_NUMBER_COLUMN("cell_bottom", "s", "edge of the cell in a diagram"),
+    CS_NUMBER_COLUMN("cell_top", "s", "edge of the cell in a diagram"),
+    CS_NUMBER_COLUMN("crossings", "1", "edges through triangles, maximum over the run"),
+};
+const uint32_t cs_stability_n_columns =
+    sizeof cs_stability_columns / sizeof *cs_stability_columns;
+const struct cs_column cs_stability_border_columns[] = {
+    CS_NUMBER_COLUMN("border", "s", "largest stable step, found by bisection"),
+    CS_NUMBER_COLUMN("worst_on_way", "s", "smallest limit of theory along the reference"),
+    CS_NUMBER_COLUMN("at_start", "s", "limit of theory for small motions at the start"),
+    CS_NUMBER_COLUMN("gershgorin", "s", "bound of theory by Gershgorin's theorem"),
+    CS_NUMBER_COLUMN("omega", "1/s", "angular frequency of the mode that limits the step"),
+    CS_NUMBER_COLUMN("damping_rate", "1/s", "damping rate of that mode"),
+    CS_NUMBER_COLUMN("particle", "1", "index of the particle that moves most in it"),
+    CS_NUMBER_COLUMN("share", "1", "fraction of the mode's kinetic energy in that particle"),
+};
+const uint32_t cs_stability_n_border_columns =
+    sizeof cs_stability_border_columns / sizeof *cs_stability_border_columns;
+
 void cs_stability_print_csv(const struct cs_stability *map, struct cs_text *out) {
-    cs_text_add(out,
-                "%s,dt,verdict,verdict_number,energy_drift,time,particles,cell_left,cell_right,"
-                "cell_bottom,cell_top,crossings\n",
-                cs_axis_names[map->settings->axis]);
+    cs_text_add(out, "%s", cs_axis_names[map->settings->axis]);
+    cs_columns_add_names(cs_stability_columns, cs_stability_n_columns, out);
+    cs_text_add(out, "\n");
     for (uint32_t c = 0; c < map->n_columns; c++)
         for (uint32_t r = 0; r < map->n_rows; r++)
             add_cell(map, c, r, out);
 }
 
 void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_text *out) {
-    cs_text_add(
-        out, "%s,border,worst_on_way,at_start,gershgorin,omega,damping_rate,particle,share\n",
-        cs_axis_names[map->settings->axis]);
+    cs_text_add(out, "%s", cs_axis_names[map->settings->axis]);
+    cs_columns_add_names(cs_stability_border_columns, cs_stability_n_border_columns, out);
+    cs_text_add(out, "\n");
     for (uint32_t c = 0; c < map->n_columns; c++) {
         const struct cs_stability_column *column = map->columns + c;
         const struct cs_reference *reference = &column->reference;
@@ -286,14 +313,6 @@ void cs_stability_print_json(const struct cs_stability *map, struct cs_text *out
 }
 
 /* --- the diagram --- */
-
-/* green to red for eyes of every kind, then violet and greys; by verdict */
-static const char *const colours[CS_STABILITY_VERDICTS] = {
-    [CS_STABILITY_BOUNDED] = "#9fd3b5", [CS_STABILITY_DAMPED] = "#a9c9e8",
-    [CS_STABILITY_SHORT] = "#e3f1e8",   [CS_STABILITY_LOCAL] = "#f6d365",
-    [CS_STABILITY_GLOBAL] = "#e8825a",  [CS_STABILITY_NOT_FINITE] = "#8e5c86",
-    [CS_STABILITY_FAILED] = "#7f858d",  [CS_STABILITY_OVER_BUDGET] = "#dfe1e4",
-    [CS_STABILITY_UNJUDGED] = "#f4f4f4"};
 
 /* Settings of the diagram: terminal, title, axes, key. */
 static void add_head(const struct cs_stability *map, const char *name, struct cs_text *out) {
@@ -365,8 +384,9 @@ void cs_stability_print_plot(const struct cs_stability *map, const char *name,
             cs_text_add(
                 out,
                 "  '%s.csv' using 1:($4==%d?$2:NaN):8:9:10:11 every ::1 with boxxyerror "
-                "fc rgb '%s' title '%s', \\\n",
-                name, v, colours[v], cs_stability_word((enum cs_stability_verdict)v));
+                "fc rgb '#%06x' title '%s', \\\n",
+                name, v, cs_stability_colour((enum cs_stability_verdict)v),
+                cs_stability_word((enum cs_stability_verdict)v));
     for (size_t k = 0; k < sizeof curves / sizeof *curves; k++)
         cs_text_add(out, "  '%s_border.csv' using 1:%d every ::1 with %s %s'%s'%s\n", name,
                     curves[k].column, curves[k].style, *curves[k].title ? "title " : "notitle ",

@@ -14,7 +14,14 @@
 /* Varies one value of a scene over the columns of a stability map. */
 
 /* Values that a map can vary. */
-enum cs_axis { CS_AXIS_STIFFNESS, CS_AXIS_DAMPING, CS_AXIS_MASS, CS_AXIS_RESOLUTION, CS_AXES };
+enum cs_axis {
+    CS_AXIS_STIFFNESS,
+    CS_AXIS_DAMPING,
+    CS_AXIS_MASS,
+    CS_AXIS_RESOLUTION,
+    CS_AXIS_YOUNG,
+    CS_AXES
+};
 
 extern const char *const cs_axis_names[]; /* closed by NULL */
 
@@ -34,7 +41,7 @@ enum cs_status cs_axis_overrides(const struct cs_system *system, enum cs_axis ax
                                  struct cs_session_settings *session, struct cs_error *error);
 
 /* The scene's own value: that of the first body (stretch stiffness, damping, mass of a
- * particle, columns of the grid); 0 where it has none. */
+ * particle, columns of the grid, Young's modulus or that of the warp); 0 where it has none. */
 double cs_axis_scene_value(const struct cs_system *system, enum cs_axis axis);
 
 /* Values that the axis covers where none are asked for. */
@@ -187,25 +194,12 @@ enum cs_status cs_journal_append_cell(const struct cs_stability *map, uint32_t c
 enum cs_status cs_journal_append_boundary(const struct cs_stability *map, uint32_t column,
                                           struct cs_error *error);
 
-/* Deletes the file of a complete map. */
-void cs_journal_remove(const struct cs_stability *map);
+/* Deletes the file of a complete map. CS_ERR_FILE. */
+enum cs_status cs_journal_remove(const struct cs_stability *map, struct cs_error *error);
 
 /* Appends the journals of the folders to those of the folder `out`; *n: journals read. A record
  * that is cut off at the end of a file is dropped. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_journal_merge(const char *const *folders, uint32_t n_folders, const char *out,
                                 uint32_t *n, struct cs_error *error);
-
-/* Notes on the role of contact in the stability studies, as text. */
-
-/* Adds `before` and whether contact is a part of linear theory and of runs. Adds nothing for
- * scenes without contact. */
-void cs_contact_note_add(const struct cs_scene *scene, const char *before, struct cs_text *out);
-
-/* Adds the energy in J that contact holds beside the one that comes (contact_capacity.h), next
- * to the kinetic energy of the heaviest particle at `speed` (m/s; 0: unknown). Adds the damping
- * by friction, and what longer explicit steps do. Adds nothing for scenes without contact by
- * force. */
-void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
-                                  struct cs_text *out);
 
 #endif

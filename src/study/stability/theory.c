@@ -1,175 +1,14 @@
-/* Finds the largest stable step of a method on a system by linear theory. */
+/* Measures the amplification matrix of a method's step on a damped oscillator, and finds the
+ * largest stable step of a method on a system by linear theory. */
 #include "study/stability/theory.h"
 
+#include "model/elastic/membranes.h"
 #include "model/force/diagnostics.h"
 #include "study/follow.h"
 #include "study/session.h"
 
 #include <math.h>
 #include <string.h>
-
-/* Turns of the search direction per start; the search usually ends earlier, at a gain below 0.1
- * %. */
-enum { MOST_TURNS = 5 };
-
-/* True if friction is all that dissipates in contact, and that there is of CS_PART_DISSIPATIVE.
- */
-static bool is_friction_alone(const struct cs_scene *scene) {
-    return !(scene->contact.damping > 0) && !scene->seams.n &&
-           scene->contact.friction_law == CS_FRICTION_SMOOTH;
-}
-
-enum cs_status cs_theory_init(struct cs_theory *theory, const struct cs_system *system,
-                              const struct cs_integrator *integrator, const void *options,
-                              double growth, struct cs_error *error) {
-    *theory = (struct cs_theory){.amplification = {integrator, options, growth},
-                                 .stiffness_damping_direction = {1, 0}};
-    if (cs_stiffest_modes_init(&theory->modes, system, error))
-        return error->status;
-    if (is_friction_alone(system->scene))
-        theory->modes.parts &= ~(uint32_t)CS_PART_DISSIPATIVE;
-    return CS_OK;
-}
-
-void cs_theory_finish(struct cs_theory *theory) {
-    cs_stiffest_modes_finish(&theory->modes);
-}
-
-/* The bound view.delta is half of the largest damping rate, hence 2 delta. The undamped limit
- * is taken too, because damping lengthens the limit of some methods and modes need not have all
- * of it. */
-enum cs_status cs_theory_gershgorin(struct cs_theory *theory, const double *x, double *dt,
-                                    struct cs_error *error) {
-    const struct cs_stiffest_modes *modes = &theory->modes;
-    const struct cs_eval at = {.t = modes->t, .x = x, .v = modes->zeros, .parts = CS_PART_ALL};
-    double omega, delta, free = HUGE_VAL, damped = HUGE_VAL;
-    cs_spectral_bounds_rate(modes->system, &at, modes->dx, &omega, &delta);
-    if (cs_amplification_limit(&theory->amplification, omega * omega, 0, &free, error) ||
-        cs_amplification_limit(&theory->amplification, omega * omega, 2 * delta, &damped,
-                               error))
-        return error->status;
-    *dt = fmin(*dt, fmin(free, damped));
-    return CS_OK;
-}
-
-static enum cs_status is_growing(const struct cs_amplification *amplify, double h,
-                                 double square, double rate, bool *out, struct cs_error *error);
-
-/* The limit of one motion replaces a larger one, and is searched only if the motion grows at
- * the limit there is. A motion that pushes itself away is physically unstable: it limits no
- * step, but what its damping does counts. */
-static enum cs_status consider(struct cs_theory *theory, const struct cs_mode *mode,
-                               struct cs_theory_limit *limit, struct cs_error *error) {
-    struct cs_theory_limit found = {HUGE_VAL, *mode};
-    const double square = mode->omega_squared > 0 ? mode->omega_squared : 0;
-    const double rate = mode->damping_rate > 0 ? mode->damping_rate : 0;
-    bool grows = true;
-    if (limit->dt > 0 && limit->dt < HUGE_VAL &&
-        (is_growing(&theory->amplification, limit->dt, square, rate, &grows, error) || !grows))
-        return error->status;
-    if (cs_amplification_limit(&theory->amplification, square, rate, &found.dt, error))
-        return error->status;
-    if (found.dt < limit->dt)
-        *limit = found;
-    return CS_OK;
-}
-
-/* Turns the search direction to the outward normal of the stable set at the limit.
- *
- * The normal is the gradient of the spectral radius. It is taken at 1.002 h, just outside the
- * border: inside, the radius of a symplectic method is 1 everywhere and its gradient vanishes.
- * With (n1, n2) in the plane (h^2 square, h rate) the functional on (square, rate) is a = h^2
- * n1, b = h n2. Only the ratio a : b matters for the eigenvector; the division removes the
- * scale. */
-static enum cs_status update_search_direction(struct cs_theory *theory,
-                                              const struct cs_theory_limit *limit,
-                                              struct cs_error *error) {
-    const double h = limit->dt;
-    double normal[2];
-    if (!(limit->mode.omega_squared > 0) ||
-        cs_amplification_normal(&theory->amplification, 1.002 * h, limit->mode.omega_squared,
-                                fmax(limit->mode.damping_rate, 0), normal, error))
-        return error->status;
-    const double a = h * h * normal[0], b = h * normal[1];
-    const double scale = fabs(a) + fabs(b) / h;
-    if (isfinite(scale) && scale > 0) {
-        theory->stiffness_damping_direction[0] = a / scale;
-        theory->stiffness_damping_direction[1] = b / scale;
-    }
-    return CS_OK;
-}
-
-/* True for a limit that is neither "no stable step" (0) nor "no limit" (HUGE_VAL). */
-static bool has_limit(const struct cs_theory_limit *limit) {
-    return limit->dt > 0 && limit->dt < HUGE_VAL;
-}
-
-/* Alternates from the direction (a, b) between the largest eigenvalue and the normal at the
- * limit of its mode. Ends when a turn gains less than 0.1 %. */
-static enum cs_status descend(struct cs_theory *theory, const double *x, double a, double b,
-                              struct cs_theory_limit *limit, struct cs_error *error) {
-    theory->stiffness_damping_direction[0] = a;
-    theory->stiffness_damping_direction[1] = b;
-    theory->modes.has_start = false;
-    for (int k = 0; k < MOST_TURNS; k++) {
-        const double before = limit->dt;
-        const struct cs_mode mode =
-            cs_stiffest_modes_largest(&theory->modes, x, theory->stiffness_damping_direction[0],
-                                      theory->stiffness_damping_direction[1]);
-        if (consider(theory, &mode, limit, error))
-            return error->status;
-        if (!has_limit(limit) || !(limit->dt < 0.999 * before) ||
-            update_search_direction(theory, limit, error))
-            break;
-    }
-    return error->status;
-}
-
-/* The damped start comes first. Its limit is kept unless the elastic start finds a smaller one;
- * the direction left behind belongs to the smaller of the two. */
-enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
-                            struct cs_theory_limit *limit, struct cs_error *error) {
-    *limit = (struct cs_theory_limit){.dt = HUGE_VAL};
-    if (theory->modes.system->view.delta > 0 && descend(theory, x, 0, 1, limit, error))
-        return error->status;
-    struct cs_theory_limit swing = {.dt = HUGE_VAL};
-    if (descend(theory, x, 1, 0, &swing, error))
-        return error->status;
-    if (swing.dt < limit->dt)
-        *limit = swing;
-    if (has_limit(limit))
-        update_search_direction(theory, limit, error);
-    return error->status;
-}
-
-/* Dampers of contact come and go with it, and no turning from a motion that swings leads to one
- * that is only damped: the fastest of those is searched by itself. */
-static enum cs_status consider_dampers(struct cs_theory *theory, const double *x,
-                                       struct cs_theory_limit *limit, struct cs_error *error) {
-    if (!(theory->modes.parts & CS_PART_DISSIPATIVE) ||
-        !cs_spectral_bounds_depend_on_state(theory->modes.system))
-        return CS_OK;
-    theory->modes.has_start = false;
-    const struct cs_mode mode = cs_stiffest_modes_largest(&theory->modes, x, 0, 1);
-    theory->modes.has_start = false;
-    return consider(theory, &mode, limit, error);
-}
-
-enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x, bool with_dampers,
-                                 struct cs_theory_limit *limit, struct cs_error *error) {
-    if (!has_limit(limit))
-        return CS_OK;
-    const struct cs_mode mode =
-        cs_stiffest_modes_largest(&theory->modes, x, theory->stiffness_damping_direction[0],
-                                  theory->stiffness_damping_direction[1]);
-    const double before = limit->dt;
-    if (!consider(theory, &mode, limit, error) && limit->dt < 0.98 * before)
-        update_search_direction(theory, limit, error);
-    return error->status || !with_dampers ? error->status
-                                          : consider_dampers(theory, x, limit, error);
-}
-
-/* Measures the amplification matrix of a method's step on a damped oscillator. */
 
 /* Scene of one spring. The pinned particle is at x = -1, the free one of mass 1 at 0, so its x
  * is the elongation without rounding. Rest length 1; stiffness and damping are set by
@@ -193,8 +32,8 @@ enum { STEPS_BEFORE = 8, STEPS_BETWEEN = 16 };
 #define SAME 1e-6
 
 /* Runs from (s, h w) = start; looks[k] = (s, h w) after steps[k] steps. Returns false if the
- * method blew up or refused. Only lack of memory is passed on in *error: a refusal is a result
- * here. */
+ * method blew up or refused. Only lack of memory and a changed process are passed on in *error:
+ * a refusal is a result here. */
 static bool run_once(struct cs_session *session, const double start[2], const uint32_t steps[2],
                      double looks[2][2], struct cs_error *error) {
     struct cs_follow follow = {.run = &session->run};
@@ -212,6 +51,8 @@ static bool run_once(struct cs_session *session, const double start[2], const ui
         looks[k][0] = x[1] / SMALL;
         looks[k][1] = v[1] * FRAME / SMALL;
     }
+    if (session->run.is_process_changed)
+        *error = refused;
     return !refused.status && session->run.outcome == CS_RUNNING;
 }
 
@@ -368,9 +209,12 @@ enum cs_status cs_amplification_limit(const struct cs_amplification *amplify, do
     return CS_OK;
 }
 
-enum cs_status cs_amplification_normal(const struct cs_amplification *amplify, double h,
-                                       double square, double rate, double normal[2],
-                                       struct cs_error *error) {
+/* Outward normal of the stable set in the plane (h^2 square, h rate) near its border: the
+ * gradient of the spectral radius by forward differences of 1 %. Not scaled; infinite or NAN
+ * where the method blows up. square > 0. */
+static enum cs_status normal_amplification(const struct cs_amplification *amplify, double h,
+                                           double square, double rate, double normal[2],
+                                           struct cs_error *error) {
     const double step = 0.01;
     double here = 0, along_square = 0, along_rate = 0;
     const double extra = step * fmax(rate, sqrt(square > 0 ? square : 0));
@@ -380,4 +224,166 @@ enum cs_status cs_amplification_normal(const struct cs_amplification *amplify, d
     normal[0] = (along_square - here) / (h * h * square * step);
     normal[1] = (along_rate - here) / (h * extra);
     return error->status;
+}
+
+/* Turns of the search direction per start; the search usually ends earlier, at a gain below 0.1
+ * %. */
+enum { MOST_TURNS = 5 };
+
+/* True if friction is all that dissipates in contact, and all of CS_PART_DISSIPATIVE but the
+ * dampers of elastic bodies. */
+static bool is_friction_alone(const struct cs_scene *scene) {
+    return !(scene->contact.damping > 0) && !scene->seams.n &&
+           scene->contact.friction_law == CS_FRICTION_SMOOTH;
+}
+
+enum cs_status cs_theory_init(struct cs_theory *theory, const struct cs_system *system,
+                              const struct cs_integrator *integrator, const void *options,
+                              double growth, struct cs_error *error) {
+    *theory = (struct cs_theory){.amplification = {integrator, options, growth},
+                                 .stiffness_damping_direction = {1, 0}};
+    if (cs_stiffest_modes_init(&theory->modes, system, error))
+        return error->status;
+    if (is_friction_alone(system->scene))
+        theory->modes.parts =
+            (CS_PART_LINEARISED & ~(uint32_t)CS_PART_DISSIPATIVE) | CS_PART_ELASTIC_DAMPING;
+    return CS_OK;
+}
+
+void cs_theory_finish(struct cs_theory *theory) {
+    cs_stiffest_modes_finish(&theory->modes);
+}
+
+/* The bound view.delta is half of the largest damping rate, hence 2 delta. The undamped limit
+ * is taken too, because damping lengthens the limit of some methods and modes need not have all
+ * of it. */
+enum cs_status cs_theory_gershgorin(struct cs_theory *theory, const double *x, double *dt,
+                                    struct cs_error *error) {
+    const struct cs_stiffest_modes *modes = &theory->modes;
+    const struct cs_eval at = {.t = modes->t, .x = x, .v = modes->zeros, .parts = CS_PART_ALL};
+    double omega, delta, free = HUGE_VAL, damped = HUGE_VAL;
+    cs_spectral_bounds_rate(modes->system, &at, false, modes->dx, &omega, &delta);
+    if (cs_amplification_limit(&theory->amplification, omega * omega, 0, &free, error) ||
+        cs_amplification_limit(&theory->amplification, omega * omega, 2 * delta, &damped,
+                               error))
+        return error->status;
+    *dt = fmin(*dt, fmin(free, damped));
+    return CS_OK;
+}
+
+static enum cs_status is_growing(const struct cs_amplification *amplify, double h,
+                                 double square, double rate, bool *out, struct cs_error *error);
+
+/* The limit of one motion replaces a larger one, and is searched only if the motion grows at
+ * the limit there is. A motion that pushes itself away is physically unstable: it limits no
+ * step, but what its damping does counts. */
+static enum cs_status consider(struct cs_theory *theory, const struct cs_mode *mode,
+                               struct cs_theory_limit *limit, struct cs_error *error) {
+    struct cs_theory_limit found = {HUGE_VAL, *mode};
+    const double square = mode->omega_squared > 0 ? mode->omega_squared : 0;
+    const double rate = mode->damping_rate > 0 ? mode->damping_rate : 0;
+    bool grows = true;
+    if (limit->dt > 0 && limit->dt < HUGE_VAL &&
+        (is_growing(&theory->amplification, limit->dt, square, rate, &grows, error) || !grows))
+        return error->status;
+    if (cs_amplification_limit(&theory->amplification, square, rate, &found.dt, error))
+        return error->status;
+    if (found.dt < limit->dt)
+        *limit = found;
+    return CS_OK;
+}
+
+/* Turns the search direction to the outward normal of the stable set at the limit.
+ *
+ * The normal is the gradient of the spectral radius. It is taken at 1.002 h, just outside the
+ * border: inside, the radius of a symplectic method is 1 everywhere and its gradient vanishes.
+ * With (n1, n2) in the plane (h^2 square, h rate) the functional on (square, rate) is a = h^2
+ * n1, b = h n2. Only the ratio a : b matters for the eigenvector; the division removes the
+ * scale. */
+static enum cs_status update_search_direction(struct cs_theory *theory,
+                                              const struct cs_theory_limit *limit,
+                                              struct cs_error *error) {
+    const double h = limit->dt;
+    double normal[2];
+    if (!(limit->mode.omega_squared > 0) ||
+        normal_amplification(&theory->amplification, 1.002 * h, limit->mode.omega_squared,
+                             fmax(limit->mode.damping_rate, 0), normal, error))
+        return error->status;
+    const double a = h * h * normal[0], b = h * normal[1];
+    const double scale = fabs(a) + fabs(b) / h;
+    if (isfinite(scale) && scale > 0) {
+        theory->stiffness_damping_direction[0] = a / scale;
+        theory->stiffness_damping_direction[1] = b / scale;
+    }
+    return CS_OK;
+}
+
+/* True for a limit that is neither "no stable step" (0) nor "no limit" (HUGE_VAL). */
+static bool has_limit(const struct cs_theory_limit *limit) {
+    return limit->dt > 0 && limit->dt < HUGE_VAL;
+}
+
+/* Alternates from the direction (a, b) between the largest eigenvalue and the normal at the
+ * limit of its mode. Ends when a turn gains less than 0.1 %. */
+static enum cs_status descend(struct cs_theory *theory, const double *x, double a, double b,
+                              struct cs_theory_limit *limit, struct cs_error *error) {
+    theory->stiffness_damping_direction[0] = a;
+    theory->stiffness_damping_direction[1] = b;
+    theory->modes.has_start = false;
+    for (int k = 0; k < MOST_TURNS; k++) {
+        const double before = limit->dt;
+        const struct cs_mode mode =
+            cs_stiffest_modes_largest(&theory->modes, x, theory->stiffness_damping_direction[0],
+                                      theory->stiffness_damping_direction[1]);
+        if (consider(theory, &mode, limit, error))
+            return error->status;
+        if (!has_limit(limit) || !(limit->dt < 0.999 * before) ||
+            update_search_direction(theory, limit, error))
+            break;
+    }
+    return error->status;
+}
+
+/* The damped start comes first. Its limit is kept unless the elastic start finds a smaller one;
+ * the direction left behind belongs to the smaller of the two. */
+enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
+                            struct cs_theory_limit *limit, struct cs_error *error) {
+    *limit = (struct cs_theory_limit){.dt = HUGE_VAL};
+    if (theory->modes.system->view.delta > 0 && descend(theory, x, 0, 1, limit, error))
+        return error->status;
+    struct cs_theory_limit swing = {.dt = HUGE_VAL};
+    if (descend(theory, x, 1, 0, &swing, error))
+        return error->status;
+    if (swing.dt < limit->dt)
+        *limit = swing;
+    if (has_limit(limit))
+        update_search_direction(theory, limit, error);
+    return error->status;
+}
+
+/* Dampers of contact come and go with it, and no turning from a motion that swings leads to one
+ * that is only damped: the fastest of those is searched by itself. */
+static enum cs_status consider_dampers(struct cs_theory *theory, const double *x,
+                                       struct cs_theory_limit *limit, struct cs_error *error) {
+    if (!(theory->modes.parts & CS_PART_DISSIPATIVE) ||
+        !cs_spectral_bounds_depend_on_state(theory->modes.system))
+        return CS_OK;
+    theory->modes.has_start = false;
+    const struct cs_mode mode = cs_stiffest_modes_largest(&theory->modes, x, 0, 1);
+    theory->modes.has_start = false;
+    return consider(theory, &mode, limit, error);
+}
+
+enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x, bool with_dampers,
+                                 struct cs_theory_limit *limit, struct cs_error *error) {
+    if (!has_limit(limit))
+        return CS_OK;
+    const struct cs_mode mode =
+        cs_stiffest_modes_largest(&theory->modes, x, theory->stiffness_damping_direction[0],
+                                  theory->stiffness_damping_direction[1]);
+    const double before = limit->dt;
+    if (!consider(theory, &mode, limit, error) && limit->dt < 0.98 * before)
+        update_search_direction(theory, limit, error);
+    return error->status || !with_dampers ? error->status
+                                          : consider_dampers(theory, x, limit, error);
 }

@@ -74,13 +74,6 @@ enum cs_status cs_amplification_measure(const struct cs_amplification *amplify, 
 enum cs_status cs_amplification_limit(const struct cs_amplification *amplify, double square,
                                       double rate, double *limit, struct cs_error *error);
 
-/* Outward normal of the stable set in the plane (h^2 square, h rate) near its border: the
- * gradient of the spectral radius by forward differences of 1 %. Not scaled; infinite or NAN
- * where the method blows up. square > 0. */
-enum cs_status cs_amplification_normal(const struct cs_amplification *amplify, double h,
-                                       double square, double rate, double normal[2],
-                                       struct cs_error *error);
-
 /* Search state of the limits of one method on one system. */
 struct cs_theory {
     /* the method, and the growth rate that still counts as stable */

@@ -1,6 +1,6 @@
 /* Counting sort of items into blocks, sixteen to a cluster, with the rectangle of each cluster.
  */
-#include "model/contact/broad_phase/aabb_cluster_build.h"
+#include "model/contact/broad_phase/aabb_clusters.h"
 
 #include "base/pool.h"
 
@@ -153,7 +153,7 @@ enum cs_status cs_cluster_input_build(const struct cs_cluster_input *order,
 }
 
 /* Measures flat regions: boxes of the edges of each block, then the bound of (s - r) / sqrt(2)
- * over each block and its neighbours. Theory: aabb_cluster_build.h.
+ * over each block and its neighbours. Theory: aabb_clusters.h.
  *
  * The cost is one pass over the edges and 9 boxes per block, a small part of a search for
  * pairs. */

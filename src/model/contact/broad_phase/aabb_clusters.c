@@ -8,6 +8,185 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Uniform grid of boxes: chooses the cell size, counts, fills. */
+
+/* m, longest side; negative: the box is empty */
+static double longest_side(const struct cs_aabb *box) {
+    double side = -1;
+    for (int c = 0; c < 3; c++) {
+        const double along = box->high[c] - box->low[c];
+        side = along > side ? along : side;
+    }
+    return side;
+}
+
+/* Boxes of one grid: those with side_min < longest side <= side_max. */
+struct set {
+    const struct cs_aabb *boxes; /* (n) */
+    uint32_t n;
+    double side_min, side_max; /* m */
+};
+
+/* Cell along one axis of a coordinate; those outside the grid have the first or last one. */
+static uint32_t index_of(const struct cs_uniform_grid *cells, double place, int axis) {
+    const double end = cells->dim[axis] - 1;
+    const double at = (place - cells->origin[axis]) * cells->inverse_cell_size;
+    return (uint32_t)(at > 0 ? at < end ? at : end : 0);
+}
+
+/* Number of a cell: x runs fastest. */
+static size_t cell_of(const struct cs_uniform_grid *cells, uint32_t x, uint32_t y, uint32_t z) {
+    return ((size_t)z * cells->dim[1] + y) * cells->dim[0] + x;
+}
+
+/* Limits per box: cells, and entries in cells; FEW is added to both. Beyond either the cells
+ * grow by LARGER = 2^(1/3) per side, so that their number halves. Chosen by trial. */
+enum { CELLS_EACH = 8, PLACES_EACH = 32, FEW = 4096 };
+
+#define LARGER 1.26
+
+/* Returns whether a box is empty or belongs to another grid. */
+static bool is_out(const struct set *boxes, uint32_t i) {
+    const double side = longest_side(boxes->boxes + i);
+    return !(side >= 0 && side > boxes->side_min && side <= boxes->side_max);
+}
+
+/* Sets lower corner and extent of all boxes; returns their mean longest side, 0 without boxes.
+ */
+static double measure(const struct set *boxes, double low[3], double extent[3]) {
+    double high[3], sum = 0;
+    uint32_t count = 0;
+    for (int c = 0; c < 3; c++) {
+        low[c] = HUGE_VAL;
+        high[c] = -HUGE_VAL;
+    }
+    for (uint32_t i = 0; i < boxes->n; i++) {
+        const struct cs_aabb *box = boxes->boxes + i;
+        if (is_out(boxes, i))
+            continue;
+        for (int c = 0; c < 3; c++) {
+            low[c] = fmin(low[c], box->low[c]);
+            high[c] = fmax(high[c], box->high[c]);
+        }
+        sum += longest_side(box);
+        count++;
+    }
+    for (int c = 0; c < 3; c++)
+        extent[c] = high[c] - low[c];
+    return count ? sum / count : 0;
+}
+
+/* Sets the number of cells along each axis; returns false if there are more than `most`. */
+static bool divide(struct cs_uniform_grid *cells, const double extent[3], double size,
+                   double most) {
+    double all = 1;
+    cells->inverse_cell_size = 1 / size;
+    for (int c = 0; c < 3; c++) {
+        const double number = floor(extent[c] * cells->inverse_cell_size) + 1;
+        all *= number;
+        if (!(all <= most))
+            return false;
+        cells->dim[c] = (uint32_t)number;
+    }
+    return true;
+}
+
+/* First and last cell along each axis that a box touches. */
+static void grid_range(const struct cs_uniform_grid *cells, const struct cs_aabb *box,
+                       uint32_t first[3], uint32_t last[3]) {
+    for (int c = 0; c < 3; c++) {
+        first[c] = index_of(cells, box->low[c], c);
+        last[c] = index_of(cells, box->high[c], c);
+    }
+}
+
+/* Adds 1 to each cell that a box touches, or stores the item at the position that the cell's
+ * count gives; returns the number of cells. */
+static size_t visit(struct cs_uniform_grid *cells, const struct cs_aabb *box, uint32_t item,
+                    bool put) {
+    uint32_t first[3], last[3];
+    size_t places = 0;
+    grid_range(cells, box, first, last);
+    for (uint32_t z = first[2]; z <= last[2]; z++)
+        for (uint32_t y = first[1]; y <= last[1]; y++)
+            for (uint32_t x = first[0]; x <= last[0]; x++, places++) {
+                uint32_t *count = cells->cell_starts + cell_of(cells, x, y, z);
+                if (put)
+                    cells->items[--*count] = item;
+                else
+                    ++*count;
+            }
+    return places;
+}
+
+/* Counts the entries of all cells; stops early at too many. Returns false if out of memory. */
+static bool count_all(struct cs_uniform_grid *cells, const struct set *boxes, size_t *places) {
+    const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
+    uint32_t *starts =
+        cs_arena_realloc(cells->cell_starts, &cells->starts_capacity, all + 1, sizeof *starts);
+    *places = 0;
+    if (!starts)
+        return false;
+    cells->cell_starts = starts;
+    memset(starts, 0, (all + 1) * sizeof *starts);
+    for (uint32_t i = 0; i < boxes->n && *places <= (size_t)PLACES_EACH * boxes->n + FEW; i++)
+        if (!is_out(boxes, i))
+            *places += visit(cells, boxes->boxes + i, i, false);
+    return true;
+}
+
+/* Stores the items. Running sums make each start the end of its cell; filling from the last box
+ * to the first brings it down to the begin, with items in ascending order. */
+static bool fill_all(struct cs_uniform_grid *cells, const struct set *boxes, size_t places) {
+    const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
+    uint32_t *items =
+        cs_arena_realloc(cells->items, &cells->items_capacity, places, sizeof *items);
+    if (!items && places)
+        return false;
+    cells->items = items;
+    for (size_t c = 1; c < all; c++)
+        cells->cell_starts[c] += cells->cell_starts[c - 1];
+    cells->cell_starts[all] = (uint32_t)places;
+    for (uint32_t i = boxes->n; i--;)
+        if (!is_out(boxes, i))
+            visit(cells, boxes->boxes + i, i, true);
+    return true;
+}
+
+/* Enlarges the cells until both limits hold; returns false if out of memory. */
+static bool fill(struct cs_uniform_grid *cells, const struct set *boxes, const double extent[3],
+                 double size) {
+    size_t places;
+    for (;; size *= LARGER) {
+        if (!divide(cells, extent, size, (double)CELLS_EACH * boxes->n + FEW))
+            continue;
+        if (!count_all(cells, boxes, &places))
+            return false;
+        if (places <= (size_t)PLACES_EACH * boxes->n + FEW)
+            return fill_all(cells, boxes, places);
+    }
+}
+
+/* Puts each box into every cell that it touches; empty boxes into none. Cells are about as
+ * large as the mean box, and larger if there would be too many. If boxes are not finite or all
+ * are empty, there are no cells (dim 0). Returns false if out of memory, again with dim 0. */
+static bool grid_fill(struct cs_uniform_grid *cells, const struct set *boxes) {
+    double extent[3];
+    const double size = measure(boxes, cells->origin, extent);
+    const bool some = size > 0 && extent[0] + extent[1] + extent[2] < HUGE_VAL;
+    const bool filled = !some || fill(cells, boxes, extent, size);
+    if (!some || !filled)
+        memset(cells->dim, 0, sizeof cells->dim);
+    return filled;
+}
+
+/* Frees the memory; the grid is empty afterwards. */
+static void grid_finish(struct cs_uniform_grid *cells) {
+    free(cells->cell_starts);
+    free(cells->items);
+    *cells = (struct cs_uniform_grid){0};
+}
+
 /* Multiple of the usual longest side above which a box goes into the second grid. Chosen by
  * trial. */
 #define LARGE 8
@@ -29,8 +208,7 @@ static bool is_first_cell(const struct cs_uniform_grid *cells, const struct cs_a
                           const uint32_t first[3], const uint32_t at[3]) {
     bool counts = true;
     for (int c = 0; c < 3; c++)
-        counts = counts &&
-                 (at[c] == first[c] || cs_uniform_grid_index(cells, other->low[c], c) == at[c]);
+        counts = counts && (at[c] == first[c] || index_of(cells, other->low[c], c) == at[c]);
     return counts;
 }
 
@@ -57,7 +235,7 @@ static double mean_side(const struct cs_aabb_clusters *clusters, double most) {
     double sum = 0;
     uint32_t count = 0;
     for (uint32_t k = 0; k < clusters->n; k++) {
-        const double side = cs_aabb_longest_side(clusters->cluster_boxes + k);
+        const double side = longest_side(clusters->cluster_boxes + k);
         const bool counts = side >= 0 && side <= most;
         sum += counts ? side : 0;
         count += counts;
@@ -70,15 +248,14 @@ static double mean_side(const struct cs_aabb_clusters *clusters, double most) {
  * both. */
 bool cs_aabb_clusters_sort(struct cs_aabb_clusters *clusters) {
     const double most = LARGE * mean_side(clusters, mean_side(clusters, HUGE_VAL));
-    const struct cs_aabb_set small = {clusters->cluster_boxes, clusters->n, -1, most};
-    const struct cs_aabb_set large = {clusters->cluster_boxes, clusters->n, most, HUGE_VAL};
-    return cs_uniform_grid_fill(clusters->cells, &small) &&
-           cs_uniform_grid_fill(clusters->cells + 1, &large);
+    const struct set small = {clusters->cluster_boxes, clusters->n, -1, most};
+    const struct set large = {clusters->cluster_boxes, clusters->n, most, HUGE_VAL};
+    return grid_fill(clusters->cells, &small) && grid_fill(clusters->cells + 1, &large);
 }
 
 void cs_aabb_clusters_finish(struct cs_aabb_clusters *clusters) {
-    cs_uniform_grid_finish(clusters->cells);
-    cs_uniform_grid_finish(clusters->cells + 1);
+    grid_finish(clusters->cells);
+    grid_finish(clusters->cells + 1);
 }
 
 /* A query by one box in one grid. */
@@ -102,7 +279,7 @@ static bool add_cell(struct cs_nearby_clusters *near, const struct looking *look
                      const uint32_t at[3]) {
     const struct cs_aabb_clusters *clusters = looking->clusters;
     const struct cs_uniform_grid *cells = looking->cells;
-    const size_t cell = cs_uniform_grid_cell(cells, at[0], at[1], at[2]);
+    const size_t cell = cell_of(cells, at[0], at[1], at[2]);
     bool there = true;
     for (uint32_t s = cells->cell_starts[cell]; s < cells->cell_starts[cell + 1]; s++) {
         const uint32_t cluster = cells->items[s];
@@ -123,11 +300,18 @@ static bool add_cells(struct cs_nearby_clusters *near, struct looking *looking) 
     bool there = true;
     if (!looking->cells->dim[0])
         return true;
-    cs_uniform_grid_range(looking->cells, looking->box, looking->first, last);
+    grid_range(looking->cells, looking->box, looking->first, last);
+    const struct cs_uniform_grid *cells = looking->cells;
+    const uint32_t *starts = cells->cell_starts;
     for (at[2] = looking->first[2]; at[2] <= last[2]; at[2]++)
-        for (at[1] = looking->first[1]; at[1] <= last[1]; at[1]++)
+        for (at[1] = looking->first[1]; at[1] <= last[1]; at[1]++) {
+            // most rows of cells are empty
+            const size_t begin = cell_of(cells, looking->first[0], at[1], at[2]);
+            if (starts[begin] == starts[begin + last[0] - looking->first[0] + 1])
+                continue;
             for (at[0] = looking->first[0]; at[0] <= last[0]; at[0]++)
                 there = there && add_cell(near, looking, at);
+        }
     return there;
 }
 
@@ -195,151 +379,4 @@ void cs_nearby_clusters_finish(struct cs_nearby_clusters *near) {
     free(near->clusters);
     free(near->boxes);
     free(near->items);
-}
-
-/* Uniform grid of boxes: chooses the cell size, counts, fills. */
-
-/* Limits per box: cells, and entries in cells; FEW is added to both. Beyond either the cells
- * grow by LARGER = 2^(1/3) per side, so that their number halves. Chosen by trial. */
-enum { CELLS_EACH = 8, PLACES_EACH = 32, FEW = 4096 };
-
-#define LARGER 1.26
-
-/* Returns whether a box is empty or belongs to another grid. */
-static bool is_out(const struct cs_aabb_set *boxes, uint32_t i) {
-    const double side = cs_aabb_longest_side(boxes->boxes + i);
-    return !(side >= 0 && side > boxes->side_min && side <= boxes->side_max);
-}
-
-/* Sets lower corner and extent of all boxes; returns their mean longest side, 0 without boxes.
- */
-static double measure(const struct cs_aabb_set *boxes, double low[3], double extent[3]) {
-    double high[3], sum = 0;
-    uint32_t count = 0;
-    for (int c = 0; c < 3; c++) {
-        low[c] = HUGE_VAL;
-        high[c] = -HUGE_VAL;
-    }
-    for (uint32_t i = 0; i < boxes->n; i++) {
-        const struct cs_aabb *box = boxes->boxes + i;
-        if (is_out(boxes, i))
-            continue;
-        for (int c = 0; c < 3; c++) {
-            low[c] = fmin(low[c], box->low[c]);
-            high[c] = fmax(high[c], box->high[c]);
-        }
-        sum += cs_aabb_longest_side(box);
-        count++;
-    }
-    for (int c = 0; c < 3; c++)
-        extent[c] = high[c] - low[c];
-    return count ? sum / count : 0;
-}
-
-/* Sets the number of cells along each axis; returns false if there are more than `most`. */
-static bool divide(struct cs_uniform_grid *cells, const double extent[3], double size,
-                   double most) {
-    double all = 1;
-    cells->inverse_cell_size = 1 / size;
-    for (int c = 0; c < 3; c++) {
-        const double number = floor(extent[c] * cells->inverse_cell_size) + 1;
-        all *= number;
-        if (!(all <= most))
-            return false;
-        cells->dim[c] = (uint32_t)number;
-    }
-    return true;
-}
-
-void cs_uniform_grid_range(const struct cs_uniform_grid *cells, const struct cs_aabb *box,
-                           uint32_t first[3], uint32_t last[3]) {
-    for (int c = 0; c < 3; c++) {
-        first[c] = cs_uniform_grid_index(cells, box->low[c], c);
-        last[c] = cs_uniform_grid_index(cells, box->high[c], c);
-    }
-}
-
-/* Adds 1 to each cell that a box touches, or stores the item at the position that the cell's
- * count gives; returns the number of cells. */
-static size_t visit(struct cs_uniform_grid *cells, const struct cs_aabb *box, uint32_t item,
-                    bool put) {
-    uint32_t first[3], last[3];
-    size_t places = 0;
-    cs_uniform_grid_range(cells, box, first, last);
-    for (uint32_t z = first[2]; z <= last[2]; z++)
-        for (uint32_t y = first[1]; y <= last[1]; y++)
-            for (uint32_t x = first[0]; x <= last[0]; x++, places++) {
-                uint32_t *count = cells->cell_starts + cs_uniform_grid_cell(cells, x, y, z);
-                if (put)
-                    cells->items[--*count] = item;
-                else
-                    ++*count;
-            }
-    return places;
-}
-
-/* Counts the entries of all cells; stops early at too many. Returns false if out of memory. */
-static bool count_all(struct cs_uniform_grid *cells, const struct cs_aabb_set *boxes,
-                      size_t *places) {
-    const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
-    uint32_t *starts =
-        cs_arena_realloc(cells->cell_starts, &cells->starts_capacity, all + 1, sizeof *starts);
-    *places = 0;
-    if (!starts)
-        return false;
-    cells->cell_starts = starts;
-    memset(starts, 0, (all + 1) * sizeof *starts);
-    for (uint32_t i = 0; i < boxes->n && *places <= (size_t)PLACES_EACH * boxes->n + FEW; i++)
-        if (!is_out(boxes, i))
-            *places += visit(cells, boxes->boxes + i, i, false);
-    return true;
-}
-
-/* Stores the items. Running sums make each start the end of its cell; filling from the last box
- * to the first brings it down to the begin, with items in ascending order. */
-static bool fill_all(struct cs_uniform_grid *cells, const struct cs_aabb_set *boxes,
-                     size_t places) {
-    const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
-    uint32_t *items =
-        cs_arena_realloc(cells->items, &cells->items_capacity, places, sizeof *items);
-    if (!items && places)
-        return false;
-    cells->items = items;
-    for (size_t c = 1; c < all; c++)
-        cells->cell_starts[c] += cells->cell_starts[c - 1];
-    cells->cell_starts[all] = (uint32_t)places;
-    for (uint32_t i = boxes->n; i--;)
-        if (!is_out(boxes, i))
-            visit(cells, boxes->boxes + i, i, true);
-    return true;
-}
-
-/* Enlarges the cells until both limits hold; returns false if out of memory. */
-static bool fill(struct cs_uniform_grid *cells, const struct cs_aabb_set *boxes,
-                 const double extent[3], double size) {
-    size_t places;
-    for (;; size *= LARGER) {
-        if (!divide(cells, extent, size, (double)CELLS_EACH * boxes->n + FEW))
-            continue;
-        if (!count_all(cells, boxes, &places))
-            return false;
-        if (places <= (size_t)PLACES_EACH * boxes->n + FEW)
-            return fill_all(cells, boxes, places);
-    }
-}
-
-bool cs_uniform_grid_fill(struct cs_uniform_grid *cells, const struct cs_aabb_set *boxes) {
-    double extent[3];
-    const double size = measure(boxes, cells->origin, extent);
-    const bool some = size > 0 && extent[0] + extent[1] + extent[2] < HUGE_VAL;
-    const bool filled = !some || fill(cells, boxes, extent, size);
-    if (!some || !filled)
-        memset(cells->dim, 0, sizeof cells->dim);
-    return filled;
-}
-
-void cs_uniform_grid_finish(struct cs_uniform_grid *cells) {
-    free(cells->cell_starts);
-    free(cells->items);
-    *cells = (struct cs_uniform_grid){0};
 }

@@ -4,8 +4,6 @@
  * half-diagonal r. Two points of bodies a and b have then moved relative to each other by at
  * most r_a + r_b + |m_a - m_b|. The list is valid while this is at most 2 margins for all pairs
  * of bodies with contact, a = b included. */
-#include "model/contact/broad_phase/candidates.h"
-
 #include "model/contact/broad_phase/candidate_list.h"
 
 #include <clothsim/clones.h>
@@ -19,6 +17,7 @@ static void finish(void *object) {
         free(candidates->chunks[l].pairs);
         free(candidates->chunks[l].in_range);
         free(candidates->chunks[l].nearby);
+        free(candidates->chunks[l].swept);
     }
     cs_candidates_find_finish(candidates);
 }
@@ -233,11 +232,12 @@ static bool may_come_near(const struct cs_candidates *candidates, uint32_t a, ui
 }
 
 /* m, largest relative motion from x0 to x1 of particles that may meet; bodies that stay away
- * from each other do not count. */
+ * from each other do not count. *within: that of particles of one body. */
 static double largest_move(const struct cs_candidates *candidates, const double *x0,
-                           const double *x1) {
+                           const double *x1, double *within) {
     const struct cs_body_pair_table *meetings = candidates->body_pairs;
     double most = 0;
+    *within = 0;
     measure_drifts(candidates, x0, x1);
     for (uint32_t a = 0; a < meetings->n_bodies; a++)
         for (uint32_t b = a; b < meetings->n_bodies; b++) {
@@ -246,6 +246,8 @@ static double largest_move(const struct cs_candidates *candidates, const double 
                                       candidates->body_motion + 4 * (size_t)b);
             if (range > 0 && move > most && (a == b || may_come_near(candidates, a, b, x0, x1)))
                 most = move;
+            if (range > 0 && move > *within && a == b)
+                *within = move;
         }
     return most;
 }
@@ -261,27 +263,43 @@ static bool is_covered(const struct cs_candidates *candidates, const double *x0,
 /* Largest multiple of the step by which the state of a new list lies ahead of its start. */
 #define AHEAD 2
 
-/* The margin is at least a quarter of the largest relative motion. The factor 1 + 1e-9 exceeds
- * the rounding of motions. */
+/* m, margin of a list for a step whose largest relative motions are `move`, and `within` a
+ * body; 0: it would be too long. A list built in the middle of the way must cover half of it in
+ * both directions: a relative motion of move/2 = 2 margins. Where bodies pass each other and
+ * few pairs are listed the search costs more than the list: one for four such steps is made.
+ * Chosen by trial on bear_heap, where bears fall. */
+static double margin_for(const struct cs_candidates *candidates, double move, double within) {
+    const double least = fmax(candidates->margin, 0.25 * move);
+    const double most =
+        CS_CANDIDATES_FAR_MARGINS * CS_CANDIDATES_MARGIN * candidates->body_pairs->range_min;
+    if (!(least <= most))
+        return 0;
+    return candidates->n_listed < 3 * (size_t)candidates->system->surfaces->n_points &&
+                   within < 0.5 * move
+               ? fmin(fmax(least, move), most)
+               : least;
+}
+
+/* The factor 1 + 1e-9 exceeds the rounding of motions. */
 bool cs_candidates_cover_step(struct cs_candidates *candidates, const double *x0,
                               const double *x1) {
     const size_t n = candidates->system->surfaces->n_points;
     if (is_covered(candidates, x0, x1))
         return true;
-    const double move = largest_move(candidates, x0, x1) * (1 + 1e-9);
-    // A list built in the middle of the way must cover half of it in both directions: a
-    // relative motion of move/2 = 2 margins.
-    const double margin = fmax(candidates->margin, 0.25 * move);
-    if (!(margin <=
-          CS_CANDIDATES_FAR_MARGINS * CS_CANDIDATES_MARGIN * candidates->body_pairs->range_min))
+    double within;
+    const double move = largest_move(candidates, x0, x1, &within) * (1 + 1e-9);
+    const double margin = margin_for(candidates, move, within);
+    if (!(margin > 0))
         return false;
     // The next step probably continues like this one, so that the list is built as far ahead as
     // it still covers the start.
     const double along = fmin(2 * margin / move, AHEAD);
     for (size_t i = 0; i < 3 * n; i++)
         candidates->x_at_build[i] = x0[i] + along * (x1[i] - x0[i]);
-    return build(candidates, margin,
-                 fmax(flat_margin(candidates, candidates->margin), 0.5 * along * move));
+    // a flat block stands what its body deforms, however far that moves
+    return build(
+        candidates, margin,
+        fmax(flat_margin(candidates, candidates->margin), 0.5 * along * within * (1 + 1e-9)));
 }
 
 bool cs_candidates_is_nearby(const struct cs_candidates *candidates, const double *x) {

@@ -10,6 +10,7 @@
 #include "model/contact/broad_phase/aabb_clusters.h"
 #include "model/system/seams.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -18,25 +19,25 @@ struct item_boxes {
     const double *x; /* (3, n) */
     size_t n;
     const uint32_t *vertices; /* (items, each); NULL: an item is a point itself */
-    uint32_t vertices_per_item;
-    const uint32_t *body;    /* (n) of each point */
-    const bool *is_nonempty; /* of each body: it meets one; else boxes are empty */
+    const uint32_t *body;     /* (n) of each point */
+    const bool *is_nonempty;  /* of each body: it meets one; else boxes are empty */
 };
 
-/* Box of an item, grown by `grow` in m to all sides; empty for CS_NO_ITEM, and for bodies
- * without contact. */
-static struct cs_aabb item_box(const struct item_boxes *boxes, uint32_t item, double grow) {
+/* Box of an item of `each` points, grown by `grow` in m to all sides; empty for CS_NO_ITEM, and
+ * for bodies without contact. With a constant for `each` it takes less time than to store it.
+ */
+CS_INLINE struct cs_aabb item_box(const struct item_boxes *boxes, uint32_t each, uint32_t item,
+                                  double grow) {
     struct cs_aabb box;
     if (item == CS_NO_ITEM)
         return cs_aabb_empty;
-    const uint32_t *at =
-        boxes->vertices ? boxes->vertices + (size_t)boxes->vertices_per_item * item : &item;
+    const uint32_t *at = each > 1 ? boxes->vertices + (size_t)each * item : &item;
     if (!boxes->is_nonempty[boxes->body[at[0]]])
         return cs_aabb_empty;
     for (size_t c = 0; c < 3; c++) {
         const double *x = boxes->x + c * boxes->n;
         box.low[c] = box.high[c] = x[at[0]];
-        for (uint32_t k = 1; k < boxes->vertices_per_item; k++) {
+        for (uint32_t k = 1; k < each; k++) {
             box.low[c] = x[at[k]] < box.low[c] ? x[at[k]] : box.low[c];
             box.high[c] = x[at[k]] > box.high[c] ? x[at[k]] : box.high[c];
         }
@@ -72,10 +73,9 @@ void cs_candidates_find_finish(struct cs_candidates *candidates) {
 /* --- at a state --- */
 
 static struct item_boxes boxes_of(const struct cs_candidates *candidates,
-                                  const uint32_t *corners, uint32_t each) {
-    return (struct item_boxes){
-        candidates->x_at_build, candidates->system->surfaces->n_points, corners, each,
-        candidates->body,       candidates->body_pairs->has_partner};
+                                  const uint32_t *corners) {
+    return (struct item_boxes){candidates->x_at_build, candidates->system->surfaces->n_points,
+                               corners, candidates->body, candidates->body_pairs->has_partner};
 }
 
 /* A batch at work: pairs whose boxes overlap wait in the distance filter. */
@@ -112,25 +112,35 @@ static double reach_of(const struct cs_candidates *candidates, double range) {
     return (range + 2 * candidates->margin_now) * (1 + 1e-9);
 }
 
-/* Puts a pair into the filter, unless it has a common point or no contact. A pair of edges is
- * listed with its smaller number first, once. */
-static void take(struct work *work, uint32_t item, uint32_t other) {
+/* Puts the pairs of an item with n others into the filter, unless they have a common point or
+ * no contact. A pair of edges is listed with its smaller number first, once. own: m, reach of
+ * all pairs, within a body; 0: each has that of its bodies. */
+CS_INLINE void take(struct work *work, enum cs_pair_kind kind, uint32_t item,
+                    const uint32_t *others, uint32_t n, double own) {
     const struct cs_candidates *candidates = work->search;
-    const enum cs_pair_kind kind = work->of->edges ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE;
-    const uint32_t pair[2] = {item, other};
-    uint32_t at[4];
-    if (kind == CS_PAIR_EDGE_EDGE && other <= item)
-        return;
-    cs_candidate_vertices(candidates->system->surfaces, kind, pair, at);
-    const double range = cs_body_pair_params_range(
-        cs_body_pair_params_of(candidates->body_pairs, candidates->body[at[0]],
-                               candidates->body[at[2]]),
-        kind == CS_PAIR_EDGE_EDGE);
-    if (cs_seams_join_pair(candidates->system, at, kind == CS_PAIR_EDGE_EDGE) || !(range > 0))
-        return;
-    const double reach = reach_of(candidates, range) * candidates->inverse_unit;
-    if (cs_distance_filter_add(&work->sieve, candidates->scaled_points, at, reach, pair))
-        measure(work);
+    const bool edges = kind == CS_PAIR_EDGE_EDGE;
+    for (uint32_t l = 0; l < n; l++) {
+        const uint32_t pair[2] = {item, others[l]};
+        uint32_t at[4];
+        if (edges && others[l] <= item)
+            continue;
+        cs_candidate_vertices(candidates->system->surfaces, kind, pair, at);
+        if (cs_seams_join_pair(candidates->system, at, edges))
+            continue;
+        double reach = own;
+        if (!(reach > 0)) {
+            const double range = cs_body_pair_params_range(
+                cs_body_pair_params_of(candidates->body_pairs, candidates->body[at[0]],
+                                       candidates->body[at[2]]),
+                edges);
+            if (!(range > 0))
+                continue;
+            reach = reach_of(candidates, range);
+        }
+        if (cs_distance_filter_add(&work->sieve, candidates->scaled_points, at,
+                                   reach * candidates->inverse_unit, pair))
+            measure(work);
+    }
 }
 
 /* m, largest reach of a body for itself (own) or for other bodies; 0: it has no contact */
@@ -149,12 +159,13 @@ static double widest_reach(const struct cs_candidates *candidates, uint32_t body
 /* Box of all items of a cluster, grown by the reach. */
 static struct cs_aabb group_box(const struct cs_candidates *candidates, bool edges,
                                 uint32_t cluster, double reach) {
-    const struct item_boxes points = boxes_of(candidates, NULL, 1);
+    const struct item_boxes points = boxes_of(candidates, NULL);
     struct cs_aabb all =
         edges ? candidates->search.edges.cluster_boxes[cluster] : cs_aabb_empty;
     for (uint32_t k = 0; k < CS_AABB_CLUSTER && !edges; k++) {
-        const struct cs_aabb one = item_box(
-            &points, candidates->search.points.items[CS_AABB_CLUSTER * (size_t)cluster + k], 0);
+        const struct cs_aabb one =
+            item_box(&points, 1,
+                     candidates->search.points.items[CS_AABB_CLUSTER * (size_t)cluster + k], 0);
         cs_aabb_merge(&all, &one);
     }
     for (int c = 0; c < 3; c++) {
@@ -214,17 +225,19 @@ static bool find_clusters(const struct cs_candidates *candidates, const struct g
 /* Tests the box of one item against the items of the clusters found. */
 static void find_item(struct work *work, const struct group *group, uint32_t item) {
     const struct cs_candidates *candidates = work->search;
-    const struct item_boxes boxes =
-        group->edges ? boxes_of(candidates, candidates->system->surfaces->edges, 2)
-                     : boxes_of(candidates, NULL, 1);
+    const struct item_boxes boxes = boxes_of(candidates, candidates->system->surfaces->edges);
     for (int k = 0; k < 2; k++) {
         struct cs_nearby_clusters *near = work->of->near + k;
         if (!near->n)
             continue;
-        const struct cs_aabb box = item_box(&boxes, item, group->reach[k]);
+        const double own = k ? 0 : group->reach[k];
+        const struct cs_aabb box = group->edges ? item_box(&boxes, 2, item, group->reach[k])
+                                                : item_box(&boxes, 1, item, group->reach[k]);
         const uint32_t n = cs_nearby_clusters_items(near, group->others, &box);
-        for (uint32_t l = 0; l < n; l++)
-            take(work, item, near->items[l]);
+        if (group->edges)
+            take(work, CS_PAIR_EDGE_EDGE, item, near->items, n, own);
+        else
+            take(work, CS_PAIR_POINT_TRIANGLE, item, near->items, n, own);
     }
 }
 
@@ -278,19 +291,25 @@ static void find_batch(void *arg, uint32_t number) {
              work.of->edges ? &candidates->search.edges : &candidates->search.points, number);
 }
 
-/* Box of an edge or triangle at the state. */
-static struct cs_aabb box_of(const void *arg, uint32_t item) {
-    return item_box(arg, item, 0);
+/* Boxes of the edges or triangles of a cluster at the state. */
+static void edge_boxes(const void *arg, const uint32_t *items, struct cs_aabb *out) {
+    for (int l = 0; l < CS_AABB_CLUSTER; l++)
+        out[l] = item_box(arg, 2, items[l], 0);
+}
+
+static void triangle_boxes(const void *arg, const uint32_t *items, struct cs_aabb *out) {
+    for (int l = 0; l < CS_AABB_CLUSTER; l++)
+        out[l] = item_box(arg, 3, items[l], 0);
 }
 
 /* Boxes of triangles and edges are set first; then all batches run in parallel. */
 bool cs_candidates_find(struct cs_candidates *candidates) {
     const struct cs_surfaces *surfaces = candidates->system->surfaces;
     struct cs_primitive_search *search = &candidates->search;
-    const struct item_boxes triangles = boxes_of(candidates, surfaces->triangles, 3),
-                            edges = boxes_of(candidates, surfaces->edges, 2);
-    bool failed = !cs_aabb_clusters_fill(&search->triangles, box_of, &triangles) ||
-                  !cs_aabb_clusters_fill(&search->edges, box_of, &edges);
+    const struct item_boxes triangles = boxes_of(candidates, surfaces->triangles),
+                            edges = boxes_of(candidates, surfaces->edges);
+    bool failed = !cs_aabb_clusters_fill(&search->triangles, triangle_boxes, &triangles) ||
+                  !cs_aabb_clusters_fill(&search->edges, edge_boxes, &edges);
     cs_pool_run(search->n_batches, find_batch, candidates);
     for (uint32_t b = 0; b < search->n_batches; b++)
         failed = failed || search->batches[b].failed;

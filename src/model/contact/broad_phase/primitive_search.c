@@ -12,6 +12,7 @@
 
 #include "base/pool.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -95,7 +96,7 @@ enum cs_status cs_primitive_search_init(struct cs_primitive_search *search,
 
 struct filling {
     struct cs_aabb_clusters *clusters;
-    cs_item_box *box_of;
+    cs_item_boxes *set_boxes;
     const void *arg;
 };
 
@@ -103,20 +104,19 @@ static void fill_some(void *arg, uint32_t block) {
     const struct filling *filling = arg;
     struct cs_aabb_clusters *clusters = filling->clusters;
     for (uint32_t k = TOGETHER * block; k < TOGETHER * (block + 1) && k < clusters->n; k++) {
-        struct cs_aabb all = cs_aabb_empty;
+        struct cs_aabb all = cs_aabb_empty, boxes[CS_AABB_CLUSTER];
+        filling->set_boxes(filling->arg, clusters->items + CS_AABB_CLUSTER * (size_t)k, boxes);
         for (uint32_t lane = 0; lane < CS_AABB_CLUSTER; lane++) {
-            const uint32_t item = clusters->items[CS_AABB_CLUSTER * (size_t)k + lane];
-            const struct cs_aabb box = filling->box_of(filling->arg, item);
-            cs_aabb_cluster_set(clusters->clusters + k, lane, &box);
-            cs_aabb_merge(&all, &box);
+            cs_aabb_cluster_set(clusters->clusters + k, lane, boxes + lane);
+            cs_aabb_merge(&all, boxes + lane);
         }
         clusters->cluster_boxes[k] = all;
     }
 }
 
-bool cs_aabb_clusters_fill(struct cs_aabb_clusters *clusters, cs_item_box *box_of,
+bool cs_aabb_clusters_fill(struct cs_aabb_clusters *clusters, cs_item_boxes *set_boxes,
                            const void *arg) {
-    struct filling filling = {clusters, box_of, arg};
+    struct filling filling = {clusters, set_boxes, arg};
     cs_pool_run((clusters->n + TOGETHER - 1) / TOGETHER, fill_some, &filling);
     return cs_aabb_clusters_sort(clusters);
 }
@@ -140,7 +140,8 @@ struct work {
 
 /* Swept box of an item by its one to three vertices; empty for CS_NO_ITEM, and if a vertex is
  * not finite. */
-static struct cs_swept_aabb sweep_item(const struct move *move, uint32_t each, uint32_t item) {
+CS_INLINE struct cs_swept_aabb sweep_item(const struct move *move, uint32_t each,
+                                          uint32_t item) {
     const struct cs_surfaces *surfaces = move->search->surfaces;
     const size_t n = surfaces->n_points;
     const double *x0 = move->query->x0, *x1 = move->query->x1;
@@ -184,24 +185,24 @@ static struct cs_aabb box_in_frame(const struct move *move, const struct cs_swep
     return box;
 }
 
-/* Boxes of edges and triangles are in the frames of their own bodies. */
-static struct cs_aabb edge_box(const void *arg, uint32_t item) {
-    const struct move *move = arg;
+/* Boxes of the items of a cluster, which are of one body, in its frame. */
+CS_INLINE void boxes_in_frame(const struct move *move, const uint32_t *items, uint32_t each,
+                              struct cs_aabb *boxes) {
     const struct cs_surfaces *s = move->search->surfaces;
-    const struct cs_swept_aabb swept = sweep_item(move, 2, item);
-    return item == CS_NO_ITEM
-               ? cs_aabb_empty
-               : box_in_frame(move, &swept, cs_surfaces_body(s->first_edge, s->n_bodies, item));
+    const uint32_t *first = each == 2 ? s->first_edge : s->first_triangle;
+    const uint32_t body = cs_surfaces_body(first, s->n_bodies, items[0]);
+    for (int l = 0; l < CS_AABB_CLUSTER; l++) {
+        const struct cs_swept_aabb swept = sweep_item(move, each, items[l]);
+        boxes[l] = box_in_frame(move, &swept, body);
+    }
 }
 
-static struct cs_aabb triangle_box(const void *arg, uint32_t item) {
-    const struct move *move = arg;
-    const struct cs_surfaces *s = move->search->surfaces;
-    const struct cs_swept_aabb swept = sweep_item(move, 3, item);
-    return item == CS_NO_ITEM
-               ? cs_aabb_empty
-               : box_in_frame(move, &swept,
-                              cs_surfaces_body(s->first_triangle, s->n_bodies, item));
+static void edge_boxes(const void *arg, const uint32_t *items, struct cs_aabb *boxes) {
+    boxes_in_frame(arg, items, 2, boxes);
+}
+
+static void triangle_boxes(const void *arg, const uint32_t *items, struct cs_aabb *boxes) {
+    boxes_in_frame(arg, items, 3, boxes);
 }
 
 /* Hands over the pairs that were collected. */
@@ -259,7 +260,7 @@ static void find_cluster(struct work *work, uint32_t cluster) {
     const uint32_t own = of->body[cluster];
     struct cs_swept_aabb sweeps[CS_AABB_CLUSTER], all = cs_swept_aabb_empty();
     for (uint32_t k = 0; k < CS_AABB_CLUSTER; k++) {
-        sweeps[k] = sweep_item(move, edges ? 2 : 1, items[k]);
+        sweeps[k] = edges ? sweep_item(move, 2, items[k]) : sweep_item(move, 1, items[k]);
         cs_swept_aabb_merge(&all, sweeps + k);
     }
     for (uint32_t body = edges && !move->query->pierce ? own : 0;
@@ -299,8 +300,8 @@ bool cs_primitive_search_move(struct cs_primitive_search *search,
                         .first_batch = query->pierce ? search->n_point_batches : 0};
     cs_pool_run(search->surfaces->n_bodies, sweep_body, &move);
     move.grow = query->reach + ROUNDING * largest(search);
-    bool failed = !cs_aabb_clusters_fill(&search->triangles, triangle_box, &move) ||
-                  (!query->pierce && !cs_aabb_clusters_fill(&search->edges, edge_box, &move));
+    bool failed = !cs_aabb_clusters_fill(&search->triangles, triangle_boxes, &move) ||
+                  (!query->pierce && !cs_aabb_clusters_fill(&search->edges, edge_boxes, &move));
     cs_pool_run(search->n_batches - move.first_batch, find_batch, &move);
     for (uint32_t b = move.first_batch; b < search->n_batches; b++)
         failed = failed || search->batches[b].failed;

@@ -1,4 +1,5 @@
-/* primitive_search.h - the search for pairs of points, edges and triangles whose boxes overlap.
+/* primitive_search.h - the search for pairs of points, edges and triangles whose boxes overlap,
+ * at a state or swept along straight lines.
  *
  * All primitives of a system are in clusters (aabb_clusters.h), and the clusters of points and
  * of edges in batches, which threads share. Two queries use them: the candidate list of a state
@@ -7,9 +8,75 @@
 #ifndef CS_BROAD_PHASE_PRIMITIVE_SEARCH_H
 #define CS_BROAD_PHASE_PRIMITIVE_SEARCH_H
 
-#include "model/contact/broad_phase/aabb_cluster_build.h"
-#include "model/contact/broad_phase/swept_aabb.h"
+#include "model/contact/broad_phase/aabb_clusters.h"
 #include "model/system/surfaces.h"
+
+#include <float.h>
+
+/* Bounding box of points at the start of a move, and bounding box of their displacements, in m.
+ * The two are kept apart, so that the common part of two motions cancels in a test. */
+struct cs_swept_aabb {
+    double position_min[3], position_max[3];
+    double motion_min[3], motion_max[3];
+};
+
+/* Box of no points: the neutral element of merging. */
+static inline struct cs_swept_aabb cs_swept_aabb_empty(void) {
+    const double b = DBL_MAX;
+    return (struct cs_swept_aabb){{b, b, b}, {-b, -b, -b}, {b, b, b}, {-b, -b, -b}};
+}
+
+/* Extends [*low, *high] to contain [below, above]. NaN extends nothing. */
+static inline void cs_swept_aabb_widen(double *low, double *high, double below, double above) {
+    // not a number widens nothing
+    *low = below < *low ? below : *low;
+    *high = above > *high ? above : *high;
+}
+
+/* Adds point i of (3,n), which moves from x0 to x1; x1 NULL: it stays. */
+static inline void cs_swept_aabb_add_point(struct cs_swept_aabb *swept_box, size_t n, size_t i,
+                                           const double *x0, const double *x1) {
+    for (size_t c = 0; c < 3; c++) {
+        const double x = x0[c * n + i], move = x1 ? x1[c * n + i] - x : 0;
+        cs_swept_aabb_widen(swept_box->position_min + c, swept_box->position_max + c, x, x);
+        cs_swept_aabb_widen(swept_box->motion_min + c, swept_box->motion_max + c, move, move);
+    }
+}
+
+/* Extends a box to contain another. */
+static inline void cs_swept_aabb_merge(struct cs_swept_aabb *swept_box,
+                                       const struct cs_swept_aabb *other) {
+    for (size_t c = 0; c < 3; c++) {
+        cs_swept_aabb_widen(swept_box->position_min + c, swept_box->position_max + c,
+                            other->position_min[c], other->position_max[c]);
+        cs_swept_aabb_widen(swept_box->motion_min + c, swept_box->motion_max + c,
+                            other->motion_min[c], other->motion_max[c]);
+    }
+}
+
+/* Returns whether points of a may come within `reach` in m of points of b, along each axis, at
+ * the same fraction s in [0, 1] of the move. Per axis the difference of two points is
+ *
+ *   a0 - b0 + s (da - db) >= position_min(a) - position_max(b) + min(0, motion_min(a) -
+ * motion_max(b))
+ *
+ * and likewise from above. Only relative displacements enter: a common motion costs nothing.
+ * For boxes at rest the test is exact; otherwise it is conservative, since s may differ per
+ * axis. NaN counts as no overlap. */
+static inline bool cs_swept_aabbs_overlap(const struct cs_swept_aabb *a,
+                                          const struct cs_swept_aabb *b, double reach) {
+    for (size_t c = 0; c < 3; c++) {
+        const double closing = a->motion_min[c] - b->motion_max[c],
+                     opening = a->motion_max[c] - b->motion_min[c];
+        const double low =
+            a->position_min[c] - b->position_max[c] + (closing < 0 ? closing : 0);
+        const double high =
+            a->position_max[c] - b->position_min[c] + (opening > 0 ? opening : 0);
+        if (!(low <= reach && high >= -reach))
+            return false;
+    }
+    return true;
+}
 
 /* The points or edges in the clusters [begin, end), and the work of the thread that has them.
  */
@@ -40,10 +107,11 @@ enum cs_status cs_primitive_search_init(struct cs_primitive_search *search,
                                         struct cs_flat_region *const *flat_regions,
                                         struct cs_arena *arena, struct cs_error *error);
 
-/* Sets the boxes of clusters of edges or triangles by `box_of`, with all threads, and sorts
- * them into cells. box_of gives an empty box for CS_NO_ITEM. Returns false if out of memory. */
-typedef struct cs_aabb cs_item_box(const void *arg, uint32_t item);
-bool cs_aabb_clusters_fill(struct cs_aabb_clusters *clusters, cs_item_box *box_of,
+/* Sets the boxes of clusters of edges or triangles, with all threads, and sorts them into
+ * cells. set_boxes gives those of the items of a cluster (CS_AABB_CLUSTER), empty ones for
+ * CS_NO_ITEM. Returns false if out of memory. */
+typedef void cs_item_boxes(const void *arg, const uint32_t *items, struct cs_aabb *boxes);
+bool cs_aabb_clusters_fill(struct cs_aabb_clusters *clusters, cs_item_boxes *set_boxes,
                            const void *arg);
 
 extern const struct cs_aabb cs_aabb_empty;
@@ -64,10 +132,10 @@ struct cs_move_query {
     void *arg;
 };
 
-/* Hands over all pairs whose swept boxes come within reach (swept_aabb.h), each once, and some
- * more; those with a common vertex are not left out. Points that are not finite are in no pair.
- * Batches run in parallel, each in an order that depends on the positions alone. Returns false
- * if out of memory; pairs are then missing. */
+/* Hands over all pairs whose swept boxes come within reach (cs_swept_aabbs_overlap), each once,
+ * and some more; those with a common vertex are not left out. Points that are not finite are in
+ * no pair. Batches run in parallel, each in an order that depends on the positions alone.
+ * Returns false if out of memory; pairs are then missing. */
 bool cs_primitive_search_move(struct cs_primitive_search *search,
                               const struct cs_move_query *query);
 

@@ -95,6 +95,7 @@ struct question {
     const struct cs_scene *scene;
     /* marks of triangles; NULL: not wanted */
     uint8_t *marks;
+    bool swept; /* the swept pairs of the list suffice */
 };
 
 static void clear_found(struct cs_crossings *crossings) {
@@ -123,6 +124,19 @@ static void read_points(const struct question *question, const uint32_t *items, 
             p[k][c] = question->x[c * question->system->surfaces->n_points + items[k]];
 }
 
+/* Returns whether an end of an edge is a corner, or sewn to one. */
+static bool meet_in_a_vertex(const struct cs_system *system, const uint32_t ends[2],
+                             const uint32_t corners[3]) {
+    const uint32_t a = ends[0], b = ends[1];
+    for (int k = 0; k < 3; k++)
+        if (corners[k] == a || corners[k] == b)
+            return true;
+    for (int k = 0; k < 6 && system->seams; k++)
+        if (cs_seams_merged(system, ends[k / 3]) == cs_seams_merged(system, corners[k % 3]))
+            return true;
+    return false;
+}
+
 /* Counts edge e against triangle t, unless they have a particle in common, or two that are sewn
  * together. */
 static void count_pair(const struct question *question, uint32_t e, uint32_t t,
@@ -131,10 +145,8 @@ static void count_pair(const struct question *question, uint32_t e, uint32_t t,
     const uint32_t *ends = surfaces->edges + 2 * (size_t)e,
                    *corners = surfaces->triangles + 3 * (size_t)t;
     double edge[2][3], triangle[3][3];
-    for (int k = 0; k < 6; k++)
-        if (cs_seams_merged(question->system, ends[k / 3]) ==
-            cs_seams_merged(question->system, corners[k % 3]))
-            return;
+    if (meet_in_a_vertex(question->system, ends, corners))
+        return;
     read_points(question, ends, 2, edge);
     read_points(question, corners, 3, triangle);
     if (!cs_edge_crosses_triangle((const double(*)[3])edge, (const double(*)[3])triangle))
@@ -170,9 +182,9 @@ static struct cs_crossing_count count(const struct cs_system *system, double t, 
                                       const struct cs_scene *scene, uint8_t *marks) {
     struct cs_crossings *crossings = system->crossings;
     struct cs_crossing_count all = {0};
-    struct question question = {system, crossings,
-                                cs_surface_points_positions(system, CS_POINTS_BEGIN, t, x),
-                                scene, marks};
+    struct question question = {
+        .system = system, .crossings = crossings, .scene = scene, .marks = marks};
+    question.x = cs_surface_points_positions(system, CS_POINTS_BEGIN, t, x);
     const struct cs_move_query query = {.x0 = question.x,
                                         .pierce = true,
                                         .may_meet = may_pierce,
@@ -299,7 +311,7 @@ static bool may_meet(const void *arg, uint32_t a, uint32_t b) {
 static struct cs_first_collision search_first(const struct cs_system *system, const double *x0,
                                               const double *x1) {
     struct cs_crossings *crossings = system->crossings;
-    struct question question = {system, crossings, x0, NULL, NULL};
+    struct question question = {.system = system, .crossings = crossings, .x = x0};
     struct cs_first_collision first = {.fraction = 1};
     const struct cs_move_query query = {.x0 = x0,
                                         .x1 = x1,
@@ -326,12 +338,15 @@ struct cs_first_collision cs_crossings_first_collision(const struct cs_system *s
 
 /* --- in the list of candidates --- */
 
-/* Returns whether contact is defined between all pairs, colliders with each other excepted. */
-static bool all_bodies_collide(const struct cs_body_pair_table *table, uint32_t n_bodies) {
+/* Returns whether contact is defined between all pairs, colliders with each other excepted.
+ * Colliders that are no meshes have no points, and meet nothing here. */
+static bool all_bodies_collide(const struct cs_body_pair_table *table,
+                               const struct cs_surfaces *surfaces, uint32_t n_bodies) {
     bool all = true;
     for (uint32_t a = 0; a < n_bodies; a++)
         for (uint32_t b = 0; b < table->n_bodies; b++)
-            all = all && cs_body_pair_params_of(table, a, b)->range > 0;
+            all = all && (surfaces->first_point[b] == surfaces->first_point[b + 1] ||
+                          cs_body_pair_params_of(table, a, b)->range > 0);
     return all;
 }
 
@@ -341,8 +356,8 @@ bool cs_crossings_list_suffices(const struct cs_system *system, const double *x0
                                 const double *x1) {
     struct cs_pairs *pairs = system->pairs;
     return pairs &&
-           (system->crossings->apart ||
-            all_bodies_collide(&pairs->body_pairs, system->scene->bodies.n)) &&
+           (system->crossings->apart || all_bodies_collide(&pairs->body_pairs, system->surfaces,
+                                                           system->scene->bodies.n)) &&
            cs_candidates_max_motion(&pairs->candidates, x0, x1) <= CS_CANDIDATES_ACCD_LIMIT &&
            cs_candidates_cover_step(&pairs->candidates, x0, x1);
 }
@@ -352,22 +367,28 @@ static void try_chunk(void *arg, uint32_t number) {
     const struct question *question = arg;
     struct cs_candidate_chunk *chunk = question->system->pairs->candidates.chunks + number;
     struct cs_first_collision first = {.fraction = 1};
-    for (size_t p = 0; p < chunk->n; p += CS_SEARCH_PAIRS)
-        try_pairs(question, chunk->kind, (const uint32_t(*)[2])(chunk->pairs + 2 * p),
-                  chunk->n - p < CS_SEARCH_PAIRS ? chunk->n - p : CS_SEARCH_PAIRS, &first);
+    const uint32_t *pairs = question->swept ? chunk->swept : chunk->pairs;
+    const size_t n = question->swept ? chunk->n_swept : chunk->n;
+    for (size_t p = 0; p < n; p += CS_SEARCH_PAIRS)
+        try_pairs(question, chunk->kind, (const uint32_t(*)[2])(pairs + 2 * p),
+                  n - p < CS_SEARCH_PAIRS ? n - p : CS_SEARCH_PAIRS, &first);
     chunk->result = first.fraction;
 }
 
+/* Pairs that come into range in a resolved step are known: those that meet are among them. */
 double cs_crossings_safe_fraction(const struct cs_system *system, double t0, const double *x0,
-                                  double t1, const double *x1) {
+                                  double t1, const double *x1, bool resolved) {
     const double *from = cs_surface_points_positions(system, CS_POINTS_BEGIN, t0, x0);
     const double *to = cs_surface_points_positions(system, CS_POINTS_END, t1, x1);
-    struct question question = {system, system->crossings, from, NULL, NULL};
-    double share = 1;
-    cs_point_motion_set(system, from, to, system->crossings->motion);
+    if (!resolved)
+        cs_point_motion_set(system, from, to, system->crossings->motion);
     if (!cs_crossings_list_suffices(system, from, to))
         return search_first(system, from, to).fraction;
     const struct cs_candidates *list = &system->pairs->candidates;
+    struct question question = {.system = system, .crossings = system->crossings, .x = from};
+    question.swept = resolved && system->pairs->swept_build == list->n_builds &&
+                     system->pairs->body_pairs.range_max > 2 * CS_ACCD_DISTANCE_MIN;
+    double share = 1;
     cs_pool_run(list->n_chunks, try_chunk, &question);
     for (uint32_t l = 0; l < list->n_chunks; l++)
         share = fmin(share, list->chunks[l].result);

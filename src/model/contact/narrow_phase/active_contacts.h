@@ -4,7 +4,7 @@
 #ifndef CS_NARROW_PHASE_ACTIVE_CONTACTS_H
 #define CS_NARROW_PHASE_ACTIVE_CONTACTS_H
 
-#include "model/contact/broad_phase/candidates.h"
+#include "model/contact/broad_phase/candidate_list.h"
 #include "model/contact/narrow_phase/feature_weights.h"
 #include "model/contact/narrow_phase/force_gather.h"
 #include "model/contact/narrow_phase/pair_lanes.h"

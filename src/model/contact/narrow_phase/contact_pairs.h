@@ -47,8 +47,8 @@ struct cs_moving_pairs {
 };
 
 /* Copies to out (n, 2) the pairs whose primitives may come within `reach` in m at one fraction
- * of the move: cs_swept_aabbs_overlap (swept_aabb.h) of their own points. Returns how many; a
- * few nanoseconds per pair. out must have room for all pairs. */
+ * of the move: cs_swept_aabbs_overlap (primitive_search.h) of their own points. Returns how
+ * many; a few nanoseconds per pair. out must have room for all pairs. */
 size_t cs_point_motion_filter(const struct cs_point_motion *moves,
                               const struct cs_moving_pairs *pairs, double reach, uint32_t *out);
 
@@ -68,6 +68,9 @@ struct cs_pairs {
     const struct cs_pair_matrix *blocks; /* the one that was made last */
     /* (n_points) of the last step that was checked */
     struct cs_point_motion *point_motion;
+    /* n_builds of the list, all of whose pairs were resolved in that step; 0: not all were.
+     * The swept pairs of its chunks are then all whose swept boxes come within range. */
+    uint64_t swept_build;
     /* chunk that rejected the last step */
     uint32_t unresolved_chunk;
     /* out of memory: pairs are missing, and the run must end */

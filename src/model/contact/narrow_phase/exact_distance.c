@@ -195,14 +195,18 @@ static void set_reach(struct work *work, const uint32_t at[4]) {
         cs_distance_filter_bound((float)work->reach) - cs_distance_filter_bound((float)range);
 }
 
-static void put(struct work *work, const uint32_t pair[2]) {
+/* Puts n pairs of a kind, a constant, into the filter. */
+CS_INLINE void put(struct work *work, enum cs_pair_kind kind, const uint32_t *pairs, size_t n) {
     const struct cs_candidates *candidates = work->search;
-    uint32_t at[4];
-    cs_candidate_vertices(candidates->system->surfaces, work->chunk->kind, pair, at);
-    if (!work->has_one_range)
-        set_reach(work, at);
-    if (cs_distance_filter_add(&work->sieve, candidates->scaled_points, at, work->reach, pair))
-        filter_chunk(work);
+    for (size_t k = 0; k < n; k++) {
+        uint32_t at[4];
+        cs_candidate_vertices(candidates->system->surfaces, kind, pairs + 2 * k, at);
+        if (!work->has_one_range)
+            set_reach(work, at);
+        if (cs_distance_filter_add(&work->sieve, candidates->scaled_points, at, work->reach,
+                                   pairs + 2 * k))
+            filter_chunk(work);
+    }
 }
 
 /* If all ranges are equal, they are set once. The points of the first pair stand for all. */
@@ -251,8 +255,10 @@ static void find_chunk(void *arg, uint32_t number) {
         return;
     work.collects = job->collects;
     begin_work(&work);
-    for (size_t k = 0; k < n; k++)
-        put(&work, pairs + 2 * k);
+    if (chunk->kind == CS_PAIR_EDGE_EDGE)
+        put(&work, CS_PAIR_EDGE_EDGE, pairs, n);
+    else
+        put(&work, CS_PAIR_POINT_TRIANGLE, pairs, n);
     filter_chunk(&work);
     range_measure(&work);
 }

@@ -29,8 +29,8 @@
  * inner vertex one edge is left over, which points away from q. There the clamp is exact: its
  * distance is that of the vertex, which cancels it.
  *
- * Bent mesh: the heights differ, and so do the terms of one feature. Both triangles of an edge
- * give the same squared distance l = h^2 + m from it, and so d^2 between l - 0.35 e^2 and l.
+ * Bent mesh: the heights differ, as do the terms of one feature. Both triangles of an edge
+ * give the same squared distance l = h^2 + m from it; d^2 then lies between l - 0.35 e^2 and l.
  * With e = 0.2 D their distances differ by at most 0.007 D^2/d; from m = e^2 on they are equal.
  * Each term is smooth, so E is smooth: only its size near bent edges is approximate.
  *

@@ -220,8 +220,8 @@ struct job {
 
 /* One chunk at work; pairs are collected until a block of lanes is full. */
 struct work {
-    const struct job *job;
-    const struct cs_candidate_chunk *chunk;
+    struct job *job;
+    struct cs_candidate_chunk *chunk;
     enum cs_pair_kind kind;
     struct lanes lanes;
     uint32_t points[LANES]; /* of points and triangles */
@@ -301,23 +301,33 @@ static void take(struct work *work, const uint32_t pair[2]) {
         ask(work);
 }
 
-/* Checks those candidates of a chunk whose swept boxes come within the range. */
+/* Checks those candidates of a chunk whose swept boxes come within the range, and notes them
+ * for the limit of crossings, which asks the same motion. */
 static void check_chunk(struct work *work) {
     const struct cs_pairs *pairs = work->job->pairs;
-    const struct cs_candidate_chunk *chunk = work->chunk;
+    struct cs_candidate_chunk *chunk = work->chunk;
     const bool edges = chunk->kind == CS_PAIR_EDGE_EDGE;
     const struct cs_body_pair_params widest = {.range = pairs->body_pairs.range_max};
     const double reach = cs_body_pair_params_range(&widest, edges) * (1 + 1e-9);
-    uint32_t some[SOME][2];
     struct cs_moving_pairs items = {.surfaces = pairs->system->surfaces, .edges = edges};
     const uint32_t *all = work->job->nearby ? chunk->nearby : chunk->pairs;
     const size_t n_all = work->job->nearby ? chunk->n_nearby : chunk->n;
+    chunk->n_swept = 0;
     for (size_t p = 0; p < n_all && !work->unseen; p += SOME) {
+        uint32_t *some = cs_arena_realloc(chunk->swept, &chunk->swept_capacity,
+                                          chunk->n_swept + SOME, 2 * sizeof *some);
+        chunk->swept = some ? some : chunk->swept;
+        if (!some) {
+            __atomic_store_n(&work->job->pairs->failed, true, __ATOMIC_RELAXED);
+            return;
+        }
+        some += 2 * chunk->n_swept;
         items.items = all + 2 * p;
         items.n = n_all - p < SOME ? n_all - p : SOME;
-        const size_t n = cs_point_motion_filter(pairs->point_motion, &items, reach, some[0]);
+        const size_t n = cs_point_motion_filter(pairs->point_motion, &items, reach, some);
+        chunk->n_swept += n;
         for (size_t k = 0; k < n && !work->unseen; k++)
-            take(work, some[k]);
+            take(work, some + 2 * k);
     }
     ask(work);
 }
@@ -358,6 +368,7 @@ bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const doub
     struct job job = {.pairs = pairs, .from = from, .to = to, .h = t1 - t0, .unseen = NONE};
     const uint64_t build = search->n_builds;
     cs_point_motion_set(pairs->system, from, to, pairs->point_motion);
+    pairs->swept_build = 0;
     // Pairs in range anywhere on the way are nearby, because the motion from where these were
     // collected is largest at one of its ends. A pair that rejects the step again makes a list
     // that covers the step unnecessary.
@@ -370,5 +381,7 @@ bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const doub
         job.nearby = false;
         job.n_checked = 0;
     }
-    return are_seen(&job, search->n_chunks);
+    const bool resolved = are_seen(&job, search->n_chunks);
+    pairs->swept_build = resolved && !job.nearby && !pairs->failed ? search->n_builds : 0;
+    return resolved;
 }

@@ -1,0 +1,160 @@
+/* r_respa.c - velocity Verlet with two steps: springs and their dampers at the short one, all
+ * other forces at the long one.
+ *
+ * With a_s = f_s / m of the slow forces (contact, air, gravity, membranes) and a_f of springs
+ * and dampers, a step of h is v += h/2 a_s(t) `ratio` times, with d = h/ratio:  v += d/2 a_f,
+ * x += d v,  v += d/2 a_f(x, v + d/2 a_f) v += h/2 a_s(t + h, x, v + h/2 a_s) Forces that
+ * depend on the velocity see a predicted one, as in velocity-verlet. a_f is evaluated again
+ * after each slow kick, because dampers feel it: ratio + 1 fast evaluations and one slow a
+ * step. It pays where contact costs several times the springs (Tuckerman, Berne, Martyna 1992).
+ *
+ * The slow kicks are a drive of period h, and meet modes of the springs at h w = pi: there no
+ * ratio makes the step stable. */
+#include "fixed_step.h"
+#include "leapfrog_limit.h"
+#include "parallel.h"
+
+struct respa_options {
+    double dt;
+    int64_t ratio;
+};
+
+static const struct cs_option rows[] = {
+    CS_OPTION(struct respa_options, dt, "s", 0, 0, 10,
+              "maximum step of the slow forces; 0: 0.9 of the stability limit, estimated at "
+              "rest"),
+    CS_OPTION(struct respa_options, ratio, "", 4, 1, 1000,
+              "steps of springs and dampers per step of the slow forces"),
+};
+
+struct respa {
+    struct fixed_step fixed; /* first: the loop's functions take it for the whole */
+    int64_t ratio;
+    double *slow, *fast; /* (3,n) in N at the last evaluation */
+    double *predicted;   /* (3,n) velocities that the next evaluation sees */
+};
+
+/* v += kick f/m, x += drift v, predicted = v + ahead f/m, by the force f; lengths in s. */
+struct move {
+    const struct respa *self;
+    const double *f;
+    double *x, *v;
+    double kick, drift, ahead;
+};
+
+CS_CLONES static void move_row(const struct move *of, size_t at, size_t count,
+                               const double *restrict inv_mass) {
+    const double kick = of->kick, drift = of->drift, ahead = of->ahead;
+    const double *restrict f = of->f + at;
+    double *restrict x = of->x + at, *restrict v = of->v + at;
+    double *restrict predicted = of->self->predicted + at;
+    for (size_t i = 0; i < count; i++) {
+        const double a = f[i] * inv_mass[i];
+        v[i] += kick * a;
+        x[i] += drift * v[i];
+        predicted[i] = v[i] + ahead * a;
+    }
+}
+
+static void move_part(void *arg, size_t begin, size_t end) {
+    const struct move *of = arg;
+    const struct cs_view *view = of->self->fixed.host->view;
+    for (size_t c = 0; c < 3; c++)
+        move_row(of, c * view->n + begin, end - begin, view->inv_mass + begin);
+}
+
+static void move(const struct move *of) {
+    const struct cs_host *host = of->self->fixed.host;
+    parallel_for(host, host->view->n, move_part, (void *)of);
+}
+
+/* The steps of springs and dampers from t to t + h. */
+static void take_fast_steps(struct respa *self, double t, double h, double *x, double *v) {
+    const struct cs_host *host = self->fixed.host;
+    const double d = h / (double)self->ratio;
+    host->force(host->ctx, t, x, v, CS_PART_DAMPED_SPRINGS, self->fast);
+    for (int64_t k = 1; k <= self->ratio; k++) {
+        move(&(struct move){self, self->fast, x, v, d / 2, d, d / 2});
+        host->force(host->ctx, t + (double)k * d, x, self->predicted, CS_PART_DAMPED_SPRINGS,
+                    self->fast);
+        move(&(struct move){self, self->fast, x, v, d / 2, 0, 0});
+    }
+}
+
+static enum cs_step step(struct fixed_step *loop, double t, double h, double *x, double *v) {
+    struct respa *self = (struct respa *)loop;
+    const struct cs_host *host = loop->host;
+    if (loop->history_void)
+        host->force(host->ctx, t, x, v, CS_PART_OUTER, self->slow);
+    move(&(struct move){self, self->slow, x, v, h / 2, 0, 0});
+    take_fast_steps(self, t, h, x, v);
+    move(&(struct move){self, self->slow, x, v, 0, 0, h / 2});
+    host->force(host->ctx, t + h, x, self->predicted, CS_PART_OUTER, self->slow);
+    move(&(struct move){self, self->slow, x, v, h / 2, 0, 0});
+    return CS_STEP_OK;
+}
+
+/* The limit of velocity-verlet, in s. Without contact longer steps are stable too, up to h w =
+ * pi, but those that meet an obstacle in motion end too deep inside. */
+static double limit(const struct fixed_step *loop, double omega, double delta) {
+    (void)loop;
+    return leapfrog_limit(omega, delta, 4, 4);
+}
+
+static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
+    const struct respa_options *asked = options;
+    const struct cs_view *view = host->view;
+    struct respa *self = host->alloc(host->ctx, sizeof *self);
+    if (!self)
+        return CS_STEP_FAIL;
+    *out = self;
+    // the first slow force comes with the first step
+    self->fixed = fixed_step_of(host, asked->dt, step);
+    self->fixed.history_void = true;
+    self->ratio = asked->ratio;
+    if (asked->dt <= 0 && (view->omega > 0 || view->delta > 0)) {
+        self->fixed.dt = 0.9 * limit(&self->fixed, view->omega, view->delta);
+        host->note(host->ctx, "dt automatic: at most %.6g s (omega %.6g 1/s, delta %.6g 1/s)",
+                   self->fixed.dt, view->omega, view->delta);
+    }
+    double **const arrays[] = {&self->slow, &self->fast, &self->predicted};
+    for (int k = 0; k < 3; k++)
+        if (!(*arrays[k] = host->alloc(host->ctx, 3 * sizeof(double) * (size_t)view->n)))
+            return CS_STEP_FAIL;
+    return fixed_step_guard(&self->fixed, asked->dt > 0 ? NULL : limit);
+}
+
+static enum cs_step archive(void *object, const struct cs_archive *archive) {
+    struct respa *self = object;
+    archive->reals(archive->ctx, self->slow, 3 * (size_t)self->fixed.host->view->n);
+    return fixed_step_archive(object, archive);
+}
+
+static const struct cs_integrator r_respa = {
+    .size = sizeof(struct cs_integrator),
+    .name = "r-respa",
+    .summary = "Verlet with short steps for springs and long ones for contact and air: where "
+               "contact costs more than the springs, at errors near 1e-3",
+    .source = "Tuckerman, Berne, Martyna 1992",
+    .order = 2,
+    .order_damped = 2,
+    .fidelity = CS_FIDELITY_ODE,
+    .options = rows,
+    .n_options = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct respa_options),
+    .create = create,
+    .restart = fixed_step_restart,
+    .advance = fixed_step_advance,
+    .stats = fixed_step_stats,
+    .save = archive,
+    .load = archive,
+};
+
+static const struct cs_integrator *const integrators[] = {&r_respa};
+
+CS_EXPORT const struct cs_module clothsim_module = {
+    .abi = CS_ABI,
+    .size = sizeof(struct cs_integrator),
+    .n = sizeof integrators / sizeof integrators[0],
+    .integrators = integrators,
+};

@@ -1,0 +1,283 @@
+/* Curvatures along normals: first the forces on the points of each stencil, by all threads,
+ * then at each particle their sum in one order. */
+#include "model/elastic/normal_curvature.h"
+
+#include "base/pool.h"
+#include "model/elastic/membranes.h"
+#include "model/elastic/normal_stencil.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Stencils per block of a loop. */
+enum { PIECE = 128 };
+
+/* Arguments of a loop over all stencils. */
+struct job {
+    const struct cs_system *system;
+    const double *x, *v, *dx, *dv;
+    struct cs_normal_factors elastic, damping; /* the latter per second of damping */
+    bool is_change;                            /* a derivative, or a product */
+};
+
+static const struct cs_elastic *elastic_of(const struct cs_system *system,
+                                           const struct cs_bending *bending) {
+    return &cs_scene_bodies(system->scene)[bending->body].elastic;
+}
+
+/* The factors of one body: only a curved one has its energy here. */
+static struct cs_normal_factors factors_of(const struct job *job,
+                                           const struct cs_bending *bending) {
+    const double elastic = bending->rest ? 1 : 0;
+    const double damping = elastic_of(job->system, bending)->bending.damping;
+    const struct cs_normal_factors *e = &job->elastic, *d = &job->damping;
+    return (struct cs_normal_factors){elastic * e->kappa + damping * d->kappa,
+                                      elastic * e->rate + damping * d->rate,
+                                      elastic * e->change + damping * d->change,
+                                      elastic * e->change_rate + damping * d->change_rate};
+}
+
+/* The factors of a matrix cd df/dv + ck df/dx without the position derivative of the damping;
+ * with psd without the change of the gradients of kappa. */
+static void set_matrix_factors(struct job *job, double ck, double cd, bool psd) {
+    job->elastic = (struct cs_normal_factors){.kappa = psd ? 0 : -ck, .change = -ck};
+    job->damping = (struct cs_normal_factors){.change = -cd};
+}
+
+/* The forces on the points of one stencil, times -1; 0 where it has no normal. */
+static void find_forces(const struct job *job, const struct cs_bending_stencil *of,
+                        struct cs_normal_factors by, double out[CS_NORMAL_FORCES]) {
+    const size_t n = job->system->view.n;
+    struct cs_normal_state at;
+    struct cs_normal_sums dx, dv;
+    memset(out, 0, CS_NORMAL_FORCES * sizeof *out);
+    if (of->n == 0 || !cs_normal_stencil_state(of, n, job->x, job->v, &at))
+        return;
+    if (!job->is_change) {
+        cs_normal_stencil_force(of, &at, by, out);
+        return;
+    }
+    cs_normal_stencil_sums(of, n, job->dx, &dx);
+    cs_normal_stencil_sums(of, n, job->dv, &dv);
+    cs_normal_stencil_derivative(of, &at, by, &dx, &dv, out);
+}
+
+static uint32_t pieces_of(const struct cs_bending *bending) {
+    return bending->forces ? (bending->n + PIECE - 1) / PIECE : 0;
+}
+
+static void find_piece(void *arg, uint32_t number) {
+    const struct job *job = arg;
+    for (uint32_t b = 0, first = 0; b < job->system->bendings->n; b++) {
+        const struct cs_bending *bending = job->system->bendings->bodies + b;
+        const uint32_t pieces = pieces_of(bending);
+        // a piece is of one body
+        if (number >= first && number < first + pieces) {
+            const struct cs_moduli D = cs_bending_moduli(elastic_of(job->system, bending));
+            const struct cs_normal_factors by = factors_of(job, bending);
+            for (uint32_t s = (number - first) * PIECE;
+                 s < bending->n && s < (number - first + 1) * PIECE; s++) {
+                struct cs_bending_stencil stencil;
+                cs_bending_stencil_at(bending, &D, s, &stencil);
+                find_forces(job, &stencil, by, bending->forces + CS_NORMAL_FORCES * (size_t)s);
+            }
+        }
+        first += pieces;
+    }
+}
+
+static void find_all(struct job *job) {
+    uint32_t pieces = 0;
+    for (uint32_t b = 0; b < job->system->bendings->n; b++)
+        pieces += pieces_of(job->system->bendings->bodies + b);
+    cs_pool_run(pieces, find_piece, job);
+}
+
+void cs_normal_curvature_prepare(const struct cs_system *system, const struct cs_eval *at) {
+    struct job job = {.system = system,
+                      .x = at->x,
+                      .v = at->v,
+                      .dx = at->dx,
+                      .dv = at->dv,
+                      .is_change = at->dx || at->dv};
+    if (at->parts & CS_PART_POTENTIAL)
+        job.elastic = (struct cs_normal_factors){.kappa = 1, .change = 1};
+    if (at->parts & (CS_PART_DISSIPATIVE | CS_PART_ELASTIC_DAMPING))
+        job.damping = (struct cs_normal_factors){.rate = 1, .change_rate = 1};
+    find_all(&job);
+}
+
+void cs_normal_curvature_prepare_product(const struct cs_system *system, const double *p,
+                                         bool elastic) {
+    const struct cs_normal_matrix *kept = &system->bendings->normal;
+    struct job job = {.system = system, .x = kept->x, .dx = p, .is_change = true};
+    set_matrix_factors(&job, kept->ck, elastic ? 0 : kept->cd, kept->psd);
+    find_all(&job);
+}
+
+void cs_normal_curvature_add(const struct cs_system *system, const struct cs_block *block,
+                             double factor, double *y) {
+    const size_t n = system->view.n;
+    for (uint32_t b = 0; b < system->bendings->n; b++) {
+        const struct cs_bending *bending = system->bendings->bodies + b;
+        for (uint32_t i = 0; bending->forces && i < bending->count; i++) {
+            const size_t at = bending->first + i;
+            if (at < block->begin || at >= block->end)
+                continue;
+            // ascending by stencil: one order whatever the threads
+            double sum[3] = {0, 0, 0};
+            for (uint32_t k = bending->incident_begin[i]; k < bending->incident_begin[i + 1];
+                 k++)
+                for (size_t c = 0; c < 3; c++)
+                    sum[c] +=
+                        bending->forces[CS_NORMAL_FORCES * (size_t)(bending->incident[k] / 8) +
+                                        3 * (size_t)(bending->incident[k] % 8) + c];
+            for (size_t c = 0; c < 3; c++)
+                y[c * n + at] += factor * sum[c];
+        }
+    }
+}
+
+double cs_normal_curvature_energy(const struct cs_system *system, const double *x) {
+    double sum = 0;
+    for (uint32_t b = 0; b < system->bendings->n; b++) {
+        const struct cs_bending *bending = system->bendings->bodies + b;
+        const struct cs_moduli D = cs_bending_moduli(elastic_of(system, bending));
+        for (uint32_t s = 0; bending->rest && s < bending->n; s++) {
+            struct cs_bending_stencil of;
+            struct cs_normal_state at;
+            double M[3];
+            cs_bending_stencil_at(bending, &D, s, &of);
+            if (!cs_normal_stencil_state(&of, system->view.n, x, NULL, &at))
+                continue;
+            cs_normal_stencil_moments(&of, &at, (struct cs_normal_factors){.kappa = 1}, M);
+            for (int a = 0; a < 3; a++)
+                sum += 0.5 * M[a] * (at.kappa[a] - of.rest[a]);
+        }
+    }
+    return sum;
+}
+
+/* --- entries: bounds and diagonal blocks --- */
+
+/* The matrix of a stencil, column by column: a product for each number of its points. */
+static void find_entries(const struct job *job, const struct cs_bending_stencil *of,
+                         struct cs_normal_factors by,
+                         double K[CS_NORMAL_FORCES][CS_NORMAL_FORCES]) {
+    struct cs_normal_state at;
+    memset(K, 0, CS_NORMAL_FORCES * sizeof *K);
+    if (of->n == 0 || !cs_normal_stencil_state(of, job->system->view.n, job->x, NULL, &at))
+        return;
+    for (size_t column = 0; column < 3 * (size_t)of->n; column++) {
+        const size_t j = column / 3, c = column % 3;
+        // a unit displacement of one number
+        struct cs_normal_sums dx = {0};
+        for (size_t a = 0; a < 3; a++)
+            dx.k[a][c] = of->weights[a][j];
+        for (size_t k = 0; k < 2; k++)
+            dx.d[k][c] = (of->ends[2 * k + 1] == j) - (of->ends[2 * k] == j);
+        cs_normal_stencil_derivative(of, &at, by, &dx, &(struct cs_normal_sums){0}, K[column]);
+    }
+}
+
+/* Norm of the 3x3 block of points i and j. */
+static double block_norm(double K[CS_NORMAL_FORCES][CS_NORMAL_FORCES], size_t i, size_t j) {
+    double squares = 0;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t d = 0; d < 3; d++)
+            squares += K[3 * i + c][3 * j + d] * K[3 * i + c][3 * j + d];
+    return sqrt(squares);
+}
+
+/* Walks the stencils of the bodies that have forces by normals. */
+struct walk {
+    const struct cs_bending *bending;
+    struct cs_bending_stencil stencil;
+    struct cs_moduli D;
+    uint32_t body, s;
+};
+
+static bool next_stencil(const struct cs_system *system, struct walk *walk) {
+    const struct cs_bendings *all = system->bendings;
+    while (walk->body < all->n &&
+           (!all->bodies[walk->body].forces || walk->s == all->bodies[walk->body].n)) {
+        walk->body++;
+        walk->s = 0;
+    }
+    if (walk->body == all->n)
+        return false;
+    walk->bending = all->bodies + walk->body;
+    walk->D = cs_bending_moduli(elastic_of(system, walk->bending));
+    cs_bending_stencil_at(walk->bending, &walk->D, walk->s++, &walk->stencil);
+    return true;
+}
+
+void cs_normal_curvature_add_bound(const struct cs_system *system, const double *x,
+                                   double *stiffness, double *damping) {
+    struct walk walk = {0};
+    while (next_stencil(system, &walk))
+        for (int damped = 0; damped < 2; damped++) {
+            struct job job = {.system = system, .x = x};
+            double K[CS_NORMAL_FORCES][CS_NORMAL_FORCES], *sums = damped ? damping : stiffness;
+            set_matrix_factors(&job, damped ? 0 : -1, damped ? -1 : 0, false);
+            find_entries(&job, &walk.stencil, factors_of(&job, walk.bending), K);
+            for (uint32_t i = 0; i < walk.stencil.n; i++)
+                for (uint32_t j = 0; j < walk.stencil.n; j++)
+                    sums[walk.stencil.at[i]] += block_norm(K, i, j);
+        }
+}
+
+/* Adds the block of a particle with itself; a particle may stand at two points. */
+static void add_own_blocks(const struct cs_bending_stencil *of,
+                           double K[CS_NORMAL_FORCES][CS_NORMAL_FORCES], double factor,
+                           size_t n, double *blocks) {
+    static const size_t rows[6] = {0, 0, 0, 1, 1, 2}, columns[6] = {0, 1, 2, 1, 2, 2};
+    for (size_t i = 0; i < of->n; i++)
+        for (size_t j = 0; j < of->n; j++)
+            for (size_t c = 0; of->at[i] == of->at[j] && c < 6; c++)
+                blocks[c * n + of->at[i]] += factor * K[3 * i + rows[c]][3 * j + columns[c]];
+}
+
+void cs_normal_curvature_prepare_matrix(const struct cs_system *system,
+                                        const struct cs_matrix *matrix, bool kept) {
+    struct cs_normal_matrix *own = &system->bendings->normal;
+    const size_t n = system->view.n;
+    struct job job = {.system = system, .x = matrix->x};
+    struct walk walk = {0};
+    set_matrix_factors(&job, matrix->ck, matrix->cd, matrix->psd);
+    memset(own->blocks, 0, 6 * n * sizeof *own->blocks);
+    while (next_stencil(system, &walk)) {
+        double K[CS_NORMAL_FORCES][CS_NORMAL_FORCES];
+        find_entries(&job, &walk.stencil, factors_of(&job, walk.bending), K);
+        add_own_blocks(&walk.stencil, K, matrix->bound && !kept ? CS_BENDING_POINTS : 1, n,
+                       own->blocks);
+    }
+    if (!kept)
+        return;
+    memcpy(own->kept, own->blocks, 6 * n * sizeof *own->kept);
+    memcpy(own->x, matrix->x, 3 * n * sizeof *own->x);
+    own->ck = matrix->ck;
+    own->cd = matrix->cd;
+    own->psd = matrix->psd;
+}
+
+enum cs_status cs_normal_curvature_build(struct cs_system *system, struct cs_error *error) {
+    struct cs_bendings *all = system->bendings;
+    const size_t n = system->view.n;
+    bool any = false;
+    for (uint32_t b = 0; b < all->n && !error->status; b++) {
+        struct cs_bending *bending = all->bodies + b;
+        if (!bending->rest && !bending->damped)
+            continue;
+        // flat bodies without damping need nothing
+        any = true;
+        bending->forces = cs_arena_alloc_array(&system->arena, bending->n,
+                                               CS_NORMAL_FORCES * sizeof(double), error);
+    }
+    if (!any)
+        return error->status;
+    all->normal.x = cs_arena_alloc_array(&system->arena, 3 * n, sizeof(double), error);
+    all->normal.blocks = cs_arena_alloc_array(&system->arena, 6 * n, sizeof(double), error);
+    all->normal.kept = cs_arena_alloc_array(&system->arena, 6 * n, sizeof(double), error);
+    return error->status;
+}

@@ -1,0 +1,51 @@
+/* normal_stencil.h - one stencil of normal_curvature.h: its curvatures, and the forces on its
+ * points with their derivative. */
+#ifndef CS_NORMAL_STENCIL_H
+#define CS_NORMAL_STENCIL_H
+
+#include "model/elastic/bendings.h"
+
+/* Numbers of a stencil's forces. */
+enum { CS_NORMAL_FORCES = 3 * CS_BENDING_POINTS };
+
+/* Sums of weights times a vector of positions or velocities, and the two differences. */
+struct cs_normal_sums {
+    double k[3][3], d[2][3];
+};
+
+/* A stencil at a state. */
+struct cs_normal_state {
+    struct cs_normal_sums x, v;
+    double normal[3], length; /* of the product of the differences, in m2 */
+    double rate[3], turn[3];  /* of that product, and of the normal, over time */
+    double kappa[3], kappa_rate[3];
+};
+
+/* Moments M = A D (kappa (kappa_a - rest_a) + rate kappa_a'), and in a derivative their change
+ * A D (change d kappa_a + change_rate d kappa_a'). */
+struct cs_normal_factors {
+    double kappa, rate, change, change_rate;
+};
+
+/* Sums of an array (3,n); NULL: 0. */
+void cs_normal_stencil_sums(const struct cs_bending_stencil *of, size_t n, const double *p,
+                            struct cs_normal_sums *sums);
+/* Returns false where the stencil has no normal: it then has no force. v may be NULL: 0. */
+bool cs_normal_stencil_state(const struct cs_bending_stencil *of, size_t n, const double *x,
+                             const double *v, struct cs_normal_state *at);
+/* A D times the curvatures less those at rest, and their rates, by the factors. */
+void cs_normal_stencil_moments(const struct cs_bending_stencil *of,
+                               const struct cs_normal_state *at, struct cs_normal_factors by,
+                               double M[3]);
+/* Forces on the points, times -1. */
+void cs_normal_stencil_force(const struct cs_bending_stencil *of,
+                             const struct cs_normal_state *at, struct cs_normal_factors by,
+                             double out[CS_NORMAL_FORCES]);
+/* Their change with positions by dx and velocities by dv. */
+void cs_normal_stencil_derivative(const struct cs_bending_stencil *of,
+                                  const struct cs_normal_state *at, struct cs_normal_factors by,
+                                  const struct cs_normal_sums *dx,
+                                  const struct cs_normal_sums *dv,
+                                  double out[CS_NORMAL_FORCES]);
+
+#endif

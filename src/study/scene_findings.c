@@ -1,0 +1,387 @@
+/* Finds keys that nothing reads in the scene that gives them, and mistakes in paths.
+ *
+ * A key is given if its value is not the default. Each key of a scene belongs to one rule, the
+ * first whose pattern begins its path, and the rule tells from the scene whether it acts.
+ *
+ * A grab's points are positions, a move's are shifts, unless `relative` says otherwise: a path
+ * written as the other kind begins with a jump. A grabbed particle that is faster than waves in
+ * its springs, c = L sqrt(k/m), stretches them to twice their length and more. */
+#include "study/scene_findings.h"
+
+#include "base/options.h"
+#include "base/vec3.h"
+#include "model/contact/posed_collider.h"
+#include "model/event/event_state.h"
+#include "scene/body_pairs.h"
+#include "scene/event_key.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Tells whether a key acts; k: the first index of its path. */
+typedef bool acts(const struct cs_scene *scene, uint32_t k);
+
+static bool is_force(const struct cs_scene *scene) {
+    return scene->contact.law == CS_CONTACT_FORCE;
+}
+static const struct cs_body *body_at(const struct cs_scene *scene, uint32_t k) {
+    return cs_scene_bodies(scene) + k;
+}
+
+static bool springs_act(const struct cs_scene *scene, uint32_t k) {
+    return !cs_scene_springs_left_out(body_at(scene, k));
+}
+static bool shear_acts(const struct cs_scene *scene, uint32_t k) {
+    const struct cs_cloth *cloth = &body_at(scene, k)->cloth;
+    return springs_act(scene, k) && cloth->present && cloth->grid[0] > 1 && cloth->grid[1] > 1;
+}
+static bool bend_acts(const struct cs_scene *scene, uint32_t k) {
+    const struct cs_cloth *cloth = &body_at(scene, k)->cloth;
+    return springs_act(scene, k) &&
+           (!cloth->present || cloth->grid[0] > 2 || cloth->grid[1] > 2);
+}
+static bool damps(const struct cs_scene *scene, uint32_t k) {
+    return springs_act(scene, k) &&
+           cs_event_key_acts(scene, body_at(scene, k)->springs.damping, "springs.damping");
+}
+static bool limits_strain(const struct cs_scene *scene, uint32_t k) {
+    return !isnan(body_at(scene, k)->strain_limit);
+}
+static bool meets_itself(const struct cs_scene *scene, uint32_t k) {
+    return body_at(scene, k)->self_contact;
+}
+/* A body meets itself, another one or a mesh: then its surface has a thickness. */
+static bool has_surface(const struct cs_scene *scene, uint32_t k) {
+    double friction;
+    bool any = false;
+    for (uint32_t b = 0; b < scene->bodies.n + scene->colliders.n; b++)
+        any = any || ((b < scene->bodies.n || cs_scene_collider_at(scene, b)->mesh.present) &&
+                      cs_scene_bodies_collide(scene, k, b, &friction));
+    return is_force(scene) && any;
+}
+static bool draws_nearest(const struct cs_scene *scene, uint32_t k) {
+    return body_at(scene, k)->network.placement == CS_PLACEMENT_NEAREST;
+}
+static bool has_clusters(const struct cs_scene *scene, uint32_t k) {
+    return body_at(scene, k)->shape_matching.clusters > 1;
+}
+static bool has_texture(const struct cs_scene *scene, uint32_t k) {
+    return *body_at(scene, k)->material.texture;
+}
+static bool shines(const struct cs_scene *scene, uint32_t k) {
+    return body_at(scene, k)->material.specular > 0;
+}
+static bool is_projected(const struct cs_scene *scene, uint32_t k) {
+    (void)k;
+    return !is_force(scene);
+}
+static bool is_drawn(const struct cs_scene *scene, uint32_t k) {
+    return cs_scene_colliders(scene)[k].visible;
+}
+static bool has_contact(const struct cs_scene *scene, uint32_t k) {
+    (void)k;
+    return scene->colliders.n || cs_scene_has_body_contact(scene);
+}
+static bool is_contact_force(const struct cs_scene *scene, uint32_t k) {
+    return is_force(scene) && has_contact(scene, k);
+}
+static bool is_smooth_friction(const struct cs_scene *scene, uint32_t k) {
+    return is_contact_force(scene, k) && scene->contact.friction_law == CS_FRICTION_SMOOTH &&
+           (cs_scene_has_friction(scene) || cs_event_key_changes(scene, "friction"));
+}
+static bool sticks(const struct cs_scene *scene, uint32_t k) {
+    (void)k;
+    return cs_scene_friction_sticks(scene);
+}
+static bool has_pairs(const struct cs_scene *scene, uint32_t k) {
+    (void)k;
+    return scene->bodies.n > 1;
+}
+static bool are_all_pairs(const struct cs_scene *scene, uint32_t k) {
+    return has_pairs(scene, k) && scene->pairs.among == CS_PAIRS_ALL;
+}
+static bool has_drag(const struct cs_scene *scene, uint32_t k) {
+    (void)k;
+    return cs_event_key_acts(scene, scene->forces.drag, "forces.drag");
+}
+static bool blows(const struct cs_scene *scene, uint32_t k) {
+    (void)k;
+    bool any = cs_event_key_acts(scene, scene->forces.wind.strength, "forces.wind.strength");
+    for (uint32_t e = 0; e < scene->events.n; e++)
+        any = any || cs_scene_events(scene)[e].wind.present;
+    return any;
+}
+static bool has_range(const struct cs_scene *scene, uint32_t k) {
+    (void)k;
+    return scene->render.look == CS_LOOK_FORCE || scene->render.look == CS_LOOK_STRAIN ||
+           scene->render.look == CS_LOOK_STRESS;
+}
+
+static bool has_young(const struct cs_scene *scene, uint32_t k) {
+    return !isnan(body_at(scene, k)->elastic.membrane.young);
+}
+static bool has_warp(const struct cs_scene *scene, uint32_t k) {
+    return !isnan(body_at(scene, k)->elastic.membrane.warp);
+}
+static bool bends_alike(const struct cs_scene *scene, uint32_t k) {
+    return !isnan(body_at(scene, k)->elastic.bending.stiffness);
+}
+static bool bends_by_warp(const struct cs_scene *scene, uint32_t k) {
+    return !isnan(body_at(scene, k)->elastic.bending.warp);
+}
+
+/* acts NULL: always. In the order of the tables, single keys before the tables they are in. */
+static const struct {
+    const char *key;
+    acts *acts;
+    const char *expected;
+} rules[] = {
+    {"about", NULL, NULL},
+    {"source", NULL, NULL},
+    {"bodies[].cloth", NULL, NULL},
+    {"bodies[].mesh", NULL, NULL},
+    {"bodies[].network.candidates", draws_nearest, "it belongs to placement \"nearest\""},
+    {"bodies[].network", NULL, NULL},
+    {"bodies[].shape_matching.overlap", has_clusters, "it belongs to several clusters"},
+    {"bodies[].shape_matching", NULL, NULL},
+    {"bodies[].mass", NULL, NULL},
+    {"bodies[].springs.shear", shear_acts, "there are no diagonal springs of a grid"},
+    {"bodies[].springs.bend", bend_acts, "there are no such springs"},
+    {"bodies[].springs.damping_model", damps, "springs.damping is 0"},
+    {"bodies[].springs", springs_act,
+     "elastic replaces the springs, and shape_matching without shape_matching.springs true"},
+    {"bodies[].elastic.membrane.poisson", has_young, "it belongs to young"},
+    {"bodies[].elastic.membrane.coupling", has_warp, "it belongs to warp"},
+    {"bodies[].elastic.bending.poisson", bends_alike, "it belongs to stiffness"},
+    {"bodies[].elastic.bending.coupling", bends_by_warp, "it belongs to warp"},
+    {"bodies[].elastic", NULL, NULL},
+    {"bodies[].pins", NULL, NULL},
+    {"bodies[].self_contact", NULL, NULL},
+    {"bodies[].thickness", has_surface,
+     "the body meets no surface, expected self_contact true, pairs, or contact.law force with "
+     "a mesh"},
+    {"bodies[].friction", meets_itself,
+     "it is of the body on itself, expected self_contact true; for other bodies "
+     "pairs.friction, for obstacles colliders[].friction"},
+    {"bodies[].strain_limit_sweeps", limits_strain, "expected strain_limit"},
+    {"bodies[].strain_limit", NULL, NULL},
+    {"bodies[].material.texture_repeat", has_texture, "expected material.texture"},
+    {"bodies[].material.shininess", shines, "material.specular is 0"},
+    {"bodies[].material", NULL, NULL},
+    {"colliders[].absorption", is_projected,
+     "it belongs to contact.law project; contact.damping slows a contact by force"},
+    {"colliders[].colour", is_drawn, "visible is false"},
+    {"colliders[]", NULL, NULL},
+    {"contact.start", has_contact, "nothing is in contact, expected colliders or pairs"},
+    {"contact.law", has_contact, "nothing is in contact, expected colliders or pairs"},
+    {"contact.friction_speed", is_smooth_friction,
+     "expected contact.law force, friction_law smooth and a coefficient of friction"},
+    {"contact.friction_law", sticks, "expected friction on a collider that is no mesh"},
+    {"contact", is_contact_force, "it belongs to contact.law force"},
+    {"crossings", NULL, NULL},
+    {"pairs.friction", are_all_pairs, "it belongs to pairs \"all\" of several bodies"},
+    {"pairs", has_pairs, "the scene has one body, expected self_contact true"},
+    {"forces.drag_unit", has_drag, "forces.drag is 0"},
+    {"forces.wind", blows, "forces.wind.strength is 0"},
+    {"forces", NULL, NULL},
+    {"events[]", NULL, NULL},
+    {"seams", NULL, NULL},
+    {"time", NULL, NULL},
+    {"camera", NULL, NULL},
+    {"light", NULL, NULL},
+    {"lights[]", NULL, NULL},
+    {"render.range", has_range, "it belongs to the looks \"force\", \"strain\" and \"stress\""},
+    {"render", NULL, NULL},
+};
+
+int cs_idle_keys_rule(const char *key) {
+    for (size_t r = 0; r < sizeof rules / sizeof *rules; r++) {
+        const size_t length = strlen(rules[r].key);
+        if (!strncmp(key, rules[r].key, length) && (!key[length] || strchr(".[", key[length])))
+            return (int)r;
+    }
+    return -1;
+}
+
+/* A place in a scene: the path with its indices, and without. */
+struct place {
+    char path[CS_TEXT_MAX], key[CS_TEXT_MAX];
+    uint32_t first; /* first index of the path */
+};
+
+static void print_rule(const struct cs_scene *scene, const struct place *at,
+                       struct cs_text *out) {
+    const int rule = cs_idle_keys_rule(at->key);
+    if (rule >= 0 && rules[rule].acts && !rules[rule].acts(scene, at->first))
+        cs_text_add(out, "%s has no effect: %s\n", at->path, rules[rule].expected);
+}
+
+/* True for a number that switches its key off: it may be so where there is nothing. */
+static bool is_zero(const struct cs_option *row, const void *field) {
+    double value = 1;
+    if (row->type == CS_REAL)
+        memcpy(&value, field, sizeof value);
+    return value == 0;
+}
+
+static void walk(const struct cs_scene *scene, const struct cs_table *table, const void *object,
+                 const struct place *above, struct cs_text *out);
+
+/* Walks one row: a table, each element of a list, or a value. */
+static void walk_row(const struct cs_scene *scene, const struct cs_option *row,
+                     const void *object, const struct place *above, struct cs_text *out) {
+    const void *field = (const char *)object + row->offset;
+    const char *point = *above->path ? "." : "";
+    const struct cs_list *list = field;
+    struct place at = *above;
+    snprintf(at.path, sizeof at.path, "%.200s%s%s", above->path, point, row->name);
+    snprintf(at.key, sizeof at.key, "%.200s%s%s", above->key, point, row->name);
+    if (row->type == CS_TABLE)
+        walk(scene, row->table, field, &at, out);
+    for (uint32_t k = 0; row->type == CS_LIST && k < list->n; k++) {
+        struct place item = at;
+        snprintf(item.path, sizeof item.path, "%.200s[%u]", at.path, k);
+        snprintf(item.key, sizeof item.key, "%.200s[]", at.key);
+        item.first = strchr(above->path, '[') ? above->first : k;
+        walk(scene, row->table, (const char *)list->items + k * row->table->size, &item, out);
+    }
+    if (!row->table && !cs_option_is_default(row, object) && !is_zero(row, field))
+        print_rule(scene, &at, out);
+}
+
+static void walk(const struct cs_scene *scene, const struct cs_table *table, const void *object,
+                 const struct place *above, struct cs_text *out) {
+    for (uint32_t r = 0; r < table->n; r++)
+        if (cs_option_is_set(table->rows + r, object))
+            walk_row(scene, table->rows + r, object, above, out);
+}
+
+void cs_idle_keys_print(const struct cs_scene *scene, struct cs_text *out) {
+    walk(scene, &cs_scene_table, scene, &(struct place){0}, out);
+}
+
+/* A first leg longer than the obstacle within so many frames is a jump. */
+#define JUMP_FRAMES 1.5
+
+static double begin_of(const struct cs_event *event) {
+    return isnan(event->at) ? event->from : event->at;
+}
+
+/* m/s, mean speed of the first leg of a path. */
+static double first_speed(const struct cs_event *event, const struct cs_path_point *to,
+                          const double from[3]) {
+    double way[3];
+    for (int c = 0; c < 3; c++)
+        way[c] = to->point[c] - from[c];
+    return sqrt(cs_vec3_dot(way, way)) / (to->at - begin_of(event));
+}
+
+/* First particle that a grab takes, or view.n. */
+static size_t first_target(const struct cs_system *system, const struct cs_grab *grab) {
+    cs_event_mark(system, &grab->target);
+    size_t i = 0;
+    while (i < system->view.n && !system->events->work[i])
+        i++;
+    return i;
+}
+
+/* True if the scene pins a particle that a grab takes. */
+static bool takes_pinned(const struct cs_system *system, const struct cs_grab *grab) {
+    bool any = false;
+    cs_event_mark(system, &grab->target);
+    for (uint32_t p = 0; p < system->n_pinned; p++)
+        any = any || system->events->work[system->pinned[p]];
+    return any;
+}
+
+/* m/s, speed of waves in the springs at a particle; 0: it has none. */
+static double wave_speed(const struct cs_system *system, size_t particle) {
+    double speed = 0;
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *s = system->springs.runs + r;
+        for (uint32_t i = 0; i < s->count; i++)
+            if (cs_spring_a(s, i) == particle || cs_spring_b(s, i) == particle)
+                speed = fmax(speed, cs_spring_length(s, i) * sqrt(cs_spring_stiffness(s, i) /
+                                                                  system->mass[particle]));
+    }
+    return speed;
+}
+
+static void check_grab(const struct cs_system *system, uint32_t e, struct cs_text *out) {
+    const struct cs_event *event = cs_scene_events(system->scene) + e;
+    const struct cs_grab *grab = &event->grab;
+    const struct cs_path_point *to = grab->path.items;
+    const size_t n = system->view.n;
+    const size_t i = first_target(system, grab);
+    if (i == n)
+        return;
+    double from[3] = {0};
+    for (size_t c = 0; c < 3 && !grab->relative; c++)
+        from[c] = system->state[c * n + i];
+    const double speed = grab->path.n ? first_speed(event, to, from) : 0;
+    const double waves = wave_speed(system, i);
+    if (speed > waves && waves > 0)
+        cs_text_add(out,
+                    "events[%u].grab.path[0] is reached at %.3g m/s, faster than waves in the "
+                    "springs, %.3g m/s: expected at = %.3g s or later%s\n",
+                    e, speed, waves,
+                    begin_of(event) + 2 * (to->at - begin_of(event)) * speed / waves,
+                    grab->relative ? "" : ", or \"relative\": true if its points are shifts");
+    if (takes_pinned(system, grab) && isfinite(event->to))
+        cs_text_add(out,
+                    "events[%u].grab takes particles that pins hold, and lets them go at %.3g "
+                    "s: no \"to\", with \"at\" instead of \"from\", holds them for good\n",
+                    e, event->to);
+}
+
+/* m, of a collider without a plane: the diagonal of its box. */
+static double size_of(const struct cs_posed_collider *at) {
+    const struct cs_trimesh *mesh =
+        at->collider->mesh.present ? at->collider->mesh.geometry : NULL;
+    double sides[3], low, high;
+    for (size_t c = 0; c < 3; c++) {
+        sides[c] = 2 * at->half_sizes[c];
+        low = high = mesh ? mesh->positions[c * mesh->n] : 0;
+        for (size_t i = 0; mesh && i < mesh->n; i++) {
+            low = fmin(low, mesh->positions[c * mesh->n + i]);
+            high = fmax(high, mesh->positions[c * mesh->n + i]);
+        }
+        sides[c] += high - low;
+    }
+    return 2 * at->radius + sqrt(cs_vec3_dot(sides, sides));
+}
+
+static void check_move(const struct cs_system *system, uint32_t e, struct cs_text *out) {
+    const struct cs_event *event = cs_scene_events(system->scene) + e;
+    const struct cs_move *move = &event->move;
+    const struct cs_path_point *to = move->path.items;
+    struct cs_posed_collider at;
+    if (!move->path.n || !system->motions)
+        return;
+    cs_posed_collider_at(system, (uint32_t)move->collider, 0, &at);
+    if (cs_shape_is_endless(at.shape))
+        return;
+    const double still[3] = {0}, *from = move->relative ? still : at.centre;
+    const double speed = first_speed(event, to, from);
+    const double size = size_of(&at);
+    const double fastest = size * system->scene->time.fps / JUMP_FRAMES;
+    if (speed > fastest)
+        cs_text_add(out,
+                    "events[%u].move.path[0] is reached at %.3g m/s, by more than the size of "
+                    "colliders[%u], %.3g m, per frame: expected at = %.3g s or later%s\n",
+                    e, speed, (uint32_t)move->collider, size,
+                    begin_of(event) + (to->at - begin_of(event)) * speed / fastest,
+                    move->relative ? ", or \"relative\": false if its points are positions"
+                                   : "");
+}
+
+void cs_path_findings_print(const struct cs_system *system, struct cs_text *out) {
+    for (uint32_t e = 0; e < system->scene->events.n; e++) {
+        const struct cs_event *event = cs_scene_events(system->scene) + e;
+        if (event->grab.present)
+            check_grab(system, e, out);
+        if (event->move.present)
+            check_move(system, e, out);
+    }
+}

@@ -1,0 +1,19 @@
+/* scene_findings.h - keys that a scene gives, but nothing in it reads, and mistakes in paths.
+ */
+#ifndef CS_SCENE_FINDINGS_H
+#define CS_SCENE_FINDINGS_H
+
+#include "model/system/particle_system.h"
+
+/* Adds the keys that have another value than their default, but no effect, one per line:
+ * "bodies[0].thickness has no effect: ...". */
+void cs_idle_keys_print(const struct cs_scene *scene, struct cs_text *out);
+
+/* Returns the index of the rule about a key, "bodies[].springs.shear", or -1: each key of a
+ * scene must have one, if only that it always acts. */
+int cs_idle_keys_rule(const char *key);
+
+/* Adds what is wrong with the paths of grabs and moves, one per line. */
+void cs_path_findings_print(const struct cs_system *system, struct cs_text *out);
+
+#endif
