@@ -58,7 +58,10 @@ static enum cs_status write_files(const struct cs_stability_options *options,
     /* the picture is made of the files above */
     if (!error->status)
         cs_gnuplot_run(options->map.folder, name, gnuplot, error);
-    if (!error->status && !cs_print_gnuplot_warning(gnuplot, error))
+    if (!error->status)
+        cs_print_gnuplot_warning(gnuplot, error);
+    /* not before all results are in files */
+    if (!error->status && !cs_journal_remove(map, error))
         cs_manifest_write_study(options->map.folder, error);
     cs_text_finish(&borders);
     cs_text_finish(&json);

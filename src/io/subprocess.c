@@ -101,10 +101,19 @@ enum cs_status cs_gnuplot_run(const char *folder, const char *name, struct cs_gn
     char script[272], line[256], last[256] = "", reason[300];
     struct cs_subprocess program;
     struct cs_error failure = {0};
+    sigset_t interrupts, before;
     snprintf(script, sizeof script, "%s.gp", name);
     gnuplot->drawn = false;
-    if (cs_subprocess_open(&program, folder, (const char *const[]){"gnuplot", script, NULL}, 2,
-                           &failure)) {
+    /* gnuplot inherits the mask: an interrupt of the terminal, which reaches both programs, does
+     * not leave results without their picture */
+    sigemptyset(&interrupts);
+    sigaddset(&interrupts, SIGINT);
+    sigaddset(&interrupts, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &interrupts, &before);
+    cs_subprocess_open(&program, folder, (const char *const[]){"gnuplot", script, NULL}, 2,
+                       &failure);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (failure.status) {
         if (failure.status == CS_ERR_MEMORY)
             *error = failure;
         else if (program.reason != ENOENT && program.reason != ENOTDIR)

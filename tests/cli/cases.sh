@@ -54,7 +54,8 @@ for file; do
             fi
         done
         echo "$verdict $n - $(basename "$file" .case): $(cat "$case/title")"
-        [ ! -f "$case/log" ] || sed 's/^/#   /' "$case/log"
+        # on standard error, which a failed test's log shows whatever reads the TAP
+        [ ! -f "$case/log" ] || sed 's/^/#   /' "$case/log" >&2
     done
 done
 echo "1..$n"

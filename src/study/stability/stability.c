@@ -348,7 +348,7 @@ enum cs_status cs_stability_run(struct cs_stability *map,
         return error->status;
     map->is_complete = is_complete(map);
     map->wall = cs_clock_wall() - begin;
-    return map->is_complete ? cs_journal_remove(map, error) : CS_OK;
+    return CS_OK;
 }
 
 void cs_stability_finish(struct cs_stability *map) {
