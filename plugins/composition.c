@@ -5,19 +5,15 @@
  *   v += b_1 h a,  x += a_1 h v,  v += b_2 h a,  ...  x += a_(s-1) h v,  v += b_s h a
  * with a at the present x, and at t + (a_1 + ... + a_k) h. The last a is the first one of the
  * next step: s - 1 evaluations a step. Without damping a does not depend on v, and the step has
- * the order of its coefficients. With it a kick sees the velocity predicted for its middle by
- * the a before, which leaves order 2.
+ * the order of its coefficients. With it a kick sees the velocity that the a before predicts.
  *
  * With damping=quadrature kick k sees v_0 + h sum w_j a_j instead, over the a of this step so
  * far and those of the step before. The w of least norm integrate polynomials exactly up to the
  * time of the kick. The x at kicks are off by h^2 e_j a + h^3 g_j a' + ..,  e_j = sum_(i<j) b_i
  * (c_j - c_i) - c_j^2 / 2, g_j = sum_(i<j) b_i (c_j - c_i) c_i - c_j^3 / 6,  c the times of
  * kicks, which would leave order 3: the w also make sum w_j e_j 0, at order 6 sum w_j c_j e_j
- * and sum w_j g_j too. With damping that gives order 4, and 5 for order 6. Where there is no
- * step before, the first step is repeated with weights over its own a, until these have that
- * order.
- *
- * A mode of frequency w is stable for h w < z, z by trial of the 2x2 matrix of a step. */
+ * and sum w_j g_j too. With damping that gives order 4, and 5 for order 6. The first step is
+ * repeated with weights over its own a, until these have that order. */
 #include "composition_sequences.h"
 #include "fixed_step.h"
 #include "leapfrog_limit.h"
@@ -366,6 +362,11 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
     return fixed_step_archive(object, archive);
 }
 
+static uint32_t order_of(const void *options, bool damped) {
+    const struct composition_options *asked = options;
+    return sequences[asked->method].order[damped ? 1 + asked->damping : 0];
+}
+
 static const struct cs_integrator composition = {
     .size = sizeof(struct cs_integrator),
     .name = "composition",
@@ -386,6 +387,7 @@ static const struct cs_integrator composition = {
     .save = archive,
     .load = archive,
     .variants = variants,
+    .order_of = order_of,
 };
 
 static const struct cs_integrator *const integrators[] = {&composition};

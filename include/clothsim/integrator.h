@@ -377,11 +377,12 @@ struct cs_integrator {
     const char *library;
 
     /* Options that were renamed, and how many; or NULL and 0. Options of further series for a
-     * comparison of all methods, such as "order=8", closed by NULL; or NULL. Later than the
-     * first release: the host asks CS_HAS. */
+     * comparison of all methods, such as "order=8", closed by NULL; or NULL. The order with
+     * these options; NULL: an option "order", or the orders above. The host asks CS_HAS. */
     const struct cs_option_rename *renames;
     uint32_t n_renames;
     const char *const *variants;
+    uint32_t (*order_of)(const void *options, bool damped);
 };
 
 /* The symbol that a module exports: CS_EXPORT const struct cs_module clothsim_module. */

@@ -128,8 +128,10 @@ static void print_head(struct output *output) {
     output->progress->in_list = false;
     if (has_text(output))
         printf("%s%s%s: order %u (%u with damping), fidelity: %s\n", method->name,
-               *output->settings ? ":" : "", output->settings, method->order,
-               method->order_damped, fidelity_text(method->fidelity));
+               *output->settings ? ":" : "", output->settings,
+               cs_method_order(method, output->card->options, false),
+               cs_method_order(method, output->card->options, true),
+               fidelity_text(method->fidelity));
     fflush(stdout);
 }
 

@@ -89,7 +89,7 @@ static const struct cs_output_key run_keys[] = {
     {"counts.sweeps", "whole", "1", "passes of the method itself over the springs"},
     {"counts.setups", "whole", "1", "matrices that the method set up"},
     {"counts.solve_setups", "whole", "1", "set-ups of the linear solver"},
-    {"counts.solves", "whole", "1", "linear solves"},
+    {"counts.solves", "whole", "1", "linear solves; one may take more systems for friction"},
     {"counts.solve_iterations", "whole", "1", "iterations of the linear solver"},
     {"counts.clamped", "whole", "1", "set-ups of the solver that left out negative stiffness"},
     {"counts.contacts", "whole", "1", "particles that contact by projection moved"},

@@ -104,8 +104,8 @@ enum cs_status cs_gnuplot_run(const char *folder, const char *name, struct cs_gn
     sigset_t interrupts, before;
     snprintf(script, sizeof script, "%s.gp", name);
     gnuplot->drawn = false;
-    /* gnuplot inherits the mask: an interrupt of the terminal, which reaches both programs, does
-     * not leave results without their picture */
+    /* gnuplot inherits the mask: an interrupt of the terminal, which reaches both programs,
+     * leaves no results without their picture */
     sigemptyset(&interrupts);
     sigaddset(&interrupts, SIGINT);
     sigaddset(&interrupts, SIGTERM);

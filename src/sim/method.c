@@ -222,6 +222,19 @@ static const struct cs_option *find_dt(const struct cs_integrator *integrator) {
     return row && row->type == CS_REAL ? row : NULL;
 }
 
+uint32_t cs_method_order(const struct cs_integrator *integrator, const void *options,
+                         bool damped) {
+    const struct cs_table table = {.rows = integrator->options, .n = integrator->n_options};
+    const struct cs_option *row = cs_option_find(&table, "order");
+    int64_t asked;
+    if (options && CS_HAS(integrator, order_of) && integrator->order_of)
+        return integrator->order_of(options, damped);
+    if (!options || !row || row->type != CS_INT)
+        return damped ? integrator->order_damped : integrator->order;
+    memcpy(&asked, (const char *)options + row->offset, sizeof asked);
+    return (uint32_t)asked;
+}
+
 bool cs_method_takes_dt(const struct cs_integrator *integrator) {
     return !(integrator->traits & CS_ADAPTIVE) && find_dt(integrator);
 }

@@ -59,6 +59,11 @@ char *cs_method_split(char **list);
 enum cs_status cs_method_parse_pair(const char *name, char **pairs, const char **key,
                                     const char **value, struct cs_error *error);
 
+/* The order that a method claims with its options (NULL: the defaults), with damping or
+ * without: by its order_of, an option "order", or its descriptor. */
+uint32_t cs_method_order(const struct cs_integrator *integrator, const void *options,
+                         bool damped);
+
 /* True for a method of fixed steps with an option `dt`. */
 bool cs_method_takes_dt(const struct cs_integrator *integrator);
 

@@ -104,12 +104,16 @@ enum cs_status cs_print_out(FILE *file, struct cs_text *text, struct cs_error *e
 }
 
 void cs_print_message(const char *message) {
-    fputs("clothsim: ", stderr);
-    for (; *message; message++) {
-        const unsigned char c = (unsigned char)*message;
-        fputc(c < 0x20 || c == 0x7f ? '?' : c, stderr);
-    }
-    fputc('\n', stderr);
+    char line[4096];
+    const int most = sizeof line - 2;
+    int length = snprintf(line, sizeof line - 1, "clothsim: %s", message);
+    length = length < most ? length : most;
+    for (int k = 0; k < length; k++)
+        if ((unsigned char)line[k] < 0x20 || line[k] == 0x7f)
+            line[k] = '?';
+    line[length++] = '\n';
+    /* in one write, as processes share the stream */
+    fwrite(line, 1, (size_t)length, stderr);
 }
 
 void cs_print_lines(const char *before, const char *lines, struct cs_text *out) {

@@ -62,18 +62,24 @@ static void prepare(const struct job *job) {
             system->terms[k]->prepare(system, &job->at);
 }
 
-/* Sums the forces at one block, term by term in the order of the list. A block is written by
- * one thread. */
-static void force_block(void *arg, uint32_t number) {
+/* Sums forces at one block, or their derivative along dx and dv, term by term in the order of
+ * the list. A block is written by one thread. */
+static void sum_block(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_system *system = job->system;
     const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
     struct cs_eval at = job->at;
     at.block = &block;
     clear(system, &block, job->out);
-    for (uint32_t k = 0; k < system->n_terms; k++)
-        if (is_asked(system->terms[k], job))
-            system->terms[k]->add_force(system, &at, job->out);
+    for (uint32_t k = 0; k < system->n_terms; k++) {
+        const struct cs_term *term = system->terms[k];
+        const bool asked = is_asked(term, job);
+        // without a direction it is the force
+        if (asked && !at.dx && !at.dv)
+            term->add_force(system, &at, job->out);
+        else if (asked && term->add_jvp)
+            term->add_jvp(system, &at, job->out);
+    }
     clear_pinned(system, &block, job->out);
 }
 
@@ -81,27 +87,13 @@ void cs_terms_force(const struct cs_system *system, const struct cs_eval *at, do
     struct job job = {.system = system, .at = *at, .out = f};
     job.at.dx = job.at.dv = NULL;
     prepare(&job);
-    cs_pool_run(system->springs.n_blocks, force_block, &job);
-}
-
-/* The same for the derivative. */
-static void jvp_block(void *arg, uint32_t number) {
-    const struct job *job = arg;
-    const struct cs_system *system = job->system;
-    const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
-    struct cs_eval at = job->at;
-    at.block = &block;
-    clear(system, &block, job->out);
-    for (uint32_t k = 0; k < system->n_terms; k++)
-        if (is_asked(system->terms[k], job) && system->terms[k]->add_jvp)
-            system->terms[k]->add_jvp(system, &at, job->out);
-    clear_pinned(system, &block, job->out);
+    cs_pool_run(system->springs.n_blocks, sum_block, &job);
 }
 
 void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
     struct job job = {.system = system, .at = *at, .out = df};
     prepare(&job);
-    cs_pool_run(system->springs.n_blocks, jvp_block, &job);
+    cs_pool_run(system->springs.n_blocks, sum_block, &job);
 }
 
 void cs_terms_scalar_damping(const struct cs_system *system, double t, const double *x,
@@ -113,7 +105,7 @@ void cs_terms_scalar_damping(const struct cs_system *system, double t, const dou
         .without_blocks = true,
     };
     prepare(&job);
-    cs_pool_run(system->springs.n_blocks, jvp_block, &job);
+    cs_pool_run(system->springs.n_blocks, sum_block, &job);
 }
 
 /* Adds a term's diagonal part of the matrix to blocks (6,n); a number goes to xx, yy and zz. */

@@ -191,14 +191,6 @@ static void add_option(char *options, size_t size, const char *name, double valu
     snprintf(options + used, size - used, "%s%s=%s", used ? "," : "", name, number);
 }
 
-/* The declared order, or the value of an option for it. */
-static uint32_t order_of(const struct cs_method *method) {
-    const struct cs_option *row = cs_option_find(&method->table, "order");
-    const bool is_set = row && row->type == CS_INT;
-    return is_set ? (uint32_t) * (const int64_t *)((char *)method->options + row->offset)
-                  : method->integrator->order;
-}
-
 /* A cell with the options that all cells of the entry share. */
 static void init_cell(struct cs_cell *cell, const struct cs_cell_list_entry *entry) {
     const struct cs_integrator *integrator = entry->method.integrator;
@@ -207,7 +199,7 @@ static void init_cell(struct cs_cell *cell, const struct cs_cell_list_entry *ent
     memcpy(cell->fixed, entry->fixed, sizeof cell->fixed);
     snprintf(cell->family, sizeof cell->family, "%s", cs_family_of(integrator));
     memcpy(cell->module, entry->module, sizeof cell->module);
-    cell->declared_order = order_of(&entry->method);
+    cell->declared_order = cs_method_order(integrator, entry->method.options, false);
     cell->adaptive = integrator->traits & CS_ADAPTIVE;
     snprintf(cell->options, sizeof cell->options, "%s", entry->fixed);
 }

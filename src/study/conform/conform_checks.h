@@ -128,10 +128,6 @@ bool cs_probe_set(struct cs_probe *probe, const char *name, double value);
 void cs_probe_set_step(struct cs_probe *probe, double dt);
 void cs_probe_set_tolerance(struct cs_probe *probe, double rtol);
 
-/* Returns the claimed order of the card's method: that of its descriptor, or of its option
- * `order` if it has one. */
-uint32_t cs_probe_order(const struct cs_conform *card, bool damped);
-
 /* True if the accuracy can be set; else the row is skipped. */
 bool cs_probe_can_be_set(const struct cs_conform *card, struct cs_conform_row *row);
 

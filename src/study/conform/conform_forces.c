@@ -130,7 +130,8 @@ static void check_scenes(const struct cs_conform *card, struct cs_conform_row *r
         any = true;
         for (int level = 0; level < 2; level++)
             follow(card, row, scene,
-                   &(struct accuracy){.order = cs_probe_order(card, scene->depends_on_velocity),
+                   &(struct accuracy){.order = cs_method_order(card->method, card->options,
+                                                               scene->depends_on_velocity),
                                       .level = level});
     }
     if (!any)
@@ -174,7 +175,7 @@ void cs_check_stage_times(const struct cs_conform *card, struct cs_conform_row *
                              : "it has no option dt");
         return;
     }
-    if (cs_probe_order(card, false) < 2) {
+    if (cs_method_order(card->method, card->options, false) < 2) {
         cs_row_skip(row, "its order is 1: see time-dependence");
         return;
     }
@@ -185,7 +186,8 @@ void cs_check_stage_times(const struct cs_conform *card, struct cs_conform_row *
         /* fixed: a method that chose its own steps would hide the order */
         for (int level = 0; level < 2; level++)
             follow(card, row, scene,
-                   &(struct accuracy){.order = cs_probe_order(card, scene->depends_on_velocity),
+                   &(struct accuracy){.order = cs_method_order(card->method, card->options,
+                                                               scene->depends_on_velocity),
                                       .level = level,
                                       .fixed = true});
     }

@@ -191,7 +191,8 @@ static void order_on(const struct cs_conform *card, struct cs_conform_row *row,
     const struct cs_drum drum = {.damping = damping, .fixed_steps = true};
     const uint32_t traits = card->method->traits;
     if (cs_method_has(card->method, "dt") || (traits & CS_ADAPTIVE && !(traits & CS_MULTISTEP)))
-        measure_order(card, row, cs_probe_order(card, damping > 0), &drum);
+        measure_order(card, row, cs_method_order(card->method, card->options, damping > 0),
+                      &drum);
     else
         cs_row_skip(row, traits & CS_ADAPTIVE ? "it chooses its own steps: see tolerance"
                                               : "it has no option dt");
@@ -222,7 +223,7 @@ void cs_check_event(const struct cs_conform *card, struct cs_conform_row *row) {
     if (card->method->traits & CS_ADAPTIVE)
         measure_tolerance(card, row, &kicked);
     else
-        measure_order(card, row, cs_probe_order(card, false), &kicked);
+        measure_order(card, row, cs_method_order(card->method, card->options, false), &kicked);
 }
 
 /* The contact law is smooth in range: contact must cost neither order nor tolerance. Friction
@@ -234,7 +235,7 @@ void cs_check_contact_order(const struct cs_conform *card, struct cs_conform_row
     else if (cs_probe_can_be_set(card, row) && card->method->traits & CS_ADAPTIVE)
         measure_tolerance(card, row, &drum);
     else if (cs_method_has(card->method, "dt"))
-        measure_order(card, row, cs_probe_order(card, true), &drum);
+        measure_order(card, row, cs_method_order(card->method, card->options, true), &drum);
 }
 
 /* Richardson extrapolation to h = 0. With e(h) = c_p h^p + c_(p+1) h^(p+1) + ..., the
@@ -260,7 +261,7 @@ void cs_check_solution(const struct cs_conform *card, struct cs_conform_row *row
     const struct cs_integrator *method = card->method;
     const bool adaptive = method->traits & CS_ADAPTIVE;
     // a hundred thousand steps of order 2 are within the bound at a looser tolerance already
-    const double rtol = cs_probe_order(card, true) > 2 ? 1e-11 : 1e-10;
+    const double rtol = cs_method_order(card->method, card->options, true) > 2 ? 1e-11 : 1e-10;
     double reference[2 * CS_DRUM_VALUES], states[LEVELS][2 * CS_DRUM_VALUES], scale[2];
     if (method->fidelity != CS_FIDELITY_ODE) {
         cs_row_skip(row, "it claims another fidelity");

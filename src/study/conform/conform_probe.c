@@ -131,19 +131,6 @@ double cs_probe_set_level(struct cs_probe *probe, double h, double w, uint32_t o
     return pow(dt * w, order);
 }
 
-uint32_t cs_probe_order(const struct cs_conform *card, bool damped) {
-    const struct cs_integrator *method = card->method;
-    const struct cs_table table = {.rows = method->options, .n = method->n_options};
-    const struct cs_option *row = cs_option_find(&table, "order");
-    int64_t asked;
-    if (!row || row->type != CS_INT)
-        return damped ? method->order_damped : method->order;
-    asked = (int64_t)row->def;
-    if (card->options)
-        memcpy(&asked, (const char *)card->options + row->offset, sizeof asked);
-    return (uint32_t)asked;
-}
-
 /* Passes each commit on to the check's callback. */
 static bool observe(void *ctx, double t, double dt, double *x, double *v) {
     struct cs_probe *probe = ctx;
