@@ -2,14 +2,17 @@
  * installed beside it. */
 #include "sim/install_paths.h"
 
+#include "base/text.h"
+
+#include <dirent.h>
 #include <limits.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 #ifdef __linux__
-#include <stdlib.h>
 #include <sys/auxv.h>
 #endif
 #ifdef __APPLE__
@@ -155,4 +158,36 @@ const char *cs_scene_find(const char *name, char *out, size_t size) {
     if (found == path)
         found = strcpy(out, path);
     return found ? found : name;
+}
+
+/* Finds the name in a folder that is nearest to `word`, without its ending if it is `bare`. */
+static bool find_near(const char *folder, const char *word, bool bare,
+                      char best[NAME_MAX + 1]) {
+    struct dirent **files;
+    const int n = scandir(folder, &files, NULL, alphasort);
+    *best = 0;
+    for (int k = 0; k < n; k++) {
+        char *name = files[k]->d_name, *ending = strstr(name, ".json");
+        if (ending && bare)
+            *ending = 0;
+        if (ending && cs_nearest_word(word, (const char *const[]){best, name, NULL}) == name)
+            strcpy(best, name);
+        free(files[k]);
+    }
+    if (n >= 0)
+        free(files);
+    return *best;
+}
+
+void cs_scene_nearest(const char *name, char *out, size_t size) {
+    const char *slash = strrchr(name, '/');
+    const int kept = slash ? (int)(slash + 1 - name) : 0;
+    const bool bare = !strpbrk(name, "/.");
+    char folder[FOLDER_MAX + sizeof "/scenes"] = ".", best[NAME_MAX + 1];
+    if (slash)
+        snprintf(folder, sizeof folder, "%.*s", kept, name);
+    if (!find_near(folder, name + kept, bare, best) && bare &&
+        !find_near("scenes", name, bare, best) && *find(&data, strcpy(folder, "")))
+        find_near(strcat(folder, "/scenes"), name, bare, best);
+    snprintf(out, size, "%.*s%s", *best ? kept : 0, name, best);
 }

@@ -28,4 +28,8 @@ const char *cs_data_find(const char *path, char *out, size_t size);
 /* The same for a scene, whose name alone ("hang") means scenes/hang.json. */
 const char *cs_scene_find(const char *name, char *out, size_t size);
 
+/* Writes to out the name nearest to that of a scene that is not there: of a file in its folder,
+ * or, for a name alone, of an installed scene. "" if none is near. */
+void cs_scene_nearest(const char *name, char *out, size_t size);
+
 #endif

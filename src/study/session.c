@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Fails with a message about the scene, at the place in its file that the message names. */
 static enum cs_status refuse(const struct cs_session *session, enum cs_status status,
@@ -25,14 +26,22 @@ static enum cs_status refuse(const struct cs_session *session, enum cs_status st
  * one. */
 static enum cs_status read_scene(struct cs_session *session, struct cs_error *error) {
     const struct cs_session_settings *settings = &session->settings;
-    char installed[CS_DATA_PATH_MAX];
-    if (!settings->text)
-        return cs_scene_read(&session->scene,
-                             cs_scene_find(settings->scene, installed, sizeof installed),
-                             settings->overrides, settings->n_overrides, error);
-    return cs_scene_read_text(&session->scene, settings->scene, settings->text,
-                              strlen(settings->text), settings->overrides,
-                              settings->n_overrides, error);
+    char found[CS_DATA_PATH_MAX];
+    if (settings->text)
+        return cs_scene_read_text(&session->scene, settings->scene, settings->text,
+                                  strlen(settings->text), settings->overrides,
+                                  settings->n_overrides, error);
+    const char *path = cs_scene_find(settings->scene, found, sizeof found);
+    cs_scene_read(&session->scene, path, settings->overrides, settings->n_overrides, error);
+    if (error->status != CS_ERR_FILE || access(path, F_OK) == 0 || !strcmp(path, "-"))
+        return error->status;
+    // a name that is nearly right
+    cs_scene_nearest(path, found, sizeof found);
+    const size_t said = strlen(error->message);
+    if (*found)
+        snprintf(error->message + said, sizeof error->message - said,
+                 "; did you mean \"%.200s\"?", found);
+    return error->status;
 }
 
 /* Refuses a number or a switch in quotes. */

@@ -287,8 +287,8 @@ static enum cs_status read_real(const struct cs_arg *row, const char *text, doub
     double read = 0;
     if (!cs_parse_real(text, &read) || !(read > 0 && read <= 1e9))
         return cs_fail(error, CS_ERR_USAGE,
-                       "--%s: expected a number above 0 and up to 1e9, found \"%.60s\"",
-                       row->name, text);
+                       "--%s: expected a number above 0 and up to 1e9, found \"%.60s\"%s",
+                       row->name, text, strchr(text, ',') ? " (decimals have a point)" : "");
     *value = read;
     return CS_OK;
 }

@@ -241,6 +241,7 @@ static double largest_move(const struct cs_candidates *candidates, const double 
     measure_drifts(candidates, x0, x1);
     for (uint32_t a = 0; a < meetings->n_bodies; a++)
         for (uint32_t b = a; b < meetings->n_bodies; b++) {
+            // without a range the two do not push each other
             const double range = cs_body_pair_params_of(meetings, a, b)->range;
             const double move = apart(candidates->body_motion + 4 * (size_t)a,
                                       candidates->body_motion + 4 * (size_t)b);
