@@ -100,6 +100,7 @@ static bool add_step(struct slopes *slopes, const struct cs_conform *card,
             slopes->scale[part];
     if (slopes->joined)
         error[0] = error[1] = sqrt((error[0] * error[0] + error[1] * error[1]) / 2);
+    // of two steps in turn, so that the first has none
     for (int part = 0; part < 2; part++) {
         slopes->slope[part] = slopes->h > 0
                                   ? log(slopes->error[part] / error[part]) / log(slopes->h / h)
