@@ -45,7 +45,7 @@ $ echo out; exit 4
 out
 CASE
 code=0
-"$here/cases.sh" "$1" "$work/some.case" >"$work/found" || code=$?
+"$here/cases.sh" "$1" "$work/some.case" >"$work/found" 2>&1 || code=$?
 cat >"$work/expected" <<'TAP'
 ok 1 - some: the same, with and without wildcards
 not ok 2 - some: a line that differs among others

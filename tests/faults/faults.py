@@ -106,9 +106,11 @@ def judge(kind, found, whole, name=""):
         return "" if same else "other output, and no word of it"
     if found.returncode not in codes:
         return f"exit code {found.returncode}: {said[-1:]}"
-    # the two runs that it compares have said theirs
-    if name == "bisect" and own and re.match("clothsim: [AB]( ended|: )", own[-1]):
-        return ""
+    # the two runs that it compares may have said theirs before
+    if name == "bisect":
+        own = own[-1:]
+        if own and re.match("clothsim: [AB]( ended|: )", own[0]):
+            return ""
     # what else there is comes from libraries that say so on their way to abort
     if len(own) != 1 or not re.search(words, own[0]):
         return f"not one line of the kind: {said}"
