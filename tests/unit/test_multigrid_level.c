@@ -2,6 +2,8 @@
  * and the cycle through them is a preconditioner. */
 #include "crumple.h"
 
+#include "model/solver/level_kernels.h"
+
 static void fill_level(const struct cs_level *level, float *p, uint32_t seed) {
     memset(p, 0, 3 * sizeof *p * level->n);
     for (size_t c = 0; c < 3; c++)
@@ -164,6 +166,42 @@ TEST(cycle_is_symmetric_and_positive) {
             if (crumple.sheet.system.inv_mass[i % crumple.sheet.n] == 0)
                 ck_assert(mx[i] == 0 && my[i] == 0);
         free(x);
+        crumple_shut(&crumple);
+    }
+}
+
+/* The kernels of both widths on the same level: what they write is equal to the bit. */
+TEST(widths_give_the_same_bits) {
+    const struct cs_level_kernels *const kernels[] = {&cs_level_kernels_8,
+                                                      &cs_level_kernels_16};
+    for (int kind = 0; kind < KINDS; kind++) {
+        struct crumple crumple;
+        open_kind(&crumple, kind, 1e4);
+        crumple_setup(&crumple, true);
+        for (uint32_t b = 0; b < crumple.linear.multigrid.n; b++) {
+            struct cs_level *level = crumple.linear.multigrid.hierarchies[b].levels;
+            const size_t n3 = 3 * (size_t)level->n;
+            float *written = calloc(10 * n3, sizeof *written), *all = written;
+            fill_level(level, level->correction, 3);
+            for (int w = 0; w < 2; w++, all += 5 * n3) {
+                float *const arrays[] = {level->residual, level->solution,
+                                         level->correction_next, level->inverse};
+                fill_level(level, level->residual, 5);
+                struct cs_level_loop loop = {.level = level,
+                                             .d = level->correction,
+                                             .e = level->correction_next,
+                                             .b = 1e-6F};
+                kernels[w]->invert(&loop, level->begin, level->end);
+                loop.a = 0.3F, loop.b = 0.7F;
+                kernels[w]->start(&loop, level->begin, level->end);
+                kernels[w]->sweep(&loop, level->begin, level->end);
+                for (size_t k = 0; k < 4; k++)
+                    memcpy(all + k * n3, arrays[k], (k < 3 ? 1 : 2) * n3 * sizeof *all);
+            }
+            ck_assert(memcmp(written, written + 5 * n3, 5 * n3 * sizeof *written) == 0);
+            ck_assert_double_gt(dot_alive(level, written, written), 0);
+            free(written);
+        }
         crumple_shut(&crumple);
     }
 }

@@ -12,7 +12,8 @@
 #include "model/solver/multigrid_hierarchy.h"
 
 #include "base/pool.h"
-#include "model/solver/float_lanes.h"
+
+#include <clothsim/clones.h>
 
 #include <string.h>
 
@@ -23,7 +24,7 @@ enum { PADDING = 2 };
 /* Coarse cells of one block of a loop, about; blocks are whole rows. */
 enum { ROW_CELLS = 1024 };
 
-/* Rounds up to whole vectors of CS_LANES cells. */
+/* Rounds up to whole multiples of CS_LANES cells. */
 static uint32_t round_up(uint32_t n) {
     return (n + CS_LANES - 1) / CS_LANES * CS_LANES;
 }

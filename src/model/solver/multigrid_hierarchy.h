@@ -69,6 +69,9 @@ struct cs_extra_springs;
 /* Forward neighbours of a grid's cell at most: those of enum cs_spring_direction. */
 enum { CS_LEVEL_STEPS = 6 };
 
+/* Arrays of cells are whole multiples of it, and slots have as many springs side by side. */
+enum { CS_LANES = 16 };
+
 /* Storage of a level's matrix. */
 enum cs_level_form {
     CS_LEVEL_FACTORED,        /* a grid, 4 numbers per spring: s and w of B = s I + w w^T */

@@ -1,19 +1,13 @@
-/* Kernels of one multigrid level in single precision: product, Chebyshev smoother and inverse
- * diagonal blocks.
+/* One multigrid level: product, Chebyshev smoother and inverse diagonal blocks, as loops over
+ * its cells (level_kernels.h).
  *
- * A sweep fuses product, residual and smoother: one pass over the springs, which take 96 of the
- * 172 bytes of a first-level cell. The sweeps of a smoother run as a wavefront (wavefront.h). A
- * level that does not fit the cache is therefore fetched about once per smoother, not once per
- * sweep. CS_LANES = 16 cells are computed at a time. Each lane has its own arithmetic, and
- * results do not depend on the vector width. */
-#include "model/solver/multigrid_hierarchy.h"
+ * The sweeps of a smoother run as a wavefront (wavefront.h). A level that does not fit the
+ * cache is therefore fetched about once per smoother, not once per sweep. */
+#include "model/solver/level_kernels.h"
 
 #include "base/pool.h"
 #include "model/solver/extra_springs.h"
-#include "model/solver/float_lanes.h"
 #include "model/solver/wavefront.h"
-
-#include <clothsim/small.h>
 
 enum {
     /* Smallest block of a loop, in cells, a multiple of CS_LANES. Up to 256 cells per row, the
@@ -21,10 +15,17 @@ enum {
      * 1 MiB per processor, docs/notes). */
     CELLS = 512,
     CELLS_FEW = 128, /* the same on levels that would have too few blocks for the threads */
-    LOOPS = 4,       /* most loops of a smoother, with its last product */
-    AHEAD = 256,     /* distance of prefetches in cells; chosen by trial */
-    BIG = 1 << 14    /* levels with more cells do not fit that cache, and prefetch */
+    LOOPS = 4        /* most loops of a smoother, with its last product */
 };
+
+/* The kernels of the width at which this processor is fastest. */
+static const struct cs_level_kernels *kernels(void) {
+#if defined(__x86_64__) && defined(__GNUC__)
+    if (__builtin_cpu_supports("avx512vl"))
+        return &cs_level_kernels_16;
+#endif
+    return &cs_level_kernels_8;
+}
 
 enum cs_status cs_level_alloc(struct cs_level *level, size_t n_numbers, struct cs_arena *arena,
                               struct cs_error *error) {
@@ -35,20 +36,10 @@ enum cs_status cs_level_alloc(struct cs_level *level, size_t n_numbers, struct c
     return error->status;
 }
 
-/* One loop over the cells of a level. d is the last correction, e the next one. */
-struct loop {
-    struct cs_level *level;
-    void (*task)(const struct loop *loop, size_t begin, size_t end);
-    const float *d;
-    float *e;     /* NULL: only the residual changes */
-    float a, b;   /* gains: e = a d + b D^-1 r */
-    bool fetches; /* the first loop to read a block's springs, which prefetches them */
-};
-
 /* Dependent loops in their order: each reads what its predecessor wrote in the neighbouring
  * blocks. */
 struct loops {
-    struct loop loops[LOOPS];
+    struct cs_level_loop loops[LOOPS];
     uint32_t n, at; /* number of loops; the one that runs, if they run one by one */
     size_t cells;   /* per block */
 };
@@ -56,7 +47,7 @@ struct loops {
 /* Runs one loop on one block of cells. */
 static void run_block(void *arg, uint32_t number, uint32_t block) {
     const struct loops *loops = arg;
-    const struct loop *loop = loops->loops + number;
+    const struct cs_level_loop *loop = loops->loops + number;
     const size_t begin = loop->level->begin + block * loops->cells, end = begin + loops->cells;
     loop->task(loop, begin, end < loop->level->end ? end : loop->level->end);
 }
@@ -107,7 +98,7 @@ static void run(struct loops *loops) {
 }
 
 /* Runs a single loop over all blocks. */
-static void run_one(struct loop loop) {
+static void run_one(struct cs_level_loop loop) {
     run(&(struct loops){.loops = {loop}, .n = 1});
 }
 
@@ -134,152 +125,9 @@ static void run_group(const struct cs_level_group *group,
         }
 }
 
-/* (s I + w w^T) p for 16 springs, whose numbers lie n floats apart. */
-CS_INLINE struct vectors factored_times(const float *spring, size_t n, struct vectors p) {
-    const lanes s = get(spring);
-    const struct vectors w = get3(spring + n, n);
-    const lanes along = w.x * p.x + w.y * p.y + w.z * p.z;
-    return (struct vectors){s * p.x + along * w.x, s * p.y + along * w.y,
-                            s * p.z + along * w.z};
-}
-
-/* y += the products of a mesh's springs at the cells i to i + 15, slot by slot. */
-CS_INLINE struct vectors add_lists(const struct cs_level *level, size_t i, const float *p,
-                                   struct vectors here, struct vectors y) {
-    const uint32_t *starts = level->starts + i / CS_LANES;
-    for (size_t k = starts[0]; k < starts[1]; k++) {
-        const struct vectors there =
-            gather3(p, level->stride, level->neighbours + k * CS_LANES);
-        const struct lane_blocks b = get6(level->springs + k * 6 * CS_LANES, CS_LANES);
-        y = plus(y, times(b, minus(here, there)));
-    }
-    return y;
-}
-
-/* Prefetches the springs of cells to come. Each step and component is a stream of its own: 24
- * with six factored or four full kinds of springs, which is more than the processor's
- * prefetcher follows. */
-CS_INLINE void fetch_springs(const struct cs_level *level, size_t i) {
-    const size_t at = i + AHEAD < level->n ? i + AHEAD : i;
-    const size_t rows = level->n_neighbour_offsets * (cs_level_is_factored(level) ? 4 : 6);
-    for (size_t c = 0; c < rows; c++)
-        __builtin_prefetch(level->springs + c * level->n + at);
-}
-
-/* y += the products of a grid's springs at the cells i to i + 15. Every step gives two: the
- * spring that begins here (offset +step) and the one that ends here, which is stored at cell i
- * - step. */
-CS_INLINE struct vectors add_steps(const struct cs_level *level, const bool factored, size_t i,
-                                   const float *p, struct vectors here, struct vectors y) {
-    const size_t n = level->n;
-    const float *spring = level->springs + i;
-    for (uint32_t s = 0; s < level->n_neighbour_offsets; s++) {
-        const size_t step = level->neighbour_offsets[s];
-        const struct vectors ahead = minus(here, get3(p + i + step, level->stride));
-        const struct vectors back = minus(here, get3(p + i - step, level->stride));
-        if (factored) {
-            y = plus(y, factored_times(spring, n, ahead));
-            y = plus(y, factored_times(spring - step, n, back));
-        } else {
-            y = plus(y, times(get6(spring, n), ahead));
-            y = plus(y, times(get6(spring - step, n), back));
-        }
-        spring += (factored ? 4 : 6) * n;
-    }
-    return y;
-}
-
-/* Returns A p of the cells i to i + 15, where p is `here`. The form is a constant of every
- * caller, so the compiler removes the tests. */
-CS_INLINE struct vectors product(const struct cs_level *level, const enum cs_level_form form,
-                                 size_t i, const float *p, struct vectors here) {
-    if (form == CS_LEVEL_FACTORED) {
-        const lanes mass = get(level->diagonal + i);
-        const struct vectors y = {mass * here.x, mass * here.y, mass * here.z};
-        return add_steps(level, true, i, p, here, y);
-    }
-    const struct vectors y = times(get6(level->diagonal + i, level->n), here);
-    return form == CS_LEVEL_MESH
-               ? add_lists(level, i, p, here, y)
-               : add_steps(level, form == CS_LEVEL_FACTORED_BLOCKS, i, p, here, y);
-}
-
-/* One sweep: residual -= A d, and, unless e is NULL, e = a d + b D^-1 residual, solution += e.
- */
-CS_INLINE void sweep_form(const struct loop *loop, const enum cs_level_form form, size_t begin,
-                          size_t end) {
-    struct cs_level *level = loop->level;
-    const size_t n = level->n, stride = level->stride;
-    const bool fetches = loop->fetches && form != CS_LEVEL_MESH && n > BIG;
-    for (size_t i = begin; i < end; i += CS_LANES) {
-        if (fetches)
-            fetch_springs(level, i);
-        const struct vectors d = get3(loop->d + i, stride);
-        const struct vectors r =
-            minus(get3(level->residual + i, stride), product(level, form, i, loop->d, d));
-        put3(level->residual + i, stride, r);
-        if (!loop->e)
-            continue;
-        const struct vectors z = times(get6(level->inverse + i, n), r);
-        const struct vectors e = plus(scaled(loop->a, d), scaled(loop->b, z));
-        put3(loop->e + i, stride, e);
-        put3(level->solution + i, stride, plus(get3(level->solution + i, stride), e));
-    }
-}
-
-/* Subtracts the extra springs' part of A d from the residual of 16 cells at a time, where there
- * are any. It runs before the sweep of the same block, which then reads the updated residual.
- */
-CS_INLINE void alloc_links(const struct loop *loop, size_t begin, size_t end) {
-    struct cs_level *level = loop->level;
-    const size_t n = level->stride;
-    const float *joint = loop->d - level->first;
-    for (size_t i = begin; i < end; i += CS_LANES) {
-        const struct cs_extra_springs_slots slots =
-            cs_extra_springs_of(level->extra_springs, i / CS_LANES);
-        if (!slots.n)
-            continue;
-        const struct vectors here = get3(loop->d + i, n);
-        struct vectors r = get3(level->residual + i, n);
-        for (size_t k = 0; k < slots.n; k++) {
-            const struct vectors there = gather3(joint, n, slots.cells + k * CS_LANES);
-            const struct lane_blocks b = get6(slots.springs + k * 6 * CS_LANES, CS_LANES);
-            r = minus(r, times(b, minus(here, there)));
-        }
-        put3(level->residual + i, n, r);
-    }
-}
-
-/* Dispatches to a copy of the sweep for each form. */
-CS_CLONES static void sweep(const struct loop *loop, size_t begin, size_t end) {
-    const enum cs_level_form form = loop->level->form;
-    if (loop->level->extra_springs && loop->level->extra_springs->is_nonempty)
-        alloc_links(loop, begin, end);
-    if (form == CS_LEVEL_FACTORED)
-        sweep_form(loop, CS_LEVEL_FACTORED, begin, end);
-    else if (form == CS_LEVEL_FACTORED_BLOCKS)
-        sweep_form(loop, CS_LEVEL_FACTORED_BLOCKS, begin, end);
-    else if (form == CS_LEVEL_GRID_BLOCKS)
-        sweep_form(loop, CS_LEVEL_GRID_BLOCKS, begin, end);
-    else
-        sweep_form(loop, CS_LEVEL_MESH, begin, end);
-}
-
 void cs_level_subtract_product(struct cs_level *level) {
-    run_one(
-        (struct loop){.level = level, .task = sweep, .d = level->correction, .fetches = true});
-}
-
-/* The first move of a smoother from 0: solution = e = b D^-1 residual. No product is needed. */
-CS_CLONES static void start(const struct loop *loop, size_t begin, size_t end) {
-    struct cs_level *level = loop->level;
-    const size_t n = level->n, stride = level->stride;
-    for (size_t i = begin; i < end; i += CS_LANES) {
-        const struct vectors z =
-            times(get6(level->inverse + i, n), get3(level->residual + i, stride));
-        put3(loop->e + i, stride, scaled(loop->b, z));
-        put3(level->solution + i, stride, scaled(loop->b, z));
-    }
+    run_one((struct cs_level_loop){
+        .level = level, .task = kernels()->sweep, .d = level->correction, .fetches = true});
 }
 
 /* Gains of Chebyshev's iteration (Saad 2003, algorithm 12.1) on [1/3, 2], whose centre is t =
@@ -297,11 +145,12 @@ static const struct {
 
 /* Three moves from the start 0, and the product that makes the residual for the next level. */
 static struct loops loops_down(struct cs_level *level) {
+    const struct cs_level_kernels *of = kernels();
     float *d = level->correction, *e = level->correction_next;
-    return (struct loops){.loops = {{level, start, NULL, d, 0, first_gain, false},
-                                    {level, sweep, d, e, gains[0].a, gains[0].b, true},
-                                    {level, sweep, e, d, gains[1].a, gains[1].b, false},
-                                    {level, sweep, d, NULL, 0, 0, false}},
+    return (struct loops){.loops = {{level, of->start, NULL, d, 0, first_gain, false},
+                                    {level, of->sweep, d, e, gains[0].a, gains[0].b, true},
+                                    {level, of->sweep, e, d, gains[1].a, gains[1].b, false},
+                                    {level, of->sweep, d, NULL, 0, 0, false}},
                           .n = 4};
 }
 
@@ -312,10 +161,11 @@ void cs_level_smooth_down(const struct cs_level_group *group) {
 /* The first sweep subtracts the product with the coarse correction and makes the first move (a
  * = 0: Chebyshev's iteration starts again). The last residual is not needed. */
 static struct loops loops_up(struct cs_level *level) {
+    const struct cs_level_kernels *of = kernels();
     float *d = level->correction, *e = level->correction_next;
-    return (struct loops){.loops = {{level, sweep, d, e, 0, first_gain, true},
-                                    {level, sweep, e, d, gains[0].a, gains[0].b, false},
-                                    {level, sweep, d, e, gains[1].a, gains[1].b, false}},
+    return (struct loops){.loops = {{level, of->sweep, d, e, 0, first_gain, true},
+                                    {level, of->sweep, e, d, gains[0].a, gains[0].b, false},
+                                    {level, of->sweep, d, e, gains[1].a, gains[1].b, false}},
                           .n = 3};
 }
 
@@ -325,76 +175,11 @@ void cs_level_smooth_up(const struct cs_level_group *group) {
 
 /* `start` with the gain 1. */
 void cs_level_solve_diagonal(struct cs_level *level) {
-    run_one((struct loop){.level = level, .task = start, .e = level->correction, .b = 1});
-}
-
-/* s I + w w^T of 16 springs. */
-CS_INLINE struct lane_blocks expanded(const float *spring, size_t n) {
-    const lanes s = get(spring);
-    const struct vectors w = get3(spring + n, n);
-    return (struct lane_blocks){s + w.x * w.x, w.x * w.y, w.x * w.z,
-                                s + w.y * w.y, w.y * w.z, s + w.z * w.z};
-}
-
-/* Sums the springs' blocks at the cells i to i + 15: their part of D. */
-CS_INLINE struct lane_blocks sum_springs(const struct cs_level *level, size_t i) {
-    const size_t n = level->n;
-    struct lane_blocks sum = {0};
-    if (level->form == CS_LEVEL_MESH) {
-        const uint32_t *starts = level->starts + i / CS_LANES;
-        for (size_t k = starts[0]; k < starts[1]; k++)
-            sum = plus6(sum, get6(level->springs + k * 6 * CS_LANES, CS_LANES));
-        return sum;
-    }
-    const bool factored = cs_level_is_factored(level);
-    const float *spring = level->springs + i;
-    for (uint32_t s = 0; s < level->n_neighbour_offsets; s++) {
-        const float *back = spring - level->neighbour_offsets[s];
-        sum = plus6(sum, factored ? expanded(spring, n) : get6(spring, n));
-        sum = plus6(sum, factored ? expanded(back, n) : get6(back, n));
-        spring += (factored ? 4 : 6) * n;
-    }
-    return sum;
-}
-
-/* Inverts 16 blocks in place, in double precision: a flat sheet has only its mass across it,
- * and the determinant is a small difference of large products. Dead cells, and blocks that are
- * not positive definite, get 0 and are then left alone by the smoother. */
-CS_INLINE void invert_blocks(float *m, size_t n, const float *own) {
-    for (size_t l = 0; l < CS_LANES; l++) {
-        double block[6], cofactors[6];
-        for (size_t c = 0; c < 6; c++)
-            block[c] = (double)m[c * n + l];
-        const double determinant = cs_sym3_cofactors(block, cofactors);
-        const bool regular = own[l] > 0 && cs_sym3_is_definite(block, cofactors, determinant);
-        const double factor = regular ? 1 / determinant : 0;
-        for (size_t c = 0; c < 6; c++)
-            m[c * n + l] = (float)(cofactors[c] * factor);
-    }
-}
-
-/* Sets the inverses of a range of cells. loop->b is the fraction of the trace that D gets on
- * top. */
-CS_CLONES static void invert(const struct loop *loop, size_t begin, size_t end) {
-    struct cs_level *level = loop->level;
-    const size_t n = level->n;
-    for (size_t i = begin; i < end; i += CS_LANES) {
-        struct lane_blocks sum = sum_springs(level, i);
-        if (level->extra_springs && level->extra_springs->is_nonempty)
-            sum = plus6(sum, get6(level->extra_springs->diagonal_share + i, n));
-        if (level->form == CS_LEVEL_FACTORED) {
-            const lanes mass = get(level->diagonal + i);
-            sum.xx += mass, sum.yy += mass, sum.zz += mass;
-        } else {
-            sum = plus6(sum, get6(level->diagonal + i, n));
-        }
-        const lanes extra = loop->b * (sum.xx + sum.yy + sum.zz);
-        sum.xx += extra, sum.yy += extra, sum.zz += extra;
-        put6(level->inverse + i, n, sum);
-        invert_blocks(level->inverse + i, n, level->diagonal + i);
-    }
+    run_one((struct cs_level_loop){
+        .level = level, .task = kernels()->start, .e = level->correction, .b = 1});
 }
 
 void cs_level_invert(struct cs_level *level) {
-    run_one((struct loop){.level = level, .task = invert, .b = 1.0F / (1 << 20)});
+    run_one((struct cs_level_loop){
+        .level = level, .task = kernels()->invert, .b = 1.0F / (1 << 20)});
 }

@@ -8,7 +8,6 @@
 #include "model/solver/multigrid_hierarchy.h"
 
 #include "base/pool.h"
-#include "model/solver/float_lanes.h"
 
 #include <stdbool.h>
 #include <string.h>
