@@ -58,7 +58,6 @@ const struct cs_term cs_term_bending = {
     .add_jvp = cs_bendings_add,
     .energy = energy,
     .energy_kind = CS_ENERGY_ELASTIC,
-    .work_column = "dampers",
     .prepare_matrix = cs_bendings_prepare_matrix,
     .add_blocks = add_blocks,
     .add_matrix_product = cs_bendings_add_product,

@@ -59,7 +59,6 @@ const struct cs_term cs_term_membrane = {
     .add_jvp = cs_membranes_add,
     .energy = energy,
     .energy_kind = CS_ENERGY_ELASTIC,
-    .work_column = "dampers",
     .prepare_matrix = cs_membranes_prepare_matrix,
     .add_blocks = add_blocks,
     .add_matrix_product = cs_membranes_add_product,
