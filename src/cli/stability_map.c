@@ -17,23 +17,27 @@ static enum cs_status write_file(const struct cs_stability_options *options, con
                                  struct cs_error *error) {
     char path[4200];
     snprintf(path, sizeof path, "%s/%s%s", options->map.folder, name, ending);
-    if (options->overwrite || !cs_output_check_file(path, error))
-        cs_file_write_text(path, text, error);
+    cs_file_write_text(path, text, error);
     cs_text_finish(text);
     return error->status;
 }
 
-/* Refuses a map whose files would overwrite the scene. */
-static enum cs_status store_inputs(const struct cs_stability *map, const char *folder,
-                                   struct cs_error *error) {
+/* Refuses a map whose files would overwrite the scene, or, but for -y, earlier ones. A shard
+ * writes none. */
+static enum cs_status check_files(const struct cs_stability_options *options,
+                                  const struct cs_stability *map, struct cs_error *error) {
     static const char *const endings[] = {".csv", "_border.csv", ".json", ".gp"};
     enum { FILES = sizeof endings / sizeof *endings };
-    char name[CS_SERIES_BYTES], files[FILES][CS_SERIES_BYTES + 16];
-    const char *list[FILES + 1] = {NULL};
+    const char *folder = options->map.folder, *list[FILES + 1] = {NULL};
+    char name[CS_SERIES_BYTES], files[FILES][CS_SERIES_BYTES + 16], path[4200];
     cs_series_file_name(map->series, name);
     for (int k = 0; k < FILES; k++) {
         snprintf(files[k], sizeof files[k], "%s%s", name, endings[k]);
         list[k] = files[k];
+        snprintf(path, sizeof path, "%s/%s", folder, files[k]);
+        if (!options->overwrite && options->map.shard.count < 2 &&
+            cs_output_check_file(path, error))
+            return error->status;
     }
     return cs_study_files_check(&map->settings->session, folder, list, error);
 }
@@ -56,9 +60,7 @@ static enum cs_status write_files(const struct cs_stability_options *options,
     if (!error->status)
         write_file(options, name, ".gp", &plot, error);
     /* the picture is made of the files above */
-    if (!error->status)
-        cs_gnuplot_run(options->map.folder, name, gnuplot, error);
-    if (!error->status)
+    if (!error->status && !cs_gnuplot_run(options->map.folder, name, gnuplot, error))
         cs_print_gnuplot_warning(gnuplot, error);
     /* not before all results are in files */
     if (!error->status && !cs_journal_remove(map, error))
@@ -101,7 +103,8 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
     asked.progress = cs_progress_show;
     asked.ctx = &progress;
     cs_progress_begin(&progress, "cell", quiet);
-    cs_stability_run(&map, &asked, error);
+    if (!cs_stability_open(&map, &asked, error) && !check_files(options, &map, error))
+        cs_stability_run(&map, error);
     cs_progress_end(&progress);
     if (error->status == CS_ERR_INTERRUPT) {
         *error = (struct cs_error){0};
@@ -114,7 +117,6 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
         if (!cs_manifest_write_study(options->map.folder, error))
             print_shard(&map, quiet);
     } else if (!error->status && !cs_folder_create(options->map.folder, error) &&
-               !store_inputs(&map, options->map.folder, error) &&
                !write_files(options, &map, &gnuplot, error) && (!quiet || options->show)) {
         struct cs_text out = {0};
         char name[CS_SERIES_BYTES];

@@ -89,7 +89,8 @@ static void map_over_a_box(struct cs_stability *map, struct cs_stability_setting
         .seconds = 0.01,
         .budget = 60,
         .workers = 1};
-    cs_stability_run(map, settings, error);
+    if (!cs_stability_open(map, settings, error))
+        cs_stability_run(map, error);
 }
 
 TEST(column_without_a_reference_is_not_judged) {

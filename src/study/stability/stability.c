@@ -329,10 +329,9 @@ static bool is_complete(const struct cs_stability *map) {
     return true;
 }
 
-enum cs_status cs_stability_run(struct cs_stability *map,
-                                const struct cs_stability_settings *settings,
-                                struct cs_error *error) {
-    const double begin = cs_clock_wall();
+enum cs_status cs_stability_open(struct cs_stability *map,
+                                 const struct cs_stability_settings *settings,
+                                 struct cs_error *error) {
     *map = (struct cs_stability){.settings = settings};
     if (cs_session_open_plan(&map->session, &settings->session, error))
         return error->status;
@@ -342,9 +341,13 @@ enum cs_status cs_stability_run(struct cs_stability *map,
                        map->integrator->name,
                        map->integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
                                                              : "has no option dt");
-    if (name_series(map, error) || cs_session_build(&map->session, error) ||
-        lay_out(map, error) || cs_journal_open(map, error) || distribute(map, error) ||
-        check_references(map, error))
+    return name_series(map, error);
+}
+
+enum cs_status cs_stability_run(struct cs_stability *map, struct cs_error *error) {
+    const double begin = cs_clock_wall();
+    if (cs_session_build(&map->session, error) || lay_out(map, error) ||
+        cs_journal_open(map, error) || distribute(map, error) || check_references(map, error))
         return error->status;
     map->is_complete = is_complete(map);
     map->wall = cs_clock_wall() - begin;

@@ -12,13 +12,15 @@
 
 #include "study/stability/stability_state.h"
 
-/* Makes the map. Returns CS_ERR_USAGE if the integrator has no fixed dt, if the scene has no
- * value on the axis, or if no column has a reference; further CS_ERR_SCENE, CS_ERR_FILE,
- * CS_ERR_MEMORY, CS_ERR_INTERRUPT. settings must outlive the map. cs_stability_finish must be
- * called in any case. */
-enum cs_status cs_stability_run(struct cs_stability *map,
-                                const struct cs_stability_settings *settings,
-                                struct cs_error *error);
+/* Reads scene and method, and names the series. Returns CS_ERR_USAGE if the integrator has no
+ * fixed dt; further CS_ERR_SCENE, CS_ERR_FILE, CS_ERR_MEMORY. settings must outlive the map.
+ * cs_stability_finish must be called in any case. */
+enum cs_status cs_stability_open(struct cs_stability *map,
+                                 const struct cs_stability_settings *settings,
+                                 struct cs_error *error);
+/* Makes the map. Returns CS_ERR_USAGE if the scene has no value on the axis, or if no column
+ * has a reference; further CS_ERR_SCENE, CS_ERR_FILE, CS_ERR_MEMORY, CS_ERR_INTERRUPT. */
+enum cs_status cs_stability_run(struct cs_stability *map, struct cs_error *error);
 /* Frees the map and closes its session; a zeroed map is allowed. */
 void cs_stability_finish(struct cs_stability *map);
 
