@@ -1,5 +1,5 @@
 #!/bin/sh
-# gallery.sh [FILM ...] - makes the films of docs/films and their contact sheets anew, or those that are
+# gallery.sh [FILM ...] - makes the films of docs/films and their contact sheets anew, or those
 # named; about ten minutes for the twelve of the README. PROGRAM: which clothsim. Needs ffmpeg and gnuplot.
 set -eu
 

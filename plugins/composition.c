@@ -16,6 +16,7 @@
  * repeated with weights over its own a, until these have that order. */
 #include "composition_sequences.h"
 #include "fixed_step.h"
+#include "kick_drift.h"
 #include "leapfrog_limit.h"
 #include "parallel.h"
 #include "quadrature_weights.h"
@@ -60,36 +61,6 @@ struct composition {
     double weights[KICKS][2 * KICKS];   /* of f, then of older */
     double first_weights[KICKS][KICKS]; /* of f, in a repeated step */
 };
-
-/* One stage of all particles by the force at hand: the kick, the drift, and the velocity
- * predicted for the next kick. Lengths in s. */
-struct stage {
-    const struct composition *self;
-    const double *f;
-    double *x, *v;
-    double kick, drift, ahead;
-};
-
-CS_CLONES static void stage_row(const struct stage *of, size_t at, size_t count,
-                                const double *restrict inv_mass) {
-    const double kick = of->kick, drift = of->drift, ahead = of->ahead;
-    const double *restrict f = of->f + at;
-    double *restrict x = of->x + at, *restrict v = of->v + at;
-    double *restrict predicted = of->self->predicted + at;
-    for (size_t i = 0; i < count; i++) {
-        const double a = f[i] * inv_mass[i];
-        v[i] += kick * a;
-        x[i] += drift * v[i];
-        predicted[i] = v[i] + ahead * a;
-    }
-}
-
-static void stage_part(void *arg, size_t begin, size_t end) {
-    const struct stage *of = arg;
-    const struct cs_view *view = of->self->fixed.host->view;
-    for (size_t c = 0; c < 3; c++)
-        stage_row(of, c * view->n + begin, end - begin, view->inv_mass + begin);
-}
 
 /* The velocity that a kick sees by quadrature: the forces with a weight, and these in s. */
 struct quadrature {
@@ -154,9 +125,8 @@ static double next_node(const struct sequence *of, int k, double node) {
 /* Kick k of a step, and the drift after it. */
 static void take_stage(struct composition *self, int k, double h, double *x, double *v) {
     const struct sequence *of = &self->of;
-    struct stage stage = {
-        self, self->f[k], x, v, of->kick[k] * h, of->drift[k] * h, half_of_next(of, k) * h};
-    parallel_for(self->fixed.host, self->fixed.host->view->n, stage_part, &stage);
+    kick_drift((struct kick_drift){self->fixed.host, self->f[k], x, v, self->predicted,
+                                   of->kick[k] * h, of->drift[k] * h, half_of_next(of, k) * h});
 }
 
 /* A step whose kicks see predicted velocities, with the force at its begin at hand. */

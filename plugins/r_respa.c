@@ -2,17 +2,20 @@
  * other forces at the long one.
  *
  * With a_s = f_s / m of the slow forces (contact, air, gravity, membranes) and a_f of springs
- * and dampers, a step of h is v += h/2 a_s(t) `ratio` times, with d = h/ratio:  v += d/2 a_f,
- * x += d v,  v += d/2 a_f(x, v + d/2 a_f) v += h/2 a_s(t + h, x, v + h/2 a_s) Forces that
- * depend on the velocity see a predicted one, as in velocity-verlet. a_f is evaluated again
- * after each slow kick, because dampers feel it: ratio + 1 fast evaluations and one slow a
- * step. It pays where contact costs several times the springs (Tuckerman, Berne, Martyna 1992).
+ * and dampers, a step of h is
+ *   v += h/2 a_s(t)
+ *   `ratio` times, with d = h/ratio:  v += d/2 a_f,  x += d v,  v += d/2 a_f(x, v + d/2 a_f)
+ *   v += h/2 a_s(t + h, x, v + h/2 a_s)
+ * Forces that depend on the velocity see a predicted one, as in velocity-verlet. a_f is
+ * evaluated again after each slow kick, because dampers feel it: ratio + 1 fast evaluations and
+ * one slow a step. It pays where contact costs several times the springs (Tuckerman, Berne,
+ * Martyna 1992).
  *
  * The slow kicks are a drive of period h, and meet modes of the springs at h w = pi: there no
  * ratio makes the step stable. */
 #include "fixed_step.h"
+#include "kick_drift.h"
 #include "leapfrog_limit.h"
-#include "parallel.h"
 
 struct respa_options {
     double dt;
@@ -34,38 +37,11 @@ struct respa {
     double *predicted;   /* (3,n) velocities that the next evaluation sees */
 };
 
-/* v += kick f/m, x += drift v, predicted = v + ahead f/m, by the force f; lengths in s. */
-struct move {
-    const struct respa *self;
-    const double *f;
-    double *x, *v;
-    double kick, drift, ahead;
-};
-
-CS_CLONES static void move_row(const struct move *of, size_t at, size_t count,
-                               const double *restrict inv_mass) {
-    const double kick = of->kick, drift = of->drift, ahead = of->ahead;
-    const double *restrict f = of->f + at;
-    double *restrict x = of->x + at, *restrict v = of->v + at;
-    double *restrict predicted = of->self->predicted + at;
-    for (size_t i = 0; i < count; i++) {
-        const double a = f[i] * inv_mass[i];
-        v[i] += kick * a;
-        x[i] += drift * v[i];
-        predicted[i] = v[i] + ahead * a;
-    }
-}
-
-static void move_part(void *arg, size_t begin, size_t end) {
-    const struct move *of = arg;
-    const struct cs_view *view = of->self->fixed.host->view;
-    for (size_t c = 0; c < 3; c++)
-        move_row(of, c * view->n + begin, end - begin, view->inv_mass + begin);
-}
-
-static void move(const struct move *of) {
-    const struct cs_host *host = of->self->fixed.host;
-    parallel_for(host, host->view->n, move_part, (void *)of);
+/* A move of the particles by the force f; times in s. */
+static void move(const struct respa *self, const double *f, double *x, double *v, double kick,
+                 double drift, double ahead) {
+    kick_drift(
+        (struct kick_drift){self->fixed.host, f, x, v, self->predicted, kick, drift, ahead});
 }
 
 /* The steps of springs and dampers from t to t + h. */
@@ -74,10 +50,10 @@ static void take_fast_steps(struct respa *self, double t, double h, double *x, d
     const double d = h / (double)self->ratio;
     host->force(host->ctx, t, x, v, CS_PART_DAMPED_SPRINGS, self->fast);
     for (int64_t k = 1; k <= self->ratio; k++) {
-        move(&(struct move){self, self->fast, x, v, d / 2, d, d / 2});
+        move(self, self->fast, x, v, d / 2, d, d / 2);
         host->force(host->ctx, t + (double)k * d, x, self->predicted, CS_PART_DAMPED_SPRINGS,
                     self->fast);
-        move(&(struct move){self, self->fast, x, v, d / 2, 0, 0});
+        move(self, self->fast, x, v, d / 2, 0, 0);
     }
 }
 
@@ -86,11 +62,11 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
     const struct cs_host *host = loop->host;
     if (loop->history_void)
         host->force(host->ctx, t, x, v, CS_PART_OUTER, self->slow);
-    move(&(struct move){self, self->slow, x, v, h / 2, 0, 0});
+    move(self, self->slow, x, v, h / 2, 0, 0);
     take_fast_steps(self, t, h, x, v);
-    move(&(struct move){self, self->slow, x, v, 0, 0, h / 2});
+    move(self, self->slow, x, v, 0, 0, h / 2);
     host->force(host->ctx, t + h, x, self->predicted, CS_PART_OUTER, self->slow);
-    move(&(struct move){self, self->slow, x, v, h / 2, 0, 0});
+    move(self, self->slow, x, v, h / 2, 0, 0);
     return CS_STEP_OK;
 }
 
