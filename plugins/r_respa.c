@@ -37,11 +37,11 @@ struct respa {
     double *predicted;   /* (3,n) velocities that the next evaluation sees */
 };
 
-/* A move of the particles by the force f; times in s. */
-static void move(const struct respa *self, const double *f, double *x, double *v, double kick,
-                 double drift, double ahead) {
-    kick_drift(
-        (struct kick_drift){self->fixed.host, f, x, v, self->predicted, kick, drift, ahead});
+/* A pass over the particles, with the host and the prediction of the method. */
+static void move(const struct respa *self, struct kick_drift of) {
+    of.host = self->fixed.host;
+    of.predicted = self->predicted;
+    kick_drift(of);
 }
 
 /* The steps of springs and dampers from t to t + h. */
@@ -50,10 +50,12 @@ static void take_fast_steps(struct respa *self, double t, double h, double *x, d
     const double d = h / (double)self->ratio;
     host->force(host->ctx, t, x, v, CS_PART_DAMPED_SPRINGS, self->fast);
     for (int64_t k = 1; k <= self->ratio; k++) {
-        move(self, self->fast, x, v, d / 2, d, d / 2);
+        move(self,
+             (struct kick_drift){
+                 .f = self->fast, .x = x, .v = v, .kick = d / 2, .drift = d, .ahead = d / 2});
         host->force(host->ctx, t + (double)k * d, x, self->predicted, CS_PART_DAMPED_SPRINGS,
                     self->fast);
-        move(self, self->fast, x, v, d / 2, 0, 0);
+        move(self, (struct kick_drift){.f = self->fast, .x = x, .v = v, .kick = d / 2});
     }
 }
 
@@ -62,11 +64,11 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
     const struct cs_host *host = loop->host;
     if (loop->history_void)
         host->force(host->ctx, t, x, v, CS_PART_OUTER, self->slow);
-    move(self, self->slow, x, v, h / 2, 0, 0);
+    move(self, (struct kick_drift){.f = self->slow, .x = x, .v = v, .kick = h / 2});
     take_fast_steps(self, t, h, x, v);
-    move(self, self->slow, x, v, 0, 0, h / 2);
+    move(self, (struct kick_drift){.f = self->slow, .x = x, .v = v, .ahead = h / 2});
     host->force(host->ctx, t + h, x, self->predicted, CS_PART_OUTER, self->slow);
-    move(self, self->slow, x, v, h / 2, 0, 0);
+    move(self, (struct kick_drift){.f = self->slow, .x = x, .v = v, .kick = h / 2});
     return CS_STEP_OK;
 }
 
