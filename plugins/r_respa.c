@@ -1,17 +1,17 @@
-/* r_respa.c - velocity Verlet with two steps: springs and their dampers at the short one, all
- * other forces at the long one.
+/* r_respa.c - velocity Verlet with two steps: what holds a body together (springs, membranes and
+ * bending, their dampers) at the short one, all other forces at the long one.
  *
- * With a_s = f_s / m of the slow forces (contact, air, gravity, membranes) and a_f of springs
- * and dampers, a step of h is
+ * With a_s = f_s / m of the slow forces (contact, air, gravity) and a_f of the fast ones, a step
+ * of h is
  *   v += h/2 a_s(t)
  *   `ratio` times, with d = h/ratio:  v += d/2 a_f,  x += d v,  v += d/2 a_f(x, v + d/2 a_f)
  *   v += h/2 a_s(t + h, x, v + h/2 a_s)
  * Forces that depend on the velocity see a predicted one, as in velocity-verlet. a_f is
  * evaluated again after each slow kick, because dampers feel it: ratio + 1 fast evaluations and
- * one slow a step. It pays where contact costs several times the springs (Tuckerman, Berne,
+ * one slow a step. It pays where contact costs several times the fast forces (Tuckerman, Berne,
  * Martyna 1992).
  *
- * The slow kicks are a drive of period h, and meet modes of the springs at h w = pi: there no
+ * The slow kicks are a drive of period h, and meet modes of the fast forces at h w = pi: there no
  * ratio makes the step stable. */
 #include "fixed_step.h"
 #include "kick_drift.h"
@@ -27,7 +27,7 @@ static const struct cs_option rows[] = {
               "maximum step of the slow forces; 0: 0.9 of the stability limit, estimated at "
               "rest"),
     CS_OPTION(struct respa_options, ratio, "", 4, 1, 1000,
-              "steps of springs and dampers per step of the slow forces"),
+              "steps of springs, membranes and dampers per step of the slow forces"),
 };
 
 struct respa {
@@ -44,16 +44,16 @@ static void move(const struct respa *self, struct kick_drift of) {
     kick_drift(of);
 }
 
-/* The steps of springs and dampers from t to t + h. */
+/* The fast steps from t to t + h. */
 static void take_fast_steps(struct respa *self, double t, double h, double *x, double *v) {
     const struct cs_host *host = self->fixed.host;
     const double d = h / (double)self->ratio;
-    host->force(host->ctx, t, x, v, CS_PART_DAMPED_SPRINGS, self->fast);
+    host->force(host->ctx, t, x, v, CS_PART_INTERNAL, self->fast);
     for (int64_t k = 1; k <= self->ratio; k++) {
         move(self,
              (struct kick_drift){
                  .f = self->fast, .x = x, .v = v, .kick = d / 2, .drift = d, .ahead = d / 2});
-        host->force(host->ctx, t + (double)k * d, x, self->predicted, CS_PART_DAMPED_SPRINGS,
+        host->force(host->ctx, t + (double)k * d, x, self->predicted, CS_PART_INTERNAL,
                     self->fast);
         move(self, (struct kick_drift){.f = self->fast, .x = x, .v = v, .kick = d / 2});
     }
@@ -111,7 +111,7 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
 static const struct cs_integrator r_respa = {
     .size = sizeof(struct cs_integrator),
     .name = "r-respa",
-    .summary = "Verlet with short steps for springs and long ones for contact and air: where "
+    .summary = "Verlet with short steps for springs and membranes, long ones for contact and air: where "
                "contact costs more than the springs, at errors near 1e-3",
     .source = "Tuckerman, Berne, Martyna 1992",
     .order = 2,

@@ -26,16 +26,24 @@ enum cs_part {
     CS_PART_EXTERNAL =
         1u << 9, /* neither energy nor in the matrix: impacts, viewpoint forces */
 
+    /* Membranes and their bending: with bits of their own too. */
+    CS_PART_ELASTIC = 1u << 10,
+    CS_PART_ELASTIC_DAMPING = 1u << 11,
+
     /* The elastic springs, and those with their dampers. */
     CS_PART_SPRINGS = CS_PART_STRETCH | CS_PART_SHEAR | CS_PART_BEND,
     CS_PART_DAMPED_SPRINGS = CS_PART_SPRINGS | CS_PART_DAMPING,
 
+    /* What holds a body together: springs, membranes and bending, with their dampers. */
+    CS_PART_INTERNAL = CS_PART_DAMPED_SPRINGS | CS_PART_ELASTIC | CS_PART_ELASTIC_DAMPING,
+
     /* What host->energy holds beside the kinetic energy. The rest does work that no energy
      * knows of: a line search on the energy takes it as constant. */
-    CS_PART_WITH_ENERGY = CS_PART_SPRINGS | CS_PART_GRAVITY | CS_PART_POTENTIAL,
+    CS_PART_WITH_ENERGY =
+        CS_PART_SPRINGS | CS_PART_ELASTIC | CS_PART_GRAVITY | CS_PART_POTENTIAL,
 
     /* What can limit the step of an explicit method. */
-    CS_PART_STIFF = CS_PART_DAMPED_SPRINGS | CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
+    CS_PART_STIFF = CS_PART_INTERNAL | CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
 
     /* What host->solve and host->diagonal hold: what can be stiff, and drag. */
     CS_PART_LINEARISED = CS_PART_STIFF | CS_PART_DRAG,
@@ -46,8 +54,8 @@ enum cs_part {
     /* Every force, also those of later hosts. */
     CS_PART_ALL = 0x7fffffff,
 
-    /* All but springs and dampers: for methods with a spring model of their own. */
-    CS_PART_OUTER = CS_PART_ALL & ~CS_PART_DAMPED_SPRINGS,
+    /* All but those: for methods with a model of springs of their own, or a step. */
+    CS_PART_OUTER = CS_PART_ALL & ~CS_PART_INTERNAL,
     CS_PART_WITHOUT_ENERGY = CS_PART_ALL & ~CS_PART_WITH_ENERGY
 };
 

@@ -53,12 +53,10 @@ static unsigned open_streams(void) {
     struct pollfd streams[] = {{.fd = 0}, {.fd = 1}, {.fd = 2}};
     enum { STREAMS = sizeof streams / sizeof *streams };
     unsigned open = 0;
-    int reported;
-    do // a signal ends poll even if it need not wait
-        reported = poll(streams, STREAMS, 0);
-    while (reported < 0 && errno == EINTR);
-    if (reported < 0)
-        return 0;
+    // a signal ends poll even if it need not wait
+    while (poll(streams, STREAMS, 0) < 0)
+        if (errno != EINTR)
+            return 0;
     for (unsigned k = 0; k < STREAMS; k++)
         open |= (unsigned)!(streams[k].revents & POLLNVAL) << k;
     return open;

@@ -127,7 +127,7 @@ static double variation_of(const struct fixture *cylinder, const double *rest, d
             p[c * n + i] =
                 rest[c * n + i] / RADIUS * sin(rest[2 * n + i] / sqrt(ROOT * RADIUS));
     const struct cs_eval at = {
-        .x = cylinder->x, .v = cylinder->v, .dx = p, .parts = CS_PART_POTENTIAL};
+        .x = cylinder->x, .v = cylinder->v, .dx = p, .parts = CS_PART_ELASTIC};
     cs_terms_jvp(cylinder->system, &at, df);
     for (size_t k = 0; k < 3 * n; k++)
         found -= p[k] * df[k];

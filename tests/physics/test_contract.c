@@ -94,7 +94,8 @@ static void leave_alone(struct fixture *cloth, const struct cs_term *term) {
 
 TEST(bits_and_calls_agree) {
     uint32_t own_bits = 0;
-    const uint32_t shared = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE | CS_PART_EXTERNAL;
+    const uint32_t shared = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE | CS_PART_EXTERNAL |
+                            CS_PART_ELASTIC | CS_PART_ELASTIC_DAMPING;
     for (uint32_t k = 0; k < cs_n_terms; k++) {
         const struct cs_term *term = cs_terms[k];
         const bool linearised = term->part_bits & CS_PART_LINEARISED;

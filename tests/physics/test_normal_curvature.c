@@ -48,7 +48,7 @@ TEST(rolled_sheets_rest_in_their_shape) {
         struct fixture sheet;
         open_sheet(&sheet, pattern, 8, true);
         double *f = calloc(3 * sheet.n, sizeof *f);
-        find_force(&sheet, CS_PART_POTENTIAL, sheet.v, f);
+        find_force(&sheet, CS_PART_ELASTIC, sheet.v, f);
         ck_assert_double_lt(largest(f, 3 * sheet.n), 1e-12);
         ck_assert_double_lt(cs_bendings_energy(sheet.system, sheet.x), 1e-24);
         free(f);
@@ -101,11 +101,11 @@ TEST(damping_leaves_rigid_motion_alone) {
                 const size_t d = (c + 1) % 3, e = (c + 2) % 3;
                 v[c * n + i] = 1 + spin[d] * sheet.x[e * n + i] - spin[e] * sheet.x[d * n + i];
             }
-        find_force(&sheet, CS_PART_DISSIPATIVE, v, f);
+        find_force(&sheet, CS_PART_ELASTIC_DAMPING, v, f);
         const double rigid = largest(f, 3 * n);
         for (size_t i = 0; i < n; i++)
             v[2 * n + i] += sin(5 * sheet.x[i]);
-        find_force(&sheet, CS_PART_DISSIPATIVE, v, f);
+        find_force(&sheet, CS_PART_ELASTIC_DAMPING, v, f);
         ck_assert_msg(rigid < 1e-11 * largest(f, 3 * n), "sheet %d: %g of %g", number, rigid,
                       largest(f, 3 * n));
         free(v);
@@ -122,11 +122,11 @@ TEST(forces_along_normals_have_no_resultant) {
         double *f = calloc(3 * n, sizeof *f), power = 0;
         for (size_t i = 0; i < 3 * n; i++)
             sheet.v[i] = sin(0.7 * (double)i);
-        find_force(&sheet, CS_PART_DISSIPATIVE, sheet.v, f);
+        find_force(&sheet, CS_PART_ELASTIC_DAMPING, sheet.v, f);
         for (size_t i = 0; i < 3 * n; i++)
             power += f[i] * sheet.v[i];
         ck_assert_double_lt(power, 0);
-        find_force(&sheet, CS_PART_POTENTIAL | CS_PART_DISSIPATIVE, sheet.v, f);
+        find_force(&sheet, CS_PART_ELASTIC | CS_PART_ELASTIC_DAMPING, sheet.v, f);
         const double most = largest(f, 3 * n);
         for (size_t c = 0; c < 3; c++) {
             const size_t d = (c + 1) % 3, e = (c + 2) % 3;
@@ -155,7 +155,7 @@ TEST(damping_of_a_flat_sheet_is_proportional_to_stiffness) {
             u[2 * n + i] = sin(3 * sheet.x[i]) * cos(2 * sheet.x[n + i]);
         const struct cs_eval at = {
             .x = sheet.x, .v = sheet.v, .dx = u, .parts = CS_PART_LINEARISED};
-        find_force(&sheet, CS_PART_DISSIPATIVE, u, damped);
+        find_force(&sheet, CS_PART_ELASTIC_DAMPING, u, damped);
         sheet.system->n_terms = 1;
         sheet.system->terms[0] = &cs_term_bending;
         cs_terms_jvp(sheet.system, &at, stiff);

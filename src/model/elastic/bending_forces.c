@@ -259,7 +259,7 @@ static void add_block(const struct job *job, const struct cs_block *block) {
  * alone, or without the elastic part. */
 static const double *direction_of(const struct cs_eval *at) {
     const double *p = at->dx || at->dv ? at->dx : at->x;
-    return at->parts & CS_PART_POTENTIAL ? p : NULL;
+    return at->parts & CS_PART_ELASTIC ? p : NULL;
 }
 
 void cs_bendings_prepare(const struct cs_system *system, const struct cs_eval *at) {

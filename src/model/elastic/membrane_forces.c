@@ -350,15 +350,14 @@ void cs_membrane_job_add(const struct membrane_job *job, const struct cs_block *
 static struct membrane_job job_of(const struct cs_system *system, const struct cs_eval *at,
                                   double *to) {
     const bool changes = at->dx || at->dv;
-    const uint32_t dampers = CS_PART_DISSIPATIVE | CS_PART_ELASTIC_DAMPING;
     return (struct membrane_job){.system = system,
                                  .kind = changes ? MEMBRANE_JVP : MEMBRANE_FORCE,
                                  .x = at->x,
                                  .v = at->v,
                                  .dx = at->dx,
                                  .dv = at->dv,
-                                 .elastic = at->parts & CS_PART_POTENTIAL ? 1 : 0,
-                                 .damping = at->parts & dampers ? 1 : 0,
+                                 .elastic = at->parts & CS_PART_ELASTIC ? 1 : 0,
+                                 .damping = at->parts & CS_PART_ELASTIC_DAMPING ? 1 : 0,
                                  .to = to};
 }
 

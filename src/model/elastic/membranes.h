@@ -21,10 +21,6 @@
 
 #include "model/system/particle_system.h"
 
-/* With CS_PART_POTENTIAL: the dampers of elastic bodies too. Linear theory leaves out friction,
- * which shares CS_PART_DISSIPATIVE with them. No mask of enum cs_part has this bit. */
-#define CS_PART_ELASTIC_DAMPING (1u << 31)
-
 /* Numbers of a triangle at rest: P row by row, then the squares of L in m2. */
 enum { CS_MEMBRANE_P = 9, CS_MEMBRANE_REST = 12 };
 

@@ -100,9 +100,9 @@ void cs_normal_curvature_prepare(const struct cs_system *system, const struct cs
                       .dx = at->dx,
                       .dv = at->dv,
                       .is_change = at->dx || at->dv};
-    if (at->parts & CS_PART_POTENTIAL)
+    if (at->parts & CS_PART_ELASTIC)
         job.elastic = (struct cs_normal_factors){.kappa = 1, .change = 1};
-    if (at->parts & (CS_PART_DISSIPATIVE | CS_PART_ELASTIC_DAMPING))
+    if (at->parts & CS_PART_ELASTIC_DAMPING)
         job.damping = (struct cs_normal_factors){.rate = 1, .change_rate = 1};
     find_all(&job);
 }

@@ -49,7 +49,7 @@ static const char *const ramps[] = {"bodies.elastic.bending.stiffness",
 
 const struct cs_term cs_term_bending = {
     .name = "bending",
-    .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
+    .part_bits = CS_PART_ELASTIC | CS_PART_ELASTIC_DAMPING,
     .plan = plan,
     .build = build,
     .rampable_keys = ramps,

@@ -50,7 +50,7 @@ static const char *const ramps[] = {"bodies.elastic.membrane.young",
 
 const struct cs_term cs_term_membrane = {
     .name = "membrane",
-    .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
+    .part_bits = CS_PART_ELASTIC | CS_PART_ELASTIC_DAMPING,
     .plan = plan,
     .build = build,
     .rampable_keys = ramps,

@@ -230,8 +230,7 @@ static enum cs_status normal_amplification(const struct cs_amplification *amplif
  * %. */
 enum { MOST_TURNS = 5 };
 
-/* True if friction is all that dissipates in contact, and all of CS_PART_DISSIPATIVE but the
- * dampers of elastic bodies. */
+/* True if friction is all of CS_PART_DISSIPATIVE. */
 static bool is_friction_alone(const struct cs_scene *scene) {
     return !(scene->contact.damping > 0) && !scene->seams.n &&
            scene->contact.friction_law == CS_FRICTION_SMOOTH;
@@ -245,8 +244,7 @@ enum cs_status cs_theory_init(struct cs_theory *theory, const struct cs_system *
     if (cs_stiffest_modes_init(&theory->modes, system, error))
         return error->status;
     if (is_friction_alone(system->scene))
-        theory->modes.parts =
-            (CS_PART_LINEARISED & ~(uint32_t)CS_PART_DISSIPATIVE) | CS_PART_ELASTIC_DAMPING;
+        theory->modes.parts = CS_PART_LINEARISED & ~(uint32_t)CS_PART_DISSIPATIVE;
     return CS_OK;
 }
 
