@@ -1,18 +1,18 @@
-/* r_respa.c - velocity Verlet with two steps: what holds a body together (springs, membranes and
- * bending, their dampers) at the short one, all other forces at the long one.
+/* r_respa.c - velocity Verlet with two steps: what holds a body together (springs, membranes
+ * and bending, their dampers) at the short one, all other forces at the long one.
  *
- * With a_s = f_s / m of the slow forces (contact, air, gravity) and a_f of the fast ones, a step
- * of h is
+ * With a_s = f_s / m of the slow forces (contact, air, gravity) and a_f of the fast ones, a
+ * step of h is
  *   v += h/2 a_s(t)
  *   `ratio` times, with d = h/ratio:  v += d/2 a_f,  x += d v,  v += d/2 a_f(x, v + d/2 a_f)
  *   v += h/2 a_s(t + h, x, v + h/2 a_s)
  * Forces that depend on the velocity see a predicted one, as in velocity-verlet. a_f is
- * evaluated again after each slow kick, because dampers feel it: ratio + 1 fast evaluations and
- * one slow a step. It pays where contact costs several times the fast forces (Tuckerman, Berne,
- * Martyna 1992).
+ * evaluated again after each slow kick, because dampers feel it: ratio + 1 fast evaluations
+ * and one slow a step. It pays where contact costs several times the fast forces (Tuckerman,
+ * Berne, Martyna 1992).
  *
- * The slow kicks are a drive of period h, and meet modes of the fast forces at h w = pi: there no
- * ratio makes the step stable. */
+ * The slow kicks are a drive of period h, and meet modes of the fast forces at h w = pi: there
+ * no ratio makes the step stable. */
 #include "fixed_step.h"
 #include "kick_drift.h"
 #include "leapfrog_limit.h"
@@ -111,8 +111,8 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
 static const struct cs_integrator r_respa = {
     .size = sizeof(struct cs_integrator),
     .name = "r-respa",
-    .summary = "Verlet with short steps for springs and membranes, long ones for contact and air: where "
-               "contact costs more than the springs, at errors near 1e-3",
+    .summary = "Verlet with short steps for springs and membranes, long ones for contact and "
+               "air: where contact costs more than the springs, at errors near 1e-3",
     .source = "Tuckerman, Berne, Martyna 1992",
     .order = 2,
     .order_damped = 2,
