@@ -38,8 +38,8 @@ static double turn(struct damping_rate *self, const struct cs_host *host, double
 }
 
 double damping_rate_at(struct damping_rate *self, const struct cs_host *host, double t,
-                       const double *x, const double *v, bool anew) {
-    if (self->estimate > 0 && self->age++ < STEPS && !anew)
+                       const double *x, const double *v, bool again) {
+    if (self->estimate > 0 && self->age++ < STEPS && !again)
         return self->estimate;
     double last, now = turn(self, host, t, x, v);
     int turns = 1;

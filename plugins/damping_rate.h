@@ -24,11 +24,11 @@ bool damping_rate_init(struct damping_rate *self, const struct cs_host *host);
 /* Forgets estimate and direction. [restart] */
 void damping_rate_restart(struct damping_rate *self, const struct cs_view *view);
 
-/* The rate at (t, x, v) in 1/s: the estimate made some steps ago, unless it is wanted anew. An
- * estimate starts from the direction of the last one, and costs a jvp a turn. Needs
+/* The rate at (t, x, v) in 1/s: the estimate made some steps ago, or, with `again`, a new one.
+ * An estimate starts from the direction of the last one, and costs a jvp a turn. Needs
  * CS_NEED_JVP. [advance] */
 double damping_rate_at(struct damping_rate *self, const struct cs_host *host, double t,
-                       const double *x, const double *v, bool anew);
+                       const double *x, const double *v, bool again);
 
 /* save and load. */
 void damping_rate_archive(struct damping_rate *self, const struct cs_host *host,

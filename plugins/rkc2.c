@@ -180,7 +180,7 @@ static bool accept(struct adaptive_step *base) {
 }
 
 /* 2 delta at the state, of bounds at it, by an estimate within bodies. After a step that was
- * rejected it is made anew: too few stages blow up. */
+ * rejected it is made again: too few stages blow up. */
 static double damping_at(struct rkc2 *self, double t, const double *y, double delta) {
     struct adaptive_step *base = &self->base;
     const struct cs_host *host = base->host;
