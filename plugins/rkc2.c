@@ -11,15 +11,12 @@
  * F_j is F at y + D_j and at t + w1 T_j''/T_j' h. The error of y + D_s is
  * (2/5) h (F_0 + F_s) - (4/5) D_s, which falls as h^3.
  *
- * s follows from the step and from bounds omega and delta at the state: roots of
- * z^2 + 2 delta z + omega^2 have moduli of max(2 delta, omega) at most. Where dampers rule, an
- * estimate stands for the part of 2 delta that is within bodies (damping_rate.h): of the bound
- * it was 0.46 on reef_knot, so that a step takes 0.7 of the stages.
+ * s follows from the step and from the spectral radius at the state.
  *
  * Source: Sommeijer, Shampine, Verwer 1998. */
 #include "adaptive_step.h"
-#include "damping_rate.h"
 #include "parallel.h"
+#include "spectral_radius.h"
 
 enum { STAGES_MAX = 250 };
 #define REACH   0.65 /* of s stages on the real axis, divided by s^2 - 1; a little below */
@@ -27,10 +24,10 @@ enum { STAGES_MAX = 250 };
 
 struct rkc2 {
     struct adaptive_step base;
-    struct damping_rate within; /* of the dampers within bodies */
-    double radius;              /* 1/s, bound on the moduli of the eigenvalues at the state */
-    double *last, *older;       /* (6n) D_(j-1) and D_(j-2) */
-    double *a;                  /* (3,n) in m/s2 at a stage, at last at the new state */
+    struct spectral_radius spectrum;
+    double radius;        /* 1/s, at the state */
+    double *last, *older; /* (6n) D_(j-1) and D_(j-2) */
+    double *a;            /* (3,n) in m/s2 at a stage, at last at the new state */
 };
 
 /* T_j, T_j' and T_j'' at w0, for j and j - 1; T is Chebyshev's polynomial. */
@@ -179,27 +176,13 @@ static bool accept(struct adaptive_step *base) {
     return true;
 }
 
-/* 2 delta at the state, of bounds at it, by an estimate within bodies. After a step that was
- * rejected it is made again: too few stages blow up. */
-static double damping_at(struct rkc2 *self, double t, const double *y, double delta) {
-    struct adaptive_step *base = &self->base;
-    const struct cs_host *host = base->host;
-    const double within = damping_rate_at(&self->within, host, t, y, y + base->length / 2,
-                                          base->control.rejected);
-    const double tight = 2 * (delta - host->view->delta) + within;
-    return tight < 2 * delta ? tight : 2 * delta;
-}
-
-/* The step that the most stages reach, in s; sets the bound at the state. */
+/* The step that the most stages reach, in s; sets the radius at the state. It is estimated
+ * again after a step that was rejected, as too few stages blow up. */
 static double limit(struct adaptive_step *base, double t, const double *y) {
     struct rkc2 *self = (struct rkc2 *)base;
-    const struct cs_host *host = base->host;
-    double omega = host->view->omega, delta = host->view->delta;
-    if (CS_HAS(host, bounds_at) && host->bounds_at)
-        host->bounds_at(host->ctx, t, y, y + base->length / 2, &omega, &delta);
-    const double damping = 2 * delta > omega ? damping_at(self, t, y, delta) : 2 * delta;
-    self->radius = damping > omega ? damping : omega;
     const double most = STAGES_MAX - 1;
+    self->radius =
+        spectral_radius_at(&self->spectrum, t, y, y + base->length / 2, base->control.rejected);
     return self->radius > 0 ? REACH * (most * most - 1) / self->radius : HUGE_VAL;
 }
 
@@ -211,7 +194,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     self->base.attempt = attempt;
     self->base.accept = accept;
     self->base.limit = limit;
-    if (!damping_rate_init(&self->within, host))
+    if (!spectral_radius_init(&self->spectrum, host))
         return CS_STEP_FAIL;
     if (adaptive_step_init(&self->base, host, options, 3) != CS_STEP_OK)
         return CS_STEP_FAIL;
@@ -225,13 +208,13 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
 
 static enum cs_step restart(void *object, double t, const double *x, const double *v) {
     struct rkc2 *self = object;
-    damping_rate_restart(&self->within, self->base.host->view);
+    spectral_radius_restart(&self->spectrum);
     return adaptive_step_restart(object, t, x, v);
 }
 
 static enum cs_step archive(void *object, const struct cs_archive *archive) {
     struct rkc2 *self = object;
-    damping_rate_archive(&self->within, self->base.host, archive);
+    spectral_radius_archive(&self->spectrum, archive);
     return adaptive_step_archive(object, archive);
 }
 
