@@ -128,9 +128,8 @@ void cs_contact_ranges_print(const struct cs_system *system, double dt, struct c
     cs_text_add(out,
                 " may meet at %.3g m/s, %.3g m per step of %.3g s, with a range of contact of "
                 "%.3g m: steps are cut there; dt = %.2g s, or a thickness of %.2g m, needs "
-                "fewer cuts\n",
-                speed, speed * dt, dt, worst.range, dt / most * RANGES_MAX,
-                worst.range * most / RANGES_MAX);
+                "no cuts\n",
+                speed, speed * dt, dt, worst.range, dt / most, worst.range * most);
 }
 
 void cs_contact_note_add(const struct cs_scene *scene, const char *before,

@@ -155,31 +155,18 @@ static const char *nearest_key(const struct cs_table *table, const char *apart,
 
 /* Keys of other programs: the key of this table, else of another one, or NULL. */
 static const char *translate_key(const char *key, const struct cs_table *table) {
-    static const char *const keys[][2] = {{"name", "about"},
-                                          {"title", "about"},
-                                          {"description", "about"},
-                                          {"dt", "integrator.dt"},
-                                          {"step", "integrator.dt"},
-                                          {"timestep", "integrator.dt"},
-                                          {"method", "integrator"},
-                                          {"solver", "integrator"},
-                                          {"structural", "stretch"},
-                                          {"flexion", "bend"},
-                                          {"diagonal", "shear"},
-                                          {"pinned", "pins"},
-                                          {"fixed", "pins"},
-                                          {"position", "eye"},
-                                          {"position", "centre"},
-                                          {"position", "place"},
-                                          {"look_at", "target"},
-                                          {"width", "size"},
-                                          {"height", "size"},
-                                          {"resolution", "size"},
-                                          {"restitution", "absorption"},
-                                          {"density", "areal_density"},
-                                          {"rotation", "rotate"},
-                                          {"orientation", "rotate"},
-                                          {"translation", "translate"}};
+    // clang-format off
+    static const char *const keys[][2] = {
+        {"name", "about"}, {"title", "about"}, {"description", "about"},
+        {"dt", "integrator.dt"}, {"step", "integrator.dt"}, {"timestep", "integrator.dt"},
+        {"method", "integrator"}, {"solver", "integrator"}, {"structural", "stretch"},
+        {"flexion", "bend"}, {"diagonal", "shear"}, {"pinned", "pins"}, {"fixed", "pins"},
+        {"position", "eye"}, {"position", "centre"}, {"position", "place"},
+        {"look_at", "target"}, {"width", "size"}, {"height", "size"}, {"resolution", "size"},
+        {"restitution", "absorption"}, {"density", "areal_density"}, {"rotation", "rotate"},
+        {"orientation", "rotate"}, {"translation", "translate"},
+    };
+    // clang-format on
     const char *other = NULL;
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (strcmp(key, keys[i][0]))
@@ -219,6 +206,15 @@ static void add_nearest_paths(const struct cs_table *table, const char *key,
         add_paths(&cs_scene_table, "", key, below, out);
 }
 
+/* True if the key of a collider is to move it, which events do. */
+static bool is_motion(const struct cs_json_context *context, const char *key) {
+    static const char *const keys[] = {"velocity", "speed", "move", "motion", "path"};
+    bool found = false;
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+        found |= !strcmp(key, keys[i]);
+    return found && !strncmp(context->path, "colliders[", 10);
+}
+
 /* Adds the name or the paths that an unknown key most probably stands for. */
 static void suggest_key(const struct cs_table *table, const char *apart, const char *key,
                         struct cs_text *out) {
@@ -247,15 +243,25 @@ static const char *new_name(const struct cs_table *table, const char *key) {
     return NULL;
 }
 
+/* Adds the keys of a table, if they are few. */
+static void add_keys(const struct cs_table *table, struct cs_text *out) {
+    enum { MOST = 12 };
+    for (uint32_t r = 0; r < table->n && table->n <= MOST; r++)
+        cs_text_add(out, "%s%s", r ? ", " : "; the keys here are ", table->rows[r].name);
+}
+
 /* Fails with what the key may stand for. */
 static enum cs_status fail_unknown(struct cs_json_context *context,
                                    const struct cs_json *member, const struct cs_table *table,
                                    const char *apart) {
+    const char *key = cs_json_key(member), *move = is_motion(context, key) ? "move" : NULL;
     struct cs_text other = {0};
-    suggest_key(table, apart, cs_json_key(member), &other);
+    suggest_key(move ? &cs_scene_table : table, apart, move ? move : key, &other);
     const bool any = other.length && !other.failed;
     /* a key that is right elsewhere, without a path: the scene's own */
-    const bool top = any && !strcmp(cs_text_get(&other), cs_json_key(member));
+    const bool top = any && !strcmp(cs_text_get(&other), key);
+    if (!any)
+        add_keys(table, &other);
     cs_json_context_fail(context, member, true, "unknown key%s%s%s",
                          any ? "; did you mean \"" : "", cs_text_get(&other),
                          top   ? "\" at the top of the scene?"
