@@ -189,19 +189,17 @@ static bool has_rate(const struct cs_term *term) {
     return term->add_state_bound && !term->add_bound;
 }
 
-/* Tells whether a force has both: at a state its bound may be the larger one. */
-static bool any_varies(const struct cs_system *system) {
+/* Tells whether a force has bounds at a state; both: for the run too, so that the bound at the
+ * state may be the larger one. */
+static bool any_at_state(const struct cs_system *system, bool both) {
     for (uint32_t k = 0; k < system->n_terms; k++)
-        if (system->terms[k]->add_state_bound && system->terms[k]->add_bound)
+        if (system->terms[k]->add_state_bound && (!both || system->terms[k]->add_bound))
             return true;
     return false;
 }
 
 bool cs_spectral_bounds_depend_on_state(const struct cs_system *system) {
-    for (uint32_t k = 0; k < system->n_terms; k++)
-        if (system->terms[k]->add_state_bound)
-            return true;
-    return false;
+    return any_at_state(system, false);
 }
 
 /* Takes friction as far as it limits the step of an explicit method. sums: of contact alone,
@@ -218,7 +216,7 @@ static void limit_friction(const struct cs_system *system, const struct cs_gersh
 void cs_spectral_bounds_rate(const struct cs_system *system, const struct cs_eval *at,
                              bool is_explicit, double *work, double *omega, double *delta) {
     const struct cs_gershgorin sums = start_sums(system, work);
-    const bool varies = any_varies(system);
+    const bool varies = any_at_state(system, true);
     double squared;
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (has_rate(system->terms[k]))

@@ -164,7 +164,13 @@ static const char *translate_key(const char *key, const struct cs_table *table) 
         {"position", "eye"}, {"position", "centre"}, {"position", "place"},
         {"look_at", "target"}, {"width", "size"}, {"height", "size"}, {"resolution", "size"},
         {"restitution", "absorption"}, {"density", "areal_density"}, {"rotation", "rotate"},
-        {"orientation", "rotate"}, {"translation", "translate"},
+        {"orientation", "rotate"}, {"translation", "translate"}, {"colour", "diffuse"},
+        {"color", "diffuse"}, {"intensity", "strength"}, {"color", "colour"}, {"from", "eye"},
+        {"friction", "friction"}, {"k", "stretch"}, {"self_collision", "self_contact"},
+        {"collision", "contact"}, {"collisions", "contact"}, {"obstacles", "colliders"},
+        {"objects", "bodies"}, {"cloths", "bodies"}, {"frames", "clothsim run --frames"},
+        {"output", "clothsim run --out"}, {"velocity", "move"}, {"speed", "move"},
+        {"motion", "move"}, {"path", "move"},
     };
     // clang-format on
     const char *other = NULL;
@@ -207,12 +213,10 @@ static void add_nearest_paths(const struct cs_table *table, const char *key,
 }
 
 /* True if the key of a collider is to move it, which events do. */
-static bool is_motion(const struct cs_json_context *context, const char *key) {
-    static const char *const keys[] = {"velocity", "speed", "move", "motion", "path"};
-    bool found = false;
-    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
-        found |= !strcmp(key, keys[i]);
-    return found && !strncmp(context->path, "colliders[", 10);
+static bool is_motion(const struct cs_json_context *context, const struct cs_table *table,
+                      const char *key) {
+    const char *other = translate_key(key, table);
+    return other && !strcmp(other, "move") && !strncmp(context->path, "colliders[", 10);
 }
 
 /* Adds the name or the paths that an unknown key most probably stands for. */
@@ -254,19 +258,20 @@ static void add_keys(const struct cs_table *table, struct cs_text *out) {
 static enum cs_status fail_unknown(struct cs_json_context *context,
                                    const struct cs_json *member, const struct cs_table *table,
                                    const char *apart) {
-    const char *key = cs_json_key(member), *move = is_motion(context, key) ? "move" : NULL;
+    const char *key = cs_json_key(member);
     struct cs_text other = {0};
-    suggest_key(move ? &cs_scene_table : table, apart, move ? move : key, &other);
+    if (is_motion(context, table, key))
+        add_nearest_paths(&cs_scene_table, "move", &other);
+    else
+        suggest_key(table, apart, key, &other);
     const bool any = other.length && !other.failed;
     /* a key that is right elsewhere, without a path: the scene's own */
     const bool top = any && !strcmp(cs_text_get(&other), key);
+    const char *end = top ? "\" at the top of the scene?" : any ? "\"?" : "";
     if (!any)
         add_keys(table, &other);
     cs_json_context_fail(context, member, true, "unknown key%s%s%s",
-                         any ? "; did you mean \"" : "", cs_text_get(&other),
-                         top   ? "\" at the top of the scene?"
-                         : any ? "\"?"
-                               : "");
+                         any ? "; did you mean \"" : "", cs_text_get(&other), end);
     cs_text_finish(&other);
     return context->error->status;
 }
