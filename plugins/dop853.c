@@ -6,7 +6,7 @@
  *
  * Coefficients: Prince, Dormand 1981; Hairer, Norsett, Wanner 1993, sec. II.10 and the errors
  * of its appendix. Rounded to the double nearest. */
-#include "order_8_methods.h"
+#include "high_order_methods.h"
 
 enum { STAGES = 13 };
 

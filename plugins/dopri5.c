@@ -4,7 +4,7 @@
  * state was changed. The error is the distance from the method of order 4.
  *
  * Coefficients: Dormand, Prince 1980; Hairer, Norsett, Wanner 1993, table II.5.2. */
-#include "nystrom.h"
+#include "high_order_methods.h"
 
 enum { STAGES = 7 };
 
@@ -23,16 +23,16 @@ static const double difference[STAGES] = {
     71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 // clang-format on
 
-static const struct nystrom_pair pair = {
+const struct nystrom_pair dopri5_pair = {
     .stages = STAGES, .power = 5, .nodes = nodes, .table = table, .difference = difference};
 
 static const struct cs_option rows[] = {ADAPTIVE_ROWS(struct adaptive_options, 1e-4)};
 
 static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
-    return nystrom_create(host, options, &pair, out);
+    return nystrom_create(host, options, &dopri5_pair, out);
 }
 
-static const struct cs_integrator dopri5 = {
+const struct cs_integrator dopri5 = {
     ADAPTIVE_METHOD(struct adaptive_options, rows),
     .name = "dopri5",
     .summary = "explicit pair 5(4) with error control",
@@ -41,13 +41,4 @@ static const struct cs_integrator dopri5 = {
     .order_damped = 5,
     .traits = CS_ADAPTIVE,
     .create = create,
-};
-
-static const struct cs_integrator *const integrators[] = {&dopri5};
-
-CS_EXPORT const struct cs_module clothsim_module = {
-    .abi = CS_ABI,
-    .size = sizeof(struct cs_integrator),
-    .n = sizeof integrators / sizeof integrators[0],
-    .integrators = integrators,
 };

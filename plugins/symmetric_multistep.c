@@ -27,7 +27,7 @@
  * of its other roots can be driven by them below that (Quinlan 1999; measured in
  * docs/fronts.md). */
 #include "fixed_step.h"
-#include "order_8_methods.h"
+#include "high_order_methods.h"
 #include "parallel.h"
 
 enum { STARTS = 7, SLOPES = 8, DIFFERENCES = 6, BLOCK = 256 };

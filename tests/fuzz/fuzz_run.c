@@ -18,7 +18,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length);
 enum { FRAMES = 2, STEPS_MAX = 200, PARTICLES_MAX = 120 };
 
 /* the methods of this tree, linked in: the sanitizers and the fuzzer see into them */
-#define MODULES(X) X(dopri5) X(explicit) X(implicit) X(newton) X(shape_matching) X(xpbd)
+#define MODULES(X) X(dop853) X(explicit) X(implicit) X(newton) X(shape_matching) X(xpbd)
 #define X(name)    extern const struct cs_module clothsim_module_##name;
 MODULES(X)
 #undef X
