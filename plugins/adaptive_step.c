@@ -156,7 +156,8 @@ static enum cs_step try_steps(struct adaptive_step *self, double t, const double
                        (long long)self->asked.max_steps, self->begin, t);
             return CS_STEP_HALT;
         }
-        *h = cut(least(control->h, longest_step(self, t, y)), self->end - t);
+        self->bound = longest_step(self, t, y);
+        *h = cut(least(control->h, self->bound), self->end - t);
         /* a shorter step is lost in the rounding of t; NaN is refused too */
         if (!(*h > 4 * DBL_EPSILON * self->end)) {
             host->fail(host->ctx, "the step fell to %.3g s at t = %.9g s", *h, t);

@@ -48,6 +48,7 @@ struct adaptive_step {
     double *error;  /* (6n) */
     double *weight; /* (6n): 1 / tolerance */
     double contact; /* s, the longest step that contact lets pass; HUGE_VAL: any */
+    double bound;   /* s, the longest step of the last try by all limits but the error */
     bool fresh;     /* slope is not that of the state */
     bool changed;   /* the last commit changed the state */
     bool started;   /* control.h was chosen */
@@ -85,9 +86,11 @@ enum cs_step adaptive_step_archive(void *self, const struct cs_archive *archive)
 
 /* The common part of the descriptors of these methods. */
 #define ADAPTIVE_METHOD(struct_, rows_)                                                        \
+    ADAPTIVE_METHOD_OF(struct_, rows_, adaptive_step_restart, adaptive_step_archive)
+#define ADAPTIVE_METHOD_OF(struct_, rows_, restart_, archive_)                                 \
     .size = sizeof(struct cs_integrator), .fidelity = CS_FIDELITY_ODE, .options = rows_,       \
     .n_options = sizeof rows_ / sizeof rows_[0], .options_size = sizeof(struct_),              \
-    .restart = adaptive_step_restart, .advance = adaptive_step_advance,                        \
-    .stats = adaptive_step_stats, .save = adaptive_step_archive, .load = adaptive_step_archive
+    .restart = restart_, .advance = adaptive_step_advance, .stats = adaptive_step_stats,       \
+    .save = archive_, .load = archive_
 
 #endif

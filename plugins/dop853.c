@@ -2,7 +2,8 @@
  *
  * Twelve evaluations a step; a thirteenth at the new state is the first of the next step. Two
  * errors are combined: E5, the distance from a method of order 5, and E3, from one of order 3
- * with the nodes 1, 9 and 12 (nystrom.c). Their combination falls as h^8.
+ * with the nodes 1, 9 and 12 (nystrom.c). Their combination falls as h^8. Steps that contact
+ * and not the error limits are taken by dopri5 (nystrom.c).
  *
  * Coefficients: Prince, Dormand 1981; Hairer, Norsett, Wanner 1993, sec. II.10 and the errors
  * of its appendix. Rounded to the double nearest. */
@@ -71,16 +72,34 @@ const struct nystrom_pair dop853_pair = {.stages = STAGES,
                                          .difference = difference,
                                          .lower_order = lower_order};
 
-static const struct cs_option rows[] = {ADAPTIVE_ROWS(struct adaptive_options, 1e-6)};
+struct dop853_options {
+    double rtol, atol, dt_max;
+    int64_t max_steps;
+    int32_t order;
+};
+
+enum { ORDER_AUTOMATIC, ORDER_8 };
+static const char *const orders[] = {"automatic", "8", NULL};
+
+static const struct cs_option rows[] = {
+    ADAPTIVE_ROWS(struct dop853_options, 1e-6),
+    CS_OPTION_CHOICE(struct dop853_options, order, orders, ORDER_AUTOMATIC,
+                     "8, or 5 where contact, dt_max or frames limit steps; 8"),
+};
 
 static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
-    return nystrom_create(host, options, &dop853_pair, out);
+    const struct dop853_options *asked = options;
+    const struct adaptive_options adaptive = {asked->rtol, asked->atol, asked->dt_max,
+                                              asked->max_steps};
+    return nystrom_create(host, &adaptive, &dop853_pair,
+                          asked->order == ORDER_AUTOMATIC ? &dopri5_pair : NULL, out);
 }
 
 const struct cs_integrator dop853 = {
-    ADAPTIVE_METHOD(struct adaptive_options, rows),
+    NYSTROM_METHOD(struct dop853_options, rows),
     .name = "dop853",
-    .summary = "explicit, order 8 with error control: for errors below 1e-7 of smooth motion",
+    .summary = "explicit, order 8 with error control, 5 where contact or frames limit steps: "
+               "for errors below 1e-7 of smooth motion",
     .source = "Prince, Dormand 1981; Hairer, Norsett, Wanner 1993, sec. II.10",
     .order = 8,
     .order_damped = 8,

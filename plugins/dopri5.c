@@ -29,11 +29,11 @@ const struct nystrom_pair dopri5_pair = {
 static const struct cs_option rows[] = {ADAPTIVE_ROWS(struct adaptive_options, 1e-4)};
 
 static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
-    return nystrom_create(host, options, &dopri5_pair, out);
+    return nystrom_create(host, options, &dopri5_pair, NULL, out);
 }
 
 const struct cs_integrator dopri5 = {
-    ADAPTIVE_METHOD(struct adaptive_options, rows),
+    NYSTROM_METHOD(struct adaptive_options, rows),
     .name = "dopri5",
     .summary = "explicit pair 5(4) with error control",
     .source = "Dormand, Prince 1980; Hairer, Norsett, Wanner 1993, sec. II.5",

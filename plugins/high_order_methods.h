@@ -1,4 +1,5 @@
-/* high_order_methods.h - the methods of the module `dop853`, which starts the last one. */
+/* high_order_methods.h - the methods of the module `dop853`: it takes steps of `dopri5` too,
+ * and starts `symmetric-multistep`. */
 #ifndef HIGH_ORDER_METHODS_H
 #define HIGH_ORDER_METHODS_H
 

@@ -44,8 +44,15 @@ void nystrom_combine(const struct cs_host *host, const struct nystrom_sum *sum,
 /* The sum of stage i of a pair; that of the last one leads to the new state. */
 struct nystrom_sum nystrom_stage(const struct nystrom_pair *pair, int i);
 
-/* create of a method's descriptor, with struct adaptive_options as its options. */
+/* Calls of the descriptor; create with struct adaptive_options. lower: the pair of lower order
+ * that may take steps (see nystrom.c); NULL: none. */
 enum cs_step nystrom_create(const struct cs_host *host, const void *options,
-                            const struct nystrom_pair *pair, void **out);
+                            const struct nystrom_pair *pair, const struct nystrom_pair *lower,
+                            void **out);
+enum cs_step nystrom_restart(void *self, double t, const double *x, const double *v);
+enum cs_step nystrom_archive(void *self, const struct cs_archive *archive);
+
+#define NYSTROM_METHOD(struct_, rows_)                                                         \
+    ADAPTIVE_METHOD_OF(struct_, rows_, nystrom_restart, nystrom_archive)
 
 #endif
