@@ -5,7 +5,6 @@
 #include "sim/registry.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { NAME_COLUMN = 22, INDENT = 4, DETAIL_COLUMN = 14 };
 

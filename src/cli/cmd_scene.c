@@ -10,8 +10,6 @@
 #include "study/scene_doctor.h"
 #include "study/session.h"
 
-#include <string.h>
-
 struct options {
     struct cs_session_settings session;
     bool plan, resolved, schema, manual;

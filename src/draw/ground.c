@@ -8,7 +8,6 @@
 #include "model/system/particle_system.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Lower bound of the height that the bodies of a scene can reach. */
 

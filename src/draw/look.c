@@ -3,8 +3,6 @@
 
 #include "draw/matrix.h"
 
-#include <stddef.h>
-
 static const uint32_t force_stops[6] = {0x3b1f6b, 0x31578f, 0x1f8a8c,
                                         0x3db86f, 0xa4d742, 0xfbe84a};
 static const uint32_t strain_stops[6] = {0x1d3f8f, 0x4f8fc9, 0xc3dcea,

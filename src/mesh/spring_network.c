@@ -5,7 +5,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* The constants are those of SplitMix64: a Weyl sequence, then two rounds of mixing. */
 uint64_t cs_rng_next(struct cs_rng *draws) {

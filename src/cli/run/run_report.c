@@ -7,7 +7,6 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 #include <sys/resource.h>
 
 enum { VALUE_COLUMN = 16, STAGE_COLUMN = 24 };

@@ -4,7 +4,6 @@
 #include "cli/line/print.h"
 
 #include <stdio.h>
-#include <string.h>
 
 enum { LEFT = 10, CELL_MAX = 6 };
 

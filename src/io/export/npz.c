@@ -15,7 +15,6 @@
 #include "io/npy.h"
 #include "model/system/seams.h"
 
-#include <errno.h>
 #include <string.h>
 #include <unistd.h>
 

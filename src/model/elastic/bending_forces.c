@@ -9,7 +9,6 @@
 
 #include <clothsim/clones.h>
 #include <math.h>
-#include <string.h>
 
 /* Arguments of the loops over blocks: y (3,n) += factor K p. */
 struct job {

@@ -4,8 +4,6 @@
 #include "model/elastic/membrane_surrogate.h"
 #include "model/force/term.h"
 
-#include <string.h>
-
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool acts = cs_scene_first_elastic(scene) < scene->bodies.n;
     return (struct cs_plan_row){.built = acts, .reason = acts ? "bodies are elastic" : NULL};

@@ -14,7 +14,6 @@
 #include "base/vec3.h"
 
 #include <math.h>
-#include <string.h>
 
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     return (struct cs_plan_row){.built = scene->seams.n > 0,

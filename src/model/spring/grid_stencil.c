@@ -1,8 +1,6 @@
 /* Computes the springs of a grid's row tile by tile and adds them; scheme in grid_stencil.h. */
 #include "model/spring/grid_stencil.h"
 
-#include <string.h>
-
 /* One tile: particles [start, start + count) of the row. rows holds the results, by direction
  * and component, with a margin on either side. */
 struct tile {

@@ -13,7 +13,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* s of processor time. Short runs are repeated within a round until they fill it; a run
  * expected to be shorter than WARM_SECONDS is first run once untimed, to warm the caches. */

@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Particles of a direction with so many cells instead of `cells` of the scene; 0 where they do

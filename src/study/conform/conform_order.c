@@ -16,7 +16,6 @@
 #include "study/conform/conform_checks.h"
 
 #include <math.h>
-#include <string.h>
 
 /* A free pair of masses m: the elongation s obeys s'' + 2 d s' + w^2 s = 0 with w^2 = 2 k/m =
  * 100/s^2 and d = c/m = 1.2/s, because the reduced mass is m/2. */

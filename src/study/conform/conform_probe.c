@@ -10,7 +10,6 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 const char *cs_verdict_text(enum cs_verdict verdict) {
     static const char *const texts[] = {

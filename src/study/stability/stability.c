@@ -10,7 +10,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 /* Searches by a factor of 4 cover 4^12 = 1.7e7. A bracket of a factor 4 needs log2(ln 4 / ln
  * 1.01) = 7.1 halvings of its logarithm; 14 allow for wider rows of a map. */

@@ -14,7 +14,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 /* Attempts, each with half the step of the last one, before a scene has no reference. */
 enum { MOST_HALVINGS = 4 };

@@ -14,7 +14,6 @@
 
 #include <clothsim/clones.h>
 #include <math.h>
-#include <stdlib.h>
 
 /* clusters per batch, and clusters whose boxes one job sets */
 enum { BATCH = 8, TOGETHER = 64 };

@@ -15,7 +15,6 @@
 #include "model/contact/surface_points.h"
 
 #include <math.h>
-#include <string.h>
 
 /* A pair whose points move along straight lines during a step, and the contact
  * energy that a second-order model at the start of the step misses.
