@@ -186,7 +186,7 @@ static void add_damping(const struct cs_view *view, struct cs_text *out) {
     if (view->delta > 2 * view->omega)
         cs_text_add(out,
                     "damping (delta %.4g 1/s) limits explicit steps, not the springs (omega "
-                    "%.4g 1/s): try rkc2\n",
+                    "%.4g 1/s): try rkc2 or rock4\n",
                     view->delta, view->omega);
 }
 
