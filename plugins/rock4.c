@@ -19,7 +19,7 @@
  * A, B and C follow from w and a by Stieltjes' procedure: integrals with that weight are sums
  * over the s + 1 zeros of a Chebyshev polynomial.
  *
- * s follows from the step and from bounds omega and delta at the state, as that of rkc2.c.
+ * s follows from the step and from the spectral radius at the state.
  * The last stages multiply rounding errors in modes near the end of the interval by w / w(a),
  * which grows as s^8. Hence the largest s.
  *
@@ -29,6 +29,7 @@
 
 #include "adaptive_step.h"
 #include "parallel.h"
+#include "spectral_radius.h"
 
 #include <string.h>
 
@@ -52,7 +53,8 @@ struct grid {
 
 struct rock4 {
     struct adaptive_step base;
-    double radius;                     /* 1/s, bound on the moduli of the eigenvalues */
+    struct spectral_radius spectrum;
+    double radius;                     /* 1/s, at the state */
     const struct rock4_degree *degree; /* that the stages are of; NULL at first */
     struct stage stages[ROCK4_STAGES];
     double node; /* of the state after them */
@@ -260,20 +262,20 @@ static bool accept(struct adaptive_step *base) {
     return true;
 }
 
-/* The step that the most stages reach, in s, or that oscillations allow; sets the bound at the
- * state. With damping that grows as the square of the frequency, as that of springs, the
- * eigenvalues that are not real lie on a circle through 0 of radius omega^2 / (2 delta). */
+/* The step that the most stages reach, in s, or that oscillations allow; sets the radius at the
+ * state, estimated again after a step that was rejected. With damping that grows as the square
+ * of the frequency, as that of springs, the eigenvalues that are not real lie on a circle
+ * through 0 of radius omega^2 / (2 delta); the bounds are too large by about one factor. */
 static double limit(struct adaptive_step *base, double t, const double *y) {
     struct rock4 *self = (struct rock4 *)base;
-    const struct cs_host *host = base->host;
-    double omega = host->view->omega, delta = host->view->delta;
-    if (CS_HAS(host, bounds_at) && host->bounds_at)
-        host->bounds_at(host->ctx, t, y, y + base->length / 2, &omega, &delta);
-    self->radius = 2 * delta > omega ? 2 * delta : omega;
+    struct spectral_radius *spectrum = &self->spectrum;
+    self->radius =
+        spectral_radius_at(spectrum, t, y, y + base->length / 2, base->control.rejected);
     if (!(self->radius > 0))
         return HUGE_VAL;
+    const double omega = spectrum->omega, damping = 2 * spectrum->delta;
     const double real = rock4_degrees[ROCK4_DEGREES - 1].reach / self->radius;
-    const double fastest = omega * omega / self->radius;
+    const double fastest = damping > omega ? omega * omega / damping : omega;
     return real * fastest < OSCILLATION ? real : OSCILLATION / fastest;
 }
 
@@ -285,6 +287,8 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     self->base.attempt = attempt;
     self->base.accept = accept;
     self->base.limit = limit;
+    if (!spectral_radius_init(&self->spectrum, host))
+        return CS_STEP_FAIL;
     if (adaptive_step_init(&self->base, host, options, 4) != CS_STEP_OK)
         return CS_STEP_FAIL;
     double **const arrays[] = {&self->last,     &self->older,    &self->a,       self->slope,
@@ -296,10 +300,22 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     return CS_STEP_OK;
 }
 
+static enum cs_step restart(void *object, double t, const double *x, const double *v) {
+    struct rock4 *self = object;
+    spectral_radius_restart(&self->spectrum);
+    return adaptive_step_restart(object, t, x, v);
+}
+
+static enum cs_step archive(void *object, const struct cs_archive *archive) {
+    struct rock4 *self = object;
+    spectral_radius_archive(&self->spectrum, archive);
+    return adaptive_step_archive(object, archive);
+}
+
 static const struct cs_option rows[] = {ADAPTIVE_ROWS(struct adaptive_options, 1e-4)};
 
 static const struct cs_integrator rock4 = {
-    ADAPTIVE_METHOD(struct adaptive_options, rows),
+    .size = sizeof(struct cs_integrator),
     .name = "rock4",
     .summary =
         "explicit Chebyshev stages, order 4 with error control: for damping, below 1e-5 m",
@@ -307,7 +323,17 @@ static const struct cs_integrator rock4 = {
     .order = 4,
     .order_damped = 4,
     .traits = CS_ADAPTIVE,
+    .needs = CS_NEED_JVP,
+    .fidelity = CS_FIDELITY_ODE,
+    .options = rows,
+    .n_options = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct adaptive_options),
     .create = create,
+    .restart = restart,
+    .advance = adaptive_step_advance,
+    .stats = adaptive_step_stats,
+    .save = archive,
+    .load = archive,
 };
 
 static const struct cs_integrator *const integrators[] = {&rock4};

@@ -52,15 +52,16 @@ static void estimate(struct spectral_radius *self, double t, const double *x, co
 double spectral_radius_at(struct spectral_radius *self, double t, const double *x,
                           const double *v, bool again) {
     const struct cs_host *host = self->host;
-    double omega = host->view->omega, delta = host->view->delta;
+    self->omega = host->view->omega;
+    self->delta = host->view->delta;
     if (CS_HAS(host, bounds_at) && host->bounds_at)
-        host->bounds_at(host->ctx, t, x, v, &omega, &delta);
-    if (!(2 * delta > omega))
-        return omega;
+        host->bounds_at(host->ctx, t, x, v, &self->omega, &self->delta);
+    if (!(2 * self->delta > self->omega))
+        return self->omega;
     if (!(self->rate > 0) || self->age++ >= STEPS || again)
         estimate(self, t, x, v);
-    const double damping = fmin(2 * delta, 2 * (delta - host->view->delta) + self->rate);
-    return fmax(damping, omega);
+    const double contact = 2 * (self->delta - host->view->delta);
+    return fmax(fmin(2 * self->delta, contact + self->rate), self->omega);
 }
 
 void spectral_radius_archive(struct spectral_radius *self, const struct cs_archive *archive) {

@@ -18,6 +18,7 @@
 struct spectral_radius {
     const struct cs_host *host; /* borrowed */
     double *p, *q;              /* (3,n) the direction; work */
+    double omega, delta;        /* 1/s: the bounds at the last state */
     double rate;                /* 1/s: the estimate, with what is added; 0: none yet */
     uint64_t age;               /* steps that it was used for */
 };

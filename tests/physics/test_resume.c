@@ -93,6 +93,7 @@ TEST(scenes_go_on) {
         {SCENES "/swing.json", "dopri5", 20, {1, 9, 15}},
         {SCENES "/swing.json", "rkc2", 20, {1, 9, 15}},
         {SCENES "/reef_knot.json", "rkc2", 6, {1, 3, 4}},
+        {SCENES "/reef_knot.json", "rock4", 6, {1, 3, 4}},
         {SCENES "/swing.json", "rock4", 20, {1, 9, 15}},
         {SCENES "/swing.json", "composition", 20, {1, 9, 15}},
         {SCENES "/swing.json", "composition:damping=quadrature", 20, {1, 9, 15}},
