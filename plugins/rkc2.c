@@ -224,7 +224,7 @@ static const struct cs_option rows[] = {ADAPTIVE_ROWS(struct adaptive_options, 1
 static const char *const below_tolerance[] = {"solution", "tolerance", "contact-order", NULL};
 
 static const struct cs_integrator rkc2 = {
-    .size = sizeof(struct cs_integrator),
+    ADAPTIVE_METHOD_OF(struct adaptive_options, rows, restart, archive),
     .name = "rkc2",
     .summary = "explicit Chebyshev stages, order 2 with error control: for strong damping",
     .source = "Sommeijer, Shampine, Verwer 1998",
@@ -233,16 +233,7 @@ static const struct cs_integrator rkc2 = {
     .traits = CS_ADAPTIVE,
     .needs = CS_NEED_JVP,
     .fails = below_tolerance,
-    .fidelity = CS_FIDELITY_ODE,
-    .options = rows,
-    .n_options = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct adaptive_options),
     .create = create,
-    .restart = restart,
-    .advance = adaptive_step_advance,
-    .stats = adaptive_step_stats,
-    .save = archive,
-    .load = archive,
 };
 
 static const struct cs_integrator *const integrators[] = {&rkc2};

@@ -315,25 +315,16 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
 static const struct cs_option rows[] = {ADAPTIVE_ROWS(struct adaptive_options, 1e-4)};
 
 static const struct cs_integrator rock4 = {
-    .size = sizeof(struct cs_integrator),
+    ADAPTIVE_METHOD_OF(struct adaptive_options, rows, restart, archive),
     .name = "rock4",
-    .summary =
-        "explicit Chebyshev stages, order 4 with error control: for damping, below 1e-5 m",
+    .summary = "explicit Chebyshev stages, order 4 with error control: for strong damping, at "
+               "errors below 1e-5",
     .source = "Abdulle 2002",
     .order = 4,
     .order_damped = 4,
     .traits = CS_ADAPTIVE,
     .needs = CS_NEED_JVP,
-    .fidelity = CS_FIDELITY_ODE,
-    .options = rows,
-    .n_options = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct adaptive_options),
     .create = create,
-    .restart = restart,
-    .advance = adaptive_step_advance,
-    .stats = adaptive_step_stats,
-    .save = archive,
-    .load = archive,
 };
 
 static const struct cs_integrator *const integrators[] = {&rock4};

@@ -2,7 +2,7 @@
 set terminal pngcairo size 1280,760 font 'sans,13' background '#ffffff'
 set output 'explicit-euler.png'
 set datafile separator ','
-set title "explicit-euler: which steps survive, scenes/drum.json\n0.5 s of motion a cell" font 'sans,16' noenhanced
+set title "explicit-euler: stable time steps, scenes/drum.json\n0.5 s of motion per cell" font 'sans,16' noenhanced
 set xlabel 'damping  [N s/m]'
 set ylabel 'dt  [s]' offset 1,0
 set logscale xy

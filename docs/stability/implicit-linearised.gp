@@ -2,7 +2,7 @@
 set terminal pngcairo size 1280,760 font 'sans,13' background '#ffffff'
 set output 'implicit-linearised.png'
 set datafile separator ','
-set title "implicit-linearised: which steps survive, scenes/hang.json\n0.5 s of motion a cell" font 'sans,16' noenhanced
+set title "implicit-linearised: stable time steps, scenes/hang.json\n0.5 s of motion per cell" font 'sans,16' noenhanced
 set xlabel 'stiffness  [N/m]'
 set ylabel 'dt  [s]' offset 1,0
 set logscale xy

@@ -94,18 +94,23 @@ struct worker {
     pid_t process; /* 0: none */
     struct cs_crash_patience patience;
     double stopping; /* s since it was asked to stop */
+    bool is_late;    /* a call in a task with a limit of time hung: it was killed */
 };
 
-/* Takes over the error of a worker that ended. Death by SIGPROF is the time limit, and no
- * error; any other death is reported as a crash. */
-static void collect(struct shared *shared, uint32_t worker, int end, struct cs_error *error) {
+/* True if a worker died by the limit of time of its task. */
+static bool is_overdue(const struct worker *worker, int end) {
+    return WIFSIGNALED(end) && (worker->is_late || WTERMSIG(end) == SIGPROF);
+}
+
+/* Takes over the error of a worker that ended. A limit of time is none; any other death is
+ * reported as a crash. */
+static void collect(struct shared *shared, uint32_t worker, bool overdue, int end,
+                    struct cs_error *error) {
     if (error->status)
         return;
     if (shared->errors[worker].status)
         *error = shared->errors[worker];
-    else if (WIFSIGNALED(end) && WTERMSIG(end) == SIGPROF)
-        return;
-    else if (end || !shared->done[worker])
+    else if (!overdue && (end || !shared->done[worker]))
         cs_crash_report_print(shared->logs + worker, end, error);
     if (error->status)
         atomic_store(&shared->next, UINT32_MAX / 2);
@@ -127,13 +132,6 @@ static void start(struct cs_process_pool *workers, struct shared *shared, uint32
     _exit(0);
 }
 
-/* True if a worker died by its time limit while tasks are left: it is replaced. */
-static bool wants_another(const struct cs_process_pool *workers, struct shared *shared,
-                          int end) {
-    return WIFSIGNALED(end) && WTERMSIG(end) == SIGPROF &&
-           atomic_load(&shared->next) < workers->n_tasks;
-}
-
 /* Passes a request to stop on, and ends a worker that does not stop or whose method hangs. */
 static void hold_to_limits(const struct cs_process_pool *workers, struct shared *shared,
                            uint32_t number, struct worker *worker) {
@@ -144,7 +142,10 @@ static void hold_to_limits(const struct cs_process_pool *workers, struct shared 
     const bool stops = workers->stop && *workers->stop;
     if (stops)
         kill(worker->process, (worker->stopping += step) > STOP_SECONDS ? SIGKILL : SIGTERM);
-    else if (hung && !shared->errors[number].status) {
+    else if (hung && workers->task_seconds_max > 0) {
+        worker->is_late = true;
+        kill(worker->process, SIGKILL);
+    } else if (hung && !shared->errors[number].status) {
         cs_fail(shared->errors + number, CS_ERR_MODULE,
                 "%s \"%s\" hung %s: it was ended after %g s", hung->kind, hung->name,
                 hung->place, workers->silence_max);
@@ -167,10 +168,11 @@ static void wait_for(struct cs_process_pool *workers, struct shared *shared,
                 hold_to_limits(workers, shared, k, child);
                 continue;
             }
-            collect(shared, k, end, error);
+            const bool overdue = is_overdue(child, end);
+            collect(shared, k, overdue, end, error);
             // one that was ended by its limit of time leaves the other tasks
             child->process = 0;
-            if (wants_another(workers, shared, end))
+            if (overdue && atomic_load(&shared->next) < workers->n_tasks)
                 start(workers, shared, k, child);
             left -= child->process <= 0;
         }

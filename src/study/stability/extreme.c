@@ -116,6 +116,16 @@ static enum cs_status take_refusal(struct cs_extreme_row *row, struct ending *en
     return CS_OK;
 }
 
+/* True if a method without needs follows the scene: one that refuses it says what it needs. */
+static bool is_followed_by_others(struct cs_session_settings settings) {
+    struct cs_session session = {0};
+    struct cs_error ignored = {0};
+    settings.integrator = "symplectic-euler";
+    const bool opens = !cs_session_open_plan(&session, &settings, &ignored);
+    cs_session_close(&session);
+    return opens;
+}
+
 /* Runs one scene with one method: open, perturb, predict, step, judge. */
 static enum cs_status run_row(const struct cs_extreme *extreme,
                               const struct cs_extreme_scene *scene, struct cs_extreme_row *row,
@@ -130,8 +140,11 @@ static enum cs_status run_row(const struct cs_extreme *extreme,
         .run = {.stop = extreme->stop, .budget = extreme->budget}};
     const double begin = cs_clock_wall();
     double dt = 0;
-    if (cs_session_open_plan(&session, &settings, error))
+    if (cs_session_open_plan(&session, &settings, error)) {
+        row->as_expected = is_followed_by_others(settings);
+        row->is_done = true;
         return take_refusal(row, &ending, error);
+    }
     row->expected = cs_extreme_expected(scene, session.method.integrator);
     if (scene->dt > 0 && cs_method_set_dt(&session.method, scene->dt))
         dt = scene->dt;
