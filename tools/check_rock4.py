@@ -1,9 +1,15 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """check_rock4.py - checks the numbers that tools/make_rock4.py derives, degree after degree: the order
 conditions of the step (4) and of its error (3), the damping on the real axis, the half disc |z| < 3, W's
 polynomial, nodes within the step (to 1.6 % beyond); and prints errors on a nonlinear stiff equation."""
+import contextlib
+import io
+import re
+from pathlib import Path
+
 import numpy as np
 
+import make_rock4
 from make_rock4 import DAMPING, DENSITY, LD, ORDER, SERIES, Method, degrees, size, stages
 
 
@@ -51,7 +57,19 @@ def converge(method, s, u):
     print(f"{s:3}: errors " + " ".join(f"{float(np.max(np.abs(y - ends[3]))):.1e}" for y in ends[:3]))
 
 
+def compare():
+    """asserts that the table of the plugin has the numbers that are derived"""
+    made = io.StringIO()
+    with contextlib.redirect_stdout(made):
+        make_rock4.main()
+    table = Path(__file__).parents[1] / "plugins/rock4_table.h"
+    made, shipped = (np.array(re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", text.split("= {")[-1]), float)
+                     for text in (made.getvalue(), table.read_text()))
+    assert made.size == shipped.size > 700 and np.allclose(made, shipped, 1e-12, 1e-15)
+
+
 def main():
+    compare()
     for s, u in degrees():
         method = Method(s, u)
         check(s, u, method)

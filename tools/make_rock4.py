@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """make_rock4.py > plugins/rock4_table.h - the numbers of `rock4`, derived; checked by check_rock4.py.
 
 A step of s stages has the stability polynomial (Abdulle 2002)
