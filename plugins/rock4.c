@@ -27,9 +27,7 @@
  * the last stages and of the error are from tools/make_rock4.py, which says why. */
 #include "rock4_table.h"
 
-#include "adaptive_step.h"
-#include "parallel.h"
-#include "spectral_radius.h"
+#include "chebyshev_step.h"
 
 #include <string.h>
 
@@ -52,16 +50,12 @@ struct grid {
 };
 
 struct rock4 {
-    struct adaptive_step base;
-    struct spectral_radius spectrum;
-    double radius;                     /* 1/s, at the state */
+    struct chebyshev_step common;
     const struct rock4_degree *degree; /* that the stages are of; NULL at first */
     struct stage stages[ROCK4_STAGES];
     double node; /* of the state after them */
     struct grid grid;
-    double *last, *older; /* (6n) D_j and D_(j-1) */
-    double *slope[LAST];  /* (6n) of the last four stages: velocities and accelerations */
-    double *a;            /* (3,n) in m/s2 at a stage, at last at the new state */
+    double *slope[LAST]; /* (6n) of the last four stages: velocities and accelerations */
 };
 
 /* The sine of x in -pi/2..pi/2, by its series: the same bits everywhere. */
@@ -135,102 +129,47 @@ static void set_degree(struct rock4 *self, const struct rock4_degree *degree) {
     self->degree = degree;
 }
 
-/* One row of the state: positions with the velocities as slopes, and velocities. */
-struct row {
-    size_t count;
-    double last, older, rate; /* with h */
-    const double *x0, *v0, *a;
-    double *x, *v;         /* of the stage */
-    double *dx[2], *dv[2]; /* D_j, and D_(j-1), which becomes D_(j+1) */
-};
-
-CS_CLONES static void stage_row(const struct row *row) {
-    const double last = row->last, older = row->older, rate = row->rate;
-    const double *restrict x0 = row->x0, *restrict v0 = row->v0, *restrict a = row->a;
-    const double *restrict dx = row->dx[0], *restrict dv = row->dv[0];
-    double *restrict x = row->x, *restrict v = row->v;
-    double *restrict ex = row->dx[1], *restrict ev = row->dv[1];
-    for (size_t i = 0; i < row->count; i++) {
-        ex[i] = last * dx[i] + older * ex[i] + rate * (v0[i] + dv[i]);
-        ev[i] = last * dv[i] + older * ev[i] + rate * a[i];
-        x[i] = x0[i] + ex[i];
-        v[i] = v0[i] + ev[i];
-    }
-}
-
-/* The arguments of a stage on the host's threads. */
-struct job {
-    const struct rock4 *self;
-    const struct stage *stage;
-    double h;
-    const double *y, *a;
-};
-
-static void stage_part(void *arg, size_t begin, size_t end) {
-    const struct job *job = arg;
-    const struct rock4 *self = job->self;
-    const size_t v = self->base.length / 2 + begin;
-    stage_row(&(struct row){.count = end - begin,
-                            .last = job->stage->last,
-                            .older = 1 - job->stage->last,
-                            .rate = job->h * job->stage->rate,
-                            .x0 = job->y + begin,
-                            .v0 = job->y + v,
-                            .a = job->a + begin,
-                            .x = self->base.next + begin,
-                            .v = self->base.next + v,
-                            .dx = {self->last + begin, self->older + begin},
-                            .dv = {self->last + v, self->older + v}});
-}
-
-/* Evaluates the acceleration at the state in base.next, at t. */
-static void evaluate(const struct rock4 *self, double t, double *a) {
-    const double *x = self->base.next;
-    adaptive_step_evaluate(&self->base, t, x, x + self->base.length / 2, a);
-}
-
 /* The stages of the recurrence; leaves the state after them in base.next, and its difference
- * from y in self->last. */
+ * from y in self->common.last. */
 static void take_stages(struct rock4 *self, double t, double h, const double *y) {
-    memset(self->last, 0, self->base.length * sizeof *self->last);
-    memset(self->older, 0, self->base.length * sizeof *self->older);
+    struct chebyshev_step *common = &self->common;
+    memset(common->last, 0, common->base.length * sizeof *common->last);
+    memset(common->older, 0, common->base.length * sizeof *common->older);
     for (int j = 0; j < self->degree->stages - LAST; j++) {
         const struct stage *stage = self->stages + j;
         if (j > 0)
-            evaluate(self, t + stage->node * h, self->a);
-        struct job job = {self, stage, h, y, j > 0 ? self->a : self->base.slope};
-        parallel_for(self->base.host, self->base.length / 2, stage_part, &job);
-        double *swapped = self->last;
-        self->last = self->older;
-        self->older = swapped;
+            chebyshev_step_evaluate(common, t + stage->node * h, common->a);
+        chebyshev_step_take(
+            common, (struct chebyshev_stage){stage->last, 1 - stage->last, h * stage->rate, 0},
+            y, j > 0 ? common->a : common->base.slope);
     }
 }
 
 /* The last stages; leaves the new state in base.next, and its acceleration in self->a. */
 static void finish(struct rock4 *self, double t, double h, const double *y) {
-    const struct cs_vector_kernels *vector = self->base.host->vector;
-    const size_t half = self->base.length / 2;
+    const struct cs_vector_kernels *vector = self->common.base.host->vector;
+    const size_t half = self->common.base.length / 2;
     const double *factors = self->degree->factors;
-    double *next = self->base.next;
+    double *next = self->common.base.next;
     for (int i = 0; i < LAST; i++) {
         double node = self->node;
         for (int j = 0; j < i; j++)
             node += factors[j];
-        evaluate(self, t + node * h, self->slope[i] + half);
+        chebyshev_step_evaluate(&self->common, t + node * h, self->slope[i] + half);
         memcpy(self->slope[i], next + half, half * sizeof *self->slope[i]);
         // the next row: of the stage that follows, or of the step
         factors += i;
-        vector->linear_sum(2 * half, 1, y, 1, self->last, next);
+        vector->linear_sum(2 * half, 1, y, 1, self->common.last, next);
         for (int j = 0; j <= i; j++)
             vector->linear_sum(2 * half, 1, next, h * factors[j], self->slope[j], next);
     }
-    evaluate(self, t + h, self->a);
+    chebyshev_step_evaluate(&self->common, t + h, self->common.a);
 }
 
 static double error_of(struct rock4 *self, double h, const double *y) {
-    struct adaptive_step *base = &self->base;
+    struct adaptive_step *base = &self->common.base;
     const double *factors = self->degree->error;
-    base->host->vector->linear_sum(base->length, factors[0], self->last, h * factors[1],
+    base->host->vector->linear_sum(base->length, factors[0], self->common.last, h * factors[1],
                                    self->slope[0], base->error);
     for (int j = 1; j < LAST; j++)
         base->host->vector->linear_sum(base->length, 1, base->error, h * factors[1 + j],
@@ -243,7 +182,7 @@ static enum cs_step attempt(struct adaptive_step *base, double t, double h, cons
                             double *error) {
     struct rock4 *self = (struct rock4 *)base;
     int k = 0;
-    while (k < ROCK4_DEGREES - 1 && rock4_degrees[k].reach < h * self->radius)
+    while (k < ROCK4_DEGREES - 1 && rock4_degrees[k].reach < h * self->common.radius)
         k++;
     if (self->degree != rock4_degrees + k)
         set_degree(self, rock4_degrees + k);
@@ -253,28 +192,18 @@ static enum cs_step attempt(struct adaptive_step *base, double t, double h, cons
     return CS_STEP_OK;
 }
 
-/* The last evaluation is at the new state. */
-static bool accept(struct adaptive_step *base) {
-    struct rock4 *self = (struct rock4 *)base;
-    double *old = base->slope;
-    base->slope = self->a;
-    self->a = old;
-    return true;
-}
-
 /* The step that the most stages reach, in s, or that oscillations allow; sets the radius at the
  * state, estimated again after a step that was rejected. With damping that grows as the square
  * of the frequency, as that of springs, the eigenvalues that are not real lie on a circle
  * through 0 of radius omega^2 / (2 delta); the bounds are too large by about one factor. */
 static double limit(struct adaptive_step *base, double t, const double *y) {
     struct rock4 *self = (struct rock4 *)base;
-    struct spectral_radius *spectrum = &self->spectrum;
-    self->radius =
-        spectral_radius_at(spectrum, t, y, y + base->length / 2, base->control.rejected);
-    if (!(self->radius > 0))
+    const struct spectral_radius *spectrum = &self->common.spectrum;
+    chebyshev_step_find_radius(&self->common, t, y);
+    if (!(self->common.radius > 0))
         return HUGE_VAL;
     const double omega = spectrum->omega, damping = 2 * spectrum->delta;
-    const double real = rock4_degrees[ROCK4_DEGREES - 1].reach / self->radius;
+    const double real = rock4_degrees[ROCK4_DEGREES - 1].reach / self->common.radius;
     const double fastest = damping > omega ? omega * omega / damping : omega;
     return real * fastest < OSCILLATION ? real : OSCILLATION / fastest;
 }
@@ -284,38 +213,22 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     if (!self)
         return CS_STEP_FAIL;
     *out = self;
-    self->base.attempt = attempt;
-    self->base.accept = accept;
-    self->base.limit = limit;
-    if (!spectral_radius_init(&self->spectrum, host))
+    self->common.base.attempt = attempt;
+    self->common.base.limit = limit;
+    if (chebyshev_step_init(&self->common, host, options, 4) != CS_STEP_OK)
         return CS_STEP_FAIL;
-    if (adaptive_step_init(&self->base, host, options, 4) != CS_STEP_OK)
-        return CS_STEP_FAIL;
-    double **const arrays[] = {&self->last,     &self->older,    &self->a,       self->slope,
-                               self->slope + 1, self->slope + 2, self->slope + 3};
-    for (int k = 0; k < 7; k++)
-        if (!(*arrays[k] =
-                  (double *)host->alloc(host->ctx, self->base.length * sizeof(double))))
+    for (int k = 0; k < LAST; k++) {
+        self->slope[k] = host->alloc(host->ctx, self->common.base.length * sizeof(double));
+        if (!self->slope[k])
             return CS_STEP_FAIL;
+    }
     return CS_STEP_OK;
-}
-
-static enum cs_step restart(void *object, double t, const double *x, const double *v) {
-    struct rock4 *self = object;
-    spectral_radius_restart(&self->spectrum);
-    return adaptive_step_restart(object, t, x, v);
-}
-
-static enum cs_step archive(void *object, const struct cs_archive *archive) {
-    struct rock4 *self = object;
-    spectral_radius_archive(&self->spectrum, archive);
-    return adaptive_step_archive(object, archive);
 }
 
 static const struct cs_option rows[] = {ADAPTIVE_ROWS(struct adaptive_options, 1e-4)};
 
 static const struct cs_integrator rock4 = {
-    ADAPTIVE_METHOD_OF(struct adaptive_options, rows, restart, archive),
+    CHEBYSHEV_METHOD(rows),
     .name = "rock4",
     .summary = "explicit Chebyshev stages, order 4 with error control: for strong damping, at "
                "errors below 1e-5",

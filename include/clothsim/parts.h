@@ -54,7 +54,7 @@ enum cs_part {
     /* Every force, also those of later hosts. */
     CS_PART_ALL = 0x7fffffff,
 
-    /* All but those: for methods with a model of springs of their own, or a step. */
+    /* All others: for methods that treat those by a model or a step of their own. */
     CS_PART_OUTER = CS_PART_ALL & ~CS_PART_INTERNAL,
     CS_PART_WITHOUT_ENERGY = CS_PART_ALL & ~CS_PART_WITH_ENERGY
 };
