@@ -1,6 +1,6 @@
-/* chebyshev_step.h - what methods with stages along the negative real axis share: D_j, the
- * difference of stage j from the state at the begin, of which two are kept; and the spectral
- * radius, which decides the number of stages. */
+/* chebyshev_step.h - the common part of methods whose stages lie along the negative real axis:
+ * D_j, the difference of stage j from the state at the begin, of which two are kept; and the
+ * spectral radius, which decides the number of stages. */
 #ifndef CHEBYSHEV_STEP_H
 #define CHEBYSHEV_STEP_H
 

@@ -251,7 +251,7 @@ static const char *new_name(const struct cs_table *table, const char *key) {
 static void add_keys(const struct cs_table *table, struct cs_text *out) {
     enum { MOST = 12 };
     for (uint32_t r = 0; r < table->n && table->n <= MOST; r++)
-        cs_text_add(out, "%s%s", r ? ", " : "; the keys here are ", table->rows[r].name);
+        cs_text_add(out, "%s%s", r ? ", " : "; expected one of ", table->rows[r].name);
 }
 
 /* Fails with what the key may stand for. */
