@@ -84,7 +84,7 @@ static const char *const orders[] = {"automatic", "8", NULL};
 static const struct cs_option rows[] = {
     ADAPTIVE_ROWS(struct dop853_options, 1e-6),
     CS_OPTION_CHOICE(struct dop853_options, order, orders, ORDER_AUTOMATIC,
-                     "8, or 5 where contact, dt_max or frames limit steps; 8"),
+                     "automatic: 8, and 5 where contact, dt_max or frames limit steps"),
 };
 
 static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
