@@ -115,12 +115,15 @@ static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
            "no event is a viewpoint_force");
 }
 
+#define PROJECTED_BY_DEFAULT                                                                   \
+    "no contact.law is given, and the integrator or the bodies do not suit a force"
+
 /* Contact by projection, and the test for crossings. Contact by force is a force of the list.
  */
 static void plan_contact(struct cs_plan *plan, const struct cs_scene *scene, bool render) {
     decide(plan, CS_FEATURE_CONTACT,
            scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT,
-           "the scene has colliders",
+           scene->contact.law_is_default ? PROJECTED_BY_DEFAULT : "contact.law is project",
            scene->colliders.n > 0 ? "contact is a force" : "no colliders");
     decide(plan, CS_FEATURE_FRICTION_ANCHORS, cs_scene_friction_sticks(scene),
            "contact.friction_law is stick",
@@ -220,6 +223,18 @@ static const char *what_is_not_smooth(const struct cs_scene *scene) {
         if (plan.forces[k].built && cs_terms[k]->part_bits & CS_PART_EXTERNAL)
             return plan.forces[k].reason;
     return NULL;
+}
+
+void cs_plan_choose_contact_law(struct cs_scene *scene, const struct cs_integrator *method) {
+    const struct cs_body *bodies = cs_scene_bodies(scene);
+    const bool follows = !(method->traits & CS_EXPLICIT_OUTER || method->needs & CS_NEED_CLUSTERS);
+    bool elastic = !isnan(scene->contact.stiffness);
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        elastic |= bodies[b].elastic.present ||
+                   (bodies[b].springs.stretch > 0 && !cs_scene_springs_left_out(bodies + b));
+    if (scene->contact.law_is_default && !cs_scene_has_body_contact(scene) &&
+        !(follows && elastic))
+        scene->contact.law = CS_CONTACT_PROJECT;
 }
 
 enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integrator *method,

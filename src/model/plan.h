@@ -14,6 +14,11 @@
 void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs,
                   bool render);
 
+/* Chooses the law of contact of a scene that names none: force, or project for a method that
+ * cannot follow a force, and for bodies without springs or membranes to derive its stiffness
+ * from. Surfaces of bodies and meshes always meet by force. */
+void cs_plan_choose_contact_law(struct cs_scene *scene, const struct cs_integrator *method);
+
 /* Checks that a method can follow the scene. Shape matching is no force law, so it needs a
  * method of its own, and that method needs shape matching; contact by force is too stiff for
  * methods that treat it explicitly. Returns CS_ERR_SCENE; the message begins with the JSON

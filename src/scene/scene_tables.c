@@ -236,10 +236,10 @@ static const char *const contact_names[] = {"project", "force", NULL};
 static const char *const inside_names[] = {"refuse", "move-out", "allow", NULL};
 static const char *const friction_names[] = {"smooth", "stick", NULL};
 static const struct cs_option contact_rows[] = {
-    CHOICE(struct cs_contact_keys, law, contact_names, CS_CONTACT_PROJECT,
-           "project: after each step particles inside a collider are moved to its surface; "
+    CHOICE(struct cs_contact_keys, law, contact_names, CS_CONTACT_FORCE,
            "force: a force between surfaces in contact range, part of the equation of motion; "
-           "the default where bodies meet or a collider is a mesh"),
+           "project: after each step particles inside a collider are moved to its surface, the "
+           "default of methods that cannot follow the force"),
     CHOICE(
         struct cs_contact_keys, start, inside_names, CS_CONTACT_START_REFUSE,
         "a particle that starts inside a collider, or, for force, bodies that start with more "

@@ -128,11 +128,13 @@ static enum cs_status choose_method(struct cs_session *session, struct cs_error 
     return error->status;
 }
 
-/* Checks the requirements of the scene that only some methods meet. */
-static enum cs_status check_method(const struct cs_session *session, struct cs_error *error) {
+/* Chooses the law of contact by the method, and checks the requirements of the scene that only
+ * some methods meet. */
+static enum cs_status check_method(struct cs_session *session, struct cs_error *error) {
     const struct cs_integrator *method = session->method.integrator;
     const bool render = session->settings.render;
     struct cs_error said = {0};
+    cs_plan_choose_contact_law(&session->scene, method);
     if (!session->settings.method && cs_plan_check(&session->scene, method, &said))
         return refuse(session, said.status, said.message, error);
     if (render && session->scene.render.look == CS_LOOK_GOALS && !cs_run_has_goals(method))

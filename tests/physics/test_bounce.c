@@ -13,7 +13,8 @@
 #define SCENE                                                                                  \
     "{\"bodies\": [{\"cloth\": {\"grid\": [%d, %d], \"start\": \"flat\", \"velocity\": [%g, "  \
     "0, 0], \"place\": {\"translate\": [0, 0.8, 0]}}, \"mass\": {\"total\": 1}, %s}],"         \
-    " \"colliders\": [{\"floor\": {}, \"absorption\": %g, \"friction\": %g}],"                 \
+    " \"contact\": \"project\", \"colliders\": [{\"floor\": {}, \"absorption\": %g, "          \
+    "\"friction\": %g}],"                                                                      \
     " \"time\": {\"fps\": 1000}}"
 
 /* a particle alone, and bodies of springs and of shape matching */

@@ -162,7 +162,8 @@ TEST(corrections_are_put_down_apart) {
         " {\"particle\": 0.05}, \"springs\": {\"stretch\": 20, \"damping\": 0.05},"
         " \"strain_limit\": 1.05, \"pins\": [\"top-left\"]}, {\"cloth\": {\"grid\": [3, 3],"
         " \"size\": [0.1, 0.1], \"place\": {\"translate\": [2, 0, 0]}}, \"mass\":"
-        " {\"particle\": 0.01}, \"springs\": {\"stretch\": 1}}], \"colliders\":"
+        " {\"particle\": 0.01}, \"springs\": {\"stretch\": 1}}], \"contact\": \"project\", "
+        "\"colliders\":"
         " [{\"floor\": {\"height\": -0.7}}], \"forces\": {\"velocity_loss\": 0.0001},"
         " \"time\": {\"fps\": 60}}",
         30);

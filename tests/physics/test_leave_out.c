@@ -14,9 +14,10 @@
 #define WIND                                                                                   \
     ", \"forces\": {\"drag\": 0.01, \"wind\": {\"direction\": [0, 0, 1], \"strength\": 2}}"
 #define COLLIDERS_THAT(keys)                                                                   \
-    ", \"colliders\": [{\"floor\": {\"height\": -0.45}, \"friction\": 0.3" keys "},"           \
+    ", \"colliders\": [{\"floor\": {\"height\": -0.45}, "                                      \
+    "\"friction\": 0.3" keys "},"                                                              \
     " {\"sphere\": {\"centre\": [0, 0, -0.3], \"radius\": 0.25}" keys "}], \"contact\": "      \
-    "{\"start\": \"move-out\"}"
+    "{\"law\": \"project\", \"start\": \"move-out\"}"
 #define COLLIDERS COLLIDERS_THAT("")
 /* off which particles bounce: none is held by friction, and left out by contact */
 #define TRAMPOLINES COLLIDERS_THAT(", \"absorption\": -0.5")

@@ -8,8 +8,9 @@
     " \"place\": {\"translate\": [0.1, 0.7, 0.3]}},"                                           \
     " \"mass\": {\"particle\": 0.1}, \"springs\": {\"stretch\": 40, \"damping\": 0.05},"       \
     " \"strain_limit\": 1.2, \"pins\": [\"top-left\", \"right\", 25]}],"                       \
-    " \"colliders\": [{\"sphere\": {\"centre\": [0.1, 0.7, 0.1], \"radius\": 0.25},"           \
-    " \"friction\": 0.3}], \"contact\": {\"start\": \"move-out\"},"                            \
+    " \"colliders\": [{\"sphere\": {\"centre\": [0.1, 0.7, 0.1], "                             \
+    "\"radius\": 0.25},"                                                                       \
+    " \"friction\": 0.3}], \"contact\": {\"law\": \"project\", \"start\": \"move-out\"},"      \
     " \"forces\": {\"drag\": 0.02, \"velocity_loss\": 0.001,"                                  \
     " \"wind\": {\"direction\": [1, 0, 1], \"strength\": 0.5, \"strength_unit\": \"N\"}}}"
 

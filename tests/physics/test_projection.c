@@ -18,8 +18,8 @@
     "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5], \"start\": \"flat\", \"size\": [0.3, 0.3],"  \
     " \"place\": {\"rotate\": [0, 0, %.17g, %.17g]}}, \"mass\": {\"total\": 1},"               \
     " \"springs\": {\"stretch\": 10, \"shear\": 5, \"bend\": 1, \"damping\": 0.01}}],"         \
-    " \"colliders\": [{\"plane\": {\"normal\": [%.17g, %.17g, 0]}, \"friction\": %g}]" more    \
-    "}"
+    " \"contact\": \"project\", \"colliders\": [{\"plane\": {\"normal\": [%.17g, %.17g, 0]}, " \
+    "\"friction\": %g}]" more "}"
 #define SLOPE ON_SLOPE("")
 #define LOOSENED                                                                               \
     ON_SLOPE(", \"time\": {\"fps\": 120}, \"events\": [{\"from\": 0, \"to\": 1, \"ramp\": "    \
@@ -83,7 +83,8 @@ TEST(block_above_it_slides) {
     "0.3], \"place\": {\"rotate\": [0, 0, %.17g, %.17g], \"translate\": [%.17g, %.17g, 0]}}, " \
     "\"network\": {\"placement\": \"opposed-normals\", \"springs\": 5, \"surface\": 4, "       \
     "\"seed\": 7}, \"mass\": {\"total\": 1}, \"springs\": {\"stretch\": 400, \"bend\": 0, "    \
-    "\"damping\": 0.2}, \"pins\": [%s]}], \"colliders\": [{\"plane\": {\"normal\": [%.17g, "   \
+    "\"damping\": 0.2}, \"pins\": [%s]}], \"contact\": \"project\", \"colliders\": "           \
+    "[{\"plane\": {\"normal\": [%.17g, "                                                       \
     "%.17g, 0]}, \"friction\": %g}]}"
 
 static void open_pinned_box(struct fixture *box, const char *method, const char *pins) {
@@ -225,7 +226,8 @@ TEST(block_slides_when_friction_lets_go) {
     "0.6], \"place\": {\"translate\": [0, 0.6, 0]}}, \"network\": {\"placement\": "            \
     "\"opposed-normals\", \"springs\": 5, \"surface\": 4, \"seed\": 7}, \"mass\": {\"total\":" \
     " 1}, \"springs\": {\"stretch\": 400, \"bend\": 0, \"damping\": %g}}],"                    \
-    " \"colliders\": [{\"floor\": {\"height\": 0}, \"absorption\": %g, \"friction\": 0.2}],"   \
+    " \"contact\": \"project\", \"colliders\": [{\"floor\": {\"height\": 0}, \"absorption\": " \
+    "%g, \"friction\": 0.2}],"                                                                 \
     " \"time\": {\"fps\": %d}}"
 
 static int detail(void) {

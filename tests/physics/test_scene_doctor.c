@@ -12,9 +12,10 @@
 #define BODY(cloth, more)                                                                      \
     "\"bodies\": [{\"cloth\": {\"grid\": [8, 8], \"size\": [0.5, 0.5]" cloth                   \
     "}, \"mass\": {\"total\": 0.1}" more "}]"
-#define FLAT  ", \"start\": \"flat\""
-#define HIGH  ", \"start\": \"flat\", \"place\": {\"translate\": [0, 1, 0]}"
-#define FLOOR ", \"colliders\": [{\"floor\": {\"height\": 0}}]"
+#define FLAT    ", \"start\": \"flat\""
+#define HIGH    ", \"start\": \"flat\", \"place\": {\"translate\": [0, 1, 0]}"
+#define PROJECT ", \"contact\": \"project\""
+#define FLOOR   ", \"colliders\": [{\"floor\": {\"height\": 0}}]"
 
 /* A scene, what is said of it, and an override after which nothing of the kind is said. */
 static const struct {
@@ -35,7 +36,8 @@ static const struct {
      "contact.stiffness: at 1 N/m a contact of bodies[0] with colliders[0]",
      "contact.stiffness", "1e6", true},
     {BODY(HIGH,
-          "") ", \"colliders\": [{\"sphere\": {\"centre\": [0, 0, 0], \"radius\": 0.01}}]",
+          "") ", \"contact\": \"project\", \"colliders\": [{\"sphere\": {\"centre\": [0, 0, "
+              "0], \"radius\": 0.01}}]",
      "colliders[0] is 0.02 m wide, particles are 0.0714 m apart", "contact", "force", false},
     {BODY(HIGH, "") ", \"colliders\": [{\"floor\": {\"height\": 0}, \"thickness\": 0.001}], "
                     "\"contact\": \"force\"",
@@ -66,17 +68,17 @@ static const struct {
      "bodies[0].self_contact", "true", false},
     {BODY("", ", \"friction\": 0.3"), "bodies[0].friction has no effect",
      "bodies[0].self_contact", "true", false},
-    {BODY(HIGH, "") FLOOR ", \"contact\": {\"damping\": 0.001}",
+    {BODY(HIGH, "") FLOOR ", \"contact\": {\"law\": \"project\", \"damping\": 0.001}",
      "contact.damping has no effect", "contact.law", "force", false},
-    {BODY(HIGH, "") FLOOR ", \"contact\": {\"stiffness\": 1000}",
+    {BODY(HIGH, "") FLOOR ", \"contact\": {\"law\": \"project\", \"stiffness\": 1000}",
      "contact.stiffness has no effect", "contact.law", "force", false},
     {BODY(HIGH, "") ", \"colliders\": [{\"floor\": {\"height\": 0}, \"absorption\": 0.5}], "
                     "\"contact\": \"force\"",
      "colliders[0].absorption has no effect", "contact", "project", false},
     {BODY("", "") ", \"pairs\": \"all\"", "pairs.among has no effect", "pairs", "listed",
      false},
-    {BODY("", "") ", \"contact\": \"force\"", "contact.law has no effect",
-     "bodies[0].self_contact", "true", false},
+    {BODY(HIGH, "") ", \"contact\": \"project\"", "contact.law has no effect", "colliders",
+     "[{\"floor\": {}}]", false},
     {BODY(HIGH, "") FLOOR ", \"contact\": {\"law\": \"force\", \"friction_speed\": 0.01}",
      "contact.friction_speed has no effect", "colliders[0].friction", "0.3", false},
     {BODY("", ", \"strain_limit_sweeps\": 20"), "bodies[0].strain_limit_sweeps has no effect",
@@ -159,14 +161,14 @@ TEST(idle_keys_change_no_bit) {
     static const struct {
         const char *scene, *path, *value;
     } idle[] = {
-        {BODY(HIGH, "") FLOOR, "contact.damping", "0.01"},
-        {BODY(HIGH, "") FLOOR, "contact.stiffness", "12345"},
+        {BODY(HIGH, "") FLOOR PROJECT, "contact.damping", "0.01"},
+        {BODY(HIGH, "") FLOOR PROJECT, "contact.stiffness", "12345"},
         {BODY(HIGH, "") FLOOR, "bodies[0].thickness", "0.1"},
         {BODY(HIGH, "") FLOOR ", \"contact\": \"force\"", "colliders[0].absorption", "0.1"},
         {BODY(HIGH, "") FLOOR ", \"contact\": \"force\"", "contact.friction_speed", "0.1"},
         {BODY(HIGH, "") FLOOR, "bodies[0].friction", "0.9"},
         {BODY(HIGH, "") FLOOR, "pairs", "all"},
-        {BODY(HIGH, ""), "contact.law", "force"},
+        {BODY(HIGH, ""), "contact.law", "project"},
         {BODY(HIGH, ""), "forces.drag_unit", "Pa s/m"},
     };
     for (size_t k = 0; k < LENGTH(idle); k++) {

@@ -13,7 +13,8 @@
 TEST(alpha_0_is_symplectic_euler) {
     static const char scene[] =
         "{\"bodies\": [{\"mesh\": {\"shape\": \"torus\", \"detail\": 5, \"velocity\": [1, 2, "
-        "0], \"spin\": [1, 2, 3]}, \"mass\": {\"total\": 1}, %s}], \"colliders\": [{\"floor\": "
+        "0], \"spin\": [1, 2, 3]}, \"mass\": {\"total\": 1}, %s}], \"contact\": \"project\", "
+        "\"colliders\": [{\"floor\": "
         "{\"height\": -0.6}, \"absorption\": -0.5, \"friction\": 0.2}], \"forces\": {\"drag\": "
         "0.001}}";
     static const char *const bodies[2][2] = {

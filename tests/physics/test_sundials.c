@@ -17,7 +17,8 @@
     "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6], \"start\": \"flat\","                        \
     " \"velocity\": [0, -2, 0]}, \"mass\": {\"total\": 0.2},"                                  \
     " \"springs\": {\"damping\": 0.01}}],"                                                     \
-    " \"colliders\": [{\"floor\": {\"height\": -0.5}, \"friction\": 0.3},"                     \
+    " \"contact\": \"project\", \"colliders\": [{\"floor\": {\"height\": -0.5}, "              \
+    "\"friction\": 0.3},"                                                                      \
     " {\"sphere\": {\"centre\": [0.03, -0.3, 0.02], \"radius\": 0.25}}]}"
 
 static const char *const methods[] = {"cvode-bdf", "cvode-adams",     "ark-erk",

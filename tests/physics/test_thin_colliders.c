@@ -13,7 +13,7 @@
     " \"place\": {\"translate\": [0, %.17g, 0]}, \"velocity\": [0, %.17g, 0]},"                \
     " \"mass\": {\"areal_density\": 0.2}, \"springs\": {\"damping\": 0.02}}]"
 #define BOX(centre, size) "{\"box\": {\"centre\": [" centre "], \"size\": [" size "]}}"
-#define FALL(collider)    "{" SHEET ", \"colliders\": [" collider "]}"
+#define FALL(collider)    "{" SHEET ", \"contact\": \"project\", \"colliders\": [" collider "]}"
 
 /* lowest height of rows and columns [begin, end) */
 static double lowest(const struct fixture *sheet, size_t begin, size_t end) {
@@ -121,7 +121,7 @@ TEST(moving_plate_carries_a_sheet) {
         struct fixture sheet;
         fixture_open(
             &sheet, method,
-            "{" SHEET ", \"colliders\": [" BOX(
+            "{" SHEET ", \"contact\": \"project\", \"colliders\": [" BOX(
                 "0, -0.5, 0", "0.3, 0.02, 0.3") "], \"forces\": {\"gravity\": [0, 0, 0]}, "
                                                 "\"events\": [{\"from\": 0, "
                                                 "\"to\": 0.2, \"move\": {\"collider\": 0, "
@@ -144,7 +144,7 @@ TEST(turning_blade_sweeps_a_sheet) {
         const char *method = methods.list[k].text;
         struct fixture sheet;
         fixture_open(&sheet, method,
-                     "{" SHEET ", \"colliders\": [" BOX(
+                     "{" SHEET ", \"contact\": \"project\", \"colliders\": [" BOX(
                          "0.5, 0, 0", "2, 0.02, 0.8") "], \"forces\": {\"gravity\": [0, 0, "
                                                       "0]}, \"events\": [{\"from\": 0, "
                                                       "\"to\": 1, \"move\": {\"collider\": 0, "
@@ -176,11 +176,11 @@ TEST(sheet_inside_stays_on_the_nearest_side) {
         for (int side = 0; side < 2; side++) {
             struct fixture sheet;
             struct fixture_log log;
-            fixture_open(
-                &sheet, methods.list[k].text,
-                "{" SHEET ", \"colliders\": [" BOX(
-                    "0, 0, 0", "0.6, 0.02, 0.6") "], \"contact\": {\"start\": \"allow\"}}",
-                heights[side], 0.0);
+            fixture_open(&sheet, methods.list[k].text,
+                         "{" SHEET ", \"colliders\": [" BOX(
+                             "0, 0, 0", "0.6, 0.02, 0.6") "], \"contact\": {\"law\": "
+                                                          "\"project\", \"start\": \"allow\"}}",
+                         heights[side], 0.0);
             fixture_start_logged(&sheet, &log);
             fixture_frames(&sheet, 10);
             const double y = lowest(&sheet, 0, 16);

@@ -24,7 +24,8 @@
     " \"pins\": [3, 500]}"
 #define SCENE                                                                                  \
     "{\"bodies\": [" BODIES "], \"colliders\": [{\"floor\": {\"height\": -1}}, {\"sphere\":"   \
-    " {\"centre\": [0.3, -0.2, 0.1], \"radius\": 0.15}}], \"contact\": {\"start\": "           \
+    " {\"centre\": [0.3, -0.2, 0.1], \"radius\": 0.15}}], \"contact\": {\"law\": "             \
+    "\"project\", \"start\": "                                                                 \
     "\"move-out\"}, \"forces\": {\"drag\": 0.1,"                                               \
     " \"drag_unit\": \"Pa s/m\", \"velocity_loss\": 0.001, \"wind\": {\"direction\":"          \
     " [0.3, 0, 1], \"strength\": 2}}, \"time\": {\"fps\": 200}, \"events\": [{\"from\":"       \

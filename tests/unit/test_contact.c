@@ -8,7 +8,8 @@
 
 #define SCENE                                                                                  \
     "{\"bodies\": [{\"cloth\": {\"grid\": [1, 1]}, \"mass\": {\"particle\": 2}, \"pins\": "    \
-    "[%s]}], \"colliders\": [%s], \"forces\": {\"gravity\": [0, 0, 0]}}"
+    "[%s]}], \"contact\": \"project\", \"colliders\": [%s], \"forces\": {\"gravity\": [0, 0, " \
+    "0]}}"
 #define FLOOR(more) "{\"floor\": {\"height\": 0.5}" more "}"
 
 /* a commit after a step of dt that began at `last` (6); without gravity and springs no energy

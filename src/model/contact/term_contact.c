@@ -149,13 +149,12 @@ static CS_CLONES void contact_rows_add_bounds(const struct cs_posed_collider_law
 
 /* A scene with contact by projection has no row in the plan; meshes have contact by pairs. */
 static struct cs_plan_row plan(const struct cs_scene *scene) {
-    const bool asked = scene->contact.law == CS_CONTACT_FORCE,
+    const bool asked = scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n,
                built = cs_rebounds_possible(scene);
     return (struct cs_plan_row){.built = built,
-                                .reason = !asked               ? NULL
-                                          : built              ? "contact.law is force"
-                                          : scene->colliders.n ? "every collider is a mesh"
-                                                               : "no colliders"};
+                                .reason = !asked  ? NULL
+                                          : built ? "contact.law is force"
+                                                  : "every collider is a mesh"};
 }
 
 static const char *const ramps[] = {"colliders.friction", NULL};

@@ -214,13 +214,11 @@ static enum cs_status read_integrator(struct cs_json_context *context,
     return context->error->status;
 }
 
-/* Chooses the law where the scene names none: surfaces that meet are kept apart by a force. */
-static void choose_contact_law(const struct cs_json *root, struct cs_scene *scene) {
+/* Finds out whether the scene leaves the law of contact to the method. */
+static void find_contact_law(const struct cs_json *root, struct cs_scene *scene) {
     const struct cs_json *contact = cs_json_find(root, "contact");
-    const bool is_named =
-        contact && (cs_json_kind_of(contact) != CS_JSON_OBJECT || cs_json_find(contact, "law"));
-    if (!is_named && cs_scene_has_body_contact(scene))
-        scene->contact.law = CS_CONTACT_FORCE;
+    scene->contact.law_is_default = !contact || (cs_json_kind_of(contact) == CS_JSON_OBJECT &&
+                                                 !cs_json_find(contact, "law"));
 }
 
 /* Chooses the camera where the scene says of none where it stands. */
@@ -271,7 +269,7 @@ enum cs_status cs_scene_read_text(struct cs_scene *scene, const char *path, cons
         (status = read_integrator(&context, root, scene)) ||
         (status = cs_scene_read_meshes(&context, root, scene)))
         goto done;
-    choose_contact_law(root, scene);
+    find_contact_law(root, scene);
     choose_camera(root, scene);
     status = check(&context, root, scene);
 done:
