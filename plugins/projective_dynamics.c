@@ -12,6 +12,7 @@
  */
 #include "local_global.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -20,6 +21,9 @@ enum { PAIRS = 5, SHORTENINGS = 12 };
 
 /* A step may overshoot to this fraction of the slope that it began with. */
 #define OVERSHOOT 0.9
+
+/* Times its rounding that a change of G' must exceed to tell a curvature. */
+#define CLEAR_OF_ROUNDING 100
 
 static const struct cs_option rows[] = {
     CS_OPTION(struct local_global_options, dt, "s", 0, 0, 10,
@@ -33,6 +37,7 @@ struct quasi_newton {
     double *residual, *next; /* (3,n) -G' in kg m at x, and after the step */
     double *u;               /* (3,n) x - y in m: without the rounding of x */
     double *direction;       /* (3,n) d in m */
+    double mass;             /* kg, of the free particles */
     double *s[PAIRS], *z[PAIRS], curvature[PAIRS]; /* s_j.z_j */
     uint32_t n_pairs, newest;
 };
@@ -107,26 +112,42 @@ static double move(struct quasi_newton *self, double slope, double *x) {
     return length;
 }
 
-/* s.M s of the latest step s. */
-static double inertia(const struct quasi_newton *self, const double *s) {
-    const struct cs_view *view = self->base.loop.host->view;
+/* Sum of w_i a_i^2 over the particles' vectors a (3,n). */
+static double weighted_square(size_t n, const double *w, const double *a) {
     double sum = 0;
     for (size_t c = 0; c < 3; c++)
-        for (size_t i = 0; i < view->n; i++)
-            sum += view->mass[i] * s[c * view->n + i] * s[c * view->n + i];
+        for (size_t i = 0; i < n; i++)
+            sum += w[i] * a[c * n + i] * a[c * n + i];
     return sum;
 }
 
-/* Remembers the step just taken, unless its curvature is below a tenth of what masses alone
- * give: no minimum, or rounding, whose directions would be far too long. */
-static void remember(struct quasi_newton *self, double length) {
+/* True if a residual r, or a change of it, is no larger than `times` its rounding, as in
+ * newton.h: |r|^2 = sum r_i^2 / m_i against 4 eps sqrt(m) ((h^2 omega^2 + 2 h delta) max|x| +
+ * max|u|). */
+static bool is_rounding(const struct quasi_newton *self, double times, const double *x,
+                        const double *r) {
     const struct cs_host *host = self->base.loop.host;
-    const size_t values = 3 * (size_t)host->view->n;
+    const struct cs_view *view = host->view;
+    const size_t values = 3 * (size_t)view->n;
+    const double h = self->base.matrix.h,
+                 rate = h * (h * view->omega * view->omega + 2 * view->delta),
+                 length = rate * host->vector->max_norm(values, x) +
+                          host->vector->max_norm(values, self->u),
+                 floor = 4 * DBL_EPSILON * times * length;
+    return weighted_square(view->n, view->inv_mass, r) <= floor * floor * self->mass;
+}
+
+/* Remembers the step just taken, unless its curvature is below a tenth of what masses alone
+ * give, or its change of G' is rounding: directions would be far too long. */
+static void remember(struct quasi_newton *self, double length, const double *x) {
+    const struct cs_host *host = self->base.loop.host;
+    const size_t n = host->view->n, values = 3 * n;
     const uint32_t k = (self->newest + 1) % PAIRS;
     host->vector->linear_sum(values, length, self->direction, 0, self->direction, self->s[k]);
     host->vector->linear_sum(values, 1, self->residual, -1, self->next, self->z[k]);
     self->curvature[k] = dot(self, self->s[k], self->z[k]);
-    if (!(self->curvature[k] > 0.1 * inertia(self, self->s[k])))
+    if (!(self->curvature[k] > 0.1 * weighted_square(n, host->view->mass, self->s[k])) ||
+        is_rounding(self, CLEAR_OF_ROUNDING, x, self->z[k]))
         return;
     self->newest = k;
     self->n_pairs += self->n_pairs < PAIRS;
@@ -141,15 +162,17 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
     if (status == CS_STEP_OK)
         find_residual(self, x, self->residual);
     for (int64_t i = 0; i < base->iterations && status == CS_STEP_OK; i++) {
+        if (is_rounding(self, 1, x, self->residual))
+            break;
         status = find_direction(self);
         const double slope = dot(self, self->direction, self->residual);
         if (!(slope > 0) && self->n_pairs == 0)
-            break; // rounding is left, or numbers that are not finite
+            break; // numbers that are not finite
         if (!(slope > 0)) {
             self->n_pairs = 0;
             continue;
         }
-        remember(self, move(self, slope, x));
+        remember(self, move(self, slope, x), x);
         double *kept = self->residual;
         self->residual = self->next;
         self->next = kept;
@@ -176,6 +199,8 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         !(self->u = host->alloc(host->ctx, bytes)) ||
         !(self->direction = host->alloc(host->ctx, bytes)))
         return CS_STEP_FAIL;
+    for (size_t i = 0; i < host->view->n; i++)
+        self->mass += host->view->inv_mass[i] > 0 ? host->view->mass[i] : 0;
     return CS_STEP_OK;
 }
 
