@@ -32,7 +32,7 @@ static const struct cs_option rows[] = {
     CS_OPTION(struct gauss_options, rtol, "", 1e-10, 1e-14, 0.1,
               "residual of a stage and change of the last sweep, relative to the impulse"),
     CS_OPTION(struct gauss_options, iterations, "", 50, 1, 1000,
-              "maximum Newton iterations, and sweeps; then the step is halved, up to 8 times"),
+              "maximum Newton iterations, and sweeps; then the step is halved, up to 12 times"),
     CS_OPTION(struct gauss_options, order, "", 4, 4, 8, "4, 6 or 8: twice the stages"),
 };
 

@@ -50,7 +50,7 @@
         CS_OPTION(                                                                             \
             struct_, iterations, "", 30, 1, 1000,                                              \
             "maximum Newton iterations; then friction of contact is lagged, or the step "      \
-            "is halved, up to 8 times")
+            "is halved, up to 12 times")
 
 /* The equation of one stage, in the symbols above; the vectors are borrowed. */
 struct newton_stage {

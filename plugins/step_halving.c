@@ -87,8 +87,7 @@ struct step_halving *step_halving_create(const struct cs_host *host, size_t byte
     if (fixed_step_guard(&self->fixed, NULL) != CS_STEP_OK)
         return NULL;
     self->fixed.free_motion = 1;
-    self->fixed.max_depth =
-        self->fixed.saved_state ? STEP_HALVINGS_IN_CONTACT : STEP_HALVINGS_MAX;
+    self->fixed.max_depth = STEP_HALVINGS_MAX;
     return self;
 }
 
