@@ -225,7 +225,8 @@ static const struct cs_option collider_rows[] = {
          "by e (restitution)"),
     REAL(struct cs_collider, thickness, "m", 0, 0, BIG,
          "offset from the surface; for contact by force its range, 0: 0.4 of the shortest "
-         "spring, or for a mesh collider the thickness of the body"),
+         "spring, less where a particle starts closer, or for a mesh collider the thickness of "
+         "the body"),
     VECTOR(struct cs_collider, colour, 3, "", grey, 0, 1, "linear RGB"),
     BOOL(struct cs_collider, visible, 1, "draw it"),
 };

@@ -9,6 +9,9 @@
 
 #include <math.h>
 
+/* Least fraction to which a range shrinks to fit the start; chosen by trial. */
+#define SHRINK_MIN 0.02
+
 /* N/m, softest stretch spring, or membrane along its threads; HUGE_VAL without one */
 static double softest(const struct cs_system *system) {
     const struct cs_springs *springs = &system->springs;
@@ -45,6 +48,28 @@ static double energy_of(const struct cs_system *system, uint32_t collider) {
     return energy;
 }
 
+/* m, the range that nobody gave: RANGE_FRACTION of the shortest spring, or the distance at which
+ * a free particle starts, down to SHRINK_MIN of it: a body may start closer than its coarse
+ * grid would have it. */
+static double default_range(const struct cs_system *system, uint32_t collider,
+                            double shortest) {
+    const size_t n = system->view.n;
+    const double *x = system->state;
+    const double whole = CS_RANGE_FRACTION * shortest, least = SHRINK_MIN * whole;
+    struct cs_posed_collider obstacle;
+    double range = whole, normal[3];
+    cs_posed_collider_at(system, collider, 0, &obstacle);
+    for (size_t i = 0; i < n; i++) {
+        const double p[3] = {x[i], x[n + i], x[2 * n + i]};
+        if (system->inv_mass[i] <= 0 || !cs_posed_collider_is_near(&obstacle, range, p))
+            continue;
+        // one that starts inside or touches is refused, or moved out, by the whole range
+        const double distance = cs_posed_collider_distance(&obstacle, p, normal);
+        range = distance > least ? fmin(range, distance) : range;
+    }
+    return range;
+}
+
 enum cs_status cs_collider_params_table_build(struct cs_system *system,
                                               struct cs_error *error) {
     const struct cs_scene *scene = system->scene;
@@ -56,7 +81,7 @@ enum cs_status cs_collider_params_table_build(struct cs_system *system,
         cs_arena_alloc_array(&system->arena, scene->colliders.n, sizeof *pairings, error);
     for (uint32_t c = 0; pairings && c < scene->colliders.n; c++) {
         const double thickness = cs_scene_colliders(scene)[c].thickness;
-        pairings[c].range = thickness > 0 ? thickness : CS_RANGE_FRACTION * shortest;
+        pairings[c].range = thickness > 0 ? thickness : default_range(system, c, shortest);
         // the stiffness divides by it
         if (!(pairings[c].range > 0))
             return cs_fail(
