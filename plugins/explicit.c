@@ -27,15 +27,14 @@ struct lossy_options {
     double dt, loss;
 };
 
-#define DT_HELP "maximum step; 0: 0.9 of the stability limit, estimated at rest"
-#define DT_MAX  10
+#define DT_HELP "0.9 of the stability limit, estimated at rest"
 
 static const struct cs_option explicit_rows[] = {
-    CS_OPTION(struct explicit_options, dt, "s", 0, 0, DT_MAX, DT_HELP),
+    FIXED_STEP_DT(struct explicit_options, DT_HELP),
 };
 
 static const struct cs_option lossy_rows[] = {
-    CS_OPTION(struct lossy_options, dt, "s", 0, 0, DT_MAX, DT_HELP),
+    FIXED_STEP_DT(struct lossy_options, DT_HELP),
     CS_OPTION(struct lossy_options, loss, "", 0, 0, 0.999,
               "fraction of the motion lost in every step; 0.01 in the flag thesis; any value "
               "above 0 is a drag that grows as dt shrinks"),
@@ -87,7 +86,7 @@ static double rk4_limit(const struct fixed_step *loop, double w, double delta) {
     return RK4_REACH / (w > r ? w : r);
 }
 
-/* The automatic dt: 0.9 of the limit at rest. If nothing limits it, one step per advance; if no
+/* The automatic dt: 0.9 of the limit at rest. If nothing limits it, by error; if no
  * step is stable, that of symplectic Euler. Noted in the report. */
 static void choose_dt(struct fixed_step *loop, double limit) {
     const struct cs_host *host = loop->host;
@@ -97,7 +96,7 @@ static void choose_dt(struct fixed_step *loop, double limit) {
     if (view->omega <= 0 && view->delta <= 0) {
         loop->dt = HUGE_VAL;
         host->note(host->ctx,
-                   "dt automatic: one step per frame (no springs or dampers limit it)");
+                   "dt automatic: by error (no springs or dampers limit it)");
     } else if (limit <= 0) {
         loop->dt = 0.9 * symplectic_euler_limit(loop, view->omega, view->delta);
         host->note(host->ctx,

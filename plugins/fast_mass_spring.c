@@ -20,8 +20,7 @@
 extern const struct cs_integrator projective_dynamics;
 
 static const struct cs_option rows[] = {
-    CS_OPTION(struct local_global_options, dt, "s", 0, 0, 10,
-              "maximum step; 0: one step per frame"),
+    FIXED_STEP_DT_BY_ERROR(struct local_global_options),
     CS_OPTION(struct local_global_options, iterations, "", 10, 1, 1e6,
               "iterations per step, each with a local and a global solve"),
 };

@@ -3,12 +3,13 @@
  *
  * The decisions of one step, in order:
  * 1. Choose the length of the part: as the part before; twice as long if that is aligned,
- *    stable and looks admissible; halved until it is not longer than 0.9 of the stability
+ *    stable, accurate and looks admissible; halved until it is not longer than 0.9 of the stability
  *    limit at the state, and, with free_motion, until the host admits the motion without
  *    forces. After a refusal step 1 is left out, because the state is the same.
  * 2. More than max_depth halvings: the run ends with the reason of the last refusal.
- * 3. Take the part. If the host does not admit the displacement, or the part is longer than
- *    0.9 of the stability limit at its end, restore the state, halve, and go to 2.
+ * 3. Take the part. If the host does not admit the displacement, the part is longer than 0.9 of
+ *    the stability limit at its end, or its error is too large, restore the state, halve, and
+ *    go to 2.
  * 4. Commit the part. If the commit changed the state, the method's history is void.
  * 5. Continue until all parts are done.
  *
@@ -27,6 +28,9 @@
 
 /* Halvings of a step before the run fails: parts of 1/65536. Chosen by trial. */
 enum { MOST_CUTS = 16 };
+/* Halvings of an advance for the sake of the error alone: to a thousandth. A method whose
+ * iteration leaves noise in its velocities is taken as it is then. */
+enum { ERROR_CUTS_MAX = 10 };
 
 /* Finds 0.9 of the longest stable step at a state, in s: the margin of the automatic dt.
  * HUGE_VAL for a method that did not choose dt by its limit. */
@@ -53,17 +57,41 @@ static bool is_step_admissible(struct fixed_step *self, double t, double h, cons
 /* try_step of a method whose steps cannot fail by themselves: the host may refuse them. */
 static enum cs_step take(struct fixed_step *self, double t, double h, double *x, double *v,
                          bool *cut) {
-    const size_t bytes = 6 * sizeof *x * self->host->view->n;
-    if (!self->saved_state)
-        return self->step(self, t, h, x, v);
-    memcpy(self->saved_state, x, bytes);
     const enum cs_step status = self->step(self, t, h, x, v);
-    if (status != CS_STEP_OK)
+    if (status != CS_STEP_OK || !self->is_guarded)
         return status;
     self->longest_is_current = is_step_admissible(self, t, h, x, v);
-    if (!self->longest_is_current) {
+    *cut = !self->longest_is_current;
+    return status;
+}
+
+/* Returns whether the error of a part refuses it; the others are stored for the next. */
+static bool is_inaccurate(struct fixed_step *self, double h, const double *v) {
+    const double *before = self->saved_state + 3 * (size_t)self->host->view->n;
+    if (!(self->error.tolerance > 0))
+        return false;
+    if (!step_error_judge(&self->error, self->host, h, before, v) &&
+        self->subdivision.depth < ERROR_CUTS_MAX)
+        return true;
+    step_error_accept(&self->error, h);
+    return false;
+}
+
+/* Takes a part, and restores the state if the method, the host or the error refuses it. What
+ * the method has stored then belongs to the step that was undone. */
+static enum cs_step try_part(struct fixed_step *self, double t, double h, double *x, double *v,
+                             bool *cut) {
+    const size_t bytes = 6 * sizeof *x * self->host->view->n;
+    if (!self->saved_state)
+        return self->try_step(self, t, h, x, v, cut);
+    memcpy(self->saved_state, x, bytes);
+    const enum cs_step status = self->try_step(self, t, h, x, v, cut);
+    if (status != CS_STEP_OK)
+        return status;
+    *cut = *cut || is_inaccurate(self, h, v);
+    if (*cut) {
         memcpy(x, self->saved_state, bytes);
-        *cut = self->history_void = true;
+        self->history_void = true;
     }
     return status;
 }
@@ -99,16 +127,22 @@ struct fixed_step fixed_step_of(const struct cs_host *host, double dt,
 enum cs_step fixed_step_guard(struct fixed_step *self,
                               double (*limit)(const struct fixed_step *, double, double)) {
     const struct cs_host *host = self->host;
-    if (!CS_HAS(host, max_step_fraction) || !host->max_step_fraction)
+    const bool by_error = self->dt_automatic && self->dt == HUGE_VAL;
+    self->is_guarded = CS_HAS(host, max_step_fraction) && host->max_step_fraction;
+    self->limit = self->is_guarded ? limit : NULL;
+    if (by_error && step_error_init(&self->error, host) != CS_STEP_OK)
+        return CS_STEP_FAIL;
+    if (!by_error && !self->is_guarded)
         return CS_STEP_OK;
-    self->limit = limit;
     self->saved_state = (double *)host->alloc(host->ctx, 6 * sizeof(double) * host->view->n);
     return self->saved_state ? CS_STEP_OK : CS_STEP_FAIL;
 }
 
 enum cs_step fixed_step_restart(void *self, double t, const double *x, const double *v) {
     (void)t, (void)x, (void)v;
-    ((struct fixed_step *)self)->history_void = true;
+    struct fixed_step *loop = self;
+    loop->history_void = true;
+    loop->error.last_h = 0;
     return CS_STEP_OK;
 }
 
@@ -122,6 +156,7 @@ enum cs_step fixed_step_archive(void *object, const struct cs_archive *archive) 
                         self->subdivision.accepted_in_row};
     archive->integers(archive->ctx, marks, 4);
     archive->integers(archive->ctx, &self->rejected, 1);
+    step_error_archive(&self->error, self->host, archive);
     self->history_void = marks[0] != 0;
     self->noted = marks[1] != 0;
     self->subdivision.depth = (uint32_t)marks[2];
@@ -162,7 +197,7 @@ static bool is_free_motion_admissible(const struct fixed_step *self, double t, d
  * in a row earn a try without this test, except where every part needs it. */
 static bool is_growth_admissible(const struct fixed_step *self, double t, double h,
                                  const double *x, const double *v) {
-    return !self->saved_state ||
+    return !self->is_guarded ||
            (!(self->free_motion > 0) &&
             self->subdivision.accepted_in_row >= STEP_SUBDIVISION_GROW_ALWAYS_AFTER) ||
            is_free_motion_admissible(self, t, h, x, v);
@@ -177,8 +212,9 @@ static void choose_cuts(struct fixed_step *self, double t, double h, const doubl
     const double longest = self->longest;
     struct step_subdivision *cuts = &self->subdivision;
     const double twice = 2 * step_subdivision_length(cuts, h);
-    bool admitted = !self->saved_state || !(self->free_motion > 0);
+    bool admitted = !self->is_guarded || !(self->free_motion > 0);
     if (step_subdivision_may_grow(cuts) && twice <= longest &&
+        step_error_admits_twice(&self->error) &&
         is_growth_admissible(self, t, twice, x, v)) {
         step_subdivision_grow(cuts);
         admitted = true;
@@ -211,7 +247,7 @@ static enum cs_step take_step_in_parts(struct fixed_step *self, double t, double
         }
         const double part = step_subdivision_length(cuts, h),
                      from = t + cuts->parts_done * part;
-        enum cs_step status = self->try_step(self, from, part, x, v, &cut);
+        enum cs_step status = try_part(self, from, part, x, v, &cut);
         moved = !cut;
         self->rejected += cut;
         if (cut)

@@ -3,6 +3,10 @@
  * A method's own struct starts with struct fixed_step and gives it the step. The span of an
  * advance is cut into the fewest equal steps that are not longer than dt.
  *
+ * A dt of 0 stands for the longest steps whose error is small (step_error.h), unless the method
+ * has a stability limit to take them from. They are parts of an advance, so that a frame may
+ * shorten a step and never sets its length; dt=frame is one step per advance.
+ *
  * In scenes with contact by force (fixed_step_guard) a step may be cut into parts
  * (step_subdivision.h) for three reasons:
  * 1. It would pass over contact that it cannot see, or through a surface
@@ -18,7 +22,16 @@
 #ifndef FIXED_STEP_H
 #define FIXED_STEP_H
 
+#include "step_error.h"
 #include "step_subdivision.h"
+
+/* The option dt of such a method; help says what 0 stands for. */
+#define FIXED_STEP_DT(struct_, help)                                                           \
+    CS_OPTION_OR_NAME(struct_, dt, step_names, "s", 0, 0, 10,                                  \
+                      "maximum step; frame: one step per frame; 0: " help)
+#define FIXED_STEP_DT_BY_ERROR(struct_)                                                        \
+    FIXED_STEP_DT(struct_, "by an error of half a hundredth of the scene's size per second")
+static const char *const step_names[] = {"frame", NULL};
 
 struct fixed_step;
 
@@ -33,7 +46,7 @@ typedef enum cs_step fixed_step_try_callback(struct fixed_step *self, double t, 
 /* The loop of one method; made by fixed_step_of. */
 struct fixed_step {
     const struct cs_host *host; /* borrowed */
-    double dt;                  /* longest step in s; HUGE_VAL: one step per advance */
+    double dt;                  /* longest step in s; HUGE_VAL: a whole advance */
     bool history_void; /* the state was changed from outside: the method's history is void */
     bool noted;        /* the report says already that dt was reduced */
     bool dt_automatic; /* dt was chosen here, not by the user */
@@ -46,8 +59,12 @@ struct fixed_step {
     enum cs_step (*report_failure)(struct fixed_step *self, double t, double h);
     uint32_t max_depth; /* a step has 2^max_depth parts at most */
 
-    /* only in scenes with contact by force, see fixed_step_guard */
+    struct step_error error; /* chooses the length where dt is 0 and nothing else does */
+
+    /* only where steps are chosen by error, and in scenes with contact by force, see
+     * fixed_step_guard */
     double *saved_state; /* (6n) the state before a step; NULL: no step is judged */
+    bool is_guarded;     /* host->max_step_fraction judges steps */
     /* For a method whose result depends on contact that is neither at the begin of a step nor
      * at its end: one with stages, or with an iteration. The motion without forces is judged
      * over so many lengths of the step; 0: it is not. (The force at the begin alone does not
@@ -61,13 +78,13 @@ struct fixed_step {
                     double delta); /* s; NULL: none */
 };
 
-/* The loop of a method with step length dt in s, as options have it: 0 means one step per
- * advance. */
+/* The loop of a method of order 1 with step length dt in s, as options have it: 0 means steps
+ * chosen by their error. */
 struct fixed_step fixed_step_of(const struct cs_host *host, double dt,
                                 fixed_step_callback *step);
 
-/* Makes steps subject to host->max_step_fraction, if the host has it; [create]. limit: the
- * method's largest stable step in s for bounds omega and delta, if it chose dt by that; else
+/* Makes steps subject to their error, if dt is 0 and nothing has chosen another one, and to
+ * host->max_step_fraction, if the host has it; [create]. limit: the method's largest stable step in s for bounds omega and delta, if it chose dt by that; else
  * NULL. CS_STEP_FAIL if out of memory. */
 enum cs_step fixed_step_guard(struct fixed_step *self,
                               double (*limit)(const struct fixed_step *, double, double));

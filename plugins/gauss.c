@@ -28,7 +28,7 @@ struct gauss_options {
 };
 
 static const struct cs_option rows[] = {
-    CS_OPTION(struct gauss_options, dt, "s", 0, 0, 10, "maximum step; 0: one step per frame"),
+    FIXED_STEP_DT_BY_ERROR(struct gauss_options),
     CS_OPTION(struct gauss_options, rtol, "", 1e-10, 1e-14, 0.1,
               "residual of a stage and change of the last sweep, relative to the impulse"),
     CS_OPTION(struct gauss_options, iterations, "", 50, 1, 1000,

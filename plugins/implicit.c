@@ -17,9 +17,6 @@
 
 #include <clothsim/small.h>
 
-#define DT_HELP "maximum step; 0: one step per frame"
-#define DT_MAX  10
-
 enum { PIECE = 64 }; /* particles whose blocks are solved together */
 
 static const char *const hessians[] = {"clamped", "exact", NULL};
@@ -30,7 +27,7 @@ struct linearised_options {
 };
 
 static const struct cs_option linearised_rows[] = {
-    CS_OPTION(struct linearised_options, dt, "s", 0, 0, DT_MAX, DT_HELP),
+    FIXED_STEP_DT_BY_ERROR(struct linearised_options),
     CS_OPTION(struct linearised_options, rtol, "", 1e-3, 1e-15, 0.5,
               "relative residual of the linear solve"),
     CS_OPTION_CHOICE(struct linearised_options, hessian, hessians, 0,
@@ -43,7 +40,7 @@ struct block_options {
 };
 
 static const struct cs_option block_rows[] = {
-    CS_OPTION(struct block_options, dt, "s", 0, 0, DT_MAX, DT_HELP),
+    FIXED_STEP_DT_BY_ERROR(struct block_options),
 };
 
 struct linearised {

@@ -70,7 +70,10 @@ static enum cs_step create(const struct cs_host *host, const void *options,
 }
 
 static enum cs_step create_euler(const struct cs_host *host, const void *options, void **out) {
-    return create(host, options, step_euler, out);
+    const enum cs_step status = create(host, options, step_euler, out);
+    if (*out)
+        ((struct step_halving *)*out)->fixed.error.is_second_order = false;
+    return status;
 }
 
 static enum cs_step create_midpoint(const struct cs_host *host, const void *options,

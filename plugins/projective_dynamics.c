@@ -26,8 +26,7 @@ enum { PAIRS = 5, SHORTENINGS = 12 };
 #define CLEAR_OF_ROUNDING 100
 
 static const struct cs_option rows[] = {
-    CS_OPTION(struct local_global_options, dt, "s", 0, 0, 10,
-              "maximum step; 0: one step per frame"),
+    FIXED_STEP_DT_BY_ERROR(struct local_global_options),
     CS_OPTION(struct local_global_options, iterations, "", 10, 1, 1e6,
               "quasi-Newton iterations per step, each with a solve"),
 };

@@ -44,7 +44,7 @@ struct ros2_options {
 };
 
 static const struct cs_option rows[] = {
-    CS_OPTION(struct ros2_options, dt, "s", 0, 0, 10, "maximum step; 0: one step per frame"),
+    FIXED_STEP_DT_BY_ERROR(struct ros2_options),
     CS_OPTION(struct ros2_options, rtol, "", 1e-6, 1e-15, 0.5,
               "relative residual of the linear solves"),
 };
@@ -124,7 +124,7 @@ static bool has_unresolved_friction(struct method *self, double t, double h, con
     const struct cs_host *host = self->base.fixed.host;
     double omega, delta;
     // no move of this scene is judged: it has no contact by force either
-    if (!self->base.fixed.saved_state)
+    if (!self->base.fixed.is_guarded)
         return false;
     host->force(host->ctx, t, x, v, CS_PART_DISSIPATIVE, self->b);
     if (!(host->vector->max_norm(3 * (size_t)host->view->n, self->b) > 0))
@@ -171,7 +171,7 @@ static enum cs_step take(struct method *self, struct span *span, double *x, doub
     if ((span->rubs =
              span->narrow && has_unresolved_friction(self, t + h, h, self->xn, self->vn)))
         return CS_STEP_OK;
-    if (base->fixed.saved_state &&
+    if (base->fixed.is_guarded &&
         (base->fixed.refused_by_contact =
              host->max_step_fraction(host->ctx, t, x, t + h, self->xn) < 1))
         return CS_STEP_OK;

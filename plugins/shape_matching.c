@@ -39,9 +39,9 @@ struct shape_options {
 };
 
 static const struct cs_option rows[] = {
-    CS_OPTION(struct shape_options, dt, "s", 0, 0, 10,
-              "maximum step; 0: 0.9 of the stability limit of springs and drag, estimated at "
-              "rest, or one step per frame without them"),
+    FIXED_STEP_DT(struct shape_options,
+                  "0.9 of the stability limit of springs and drag, estimated at rest, or 1/60 s "
+                  "without them"),
     CS_OPTION_CHOICE(
         struct shape_options, rotation, rotations, POLAR,
         "polar: the rotation nearest to A_pq; the others omit the square root of the polar "
@@ -259,11 +259,14 @@ static double limit_of(const struct fixed_step *loop, double omega, double delta
     return leapfrog_limit(omega, delta, 2, 4);
 }
 
+/* s: a step where nothing limits it, as alpha and beta are usually meant for. */
+#define UNLIMITED_DT (1 / 60.0)
+
 static void choose_dt(struct fixed_step *loop, double dt) {
     const double limit = limit_of(loop, loop->host->view->omega, loop->host->view->delta);
     loop->dt_automatic = dt <= 0;
-    loop->dt = dt > 0 ? dt : 0.9 * limit;
-    if (loop->dt_automatic && loop->dt < HUGE_VAL)
+    loop->dt = dt > 0 ? dt : limit < HUGE_VAL ? 0.9 * limit : UNLIMITED_DT;
+    if (loop->dt_automatic && limit < HUGE_VAL)
         loop->host->note(loop->host->ctx, "dt automatic: at most %.6g s, for springs and drag",
                          loop->dt);
 }

@@ -2,11 +2,9 @@
  * of it can be taken.
  *
  * One part of a step, in order:
- * 1. The state is saved, if the host can refuse displacements.
- * 2. The method steps. It refuses by leaving *accepted false, with x and v unchanged.
- * 3. The host judges the displacement. A fraction below 1 restores the saved state, and voids
- *    the method's history, which belongs to the undone step.
- * 4. fixed_step.c halves a refused part, or commits an accepted one.
+ * 1. The method steps. It refuses by leaving *accepted false, with x and v unchanged.
+ * 2. The host judges the displacement.
+ * 3. fixed_step.c restores the state and halves a refused part, or commits an accepted one.
  *
  * The factor of shortening is 1/2 whatever the admissible fraction is: times of parts stay
  * exact multiples of a power of 1/2, and a part of twice the length can be tried again where
@@ -43,21 +41,15 @@ static enum cs_step fail_at_shortest_part(struct fixed_step *loop, double t, dou
                       self->newton->rtol);
 }
 
-/* Takes the method's step, and undoes it if the host does not admit the whole displacement. */
+/* Takes the method's step, and refuses it if the host does not admit the whole displacement. */
 static enum cs_step take_step(struct step_halving *self, double t, double h, double *x,
                               double *v, bool *accepted) {
     const struct cs_host *host = self->fixed.host;
-    const size_t bytes = 6 * sizeof *x * host->view->n;
-    double *saved = self->fixed.saved_state;
-    if (saved)
-        memcpy(saved, x, bytes);
     const enum cs_step status = self->step(self, t, h, x, v, accepted);
-    if (saved && status == CS_STEP_OK && *accepted &&
-        host->max_step_fraction(host->ctx, t, saved, t + h, x) < 1) {
-        memcpy(x, saved, bytes);
+    if (self->fixed.is_guarded && status == CS_STEP_OK && *accepted &&
+        host->max_step_fraction(host->ctx, t, self->fixed.saved_state, t + h, x) < 1) {
         *accepted = false;
         self->fixed.refused_by_contact = true;
-        self->fixed.history_void = true; // the method's history is of the step that was undone
     }
     return status;
 }
@@ -81,6 +73,7 @@ struct step_halving *step_halving_create(const struct cs_host *host, size_t byte
         return NULL;
     self->fixed = fixed_step_of(host, dt, NULL);
     self->fixed.history_void = true;
+    self->fixed.error.is_second_order = true;
     self->fixed.try_step = attempt;
     self->fixed.report_failure = fail_at_shortest_part;
     self->step = step;

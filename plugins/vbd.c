@@ -39,7 +39,7 @@ struct vbd_options {
 };
 
 static const struct cs_option rows[] = {
-    CS_OPTION(struct vbd_options, dt, "s", 0, 0, 10, "maximum step; 0: one step per frame"),
+    FIXED_STEP_DT_BY_ERROR(struct vbd_options),
     CS_OPTION(struct vbd_options, iterations, "", 10, 1, 1e6,
               "passes over the particles in a step"),
     CS_OPTION(struct vbd_options, rho, "", 0, 0, 0.9999,

@@ -54,7 +54,7 @@ struct xpbd_options {
 };
 
 static const struct cs_option rows[] = {
-    CS_OPTION(struct xpbd_options, dt, "s", 0, 0, 10, "maximum step; 0: one step per frame"),
+    FIXED_STEP_DT_BY_ERROR(struct xpbd_options),
     CS_OPTION(struct xpbd_options, iterations, "", 10, 1, 1e6,
               "passes over the springs in a step"),
     CS_OPTION(struct xpbd_options, substeps, "", 1, 0, 1e6,

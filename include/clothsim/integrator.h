@@ -275,6 +275,12 @@ struct cs_host {
      * frames. False: the time that you pass has no effect, and df/dt is 0. Not in older hosts:
      * ask CS_HAS(host, forces_depend_on_time) first. */
     bool forces_depend_on_time;
+    /* For the whole run, both above 0: the longest side l in m of the box of all particles at
+     * time 0, and in m/s sqrt(g l)/pi: l over half a swing of a pendulum of that length, 1 m/s at
+     * 1 m; without gravity the largest speed at time 0, else l per second. An absolute tolerance
+     * that nobody set is a relative one times these. Not in older hosts: ask
+     * CS_HAS(host, speed_scale) first. */
+    double length_scale, speed_scale;
 };
 
 /* Counts that only the method knows. */

@@ -71,7 +71,7 @@ struct cs_option {
     double def, min, max;
     /* Defaults of VECTOR and COUNTS; NULL: the user must give them. */
     const double *defs;
-    /* Names of a CHOICE, closed by NULL. */
+    /* Names of a CHOICE, closed by NULL. Of a REAL: one name, of the value HUGE_VAL; or NULL. */
     const char *const *choices;
     /* Rows of the struct of a TABLE or LIST. */
     const struct cs_table *table;
@@ -138,6 +138,13 @@ template <> struct cs_choice_type<int32_t> { static constexpr cs_type type = CS_
     {                                                                                          \
         "" #field, unit_, help_, CS_NUMBER_TYPE(struct_, field), 1, offsetof(struct_, field),  \
             def_, min_, max_, NULL, NULL, NULL                                                 \
+    }
+
+/* A double that may also be a name, which is the one of names_ and means HUGE_VAL. */
+#define CS_OPTION_OR_NAME(struct_, field, names_, unit_, def_, min_, max_, help_)              \
+    {                                                                                          \
+        "" #field, unit_, help_, CS_NUMBER_TYPE(struct_, field), 1, offsetof(struct_, field),  \
+            def_, min_, max_, NULL, names_, NULL                                               \
     }
 
 /* One of several names: an int32_t that is the number of the name, the default likewise. */

@@ -176,6 +176,10 @@ enum cs_status cs_option_set(const struct cs_option *row, void *object, const ch
     if (row->type == CS_CHOICE)
         return cs_option_set_choice(row, object, text, where, status, error);
     double value;
+    if (row->type == CS_REAL && row->choices && !strcmp(text, row->choices[0])) {
+        *(double *)field_of(row, object) = HUGE_VAL;
+        return CS_OK;
+    }
     if (!cs_parse_real(text, &value))
         return cs_fail(error, status, "%s: expected a number, found \"%.60s\"%s", where, text,
                        strstr(text, "..") ? " (a range is for compare and sweep)" : "");
@@ -206,6 +210,8 @@ void cs_option_print_plain(const struct cs_option *row, const void *object,
                            struct cs_text *out) {
     if (row->type == CS_CHOICE)
         cs_text_add(out, "%s", row->choices[(int32_t)value_of(row, object, 0)]);
+    else if (row->choices && isinf(value_of(row, object, 0)))
+        cs_text_add(out, "%s", row->choices[0]);
     else
         print_components(row, object, out);
 }
@@ -264,8 +270,10 @@ static void set_choice(void *field, uint32_t i, double value) {
 /* --- a component as JSON --- */
 
 static void print_real(const struct cs_option *row, double value, struct cs_text *out) {
-    (void)row;
-    cs_text_add_real(out, value);
+    if (row->choices && isinf(value))
+        cs_json_write(out, "%s", row->choices[0]);
+    else
+        cs_text_add_real(out, value);
 }
 
 static void print_int(const struct cs_option *row, double value, struct cs_text *out) {
@@ -307,6 +315,8 @@ static void print_number_range(const struct cs_option *row, struct cs_text *out)
     cs_text_add_real(out, row->max);
     if (row->unit && *row->unit)
         cs_text_add(out, " %s", row->unit);
+    if (row->choices)
+        cs_text_add(out, " or %s", row->choices[0]);
 }
 
 static void print_bool_range(const struct cs_option *row, struct cs_text *out) {

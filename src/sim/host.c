@@ -367,6 +367,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         host->held = cs_arena_alloc_array(&host->arena, 12 * (size_t)system->view.n,
                                           sizeof *host->held, error);
     cs_blow_up_check_set(&host->blow_up, system, 0);
+    cs_run_host_set_scales(host);
     if (error->status || add_contact(host, error) || add_rate(host, error) ||
         add_lagged_friction(host, error))
         return error->status;

@@ -281,6 +281,29 @@ bool cs_blow_up_check_step(const struct cs_blow_up_check *bound, struct cs_run *
     return true;
 }
 
+/* Half a swing of a pendulum of that length tells the time, pi sqrt(l/g); without gravity the
+ * fastest particle does, and at rest nothing: a second. */
+void cs_run_host_set_scales(struct cs_run_host *host) {
+    const struct cs_view *view = &host->run->system->view;
+    const double *g = host->run->system->scene->forces.gravity, *v = host->run->v;
+    double length = 0, squared = 0;
+    for (size_t c = 0; c < 3; c++) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (size_t i = c * view->n; i < (c + 1) * view->n; i++) {
+            low = fmin(low, view->start[i]);
+            high = fmax(high, view->start[i]);
+        }
+        length = fmax(length, high - low);
+    }
+    length = length > 0 ? length : 1;
+    for (size_t i = 0, n = view->n; i < n; i++)
+        squared = fmax(squared, v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+    const double gravity = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    const double pi = 3.141592653589793, fall = sqrt(gravity * length) / pi;
+    host->table.length_scale = length;
+    host->table.speed_scale = gravity > 0 ? fall : squared > 0 ? sqrt(squared) : length;
+}
+
 /* --- trace points --- */
 
 void cs_trace_emit(const struct cs_run_host *host, const struct cs_trace_record *named,

@@ -48,7 +48,7 @@ static enum cs_status read_scene(struct cs_session *session, struct cs_error *er
 static enum cs_status check_quotes(const struct cs_method *method,
                                    const struct cs_setting *option, struct cs_error *error) {
     const struct cs_option *row = cs_option_find(&method->table, option->name);
-    if (!option->is_text || !row || row->type == CS_CHOICE)
+    if (!option->is_text || !row || row->choices)
         return CS_OK;
     return cs_fail(error, CS_ERR_SCENE, "%s%s: found the text \"%.60s\", expected %s",
                    option->place, option->name, option->value,
