@@ -21,8 +21,7 @@ enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host
                                 const struct adaptive_options *options, int power) {
     self->host = host;
     self->asked = *options;
-    if (self->asked.atol <= 0)
-        self->asked.atol = self->asked.rtol;
+    self->tolerance = tolerance_of(host, options->rtol, options->atol);
     self->control.power = power;
     self->length = 6 * (size_t)host->view->n;
     /* pinned particles have no error: the norm is a mean over the others */
@@ -46,16 +45,8 @@ void adaptive_step_evaluate(const struct adaptive_step *self, double t, const do
             a[c * n + i] *= host->view->inv_mass[i];
 }
 
-CS_CLONES static void weigh(size_t n, double atol, double rtol, const double *restrict y,
-                            const double *restrict z, double *restrict weight) {
-    for (size_t i = 0; i < n; i++) {
-        const double begin = fabs(y[i]), end = fabs(z[i]);
-        weight[i] = 1 / (atol + rtol * (begin > end ? begin : end));
-    }
-}
-
 void adaptive_step_weigh(struct adaptive_step *self, const double *y, const double *z) {
-    weigh(self->length, self->asked.atol, self->asked.rtol, y, z, self->weight);
+    tolerance_weigh(&self->tolerance, self->length / 2, y, z, self->weight);
 }
 
 double adaptive_step_norm(const struct adaptive_step *self, const double *values) {

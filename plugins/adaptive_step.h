@@ -13,8 +13,6 @@
 
 #include "step_control.h"
 
-#include <clothsim/integrator.h>
-
 /* Options of such a method, and their rows for a struct that has the same fields. */
 struct adaptive_options {
     double rtol, atol, dt_max;
@@ -24,7 +22,7 @@ struct adaptive_options {
     CS_OPTION(struct_, rtol, "", rtol_, 1e-14, 0.1,                                            \
               "local error of a step, relative to the value"),                                 \
         CS_OPTION(struct_, atol, "", 0, 0, 1,                                                  \
-                  "absolute local error in m and m/s; 0: rtol of 1 m and 1 m/s"),              \
+                  "absolute local error in m and m/s; 0: rtol of the scene's own"),            \
         CS_OPTION(struct_, dt_max, "s", 0, 0, 10, "maximum step; 0: one frame"),               \
         CS_OPTION(struct_, max_steps, "", 1000000, 1, 1e9,                                     \
                   "maximum steps per frame, rejected ones included, before the run fails")
@@ -41,6 +39,7 @@ struct adaptive_step {
     const struct cs_host *host; /* borrowed */
     struct adaptive_options asked;
     struct step_control control;
+    struct tolerance tolerance;
     size_t length;  /* 6n */
     double free;    /* values that move, at least 1 */
     double *slope;  /* (3,n) in m/s2: acceleration at the state */

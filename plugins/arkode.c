@@ -40,7 +40,7 @@ struct ark_options {
     CS_OPTION(struct ark_options, rtol, "", 1e-4, 1e-14, 0.1,                                  \
               "local error of a step, relative to the value"),                                 \
         CS_OPTION(struct ark_options, atol, "", 0, 0, 1,                                       \
-                  "absolute local error in m and m/s; 0: rtol of 1 m and 1 m/s"),              \
+                  "absolute local error in m and m/s; 0: rtol of the scene's own"),            \
         CS_OPTION(struct ark_options, dt, "s", 0, 0, 10,                                       \
                   "maximum step without error control; 0: with error control"),                \
         CS_OPTION(struct ark_options, order, "", order_, least, most,                          \
@@ -134,6 +134,7 @@ static int open_memory(struct ark *self, ARKRhsFn explicit_part, ARKRhsFn implic
     base->memory = ARKStepCreate(explicit_part, implicit_part, 0, base->state, base->context);
     if (!base->memory)
         return ARK_MEM_FAIL;
+    base->tolerance = tolerance_of(base->host, asked->rtol, asked->atol);
     int code = ARK_SUCCESS;
 #if SUNDIALS_VERSION_MAJOR < 7
     code = ARKStepSetErrHandlerFn(base->memory, sundials_keep_message, base);
@@ -141,8 +142,7 @@ static int open_memory(struct ark *self, ARKRhsFn explicit_part, ARKRhsFn implic
     if (code == ARK_SUCCESS)
         code = ARK(SetUserData)(base->memory, base);
     if (code == ARK_SUCCESS)
-        code = ARK(SStolerances)(base->memory, asked->rtol,
-                                 asked->atol > 0 ? asked->atol : asked->rtol);
+        code = ARK(WFtolerances)(base->memory, sundials_weigh);
     if (code == ARK_SUCCESS)
         code = ARK(SetMaxErrTestFails)(base->memory, ERROR_FAILURES_MAX);
     // steps end at the frame: the default interpolant would cost an evaluation per step

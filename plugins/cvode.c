@@ -48,7 +48,7 @@ struct cvode_options {
     CS_OPTION(struct cvode_options, rtol, "", 1e-4, least, 0.1,                                \
               "local error of a step, relative to the value"),                                 \
         CS_OPTION(struct cvode_options, atol, "", 0, 0, 1,                                     \
-                  "absolute local error in m and m/s; 0: rtol of 1 m and 1 m/s"),              \
+                  "absolute local error in m and m/s; 0: rtol of the scene's own"),            \
         CS_OPTION(struct cvode_options, max_steps, "", 1000000, 1, 1e9,                        \
                   "maximum steps per frame before the run fails")
 
@@ -213,9 +213,8 @@ static int open_memory(struct cvode *self, int family) {
 #if SUNDIALS_VERSION_MAJOR < 7
     code = CVodeSetErrHandlerFn(base->memory, sundials_keep_message, base);
 #endif
+    base->tolerance = tolerance_of(base->host, asked->rtol, asked->atol);
     const int order = family == CV_BDF ? choose_bdf_order(self) : (int)asked->max_order;
-    /* 0: rtol of 1 m and 1 m/s */
-    const double atol = asked->atol > 0 ? asked->atol : asked->rtol;
     if (code == CV_SUCCESS)
         code = CVodeInit(base->memory, sundials_whole_slope, 0, base->state);
     if (code == CV_SUCCESS)
@@ -223,7 +222,7 @@ static int open_memory(struct cvode *self, int family) {
     if (code == CV_SUCCESS)
         code = CVodeSetUserData(base->memory, base);
     if (code == CV_SUCCESS)
-        code = CVodeSStolerances(base->memory, asked->rtol, atol);
+        code = CVodeWFtolerances(base->memory, sundials_weigh);
     if (code == CV_SUCCESS)
         code = family == CV_BDF ? set_bdf_solver(self, order) : set_adams_solver(self);
     return code;

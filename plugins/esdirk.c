@@ -225,7 +225,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         newton_init(&self->newton, host, 0, asked->iterations) != CS_STEP_OK)
         return CS_STEP_FAIL;
     self->newton.absolute =
-        asked->newton_rtol * self->base.asked.atol * sqrt(self->newton.mass);
+        asked->newton_rtol * self->base.tolerance.speed * sqrt(self->newton.mass);
     self->newton.residual_floor = NOISE_SHARE;
     self->k[0] = self->base.slope;
     double **const arrays[] = {self->k + 1,    self->k + 2,    self->k + 3,

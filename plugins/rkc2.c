@@ -114,7 +114,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
 static const struct cs_option rows[] = {ADAPTIVE_ROWS(struct adaptive_options, 1e-4)};
 
 /* the error of a step falls as h^3, and with it that of the run as rtol^(2/3) */
-static const char *const below_tolerance[] = {"solution", "tolerance", "contact-order", NULL};
+static const char *const below_tolerance[] = {"solution", "tolerance", NULL};
 
 static const struct cs_integrator rkc2 = {
     CHEBYSHEV_METHOD(rows),

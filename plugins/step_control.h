@@ -9,8 +9,8 @@
 #ifndef STEP_CONTROL_H
 #define STEP_CONTROL_H
 
+#include <clothsim/integrator.h>
 #include <math.h>
-#include <stdbool.h>
 
 #define STEP_SHRINK 0.2 /* least factor of a step after a rejection */
 #define STEP_GROW   5   /* largest factor of a step after a success */
@@ -22,6 +22,34 @@ struct step_control {
     int power;              /* k above */
     bool rejected;          /* the last try was rejected: the next step must not grow */
 };
+
+/* The error that a step may have in a number y: absolute + rtol |y|. */
+struct tolerance {
+    double rtol, length, speed; /* 1; absolute in m and in m/s */
+};
+
+/* atol: an absolute one in m and m/s; 0: rtol of the scene's length and speed. */
+static inline struct tolerance tolerance_of(const struct cs_host *host, double rtol,
+                                            double atol) {
+    const bool scales = atol <= 0 && CS_HAS(host, speed_scale);
+    const double either = atol > 0 ? atol : rtol;
+    return (struct tolerance){rtol, scales ? rtol * host->length_scale : either,
+                              scales ? rtol * host->speed_scale : either};
+}
+
+/* weight (6n) = 1 / tolerance of the larger of y and z (6n), positions before velocities. */
+CS_CLONES static inline void tolerance_weigh(const struct tolerance *tolerance, size_t n3,
+                                             const double *restrict y, const double *restrict z,
+                                             double *restrict weight) {
+    const double rtol = tolerance->rtol;
+    for (size_t half = 0; half < 2; half++) {
+        const double absolute = half ? tolerance->speed : tolerance->length;
+        for (size_t i = half * n3; i < (half + 1) * n3; i++) {
+            const double begin = fabs(y[i]), end = fabs(z[i]);
+            weight[i] = 1 / (absolute + rtol * (begin > end ? begin : end));
+        }
+    }
+}
 
 /* e^(1/power) for e in 1e-12..1e12 and a power of 2 to 12; outside the nearer end is taken. */
 static inline double step_root(double e, int power) {

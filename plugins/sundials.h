@@ -5,6 +5,7 @@
 #ifndef SUNDIALS_H
 #define SUNDIALS_H
 
+#include "step_control.h"
 #include "sundials_vector.h"
 
 #include <sundials/sundials_context.h>
@@ -41,6 +42,7 @@ struct sundials {
     double t_internal;     /* s, where the state is then */
     struct _generic_SUNLinearSolver solver;
     struct _generic_SUNLinearSolver_Ops solver_ops;
+    struct tolerance tolerance;
     double linear_rtol; /* relative residual of the linear solves */
     double *b;          /* (3,n), right-hand side of the reduced system */
     int64_t max_steps;  /* in an advance */

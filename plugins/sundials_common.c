@@ -96,6 +96,13 @@ int sundials_whole_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object
     return sundials_slope(object, t, y, CS_PART_ALL, true, slope);
 }
 
+int sundials_weigh(N_Vector y, N_Vector weight, void *object) {
+    const struct sundials *self = object;
+    tolerance_weigh(&self->tolerance, 3 * (size_t)self->host->view->n, sundials_data(y),
+                    sundials_data(y), sundials_data(weight));
+    return 0;
+}
+
 enum cs_step sundials_restart(void *object, double t, const double *x, const double *v) {
     (void)v; // is x + 3n
     struct sundials *self = object;

@@ -28,6 +28,8 @@ int sundials_slope(const struct sundials *self, double t, N_Vector y, uint32_t p
                    bool moves, N_Vector slope);
 /* The same of the whole force, as SUNDIALS calls it; object is the struct sundials. */
 int sundials_whole_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object);
+/* The weights of errors at y by self->tolerance, as SUNDIALS asks for them. */
+int sundials_weigh(N_Vector y, N_Vector weight, void *object);
 
 #if SUNDIALS_VERSION_MAJOR < 7
 /* For the libraries' SetErrHandlerFn; since 7 the context has it. */

@@ -298,10 +298,7 @@ void cs_method_add_options(const struct cs_method *method, const char *except,
     for (uint32_t k = 0; k < method->table.n; k++) {
         const struct cs_option *row = method->table.rows + k;
         const void *options = method->options;
-        // atol given at its default is not the same as atol left to a study
-        const bool kept = !cs_option_is_default(row, options) ||
-                          (!strcmp(row->name, "atol") && is_given(method, row));
-        if (!kept || !strcmp(row->name, except))
+        if (cs_option_is_default(row, options) || !strcmp(row->name, except))
             continue;
         cs_text_add(out, "%s%s=", any ? "," : "", row->name);
         cs_option_print_plain(row, options, out);

@@ -142,6 +142,7 @@ static enum cs_status start(struct cs_run *run, const void *options, struct cs_e
     cs_friction_anchors_start(run->system, 0, run->x);
     host->process_state = cs_process_state_save();
     cs_crash_begin(CS_CRASH_METHOD);
+    cs_run_host_set_scales(host);
     host->creating = true;
     host->arena.part = &run->method_bytes;
     if (cs_view_pages_needed(run->integrator) &&

@@ -297,7 +297,8 @@ void cs_run_host_set_scales(struct cs_run_host *host) {
     }
     length = length > 0 ? length : 1;
     for (size_t i = 0, n = view->n; i < n; i++)
-        squared = fmax(squared, v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+        squared =
+            fmax(squared, v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
     const double gravity = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
     const double pi = 3.141592653589793, fall = sqrt(gravity * length) / pi;
     host->table.length_scale = length;

@@ -51,7 +51,7 @@ static double best_work(const struct planted *of, double bound) {
 static void plant(struct cs_compare *compare, const struct cs_compare_settings *settings,
                   const struct planted *methods, int n) {
     *compare = (struct cs_compare){
-        .settings = settings, .fps = FPS, .time = FRAMES / FPS, .scene_size = 1};
+        .settings = settings, .fps = FPS, .time = FRAMES / FPS};
     compare->reference = (struct cs_compare_reference){
         .families_agree = true, .pointwise = true, .motion_scale = 1, .error_bar = 1e-12};
     for (int m = 0; m < n; m++) {
@@ -89,7 +89,7 @@ static uint32_t search_planted(const struct planted *methods, int n, double boun
     while ((of = cs_cheapest_find_next(&search, &compare, &value))) {
         struct cs_cell cell;
         const uint32_t before = compare.cells.n;
-        cs_cell_derive(&cell, of, value, 1);
+        cs_cell_derive(&cell, of, value);
         run_planted(&cell, methods + of->series[0] - 'a');
         ck_assert(!cs_cell_list_add(&compare.cells, &cell, &error));
         ck_assert_uint_eq(compare.cells.n, before + 1); // never the same one again

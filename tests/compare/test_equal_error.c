@@ -72,7 +72,7 @@ static void add(char series, double value, bool open) {
 static void begin(const struct planted *of) {
     methods = of;
     settings = (struct cs_compare_settings){.run = {.frames = 1}};
-    compare = (struct cs_compare){.settings = &settings, .fps = FPS, .scene_size = 1};
+    compare = (struct cs_compare){.settings = &settings, .fps = FPS};
     compare.reference = (struct cs_compare_reference){
         .families_agree = true, .pointwise = true, .motion_scale = 1, .error_bar = 1e-12};
 }
@@ -96,7 +96,7 @@ static uint32_t search(void) {
         struct cs_cell cell;
         struct cs_error error = {0};
         const uint32_t before = compare.cells.n;
-        cs_cell_derive(&cell, near, value, 1);
+        cs_cell_derive(&cell, near, value);
         cell.target = target;
         run_planted(&cell);
         ck_assert(!cs_cell_list_add(&compare.cells, &cell, &error));

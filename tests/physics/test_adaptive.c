@@ -5,7 +5,7 @@
  * and drag. Its springs are never slack, so that orders show; errors are those at the end, in m
  * and m/s, against Dormand-Prince at a tolerance of 1e-13.
  */
-#include "fixture.h"
+#include "methods.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -174,4 +174,30 @@ TEST(frames_do_not_disturb) {
         fixture_close(&cloth);
     }
     ck_assert_double_lt(cs_rms_difference(state[0], state[1], 6), 1e-7);
+}
+
+/* Lengths and gravity times a power of two: the motion is the same times that, to the bit,
+ * because tolerances that nobody set scale with the scene. */
+TEST(tolerances_scale_with_the_scene) {
+    static double states[2][VALUES_MAX];
+    const struct methods methods = methods_find(&(struct methods_query){.with = CS_ADAPTIVE});
+    for (size_t k = 0; k < methods.n; k++) {
+        size_t values = 0;
+        for (int i = 0; i < 2; i++) {
+            const double unit = i ? 1 / 1024.0 : 1;
+            char scene[600];
+            snprintf(scene, sizeof scene,
+                     "{\"bodies\": [{\"cloth\": {\"grid\": [7, 7], \"size\": [%.17g, %.17g], "
+                     "\"stretch\": [1.1, 1]}, \"mass\": {\"total\": 0.1}, \"springs\": "
+                     "{\"stretch\": "
+                     "200, \"shear\": 60, \"bend\": 10, \"damping\": 0.02}, \"pins\": "
+                     "[\"top-left\", "
+                     "\"top-right\"]}], \"forces\": {\"gravity\": [0, %.17g, 0]}}",
+                     unit / 2, unit / 2, -9.8125 * unit);
+            values = end_state(methods.list[k].text, scene, 5, states[i]);
+        }
+        for (size_t i = 0; i < values; i++)
+            states[1][i] *= 1024;
+        ck_bits(states[0], states[1], values, methods.list[k].text);
+    }
 }

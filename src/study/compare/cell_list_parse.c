@@ -214,8 +214,7 @@ static void set_limits(struct cs_cell *cell, const struct cs_cell_list_entry *en
     cell->high = cell->open ? cell->adaptive ? row->max : 1 / fps : entry->high;
 }
 
-/* Adds the cell of one step or tolerance. An adaptive method without a given atol gets rtol
- * times the size of the scene, within the range of the option. */
+/* Adds the cell of one step or tolerance. */
 static enum cs_status add_point(struct cs_cell_list *sweep,
                                 const struct cs_cell_list_entry *entry, double value,
                                 const struct cs_cell_list_settings *settings,
@@ -228,15 +227,10 @@ static enum cs_status add_point(struct cs_cell_list *sweep,
         cell.value = value;
         add_option(cell.options, sizeof cell.options, entry->control, value);
     }
-    const struct cs_option *atol = cs_option_find(&entry->method.table, "atol");
-    if (cell.adaptive && *entry->control && atol && !strstr(entry->fixed, "atol="))
-        add_option(cell.options, sizeof cell.options, "atol",
-                   fmin(fmax(value * settings->size, atol->min), atol->max));
     return cs_cell_list_add(sweep, &cell, error);
 }
 
-void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value, double size) {
-    const char *atol = strstr(of->options, "atol=");
+void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value) {
     cs_cell_init(cell, of->method);
     memcpy(cell->series, of->series, sizeof cell->series);
     memcpy(cell->fixed, of->fixed, sizeof cell->fixed);
@@ -252,8 +246,6 @@ void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value
         return;
     cell->value = value;
     add_option(cell->options, sizeof cell->options, of->control, value);
-    if (atol && !strstr(of->fixed, "atol="))
-        add_option(cell->options, sizeof cell->options, "atol", fmin(value * size, 1));
 }
 
 /* Default range: rtol from 1e-2 to 1e-13 of an adaptive method; DEFAULT_STEPS steps from one

@@ -36,9 +36,8 @@ enum cs_status cs_cell_list_add(struct cs_cell_list *sweep, const struct cs_cell
 /* Removes the cells that were not run. */
 void cs_cell_list_drop_unrun(struct cs_cell_list *sweep);
 
-/* Makes a cell of the same series with another value of its control, without results or key.
- * size in m: of the scene, as in the settings below. */
-void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value, double size);
+/* Makes a cell of the same series with another value of its control, without results or key. */
+void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value);
 
 /* Marks a cell as refused, with the reason. */
 void cs_cell_refuse(struct cs_cell *cell, const char *why);
@@ -59,7 +58,6 @@ struct cs_cell_list_settings {
     const char *const *plugins; /* (n_plugins) module files */
     uint32_t n_plugins;
     double fps, omega; /* of the scene: the default steps come from them */
-    double size;       /* m: atol is rtol times it, so that another unit changes nothing */
 };
 
 /* One method of a list, while it is read. */

@@ -21,22 +21,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Longest side of the bounding box of the start in m, rounded to a power of 10; 1 for a point.
- * Absolute tolerances scale with it, so another unit of length changes nothing. */
-static double size_of(const struct cs_recorded_run *recording) {
-    const size_t n = recording->session.system.view.n;
-    double longest = 0;
-    for (size_t c = 0; c < 3; c++) {
-        double least = HUGE_VAL, most = -HUGE_VAL;
-        for (size_t i = 0; i < n; i++) {
-            least = fmin(least, recording->initial_state[c * n + i]);
-            most = fmax(most, recording->initial_state[c * n + i]);
-        }
-        longest = fmax(longest, most - least);
-    }
-    return longest > 0 ? pow(10, floor(log10(longest) + 0.5)) : 1;
-}
-
 /* Reads the facts of the scene and of its smooth form (recorded_run.h). */
 static enum cs_status read_scene_facts(struct cs_compare *compare, struct cs_error *error) {
     const struct cs_recorded_run_settings *settings = &compare->settings->run;
@@ -57,7 +41,6 @@ static enum cs_status read_scene_facts(struct cs_compare *compare, struct cs_err
         compare->fps = recording.session.scene.time.fps;
         /* above 0, because default steps are derived from it */
         compare->omega = fmax(system->view.omega, 1e-3);
-        compare->scene_size = size_of(&recording);
         compare->time = settings->frames / compare->fps;
         compare->contact = recording.session.scene.colliders.n > 0 ||
                            cs_scene_has_body_contact(&recording.session.scene);
@@ -175,8 +158,7 @@ static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *er
                                                 .plugins = session->plugins,
                                                 .n_plugins = session->n_plugins,
                                                 .fps = compare->fps,
-                                                .omega = compare->omega,
-                                                .size = compare->scene_size};
+                                                .omega = compare->omega};
     if (!cs_cell_list_parse(&compare->cells, &asked, error) && !check_methods(compare, error)) {
         store_shard(compare);
         divide_time_budget(compare);
@@ -303,7 +285,7 @@ static enum cs_status measure_further(struct cs_compare *compare,
                                       const struct cs_cell *of, double value, double target,
                                       struct cs_error *error) {
     struct cs_cell cell;
-    cs_cell_derive(&cell, of, value, compare->scene_size);
+    cs_cell_derive(&cell, of, value);
     cell.target = target;
     make_key(&cell, of->key, of->module);
     if (!measure(compare, ledger, &cell, error))

@@ -102,7 +102,6 @@ struct cs_compare {
     bool contact;              /* by force: a part of the equation of motion */
     uint32_t particles, springs, n_event_times; /* cuts: times of events */
     double fps, omega, time, budget;
-    double scene_size;         /* m, of the scene: a power of 10 */
     double rounds_seconds;     /* s that rounds may go on */
     uint32_t n_done, n_reused; /* cells; those of an earlier run */
 };
