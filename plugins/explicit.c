@@ -95,8 +95,7 @@ static void choose_dt(struct fixed_step *loop, double limit) {
     loop->dt = 0.9 * limit;
     if (view->omega <= 0 && view->delta <= 0) {
         loop->dt = HUGE_VAL;
-        host->note(host->ctx,
-                   "dt automatic: by error (no springs or dampers limit it)");
+        host->note(host->ctx, "dt automatic: by error (no springs or dampers limit it)");
     } else if (limit <= 0) {
         loop->dt = 0.9 * symplectic_euler_limit(loop, view->omega, view->delta);
         host->note(host->ctx,

@@ -3,8 +3,8 @@
  *
  * The decisions of one step, in order:
  * 1. Choose the length of the part: as the part before; twice as long if that is aligned,
- *    stable, accurate and looks admissible; halved until it is not longer than 0.9 of the stability
- *    limit at the state, and, with free_motion, until the host admits the motion without
+ *    stable, accurate and looks admissible; halved until it is not longer than 0.9 of the
+ * stability limit at the state, and, with free_motion, until the host admits the motion without
  *    forces. After a refusal step 1 is left out, because the state is the same.
  * 2. More than max_depth halvings: the run ends with the reason of the last refusal.
  * 3. Take the part. If the host does not admit the displacement, the part is longer than 0.9 of
@@ -214,8 +214,7 @@ static void choose_cuts(struct fixed_step *self, double t, double h, const doubl
     const double twice = 2 * step_subdivision_length(cuts, h);
     bool admitted = !self->is_guarded || !(self->free_motion > 0);
     if (step_subdivision_may_grow(cuts) && twice <= longest &&
-        step_error_admits_twice(&self->error) &&
-        is_growth_admissible(self, t, twice, x, v)) {
+        step_error_admits_twice(&self->error) && is_growth_admissible(self, t, twice, x, v)) {
         step_subdivision_grow(cuts);
         admitted = true;
     }

@@ -84,8 +84,9 @@ struct fixed_step fixed_step_of(const struct cs_host *host, double dt,
                                 fixed_step_callback *step);
 
 /* Makes steps subject to their error, if dt is 0 and nothing has chosen another one, and to
- * host->max_step_fraction, if the host has it; [create]. limit: the method's largest stable step in s for bounds omega and delta, if it chose dt by that; else
- * NULL. CS_STEP_FAIL if out of memory. */
+ * host->max_step_fraction, if the host has it; [create]. limit: the method's largest stable
+ * step in s for bounds omega and delta, if it chose dt by that; else NULL. CS_STEP_FAIL if out
+ * of memory. */
 enum cs_step fixed_step_guard(struct fixed_step *self,
                               double (*limit)(const struct fixed_step *, double, double));
 

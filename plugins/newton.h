@@ -44,7 +44,7 @@
     double dt, rtol;                                                                           \
     int64_t iterations
 #define NEWTON_ROWS(struct_)                                                                   \
-    FIXED_STEP_DT_BY_ERROR(struct_),              \
+    FIXED_STEP_DT_BY_ERROR(struct_),                                                           \
         CS_OPTION(struct_, rtol, "", 1e-6, 1e-14, 0.1,                                         \
                   "residual of Newton's iteration, relative to the impulse of the step"),      \
         CS_OPTION(                                                                             \

@@ -39,9 +39,10 @@ struct shape_options {
 };
 
 static const struct cs_option rows[] = {
-    FIXED_STEP_DT(struct shape_options,
-                  "0.9 of the stability limit of springs and drag, estimated at rest, or 1/60 s "
-                  "without them"),
+    FIXED_STEP_DT(
+        struct shape_options,
+        "0.9 of the stability limit of springs and drag, estimated at rest, or 1/60 s "
+        "without them"),
     CS_OPTION_CHOICE(
         struct shape_options, rotation, rotations, POLAR,
         "polar: the rotation nearest to A_pq; the others omit the square root of the polar "

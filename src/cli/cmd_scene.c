@@ -77,6 +77,11 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
 /* Prints the plan, and its final form after the method took its memory. */
 static void add_plan(const struct cs_session *session, struct cs_text *out) {
     const size_t bytes = cs_run_bytes(&session->run);
+    struct cs_text choice = {0};
+    cs_session_print_choice(session, &choice);
+    if (choice.length)
+        cs_text_add(out, "integrator         %s\n", cs_text_get(&choice));
+    cs_text_finish(&choice);
     cs_plan_print(&session->run.plan, out);
     cs_text_add(out, "%-18s %-9s %10zu bytes   %s\n", "method", "built",
                 session->run.method_bytes, session->method.integrator->name);

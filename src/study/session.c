@@ -74,6 +74,25 @@ static enum cs_status set_options_of_scene(struct cs_session *session, const cha
                : CS_OK;
 }
 
+/* The methods of "automatic", by error control of a hundredth of the scene's size or less, and
+ * the rates in 1/s from which the implicit one is cheaper: with contact its steps are as short
+ * as those of the explicit one. From table "default method" of docs/guide.md. */
+#define EXPLICIT_METHOD "dopri5:rtol=0.001"
+#define IMPLICIT_METHOD "esdirk:rtol=0.01"
+#define RATE_FREE       6e3
+#define RATE_IN_CONTACT 1e5
+#define SHAPES_METHOD   "shape-matching"
+
+/* Finds a method by a name of the program itself. */
+static enum cs_status take_method(struct cs_session *session, const char *name,
+                                  struct cs_error *error) {
+    const char *pairs = NULL;
+    cs_method_finish(&session->method);
+    return cs_method_find(&session->method, &session->registry, name, &pairs, error)
+               ? error->status
+               : cs_method_set_pairs(&session->method, pairs, error);
+}
+
 /* Finds the requested method, or the scene's own. The scene's options apply if the scene names
  * the same method. */
 static enum cs_status read_method(struct cs_session *session, struct cs_error *error) {
@@ -81,6 +100,12 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
     const char *asked = session->settings.integrator, *pairs = NULL;
     struct cs_method *method = &session->method;
     struct cs_error missing = {0};
+    session->is_automatic = !strcmp(asked ? asked : scene->integrator, CS_INTEGRATOR_DEFAULT);
+    if (session->is_automatic)
+        return take_method(session,
+                           cs_scene_first_matched(scene) < scene->bodies.n ? SHAPES_METHOD
+                                                                           : EXPLICIT_METHOD,
+                           error);
     /* a module file is code: it is run where the user names it, and never by a scene */
     if (!asked && strchr(scene->integrator, '/')) {
         cs_fail(&missing, CS_ERR_SCENE,
@@ -105,6 +130,13 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
     return cs_method_set_pairs(method, pairs, error);
 }
 
+/* The scene is printed and hashed with the method that runs it. */
+static void name_method(struct cs_session *session) {
+    snprintf(session->scene.integrator, sizeof session->scene.integrator, "%s",
+             session->method.integrator->name);
+    session->scene.integrator_settings.n = 0;
+}
+
 /* Method, options and dt of the session, in this order of precedence: given integrator, command
  * line, scene. The scene then carries the method that runs it, for hashes and prints. */
 static enum cs_status choose_method(struct cs_session *session, struct cs_error *error) {
@@ -118,10 +150,7 @@ static enum cs_status choose_method(struct cs_session *session, struct cs_error 
         read_method(session, error);
     if (error->status)
         return error->status;
-    // the scene is printed and hashed with the method that runs it
-    snprintf(session->scene.integrator, sizeof session->scene.integrator, "%s",
-             session->method.integrator->name);
-    session->scene.integrator_settings.n = 0;
+    name_method(session);
     if (settings->dt > 0 && !cs_method_set_dt(&session->method, settings->dt))
         cs_fail(error, CS_ERR_USAGE, "integrator \"%s\" takes no dt of %g s",
                 session->method.integrator->name, settings->dt);
@@ -196,6 +225,36 @@ static void change_scene(struct cs_session *session) {
         settings->edit_scene(&session->scene, settings->ctx);
 }
 
+static void make_plan(struct cs_session *session) {
+    cs_plan_make(&session->plan, &session->scene,
+                 session->method.integrator->needs | session->settings.needs,
+                 session->settings.render);
+}
+
+/* Takes the implicit method for "automatic" where the fastest motion of the springs makes it
+ * the cheaper one. The rates are known of a built system only. */
+static enum cs_status choose_by_cost(struct cs_session *session, struct cs_error *error) {
+    struct cs_system system = {0};
+    struct cs_error said = {0};
+    const bool contact =
+        session->scene.colliders.n > 0 || cs_scene_has_body_contact(&session->scene);
+    const double most = contact ? RATE_IN_CONTACT : RATE_FREE;
+    if (!session->is_automatic || session->method.integrator->needs & CS_NEED_CLUSTERS)
+        return CS_OK;
+    // a scene that cannot be built is refused where it is built for the run
+    const bool built = !cs_system_build(&system, &session->scene, &session->plan, &said);
+    session->rate = built ? fmax(system.view.omega, 2 * system.view.delta) : 0;
+    cs_system_finish(&system);
+    session->rate_limit = most;
+    if (!(session->rate > most))
+        return CS_OK;
+    if (!take_method(session, IMPLICIT_METHOD, error)) {
+        name_method(session);
+        make_plan(session);
+    }
+    return error->status;
+}
+
 /* Opens up to the plan; on failure the caller closes. */
 static enum cs_status open_plan(struct cs_session *session,
                                 const struct cs_session_settings *settings,
@@ -205,9 +264,19 @@ static enum cs_status open_plan(struct cs_session *session,
         check_method(session, error) || start_threads(session, error))
         return error->status;
     change_scene(session);
-    cs_plan_make(&session->plan, &session->scene,
-                 session->method.integrator->needs | settings->needs, settings->render);
-    return CS_OK;
+    make_plan(session);
+    return choose_by_cost(session, error);
+}
+
+void cs_session_print_choice(const struct cs_session *session, struct cs_text *out) {
+    const bool is_explicit = !(session->method.integrator->traits & CS_IMPLICIT);
+    if (session->is_automatic && session->rate_limit > 0)
+        cs_text_add(
+            out, "automatic, %s: the fastest motion of the springs has %.3g 1/s, %s %.3g 1/s",
+            is_explicit ? "explicit" : "implicit", session->rate,
+            is_explicit ? "at most" : "above", session->rate_limit);
+    else if (session->is_automatic)
+        cs_text_add(out, "automatic: bodies have shape_matching");
 }
 
 /* Systems of at least BUILD_PARTICLES are checked against the memory of the machine; TWIN_SIDE

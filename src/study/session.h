@@ -68,6 +68,10 @@ struct cs_session {
         initial_penetration; /* particles moved out of colliders when the system was built */
     struct cs_run run;
     bool started_pool; /* started threads */
+    /* the method was chosen by "automatic"; 1/s of its springs, and up to which an explicit
+     * method is the cheaper one; 0: it was not chosen by cost */
+    bool is_automatic;
+    double rate, rate_limit;
 };
 
 /* Opens the session up to a begun run. On failure everything is closed, and *error names the
@@ -98,6 +102,9 @@ enum cs_status cs_session_build(struct cs_session *session, struct cs_error *err
  * the session must still be closed. */
 enum cs_status cs_session_begin(struct cs_session *session, const double *start,
                                 struct cs_error *error);
+
+/* Appends why "automatic" chose the method, without an end of line; nothing if it was named. */
+void cs_session_print_choice(const struct cs_session *session, struct cs_text *out);
 
 /* Frees everything and ends the threads that the session started; a zeroed session is allowed.
  */

@@ -178,6 +178,11 @@ void cs_report_print_table(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     add_row(out, "scene", "%s", job->session.scene.path);
     cs_print_hanging("method", cs_text_get(&job->method), VALUE_COLUMN, out);
+    struct cs_text choice = {0};
+    cs_session_print_choice(&job->session, &choice);
+    if (choice.length)
+        cs_print_hanging("", cs_text_get(&choice), VALUE_COLUMN, out);
+    cs_text_finish(&choice);
     add_frames(job, out);
     add_watch(job, out);
     add_crossings(job, out);
