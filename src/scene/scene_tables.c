@@ -209,7 +209,7 @@ static const struct cs_option body_rows[] = {
     REAL(struct cs_body, strain_limit, "", ABSENT, 1, 1000,
          "largest length of a stretch spring over its rest length; absent: no limit"),
     INT(struct cs_body, strain_limit_sweeps, "", 10, 1, 10000,
-        "passes of the strain limit over the springs after each step"),
+        "passes of the strain limit over the springs after each step, before rounds that meet it"),
     TABLE(struct cs_body, material, material_table, "Blinn-Phong look"),
 };
 static const struct cs_table body_table = {ROWS(body_rows), .size = sizeof(struct cs_body)};

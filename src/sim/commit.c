@@ -26,7 +26,8 @@
 static void limit_strain(struct cs_run_host *host, double dt, double *x, double *v,
                          bool *changed) {
     const struct cs_stage_start begin = cs_stage_begin(host);
-    const uint64_t moves = cs_strain_limit_apply(host->run->system, dt, x, v);
+    const uint64_t moves =
+        cs_strain_limit_apply(&host->run->strain_limit, host->run->system, dt, x, v);
     host->run->counts.strain_limit_moves += moves;
     *changed |= moves > 0;
     cs_stage_end(host, CS_STAGE_LIMIT, begin);

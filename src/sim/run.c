@@ -136,6 +136,17 @@ static void count_time(struct cs_run *run, struct cs_stage_start begin) {
     run->advance_cpu += now.cpu - begin.cpu;
 }
 
+/* The memory of rounds, only where a body has a strain limit. */
+static enum cs_status add_strain_limit(struct cs_run *run, struct cs_error *error) {
+    struct cs_plan_row *row = run->plan.rows + CS_FEATURE_STRAIN_LIMIT;
+    run->host->arena.part = &row->bytes;
+    if (row->built)
+        run->strain_limit.before = cs_arena_alloc_array(
+            &run->host->arena, 6 * (size_t)run->system->view.n, sizeof(double), error);
+    run->host->arena.part = &run->method_bytes;
+    return error->status;
+}
+
 /* Creates the method, counts its memory in run->method_bytes, and restarts it at 0. */
 static enum cs_status start(struct cs_run *run, const void *options, struct cs_error *error) {
     struct cs_run_host *host = run->host;
@@ -143,8 +154,9 @@ static enum cs_status start(struct cs_run *run, const void *options, struct cs_e
     host->process_state = cs_process_state_save();
     cs_crash_begin(CS_CRASH_METHOD);
     cs_run_host_set_scales(host);
+    if (add_strain_limit(run, error))
+        return error->status;
     host->creating = true;
-    host->arena.part = &run->method_bytes;
     if (cs_view_pages_needed(run->integrator) &&
         cs_view_pages_create(&host->pages, &run->system->view, error))
         return error->status;

@@ -3,6 +3,7 @@
 #define CS_RUN_STATE_H
 
 #include "base/trace_stream.h"
+#include "model/post_step/contact_projection.h"
 #include "model/system/particle_system.h"
 
 #include <clothsim/integrator.h>
@@ -89,6 +90,7 @@ struct cs_run {
     const char *reason;        /* with CS_GAVE_UP: the method's, the host's text */
     bool is_process_changed;   /* by the method: no other run is to follow in this process */
     struct cs_counts counts;
+    struct cs_strain_limit strain_limit;
     double stage_seconds[CS_STAGES]; /* wall time; all 0 unless timed */
     double stage_cpu[CS_STAGES];     /* processor time of the process meanwhile; likewise */
     double advance_seconds;          /* wall time inside the method */

@@ -241,7 +241,8 @@ TEST(strain_is_limited) {
     for (size_t i = 0; i < ball.n; i++)
         ball.x[ball.n + i] *= 1.2;
     ck_assert_double_gt(cs_diagnostics_strain(ball.system, ball.x), 0.15);
-    ck_assert(cs_strain_limit_apply(ball.system, 0.01, ball.x, ball.v) > 0);
+    ck_assert(cs_strain_limit_apply(&ball.session.run.strain_limit, ball.system, 0.01, ball.x,
+                                    ball.v) > 0);
     double strain[1000];
     ck_assert_uint_lt(ball.n, 1000);
     cs_diagnostics_particle_strain(ball.system, ball.x, strain);

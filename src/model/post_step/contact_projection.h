@@ -95,21 +95,32 @@ double cs_step_bound_step(const struct cs_system *system,
 
 /* Limits the strain of stretch springs after a step (Provot 1995). */
 
+/* Length over the limit, less 1, at which a spring is short enough. */
+#define CS_STRAIN_LIMIT_TOLERANCE 1e-3
+
+struct cs_strain_limit {
+    double *before; /* (6n) scratch, borrowed; NULL: no rounds */
+    double missed;  /* largest length over the limit that rounds have left, less 1; 0: none */
+};
+
 /* Shortens every stretch spring of a body with a strain limit that is longer than strain_limit
  * times its rest length. Its ends move along it by their inverse masses (Provot 1995; cloth
  * thesis, sec. 5.3):
  *
  *   x_a += w_a (l - s L) / (w_a + w_b) u,   x_b -= w_b (l - s L) / (w_a + w_b) u
  *
- * Velocities change by the displacement over max(dt, a frame): a sheet too weak for its weight
- * is held, and a short step of an adaptive method does not turn a small displacement into a
- * blow. At most strain_limit_sweeps passes, every other one backwards; fewer if a pass finds
- * nothing. A pass over a grid has the order of strain_limit.c, over a mesh that of the
- * springs. Returns the number of corrections. x, v (3,n) in m and m/s are changed in place.
+ * Velocities change by the displacement over dt, but by no more than stops the lengthening of
+ * the spring: they then fit the positions, and what was too long before is no blow. At most
+ * strain_limit_sweeps passes, every other one backwards; fewer if a pass finds nothing. Then up
+ * to 128 rounds until no spring exceeds the limit by more than CS_STRAIN_LIMIT_TOLERANCE: a pass
+ * each, over a grid after passes over far pairs. A pass over a grid has the order of
+ * strain_limit.c, over a mesh that of the springs. Returns the number of corrections. x, v (3,n)
+ * in m and m/s are changed in place.
  *
  * Only stretch springs are limited: with shear and bend springs too, the passes work against
  * each other and pump energy into a hanging sheet at dt = 1/60 s. */
-uint64_t cs_strain_limit_apply(const struct cs_system *system, double dt, double *x, double *v);
+uint64_t cs_strain_limit_apply(struct cs_strain_limit *limit, const struct cs_system *system,
+                               double dt, double *x, double *v);
 
 /* Particles that start inside a collider, and bodies that start crossed, in touch, or within
  * the range of contact. */
