@@ -324,6 +324,7 @@ static void particle_stencil(const struct cs_bending *bending, const struct cs_m
         .at = {at, at - (column > 0), at + (column + 1 < w), row > 0 ? at - w : at,
                row + 1 < bending->rows ? at + w : at},
         .ends = {1, 2, 3, 4},
+        .product = dx * dy * (along ? 2 : 1) * (across ? 2 : 1),
         .weights = {{-2 * p, p, p, 0, 0}, {-2 * q, 0, 0, q, q}},
         .moduli = {.warp = area * (moduli->warp - (rim ? other / moduli->weft : 0)),
                    .weft = area * (moduli->weft - (rim ? other / moduli->warp : 0)),
@@ -341,6 +342,7 @@ static void cell_stencil(const struct cs_bending *bending, const struct cs_modul
     *stencil = (struct cs_bending_stencil){.n = 4,
                                            .at = {at, at + 1, at + w, at + w + 1},
                                            .ends = {0, 3, 2, 1},
+                                           .product = 2 * area,
                                            .weights = {{0}, {0}, {k, -k, -k, k}},
                                            .moduli = {.shear = area * moduli->shear}};
 }
@@ -360,6 +362,7 @@ void cs_bending_stencil_at(const struct cs_bending *bending, const struct cs_mod
     *stencil =
         (struct cs_bending_stencil){.n = CS_BENDING_POINTS,
                                     .ends = {0, 1, 0, 2},
+                                    .product = 2 * area,
                                     .moduli = {area * moduli->warp, area * moduli->weft,
                                                area * moduli->coupling, area * moduli->shear}};
     for (size_t j = 0; j < CS_BENDING_POINTS; j++)

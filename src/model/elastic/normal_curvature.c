@@ -44,15 +44,16 @@ static void set_matrix_factors(struct job *job, double ck, double cd, bool psd) 
     job->damping = (struct cs_normal_factors){.change = -cd};
 }
 
-/* The forces on the points of one stencil, times -1; 0 where it has no normal. */
+/* The forces on the points of one stencil, times -1. */
 static void find_forces(const struct job *job, const struct cs_bending_stencil *of,
                         struct cs_normal_factors by, double out[CS_NORMAL_FORCES]) {
     const size_t n = job->system->view.n;
     struct cs_normal_state at;
     struct cs_normal_sums dx, dv;
     memset(out, 0, CS_NORMAL_FORCES * sizeof *out);
-    if (of->n == 0 || !cs_normal_stencil_state(of, n, job->x, job->v, &at))
+    if (of->n == 0)
         return;
+    cs_normal_stencil_state(of, n, job->x, job->v, &at);
     if (!job->is_change) {
         cs_normal_stencil_force(of, &at, by, out);
         return;
@@ -148,8 +149,7 @@ double cs_normal_curvature_energy(const struct cs_system *system, const double *
             struct cs_normal_state at;
             double M[3];
             cs_bending_stencil_at(bending, &D, s, &of);
-            if (!cs_normal_stencil_state(&of, system->view.n, x, NULL, &at))
-                continue;
+            cs_normal_stencil_state(&of, system->view.n, x, NULL, &at);
             cs_normal_stencil_moments(&of, &at, (struct cs_normal_factors){.kappa = 1}, M);
             for (int a = 0; a < 3; a++)
                 sum += 0.5 * M[a] * (at.kappa[a] - of.rest[a]);
@@ -166,8 +166,9 @@ static void find_entries(const struct job *job, const struct cs_bending_stencil 
                          double K[CS_NORMAL_FORCES][CS_NORMAL_FORCES]) {
     struct cs_normal_state at;
     memset(K, 0, CS_NORMAL_FORCES * sizeof *K);
-    if (of->n == 0 || !cs_normal_stencil_state(of, job->system->view.n, job->x, NULL, &at))
+    if (of->n == 0)
         return;
+    cs_normal_stencil_state(of, job->system->view.n, job->x, NULL, &at);
     for (size_t column = 0; column < 3 * (size_t)of->n; column++) {
         const size_t j = column / 3, c = column % 3;
         // a unit displacement of one number

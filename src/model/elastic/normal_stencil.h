@@ -16,8 +16,8 @@ struct cs_normal_sums {
 /* A stencil at a state. */
 struct cs_normal_state {
     struct cs_normal_sums x, v;
-    double normal[3], length; /* of the product of the differences, in m2 */
-    double rate[3], turn[3];  /* of that product, and of the normal, over time */
+    double product;                   /* m2: L0 of normal_curvature.h */
+    double normal[3], normal_rate[3]; /* n, and its rate in 1/s */
     double kappa[3], kappa_rate[3];
 };
 
@@ -30,8 +30,8 @@ struct cs_normal_factors {
 /* Sums of an array (3,n); NULL: 0. */
 void cs_normal_stencil_sums(const struct cs_bending_stencil *of, size_t n, const double *p,
                             struct cs_normal_sums *sums);
-/* Returns false where the stencil has no normal: it then has no force. v may be NULL: 0. */
-bool cs_normal_stencil_state(const struct cs_bending_stencil *of, size_t n, const double *x,
+/* v may be NULL: 0. */
+void cs_normal_stencil_state(const struct cs_bending_stencil *of, size_t n, const double *x,
                              const double *v, struct cs_normal_state *at);
 /* A D times the curvatures less those at rest, and their rates, by the factors. */
 void cs_normal_stencil_moments(const struct cs_bending_stencil *of,
