@@ -160,8 +160,10 @@ static enum cs_step try_steps(struct adaptive_step *self, double t, const double
             return status;
         if (error <= 1 && is_refused(self, t, *h, y))
             continue;
-        if (step_control_judge(control, *h, error, *h < control->h))
+        if (step_control_judge(control, *h, error, *h < control->h)) {
+            self->local_error += error * self->tolerance.length;
             return CS_STEP_OK;
+        }
     }
 }
 
@@ -201,7 +203,10 @@ enum cs_step adaptive_step_restart(void *object, double t, const double *x, cons
 }
 
 void adaptive_step_stats(const void *object, struct cs_stats *out) {
-    out->rejected = ((const struct adaptive_step *)object)->rejected;
+    const struct adaptive_step *self = object;
+    out->rejected = self->rejected;
+    if (CS_HAS(out, local_error))
+        out->local_error = self->local_error;
 }
 
 enum cs_step adaptive_step_archive(void *object, const struct cs_archive *archive) {
@@ -217,6 +222,7 @@ enum cs_step adaptive_step_archive(void *object, const struct cs_archive *archiv
     archive->reals(archive->ctx, &control->h, 1);
     archive->reals(archive->ctx, &control->last_error_root, 1);
     archive->reals(archive->ctx, &self->contact, 1);
+    archive->reals(archive->ctx, &self->local_error, 1);
     archive->reals(archive->ctx, self->slope, self->length / 2);
     return CS_STEP_OK;
 }

@@ -52,6 +52,7 @@ struct adaptive_step {
     bool changed;   /* the last commit changed the state */
     bool started;   /* control.h was chosen */
     uint64_t rejected;
+    double local_error; /* m, of all accepted steps, added up */
     double begin, end; /* s, of the advance */
     int64_t tries;     /* steps in it, rejected ones included */
     adaptive_try *attempt;

@@ -147,7 +147,10 @@ enum cs_step fixed_step_restart(void *self, double t, const double *x, const dou
 }
 
 void fixed_step_stats(const void *object, struct cs_stats *out) {
-    out->rejected = ((const struct fixed_step *)object)->rejected;
+    const struct fixed_step *self = object;
+    out->rejected = self->rejected;
+    if (CS_HAS(out, local_error))
+        out->local_error = self->error.sum;
 }
 
 enum cs_step fixed_step_archive(void *object, const struct cs_archive *archive) {

@@ -29,6 +29,7 @@ struct step_error {
     double *difference;    /* (3,n) scratch */
     double last_h;         /* s, length of that step; 0: none since the restart */
     double ratio;          /* error of the step that was judged last over the tolerance */
+    double sum;            /* m, errors of accepted steps, added up */
     double free_particles; /* at least 1 */
 };
 
@@ -72,6 +73,7 @@ static inline void step_error_accept(struct step_error *self, double h) {
     self->change = self->last_change;
     self->last_change = change;
     self->last_h = h;
+    self->sum += self->ratio * self->tolerance * h;
 }
 
 /* True if a step of twice the length is expected to be accurate: the ratio grows as h for order
@@ -87,6 +89,7 @@ static inline void step_error_archive(struct step_error *self, const struct cs_h
         return;
     archive->reals(archive->ctx, &self->last_h, 1);
     archive->reals(archive->ctx, &self->ratio, 1);
+    archive->reals(archive->ctx, &self->sum, 1);
     archive->reals(archive->ctx, self->last_change, 3 * (size_t)host->view->n);
 }
 

@@ -292,6 +292,9 @@ struct cs_stats {
     uint64_t setups;
     /* Passes of its own over all springs, each about a force evaluation; late: ask CS_HAS. */
     uint64_t sweeps;
+    /* Errors of position of its accepted steps as it estimates them, added up: in m, as a root
+     * of the mean square over the particles. 0: it has no estimate; late: ask CS_HAS. */
+    double local_error;
 };
 
 /* The passage of a method's history into a checkpoint, or back. save and load make the same

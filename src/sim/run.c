@@ -242,6 +242,7 @@ static void count_method(struct cs_run *run) {
     found->newton += before->newton;
     found->setups += before->setups;
     found->sweeps += before->sweeps;
+    found->local_error += before->local_error;
 }
 
 /* The time of a frame is computed from its number: fps need not divide it without rounding. */

@@ -92,6 +92,9 @@ static const struct cs_arg rows[] = {
      "write every array that this frame computes to standard output, or with \"frames\" the "
      "state of each frame: for clothsim bisect",
      CS_ARG_INTO(struct options, trace)},
+    {"error", 0, NULL,
+     "measure the error of the end by a second run, with a tenth of rtol or half the steps",
+     CS_ARG_INTO(struct options, job.error)},
     {"timing", 0, NULL, "print the time of each stage of a run and its peak memory",
      CS_ARG_INTO(struct options, job.session.run.timed)},
     {"threads", 0, "N",

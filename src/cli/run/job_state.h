@@ -50,6 +50,7 @@ struct cs_job_settings {
     struct cs_export_settings export;         /* into the folder, as often as pictures */
     bool show;                                /* pictures in the terminal */
     bool fast_render, hash, overwrite, quiet;
+    bool error; /* measure the error of the end by a second run */
 };
 
 /* Number of frames to simulate; by default one second, at least one frame. */
@@ -141,7 +142,8 @@ struct cs_job {
     struct cs_run_camera camera;
     const char *failure; /* why a step failed, in the caller's error; NULL: none did */
     double wall_seconds, encode_seconds;
-    double wait_seconds; /* that the run stood still for its pictures */
+    double measured_error; /* m at the end, against a run of finer steps; 0: not asked for */
+    double wait_seconds;   /* that the run stood still for its pictures */
 };
 
 /* The stages of a run at which outputs are called. */

@@ -66,6 +66,15 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
                   job->frames, run->frame, run->t);
 }
 
+static void add_error(const struct cs_job *job, struct cs_text *out) {
+    const double sum = job->session.run.counts.method.local_error;
+    cs_json_write(out, "  'error': {'size': %g, 'local': %g",
+                  cs_run_calls(&job->session.run)->length_scale, sum > 0 ? sum : (double)NAN);
+    if (job->measured_error > 0)
+        cs_json_write(out, ", 'measured': %g", job->measured_error);
+    cs_text_add(out, "},\n");
+}
+
 static void add_counts(const struct cs_counts *c, struct cs_text *out) {
     /* scripts read these names: they are part of the schema version */
     const struct {
@@ -171,6 +180,7 @@ static void print_report(const struct cs_job *job, struct cs_text *out) {
     cs_json_write(out, ",\n  'particles': %u,\n  'springs': %u,\n", run->system->view.n,
                   run->system->springs.n);
     add_outcome(job, out);
+    add_error(job, out);
     add_counts(&run->counts, out);
     add_crossings(job, out);
     add_contact(run->system, out);

@@ -104,6 +104,28 @@ static void add_counts(const struct cs_job *job, struct cs_text *out) {
                 (unsigned long long)c->strain_limit_moves);
 }
 
+/* The error of the end as it was measured. Local errors, added up, are no measure of it:
+ * contact enlarges and damping shrinks them, by factors of 0.04 to 2000 on random scenes. */
+static void add_error(const struct cs_job *job, struct cs_text *out) {
+    const struct cs_run *run = &job->session.run;
+    const double size = cs_run_calls(run)->length_scale, sum = run->counts.method.local_error;
+    struct cs_text line = {0};
+    if (job->measured_error > 0)
+        cs_text_add(&line,
+                    "about %.2g m, %.2g %% of the size (distance to a run of finer steps)",
+                    job->measured_error, 100 * job->measured_error / size);
+    else if (sum > 0)
+        cs_text_add(
+            &line,
+            "not known: local errors add up to %.2g m, %.2g %% of the size, which motion "
+            "enlarges and damping shrinks (--error measures it)",
+            sum, 100 * sum / size);
+    else
+        cs_text_add(&line, "not known: no local errors are estimated (--error measures it)");
+    cs_print_hanging("error", cs_text_get(&line), VALUE_COLUMN, out);
+    cs_text_finish(&line);
+}
+
 /* Energies, strain and memory at the end. */
 static void add_measures(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
@@ -188,6 +210,7 @@ void cs_report_print_table(const struct cs_job *job, struct cs_text *out) {
     add_crossings(job, out);
     add_contact(job, out);
     add_counts(job, out);
+    add_error(job, out);
     add_measures(job, out);
     if (job->settings->session.run.timed) {
         add_row(out, "threads", "%u", cs_pool_threads());
