@@ -160,14 +160,13 @@ static int take_lock(const char *path, struct cs_error *error) {
 }
 
 enum cs_status cs_row_table_lock(struct cs_row_table *table, struct cs_error *error) {
-    const int lock = take_lock(table->lock_path, error);
-    table->lock = lock < 0 ? 0 : lock;
+    table->lock = take_lock(table->lock_path, error) + 1;
     return error->status;
 }
 
 void cs_row_table_unlock(struct cs_row_table *table) {
-    if (table->lock > 0)
-        close(table->lock);
+    if (table->lock)
+        close(table->lock - 1);
     table->lock = 0;
 }
 

@@ -66,7 +66,7 @@ uint32_t cs_csv_cut(char *line, char separator, char **fields, uint32_t max);
 struct cs_row_table {
     char path[4200], lock_path[4200];
     size_t row_bytes; /* of a record; 0: rows are lines */
-    int lock;         /* descriptor, above 0: taken */
+    int lock;         /* descriptor + 1; 0: not taken */
 };
 
 /* Makes the folder and sets the paths FOLDER/NAME and FOLDER/LOCK; reads nothing. A table that

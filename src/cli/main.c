@@ -8,8 +8,11 @@
 #include "cli/output_keys.h"
 #include "sim/install_paths.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <string.h>
+#include <unistd.h>
 
 static const struct cs_command *const commands[] = {
 #define X(name) &cs_command_##name,
@@ -156,8 +159,21 @@ static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
     return run_command(command, argc - 2, argv + 2, error);
 }
 
+/* Puts /dev/null in the place of closed streams, so that no file of ours gets their numbers.
+ * Reading from it, and writing results to it, fails as on a closed stream; messages are lost. */
+static enum cs_status open_streams(struct cs_error *error) {
+    static const int modes[] = {O_WRONLY, O_RDONLY, O_WRONLY};
+    for (int k = 0; k <= STDERR_FILENO; k++)
+        if (fcntl(k, F_GETFD) < 0 && open("/dev/null", modes[k]) != k)
+            return cs_fail(error, CS_ERR_FILE,
+                           "stream %d is closed, and /dev/null cannot be opened: %s", k,
+                           strerror(errno));
+    return CS_OK;
+}
+
 int main(int argc, char **argv) {
     struct cs_error error = {0};
+    open_streams(&error);
     const char *fault = cs_ieee_check();
     if (fault)
         cs_print_message(fault);
@@ -165,7 +181,7 @@ int main(int argc, char **argv) {
         cs_print_message(fault);
     /* a file that grew too long comes back from the write as an error, and is reported */
     signal(SIGXFSZ, SIG_IGN);
-    if (!dispatch(argc, argv, &error) && (fflush(stdout) || ferror(stdout)))
+    if (!error.status && !dispatch(argc, argv, &error) && (fflush(stdout) || ferror(stdout)))
         cs_fail(&error, CS_ERR_FILE, "cannot write to standard output");
     /* what was printed before the failure stands before it */
     fflush(stdout);
