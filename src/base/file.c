@@ -2,15 +2,28 @@
  * never sees half of it. */
 #include "base/file.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
+/* A path; 10 s for the reader of a FIFO to open it; at most so many processes remove a new
+ * file before it is locked. */
+enum { PATH_BYTES = 4096, READER_PAUSES = 500, TEMPORARY_TRIES = 100 };
+
 enum cs_status cs_file_status(int reason) {
-    return reason == ENOMEM ? CS_ERR_MEMORY : CS_ERR_FILE;
+    return reason == ENOMEM ? CS_ERR_MEMORY : reason == EINTR ? CS_ERR_INTERRUPT : CS_ERR_FILE;
+}
+
+/* Fails with the reason in errno. */
+static enum cs_status fail(const char *verb, const char *path, struct cs_error *error) {
+    return cs_fail(error, cs_file_status(errno), "cannot %s \"%s\": %s", verb, path,
+                   strerror(errno));
 }
 
 /* Fails with CS_ERR_FILE unless info is of a regular file. */
@@ -43,7 +56,7 @@ static enum cs_status read_bytes(int file, const char *path, char *bytes, size_t
         if (got < 0 && errno == EINTR)
             continue;
         if (got < 0)
-            return cs_fail(error, CS_ERR_FILE, "cannot read \"%s\": %s", path, strerror(errno));
+            return fail("read", path, error);
         if (got == 0)
             break;
         done += (size_t)got;
@@ -63,8 +76,7 @@ enum cs_status cs_file_read(const char *path, size_t max, char **bytes, size_t *
     /* without O_NONBLOCK a fifo would wait here for its writer */
     const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0 || fstat(file, &info)) {
-        status = cs_fail(error, cs_file_status(errno), "cannot read \"%s\": %s", path,
-                         strerror(errno));
+        status = fail("read", path, error);
         goto done;
     }
     if ((status = check_regular(&info, "read", path, error)) ||
@@ -87,66 +99,160 @@ done:
     return status;
 }
 
-/* Checks the path, and that nothing or a regular file lies there: the rename would replace a
- * device, or a link to one. */
-static enum cs_status check_target(const char *path, struct cs_error *error) {
-    struct stat info;
+enum cs_status cs_file_target(const char *path, bool *streams, struct cs_error *error) {
+    struct stat info, own;
+    *streams = false;
     if (!*path)
         return cs_fail(error, CS_ERR_FILE, "cannot write a file without a name");
     if (strlen(path) >= sizeof((struct cs_file_out *)0)->path)
         return cs_fail(error, CS_ERR_FILE, "cannot write \"%.60s...\": the path is too long",
                        path);
-    if (!stat(path, &info))
-        return check_regular(&info, "write", path, error);
-    if (errno != ENOENT)
-        return cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": %s", path, strerror(errno));
-    return CS_OK;
+    if (stat(path, &info))
+        return errno == ENOENT ? CS_OK : fail("write", path, error);
+    *streams = S_ISCHR(info.st_mode) || S_ISFIFO(info.st_mode);
+    if (*streams)
+        return CS_OK;
+    for (int k = STDOUT_FILENO; k <= STDERR_FILENO; k++)
+        if (!fstat(k, &own) && own.st_dev == info.st_dev && own.st_ino == info.st_ino)
+            return cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": it is standard %s", path,
+                           k == STDOUT_FILENO ? "output; \"-\" writes there" : "error");
+    return check_regular(&info, "write", path, error);
 }
 
-/* Opens a new file, never through a link that someone else made. Returns -1 and errno on
- * failure. */
-static int open_temporary(const char *path) {
-    const int flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-    const int file = open(path, flags, 0666);
-    if (file >= 0 || errno != EEXIST)
+int cs_file_open_stream(const char *path, struct cs_error *error) {
+    const struct timespec pause = {.tv_nsec = 20000000};
+    int file = -1;
+    for (int k = 0; k < READER_PAUSES; k++) {
+        file = open(path, O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+        if (file >= 0 || errno != ENXIO || nanosleep(&pause, NULL))
+            break;
+        errno = ENXIO;
+    }
+    if (file < 0)
+        fail("write", path, error);
+    else
+        fcntl(file, F_SETFL, O_WRONLY); // from here on a write waits for the reader
+    return file;
+}
+
+int cs_file_open_own(const char *path, int flags, struct cs_error *error) {
+    struct stat info, named;
+    const int file = open(path, flags | O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+    if (file < 0 || fstat(file, &info))
+        cs_fail(error, cs_file_status(errno), "cannot write \"%s\": %s", path,
+                errno == ELOOP ? "it is a link" : strerror(errno));
+    else if (S_ISREG(info.st_mode) && info.st_nlink > 1)
+        cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": it has %lu names, expected one", path,
+                (unsigned long)info.st_nlink);
+    // without the name it is the finished file of the process that had the lock
+    else if (!check_regular(&info, "write", path, error) &&
+             ((flock(file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK) || lstat(path, &named) ||
+              named.st_ino != info.st_ino || named.st_dev != info.st_dev))
+        cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": another process is writing it", path);
+    if (!error->status)
         return file;
-    /* left by a killed process that had our number */
-    unlink(path);
-    return open(path, flags, 0666);
+    if (file >= 0)
+        close(file);
+    return -1;
+}
+
+/* Removes a temporary file that no living process has locked, or a link with its name. */
+static void remove_left(const char *path) {
+    struct stat info;
+    const int file = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0 && errno == ELOOP)
+        unlink(path);
+    if (file < 0)
+        return;
+    if (!fstat(file, &info) && S_ISREG(info.st_mode) && !flock(file, LOCK_EX | LOCK_NB))
+        unlink(path);
+    close(file);
+}
+
+/* Opens a new file and locks it, never through a link that someone else made. Returns -1 and
+ * errno on failure. */
+static int open_temporary(const char *path) {
+    struct stat info;
+    for (int k = 0; k < TEMPORARY_TRIES; k++) {
+        const int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+        if (file < 0 && errno != EEXIST)
+            return -1;
+        if (file < 0) {
+            remove_left(path); // of a killed process that had our number
+            continue;
+        }
+        flock(file, LOCK_EX | LOCK_NB);
+        // another process may have removed it before it was locked
+        if (!fstat(file, &info) && info.st_nlink)
+            return file;
+        close(file);
+    }
+    errno = EEXIST;
+    return -1;
+}
+
+/* Sets the folder of a path, and returns the name in it. */
+static const char *split(const char *path, char folder[PATH_BYTES]) {
+    const char *end = strrchr(path, '/');
+    snprintf(folder, PATH_BYTES, "%.*s", end ? (int)(end - path) + 1 : 1, end ? path : ".");
+    return end ? end + 1 : path;
+}
+
+bool cs_file_is_temporary(const char *name, char target[CS_FILE_NAME_BYTES]) {
+    const char *end = strstr(name, ".tmp.");
+    if (!end || !end[5] || end[5 + strspn(end + 5, "0123456789")])
+        return false;
+    snprintf(target, CS_FILE_NAME_BYTES, "%.*s", (int)(end - name), name);
+    return true;
+}
+
+void cs_file_sweep(const char *path, bool (*is_ours)(const char *name)) {
+    char folder[PATH_BYTES], left[PATH_BYTES + CS_FILE_NAME_BYTES + 1],
+        target[CS_FILE_NAME_BYTES];
+    const char *name = split(path, folder);
+    DIR *entries = opendir(is_ours ? path : folder);
+    for (const struct dirent *entry; entries && (entry = readdir(entries));)
+        if (cs_file_is_temporary(entry->d_name, target) &&
+            (is_ours ? is_ours(target) : !strcmp(name, target)) &&
+            snprintf(left, sizeof left, "%s/%s", is_ours ? path : folder, entry->d_name) <
+                (int)sizeof left)
+            remove_left(left);
+    if (entries)
+        closedir(entries);
 }
 
 enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
                               struct cs_error *error) {
+    bool streams;
     out->file = NULL;
     out->durable = false;
-    const enum cs_status status = check_target(path, error);
-    if (status)
-        return status;
+    *out->temporary = 0;
+    if (cs_file_target(path, &streams, error))
+        return error->status;
     snprintf(out->path, sizeof out->path, "%s", path);
-    snprintf(out->temporary, sizeof out->temporary, "%s.tmp.%ld", path, (long)getpid());
+    if (!streams)
+        snprintf(out->temporary, sizeof out->temporary, "%s.tmp.%ld", path, (long)getpid());
 
     /* the old file stays whole until cs_file_finish renames over it */
-    const int file = open_temporary(out->temporary);
-    if (file < 0)
-        return cs_fail(error, cs_file_status(errno), "cannot write \"%s\": %s", path,
-                       strerror(errno));
-    out->file = fdopen(file, "wb");
-    if (!out->file) {
-        cs_fail(error, cs_file_status(errno), "cannot write \"%s\": %s", path, strerror(errno));
+    const int file =
+        streams ? cs_file_open_stream(path, error) : open_temporary(out->temporary);
+    out->file = file < 0 ? NULL : fdopen(file, "wb");
+    if (out->file)
+        return CS_OK;
+    fail("write", path, error);
+    if (file >= 0)
         close(file);
+    if (file >= 0 && !streams)
         unlink(out->temporary);
-        return error->status;
-    }
-    return CS_OK;
+    return error->status;
 }
 
 /* Brings the new name to disk too. Some file systems cannot; the file's content is safe, so
  * that is no failure. */
 static void sync_folder(const char *path) {
-    char folder[sizeof((struct cs_file_out *)0)->path];
-    const char *end = strrchr(path, '/');
-    snprintf(folder, sizeof folder, "%.*s", end ? (int)(end - path) : 1, end ? path : ".");
-    const int file = open(*folder ? folder : "/", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    char folder[PATH_BYTES];
+    split(path, folder);
+    const int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (file < 0)
         return;
     fsync(file);
@@ -162,7 +268,8 @@ enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error) {
         failed = true;
         reason = errno;
     }
-    if (!failed && out->durable && fsync(fileno(out->file))) {
+    const bool streams = !*out->temporary;
+    if (!failed && !streams && out->durable && fsync(fileno(out->file))) {
         failed = true;
         reason = errno;
     }
@@ -171,13 +278,14 @@ enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error) {
         reason = errno;
     }
     out->file = NULL;
-    if (!failed && !rename(out->temporary, out->path)) {
-        if (out->durable)
+    if (!failed && (streams || !rename(out->temporary, out->path))) {
+        if (out->durable && !streams)
             sync_folder(out->path);
         return CS_OK;
     }
     reason = failed ? reason : errno;
-    unlink(out->temporary);
+    if (!streams)
+        unlink(out->temporary);
     return cs_fail(error, cs_file_status(reason), "cannot write \"%s\": %s", out->path,
                    reason ? strerror(reason) : "an earlier write failed");
 }
@@ -187,14 +295,12 @@ void cs_file_abandon(struct cs_file_out *out) {
         return;
     fclose(out->file);
     out->file = NULL;
-    unlink(out->temporary);
+    if (*out->temporary)
+        unlink(out->temporary);
 }
 
 enum cs_status cs_file_remove(const char *path, struct cs_error *error) {
-    return unlink(path) && errno != ENOENT
-               ? cs_fail(error, cs_file_status(errno), "cannot remove \"%s\": %s", path,
-                         strerror(errno))
-               : CS_OK;
+    return unlink(path) && errno != ENOENT ? fail("remove", path, error) : CS_OK;
 }
 
 /* Creates, writes and finishes a file. */
@@ -217,6 +323,7 @@ enum cs_status cs_file_write(const char *path, const void *bytes, size_t length,
 
 enum cs_status cs_file_write_text(const char *path, struct cs_text *text,
                                   struct cs_error *error) {
+    cs_file_sweep(path, NULL);
     if (text->failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for %s", path);
     else

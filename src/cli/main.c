@@ -160,7 +160,8 @@ static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
 }
 
 /* Puts /dev/null in the place of closed streams, so that no file of ours gets their numbers.
- * Reading from it, and writing results to it, fails as on a closed stream; messages are lost. */
+ * Reading from it, and writing results to it, fails as on a closed stream; messages are lost.
+ */
 static enum cs_status open_streams(struct cs_error *error) {
     static const int modes[] = {O_WRONLY, O_RDONLY, O_WRONLY};
     for (int k = 0; k <= STDERR_FILENO; k++)

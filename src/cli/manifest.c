@@ -44,6 +44,11 @@ static bool is_of_study(const char *name) {
     return found && *name != '.' && strcmp(name, CS_MANIFEST_NAME) != 0;
 }
 
+/* The manifest too may have been left half written. */
+static bool is_swept(const char *name) {
+    return !strcmp(name, CS_MANIFEST_NAME) || is_of_study(name);
+}
+
 static enum cs_status add(struct list *list, const struct entry *entry,
                           struct cs_error *error) {
     if (list->n == list->capacity) {
@@ -125,6 +130,7 @@ enum cs_status cs_manifest_write(const char *folder, struct cs_error *error) {
 }
 
 enum cs_status cs_manifest_write_study(const char *folder, struct cs_error *error) {
+    cs_file_sweep(folder, is_swept);
     return write_manifest(folder, is_of_study, error);
 }
 

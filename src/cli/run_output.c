@@ -13,14 +13,11 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { PATH_BYTES = 4096, NUMBER_DIGITS = 5 };
@@ -70,16 +67,6 @@ bool cs_output_is_state(const char *name) {
            !strcmp(name, "manifest.txt");
 }
 
-/* such a file before it was renamed: NAME.tmp.PID */
-static bool is_unfinished(const char *name, cs_output_kind *is_ours) {
-    char whole[256];
-    const char *end = strstr(name, ".tmp.");
-    if (!end || !end[5] || end[5 + strspn(end + 5, "0123456789")])
-        return false;
-    return snprintf(whole, sizeof whole, "%.*s", (int)(end - name), name) < (int)sizeof whole &&
-           is_ours(whole);
-}
-
 static enum cs_status join(const char *folder, const char *name, char path[PATH_BYTES],
                            struct cs_error *error) {
     if (snprintf(path, PATH_BYTES, "%s/%s", folder, name) >= PATH_BYTES)
@@ -94,7 +81,10 @@ static enum cs_status refuse(const char *path, struct cs_error *error) {
 
 enum cs_status cs_output_check_file(const char *path, struct cs_error *error) {
     struct stat info;
-    return lstat(path, &info) ? CS_OK : refuse(path, error);
+    bool streams;
+    return lstat(path, &info) || (!cs_file_target(path, &streams, error) && streams)
+               ? error->status
+               : refuse(path, error);
 }
 
 /* An open folder, or NULL: with CS_OK where it is not there. */
@@ -127,12 +117,12 @@ enum cs_status cs_output_check(const char *folder, cs_output_kind *is_ours,
 static enum cs_status sweep(const char *folder, cs_output_kind *is_ours, bool whole,
                             struct cs_error *error) {
     char path[PATH_BYTES];
-    DIR *entries = open_folder(folder, error);
+    DIR *entries = whole ? open_folder(folder, error) : NULL;
+    cs_file_sweep(folder, is_ours);
     if (!entries)
         return error->status;
     for (struct dirent *entry; (entry = readdir(entries)) && !error->status;)
-        if ((is_unfinished(entry->d_name, is_ours) || (whole && is_ours(entry->d_name))) &&
-            !join(folder, entry->d_name, path, error) && unlink(path))
+        if (is_ours(entry->d_name) && !join(folder, entry->d_name, path, error) && unlink(path))
             cs_fail(error, CS_ERR_FILE, "cannot remove \"%s\": %s", path, strerror(errno));
     closedir(entries);
     return error->status;
@@ -230,30 +220,6 @@ enum cs_status cs_study_folder_check(const struct cs_session_settings *session,
                    "--out: \"%s\" is the folder of the scene, expected another one: results "
                    "would lie among scenes",
                    folder);
-}
-
-void cs_output_sweep_file(const char *path) {
-    enum { MINUTE = 60 }; /* a process on another machine may have the same number */
-    char folder[PATH_BYTES], left[PATH_BYTES];
-    const char *end = strrchr(path, '/'), *name = end ? end + 1 : path;
-    const size_t length = strlen(name);
-    struct stat info;
-    snprintf(folder, sizeof folder, "%.*s", end ? (int)(end - path) + 1 : 2, end ? path : "./");
-    DIR *entries = opendir(folder);
-    for (struct dirent *entry; entries && (entry = readdir(entries));) {
-        const char *rest = entry->d_name + length;
-        if (strncmp(entry->d_name, name, length) != 0 || strncmp(rest, ".tmp.", 5) != 0 ||
-            !rest[5] || rest[5 + strspn(rest + 5, "0123456789")])
-            continue;
-        const long process = strtol(rest + 5, NULL, 10);
-        const bool is_dead = process > INT_MAX || (kill((pid_t)process, 0) && errno == ESRCH);
-        if (is_dead &&
-            snprintf(left, sizeof left, "%s%s", folder, entry->d_name) < PATH_BYTES &&
-            !lstat(left, &info) && info.st_mtime + MINUTE < time(NULL))
-            unlink(left);
-    }
-    if (entries)
-        closedir(entries);
 }
 
 bool cs_external_modules_requested(const struct cs_args *args, const char *const *texts,

@@ -21,7 +21,7 @@ typedef bool cs_output_kind(const char *name);
 enum cs_status cs_output_check(const char *folder, cs_output_kind *is_ours,
                                struct cs_error *error);
 
-/* The same for one file. */
+/* The same for one file; a device or a FIFO is no earlier file. */
 enum cs_status cs_output_check_file(const char *path, struct cs_error *error);
 
 /* Treatment of files of an earlier run. */
@@ -58,8 +58,5 @@ enum cs_status cs_study_files_check(const struct cs_session_settings *session,
 /* CS_ERR_USAGE if the folder is that of the session's scene: results would lie among scenes. */
 enum cs_status cs_study_folder_check(const struct cs_session_settings *session,
                                      const char *folder, struct cs_error *error);
-
-/* Removes PATH.tmp.PID of killed processes beside a file, when they are older than a minute. */
-void cs_output_sweep_file(const char *path);
 
 #endif

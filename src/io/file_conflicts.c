@@ -1,6 +1,8 @@
 /* Identifies files by device and inode, and by folder and name. */
 #include "io/file_conflicts.h"
 
+#include "base/file.h"
+
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -26,7 +28,8 @@ static bool stat_file(const char *path, const char *what, bool output,
         return false;
     claim->folder_device_id = folder.st_dev;
     claim->folder_inode = folder.st_ino;
-    claim->exists = !stat(path, &file);
+    // a character device has no content that another use could harm
+    claim->exists = !stat(path, &file) && !S_ISCHR(file.st_mode);
     if (claim->exists) {
         claim->device_id = file.st_dev;
         claim->inode = file.st_ino;
@@ -34,12 +37,22 @@ static bool stat_file(const char *path, const char *what, bool output,
     return true;
 }
 
-/* Compares identities: the same inode, or the same name in the same folder. */
+/* True if the file `name` is written under the name `other` first: a temporary file. */
+static bool is_on_the_way(const char *name, const char *other) {
+    char target[CS_FILE_NAME_BYTES];
+    const size_t length = strlen(name);
+    return (!strncmp(name, other, length) && !strcmp(other + length, ".part")) ||
+           (cs_file_is_temporary(other, target) && !strcmp(name, target));
+}
+
+/* Compares identities: the same inode, or the same name in the same folder, or one of which the
+ * other is the temporary file. */
 static bool is_same(const struct cs_file_use *a, const struct cs_file_use *b) {
     if (a->exists && b->exists && a->device_id == b->device_id && a->inode == b->inode)
         return true;
     return a->folder_device_id == b->folder_device_id && a->folder_inode == b->folder_inode &&
-           !strcmp(a->name, b->name);
+           (!strcmp(a->name, b->name) || is_on_the_way(a->name, b->name) ||
+            is_on_the_way(b->name, a->name));
 }
 
 void cs_file_conflicts_input(struct cs_file_conflicts *conflicts, const char *path,
@@ -52,15 +65,21 @@ void cs_file_conflicts_input(struct cs_file_conflicts *conflicts, const char *pa
 /* Names the two uses that collide. */
 static enum cs_status refuse(const struct cs_file_use *claim, const char *path,
                              const char *what, struct cs_error *error) {
-    return cs_fail(error, CS_ERR_FILE, "%s: \"%s\" is %s %s", what, path,
+    const char *name = strrchr(path, '/');
+    const bool on_the_way = is_on_the_way(name ? name + 1 : path, claim->name);
+    return cs_fail(error, CS_ERR_FILE, "%s: \"%s\"%s%s%s is %s %s", what, path,
+                   on_the_way ? " is first \"" : "", on_the_way ? claim->name : "",
+                   on_the_way ? "\", which" : "",
                    claim->is_output ? "also written by" : "read as", claim->role);
 }
 
 enum cs_status cs_file_conflicts_output(struct cs_file_conflicts *conflicts, const char *path,
                                         const char *what, struct cs_error *error) {
     struct cs_file_use claim;
-    if (!stat_file(path, what, true, &claim))
-        return CS_OK; // writing it will say why it cannot be
+    struct stat device;
+    if (!stat_file(path, what, true, &claim) ||
+        (!stat(path, &device) && S_ISCHR(device.st_mode)))
+        return CS_OK; // writing it will say why it cannot be; a device is harmed by nothing
     for (unsigned k = 0; k < conflicts->n; k++)
         if (is_same(&claim, conflicts->items + k))
             return refuse(conflicts->items + k, path, what, error);
@@ -77,9 +96,10 @@ enum cs_status cs_file_conflicts_folder(const struct cs_file_conflicts *conflict
         return CS_OK;
     for (unsigned k = 0; k < conflicts->n; k++) {
         const struct cs_file_use *claim = conflicts->items + k;
-        char path[4096];
+        char path[4096], target[CS_FILE_NAME_BYTES];
+        const bool on_the_way = cs_file_is_temporary(claim->name, target);
         if (claim->folder_device_id != info.st_dev || claim->folder_inode != info.st_ino ||
-            !is_ours(claim->name))
+            !is_ours(on_the_way ? target : claim->name))
             continue;
         snprintf(path, sizeof path, "%.3800s/%s", folder, claim->name);
         return refuse(claim, path, what, error);

@@ -31,13 +31,15 @@ struct cs_file_conflicts {
 void cs_file_conflicts_input(struct cs_file_conflicts *conflicts, const char *path,
                              const char *what);
 
-/* Registers a file that the run will write, by the option `what`. CS_ERR_FILE if an input or
- * another output is the same file; it is then not registered. */
+/* Registers a file that the run will write, by the option `what`; character devices are left
+ * out. CS_ERR_FILE if an input or another output is the same file or its temporary file
+ * (NAME.part, NAME.tmp.DIGITS); it is then not registered. */
 enum cs_status cs_file_conflicts_output(struct cs_file_conflicts *conflicts, const char *path,
                                         const char *what, struct cs_error *error);
 
 /* Checks a folder in which files of certain names will be written or removed: CS_ERR_FILE if
- * one of them is registered. A folder that does not exist holds none. */
+ * one of them, or a temporary file of one, is registered. A folder that does not exist holds
+ * none. */
 enum cs_status cs_file_conflicts_folder(const struct cs_file_conflicts *conflicts,
                                         const char *folder, bool (*is_ours)(const char *name),
                                         const char *what, struct cs_error *error);

@@ -4,6 +4,7 @@
 #include "base/file.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -13,23 +14,30 @@ static enum cs_status fail(const struct cs_row_log *log, struct cs_error *error)
                    *log->path ? log->path : "the rows of frames", strerror(errno));
 }
 
-static bool is_stdout(const struct cs_row_log *log) {
-    return !strcmp(log->path, "-");
-}
-
-/* Sets the names; "" for a file without one. */
+/* Sets the names, "" for a file without one, and whether it is a stream. */
 static enum cs_status set_path(struct cs_row_log *log, const char *path,
                                struct cs_error *error) {
     const int length = snprintf(log->path, sizeof log->path, "%s", path ? path : "");
     snprintf(log->part, sizeof log->part, "%s.part", log->path);
-    return length < (int)sizeof log->path
-               ? CS_OK
-               : cs_fail(error, CS_ERR_FILE, "the path \"%.60s...\" is too long", path);
+    log->streams = !strcmp(log->path, "-");
+    if (length >= (int)sizeof log->path)
+        return cs_fail(error, CS_ERR_FILE, "the path \"%.60s...\" is too long", path);
+    return length == 0 || log->streams ? CS_OK
+                                       : cs_file_target(log->path, &log->streams, error);
 }
 
 /* Opens the file that rows are added to, empty. */
 static enum cs_status open_part(struct cs_row_log *log, struct cs_error *error) {
-    log->file = is_stdout(log) ? stdout : *log->path ? fopen(log->part, "w+e") : tmpfile();
+    int file = -1;
+    if (!*log->path || !strcmp(log->path, "-"))
+        log->file = log->streams ? stdout : tmpfile();
+    else
+        file = log->streams ? cs_file_open_stream(log->path, error)
+                            : cs_file_open_own(log->part, O_CREAT, error);
+    if (file >= 0 && (log->streams || !ftruncate(file, 0)))
+        log->file = fdopen(file, log->streams ? "w" : "w+");
+    if (file >= 0 && !log->file)
+        close(file);
     return log->file ? CS_OK : fail(log, error);
 }
 
@@ -68,8 +76,8 @@ void cs_row_log_record(struct cs_row_log *log, struct cs_serialiser *record) {
 }
 
 enum cs_status cs_row_log_sync(const struct cs_row_log *log, struct cs_error *error) {
-    return log->file && !is_stdout(log) && fdatasync(fileno(log->file)) ? fail(log, error)
-                                                                        : CS_OK;
+    return log->file && !log->streams && fdatasync(fileno(log->file)) ? fail(log, error)
+                                                                      : CS_OK;
 }
 
 /* Reads rows up to the length of the record, and adds them to `copy` if there is one. Returns
@@ -90,8 +98,9 @@ static bool read_rows(const struct cs_row_log *log, FILE *from, FILE *copy) {
 }
 
 /* Takes over PATH.part, and cuts off what was added after the record. */
-static bool resume_part(struct cs_row_log *log) {
-    log->file = fopen(log->part, "r+e");
+static bool resume_part(struct cs_row_log *log, struct cs_error *error) {
+    const int file = access(log->part, F_OK) ? -1 : cs_file_open_own(log->part, 0, error);
+    log->file = file >= 0 ? fdopen(file, "r+") : NULL;
     if (log->file && read_rows(log, log->file, NULL) &&
         !ftruncate(fileno(log->file), (off_t)log->length) &&
         !fseeko(log->file, (off_t)log->length, SEEK_SET))
@@ -124,9 +133,9 @@ enum cs_status cs_row_log_resume(struct cs_row_log *log, const char *path,
                                  struct cs_error *error) {
     if (set_path(log, path, error))
         return error->status;
-    if (is_stdout(log))
+    if (log->streams)
         return open_part(log, error);
-    return resume_part(log) ? CS_OK : resume_whole(log, error);
+    return resume_part(log, error) || error->status ? error->status : resume_whole(log, error);
 }
 
 enum cs_status cs_row_log_copy(const struct cs_row_log *log, uint64_t bytes, FILE *out,
@@ -149,19 +158,21 @@ enum cs_status cs_row_log_copy(const struct cs_row_log *log, uint64_t bytes, FIL
 enum cs_status cs_row_log_finish(struct cs_row_log *log, struct cs_error *error) {
     FILE *file = log->file;
     log->file = NULL;
-    if (!file || is_stdout(log))
+    if (!file || file == stdout)
         return error->status;
-    const bool cut = !ftruncate(fileno(file), (off_t)log->length);
-    if ((fclose(file) != 0 || !cut || rename(log->part, log->path)) && !error->status)
+    const bool cut = log->streams || !ftruncate(fileno(file), (off_t)log->length);
+    // renamed under the lock, which the end of the file releases
+    const bool named = cut && (log->streams || !rename(log->part, log->path));
+    if ((fclose(file) != 0 || !named) && !error->status)
         fail(log, error);
     return error->status;
 }
 
 enum cs_status cs_row_log_remove(struct cs_row_log *log, struct cs_error *error) {
-    if (log->file && !is_stdout(log)) {
-        fclose(log->file);
-        if (*log->path)
+    if (log->file && log->file != stdout) {
+        if (*log->path && !log->streams)
             cs_file_remove(log->part, error);
+        fclose(log->file);
     }
     log->file = NULL;
     return error->status;

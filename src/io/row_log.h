@@ -18,17 +18,19 @@
 /* Zeroed: closed. */
 struct cs_row_log {
     FILE *file;                /* NULL: closed */
+    bool streams;              /* to standard output, a device or a FIFO: nothing is renamed */
     uint64_t length;           /* bytes of whole rows */
     char hash[CS_HASH_DIGITS]; /* of each row with the hash before it; "": no rows */
     char path[4096], part[4104];
 };
 
-/* Opens PATH.part, empty. path: a file; "-": rows go to standard output; NULL: to a file
- * without a name, which ends with the process. CS_ERR_FILE. */
+/* Opens PATH.part, empty, and locks it. path: a file; "-": rows go to standard output; a device
+ * or a FIFO: there; NULL: to a file without a name, which ends with the process. CS_ERR_FILE,
+ * also if another process has PATH.part. */
 enum cs_status cs_row_log_create(struct cs_row_log *log, const char *path,
                                  struct cs_error *error);
 /* Goes on after the rows of a record that was loaded, with those of PATH.part or of PATH, as a
- * copy. Standard output goes on with the next row. CS_ERR_FILE if neither has these rows. */
+ * copy. A stream goes on with the next row. CS_ERR_FILE if neither has these rows. */
 enum cs_status cs_row_log_resume(struct cs_row_log *log, const char *path,
                                  struct cs_error *error);
 

@@ -2,8 +2,10 @@
 #include "base/file.h"
 #include "unit.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 
 static void assert_content(const char *path, const char *expected) {
     struct cs_error error = {0};
@@ -75,12 +77,12 @@ TEST(places_that_cannot_be_written_are_refused) {
     char *too_long = malloc(6000);
     memset(too_long, 'x', 5999);
     too_long[5999] = 0;
+    ck_assert_int_eq(mknod("socket", S_IFSOCK | 0600, 0), 0);
     const struct {
         const char *path, *message;
     } rows[] = {{"none/a.txt", "cannot write \"none/a.txt\": No such file"},
                 {".", "it is a folder"},
-                {"/dev/full", "it is not a regular file"},
-                {"/dev/null", "it is not a regular file"},
+                {"socket", "it is not a regular file"},
                 {"/proc/clothsim.txt", "cannot write"},
                 {"", "without a name"},
                 {too_long, "too long"}};
@@ -180,4 +182,74 @@ TEST(folder_over_a_file_is_refused) {
         cs_folder_create(paths[i], &error);
         UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "cannot make the folder");
     }
+}
+
+TEST(a_stream_is_written_and_a_link_replaced) {
+    struct cs_error error = {0};
+    struct stat info;
+    char found[8] = "";
+    ck_assert_int_eq(mkfifo("stream", 0600), 0);
+    const int pipe = open("stream", O_RDWR);
+    cs_file_write_durable("stream", "bytes", 5, &error);
+    ck_assert_int_eq(read(pipe, found, sizeof found), 5);
+    ck_assert_str_eq(found, "bytes");
+    ck_assert(!stat("stream", &info) && S_ISFIFO(info.st_mode));
+    close(pipe);
+    cs_file_write("victim", "old", 3, &error);
+    ck_assert_int_eq(symlink("victim", "link"), 0);
+    cs_file_write("link", "new", 3, &error);
+    UNIT_ASSERT_OK(&error);
+    assert_content("victim", "old");
+    assert_content("link", "new");
+}
+
+TEST(standard_output_is_not_replaced) {
+    struct cs_error error = {0};
+    const int file = open("output", O_RDWR | O_CREAT, 0600), before = dup(STDOUT_FILENO);
+    dup2(file, STDOUT_FILENO);
+    cs_file_write("output", "x", 1, &error);
+    dup2(before, STDOUT_FILENO);
+    UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "it is standard output");
+    close(before);
+    close(file);
+}
+
+static void do_nothing(int number) {
+    (void)number;
+}
+
+TEST(an_interrupt_ends_the_wait_for_a_reader) {
+    struct cs_error error = {0};
+    const struct itimerval soon = {.it_value.tv_usec = 1000, .it_interval.tv_usec = 1000};
+    ck_assert_int_eq(mkfifo("unread", 0600), 0);
+    struct sigaction action = {.sa_handler = do_nothing, .sa_flags = SA_RESTART};
+    sigaction(SIGALRM, &action, NULL);
+    setitimer(ITIMER_REAL, &soon, NULL);
+    cs_file_write("unread", "x", 1, &error);
+    setitimer(ITIMER_REAL, &(struct itimerval){0}, NULL);
+    UNIT_ASSERT_FAILED(&error, CS_ERR_INTERRUPT, "cannot write \"unread\"");
+}
+
+static bool is_table(const char *name) {
+    return !strcmp(name, "a.csv");
+}
+
+TEST(what_killed_processes_left_is_swept) {
+    // no living process has the first; the second is being written; the others are not ours
+    static const char *const names[] = {"s/a.csv.tmp.1", "s/b.csv.tmp.1", "s/a.csv.tmp.1x",
+                                        "s/a.csv.tmp."};
+    struct cs_error error = {0};
+    struct cs_file_out out = {0};
+    cs_folder_create("s", &error);
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        fclose(fopen(names[k], "w"));
+    cs_file_create(&out, "s/a.csv", &error);
+    cs_file_sweep("s", is_table);
+    ck_assert_int_eq(unit_count_files("s"), 4);
+    ck_assert(access(names[0], F_OK));
+    cs_file_finish(&out, &error);
+    cs_file_sweep("s/b.csv", NULL);
+    ck_assert(access(names[1], F_OK));
+    UNIT_ASSERT_OK(&error);
+    ck_assert_int_eq(unit_count_files("s"), 3);
 }

@@ -3,7 +3,9 @@
 #include "io/row_log.h"
 #include "unit.h"
 
+#include <fcntl.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static void add(struct cs_row_log *log, const char *row, struct cs_error *error) {
@@ -108,4 +110,47 @@ TEST(rows_are_copied) {
     ck_assert(!strncmp(bytes + length - 10, "\n012345678", 10));
     free(bytes);
     ck_assert(!cs_row_log_remove(&log, &error));
+}
+
+TEST(a_file_that_is_not_its_own_is_not_written) {
+    struct cs_row_log first, log;
+    struct cs_error error = {0}, refused = {0};
+    cs_file_write("victim", "old\n", 4, &error);
+    ck_assert_int_eq(symlink("victim", "log.part"), 0);
+    cs_row_log_create(&log, "log", &refused);
+    UNIT_ASSERT_FAILED(&refused, CS_ERR_FILE, "\"log.part\": it is a link");
+    ck_assert_int_eq(unlink("log.part"), 0);
+    ck_assert_int_eq(link("victim", "log.part"), 0);
+    refused = (struct cs_error){0};
+    cs_row_log_create(&log, "log", &refused);
+    UNIT_ASSERT_FAILED(&refused, CS_ERR_FILE, "it has 2 names, expected one");
+    ck_assert_int_eq(unlink("log.part"), 0);
+    // the lock belongs to an open file, so that one process can play both
+    cs_row_log_create(&first, "log", &error);
+    add(&first, "a\n", &error);
+    refused = (struct cs_error){0};
+    cs_row_log_create(&log, "log", &refused);
+    UNIT_ASSERT_FAILED(&refused, CS_ERR_FILE, "another process is writing it");
+    cs_row_log_finish(&first, &error);
+    UNIT_ASSERT_OK(&error);
+    assert_file("log", "a\n");
+    assert_file("victim", "old\n");
+}
+
+TEST(a_stream_gets_rows_and_stays) {
+    struct cs_row_log log;
+    struct cs_error error = {0};
+    struct stat info;
+    char found[8] = "";
+    ck_assert_int_eq(mkfifo("pipe", 0600), 0);
+    // opened for both, so that it has a reader
+    const int pipe = open("pipe", O_RDWR);
+    cs_row_log_create(&log, "pipe", &error);
+    add(&log, "a\n", &error);
+    ck_assert_int_eq(read(pipe, found, sizeof found), 2);
+    ck_assert_str_eq(found, "a\n");
+    cs_row_log_finish(&log, &error);
+    UNIT_ASSERT_OK(&error);
+    ck_assert(!stat("pipe", &info) && S_ISFIFO(info.st_mode) && access("pipe.part", F_OK));
+    close(pipe);
 }

@@ -13,6 +13,7 @@
 #include "io/subprocess.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,6 +67,7 @@ static enum cs_status set_output_path(const struct options *options, struct film
     char made[PATH_BYTES], here[PATH_BYTES] = "";
     snprintf(made, sizeof made, "%.4000s/film.mp4", film->folder);
     const char *out = options->out ? options->out : made, *ending = strrchr(out, '.');
+    bool streams;
     film->webm = ending && !strcmp(ending, ".webm");
     if (!film->webm && (!ending || strcmp(ending, ".mp4")))
         return cs_fail(error, CS_ERR_USAGE,
@@ -77,6 +79,9 @@ static enum cs_status set_output_path(const struct options *options, struct film
         PATH_BYTES)
         return cs_fail(error, CS_ERR_FILE, "\"%.60s...\": the path is too long", out);
     snprintf(film->part, sizeof film->part, "%s.part%s", film->out, ending);
+    if (cs_file_target(film->out, &streams, error) || streams)
+        return cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": a film is a regular file",
+                       out);
     return options->overwrite ? CS_OK : cs_output_check_file(out, error);
 }
 
@@ -152,15 +157,22 @@ static enum cs_status make(struct film *film, struct cs_error *error) {
     char rate[32];
     snprintf(rate, sizeof rate, "%.15g", film->rate);
     fill(film, rate, film->part, arguments);
+    // made and locked here: ffmpeg would follow a link
+    const int part = cs_file_open_own(film->part, O_CREAT, error);
+    if (part < 0)
+        return error->status;
     const struct cs_subprocess_result end = cs_subprocess_run(film->folder, arguments);
+    const bool done = end.exited_ok && !rename(film->part, film->out);
+    if (!done)
+        remove(film->part);
+    close(part);
     if (!end.was_found) {
         film->awaits_ffmpeg = true;
         fill(film, rate, film->out, arguments);
         return refuse(film, arguments, error);
     }
-    if (end.exited_ok && !rename(film->part, film->out))
+    if (done)
         return CS_OK;
-    remove(film->part);
     return *stop ? cs_fail(error, CS_ERR_INTERRUPT, "interrupted; no film was written")
                  : cs_fail(error, CS_ERR_FILE, "%s: ffmpeg could not make it", film->out);
 }
@@ -245,7 +257,9 @@ static enum cs_status tile_film(const struct cs_args *args,
                            tiles.folders[0]);
     }
     snprintf(folder, sizeof folder, "%.4000s.tiles", options->out);
-    if (set_output_path(options, &film, error) || cs_folder_create(folder, error))
+    if (set_output_path(options, &film, error) ||
+        (!options->overwrite && cs_output_check_file(folder, error)) ||
+        cs_folder_create(folder, error))
         return error->status;
     if (!write_tiles(&tiles, folder, n, error) && !make(&film, error))
         cs_text_add(told, "%s: %u runs, %g pictures per second\n", film.out, tiles.n,

@@ -206,6 +206,8 @@ static enum cs_status write_parts(const struct cs_job *job, const struct cs_text
 static enum cs_status write_file(const struct cs_job *job, const struct cs_text *report,
                                  const char *path, struct cs_error *error) {
     struct cs_file_out out = {0};
+    if (!cs_print_is_stdout(path))
+        cs_file_sweep(path, NULL);
     if (cs_print_is_stdout(path)) {
         if (!write_parts(job, report, stdout, error) && (fflush(stdout) || ferror(stdout)))
             cs_fail(error, CS_ERR_FILE, "cannot write to standard output");
@@ -229,10 +231,8 @@ enum cs_status cs_report_write_json(struct cs_job *job, struct cs_error *error) 
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the report");
     if (!error->status && settings->session.render)
         write_file(job, &report, cs_text_get(&path), error);
-    if (!error->status && settings->json) {
-        cs_output_sweep_file(settings->json);
+    if (!error->status && settings->json)
         write_file(job, &report, settings->json, error);
-    }
     cs_text_finish(&report);
     cs_text_finish(&path);
     if (!error->status)

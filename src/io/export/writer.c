@@ -21,7 +21,7 @@ static enum cs_status truncate_to(struct cs_append_file *grown, uint64_t kept,
     struct stat info;
     if (fstat(grown->file - 1, &info))
         return fail(grown, "read", error);
-    if (!S_ISREG(info.st_mode) || (uint64_t)info.st_size < kept)
+    if ((uint64_t)info.st_size < kept)
         return cs_fail(error, CS_ERR_FILE,
                        "cannot continue \"%s\": it has %lld bytes, expected at least %llu",
                        grown->path, (long long)info.st_size, (unsigned long long)kept);
@@ -31,15 +31,11 @@ static enum cs_status truncate_to(struct cs_append_file *grown, uint64_t kept,
 
 enum cs_status cs_append_file_open(struct cs_append_file *grown, const char *path,
                                    uint64_t kept, struct cs_error *error) {
-    const int flags = O_RDWR | O_NOFOLLOW | O_CLOEXEC | (kept ? 0 : O_CREAT | O_TRUNC);
     *grown = (struct cs_append_file){0};
     if (cs_export_check(snprintf(grown->path, sizeof grown->path, "%s", path), path, error))
         return error->status;
-    const int file = open(path, flags, 0666);
-    if (file < 0)
-        return fail(grown, kept ? "continue" : "write", error);
-    grown->file = file + 1;
-    return kept ? truncate_to(grown, kept, error) : CS_OK;
+    grown->file = cs_file_open_own(path, kept ? 0 : O_CREAT, error) + 1;
+    return grown->file ? truncate_to(grown, kept, error) : error->status;
 }
 
 enum cs_status cs_append_file_write(struct cs_append_file *grown, uint64_t at,
