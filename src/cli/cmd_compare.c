@@ -274,17 +274,18 @@ static enum cs_status compare_once(struct options *options, struct cs_mesh_study
         if (settings->pictures)
             cs_compare_contact_sheet_write(&screen.compare, options->renderer, &unseen);
         /* files first: they must not be lost because drawing or printing failed */
-        if (!cs_compare_write_report(&screen.compare, error) && !print_verdict(&screen, error))
+        if (!cs_compare_write_report(&screen.compare, error) &&
+            !cs_manifest_write_study(settings->folder, error) && !print_verdict(&screen, error))
             *error = unseen;
         if (!error->status && options->show)
             print_diagram(&screen, error);
-        if (!error->status)
-            cs_manifest_write_study(settings->folder, error);
         if (!error->status && level)
             cs_mesh_level_store(study, level, &screen.compare, error);
         if (!error->status && options->strict)
             check_cells(&screen.compare, error);
     }
+    if (error->status == CS_ERR_INTERRUPT)
+        cs_manifest_write_study(settings->folder, error);
     cs_progress_end(&screen.progress);
     cs_compare_finish(&screen.compare);
     /* callbacks return nothing: errors of their printing are reported here */

@@ -19,7 +19,9 @@
 #include <string.h>
 
 enum { NOTE_COLUMN = 55, METHODS_MAX = 64 };
-enum { PATIENCE_SECONDS = 60, SECOND_PATIENCE_SECONDS = 10 };
+/* s that a call may take, at first and after one that took longer, and after a signal to stop
+ */
+enum { PATIENCE_SECONDS = 60, SECOND_PATIENCE_SECONDS = 10, STOP_SECONDS = 1 };
 
 struct options {
     const char *json, *only;
@@ -166,6 +168,14 @@ static void report(void *ctx, const struct cs_conform_row *row) {
     progress->n_done++;
 }
 
+/* Ends the JSON of a card. */
+static void end_card(struct output *output) {
+    struct cs_text end = {0};
+    cs_text_add(&end, "]}");
+    append(output, &end);
+    output->progress->ends++;
+}
+
 /* Makes the card of one method, with its options or its defaults. implicit Euler is looked up
  * by name; without it the check that needs it is skipped. */
 static enum cs_status print_card(struct output *output, struct cs_registry *registry,
@@ -182,20 +192,17 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
         .implicit_euler = euler ? euler->integrator : NULL,
         .only_checks = output->options->only,
         .cache = &output->cache,
+        .stop = cs_interrupt_catch(),
         .begin = begin,
         .report = report,
         .ctx = output,
     };
-    struct cs_text end = {0};
     output->card = &card;
     output->n_cards++;
     cs_conform_check(&card, error);
     output->card = NULL;
-    if (!error->status && output->progress->ends < output->n_cards) {
-        cs_text_add(&end, "]}");
-        append(output, &end);
-        output->progress->ends++;
-    }
+    if (!error->status && output->progress->ends < output->n_cards)
+        end_card(output);
     return error->status;
 }
 
@@ -236,10 +243,13 @@ static enum cs_status print_named(struct output *output, struct cs_registry *reg
     return error->status;
 }
 
-/* Writes the JSON if requested, prints the counts, and fails on failed claims. */
+/* Writes the JSON if requested, prints the counts, and fails on failed claims; also of what was
+ * done before an interrupt. */
 static enum cs_status finish(struct output *output, struct cs_error *error) {
     const uint32_t *counts = output->progress->counts;
     struct cs_text json = {0};
+    if (output->progress->ends < output->progress->heads)
+        end_card(output);
     if (has_text(output))
         printf("%u pass, %u fail, %u expected, %u stale, %u not applicable\n",
                counts[CS_VERDICT_PASS], counts[CS_VERDICT_FAIL], counts[CS_VERDICT_EXPECTED],
@@ -294,6 +304,7 @@ static enum cs_status print_cards(void *ctx, struct cs_error *error) {
  * given less time from then on, so that a card comes to an end. */
 static enum cs_status print_isolated(struct output *output, struct cs_error *error) {
     struct cs_isolate isolate = {.seconds = output->options->isolate,
+                                 .stop_seconds = STOP_SECONDS,
                                  .task = print_cards,
                                  .ctx = output,
                                  .stop = cs_interrupt_catch()};
@@ -331,8 +342,10 @@ static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
         print_isolated(&output, error);
     else if (!error->status)
         print_cards(&output, error);
-    if (!error->status)
-        finish(&output, error);
+    struct cs_error later = {0};
+    if (!error->status || (error->status == CS_ERR_INTERRUPT && output.progress->heads))
+        finish(&output, &later);
+    cs_fail(error, later.status, "%s", later.message);
     if (output.json)
         fclose(output.json);
     cs_process_pool_shared_free(output.progress, sizeof *output.progress);

@@ -185,8 +185,10 @@ static enum cs_status sweep(struct cs_args *args, struct cs_error *error) {
     cs_progress_begin(&progress, "cell", options->quiet);
     if (options->status)
         cs_parameter_sweep_count(product, error);
-    else if (!cs_parameter_sweep_run(product, error))
+    else {
+        cs_parameter_sweep_run(product, error);
         cs_manifest_write_study(product->folder, error);
+    }
     cs_progress_end(&progress);
     if (counts->done || (options->status && !error->status))
         print_counts(options, error->status ? &unseen : error);

@@ -188,5 +188,6 @@ int main(int argc, char **argv) {
     fflush(stdout);
     if (error.status)
         cs_print_message(error.message);
-    return cs_status_exit_code(error.status);
+    return error.status == CS_ERR_INTERRUPT ? cs_interrupt_exit_code()
+                                            : cs_status_exit_code(error.status);
 }

@@ -130,8 +130,13 @@ enum cs_status cs_manifest_write(const char *folder, struct cs_error *error) {
 }
 
 enum cs_status cs_manifest_write_study(const char *folder, struct cs_error *error) {
+    struct cs_error later = {0};
+    if (error->status && (error->status != CS_ERR_INTERRUPT || access(folder, F_OK)))
+        return error->status;
     cs_file_sweep(folder, is_swept);
-    return write_manifest(folder, is_of_study, error);
+    return write_manifest(folder, is_of_study, &later)
+               ? cs_fail(error, later.status, "%s", later.message)
+               : error->status;
 }
 
 /* True if the last line is the hash of all above; cuts that line off. */

@@ -18,9 +18,10 @@
  * synced: the disk has it when the call returns. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_manifest_write(const char *folder, struct cs_error *error);
 
-/* The same for a study, whose half-written files of killed processes it removes, over the tables, reports, diagrams and references in the folder, by the
- * endings of their names. A study that is continued and does not end leaves that of before,
- * which then names the tables it has added to. */
+/* The same for a study, whose half-written files of killed processes it removes, over the
+ * tables, reports, diagrams and references in the folder, by the endings of their names. An
+ * interrupted study has one too: *error may hold CS_ERR_INTERRUPT, and keeps it; any other
+ * failure leaves the manifest of before, which then names the tables it has added to. */
 enum cs_status cs_manifest_write_study(const char *folder, struct cs_error *error);
 
 /* Checks one file against the manifest of its folder, if there is one that names it.

@@ -112,6 +112,7 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
             error, CS_ERR_INTERRUPT,
             "interrupted; finished cells are in %s, and the same command continues from there",
             map.journal.table.path);
+        cs_manifest_write_study(options->map.folder, error);
     }
     if (!error->status && !map.is_complete) {
         if (!cs_manifest_write_study(options->map.folder, error))

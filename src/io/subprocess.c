@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 extern char **environ;
@@ -32,14 +33,18 @@ static int spawn(const char *folder, const char *const *arguments, int end, int 
     return reason;
 }
 
-struct cs_subprocess_result cs_subprocess_run(const char *folder,
-                                              const char *const *arguments) {
-    pid_t child, ended = -1;
+struct cs_subprocess_result cs_subprocess_run(const char *folder, const char *const *arguments,
+                                              const volatile sig_atomic_t *stop) {
+    const struct timespec pause = {.tv_nsec = 20000000};
+    pid_t child, ended = 0;
     int status = -1;
     const bool found = !spawn(folder, arguments, 0, 0, &child);
-    /* a signal of the terminal reaches both: the other program ends by itself */
-    while (found && (ended = waitpid(child, &status, 0)) < 0 && errno == EINTR)
-        ;
+    while (found && !(ended = waitpid(child, &status, WNOHANG))) {
+        // a signal of the terminal reaches both, another one only us
+        if (*stop)
+            kill(child, SIGTERM);
+        nanosleep(&pause, NULL);
+    }
     return (struct cs_subprocess_result){found, found && ended == child && WIFEXITED(status) &&
                                                     WEXITSTATUS(status) == 0};
 }

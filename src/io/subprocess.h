@@ -5,6 +5,7 @@
 #include "base/status.h"
 #include "base/text.h"
 
+#include <signal.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -17,8 +18,10 @@ struct cs_subprocess_result {
 };
 
 /* Runs arguments[0], searched on PATH, in the working directory `folder`, and waits for it;
- * arguments end with NULL. A program that is missing or fails is reported in the result. */
-struct cs_subprocess_result cs_subprocess_run(const char *folder, const char *const *arguments);
+ * arguments end with NULL. A program that is missing or fails is reported in the result. Once
+ * *stop is set it is asked to end. */
+struct cs_subprocess_result cs_subprocess_run(const char *folder, const char *const *arguments,
+                                              const volatile sig_atomic_t *stop);
 
 /* A child process of which one stream is read through a pipe. */
 struct cs_subprocess {

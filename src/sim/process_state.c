@@ -44,7 +44,7 @@ static void control_set(unsigned control) {
 #endif
 
 const char cs_process_state_mode[] = "the floating-point mode";
-static const int numbers[CS_PROCESS_STATE_SIGNALS] = {SIGINT, SIGTERM};
+const int cs_interrupts[CS_INTERRUPTS] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1};
 
 /* A bit for each of the streams 0, 1, 2 that is open: poll reports a closed one as POLLNVAL.
  * None if no files are allowed. */
@@ -74,8 +74,8 @@ struct cs_process_state cs_process_state_save(void) {
                                      .streams = open_streams(),
                                      .has_children = is_parent()};
     struct stat info;
-    for (int k = 0; k < CS_PROCESS_STATE_SIGNALS; k++)
-        sigaction(numbers[k], NULL, guard.signals + k);
+    for (int k = 0; k < CS_INTERRUPTS; k++)
+        sigaction(cs_interrupts[k], NULL, guard.signals + k);
     if (!stat(".", &info)) {
         guard.cwd_device = info.st_dev;
         guard.cwd_inode = info.st_ino;
@@ -86,12 +86,12 @@ struct cs_process_state cs_process_state_save(void) {
 /* Restores handlers that differ; true if one did. */
 static bool restore_signals(const struct cs_process_state *guard) {
     bool changed = false;
-    for (int k = 0; k < CS_PROCESS_STATE_SIGNALS; k++) {
+    for (int k = 0; k < CS_INTERRUPTS; k++) {
         struct sigaction now;
-        sigaction(numbers[k], NULL, &now);
+        sigaction(cs_interrupts[k], NULL, &now);
         if (now.sa_handler == guard->signals[k].sa_handler)
             continue;
-        sigaction(numbers[k], guard->signals + k, NULL);
+        sigaction(cs_interrupts[k], guard->signals + k, NULL);
         changed = true;
     }
     return changed;

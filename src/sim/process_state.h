@@ -15,17 +15,20 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
-enum { CS_PROCESS_STATE_SIGNALS = 2 };
+/* The signals that ask a program to end: SIGINT, SIGTERM, SIGHUP, SIGXCPU (the processor time
+ * of a shell or a batch system is used up) and SIGUSR1 (a batch system's warning). */
+enum { CS_INTERRUPTS = 5 };
+extern const int cs_interrupts[CS_INTERRUPTS];
 
 /* A snapshot; compare it with the process after the foreign call. */
 struct cs_process_state {
     unsigned
         fp_control; /* bits of the mode: rounding, masks, flush-to-zero; not the sticky flags */
     int rounding;   /* of fegetround */
-    struct sigaction signals[CS_PROCESS_STATE_SIGNALS]; /* of SIGINT and SIGTERM */
-    dev_t cwd_device;                                   /* of the working folder */
-    ino_t cwd_inode;                                    /* of the working folder */
-    unsigned streams;  /* a bit for each standard stream that is open */
+    struct sigaction signals[CS_INTERRUPTS]; /* of cs_interrupts */
+    dev_t cwd_device;                        /* of the working folder */
+    ino_t cwd_inode;                         /* of the working folder */
+    unsigned streams;                        /* a bit for each standard stream that is open */
     bool has_children; /* this process has child processes, running or not waited for */
 };
 

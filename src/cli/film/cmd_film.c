@@ -161,7 +161,7 @@ static enum cs_status make(struct film *film, struct cs_error *error) {
     const int part = cs_file_open_own(film->part, O_CREAT, error);
     if (part < 0)
         return error->status;
-    const struct cs_subprocess_result end = cs_subprocess_run(film->folder, arguments);
+    const struct cs_subprocess_result end = cs_subprocess_run(film->folder, arguments, stop);
     const bool done = end.exited_ok && !rename(film->part, film->out);
     if (!done)
         remove(film->part);

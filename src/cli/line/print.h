@@ -71,12 +71,15 @@ void cs_progress_show(void *progress, uint32_t done, uint32_t total);
 /* Removes the line. */
 void cs_progress_end(struct cs_progress *progress);
 
-/* Turns SIGINT and SIGTERM into a request to stop at the next step. */
+/* Turns signals that end a program into a request to stop at the next step. */
 
-/* Catches both signals from now on. Returns a flag that becomes 1 with the first one. A second
- * one after two seconds or more ends the program at once. Writing to a closed pipe becomes an
- * error of the write (SIGPIPE is ignored). */
+/* Catches cs_interrupts from now on, but SIGHUP where it is ignored. Returns a flag that
+ * becomes the number of the first one. A second one after two seconds or more ends the program
+ * at once. Writing to a closed pipe becomes an error of the write (SIGPIPE is ignored). */
 const volatile sig_atomic_t *cs_interrupt_catch(void);
+/* Exit code of a program that a caught signal has ended, as shells count it: 128 + its number.
+ */
+int cs_interrupt_exit_code(void);
 
 /* Adds a blank and a word of a command line, quoted if a shell needs it. */
 void cs_print_shell_word(struct cs_text *out, const char *word);

@@ -3,6 +3,7 @@
 #include "cli/line/print.h"
 
 #include "base/clock.h"
+#include "sim/process_state.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -52,23 +53,23 @@ void cs_progress_end(struct cs_progress *progress) {
     fflush(stderr);
 }
 
-/* Turns SIGINT and SIGTERM into a flag that stops a run at its next step. */
+/* Turns signals that end a program into a flag that stops a run at its next step. */
 
 enum { PATIENCE_SECONDS = 2 };
 
-/* Written by the handler only; `first` is the time of the first signal. */
+/* Number and time of the first signal, written by the handler only. */
 static volatile sig_atomic_t stop;
 
 static struct timespec first;
 
-/* Handler of both signals. A second signal ends the program only after a pause, because some
+/* A second signal ends the program only after a pause, because some
  * programs send each signal twice when they pass it on. */
 static void request_stop(int signal_number) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     if (!stop) {
         first = now;
-        stop = 1;
+        stop = signal_number;
     } else if (now.tv_sec - first.tv_sec >= PATIENCE_SECONDS) {
         signal(signal_number, SIG_DFL);
         raise(signal_number);
@@ -79,9 +80,18 @@ const volatile sig_atomic_t *cs_interrupt_catch(void) {
     struct sigaction action = {.sa_flags = SA_RESTART};
     sigfillset(&action.sa_mask);
     action.sa_handler = request_stop;
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    for (int k = 0; k < CS_INTERRUPTS; k++) {
+        struct sigaction before;
+        sigaction(cs_interrupts[k], NULL, &before);
+        // that of a program under nohup stays ignored
+        if (cs_interrupts[k] != SIGHUP || before.sa_handler != SIG_IGN)
+            sigaction(cs_interrupts[k], &action, NULL);
+    }
     /* a reader that went away must not cut a picture short: the write fails, and is reported */
     signal(SIGPIPE, SIG_IGN);
     return &stop;
+}
+
+int cs_interrupt_exit_code(void) {
+    return 128 + (stop ? stop : SIGINT);
 }

@@ -85,7 +85,7 @@ static void run(const struct cs_conform *card, uint32_t k, struct cs_conform_row
 
 enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error) {
     bool refused;
-    card->memory_error = error;
+    card->card_error = error;
     card->refused = &refused;
     check_names(card->only_checks, error);
     for (uint32_t k = 0; k < CHECKS && !error->status; k++) {

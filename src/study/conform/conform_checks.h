@@ -22,6 +22,7 @@
 #include "study/trajectory_error.h"
 
 #include <clothsim/integrator.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -66,8 +67,10 @@ struct cs_conform {
     struct cs_conform_cache *cache;
     /* set where the method refuses a check's scene by CS_SMOOTH_ONLY; set by check */
     bool *refused;
-    /* lack of memory, which is no fault of the method's: it ends the card; set by check */
-    struct cs_error *memory_error;
+    /* lack of memory, or an interrupt, which is no fault of the method's: it ends the card; set
+     * by check */
+    struct cs_error *card_error;
+    const volatile sig_atomic_t *stop; /* ends the card once it is set; NULL: nothing does */
     /* called before each check; false: the check is left out. May be NULL. */
     bool (*begin)(void *ctx, const char *check);
     /* called after each check */
@@ -95,7 +98,7 @@ struct cs_probe {
     double frame;              /* s */
     bool has_ended;            /* blew up or failed: error says how */
     struct cs_error error;
-    struct cs_error *memory_error; /* of the card */
+    struct cs_error *card_error; /* of the card */
 
     /* called within every commit once it has been done; may be NULL. Moves the state or only
      * looks; returns whether it moved. */

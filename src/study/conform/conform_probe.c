@@ -154,9 +154,10 @@ bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
         .options = method == card->method ? card->options : NULL,
         .run = {.skip_advance_check = true,
                 .budget = BUDGET,
+                .stop = card->stop,
                 .after_commit = observe,
                 .ctx = probe}};
-    *probe = (struct cs_probe){.memory_error = card->memory_error};
+    *probe = (struct cs_probe){.card_error = card->card_error};
     probe->has_ended = cs_session_open_system(&probe->session, &settings, &probe->error);
     if (probe->has_ended)
         return false;
@@ -173,8 +174,10 @@ bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
 }
 
 void cs_probe_close(struct cs_probe *probe) {
-    if (probe->error.status == CS_ERR_MEMORY && probe->memory_error)
-        cs_fail(probe->memory_error, CS_ERR_MEMORY, "%s", probe->error.message);
+    if (probe->error.status == CS_ERR_MEMORY && probe->card_error)
+        cs_fail(probe->card_error, CS_ERR_MEMORY, "%s", probe->error.message);
+    if (probe->session.run.outcome == CS_INTERRUPTED && probe->card_error)
+        cs_fail(probe->card_error, CS_ERR_INTERRUPT, "interrupted");
     cs_session_close(&probe->session);
 }
 
