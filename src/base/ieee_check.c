@@ -70,7 +70,15 @@ static bool takes_nan_for_a_number(void) {
     return nan == nan || !isnan(nan);
 }
 
+/* 1 with far less than its spacing added or taken away is 1 in the mode "to nearest" only. */
+static bool rounds_otherwise(void) {
+    const double little = small * small / 64;
+    return one + little != one || one - little != one;
+}
+
 const char *cs_ieee_check(void) {
+    if (rounds_otherwise())
+        return "sums are not rounded to nearest (another rounding mode is set)";
     if (is_fused())
         return "products and sums are fused (-ffp-contract=off is missing)";
     if (multiplies_by_reciprocals())

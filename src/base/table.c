@@ -247,6 +247,16 @@ enum cs_status cs_rows_open(struct cs_rows *rows, const char *path, size_t row_b
     return error->status;
 }
 
+enum cs_status cs_rows_refuse_unchecked(const struct cs_rows *rows, const char *path,
+                                        struct cs_error *error) {
+    return rows->checked || !rows->n
+               ? CS_OK
+               : cs_fail(error, CS_ERR_FILE,
+                         "%s: it has no column \"check\", by which changed rows are found; "
+                         "clothsim merge --unchecked takes its rows as they are",
+                         path);
+}
+
 char *cs_rows_next(struct cs_rows *rows) {
     const size_t left = rows->length - rows->at;
     char *row = rows->bytes + rows->at;

@@ -96,9 +96,12 @@ struct cs_rows {
 
 /* Reads a file; *rows is zeroed on failure. A line that does not match its check is
  * CS_ERR_FILE. Tables of earlier versions, and those that others write, have no checks, and are
- * taken as they are. CS_ERR_FILE, CS_ERR_MEMORY. */
+ * taken as they are: results are not built on them. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_rows_open(struct cs_rows *rows, const char *path, size_t row_bytes,
                             struct cs_error *error);
+/* Refuses a table of lines without checks. CS_ERR_FILE. */
+enum cs_status cs_rows_refuse_unchecked(const struct cs_rows *rows, const char *path,
+                                        struct cs_error *error);
 /* Returns the next line, without its check and its end, or the next record; NULL after the
  * last. A partial last row is skipped. */
 char *cs_rows_next(struct cs_rows *rows);

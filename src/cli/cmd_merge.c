@@ -22,7 +22,7 @@ enum { FILE_BYTES_MAX = 1 << 30 };
 
 struct options {
     const char *out;
-    bool overwrite, quiet;
+    bool overwrite, unchecked, quiet;
 };
 static const struct options defaults = {.out = "merged"};
 
@@ -31,8 +31,16 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, out)},
     {"overwrite", 'y', NULL, "replace the results of an earlier merge",
      CS_ARG_INTO(struct options, overwrite)},
+    {"unchecked", 0, NULL,
+     "take in tables without the column check too, such as those of earlier versions: nobody "
+     "vouches for their rows",
+     CS_ARG_INTO(struct options, unchecked)},
     CS_ARG_QUIET(struct options, quiet),
 };
+
+/* The files of a study that are merged. */
+static const char *const merged[] = {"compare.csv", "sweep.csv", "origin.json", "*.partial"};
+enum { MERGED = sizeof merged / sizeof *merged };
 
 /* Copies the provenance of a comparison; every part has the same. */
 static enum cs_status copy_origin(const char *folder, const char *out, struct cs_error *error) {
@@ -41,8 +49,7 @@ static enum cs_status copy_origin(const char *folder, const char *out, struct cs
     size_t length;
     snprintf(from, sizeof from, "%s/origin.json", folder);
     snprintf(to, sizeof to, "%s/origin.json", out);
-    if (access(from, F_OK) || cs_manifest_check_file(folder, "origin.json", error) ||
-        cs_file_read(from, FILE_BYTES_MAX, &bytes, &length, error))
+    if (access(from, F_OK) || cs_file_read(from, FILE_BYTES_MAX, &bytes, &length, error))
         return error->status;
     cs_file_write(to, bytes, length, error);
     free(bytes);
@@ -52,12 +59,11 @@ static enum cs_status copy_origin(const char *folder, const char *out, struct cs
 /* Refuses folders of which some hold a comparison and others a sweep. */
 static enum cs_status check_kinds(const char *const *folders, uint32_t n,
                                   struct cs_error *error) {
-    static const char *const names[] = {"compare.csv", "sweep.csv"};
     const char *with[2] = {NULL, NULL};
     char path[4096];
     for (uint32_t k = 0; k < n; k++)
         for (int kind = 0; kind < 2; kind++) {
-            snprintf(path, sizeof path, "%s/%s", folders[k], names[kind]);
+            snprintf(path, sizeof path, "%s/%s", folders[k], merged[kind]);
             with[kind] = access(path, F_OK) ? with[kind] : folders[k];
         }
     return with[0] && with[1]
@@ -69,13 +75,12 @@ static enum cs_status check_kinds(const char *const *folders, uint32_t n,
 
 /* Removes what an earlier merge wrote: tables, provenance and parts of maps. */
 static enum cs_status remove_earlier(const char *out, struct cs_error *error) {
-    static const char *const names[] = {"compare.csv", "sweep.csv", "origin.json", "*.partial"};
     DIR *directory = opendir(out);
     char path[4096];
     for (const struct dirent *entry; directory && (entry = readdir(directory));)
-        for (size_t k = 0; k < sizeof names / sizeof *names && !error->status; k++) {
+        for (size_t k = 0; k < MERGED && !error->status; k++) {
             snprintf(path, sizeof path, "%s/%s", out, entry->d_name);
-            if (!fnmatch(names[k], entry->d_name, 0) && remove(path))
+            if (!fnmatch(merged[k], entry->d_name, 0) && remove(path))
                 cs_fail(error, CS_ERR_FILE, "cannot remove %s: %s", path, strerror(errno));
         }
     if (directory)
@@ -93,12 +98,15 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
             return cs_fail(error, CS_ERR_USAGE,
                            "%s is both a part and the result: give another folder with --out",
                            out);
-    if (check_kinds(folders, n, error))
+    check_kinds(folders, n, error);
+    for (uint32_t k = 0; k < n * MERGED && !error->status; k++)
+        cs_manifest_check_files(folders[k / MERGED], merged[k % MERGED], error);
+    if (error->status)
         return error->status;
     if (options->overwrite && remove_earlier(out, error))
         return error->status;
-    if (cs_compare_results_merge(folders, n, out, &cells, error) ||
-        cs_parameter_sweep_merge(folders, n, out, &rows_of_sweep, error))
+    if (cs_compare_results_merge(folders, n, out, options->unchecked, &cells, error) ||
+        cs_parameter_sweep_merge(folders, n, out, options->unchecked, &rows_of_sweep, error))
         return error->status;
     cells += rows_of_sweep;
     for (uint32_t k = 0; k < n && !error->status; k++)

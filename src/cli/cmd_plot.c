@@ -141,7 +141,7 @@ static enum cs_status plot(struct cs_args *args, struct cs_error *error) {
     if (read_axis("x", options->x, &settings.x, error) ||
         read_axis("y", options->y, &settings.y, error) ||
         check_family(options->family, error) ||
-        cs_csv_read(args->operands[0], &cells, &settings.n, error))
+        cs_csv_read(args->operands[0], true, &cells, &settings.n, error))
         return error->status;
     settings.cells = cells;
     if (!check_cells(&settings, args->operands[0], error))

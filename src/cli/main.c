@@ -123,6 +123,9 @@ static enum cs_status print_values(char **argv, struct cs_error *error) {
 static enum cs_status run_command(const struct cs_command *command, int argc, char **argv,
                                   struct cs_error *error) {
     struct cs_args args = {0};
+    const char *fault = cs_ieee_check();
+    if (fault)
+        return cs_fail(error, CS_ERR_INTERNAL, "%s: results would be wrong", fault);
     if (!cs_args_parse(&args, command, argc, argv, error)) {
         if (args.help)
             print_help(command, error);
@@ -175,10 +178,8 @@ static enum cs_status open_streams(struct cs_error *error) {
 int main(int argc, char **argv) {
     struct cs_error error = {0};
     open_streams(&error);
-    const char *fault = cs_ieee_check();
+    const char *fault = cs_program_path_fault();
     if (fault)
-        cs_print_message(fault);
-    if ((fault = cs_program_path_fault()))
         cs_print_message(fault);
     /* a file that grew too long comes back from the write as an error, and is reported */
     signal(SIGXFSZ, SIG_IGN);

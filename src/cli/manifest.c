@@ -7,6 +7,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fnmatch.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -232,26 +233,42 @@ enum cs_status cs_manifest_check(const char *folder, struct cs_text *out, uint32
     return error->status;
 }
 
-enum cs_status cs_manifest_check_file(const char *folder, const char *name,
-                                      struct cs_error *error) {
+enum cs_status cs_manifest_check_files(const char *folder, const char *pattern,
+                                       struct cs_error *error) {
     struct list written = {0};
-    struct entry entry = {.size = 0};
     struct cs_text out = {0};
     char path[PATH_BYTES];
     uint32_t differing = 0;
     // a part that is still being filled has none
     snprintf(path, sizeof path, "%s/" CS_MANIFEST_NAME, folder);
-    snprintf(entry.name, sizeof entry.name, "%s", name);
     if (access(path, F_OK) || read_list(folder, &written, error))
         return error->status;
-    const struct entry *found =
-        written.n ? bsearch(&entry, written.entries, written.n, sizeof entry, by_name) : NULL;
-    if (found)
-        check_file(folder, found, &out, &differing);
+    for (size_t k = 0; k < written.n && !differing; k++)
+        if (!fnmatch(pattern, written.entries[k].name, 0))
+            check_file(folder, written.entries + k, &out, &differing);
     if (differing)
-        cs_fail(error, CS_ERR_FILE, "%s/%s is not as it was written: copy it from another part",
-                folder, name);
+        cs_fail(error, CS_ERR_FILE,
+                "%s/%.*s since it was written: copy it again, or repeat its command there",
+                folder, (int)out.length - 1, cs_text_get(&out));
     cs_text_finish(&out);
     free(written.entries);
+    return error->status;
+}
+
+enum cs_status cs_manifest_take(const char *folder, struct cs_error *error) {
+    struct cs_text out = {0};
+    char path[PATH_BYTES];
+    uint32_t n, differing = 0;
+    snprintf(path, sizeof path, "%s/" CS_MANIFEST_NAME, folder);
+    if (!access(path, F_OK) && !cs_manifest_check(folder, &out, &n, &differing, error)) {
+        if (differing)
+            cs_fail(error, CS_ERR_FILE,
+                    "%s/%.*s since the run ended: restore it, or remove %s to go on without a "
+                    "check",
+                    folder, (int)strcspn(cs_text_get(&out), "\n"), cs_text_get(&out), path);
+        else
+            cs_file_remove(path, error);
+    }
+    cs_text_finish(&out);
     return error->status;
 }

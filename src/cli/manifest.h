@@ -24,10 +24,13 @@ enum cs_status cs_manifest_write(const char *folder, struct cs_error *error);
  * failure leaves the manifest of before, which then names the tables it has added to. */
 enum cs_status cs_manifest_write_study(const char *folder, struct cs_error *error);
 
-/* Checks one file against the manifest of its folder, if there is one that names it.
- * CS_ERR_FILE. */
-enum cs_status cs_manifest_check_file(const char *folder, const char *name,
-                                      struct cs_error *error);
+/* Checks the files whose names match a pattern of the shell against the manifest of their
+ * folder, if there is one. CS_ERR_FILE names the first that differs. */
+enum cs_status cs_manifest_check_files(const char *folder, const char *pattern,
+                                       struct cs_error *error);
+/* Checks the folder of a run that goes on against its manifest, and removes that: until the run
+ * ends its files change. CS_ERR_FILE names the first that differs; the manifest then stays. */
+enum cs_status cs_manifest_take(const char *folder, struct cs_error *error);
 
 /* Compares a folder with its manifest: adds a line for each file that has changed, is missing,
  * or is a run's and not in the manifest. *n: files listed; *differing: lines added. CS_ERR_FILE

@@ -47,7 +47,6 @@ static const struct cs_output_key run_keys[] = {
     {"versions.libpng?", "text", "", "version of libpng, where pictures were drawn"},
     {"renderer", "text or null", "", "renderer of the pictures, and its own description"},
     {"threads", "whole", "1", "threads of the run; no number below depends on them"},
-    {"arithmetic?", "text", "", "why hashes cannot be compared with those of other builds"},
     {"restarted_every?", "whole", "1",
      "frames after which the method restarts, of checkpoints"},
     {"scene_file", "text", "", SCENE},

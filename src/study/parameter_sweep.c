@@ -326,9 +326,12 @@ enum cs_status cs_parameter_sweep_count(struct cs_parameter_sweep *product,
 }
 
 enum cs_status cs_parameter_sweep_merge(const char *const *folders, uint32_t n_folders,
-                                        const char *out, uint32_t *n, struct cs_error *error) {
+                                        const char *out, bool unchecked, uint32_t *n,
+                                        struct cs_error *error) {
     struct cs_sweep_rows rows = {0};
-    if (!cs_sweep_rows_open(&rows, out, error))
+    cs_sweep_rows_open(&rows, out, error);
+    rows.unchecked = unchecked;
+    if (!error->status)
         cs_sweep_rows_read(&rows, out, error);
     for (uint32_t k = 0; k < n_folders && !error->status; k++)
         cs_sweep_rows_read(&rows, folders[k], error);

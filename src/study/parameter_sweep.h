@@ -18,8 +18,10 @@ enum cs_status cs_parameter_sweep_run(struct cs_parameter_sweep *product,
 enum cs_status cs_parameter_sweep_count(struct cs_parameter_sweep *product,
                                         struct cs_error *error);
 
-/* Merges the sweep.csv of folders, as far as they have one, into that of `out`; *n: rows. */
+/* Merges the sweep.csv of folders, as far as they have one, into that of `out`; *n: rows.
+ * unchecked: tables without checks are taken too. */
 enum cs_status cs_parameter_sweep_merge(const char *const *folders, uint32_t n_folders,
-                                        const char *out, uint32_t *n, struct cs_error *error);
+                                        const char *out, bool unchecked, uint32_t *n,
+                                        struct cs_error *error);
 
 #endif

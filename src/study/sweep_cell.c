@@ -160,6 +160,8 @@ enum cs_status cs_sweep_rows_read(struct cs_sweep_rows *rows, const char *folder
     if (access(path, F_OK) || cs_rows_open(&found, path, 0, error))
         return error->status;
     rows->bytes = (long long)found.length;
+    if (!rows->unchecked)
+        cs_rows_refuse_unchecked(&found, path, error);
     const char *line = cs_rows_next(&found);
     if (line && !rows->names.length)
         cs_text_add(&rows->names, "%s", line);

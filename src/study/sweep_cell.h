@@ -19,6 +19,7 @@ struct cs_sweep_rows {
     struct cs_text names; /* first line; empty: not known yet */
     char **lines;         /* (n) owned, without their checks; NULL: not there */
     uint32_t n;
+    bool unchecked;  /* tables without checks are read too */
     long long bytes; /* size of the table when it was read, with what this process appended */
     int cell_locks; /* descriptor, above 0: of the file whose byte k is locked while cell k runs
                      */

@@ -58,7 +58,7 @@ TEST(file_reads_back) {
     place_make(&place, "0.02");
     run(&compare, &settings, &place, METHODS, &watch);
     snprintf(path, sizeof path, "%s/compare.csv", place.folder);
-    ck_assert(!cs_csv_read(path, &cells, &n, &error));
+    ck_assert(!cs_csv_read(path, true, &cells, &n, &error));
     ck_assert_uint_eq(n, compare.cells.n);
     for (uint32_t k = 0; k < n; k++)
         for (uint32_t c = 0; c < cs_n_columns; c++) {
@@ -96,7 +96,7 @@ TEST(quotes_read_back) {
     fputs(text.bytes, file);
     fclose(file);
     cs_text_finish(&text);
-    ck_assert_msg(!cs_csv_read(path, &cells, &n, &error), "%s", error.message);
+    ck_assert_msg(!cs_csv_read(path, true, &cells, &n, &error), "%s", error.message);
     ck_assert_uint_eq(n, 1);
     ck_assert_str_eq(cells->note, cell.note);
     ck_assert_str_eq(cells->options, cell.options);

@@ -24,7 +24,7 @@ TEST(interrupted_comparison_goes_on) {
     cs_compare_finish(&compare);
     stop = 0;
     snprintf(path, sizeof path, "%s/compare.csv", place.folder);
-    ck_assert(!cs_csv_read(path, &cells, &n, &error));
+    ck_assert(!cs_csv_read(path, true, &cells, &n, &error));
     ck_assert_uint_eq(n, 5);
     free(cells);
     ck_assert_int_eq(run(&compare, &settings, &place, METHODS, &again), CS_OK);
@@ -56,7 +56,7 @@ TEST(other_methods_are_added) {
     ck_assert_double_eq_tol(compare.cells.cells[4].order, 4, 0.1);
     cs_compare_finish(&compare);
     snprintf(path, sizeof path, "%s/compare.csv", place.folder);
-    ck_assert(!cs_csv_read(path, &cells, &n, &error));
+    ck_assert(!cs_csv_read(path, true, &cells, &n, &error));
     ck_assert_uint_eq(n, 7);
     free(cells);
     // another scene is no part of it
@@ -64,7 +64,7 @@ TEST(other_methods_are_added) {
     ck_assert_int_eq(run(&compare, &settings, &place, "rk4:dt=2e-3", &third), CS_ERR_USAGE);
     ck_assert_uint_eq(third.rows, 0);
     cs_compare_finish(&compare);
-    ck_assert(!cs_csv_read(path, &cells, &n, &error));
+    ck_assert(!cs_csv_read(path, true, &cells, &n, &error));
     ck_assert_uint_eq(n, 7);
     free(cells);
 }
@@ -95,7 +95,7 @@ static uint32_t rows_of(const struct place *place, const char *series) {
     char path[128];
     uint32_t n, found = 0;
     snprintf(path, sizeof path, "%s/compare.csv", place->folder);
-    ck_assert(!cs_csv_read(path, &cells, &n, &error));
+    ck_assert(!cs_csv_read(path, true, &cells, &n, &error));
     for (uint32_t k = 0; k < n; k++)
         found += !strcmp(cells[k].series, series) && isnan(cells[k].target) &&
                  !strcmp(cells[k].outcome, "finished");

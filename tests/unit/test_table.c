@@ -68,6 +68,16 @@ static void try_changed_byte(const struct cs_text *text, const char rows[2][32])
     cs_rows_close(&table);
 }
 
+TEST(a_table_without_checks_is_told) {
+    struct cs_error error = {0};
+    struct cs_rows table;
+    cs_file_write("plain", "a,b\n1,2\n", 8, &error);
+    ck_assert(!cs_rows_open(&table, "plain", 0, &error));
+    cs_rows_refuse_unchecked(&table, "plain", &error);
+    UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "plain: it has no column \"check\"");
+    cs_rows_close(&table);
+}
+
 TEST(changed_bytes_are_found) {
     const struct row rows[] = {{"a", 0.1, true}, {"bc", 2, false}};
     struct cs_text text = {0};

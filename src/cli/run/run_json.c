@@ -1,6 +1,5 @@
 /* Prints run.json: everything needed to repeat a run and to verify its result. */
 #include "base/file.h"
-#include "base/ieee_check.h"
 #include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/line/print.h"
@@ -23,13 +22,6 @@ static void add_versions(const struct cs_job *job, struct cs_text *out) {
         cs_json_write(out, ", 'libpng': %s", png_get_libpng_ver(NULL));
     cs_json_write(out, "},\n  'renderer': %s,\n  'threads': %u,\n",
                   job->renderer.length ? cs_text_get(&job->renderer) : NULL, cs_pool_threads());
-}
-
-/* Present only if the hashes are not comparable with those of other builds. */
-static void add_arithmetic(struct cs_text *out) {
-    const char *fault = cs_ieee_check();
-    if (fault)
-        cs_json_write(out, "  'arithmetic': %s,\n", fault);
 }
 
 static void add_outcome(const struct cs_job *job, struct cs_text *out) {
@@ -174,7 +166,6 @@ static void print_report(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     cs_json_write(out, "{\n  'schema': %u,\n", SCHEMA_VERSION);
     add_versions(job, out);
-    add_arithmetic(out);
     cs_provenance_out_add_restarts(cs_job_restarts(job), out);
     cs_text_add(out, "%s", cs_text_get(&job->provenance));
     cs_json_write(out, ",\n  'particles': %u,\n  'springs': %u,\n", run->system->view.n,

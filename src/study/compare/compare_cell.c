@@ -225,8 +225,8 @@ static void read_cells(struct cs_rows *rows, const struct cs_column *const *colu
     }
 }
 
-enum cs_status cs_csv_read(const char *path, struct cs_cell **cells, uint32_t *n,
-                           struct cs_error *error) {
+enum cs_status cs_csv_read(const char *path, bool unchecked, struct cs_cell **cells,
+                           uint32_t *n, struct cs_error *error) {
     const struct cs_column *columns[FIELDS_MAX];
     struct cs_rows rows;
     *cells = NULL;
@@ -237,6 +237,8 @@ enum cs_status cs_csv_read(const char *path, struct cs_cell **cells, uint32_t *n
     if (!n_columns || !columns[0])
         cs_fail(error, CS_ERR_FILE,
                 "%s: the first line does not name the columns of a comparison", path);
+    else if (!unchecked && cs_rows_refuse_unchecked(&rows, path, error))
+        ; // its cells are not read
     else if (!(*cells = calloc(rows.n, sizeof **cells)))
         cs_fail(error, CS_ERR_MEMORY, "out of memory for %u cells", rows.n);
     else

@@ -30,7 +30,7 @@ static enum cs_status read_row(const char *file, uint32_t row, struct cs_cell *c
                                struct cs_error *error) {
     struct cs_cell *cells;
     uint32_t n;
-    if (cs_csv_read(file, &cells, &n, error))
+    if (cs_csv_read(file, true, &cells, &n, error))
         return error->status;
     if (row >= 1 && row <= n)
         *cell = cells[row - 1];

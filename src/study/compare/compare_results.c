@@ -37,11 +37,11 @@ static enum cs_status write_rows(const struct cs_compare_results *ledger,
 
 /* Reads the rows of a file; a missing file has none. Rows of other machines get a series of
  * their own. */
-static enum cs_status read_rows(const char *path, const char *machine, struct cs_cell **cells,
-                                uint32_t *n, struct cs_error *error) {
+static enum cs_status read_rows(const char *path, bool unchecked, const char *machine,
+                                struct cs_cell **cells, uint32_t *n, struct cs_error *error) {
     *cells = NULL;
     *n = 0;
-    if (access(path, F_OK) || cs_csv_read(path, cells, n, error))
+    if (access(path, F_OK) || cs_csv_read(path, unchecked, cells, n, error))
         return error->status;
     for (uint32_t i = 0; i < *n; i++)
         cs_cell_name_machine(*cells + i, machine);
@@ -52,17 +52,15 @@ static enum cs_status read_rows(const char *path, const char *machine, struct cs
 static enum cs_status read_again(struct cs_compare_results *ledger,
                                  const struct cs_compare *compare, struct cs_error *error) {
     free(ledger->old_rows);
-    return read_rows(ledger->table.path, compare->machine, &ledger->old_rows,
+    return read_rows(ledger->table.path, false, compare->machine, &ledger->old_rows,
                      &ledger->n_old_rows, error);
 }
 
 /* Reads the rows and refuses a file of another comparison: it must not be overwritten. */
 static enum cs_status read_old(struct cs_compare_results *ledger,
                                const struct cs_compare *compare, struct cs_error *error) {
-    if (read_again(ledger, compare, error))
+    if (compare->settings->overwrite || read_again(ledger, compare, error))
         return error->status;
-    if (compare->settings->overwrite)
-        ledger->n_old_rows = 0;
     for (uint32_t i = 0; i < ledger->n_old_rows && compare->cells.n > 0; i++)
         if (strncmp(ledger->old_rows[i].key, compare->cells.cells[0].key, CS_COMPARE_DIGITS) !=
             0)
@@ -166,14 +164,14 @@ void cs_compare_results_close(struct cs_compare_results *ledger) {
 }
 
 /* Adds the rows of one file, after a check that all belong to one comparison. */
-static enum cs_status add_file(struct cs_compare *compare, const char *folder,
+static enum cs_status add_file(struct cs_compare *compare, const char *folder, bool unchecked,
                                struct cs_error *error) {
     struct cs_cell_list *sweep = &compare->cells;
     struct cs_cell *cells;
     char path[4200];
     uint32_t n;
     snprintf(path, sizeof path, "%s/%s", folder, NAME);
-    read_rows(path, compare->machine, &cells, &n, error);
+    read_rows(path, unchecked, compare->machine, &cells, &n, error);
     for (uint32_t k = 0; k < n && !error->status; k++)
         if (strncmp(cells[k].key, sweep->n ? sweep->cells[0].key : cells[k].key,
                     CS_COMPARE_DIGITS) != 0)
@@ -186,15 +184,16 @@ static enum cs_status add_file(struct cs_compare *compare, const char *folder,
 }
 
 enum cs_status cs_compare_results_merge(const char *const *folders, uint32_t n_folders,
-                                        const char *out, uint32_t *n, struct cs_error *error) {
+                                        const char *out, bool unchecked, uint32_t *n,
+                                        struct cs_error *error) {
     struct cs_compare_results ledger = {0};
     struct cs_compare compare = {0};
     cs_machine_name(compare.machine);
     // what is in the whole already is a part of it
     if (!cs_row_table_open(&ledger.table, out, NAME, ".lock", 0, error))
-        add_file(&compare, out, error);
+        add_file(&compare, out, unchecked, error);
     for (uint32_t k = 0; k < n_folders && !error->status; k++)
-        add_file(&compare, folders[k], error);
+        add_file(&compare, folders[k], unchecked, error);
     *n = compare.cells.n;
     if (!error->status && *n > 0)
         write_rows(&ledger, &compare, false, error);

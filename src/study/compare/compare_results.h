@@ -32,9 +32,11 @@ enum cs_status cs_compare_results_rewrite(struct cs_compare_results *ledger,
                                           const struct cs_compare *compare,
                                           struct cs_error *error);
 /* Merges the compare.csv of the folders, as far as they have one, into that of the folder
- * `out`; *n: rows. CS_ERR_USAGE if they belong to different comparisons. */
+ * `out`; *n: rows. unchecked: tables without checks are taken too. CS_ERR_USAGE if they belong
+ * to different comparisons. */
 enum cs_status cs_compare_results_merge(const char *const *folders, uint32_t n_folders,
-                                        const char *out, uint32_t *n, struct cs_error *error);
+                                        const char *out, bool unchecked, uint32_t *n,
+                                        struct cs_error *error);
 /* Frees the rows; the file stays. */
 void cs_compare_results_close(struct cs_compare_results *ledger);
 
