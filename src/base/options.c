@@ -228,7 +228,8 @@ void cs_option_print_expected(const struct cs_option *row, struct cs_text *out) 
         cs_text_add(out, "a list of %u ", row->count);
     cs_text_add(out, "%s%s", kind->expected, number ? " (" : "");
     cs_option_print_range(row, out);
-    cs_text_add(out, number ? ")" : "");
+    cs_text_add(out, "%s%s", number ? ")" : "",
+                cs_option_takes_one(row) ? ", or one for all" : "");
 }
 
 /* The table of the kinds of values. */
@@ -335,10 +336,13 @@ static void print_number_schema(const struct cs_option *row, struct cs_text *out
 }
 
 static void print_numbers_schema(const struct cs_option *row, struct cs_text *out) {
+    const bool one = cs_option_takes_one(row);
+    if (one)
+        cs_json_write(out, "'anyOf': [{ 'type': 'number', 'minimum': %g }, { ", row->min);
     cs_json_write(out, "'type': 'array', 'minItems': %u, 'maxItems': %u, 'items': { ",
                   row->count, row->count);
     print_number_schema(row, out);
-    cs_text_add(out, " }");
+    cs_text_add(out, one ? " } }]" : " }");
 }
 
 static void print_bool_schema(const struct cs_option *row, struct cs_text *out) {

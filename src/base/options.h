@@ -52,6 +52,12 @@ enum cs_status cs_option_check_range(const struct cs_option *row, double value, 
                                      const char *where, enum cs_status status,
                                      struct cs_error *error);
 
+/* Returns true if one number stands for all components of a VECTOR: a factor or a size, which
+ * is above 0. */
+static inline bool cs_option_takes_one(const struct cs_option *row) {
+    return row->type == CS_VECTOR && row->min > 0;
+}
+
 /* Appends the value as JSON; nothing for TABLE and LIST. object NULL: prints the default. */
 void cs_option_print(const struct cs_option *row, const void *object, struct cs_text *out);
 

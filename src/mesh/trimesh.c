@@ -7,6 +7,8 @@
  * depend on the order of qsort. */
 #include "mesh/trimesh.h"
 
+#include "base/vec3.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,36 +53,62 @@ static void position_of(const struct work *work, uint32_t t, char place[PLACE_MA
         snprintf(place, PLACE_MAX, "%.256s: triangle %u", work->name, t);
 }
 
-/* Checks that the corners exist and the area is above 0. Twice the area is compared with 1e-9
- * of the longest side squared: the limit is a ratio of height to length. */
+bool cs_triangle_has_area(const double a[3], const double b[3], const double c[3]) {
+    const double *p[4] = {a, b, c, a};
+    double side[3][3], normal[3], longest = 0;
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < 3; i++)
+            side[k][i] = p[k + 1][i] - p[k][i];
+        longest = fmax(longest, cs_vec3_dot(side[k], side[k]));
+    }
+    cs_vec3_cross(side[0], side[2], normal);
+    return sqrt(cs_vec3_dot(normal, normal)) > 1e-9 * longest;
+}
+
+/* Checks that the corners exist and the area is above 0. */
 static enum cs_status check_triangle(const struct work *work, uint32_t t) {
     const struct cs_trimesh *mesh = work->mesh;
     const uint32_t *corner = mesh->triangles + 3 * (size_t)t;
     char place[PLACE_MAX];
-    double longest = 0, normal[3];
+    double p[3][3];
     position_of(work, t, place);
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++) {
         if (corner[k] >= mesh->n)
             return cs_fail(work->error, CS_ERR_FILE, "%s: vertex %u does not exist (1..%u)",
                            place, corner[k] + 1, mesh->n);
-    for (int k = 0; k < 3; k++) {
-        double squared = 0;
-        for (size_t c = 0; c < 3; c++) {
-            const double d = mesh->positions[c * mesh->n + corner[(k + 1) % 3]] -
-                             mesh->positions[c * mesh->n + corner[k]];
-            squared += d * d;
-        }
-        longest = fmax(longest, squared);
+        for (size_t c = 0; c < 3; c++)
+            p[k][c] = mesh->positions[c * mesh->n + corner[k]];
     }
-    cs_trimesh_normal(mesh, t, mesh->positions, mesh->n, 0, normal);
-    const double doubled =
-        sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    /* relative to the longest side: the unit of the mesh does not matter; NaN fails too */
-    if (!(doubled > 1e-9 * longest))
+    if (!cs_triangle_has_area(p[0], p[1], p[2]))
         return cs_fail(work->error, CS_ERR_FILE,
                        "%s: the triangle of vertices %u, %u and %u has no area", place,
                        corner[0] + 1, corner[1] + 1, corner[2] + 1);
     return CS_OK;
+}
+
+/* Returns true if one of the names in a list separated by blanks is this one. */
+static bool has_name(const char *names, const char *name) {
+    const size_t length = strlen(name);
+    for (const char *at = names; *at; at += strspn(at, " ")) {
+        const size_t next = strcspn(at, " ");
+        if (next == length && !memcmp(at, name, length))
+            return true;
+        at += next;
+    }
+    return false;
+}
+
+bool cs_mesh_has_label(const struct cs_mesh_label *labels,
+                       const uint32_t numbers[CS_LABEL_KINDS], const char *name) {
+    for (int kind = 0; kind < CS_LABEL_KINDS; kind++) {
+        if (!numbers[kind])
+            continue;
+        const char *names = labels[numbers[kind] - 1].names;
+        /* the name of an object or of a material may have blanks */
+        if (kind == CS_LABEL_GROUP ? has_name(names, name) : !strcmp(names, name))
+            return true;
+    }
+    return false;
 }
 
 /* Orders sides by edge, then by triangle: a total order, as qsort is not stable. */

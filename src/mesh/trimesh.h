@@ -19,6 +19,15 @@ enum cs_mesh_shape {
 /* Largest `detail`: parts of an edge, of the tube's circle, or of the height. */
 enum { CS_MESH_DETAIL_MAX = 256 };
 
+/* Kinds of names of faces: `g`, `o` and `usemtl`. */
+enum cs_label_kind { CS_LABEL_GROUP, CS_LABEL_OBJECT, CS_LABEL_MATERIAL, CS_LABEL_KINDS };
+
+/* A name of faces: of a group several names, separated by blanks. */
+struct cs_mesh_label {
+    const char *names;
+    enum cs_label_kind kind;
+};
+
 /* An indexed mesh and its topology; the arrays belong to the arena of its maker. Positions,
  * triangles and uv are set first; cs_trimesh_finish derives the rest from them. */
 
@@ -36,6 +45,16 @@ struct cs_trimesh {
     double *area;               /* (n) m2, a third of each triangle at the vertex */
     double edge;                /* m, mean length of an edge */
     uint32_t n_open;            /* edges of one triangle only; 0: the mesh is closed */
+
+    /* of a file; NULL or 0: a shape, or nothing of the kind */
+    const struct cs_mesh_label *labels;
+    uint32_t (*triangle_labels)[CS_LABEL_KINDS]; /* (n_triangles) numbers from 1; 0: none */
+    uint32_t n_labels;
+    uint32_t n_file;       /* vertices in the file */
+    uint32_t *file_vertex; /* (n) vertex of the file; NULL: the same */
+    uint32_t pieces;       /* that edges and vertices hold together; 0: not counted */
+    const char *mends;     /* what was mended: "3 doubled vertices welded"; "": nothing */
+    char faces_hash[CS_HASH_DIGITS]; /* of the faces before mending; empty: of no file */
 
     uint32_t *network_springs; /* (n_network_springs, 2) inner springs (spring_network.h) */
     char file_hash[CS_HASH_DIGITS]; /* of the bytes of its file; empty: a shape */
@@ -61,6 +80,15 @@ enum cs_status cs_trimesh_make(struct cs_trimesh *mesh, enum cs_mesh_shape shape
 /* Makes CS_MESH_LIMBS: surface nets of a sum of blobs (trimesh_metaballs.c). */
 enum cs_status cs_trimesh_make_metaballs(struct cs_trimesh *mesh, uint32_t detail,
                                          struct cs_arena *arena, struct cs_error *error);
+
+/* Returns true if a name of the labels of a triangle, numbers from 1, is this one. */
+bool cs_mesh_has_label(const struct cs_mesh_label *labels,
+                       const uint32_t numbers[CS_LABEL_KINDS], const char *name);
+
+/* Returns true if a triangle has an area above 0: twice the area is compared with 1e-9 of the
+ * longest side squared, a ratio of height to length, which does not depend on the unit. NaN has
+ * none. */
+bool cs_triangle_has_area(const double a[3], const double b[3], const double c[3]);
 
 /* Normal of triangle t at positions x (3,n) of n particles, of which the mesh's begin at
  * `first`. Its length is twice the area. Written component by component: as loops over the axes

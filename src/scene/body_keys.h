@@ -30,12 +30,14 @@ struct cs_holder {
     int64_t collider; /* -1: not given, refused */
 };
 
-/* Selects pinned particles; one of: a named corner or edge, a particle index, a box. */
+/* Selects pinned particles; one of: a named corner or edge, a particle index, a box, a name of
+ * faces of a mesh file. */
 struct cs_pin {
     struct cs_holder to; /* of a body's pins alone */
     int32_t at;          /* enum cs_pin_name, -1: not given */
     int64_t index;       /* particle within the body, -1: not given */
     struct cs_box box;
+    char set[CS_TEXT_MAX]; /* ""; not given */
 };
 
 /* One side of a seam: particles of a body in the order of the list; of one entry ascending. */

@@ -32,6 +32,8 @@ static const struct cs_option pin_rows[] = {
         "means "
         "this"),
     TABLE(struct cs_pin, box, box_table, "every particle that starts inside"),
+    TEXT(struct cs_pin, set,
+         "every vertex of the faces of a group, an object or a material of the mesh's file"),
 };
 
 const struct cs_table cs_pin_table = {ROWS(pin_rows),         .size = sizeof(struct cs_pin),

@@ -42,6 +42,9 @@ struct cs_cloth {
     double spin[3];     /* rad/s, about place.translate */
 };
 
+enum cs_mesh_unit { CS_MESH_M, CS_MESH_CM, CS_MESH_MM, CS_MESH_INCH, CS_MESH_FOOT };
+enum cs_mesh_up { CS_MESH_UP_Y, CS_MESH_UP_Z };
+
 /* Triangle mesh of a body or a collider: from a file or generated. */
 struct cs_mesh_source {
     bool present;
@@ -49,6 +52,10 @@ struct cs_mesh_source {
     int32_t shape;          /* enum cs_mesh_shape, -1: none */
     int64_t detail;         /* divisions of a generated shape (trimesh_shape.c) */
     double scale[3];        /* factors of the coordinates of file or shape */
+    int32_t units;          /* enum cs_mesh_unit, of the scaled coordinates */
+    int32_t up;             /* enum cs_mesh_up */
+    bool weld;              /* join vertices in one place at open edges */
+    char set[CS_TEXT_MAX];  /* of the file: group, object or material that is read; "": all */
     struct cs_pose place;
     double velocity[3];              /* m/s, of every free particle at time 0 */
     double spin[3];                  /* rad/s, about place.translate */

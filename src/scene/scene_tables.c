@@ -64,11 +64,15 @@ static const struct cs_option key_frames_rows[] = {
 static const struct cs_table key_frames_table = {
     ROWS(key_frames_rows), .size = sizeof(struct cs_key_frames), .optional = true};
 
+static const char *const unit_names[] = {"m", "cm", "mm", "in", "ft", NULL};
+static const char *const up_names[] = {"y", "z", NULL};
 /* the first row is of colliders alone, the last two are of bodies alone */
 static const struct cs_option mesh_rows[] = {
     TABLE(struct cs_mesh_source, key_frames, key_frames_table,
           "positions of the vertices at equal intervals of time, instead of those of file or "
           "shape; between them, a cubic spline"),
+    TEXT(struct cs_mesh_source, set,
+         "of a file: the group, object or material whose faces are read; all if absent"),
     TEXT(struct cs_mesh_source, file, "OBJ file, relative to the scene file"),
     CHOICE(
         struct cs_mesh_source, shape, cs_mesh_shape_names, -1,
@@ -79,6 +83,12 @@ static const struct cs_option mesh_rows[] = {
         "becomes the sphere, round the torus's tube, or of the height of limbs"),
     VECTOR(struct cs_mesh_source, scale, 3, "", one3, 1e-6, 1e6,
            "factor on the coordinates of file or shape, before the placement"),
+    CHOICE(struct cs_mesh_source, units, unit_names, CS_MESH_M,
+           "unit of the scaled coordinates; the scene's is the metre"),
+    CHOICE(struct cs_mesh_source, up, up_names, CS_MESH_UP_Y,
+           "axis of the file that becomes the scene's y; z: x, y, z become x, z, -y"),
+    BOOL(struct cs_mesh_source, weld, 1,
+         "join doubled vertices of a file where open edges lie in one place"),
     TABLE(struct cs_mesh_source, place, place_table, "rigid placement, about the origin"),
     VECTOR(struct cs_mesh_source, velocity, 3, "m/s", zero3, -BIG, BIG,
            "of every particle that is not pinned, at time 0"),
@@ -90,14 +100,15 @@ static const struct cs_table mesh_table = {.rows = mesh_rows + 1,
                                            .n = N_MESH_ROWS - 1,
                                            .size = sizeof(struct cs_mesh_source),
                                            .optional = true,
-                                           .one_of = true};
+                                           .one_of = true,
+                                           .n_always_optional = 1};
 /* events and key frames move a collider */
 const struct cs_table cs_mesh_keys = {.rows = mesh_rows,
                                       .n = N_MESH_ROWS - 2,
                                       .size = sizeof(struct cs_mesh_source),
                                       .optional = true,
                                       .one_of = true,
-                                      .n_always_optional = 1};
+                                      .n_always_optional = 2};
 
 static const char *const placement_names[] = {"random", "opposed-normals", "nearest", NULL};
 static const struct cs_option network_rows[] = {

@@ -2,6 +2,7 @@
 #include "scene/shape.h"
 
 #include "base/portable_sine.h"
+#include "base/text.h"
 #include "mesh/trimesh.h"
 
 #include <math.h>
@@ -133,6 +134,16 @@ static bool is_named(enum cs_pin_name name, uint32_t i, uint32_t j, uint32_t row
     return false;
 }
 
+/* Returns true if a face at vertex i of a mesh has this name. */
+static bool is_in_set(const struct cs_trimesh *mesh, const char *set, uint32_t i) {
+    bool found = false;
+    for (uint32_t k = cs_trimesh_around_begin(mesh, i); k < mesh->vertex_triangles_end[i]; k++)
+        found =
+            found || cs_mesh_has_label(mesh->labels,
+                                       mesh->triangle_labels[mesh->vertex_triangles[k]], set);
+    return found;
+}
+
 /* Returns true if a particle lies in a box, borders included. */
 static bool is_inside(const struct cs_box *box, uint32_t n, size_t at, const double *x) {
     for (size_t c = 0; c < 3; c++)
@@ -148,7 +159,8 @@ bool cs_shape_pin_selects(const struct cs_body *body, const struct cs_pin *pin, 
     return (pin->at >= 0 &&
             is_named((enum cs_pin_name)pin->at, i / columns, i % columns, rows, columns)) ||
            pin->index == (int64_t)i ||
-           (pin->box.present && is_inside(&pin->box, n, (size_t)first + i, x));
+           (pin->box.present && is_inside(&pin->box, n, (size_t)first + i, x)) ||
+           (*pin->set && is_in_set(body->mesh.geometry, pin->set, i));
 }
 
 void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,
@@ -176,16 +188,52 @@ bool cs_holder_fault(const struct cs_scene *scene, const struct cs_holder *holde
                     (long long)holder->collider);
 }
 
+/* Copies the first name of a label that is near to a word, or "". */
+static void find_near(const struct cs_mesh_label *label, const char *word,
+                      char near[CS_TEXT_MAX]) {
+    for (const char *at = label->names; *at; at += strspn(at, " ")) {
+        const size_t length = label->kind == CS_LABEL_GROUP ? strcspn(at, " ") : strlen(at);
+        const char *names[] = {near, NULL};
+        snprintf(near, CS_TEXT_MAX, "%.*s", (int)length, at);
+        if (cs_nearest_word(word, names))
+            return;
+        at += length;
+    }
+    *near = 0;
+}
+
+/* Returns true if no face of the body has this name; text then names a near one. */
+static bool set_fault(const struct cs_body *body, const char *set, char *text, size_t size) {
+    const struct cs_trimesh *mesh = body->mesh.present ? body->mesh.geometry : NULL;
+    char near[CS_TEXT_MAX] = "";
+    if (!mesh || !mesh->triangle_labels)
+        return snprintf(text, size, "found the set \"%.60s\", expected an index or a box: %s",
+                        set, mesh ? "no face of the mesh has a name" : "a cloth has no sets");
+    for (uint32_t t = 0; t < mesh->n_triangles; t++)
+        if (cs_mesh_has_label(mesh->labels, mesh->triangle_labels[t], set))
+            return false;
+    for (size_t k = 0; k < CS_LABEL_KINDS * (size_t)mesh->n_triangles && !*near; k++) {
+        const uint32_t label = mesh->triangle_labels[k / CS_LABEL_KINDS][k % CS_LABEL_KINDS];
+        if (label)
+            find_near(mesh->labels + label - 1, set, near);
+    }
+    return snprintf(text, size, "the mesh has no group, object or material \"%.60s\"%s%.60s%s",
+                    set, *near ? "; did you mean \"" : "", near, *near ? "\"?" : "");
+}
+
 bool cs_shape_pin_fault(const struct cs_body *body, const struct cs_pin *pin, char *text,
                         size_t size) {
     const long long count = (long long)cs_shape_count(body), index = (long long)pin->index;
     if (index >= count)
         return snprintf(text, size, "particle %lld does not exist (0..%lld)", index, count - 1);
     if (body->mesh.present && pin->at >= 0)
-        return snprintf(text, size,
-                        "found \"%s\", expected an index or a box: a mesh has no named corners "
-                        "or edges",
-                        cs_pin_names[pin->at]);
+        return snprintf(
+            text, size,
+            "found \"%s\", expected an index, a box or a set: a mesh has no named corners "
+            "or edges",
+            cs_pin_names[pin->at]);
+    if (*pin->set)
+        return set_fault(body, pin->set, text, size);
     for (int c = 0; c < 3 && pin->box.present; c++)
         if (pin->box.min[c] > pin->box.max[c])
             return snprintf(text, size, "box.min[%d] = %.9g lies above box.max[%d] = %.9g", c,

@@ -289,6 +289,25 @@ static void check_gaps(const struct cs_system *system, struct cs_text *out) {
     }
 }
 
+/* --- meshes --- */
+
+/* Changes by the reading of meshes; several pieces of a mesh that nothing joins. */
+static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings *out) {
+    for (uint32_t b = 0; b < scene->bodies.n; b++) {
+        const struct cs_mesh_source *source = &cs_scene_bodies(scene)[b].mesh;
+        const struct cs_trimesh *mesh = source->geometry;
+        if (!source->present || !mesh->mends)
+            continue;
+        if (*mesh->mends)
+            cs_text_add(&out->warnings, "bodies[%u].mesh.file: %s: %s\n", b, source->file,
+                        mesh->mends);
+        if (mesh->pieces > 1 && !scene->seams.n)
+            cs_text_add(&out->hints,
+                        "bodies[%u].mesh.file: %s is in %u pieces that nothing joins\n", b,
+                        source->file, mesh->pieces);
+    }
+}
+
 /* --- all checks --- */
 
 /* Adds a line, if the text of a single one is there. */
@@ -320,6 +339,7 @@ enum cs_status cs_scene_doctor_check(const struct cs_session *session, double se
     *out = (struct cs_scene_findings){0};
     if (check_surfaces(system, seconds, &out->warnings, error))
         return error->status;
+    check_meshes(system->scene, out);
     check_energy(system, &out->warnings);
     check_gaps(system, &out->hints);
     cs_contact_ranges_print(system, step_of(session), &out->hints);

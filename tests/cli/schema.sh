@@ -7,7 +7,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$program" scene --schema >"$folder/schema.json" || exit 1
 exec /usr/bin/python3 - "$program" "$scenes" "$folder" <<'PYTHON'
-import glob, json, os, subprocess, sys
+import glob, json, os, shutil, subprocess, sys
 try:
     import jsonschema
 except ImportError:
@@ -75,6 +75,9 @@ forms |= {path: particles for path in (
     "bodies[].pins[]", "seams[].particles[]", "seams[].to.particles[]", "events[].impact.particles[]",
     "events[].grab.particles[]", "events[].pin.particles[]", "events[].release.particles[]",
     "render.marks.particles[]")}
+forms |= {path: [["2", str([2] * n)]] for path, n in (
+    ("bodies[].cloth.size", 2), ("bodies[].cloth.stretch", 2), ("bodies[].material.texture_repeat", 2),
+    ("bodies[].mesh.scale", 3), ("colliders[].box.size", 3), ("colliders[].mesh.scale", 3))}
 def short_keys(node, path):
     found = {path} if "anyOf" in node else set()
     for form in [node] + node.get("anyOf", []):
@@ -92,6 +95,15 @@ def base(path):
         scene["render"] = {"marks": {"particles": [5]}}
     if "elastic" in path:
         scene["bodies"][0]["elastic"] = {"membrane": {"young": 100}}
+    if "material" in path:
+        scene["bodies"][0]["material"] = {"texture": "weave.png"}
+        shutil.copy(scenes + "/weave.png", folder)
+    if "mesh.scale" in path:
+        scene["bodies"][0] = {"mesh": {"shape": "box"}, "mass": {"total": 1}}
+    if path.startswith("colliders"):
+        scene["contact"] = "force"
+        scene["colliders"] = [{"box": {"centre": [0, -9, 0]}} if "box" in path else
+                              {"mesh": {"shape": "box", "place": {"translate": [0, -9, 0]}}}]
     if path.startswith("seams"):
         scene["seams"] = [{"body": 0, "particles": [4], "to": {"body": 1, "particles": [4]}}]
     if path.startswith("events"):

@@ -7,12 +7,13 @@
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length);
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length) {
-    static const double scale[3] = {1, 2, 0.5};
+    const struct cs_mesh_source source = {
+        .scale = {1, 2, 0.5}, .weld = length % 2 == 0, .up = length % 3 == 0};
     struct cs_trimesh mesh = {0};
     struct cs_arena arena = {0};
     struct cs_error error = {0};
     const enum cs_status status = cs_mesh_read_text("fuzz.obj", (const char *)bytes, length,
-                                                    scale, &mesh, &arena, &error);
+                                                    &source, &mesh, &arena, &error);
     CS_ASSERT(status == error.status);
     if (status)
         CS_ASSERT(status == CS_ERR_FILE && !strncmp(error.message, "fuzz.obj:", 9));

@@ -240,7 +240,7 @@ TEST(sequences_are_read) {
     ck_assert_double_eq(paths.positions[9 + 6 + 2], 3);
     memcpy(before, paths.file_hash, sizeof before);
     read_here("a##.obj", 3, &paths, &arena, &error);
-    UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "a10.obj: found other triangles");
+    UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "a10.obj: found other faces");
     write_text("a10.obj", "v 0 0 1\nv 1 0 2\nv 0 1 3\nf 1 2 3\n");
     read_here("a##.obj", 4, &paths, &arena, &error);
     UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "a11.obj: found 4 vertices, expected the 3");

@@ -2,12 +2,15 @@
 #include "scene/file/mesh_read.h"
 #include "unit.h"
 
-static const double plain[3] = {1, 1, 1};
+#include <math.h>
 
-static enum cs_status read_obj(const char *text, const double scale[3], struct cs_trimesh *mesh,
-                               struct cs_arena *arena, struct cs_error *error) {
+static const struct cs_mesh_source plain = {.scale = {1, 1, 1}, .weld = true};
+
+static enum cs_status read_obj(const char *text, const struct cs_mesh_source *source,
+                               struct cs_trimesh *mesh, struct cs_arena *arena,
+                               struct cs_error *error) {
     *mesh = (struct cs_trimesh){0};
-    return cs_mesh_read_text("m.obj", text, strlen(text), scale, mesh, arena, error);
+    return cs_mesh_read_text("m.obj", text, strlen(text), source, mesh, arena, error);
 }
 
 #define TETRAHEDRON                                                                            \
@@ -16,13 +19,13 @@ static enum cs_status read_obj(const char *text, const double scale[3], struct c
 
 TEST(tetrahedron_is_whole) {
     static const uint32_t triangles[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
-    const double scale[3] = {2, 3, 4};
+    const struct cs_mesh_source scaled = {.scale = {2, 3, 4}};
     struct cs_trimesh mesh;
     struct cs_arena arena = {0};
     struct cs_error error = {0};
     /* from the front, from the back, with normals that are passed over, without a last newline
      */
-    read_obj(TETRAHEDRON "vn 0 0 1\nf 1 3 2\nf -4 -3 -1\nf 2//1 3//1 4//9\nf 1 4 3", scale,
+    read_obj(TETRAHEDRON "vn 0 0 1\nf 1 3 2\nf -4 -3 -1\nf 2//1 3//1 4//9\nf 1 4 3", &scaled,
              &mesh, &arena, &error);
     UNIT_ASSERT_OK(&error);
     ck_assert_uint_eq(mesh.n, 4);
@@ -46,7 +49,7 @@ TEST(polygons_become_fans_with_texture) {
     struct cs_error error = {0};
     read_obj("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv -1 1 0\n"
              "vt 0 0\nvt 0.5 0.25 0\nvt 1\nf 1/1 2/2 3/3/7 4/-1 5/-3\n",
-             plain, &mesh, &arena, &error);
+             &plain, &mesh, &arena, &error);
     UNIT_ASSERT_OK(&error);
     ck_assert_uint_eq(mesh.n_triangles, 3);
     ck_assert_mem_eq(mesh.triangles, triangles, sizeof triangles);
@@ -72,7 +75,11 @@ TEST(bad_meshes_are_refused) {
         {"", "m.obj: found no faces"},
         {TETRAHEDRON, "m.obj: found no faces"},
         {"v 1 2\n", "m.obj:1: a vertex has 2 numbers, expected 3"},
-        {"v 1 2 3 4\n", "m.obj:1: a vertex has more than 3 numbers"},
+        {"v 1 2\nv 1 x 2\nf 1 2\nf 1 2 9\nv 1\n",
+         "m.obj:1: a vertex has 2 numbers, expected 3; m.obj:2: found \"x\", expected a number "
+         "(-1e9..1e9); m.obj:3: a face has 2 corners, expected 3 or more; m.obj:5: a vertex "
+         "has 1 "
+         "numbers, expected 3; and 1 more"},
         {"\nv 1 2 x\n", "m.obj:2: found \"x\", expected a number"},
         {"v 1 2 1e10\n", "m.obj:1: found \"1e10\", expected a number (-1e9..1e9)"},
         {"v 1 2 nan\n", "m.obj:1: found \"nan\""},
@@ -87,25 +94,21 @@ TEST(bad_meshes_are_refused) {
         {TETRAHEDRON "f 1 2 0\n", "m.obj:10: found \"0\", expected the number of a vertex"},
         {TETRAHEDRON "f 1 2 3x\n", "found \"3x\", expected the number of a vertex"},
         {TETRAHEDRON "f 1/1 2/1 3/1\n", "m.obj:10: texture coordinate 1 does not exist (1..0)"},
-        {TETRAHEDRON "vt 0 0\nf 1/ 2/1 3/1\n", "expected the number of a texture coordinate"},
-        {TETRAHEDRON "vt 0 0\nf 1/1 2/1 3\n", "m.obj:11: a corner has no texture coordinate"},
-        {TETRAHEDRON "vt 0 0\nf 1 2 3\nf 1 2 4/1\n", "m.obj:12: a corner has a texture"},
-        {TETRAHEDRON "f 1 2 2\n", "m.obj:10: the triangle of vertices 1, 2 and 2 has no area"},
+        {TETRAHEDRON "f 1/x 2/1 3/1\n", "expected the number of a texture coordinate"},
+        {TETRAHEDRON "f 1 2 2\n", "m.obj: found no faces: 1 face without area (line 10) "
+                                  "removed, 2 vertices in no face removed"},
         {"v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n",
-         "m.obj:4: the triangle of vertices 1, 2 and 3"},
-        {TETRAHEDRON "f 1 2 3\n", "m.obj: vertex 4 is in no face"},
-        {TETRAHEDRON "v 0 0 -1\nf 1 2 3\nf 2 1 4\nf 1 2 5\n",
-         "m.obj:13: the edge of vertices 1 and 2 has 3 triangles, expected 1 or 2"},
+         "m.obj: found no faces: 1 face without area (line 4) removed"},
         {TETRAHEDRON "f 1 2 3\nf 1 2 4\n",
          "m.obj:11: the two triangles at the edge of vertices 1 and 2 have opposite"},
-        {"curv 1 2\n", "m.obj:1: found \"curv\", expected v, vt, vn, f, o, g, s, usemtl or mt"},
-        {"v 1 2 3\nf 1 2 \\\n3\n", "m.obj:2: found \"\\\", expected the number of a vertex"},
+        {"curv 1 2\nsurf 1\ncurv 1\n",
+         "m.obj: found no faces: 3 lines of other programs passed over (curv, surf)"},
     };
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         struct cs_trimesh mesh;
         struct cs_arena arena = {0};
         struct cs_error error = {0};
-        read_obj(bad[k].text, plain, &mesh, &arena, &error);
+        read_obj(bad[k].text, &plain, &mesh, &arena, &error);
         UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, bad[k].message);
         cs_arena_finish(&arena);
     }
@@ -122,7 +125,7 @@ TEST(truncated_text_is_refused_or_read) {
         struct cs_error error = {0};
         memcpy(copy, whole, length);
         refused +=
-            cs_mesh_read_text("m.obj", copy, length, plain, &mesh, &arena, &error) != CS_OK;
+            cs_mesh_read_text("m.obj", copy, length, &plain, &mesh, &arena, &error) != CS_OK;
         ck_assert(error.status == CS_OK || error.status == CS_ERR_FILE);
         free(copy);
         cs_arena_finish(&arena);
@@ -134,9 +137,240 @@ TEST(zero_bytes_and_missing_files_are_refused) {
     struct cs_trimesh mesh = {0};
     struct cs_arena arena = {0};
     struct cs_error error = {0}, missing = {0};
-    cs_mesh_read_text("m.obj", "v 1\0 2 3\n", 9, plain, &mesh, &arena, &error);
+    cs_mesh_read_text("m.obj", "v 1\0 2 3\n", 9, &plain, &mesh, &arena, &error);
     UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "m.obj: found a zero byte, expected text");
-    cs_mesh_read("none.obj", "none.obj", plain, &mesh, &arena, &missing);
+    cs_mesh_read("none.obj", "none.obj", &plain, &mesh, &arena, &missing);
     UNIT_ASSERT_FAILED(&missing, CS_ERR_FILE, "none.obj");
+    cs_arena_finish(&arena);
+}
+
+/* --- spellings and mends --- */
+
+/* Reads a text that must be sound; the caller finishes the arena. */
+static void read_sound(const char *text, const struct cs_mesh_source *source,
+                       struct cs_trimesh *mesh, struct cs_arena *arena) {
+    struct cs_error error = {0};
+    *arena = (struct cs_arena){0};
+    read_obj(text, source, mesh, arena, &error);
+    UNIT_ASSERT_OK(&error);
+}
+
+static double area_of(const struct cs_trimesh *mesh) {
+    double sum = 0;
+    for (uint32_t i = 0; i < mesh->n; i++)
+        sum += mesh->area[i];
+    return sum;
+}
+
+#define SQUARE "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n"
+#define FACES  "f 1 2 3\nf 1 3 4\n"
+
+/* Each spelling of the square is the same mesh. */
+TEST(spellings_of_exporters_are_read) {
+    static const char *const spellings[] = {
+        SQUARE FACES,
+        "v 0 0 0 1 0 0\nv 2 0 0 0 1 0\nv 2 1 0 .5 .5 .5\nv 0 1 0 1 1 1\n" FACES,
+        "v 0 0 0 1\nv 2 0 0 1\nv 2 1 0 1\nv 0 1 0 1\n" FACES,
+        "\xef\xbb\xbf" SQUARE FACES,
+        SQUARE FACES "l 1 2 3\np 1\nmg off\nvp 1\ns 1\nvn 0 0 1\nmtllib a b.mtl\n",
+        SQUARE "f 1 2 \\\n3 4\n",
+        SQUARE "f 1 2 \\\r\n3 4",
+        "v 0 0 0\rv 2 0 0\rv 2 1 0\rv 0 1 0\rf 1 2 3\rf 1 3 4\r",
+        SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\nf 1 3 4\n",
+        SQUARE "f 1/ 2/ 3/\nf 1// 3/ 4/\n",
+        FACES SQUARE,
+    };
+    struct cs_trimesh first, mesh;
+    struct cs_arena of_first, arena;
+    read_sound(spellings[0], &plain, &first, &of_first);
+    for (size_t k = 0; k < sizeof spellings / sizeof *spellings; k++) {
+        read_sound(spellings[k], &plain, &mesh, &arena);
+        ck_assert_uint_eq(mesh.n, 4);
+        ck_assert_uint_eq(mesh.n_triangles, 2);
+        ck_assert_mem_eq(mesh.positions, first.positions, 12 * sizeof *mesh.positions);
+        ck_assert_mem_eq(mesh.triangles, first.triangles, 6 * sizeof *mesh.triangles);
+        ck_assert_str_eq(mesh.mends, "");
+        ck_assert_uint_eq(mesh.pieces, 1);
+        cs_arena_finish(&arena);
+    }
+    read_sound(SQUARE "ny 0 0 0\nvl 1\nny 1\n\x80\x01 2\n" FACES, &plain, &mesh, &arena);
+    ck_assert_str_eq(mesh.mends, "4 lines of other programs passed over (ny, vl)");
+    cs_arena_finish(&arena);
+    cs_arena_finish(&of_first);
+}
+
+/* The areas are those of the shoelace formula, from whichever corner the polygon begins. */
+TEST(concave_polygons_are_cut_into_their_area) {
+    static const struct {
+        double area;
+        int n;
+        double x[8][2];
+    } polygons[] = {
+        {3, 6, {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}},
+        {0.5, 4, {{0, 0}, {1, 2}, {0, 0.5}, {-1, 2}}},
+        {5, 5, {{0, 0}, {2, 0}, {3, 1}, {1, 2}, {-1, 1}}},
+        {2, 5, {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {0, 1}}},
+        {5, 8, {{0, 0}, {3, 0}, {3, 2}, {2, 2}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}},
+    };
+    for (size_t k = 0; k < sizeof polygons / sizeof *polygons; k++)
+        for (int turn = 0; turn < polygons[k].n; turn++) {
+            const int n = polygons[k].n;
+            struct cs_text text = {0};
+            struct cs_trimesh mesh;
+            struct cs_arena arena;
+            /* in a plane askew, of which the area is sqrt(3) times that of its shadow */
+            for (int i = 0; i < n; i++)
+                cs_text_add(&text, "v %g %g %g\n", polygons[k].x[i][0], polygons[k].x[i][1],
+                            polygons[k].x[i][0] - polygons[k].x[i][1]);
+            cs_text_add(&text, "f");
+            for (int i = 0; i < n; i++)
+                cs_text_add(&text, " %d", (i + turn) % n + 1);
+            read_sound(cs_text_get(&text), &plain, &mesh, &arena);
+            ck_assert_double_eq_tol(area_of(&mesh), sqrt(3) * polygons[k].area, 1e-12);
+            ck_assert_uint_eq(mesh.n_triangles, n - 2);
+            ck_assert_str_eq(mesh.mends, "");
+            cs_text_finish(&text);
+            cs_arena_finish(&arena);
+        }
+}
+
+TEST(polygons_that_cross_themselves_are_told) {
+    struct cs_trimesh mesh;
+    struct cs_arena arena;
+    read_sound("v 0 0 0\nv 3 0 0\nv 1 -1 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 4 5\n", &plain,
+               &mesh, &arena);
+    ck_assert_ptr_nonnull(strstr(mesh.mends, "1 polygon that crosses itself (line 6) cut as"));
+    cs_arena_finish(&arena);
+}
+
+/* A sheet of 2 x 1 squares whose middle column is written twice, once a rounding away. */
+#define HALVES                                                                                 \
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1.0000001 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\n"         \
+    "f 1 2 3 4\nf 5 6 7 8\n"
+
+TEST(doubled_vertices_are_welded) {
+    const struct cs_mesh_source apart = {.scale = {1, 1, 1}};
+    struct cs_trimesh mesh;
+    struct cs_arena arena;
+    read_sound(HALVES, &plain, &mesh, &arena);
+    ck_assert_uint_eq(mesh.n, 6);
+    ck_assert_uint_eq(mesh.pieces, 1);
+    ck_assert_uint_eq(mesh.n_edges, 9);
+    ck_assert_uint_eq(mesh.n_file, 8);
+    ck_assert_uint_eq(mesh.file_vertex[4], 5);
+    ck_assert_str_eq(mesh.mends, "2 doubled vertices welded");
+    cs_arena_finish(&arena);
+    read_sound(HALVES, &apart, &mesh, &arena);
+    ck_assert_uint_eq(mesh.n, 8);
+    ck_assert_uint_eq(mesh.pieces, 2);
+    ck_assert_str_eq(mesh.mends, "");
+    cs_arena_finish(&arena);
+}
+
+/* A cube as renderers write it, with vertices of its own on each face, is closed. */
+TEST(faces_with_vertices_of_their_own_are_one_surface) {
+    static const int axes[6][2] = {{1, 2}, {2, 1}, {2, 0}, {0, 2}, {0, 1}, {1, 0}};
+    static const int corners[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    struct cs_text text = {0};
+    struct cs_trimesh mesh;
+    struct cs_arena arena;
+    for (int face = 0; face < 6; face++) {
+        for (int k = 0; k < 4; k++) {
+            int p[3] = {0, 0, 0};
+            p[axes[face][0]] = corners[k][0];
+            p[axes[face][1]] = corners[k][1];
+            p[3 - axes[face][0] - axes[face][1]] = face % 2 == 0;
+            cs_text_add(&text, "v %d %d %d\n", p[0], p[1], p[2]);
+        }
+        cs_text_add(&text, "f -4 -3 -2 -1\n");
+    }
+    read_sound(cs_text_get(&text), &plain, &mesh, &arena);
+    ck_assert_uint_eq(mesh.n, 8);
+    ck_assert_uint_eq(mesh.n_open, 0);
+    ck_assert_double_eq_tol(area_of(&mesh), 6, 1e-12);
+    ck_assert_str_eq(mesh.mends, "16 doubled vertices welded");
+    cs_text_finish(&text);
+    cs_arena_finish(&arena);
+}
+
+/* A closed tetrahedron with a vertex on an edge of one face, closed by a face without area, and
+ * one with a face of two equal places: both stay closed. */
+TEST(faces_without_area_leave_no_gap) {
+    struct cs_trimesh mesh;
+    struct cs_arena arena;
+    read_sound(TETRAHEDRON "v 0.5 0 0\nf 1 3 2\nf 1 5 4\nf 5 2 4\nf 1 2 5\nf 2 3 4\nf 1 4 3\n",
+               &plain, &mesh, &arena);
+    ck_assert_uint_eq(mesh.n, 5);
+    ck_assert_uint_eq(mesh.n_open, 0);
+    ck_assert_double_eq_tol(area_of(&mesh), 1.5 + sqrt(3) / 2, 1e-12);
+    ck_assert_str_eq(mesh.mends, "1 face without area (line 14) removed");
+    cs_arena_finish(&arena);
+    read_sound(TETRAHEDRON "v 0 0 0\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 5 4 3\nf 1 4 5\nf 1 5 3\n",
+               &plain, &mesh, &arena);
+    ck_assert_uint_eq(mesh.n, 4);
+    ck_assert_uint_eq(mesh.n_open, 0);
+    ck_assert_str_eq(mesh.mends, "2 faces without area (the first in line 15) removed");
+    cs_arena_finish(&arena);
+}
+
+TEST(repeated_faces_and_loose_vertices_are_removed) {
+    struct cs_trimesh mesh;
+    struct cs_arena arena;
+    read_sound("v 9 9 9\n" SQUARE "f 2 3 4\nf 2 4 5\nf 4 2 3\nf 4 3 2\n", &plain, &mesh,
+               &arena);
+    ck_assert_uint_eq(mesh.n, 4);
+    ck_assert_uint_eq(mesh.n_triangles, 2);
+    ck_assert_uint_eq(mesh.file_vertex[0], 1);
+    ck_assert_str_eq(mesh.mends, "2 faces given twice (the first in line 8) removed, 1 vertex "
+                                 "in no face removed");
+    cs_arena_finish(&arena);
+}
+
+/* Three pages of a book; and two cubes that share an edge, which become two closed pieces. */
+TEST(edges_of_three_triangles_are_cut) {
+    struct cs_trimesh mesh;
+    struct cs_arena arena;
+    read_sound(TETRAHEDRON "v 0 0 -1\nf 1 2 3\nf 2 1 4\nf 1 2 5\n", &plain, &mesh, &arena);
+    ck_assert_uint_eq(mesh.n, 7);
+    ck_assert_uint_eq(mesh.n_triangles, 3);
+    ck_assert_uint_eq(mesh.pieces, 2);
+    ck_assert_str_eq(mesh.mends, "1 edge of three triangles or more (line 13) cut");
+    cs_arena_finish(&arena);
+    read_sound("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nv 0 0 -1\n"
+               "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 1 5 2\nf 1 2 6\nf 2 5 6\nf 1 6 5\n",
+               &plain, &mesh, &arena);
+    ck_assert_uint_eq(mesh.n, 8);
+    ck_assert_uint_eq(mesh.pieces, 2);
+    ck_assert_uint_eq(mesh.n_open, 0);
+    cs_arena_finish(&arena);
+}
+
+/* Of a file in centimetres with z up, one material alone. */
+TEST(a_set_is_read_in_its_unit_with_its_axis) {
+    const struct cs_mesh_source source = {.scale = {1, 1, 2},
+                                          .units = CS_MESH_CM,
+                                          .up = CS_MESH_UP_Z,
+                                          .weld = true,
+                                          .set = "fine silk"};
+    struct cs_mesh_source none = source;
+    struct cs_trimesh mesh;
+    struct cs_arena arena;
+    struct cs_error error = {0};
+    read_sound("v 100 0 0\nv 0 100 0\nv 0 0 100\nv 300 300 300\ng a waist\nusemtl fine silk\n"
+               "f 1 2 3\ng b\nusemtl wool\nf 1 2 4\n",
+               &source, &mesh, &arena);
+    static const double expected[9] = {1, 0, 0, 0, 0, 2, 0, -1, 0};
+    ck_assert_uint_eq(mesh.n, 3);
+    for (int k = 0; k < 9; k++)
+        ck_assert_double_eq_tol(mesh.positions[k], expected[k], 1e-15);
+    ck_assert_str_eq(mesh.mends, "");
+    ck_assert(cs_mesh_has_label(mesh.labels, mesh.triangle_labels[0], "waist"));
+    ck_assert(cs_mesh_has_label(mesh.labels, mesh.triangle_labels[0], "a"));
+    ck_assert(!cs_mesh_has_label(mesh.labels, mesh.triangle_labels[0], "silk"));
+    ck_assert(!cs_mesh_has_label(mesh.labels, mesh.triangle_labels[0], ""));
+    cs_arena_finish(&arena);
+    memcpy(none.set, "linen", sizeof "linen");
+    read_obj(SQUARE FACES, &none, &mesh, &arena, &error);
+    UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "found no group, object or material \"linen\"");
     cs_arena_finish(&arena);
 }

@@ -148,12 +148,12 @@ TEST(messages_name_the_place) {
         {"{\"about\": true}", "s.json:1:11: about: found true, expected a string"},
         {"{\"bodies\": [{\"pins\": [[1]]}]}",
          "s.json:1:23: bodies[0].pins[0]: found a list of 1, "
-         "expected an object (\"to\", \"at\", \"index\", \"box\") or a string or a number"},
+         "expected an object (\"to\", \"at\", \"index\", \"box\", ...) or a string or a number"},
         {"{\"bodies\": [{\"pins\": [-1]}]}",
          "s.json:1:23: bodies[0].pins[0]: -1 is out of range (0..4294967295)"},
         {"{\"bodies\": [{\"pins\": [{}]}]}",
          "s.json:1:23: bodies[0].pins[0]: found none, expected "
-         "exactly one of at, index, box"},
+         "exactly one of at, index, box, set"},
         {"{\"colliders\": [{\"sphere\": {\"radius\": 1}}]}",
          "s.json:1:27: colliders[0].sphere.centre: missing, expected a list of 3 numbers "
          "(-1e+09..1e+09 m)"},

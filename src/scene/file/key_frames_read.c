@@ -74,28 +74,39 @@ static enum cs_status begin_keys(const struct input *in, uint64_t n_keys) {
     return in->error->status;
 }
 
+/* Vertices of the mesh before it was mended. */
+static uint32_t vertices_of(const struct input *in) {
+    const struct cs_trimesh *mesh = in->source->geometry;
+    return mesh->n_file ? mesh->n_file : mesh->n;
+}
+
 static enum cs_status check_vertices(const struct input *in, uint64_t n) {
-    return n == in->paths->n ? CS_OK
-                             : fail(in, "found %llu vertices, expected the %u of the mesh",
-                                    (unsigned long long)n, in->paths->n);
+    return n == vertices_of(in) ? CS_OK
+                                : fail(in, "found %llu vertices, expected the %u of the mesh",
+                                       (unsigned long long)n, vertices_of(in));
 }
 
 /* Sets all positions from numbers (n_keys, n, 3) of `bytes` bytes each. */
 static enum cs_status set_positions(const struct input *in, const unsigned char *numbers,
                                     unsigned bytes) {
-    const size_t n = in->paths->n;
+    const struct cs_trimesh *mesh = in->source->geometry;
+    const size_t n = in->paths->n, n_file = vertices_of(in);
     for (size_t k = 0; k < in->paths->n_keys; k++)
-        for (size_t i = 0; i < n; i++)
+        for (size_t i = 0; i < n; i++) {
+            const size_t from = mesh->file_vertex ? mesh->file_vertex[i] : i;
+            double p[3];
             for (size_t c = 0; c < 3; c++) {
-                const double value = get_real(numbers, bytes);
-                if (!(value >= -1e9 && value <= 1e9))
+                p[c] = get_real(numbers + (3 * (k * n_file + from) + c) * bytes, bytes);
+                if (!(p[c] >= -1e9 && p[c] <= 1e9))
                     return fail(in,
                                 "key frame %zu, vertex %zu: found %g, expected a number "
                                 "(-1e9..1e9)",
-                                k, i, value);
-                in->paths->positions[(3 * k + c) * n + i] = value * in->source->scale[c];
-                numbers += bytes;
+                                k, from, p[c]);
             }
+            cs_mesh_to_scene(in->source, p, p);
+            for (size_t c = 0; c < 3; c++)
+                in->paths->positions[(3 * k + c) * n + i] = p[c];
+        }
     return CS_OK;
 }
 
@@ -109,10 +120,10 @@ static enum cs_status read_pc2(const struct input *in) {
     // the size must be exact, or a file cut off would pass
     if (check_vertices(in, get_32(in->bytes + 16)))
         return in->error->status;
-    const uint64_t expected = HEADER + 12 * (uint64_t)in->paths->n * n_keys;
+    const uint64_t expected = HEADER + 12 * (uint64_t)vertices_of(in) * n_keys;
     if (in->length != expected)
         return fail(in, "found %zu bytes, expected %llu for %u samples of %u points",
-                    in->length, (unsigned long long)expected, n_keys, in->paths->n);
+                    in->length, (unsigned long long)expected, n_keys, vertices_of(in));
     return begin_keys(in, n_keys) ? in->error->status
                                   : set_positions(in, in->bytes + HEADER, 4);
 }
@@ -250,29 +261,6 @@ bool cs_key_frames_file(const struct cs_key_frames *keys, uint32_t k, char out[C
                                  keys->file + begin + width) < CS_TEXT_MAX;
 }
 
-/* Reads one OBJ file into key frame k, and adds its hash to `hashes`. */
-static enum cs_status read_obj(const struct input *in, const char *path, size_t k,
-                               struct cs_text *hashes) {
-    const struct cs_trimesh *expected = in->source->geometry;
-    struct cs_arena reading = {0};
-    struct cs_trimesh mesh = {0};
-    const size_t numbers = 3 * (size_t)expected->n;
-    if (!cs_mesh_read(path, in->name, in->source->scale, &mesh, &reading, in->error) &&
-        !check_vertices(in, mesh.n)) {
-        // the surface is one and the same in all key frames
-        if (mesh.n_triangles != expected->n_triangles ||
-            memcmp(mesh.triangles, expected->triangles,
-                   3 * (size_t)mesh.n_triangles * sizeof *mesh.triangles) != 0)
-            fail(in, "found other triangles than those of the mesh");
-        else
-            memcpy(in->paths->positions + k * numbers, mesh.positions,
-                   numbers * sizeof *mesh.positions);
-        cs_text_add(hashes, "%s\n", mesh.file_hash);
-    }
-    cs_arena_finish(&reading);
-    return in->error->status;
-}
-
 /* Reads a file whole; sets the hash of its bytes. */
 static enum cs_status read_whole(struct input *in, const char *path) {
     char *bytes;
@@ -288,7 +276,7 @@ static enum cs_status read_whole(struct input *in, const char *path) {
 static enum cs_status read_sequence(struct input *in, const char *folder) {
     const struct cs_key_frames *keys = &in->source->key_frames;
     struct cs_text hashes = {0};
-    char file[CS_TEXT_MAX];
+    char file[CS_TEXT_MAX], hash[CS_HASH_DIGITS];
     in->name = keys->file;
     if (!strchr(keys->file, '#'))
         return cs_fail(in->error, CS_ERR_SCENE,
@@ -300,12 +288,13 @@ static enum cs_status read_sequence(struct input *in, const char *folder) {
                        (long long)keys->count);
     if (begin_keys(in, (uint64_t)keys->count))
         return in->error->status;
-    // messages name the file at hand
     for (uint32_t k = 0; !in->error->status && cs_key_frames_file(keys, k, file); k++) {
         char path[4096];
-        in->name = file;
         snprintf(path, sizeof path, "%s/%s", folder, file);
-        read_obj(in, path, k, &hashes);
+        if (!cs_mesh_read_positions(path, file, in->source,
+                                    in->paths->positions + 3 * (size_t)k * in->paths->n, hash,
+                                    in->error))
+            cs_text_add(&hashes, "%s\n", hash);
     }
     if (hashes.failed)
         cs_fail(in->error, CS_ERR_MEMORY, "out of memory for the key frames");

@@ -1,24 +1,32 @@
-/* mesh_read.h - strict reader of triangle meshes from Wavefront OBJ files.
- *
- * Read: v (a fourth number is refused), vt, f with v, v/vt, v//vn or v/vt/vn, negative numbers
- * counted from the end; polygons are cut into a fan from their first corner. Ignored: comments,
- * vn, o, g, s, usemtl, mtllib. Anything else is refused.
- */
+/* mesh_read.h - reads triangle meshes from Wavefront OBJ files (obj_read.h) and mends them
+ * (mesh_mend.h). */
 #ifndef CS_MESH_READ_H
 #define CS_MESH_READ_H
 
-#include "mesh/trimesh.h"
+#include "scene/file/obj_read.h"
+#include "scene/scene.h"
 
-/* Reads and finishes a mesh; coordinates are multiplied by scale. Messages start with
- * `name:line: `. mesh->file_hash is that of the file's bytes. CS_ERR_FILE if the file cannot be
- * read or the mesh is not sound (cs_trimesh_finish), CS_ERR_MEMORY. */
-enum cs_status cs_mesh_read(const char *path, const char *name, const double scale[3],
-                            struct cs_trimesh *mesh, struct cs_arena *arena,
-                            struct cs_error *error);
+/* Sets out to a position of the file in metres, y up: scaled, in the unit of source, turned.
+ * out may be p. */
+void cs_mesh_to_scene(const struct cs_mesh_source *source, const double p[3], double out[3]);
+
+/* Reads, mends and finishes a mesh; of `source` scale, units, up, weld and set are read.
+ * Messages start with `name:line: `. mesh->file_hash is that of the file's bytes.
+ * CS_ERR_FILE if the file cannot be read, or the mesh is no oriented surface even when
+ * mended (cs_trimesh_finish), CS_ERR_MEMORY. */
+enum cs_status cs_mesh_read(const char *path, const char *name,
+                            const struct cs_mesh_source *source, struct cs_trimesh *mesh,
+                            struct cs_arena *arena, struct cs_error *error);
 
 /* The same from text in memory. */
 enum cs_status cs_mesh_read_text(const char *name, const char *text, size_t length,
-                                 const double scale[3], struct cs_trimesh *mesh,
+                                 const struct cs_mesh_source *source, struct cs_trimesh *mesh,
                                  struct cs_arena *arena, struct cs_error *error);
+
+/* Reads positions (3, n) of the vertices of source->geometry from a file that has its faces,
+ * and the hash of the file's bytes. CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_mesh_read_positions(const char *path, const char *name,
+                                      const struct cs_mesh_source *source, double *positions,
+                                      char file_hash[CS_HASH_DIGITS], struct cs_error *error);
 
 #endif

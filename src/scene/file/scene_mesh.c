@@ -51,7 +51,7 @@ static enum cs_status read_file(const struct cs_scene *scene,
     if (path.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the mesh \"%s\"", source->file);
     else
-        cs_mesh_read(cs_text_get(&path), source->file, source->scale, mesh, arena, error);
+        cs_mesh_read(cs_text_get(&path), source->file, source, mesh, arena, error);
     cs_text_finish(&path);
     return error->status;
 }
@@ -62,9 +62,12 @@ static enum cs_status make_shape(const struct cs_mesh_source *source, struct cs_
     if (cs_trimesh_make(mesh, (enum cs_mesh_shape)source->shape, (uint32_t)source->detail,
                         arena, error))
         return error->status;
-    for (size_t c = 0; c < 3; c++)
-        for (size_t i = 0; i < mesh->n; i++)
-            mesh->positions[c * mesh->n + i] *= source->scale[c];
+    for (size_t i = 0; i < mesh->n; i++) {
+        double *x = mesh->positions + i, p[3] = {x[0], x[mesh->n], x[2 * (size_t)mesh->n]};
+        cs_mesh_to_scene(source, p, p);
+        for (size_t c = 0; c < 3; c++)
+            x[c * mesh->n] = p[c];
+    }
     /* there is no file: what makes a triangle of a shape vanish is its scale */
     if (cs_trimesh_finish(mesh, cs_mesh_shape_names[source->shape], NULL, arena, error) ==
         CS_ERR_FILE)

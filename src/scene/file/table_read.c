@@ -52,9 +52,14 @@ static enum cs_status read_number(struct cs_json_context *context, const struct 
         return cs_json_kind_of(value) == CS_JSON_NUMBER
                    ? read_component(context, value, row, 0, object)
                    : fail_row(context, value, row);
+    uint32_t i = 0;
+    if (cs_option_takes_one(row) && cs_json_kind_of(value) == CS_JSON_NUMBER) {
+        while (i < row->count && !read_component(context, value, row, i, object))
+            i++;
+        return context->error->status;
+    }
     if (cs_json_kind_of(value) != CS_JSON_LIST || cs_json_count(value) != row->count)
         return fail_row(context, value, row);
-    uint32_t i = 0;
     for (const struct cs_json *c = cs_json_first(value); c; c = cs_json_next(c), i++) {
         const size_t outside = cs_json_context_enter_at(context, i);
         if (cs_json_kind_of(c) != CS_JSON_NUMBER)

@@ -1,0 +1,226 @@
+/* Removes faces without area, and faces given twice. Of the former each round treats what has
+ * no part in an earlier change of the round; a division may leave another flat face, so that
+ * rounds are bounded. */
+#include "mesh/bad_faces.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROUNDS_MAX = 8 };
+/* Part of the longest side below which two vertices of a flat face are one. */
+#define SAME 1e-6
+
+struct work {
+    struct cs_raw_mesh *raw;
+    bool *is_flat, *is_changed; /* (n_triangles) */
+    uint32_t *starts, *around; /* triangles of each vertex: (n_vertices + 1), (3 n_triangles) */
+    uint32_t *becomes;         /* (n_vertices) the vertex in its stead */
+};
+
+static double squared_side(const struct cs_raw_mesh *raw, const struct cs_raw_triangle *t,
+                           int k) {
+    const double *a = raw->positions[t->corners[k].vertex],
+                 *b = raw->positions[t->corners[(k + 1) % 3].vertex];
+    double squared = 0;
+    for (int c = 0; c < 3; c++)
+        squared += (b[c] - a[c]) * (b[c] - a[c]);
+    return squared;
+}
+
+/* Lists the triangles of each vertex by counting sort. */
+static void list_around(struct work *work) {
+    const struct cs_raw_mesh *raw = work->raw;
+    memset(work->starts, 0, ((size_t)raw->n_vertices + 2) * sizeof *work->starts);
+    for (uint32_t t = 0; t < raw->n_triangles; t++)
+        for (int k = 0; k < 3; k++)
+            work->starts[raw->triangles[t].corners[k].vertex + 2]++;
+    for (uint32_t i = 2; i < raw->n_vertices + 2; i++)
+        work->starts[i] += work->starts[i - 1];
+    /* entry i + 1 is the next free place of vertex i until all are listed, then its end */
+    for (uint32_t t = 0; t < raw->n_triangles; t++)
+        for (int k = 0; k < 3; k++)
+            work->around[work->starts[raw->triangles[t].corners[k].vertex + 1]++] = t;
+}
+
+/* The corner of triangle t from which its side goes from vertex a to b; -1: it has none. */
+static int side_of(const struct cs_raw_mesh *raw, uint32_t t, uint32_t a, uint32_t b) {
+    const struct cs_raw_corner *c = raw->triangles[t].corners;
+    for (int k = 0; k < 3; k++)
+        if (c[k].vertex == a && c[(k + 1) % 3].vertex == b)
+            return k;
+    return -1;
+}
+
+/* Divides the neighbour across side k of flat triangle t at the third vertex. Returns false if
+ * there is no neighbour that is as it was. */
+static bool divide(struct work *work, uint32_t t, int k) {
+    struct cs_raw_triangle *flat = work->raw->triangles + t;
+    const struct cs_raw_corner middle = flat->corners[(k + 2) % 3];
+    const uint32_t a = flat->corners[(k + 1) % 3].vertex, b = flat->corners[k].vertex;
+    for (uint32_t i = work->starts[a]; i < work->starts[a + 1]; i++) {
+        const uint32_t other = work->around[i];
+        const int side = side_of(work->raw, other, a, b);
+        if (side < 0 || work->is_flat[other] || work->is_changed[other])
+            continue;
+        struct cs_raw_triangle *whole = work->raw->triangles + other;
+        *flat = *whole;
+        whole->corners[(side + 1) % 3] = middle;
+        flat->corners[side] = middle;
+        work->is_changed[other] = work->is_changed[t] = true;
+        work->is_flat[t] = false;
+        return true;
+    }
+    return false;
+}
+
+/* The vertex that stands for another in the end; halves the path. */
+static uint32_t end_of(uint32_t *becomes, uint32_t vertex) {
+    while (becomes[vertex] != vertex)
+        vertex = becomes[vertex] = becomes[becomes[vertex]];
+    return vertex;
+}
+
+/* Treats one flat triangle; returns true if something has changed. */
+static bool treat(struct work *work, uint32_t t) {
+    const struct cs_raw_triangle *flat = work->raw->triangles + t;
+    double squared[3];
+    int longest = 0, shortest = 0;
+    for (int k = 0; k < 3; k++) {
+        squared[k] = squared_side(work->raw, flat, k);
+        longest = squared[k] > squared[longest] ? k : longest;
+        shortest = squared[k] < squared[shortest] ? k : shortest;
+    }
+    const uint32_t a = end_of(work->becomes, flat->corners[shortest].vertex),
+                   b = end_of(work->becomes, flat->corners[(shortest + 1) % 3].vertex);
+    if (squared[shortest] > SAME * SAME * squared[longest])
+        return divide(work, t, longest);
+    work->becomes[a > b ? a : b] = a < b ? a : b;
+    return a != b;
+}
+
+/* Marks flat triangles; returns their number. */
+static uint32_t mark(struct work *work) {
+    const struct cs_raw_mesh *raw = work->raw;
+    uint32_t n = 0;
+    for (uint32_t t = 0; t < raw->n_triangles; t++) {
+        const struct cs_raw_corner *c = raw->triangles[t].corners;
+        work->is_changed[t] = false;
+        work->is_flat[t] =
+            !cs_triangle_has_area(raw->positions[c[0].vertex], raw->positions[c[1].vertex],
+                                  raw->positions[c[2].vertex]);
+        n += work->is_flat[t];
+    }
+    return n;
+}
+
+/* One round; returns true if something has changed. */
+static bool treat_all(struct work *work) {
+    struct cs_raw_mesh *raw = work->raw;
+    bool changed = false;
+    list_around(work);
+    for (uint32_t i = 0; i < raw->n_vertices; i++)
+        work->becomes[i] = i;
+    for (uint32_t t = 0; t < raw->n_triangles; t++)
+        changed = (work->is_flat[t] && treat(work, t)) || changed;
+    for (uint32_t t = 0; t < raw->n_triangles; t++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t *vertex = &raw->triangles[t].corners[k].vertex;
+            *vertex = end_of(work->becomes, *vertex);
+        }
+    return changed;
+}
+
+/* Leaves out the triangles that `leaves` marks. */
+static void leave_out(struct cs_raw_mesh *raw, const bool *leaves) {
+    uint32_t n = 0;
+    for (uint32_t t = 0; t < raw->n_triangles; t++)
+        if (!leaves[t])
+            raw->triangles[n++] = raw->triangles[t];
+    raw->n_triangles = n;
+}
+
+/* Counts flat faces, removes them round by round, and leaves out what stays flat. */
+static void remove_all(struct work *work, struct cs_mesh_mends *mends) {
+    struct cs_raw_mesh *raw = work->raw;
+    if (!mark(work))
+        return;
+    for (uint32_t t = 0; t < raw->n_triangles; t++)
+        if (work->is_flat[t])
+            cs_mesh_fault_count(&mends->flat, &mends->flat_line, raw->triangles[t].line);
+    for (int round = 0; round < ROUNDS_MAX && treat_all(work) && mark(work);)
+        round++;
+    leave_out(raw, work->is_flat);
+}
+
+enum cs_status cs_flat_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
+                                    struct cs_error *error) {
+    const size_t n = raw->n_vertices, triangles = raw->n_triangles;
+    struct work work = {.raw = raw,
+                        .is_flat = calloc(triangles + 1, sizeof(bool)),
+                        .is_changed = calloc(triangles + 1, sizeof(bool)),
+                        .starts = calloc(n + 2, sizeof(uint32_t)),
+                        .around = calloc(3 * triangles + 1, sizeof(uint32_t)),
+                        .becomes = calloc(n + 1, sizeof(uint32_t))};
+    if (work.is_flat && work.is_changed && work.starts && work.around && work.becomes)
+        remove_all(&work, mends);
+    else
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
+    free(work.is_flat);
+    free(work.is_changed);
+    free(work.starts);
+    free(work.around);
+    free(work.becomes);
+    return error->status;
+}
+
+/* --- repeated faces --- */
+
+/* The vertices of a triangle in ascending order, and the triangle. */
+struct key {
+    uint32_t vertex[3], triangle;
+};
+
+static int by_key(const void *left, const void *right) {
+    const struct key *a = left, *b = right;
+    for (int k = 0; k < 3; k++)
+        if (a->vertex[k] != b->vertex[k])
+            return a->vertex[k] < b->vertex[k] ? -1 : 1;
+    return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
+}
+
+static struct key key_of(const struct cs_raw_mesh *raw, uint32_t t) {
+    const struct cs_raw_corner *c = raw->triangles[t].corners;
+    uint32_t v[3] = {c[0].vertex, c[1].vertex, c[2].vertex};
+    for (int k = 0; k < 3; k++) {
+        const int low = k == 1 ? 1 : 0;
+        if (v[low] > v[low + 1]) {
+            const uint32_t higher = v[low];
+            v[low] = v[low + 1];
+            v[low + 1] = higher;
+        }
+    }
+    return (struct key){{v[0], v[1], v[2]}, t};
+}
+
+enum cs_status cs_repeated_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
+                                        struct cs_error *error) {
+    struct key *keys = calloc((size_t)raw->n_triangles + 1, sizeof *keys);
+    bool *leaves = calloc((size_t)raw->n_triangles + 1, sizeof *leaves);
+    for (uint32_t t = 0; keys && leaves && t < raw->n_triangles; t++)
+        keys[t] = key_of(raw, t);
+    if (keys && leaves) {
+        /* equal faces become neighbours, the earliest of them first */
+        qsort(keys, raw->n_triangles, sizeof *keys, by_key);
+        for (uint32_t t = 1; t < raw->n_triangles; t++)
+            if (!memcmp(keys[t - 1].vertex, keys[t].vertex, sizeof keys[t].vertex))
+                leaves[keys[t].triangle] = true;
+        for (uint32_t t = 0; t < raw->n_triangles; t++)
+            if (leaves[t])
+                cs_mesh_fault_count(&mends->twice, &mends->twice_line, raw->triangles[t].line);
+        leave_out(raw, leaves);
+    } else
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
+    free(keys);
+    free(leaves);
+    return error->status;
+}

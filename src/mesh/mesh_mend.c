@@ -1,0 +1,310 @@
+/* Mends a mesh. Corners are joined to vertices by a union-find structure: at most vertices all
+ * corners of the file's vertex are one; at the ends of an edge of three triangles or more, only
+ * the corners of triangles that stay neighbours there. Welding joins more. */
+#include "mesh/mesh_mend.h"
+
+#include "mesh/bad_faces.h"
+#include "mesh/near_vertices.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Distance of vertices in one place, over the diagonal of the box of all: the digits of a file
+ * written in single precision. */
+#define WELD_DISTANCE 1e-6
+
+/* Rounds of cutting: a cut can bring to light another edge of three triangles. */
+enum { ROUNDS_MAX = 8 };
+
+/* A directed side of a triangle. `place` are its ends as points in space, `vertex` as vertices
+ * of the file; 0: the one with the lower place. */
+struct side {
+    uint32_t place[2], vertex[2], triangle, k; /* from corner k to corner k + 1 */
+    bool falls;                                /* directed from end 1 to end 0 */
+    bool paired;
+};
+
+struct work {
+    struct cs_raw_mesh *raw;
+    struct cs_mesh_mends *mends;
+    struct side *sides; /* (3 n_triangles), sorted */
+    uint32_t
+        *places; /* (n_vertices) the first vertex in the same place; itself if not welded */
+    uint32_t *parents; /* (n_vertices + 3 n_triangles) of the union-find structure */
+    bool *splits;      /* (n_vertices) its corners are joined one by one */
+};
+
+/* The set that a node is in, named by its lowest node; halves the path. */
+static uint32_t root_of(uint32_t *parents, uint32_t node) {
+    while (parents[node] != node)
+        node = parents[node] = parents[parents[node]];
+    return node;
+}
+
+/* Makes two sets one; returns 0 if they are one already. */
+static uint32_t join(uint32_t *parents, uint32_t a, uint32_t b) {
+    a = root_of(parents, a);
+    b = root_of(parents, b);
+    parents[a > b ? a : b] = a < b ? a : b;
+    return a != b;
+}
+
+static int by_numbers(const uint32_t *a, const uint32_t *b, size_t n) {
+    for (size_t k = 0; k < n; k++)
+        if (a[k] != b[k])
+            return a[k] < b[k] ? -1 : 1;
+    return 0;
+}
+
+/* --- sides --- */
+
+static int by_place(const void *left, const void *right) {
+    const struct side *a = left, *b = right;
+    int order = by_numbers(a->place, b->place, 2);
+    order = order ? order : by_numbers(a->vertex, b->vertex, 2);
+    order = order ? order : by_numbers(&a->triangle, &b->triangle, 1);
+    return order ? order : by_numbers(&a->k, &b->k, 1);
+}
+
+/* Lists the sides of all triangles, sorted by place, then by vertices, then by triangle. */
+static void list_sides(struct work *work) {
+    const struct cs_raw_mesh *raw = work->raw;
+    struct side *side = work->sides;
+    for (uint32_t t = 0; t < raw->n_triangles; t++)
+        for (uint32_t k = 0; k < 3; k++, side++) {
+            const uint32_t a = raw->triangles[t].corners[k].vertex,
+                           b = raw->triangles[t].corners[(k + 1) % 3].vertex;
+            const uint32_t p = work->places[a], q = work->places[b];
+            const bool falls = p != q ? p > q : a > b;
+            *side = (struct side){{falls ? q : p, falls ? p : q},
+                                  {falls ? b : a, falls ? a : b},
+                                  t,
+                                  k,
+                                  falls,
+                                  false};
+        }
+    qsort(work->sides, 3 * (size_t)raw->n_triangles, sizeof *work->sides, by_place);
+}
+
+/* The node of the corner at which a side has its lower (end 0) or higher end. */
+static uint32_t node_of(const struct work *work, const struct side *side, int end) {
+    const uint32_t k = (side->k + (side->falls != (end == 1))) % 3;
+    const uint32_t vertex = side->vertex[end];
+    return work->splits[vertex] ? work->raw->n_vertices + 3 * side->triangle + k : vertex;
+}
+
+/* Joins the corners along each pair of sides of opposite direction, in their order, that no
+ * earlier call has paired. Returns the number of sets that became one with another. */
+static uint32_t pair_sides(struct work *work, struct side *sides, uint32_t n) {
+    uint32_t next[2] = {0, 0}, joined = 0;
+    for (;;) {
+        for (int way = 0; way < 2; way++)
+            while (next[way] < n &&
+                   (sides[next[way]].paired || sides[next[way]].falls != (way == 1)))
+                next[way]++;
+        if (next[0] == n || next[1] == n)
+            return joined;
+        struct side *a = sides + next[0], *b = sides + next[1];
+        a->paired = b->paired = true;
+        for (int end = 0; end < 2; end++)
+            joined += join(work->parents, node_of(work, a, end), node_of(work, b, end));
+    }
+}
+
+/* Number of sides from `first` on that have its place, or also its vertices. */
+static uint32_t run_of(const struct work *work, uint32_t first, bool by_vertex) {
+    const uint32_t total = 3 * work->raw->n_triangles;
+    const struct side *a = work->sides + first;
+    uint32_t n = 1;
+    while (first + n < total && !by_numbers(a->place, a[n].place, 2) &&
+           (!by_vertex || !by_numbers(a->vertex, a[n].vertex, 2)))
+        n++;
+    return n;
+}
+
+/* Marks the ends of edges of more than two triangles, and returns their number; counts them as
+ * faults if `tells`. */
+static uint32_t mark_splits(struct work *work, bool tells) {
+    uint32_t found = 0;
+    for (uint32_t s = 0, n; s < 3 * work->raw->n_triangles; s += n) {
+        struct side *side = work->sides + s;
+        n = run_of(work, s, true);
+        if (n <= 2)
+            continue;
+        found++;
+        if (tells)
+            cs_mesh_fault_count(&work->mends->cut, &work->mends->cut_line,
+                                work->raw->triangles[side[2].triangle].line);
+        work->splits[side->vertex[0]] = work->splits[side->vertex[1]] = true;
+    }
+    return found;
+}
+
+/* Joins corners: along the edges of the file, then along open edges in one place. */
+static void join_corners(struct work *work) {
+    for (uint32_t s = 0, n; s < 3 * work->raw->n_triangles; s += n) {
+        n = run_of(work, s, true);
+        pair_sides(work, work->sides + s, n);
+        /* neighbours of opposite orientation stay so, and are refused; more are cut off */
+        for (uint32_t i = 0; i < n && n > 1; i++)
+            work->sides[s + i].paired = true;
+    }
+    for (uint32_t s = 0, n; s < 3 * work->raw->n_triangles; s += n) {
+        n = run_of(work, s, false);
+        if (work->sides[s].place[0] != work->sides[s].place[1])
+            work->mends->welded += pair_sides(work, work->sides + s, n);
+    }
+}
+
+/* --- vertices --- */
+
+/* Numbers the sets of corners: in the order of the file's vertices, then what was cut off. Sets
+ * corners, sources and positions. */
+static enum cs_status number_vertices(struct work *work, struct cs_error *error) {
+    struct cs_raw_mesh *raw = work->raw;
+    const size_t nodes = raw->n_vertices + 3 * (size_t)raw->n_triangles;
+    uint32_t *numbers = calloc(nodes + 1, sizeof *numbers); /* from 1; 0: not used */
+    uint32_t *sources = calloc(nodes + 1, sizeof *sources);
+    double(*positions)[3] = calloc(nodes + 1, sizeof *positions);
+    uint32_t n = 0;
+    if (!numbers || !sources || !positions) {
+        free(numbers);
+        free(sources);
+        free(positions);
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
+    }
+    for (size_t s = 0; s < 3 * (size_t)raw->n_triangles; s++) {
+        const struct side *side = work->sides + s;
+        numbers[root_of(work->parents, node_of(work, side, side->falls))] = 1;
+    }
+    for (size_t node = 0; node < nodes; node++) {
+        if (!numbers[node])
+            continue;
+        const uint32_t corner = (uint32_t)(node - raw->n_vertices);
+        const uint32_t vertex = node < raw->n_vertices
+                                    ? (uint32_t)node
+                                    : raw->triangles[corner / 3].corners[corner % 3].vertex;
+        sources[n] = raw->sources ? raw->sources[vertex] : vertex;
+        memcpy(positions[n], raw->positions[vertex], sizeof *positions);
+        numbers[node] = ++n;
+    }
+    for (size_t s = 0; s < 3 * (size_t)raw->n_triangles; s++) {
+        const struct side *side = work->sides + s;
+        raw->triangles[side->triangle].corners[side->k].vertex =
+            numbers[root_of(work->parents, node_of(work, side, side->falls))] - 1;
+    }
+    free(numbers);
+    free(raw->sources);
+    free(raw->positions);
+    raw->sources = sources;
+    raw->positions = positions;
+    raw->n_vertices = n;
+    return CS_OK;
+}
+
+/* Marks the ends of edges of one triangle. */
+static void mark_open(const struct work *work, bool *open) {
+    for (uint32_t s = 0, n; s < 3 * work->raw->n_triangles; s += n) {
+        n = run_of(work, s, true);
+        for (int end = 0; end < 2 && n == 1; end++)
+            open[work->sides[s].vertex[end]] = true;
+    }
+}
+
+/* Finds the ends of open edges that lie in one place, and lists the sides by place. */
+static enum cs_status find_places(struct work *work, struct cs_error *error) {
+    const struct cs_raw_mesh *raw = work->raw;
+    bool *open = calloc((size_t)raw->n_vertices + 1, sizeof *open);
+    if (!open)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
+    mark_open(work, open);
+    if (cs_near_vertices_find((const double(*)[3])raw->positions, raw->n_vertices, open,
+                              WELD_DISTANCE, work->places, error))
+        list_sides(work);
+    free(open);
+    return error->status;
+}
+
+/* Counts the pieces that edges and vertices hold together. */
+static uint32_t count_pieces(const struct cs_raw_mesh *raw, uint32_t *parents) {
+    uint32_t pieces = raw->n_vertices;
+    for (uint32_t i = 0; i < raw->n_vertices; i++)
+        parents[i] = i;
+    for (uint32_t t = 0; t < raw->n_triangles; t++)
+        for (int k = 1; k < 3; k++)
+            pieces -= join(parents, raw->triangles[t].corners[0].vertex,
+                           raw->triangles[t].corners[k].vertex);
+    return pieces;
+}
+
+/* --- all --- */
+
+static enum cs_status begin(struct work *work, struct cs_error *error) {
+    const size_t n = work->raw->n_vertices, sides = 3 * (size_t)work->raw->n_triangles;
+    work->sides = calloc(sides + 1, sizeof *work->sides);
+    work->places = calloc(n + 1, sizeof *work->places);
+    work->parents = calloc(n + sides + 1, sizeof *work->parents);
+    work->splits = calloc(n + 1, sizeof *work->splits);
+    if (!work->sides || !work->places || !work->parents || !work->splits)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
+    for (size_t i = 0; i < n + sides; i++)
+        work->parents[i] = (uint32_t)i;
+    for (size_t i = 0; i < n; i++)
+        work->places[i] = (uint32_t)i;
+    list_sides(work);
+    return CS_OK;
+}
+
+static void end(struct work *work) {
+    free(work->sides);
+    free(work->places);
+    free(work->parents);
+    free(work->splits);
+}
+
+/* One round: cuts, and welds if asked to. *again: edges of more than two triangles are left. */
+static enum cs_status mend_once(struct cs_raw_mesh *raw, bool weld, bool first,
+                                struct cs_mesh_mends *mends, bool *again,
+                                struct cs_error *error) {
+    struct work work = {.raw = raw, .mends = mends};
+    if (!begin(&work, error)) {
+        *again = mark_splits(&work, first) > 0;
+        if (*again || first)
+            if (!weld || !find_places(&work, error)) {
+                join_corners(&work);
+                number_vertices(&work, error);
+            }
+        if (!error->status)
+            mends->pieces = count_pieces(raw, work.parents);
+    }
+    end(&work);
+    return error->status;
+}
+
+/* Vertices of no face. */
+static uint32_t count_loose(const struct cs_raw_mesh *raw, struct cs_error *error) {
+    uint32_t loose = 0;
+    bool *used = calloc((size_t)raw->n_vertices + 1, sizeof *used);
+    if (!used)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
+    for (uint32_t t = 0; used && t < raw->n_triangles; t++)
+        for (int k = 0; k < 3; k++)
+            used[raw->triangles[t].corners[k].vertex] = true;
+    for (uint32_t i = 0; used && i < raw->n_vertices; i++)
+        loose += !used[i];
+    free(used);
+    return loose;
+}
+
+enum cs_status cs_mesh_mend(struct cs_raw_mesh *raw, bool weld, struct cs_mesh_mends *mends,
+                            struct cs_error *error) {
+    bool again = true;
+    mends->loose = count_loose(raw, error);
+    if (error->status || cs_flat_faces_remove(raw, mends, error) ||
+        cs_repeated_faces_remove(raw, mends, error))
+        return error->status;
+    for (int round = 0; again && round < ROUNDS_MAX; round++)
+        if (mend_once(raw, weld && round == 0, round == 0, mends, &again, error))
+            return error->status;
+    return CS_OK;
+}

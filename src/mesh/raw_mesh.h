@@ -1,0 +1,48 @@
+/* raw_mesh.h - a mesh as a file has it, and the faults that were found in it. */
+#ifndef CS_RAW_MESH_H
+#define CS_RAW_MESH_H
+
+#include "base/text.h"
+#include "mesh/trimesh.h"
+
+/* A corner of a triangle. */
+struct cs_raw_corner {
+    uint32_t vertex, uv; /* uv: number of its texture coordinate from 1; 0: none */
+};
+
+/* A triangle with the line of its face in the file. */
+struct cs_raw_triangle {
+    struct cs_raw_corner corners[3];
+    uint32_t line;
+    uint32_t labels[CS_LABEL_KINDS]; /* numbers from 1; 0: none */
+};
+
+/* Faults of a mesh, each with what was done; zeroed: none. `line` is that of the first. */
+struct cs_mesh_mends {
+    uint32_t flat, flat_line;       /* faces without area, left out or divided by a neighbour */
+    uint32_t twice, twice_line;     /* faces with the vertices of an earlier one, left out */
+    uint32_t crossed, crossed_line; /* polygons that cross themselves, cut as fans */
+    uint32_t cut, cut_line;         /* edges of three triangles or more, cut */
+    uint32_t welded;                /* vertices that became one with another */
+    uint32_t loose;                 /* vertices of no face, left out */
+    uint32_t pieces;                /* of the mended mesh; no fault */
+};
+
+/* A mesh being read; the arrays are malloc'd. Zeroed: empty. */
+struct cs_raw_mesh {
+    double (*positions)[3]; /* (n_vertices) */
+    double (*uv)[2];        /* (n_uv) from the bottom, as in the file */
+    struct cs_raw_triangle *triangles;
+    uint32_t *sources; /* (n_vertices) vertex of the file; NULL: as they are */
+    uint32_t n_vertices, n_uv, n_triangles;
+};
+
+/* Counts a fault in *n, and keeps the line of the first. */
+void cs_mesh_fault_count(uint32_t *n, uint32_t *first, uint32_t line);
+
+void cs_raw_mesh_finish(struct cs_raw_mesh *raw);
+
+/* Adds the faults, separated by commas; nothing if there are none. */
+void cs_mesh_mends_print(const struct cs_mesh_mends *mends, struct cs_text *out);
+
+#endif
