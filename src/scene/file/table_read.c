@@ -2,6 +2,7 @@
 #include "scene/file/table_read.h"
 
 #include "base/options.h"
+#include "scene/file/foreign_keys.h"
 #include "scene/scene.h"
 
 #include <stdio.h>
@@ -158,83 +159,50 @@ static const char *nearest_key(const struct cs_table *table, const char *apart,
     return cs_nearest_word(key, names);
 }
 
-/* Keys of other programs: the key of this table, else of another one, or NULL. */
-static const char *translate_key(const char *key, const struct cs_table *table) {
-    // clang-format off
-    static const char *const keys[][2] = {
-        {"name", "about"}, {"title", "about"}, {"description", "about"},
-        {"dt", "integrator.dt"}, {"step", "integrator.dt"}, {"timestep", "integrator.dt"},
-        {"method", "integrator"}, {"solver", "integrator"}, {"structural", "stretch"},
-        {"flexion", "bend"}, {"diagonal", "shear"}, {"pinned", "pins"}, {"fixed", "pins"},
-        {"position", "eye"}, {"position", "centre"}, {"position", "place"},
-        {"look_at", "target"}, {"width", "size"}, {"height", "size"}, {"resolution", "size"},
-        {"restitution", "absorption"}, {"density", "areal_density"}, {"rotation", "rotate"},
-        {"orientation", "rotate"}, {"translation", "translate"}, {"colour", "diffuse"},
-        {"color", "diffuse"}, {"intensity", "strength"}, {"color", "colour"}, {"from", "eye"},
-        {"friction", "friction"}, {"k", "stretch"}, {"self_collision", "self_contact"},
-        {"collision", "contact"}, {"collisions", "contact"}, {"obstacles", "colliders"},
-        {"objects", "bodies"}, {"cloths", "bodies"}, {"frames", "clothsim run --frames"},
-        {"output", "clothsim run --out"}, {"velocity", "move"}, {"speed", "move"},
-        {"motion", "move"}, {"path", "move"},
-    };
-    // clang-format on
-    const char *other = NULL;
-    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
-        if (strcmp(key, keys[i][0]))
-            continue;
-        other = keys[i][1];
-        if (cs_option_find(table, other))
-            return other;
-    }
-    return other;
-}
-
-/* Adds the paths of a key, so many tables below a table: "forces.gravity". */
-static void add_paths(const struct cs_table *table, const char *path, const char *key,
+/* Adds the paths that end with these keys, so many tables below a table: "forces.gravity". */
+static void add_paths(const struct cs_table *table, const char *path, const char *keys,
                       uint32_t below, struct cs_text *out) {
-    if (!below) {
-        if (cs_option_find(table, key))
-            cs_text_add(out, "%s%s%s", out->length ? " or " : "", path, key);
-        return;
+    const char *dot = strrchr(keys, '.'), *last = dot ? dot + 1 : keys;
+    char inner[CS_TEXT_MAX];
+    if (!below && cs_option_find(table, last)) {
+        snprintf(inner, sizeof inner, "%s%s", path, last);
+        if (cs_path_ends_with(inner, keys))
+            cs_text_add(out, "%s%s", out->length ? " or " : "", inner);
     }
-    for (uint32_t r = 0; r < table->n; r++) {
+    for (uint32_t r = 0; below && r < table->n; r++) {
         const struct cs_option *row = table->rows + r;
-        char inner[CS_TEXT_MAX];
         snprintf(inner, sizeof inner, "%s%s%s.", path, row->name,
                  row->type == CS_LIST ? "[0]" : "");
         if (row->table)
-            add_paths(row->table, inner, key, below - 1, out);
+            add_paths(row->table, inner, keys, below - 1, out);
     }
 }
 
-/* Adds the paths of a key below this table, else in the whole scene, of the least depth. */
-static void add_nearest_paths(const struct cs_table *table, const char *key,
+/* Adds the paths that end with these keys, below this table, else in the whole scene, of the
+ * least depth. */
+static void add_nearest_paths(const struct cs_table *table, const char *keys,
                               struct cs_text *out) {
-    enum { DEPTH = 3 };
-    for (uint32_t below = 1; below < DEPTH && !out->length; below++)
-        add_paths(table, "", key, below, out);
-    for (uint32_t below = 0; below < DEPTH && !out->length; below++)
-        add_paths(&cs_scene_table, "", key, below, out);
-}
-
-/* True if the key of a collider is to move it, which events do. */
-static bool is_motion(const struct cs_json_context *context, const struct cs_table *table,
-                      const char *key) {
-    const char *other = translate_key(key, table);
-    return other && !strcmp(other, "move") && !strncmp(context->path, "colliders[", 10);
+    /* the ends of paths are rarer than single keys */
+    const uint32_t depth = strchr(keys, '.') ? 4 : 3;
+    for (uint32_t below = 1; below < depth && !out->length; below++)
+        add_paths(table, "", keys, below, out);
+    for (uint32_t below = 0; below < depth && !out->length; below++)
+        add_paths(&cs_scene_table, "", keys, below, out);
 }
 
 /* Adds the name or the paths that an unknown key most probably stands for. */
-static void suggest_key(const struct cs_table *table, const char *apart, const char *key,
-                        struct cs_text *out) {
-    const char *near = nearest_key(table, apart, key), *other = translate_key(key, table);
+static void suggest_key(const struct cs_table *table, const char *place, const char *apart,
+                        const char *key, struct cs_text *out) {
+    const char *near = nearest_key(table, apart, key);
+    const char *other = cs_foreign_key(place, key, table);
     // "pin" is "pins" of this object rather than "pin" of another one
     if (!other && near && !strncmp(near, key, strlen(key)))
         other = near;
     if (!other || !cs_option_find(table, other)) {
-        add_nearest_paths(table, key, out);
-        if (other && !out->length)
+        if (other)
             add_nearest_paths(table, other, out);
+        if (!other && !out->length)
+            add_nearest_paths(table, key, out);
     }
     other = other ? other : near;
     // the keys of an integrator are in no table
@@ -265,10 +233,10 @@ static enum cs_status fail_unknown(struct cs_json_context *context,
                                    const char *apart) {
     const char *key = cs_json_key(member);
     struct cs_text other = {0};
-    if (is_motion(context, table, key))
-        add_nearest_paths(&cs_scene_table, "move", &other);
-    else
-        suggest_key(table, apart, key, &other);
+    char place[sizeof context->path];
+    const size_t length = context->path_length - strlen(key);
+    snprintf(place, sizeof place, "%.*s", (int)(length ? length - 1 : 0), context->path);
+    suggest_key(table, place, apart, key, &other);
     const bool any = other.length && !other.failed;
     /* a key that is right elsewhere, without a path: the scene's own */
     const bool top = any && !strcmp(cs_text_get(&other), key);
