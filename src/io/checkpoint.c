@@ -32,13 +32,15 @@ static void add_item(struct cs_serialiser *file, const char *name, const void *b
 
 enum cs_status cs_checkpoint_write(const char *path, const struct cs_checkpoint_key *facts,
                                    uint32_t n_facts, const struct cs_serialiser *record,
-                                   struct cs_error *error) {
+                                   const char *command, struct cs_error *error) {
     struct cs_serialiser file = {0};
     char digits[CS_HASH_DIGITS];
     cs_serialiser_bytes(&file, FIRST_LINE, sizeof FIRST_LINE - 1);
     for (uint32_t k = 0; k < n_facts; k++)
         add_item(&file, facts[k].name, facts[k].value, strlen(facts[k].value));
     add_item(&file, "record", record->bytes, record->length);
+    if (*command)
+        add_item(&file, "command", command, strlen(command));
     cs_hash_bytes(file.bytes, file.length, digits);
     digits[CS_HASH_DIGITS - 1] = '\n';
     cs_serialiser_bytes(&file, digits, sizeof digits);
@@ -156,4 +158,39 @@ enum cs_status cs_checkpoint_read(const char *path, const struct cs_checkpoint_k
     record->position = (size_t)(bytes - record->bytes);
     record->length = record->position + length;
     return CS_OK;
+}
+
+/* Moves past an item of any name: its length is the last number of its line. */
+static bool skip_item(struct cs_serialiser *file) {
+    const char *line = file->bytes + file->position;
+    const size_t left = file->length - CS_HASH_DIGITS - file->position;
+    const char *end = memchr(line, '\n', left < LINE ? left : LINE);
+    const char *blank = end ? memrchr(line, ' ', (size_t)(end - line)) : NULL;
+    const unsigned long long length = blank ? strtoull(blank, NULL, 10) : 0;
+    const size_t begin = end ? (size_t)(end - line) + 1 : 0;
+    if (!blank || length >= left - begin)
+        return false;
+    file->position += begin + (size_t)length + 1;
+    return true;
+}
+
+enum cs_status cs_checkpoint_read_command(const char *path, struct cs_text *command,
+                                          struct cs_error *error) {
+    struct cs_serialiser file = {0};
+    size_t length;
+    const char *words = NULL;
+    if (!cs_file_read(path, BYTES_MAX, &file.bytes, &file.length, error) &&
+        !check_whole(path, &file, error)) {
+        file.position = sizeof FIRST_LINE - 1;
+        while (!(words = take_item(&file, "command", &length)) && skip_item(&file)) {
+        }
+        if (words)
+            cs_text_add(command, "%.*s", (int)length, words);
+        else
+            cs_fail(error, CS_ERR_FILE, "\"%s\": it contains no command line", path);
+    }
+    if (command->failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", path);
+    cs_serialiser_finish(&file);
+    return error->status;
 }

@@ -3,6 +3,7 @@
  *   clothsim checkpoint 1
  *   NAME LENGTH, newline, LENGTH bytes of the value, newline: for each fact
  *   record LENGTH, newline, LENGTH bytes of the record, newline
+ *   command LENGTH, newline, LENGTH bytes of the command line, newline: if there is one
  *   hash of all bytes before it, in 32 hexadecimal digits, newline
  *
  * Lengths are stated, so values may hold any bytes. The checksum covers everything, so a file
@@ -17,6 +18,7 @@
 
 #include "base/serialise.h"
 #include "base/status.h"
+#include "base/text.h"
 
 #include <stdint.h>
 
@@ -28,10 +30,16 @@ struct cs_checkpoint_key {
 };
 
 /* Replaces the file atomically and returns when the disk has it. Facts and record are only
- * read. On failure CS_ERR_FILE or CS_ERR_MEMORY, and an older file stays as it was. */
+ * read. command: words of the command line that the run needs, each closed by a newline; "":
+ * none. On failure CS_ERR_FILE or CS_ERR_MEMORY, and an older file stays as it was. */
 enum cs_status cs_checkpoint_write(const char *path, const struct cs_checkpoint_key *facts,
                                    uint32_t n_facts, const struct cs_serialiser *record,
-                                   struct cs_error *error);
+                                   const char *command, struct cs_error *error);
+
+/* Adds the command of a checkpoint to a text. CS_ERR_FILE if the file cannot be read, is
+ * damaged, or has none; CS_ERR_MEMORY. */
+enum cs_status cs_checkpoint_read_command(const char *path, struct cs_text *command,
+                                          struct cs_error *error);
 
 /* Reads a checkpoint, as a record positioned at its first byte. Facts must be those of the
  * writer, in its order. Fails with CS_ERR_FILE if the file cannot be read, is damaged in any

@@ -22,7 +22,7 @@ static void write_one(void) {
     struct cs_serialiser record = {0};
     struct memory memory = {{0.1, -0.0, 1e300}, 7};
     record_memory(&memory, &record);
-    cs_checkpoint_write("c", facts, FACTS, &record, &error);
+    cs_checkpoint_write("c", facts, FACTS, &record, "a.json\n-n\n3\n", &error);
     UNIT_ASSERT_OK(&error);
     cs_serialiser_finish(&record);
 }
@@ -90,4 +90,19 @@ TEST(damage_is_noticed) {
     }
     UNIT_ASSERT_OK(&error);
     free(bytes);
+}
+
+TEST(the_command_line_is_read_by_itself) {
+    struct cs_error error = {0}, none = {0};
+    struct cs_serialiser record = {0};
+    struct cs_text command = {0};
+    write_one();
+    cs_checkpoint_read_command("c", &command, &error);
+    UNIT_ASSERT_OK(&error);
+    ck_assert_str_eq(cs_text_get(&command), "a.json\n-n\n3\n");
+    cs_text_finish(&command);
+    cs_checkpoint_write("c", facts, FACTS, &record, "", &error);
+    cs_checkpoint_read_command("c", &command, &none);
+    UNIT_ASSERT_FAILED(&none, CS_ERR_FILE, "\"c\": it contains no command line");
+    cs_text_finish(&command);
 }

@@ -224,6 +224,8 @@ static size_t count_options(int argc, char **argv) {
 enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *command, int argc,
                              char **argv, struct cs_error *error) {
     args->command = command;
+    args->words = argv;
+    args->n_words = (uint32_t)argc;
     args->help = asks_for_help(argc, argv);
     if (args->help)
         return CS_OK;

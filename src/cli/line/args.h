@@ -128,7 +128,8 @@ struct cs_args {
     void *options; /* the command's struct: defaults, and what was given */
     struct cs_arg_value *given;
     const char **operands;
-    uint32_t n_given, n_operands;
+    char **words; /* all of them, as they were typed */
+    uint32_t n_given, n_operands, n_words;
     bool help;             /* --help was given: nothing else was read */
     struct cs_arena arena; /* owns the arrays and lists above; commands may take from it too */
 };

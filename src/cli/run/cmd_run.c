@@ -26,6 +26,7 @@ struct options {
     const char *checkpoint, *resume, *trace, *export, *values, *range;
     double isolate; /* s; 0: not */
     bool strict, mark_instability;
+    bool is_repeated; /* they are those of a checkpoint */
 };
 static const struct options defaults = {
     .job = {.session = {.render = true, .threads = CS_THREADS_AUTO},
@@ -60,7 +61,9 @@ static const struct cs_arg rows[] = {
     {"checkpoint", 0, "EVERY",
      "write DIR/run.checkpoint every so many frames, or seconds as in 30s",
      CS_ARG_INTO(struct options, checkpoint)},
-    {"resume", 0, "DIR", "continue from the checkpoint in DIR, with the same scene and options",
+    {"resume", 0, "DIR",
+     "continue from the checkpoint in DIR; without SCENE its run is repeated with "
+     "its own options, but for those of length and report",
      CS_ARG_INTO(struct options, resume)},
     {"isolate", 0, "SECONDS",
      "run in a separate process, and end it if one call of the method or the renderer takes "
@@ -126,7 +129,8 @@ static const struct cs_arg rows[] = {
 static enum cs_status read_checkpoints(const struct cs_args *args, struct options *options,
                                        struct cs_error *error) {
     static const char *const others[] = {"checkpoint", "out", "overwrite"};
-    for (size_t k = 0; options->resume && k < sizeof others / sizeof *others; k++)
+    for (size_t k = 0;
+         !options->is_repeated && options->resume && k < sizeof others / sizeof *others; k++)
         if (cs_args_is_given(args, others[k]))
             return cs_fail(error, CS_ERR_USAGE,
                            "--resume continues with the options of the run: remove --%s",
@@ -182,13 +186,29 @@ static enum cs_status check_folder(const char *folder, struct cs_error *error) {
     return CS_OK;
 }
 
+/* Stores the words of the command line for checkpoints; none if a word has a line of its own.
+ */
+static enum cs_status store_command(struct cs_args *args, struct cs_error *error) {
+    struct options *options = args->options;
+    struct cs_text words = {0};
+    bool is_plain = true;
+    for (uint32_t k = 0; k < args->n_words; k++) {
+        is_plain = is_plain && !strchr(args->words[k], '\n');
+        cs_text_add(&words, "%s\n", args->words[k]);
+    }
+    options->job.command = cs_arena_copy_text(
+        &args->arena, is_plain && !words.failed ? cs_text_get(&words) : "", error);
+    cs_text_finish(&words);
+    return error->status;
+}
+
 /* Derives the job's settings from the options, and checks their combinations. */
 static enum cs_status read_settings(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
     struct cs_job_settings *settings = &options->job;
     settings->session.scene = args->operands[0];
     settings->session.run.stop = cs_interrupt_catch();
-    if (read_checkpoints(args, options, error) ||
+    if (read_checkpoints(args, options, error) || store_command(args, error) ||
         (options->trace && cs_run_trace_read(options->trace, &settings->trace, error)) ||
         check_stream(settings, error) || check_show(settings, error) ||
         check_folder(settings->folder, error) ||
@@ -283,15 +303,81 @@ static enum cs_status run_here(void *ctx, struct cs_error *error) {
     return error->status;
 }
 
-static enum cs_status run(struct cs_args *args, struct cs_error *error) {
+/* Puts the options that were typed over those of the run that goes on. */
+static enum cs_status change_options(const struct cs_args *args, struct options *options,
+                                     struct cs_error *error) {
+    static const char *const taken[] = {"resume", "frames", "time", "quiet",
+                                        "strict", "timing", NULL};
+    const struct options *typed = args->options;
+    for (uint32_t k = 0; k < args->n_given; k++) {
+        uint32_t t = 0;
+        while (taken[t] && strcmp(taken[t], args->given[k].row->name))
+            t++;
+        if (!taken[t])
+            return cs_fail(error, CS_ERR_USAGE,
+                           "--resume without SCENE repeats the options of the run: remove --%s",
+                           args->given[k].row->name);
+    }
+    options->is_repeated = true;
+    options->resume = typed->resume;
+    options->checkpoint = NULL;
+    options->job.overwrite = false;
+    options->job.quiet = options->job.quiet || typed->job.quiet;
+    options->strict = options->strict || typed->strict;
+    options->job.session.run.timed =
+        options->job.session.run.timed || typed->job.session.run.timed;
+    if (cs_args_is_given(args, "frames") || cs_args_is_given(args, "time")) {
+        options->job.frames = typed->job.frames;
+        options->job.seconds = typed->job.seconds;
+    }
+    return CS_OK;
+}
+
+/* Parses the command line of the checkpoint to resume from, with the options typed now. */
+static enum cs_status repeat_command(struct cs_args *args, struct cs_args *repeated,
+                                     struct cs_error *error) {
+    const struct options *typed = args->options;
+    char path[4096];
+    struct cs_text text = {0};
+    int n = 0;
+    snprintf(path, sizeof path, "%s/run.checkpoint", typed->resume);
+    if (cs_checkpoint_read_command(path, &text, error)) {
+        cs_text_finish(&text);
+        return error->status;
+    }
+    char *words = cs_arena_copy_text(&args->arena, cs_text_get(&text), error);
+    char **list = cs_arena_alloc_array(&args->arena, text.length + 1, sizeof *list, error);
+    cs_text_finish(&text);
+    while (words && list && *words)
+        list[n++] = strsep(&words, "\n");
+    return error->status || cs_args_parse(repeated, args->command, n, list, error)
+               ? error->status
+               : change_options(args, repeated->options, error);
+}
+
+/* The run of the arguments, in a process of its own if it may not end. */
+static enum cs_status run_guarded(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
     const char *method = options->job.session.integrator;
-    if (cs_args_refuse_both(args, "frames", "time", error))
-        return error->status;
     return options->isolate > 0 || cs_external_modules_requested(args, &method, 1)
                ? cs_external_modules_isolate(args, options->isolate, STOP_SECONDS, run_here,
                                              error)
                : run_here(args, error);
+}
+
+static enum cs_status run(struct cs_args *args, struct cs_error *error) {
+    const struct options *options = args->options;
+    struct cs_args repeated = {0};
+    if (cs_args_refuse_both(args, "frames", "time", error))
+        return error->status;
+    if (args->n_operands)
+        return run_guarded(args, error);
+    if (!options->resume)
+        return cs_fail(error, CS_ERR_USAGE, "expected SCENE (see: clothsim run --help)");
+    if (!repeat_command(args, &repeated, error))
+        run_guarded(&repeated, error);
+    cs_args_finish(&repeated);
+    return error->status;
 }
 
 const struct cs_command cs_command_run = {
@@ -303,7 +389,7 @@ const struct cs_command cs_command_run = {
              "\n"
              "Example: clothsim run scenes/hang.json --frames 60 -i velocity-verlet:dt=0.001\n",
     CS_COMMAND_OPTIONS(rows, defaults),
-    .operands_min = 1,
+    .operands_min = 0,
     .operands_max = 1,
     .main = run,
 };

@@ -35,6 +35,7 @@ enum { CS_FRAMES_MAX = 10000000 };
 struct cs_job_settings {
     struct cs_session_settings session;
     uint32_t frames;         /* 0: the start alone; CS_FRAMES_DEFAULT: one second of them */
+    const char *command;     /* its words, each closed by a newline; stored in checkpoints */
     double seconds;          /* above 0: as many frames as cover it, instead */
     uint32_t frame_interval; /* draw every n-th frame */
     const char *folder;      /* of pictures, checkpoints, exports; NULL: none */

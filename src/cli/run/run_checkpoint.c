@@ -149,7 +149,8 @@ enum cs_status cs_checkpointer_write(struct cs_checkpointer *resume, struct cs_e
     if (!resume->session || resume->captured_frame == resume->written_frame)
         return CS_OK;
     list_facts(resume, facts);
-    if (cs_checkpoint_write(resume->path, facts, FACTS, &resume->serialiser, error))
+    if (cs_checkpoint_write(resume->path, facts, FACTS, &resume->serialiser,
+                            resume->source.command, error))
         return error->status;
     resume->written_frame = resume->captured_frame;
     resume->last_time = cs_clock_wall();

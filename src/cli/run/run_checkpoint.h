@@ -21,6 +21,7 @@ struct cs_checkpoint_interval {
 /* Facts that a resumed run must share, and the caller's state. */
 struct cs_checkpoint_source {
     const char *scene, *hash, *method, *output_settings; /* texts, borrowed */
+    const char *command; /* words of the command line, each closed by a newline; borrowed */
     /* what the caller keeps from frame to frame, by the same calls both ways */
     void (*serialise)(void *ctx, struct cs_serialiser *serialise);
     void *ctx;

@@ -94,6 +94,7 @@ static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *err
                                             .hash = job->scene_hash,
                                             .method = cs_text_get(&job->method),
                                             .output_settings = cs_text_get(&job->outputs),
+                                            .command = settings->command,
                                             .serialise = record_job,
                                             .ctx = job};
     return cs_checkpointer_begin(&job->checkpoints, &job->session, &of, settings->folder,
