@@ -96,7 +96,8 @@ static void contact(void *object) {
 
 static void limit(void *object) {
     struct bed *bed = object;
-    cs_strain_limit_apply(&bed->session.system, 1 / 60.0, bed->x, bed->v);
+    cs_strain_limit_apply(&bed->session.run.strain_limit, &bed->session.system, 1 / 60.0,
+                          bed->x, bed->v);
 }
 
 static void dot(void *object) {
