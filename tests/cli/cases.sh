@@ -4,7 +4,8 @@
 # A case is a block between blank lines; its lines start with
 #   #  what the case shows
 #   <  NAME TEXT: a file of one line; << NAME ... <<: a file of the lines between
-#   $  a command line of the shell; clothsim is the program under test
+#   $  a command line of the shell; clothsim is the program under test, and stop_at SIGNAL FILE[:BYTES]
+#      COMMAND... sends it a signal as soon as a file is there
 #   !  the exit code where it is not 0
 # and every other line is expected output, standard error among standard output as it comes.
 # "..." stands for any text within a line, and alone on a line for any number of lines.
@@ -22,6 +23,7 @@ trap 'exit 1' INT TERM
 
 mkdir "$work/bin"
 ln -s "$program" "$work/bin/clothsim"
+ln -s "$here/stop_at.py" "$work/bin/stop_at"
 PATH=$work/bin:$PATH
 export PATH LC_ALL=C
 unset CLOTHSIM_PLUGIN_PATH

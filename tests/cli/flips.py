@@ -21,7 +21,7 @@ CLOCK = {"cpu", "cpu_low", "cpu_high", "wall", "runs", "outliers", "check"}
 
 
 def run(program, folder, words):
-    return subprocess.run([program, *words], cwd=folder, capture_output=True, timeout=120)
+    return subprocess.run([program, *words], cwd=folder, capture_output=True, timeout=1200)
 
 
 def rows(folder, table="c/compare.csv"):

@@ -59,7 +59,7 @@ def main():
         # without a checkpoint: what a reader sees grows, and stays after a kill
         process = start(program, 10000000, "dead")
         seen = []
-        for _ in range(600):
+        while process.poll() is None:
             time.sleep(0.05)
             found = rows("dead.csv.part")
             if found and (not seen or len(found) > len(seen[-1])):

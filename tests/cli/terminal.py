@@ -11,6 +11,7 @@ import json
 import os
 import pty
 import re
+import select
 import struct
 import subprocess
 import sys
@@ -38,6 +39,11 @@ def show(words, size, colours, answer=CHARACTERS):
     """Exit code and output of a command in a window of (columns, rows)."""
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
+    # the answer waits for the question: no load can make it late
+    settings = termios.tcgetattr(theirs)
+    settings[3] &= ~termios.ECHO
+    termios.tcsetattr(theirs, termios.TCSANOW, settings)
+    os.write(ours, answer)
     before = termios.tcgetattr(theirs)
     env = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "COLORTERM")}
 
@@ -48,24 +54,17 @@ def show(words, size, colours, answer=CHARACTERS):
     process = subprocess.Popen([PROGRAM, *words], stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs,
                                env={**env, "TERM": "xterm", **colours}, preexec_fn=begin)
     out = b""
-    os.set_blocking(ours, False)
     while True:
         running = process.poll() is None
-        try:
-            part = os.read(ours, 65536)
-        except BlockingIOError:
-            part = b""
+        part = os.read(ours, 65536) if select.select([ours], [], [], 0.05)[0] else b""
         out += part
-        if QUESTION in out:
-            out = out.replace(QUESTION, b"")
-            os.write(ours, answer)
         if not part and not running:
             break
     after = termios.tcgetattr(theirs)
     os.close(theirs)
     os.close(ours)
     check(before == after, f"{' '.join(words)}: the terminal's settings are as before")
-    return process.returncode, out.replace(b"\r\n", b"\n").decode()
+    return process.returncode, out.replace(QUESTION, b"").replace(b"\r\n", b"\n").decode()
 
 
 n = failed = 0

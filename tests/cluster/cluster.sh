@@ -85,10 +85,10 @@ slurm() {
     sed -e "s|HOST|$host|" -e "s|WORK|$work|" -e "s|CPUS|$(nproc)|" -e "s|MEGABYTES|$memory|" "$here/slurm.conf.in" \
         >"$work/slurm.conf"
     export SLURM_CONF="$work/slurm.conf"
-    await 20 test -S "$work/munge.socket"
+    await 600 test -S "$work/munge.socket"
     daemon slurmctld slurmctld -D -f "$SLURM_CONF"
     daemon slurmd slurmd -D -f "$SLURM_CONF"
-    await 60 sh -c 'sinfo --noheader --format=%t | grep -qx "idle"'
+    await 600 sh -c 'sinfo --noheader --format=%t | grep -qx "idle"'
     (cd "$work/slurm" && sh "$examples/slurm.sh" 4 sweep "$work/scene.json" $study) >"$work/out" 2>&1 ||
         sed 's/^/# /' "$work/out"
     report "slurm: a job array of 4 tasks, and the job behind it" same "$work/slurm/whole"
@@ -110,7 +110,7 @@ over_ssh() {
 	    -o UserKnownHostsFile="$work/known" -o LogLevel=ERROR "\$@"
 	END
     chmod +x "$work/ssh"
-    await 20 "$work/ssh" 127.0.0.1 true
+    await 600 "$work/ssh" 127.0.0.1 true
     printf '2/%s/ssh 127.0.0.1\n1/:\n' "$work" >"$work/hosts"
     (cd "$work/parallel" && cp ../scene.json ../sheet.obj . &&
         SEND=sheet.obj sh "$examples/parallel.sh" ../hosts 4 sweep scene.json $study) \

@@ -79,7 +79,7 @@ class Fault:
         environment = dict(os.environ, LD_PRELOAD=self.shim, LC_ALL="C", PATH="", **more)
         try:
             return subprocess.run([self.program, *line], env=environment, capture_output=True,
-                                  timeout=60)
+                                  timeout=1200)
         except subprocess.TimeoutExpired as late:
             return subprocess.CompletedProcess(line, "hang", late.stdout or b"", b"")
 

@@ -110,7 +110,7 @@ def record(program, folder, words):
     """Lines of strace, those of interrupted calls joined."""
     log = folder.parent / "calls"
     subprocess.run([shutil.which("strace"), "-f", "-qq", "-xx", "-s", "1000000000", "-e", "trace=?" + CALLS.replace(",", ",?"), "-o", log,
-                    program, *words], cwd=folder, check=True, capture_output=True, timeout=300,
+                    program, *words], cwd=folder, check=True, capture_output=True, timeout=1200,
                    env=dict(os.environ, PATH=""))
     waiting, lines = {}, []
     for line in open(log):
@@ -202,7 +202,7 @@ def lay(image, folder):
 
 
 def clothsim(program, folder, words):
-    return subprocess.run([program, *words], cwd=folder, capture_output=True, timeout=120,
+    return subprocess.run([program, *words], cwd=folder, capture_output=True, timeout=1200,
                           env=dict(os.environ, PATH=""))
 
 
