@@ -352,8 +352,8 @@ struct cs_integrator {
      * followed by host->commit. After anything but CS_STEP_OK only stats and destroy follow. */
     enum cs_step (*advance)(void *self, double t0, double t1, double *x, double *v);
 
-    /* [any time after create, not during another call] May be NULL. Sets the counts; the fields
-     * are 0 before, and out->size is the host's. */
+    /* [any time after create, between calls and in host->commit] May be NULL. Sets the counts; the
+     * fields are 0 before, and out->size is the host's. */
     void (*stats)(const void *self, struct cs_stats *out);
 
     /* [once, last] Gives back what is not from host->alloc: handles of foreign libraries. May

@@ -13,6 +13,11 @@ double cs_clock_wall(void) {
     return seconds_of(CLOCK_MONOTONIC);
 }
 
+double cs_clock_cpu_of(pid_t process) {
+    clockid_t clock;
+    return clock_getcpuclockid(process, &clock) ? 0 : seconds_of(clock);
+}
+
 double cs_clock_cpu(void) {
     return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
 }

@@ -110,6 +110,8 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
     case CS_ADVICE_REFUSED:
         break;
     }
+    if (row->cut > 0)
+        cs_text_add(out, "; its reference was over budget at %.3g s", row->cut);
     if (row->mode_growth > 0)
         cs_text_add(out, "; its worst mode grows at %.2g /s", row->mode_growth);
     /* a message says more than the verdict; a sound run needs neither */
@@ -119,7 +121,7 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
                     row->message);
     else if (row->verdict != CS_STABILITY_BOUNDED && row->kind != CS_ADVICE_NONE)
         cs_text_add(out, "; %s", cs_stability_word(row->verdict));
-    if (row->verdict == CS_STABILITY_OVER_BUDGET)
+    if (row->verdict == CS_STABILITY_OVER_BUDGET && row->checked_seconds > 0)
         cs_text_add(out, " after %.3g s: not tested longer", row->checked_seconds);
 }
 
@@ -260,8 +262,7 @@ struct options {
     bool quiet;
 };
 
-static const struct options defaults = {.study = {.seconds = 10, .budget = 20},
-                                        .folder = "advise"};
+static const struct options defaults = {.study = {.seconds = 10}, .folder = "advise"};
 
 static const struct cs_arg rows[] = {
     {"integrators", 'i', "LIST",
@@ -281,7 +282,8 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, study.seconds)},
     {"frames", 'n', "N", "the same time in frames", CS_ARG_INTO(struct options, frames),
      .min = 1, .max = 1000000},
-    {"budget", 0, "SECONDS", "maximum processor time of one run (default: 20)",
+    {"budget", 0, "SECONDS",
+     "work of all runs, or with --error of one, in nominal seconds (default: 20)",
      CS_ARG_INTO(struct options, study.budget)},
     {"jobs", 'j', "N", "methods run in parallel (default: one per processor)",
      CS_ARG_INTO(struct options, study.workers), .min = 1, .max = CS_PROCESS_POOL_MAX},
@@ -322,7 +324,7 @@ static enum cs_status advise_for_error(struct cs_args *args, struct cs_error *er
                                                study->n_methods ? cs_text_get(&list) : NULL,
                                            .accuracy = bound < 1e-6 ? bound : 1e-6,
                                            .bound = bound,
-                                           .budget = study->budget,
+                                           .budget = study->budget > 0 ? study->budget : 20,
                                            .next = cs_cheapest_choose,
                                            .ctx = &search,
                                            .runs = 15,
@@ -371,7 +373,7 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
         return error->status;
     study->progress = cs_progress_show;
     study->ctx = &progress;
-    cs_progress_begin(&progress, "method", options->quiet);
+    cs_progress_begin(&progress, "work", options->quiet);
     cs_advise_run(study, error);
     /* the line goes before anything is printed below it */
     cs_progress_end(&progress);

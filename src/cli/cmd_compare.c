@@ -60,8 +60,8 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, compare.ranking_norm), .names = cs_norm_names,
      .old_name = "rank"},
     {"budget", 0, "SECONDS",
-     "maximum processor time of one run; a series ends at its first row above it (default: 25 "
-     "s divided among the cells, at most 4 s each)",
+     "maximum work of one run in nominal seconds; a series ends at its first row above it "
+     "(default: 6 divided among the series, at most 4)",
      CS_ARG_INTO(struct options, compare.budget)},
     {"accuracy", 0, "METRES", "smallest error that the comparison must resolve (default: 1e-6)",
      CS_ARG_INTO(struct options, compare.accuracy)},

@@ -54,7 +54,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct cs_stability_options, map.seconds)},
     {"frames", 'n', "N", "simulated frames of a cell (default: by the time)",
      CS_ARG_INTO(struct cs_stability_options, frames), .min = 1, .max = 1000000},
-    {"budget", 0, "SECONDS", "maximum processor time of one cell (default: 5)",
+    {"budget", 0, "SECONDS", "maximum work of one cell in nominal seconds (default: 5)",
      CS_ARG_INTO(struct cs_stability_options, map.budget)},
     {"jobs", 'j', "N", "cells run in parallel (default: one per processor)",
      CS_ARG_INTO(struct cs_stability_options, map.workers), .min = 1,

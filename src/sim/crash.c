@@ -9,6 +9,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,6 +29,8 @@ static const struct {
 
 /* At most this is added to a waiting time by one look, s. */
 #define LONGEST_LOOK 0.2
+/* Fraction of the wall time that counts while a process does not compute. */
+#define WAITING_SHARE 0.25
 
 enum {
     ENDED_BY_EXIT = -1,
@@ -222,9 +225,12 @@ void cs_crash_log_to(struct cs_crash_log *log) {
  * not change, the silence while the host is not at work either. */
 double cs_crash_patience_look(struct cs_crash_patience *patience,
                               const struct cs_crash_log *log) {
-    const double now = cs_clock_wall(), passed = now - patience->looked,
-                 step = passed < LONGEST_LOOK ? passed : LONGEST_LOOK;
+    const double now = cs_clock_wall(), cpu = cs_clock_cpu_of(patience->process);
+    const double wall = now - patience->looked;
+    const double passed = fmin(wall, fmax(cpu - patience->cpu, WAITING_SHARE * wall)),
+                 step = fmin(passed, LONGEST_LOOK);
     patience->looked = now;
+    patience->cpu = cpu;
     // an odd parity of the host is work that the method waits for
     for (int k = 0; k < CS_CRASH_SIDES; k++) {
         const unsigned call = atomic_load(&log->calls[k].call_parity);

@@ -71,16 +71,20 @@ static inline bool cs_crash_is_running(const struct cs_crash_call *call) {
 }
 
 /* Times in s since the calls of a log last showed a sign, as a watcher counts them. Zeroed but
- * for `looked`, the time by the clock. */
+ * for `looked`, the time by the clock, and `process`, the one that logs. */
 struct cs_crash_patience {
     unsigned calls[CS_CRASH_SIDES], hosts[CS_CRASH_SIDES]; /* parities at the last look */
     double waited[CS_CRASH_SIDES];                         /* in the call that is under way */
     double silent[CS_CRASH_SIDES]; /* in it, without work for it by the host */
-    double looked;
+    double looked, cpu;            /* by the wall, and of the process, at the last look */
+    pid_t process;
 };
 
-/* Looks at the log, and returns the time since the last look. A suspended machine does not
- * count: a look adds 0.2 s at most. */
+/* Looks at the log, and returns the time since the last look: processor time of the process,
+ * and a quarter of the wall time if it sleeps or has to wait for a processor. A loaded machine
+ * thus gives no method less time. A suspended machine does not count: a look adds 0.2 s at
+ * most.
+ */
 double cs_crash_patience_look(struct cs_crash_patience *patience,
                               const struct cs_crash_log *log);
 /* The call of a method that has asked the host for nothing for longer than a limit; or NULL. */

@@ -13,6 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Force evaluations per step of a ledger, about, which struct cs_counts leaves out. */
+enum { LEDGER_PASSES = 10 };
+
 const char *const cs_stage_names[] = {"force", "setup",   "solve", "contact",
                                       "limit", "normals", NULL};
 
@@ -208,8 +211,7 @@ static enum cs_step advance_frame(struct cs_run *run, double end) {
     return step;
 }
 
-/* Order: the host's table and memory, the method's create, its restart at 0, then the budget:
- * it counts from the first step on. */
+/* Order: the host's table and memory, the method's create, its restart at 0. */
 enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
                             const struct cs_integrator *integrator, const void *options,
                             const struct cs_run_settings *settings, struct cs_error *error) {
@@ -218,31 +220,18 @@ enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
     if (!run->host)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory");
     run->host->settings = *settings;
+    run->host->pass_seconds = cs_pass_seconds(system) * (settings->ledger ? LEDGER_PASSES : 1);
     run->x = system->state;
     run->v = run->x + 3 * (size_t)system->view.n;
     if (cs_run_host_init(run->host, run, error) || start(run, options, error))
         cs_run_finish(run);
-    else if (settings->budget > 0)
-        cs_budget_start(&run->host->budget, settings->budget);
     return error->status;
 }
 
-/* The method's counts: its own since the start, plus those before a checkpoint that it did
- * not restore. */
 static void count_method(struct cs_run *run) {
-    const struct cs_stats *before = &run->host->stats_before;
-    struct cs_stats *found = &run->counts.method;
-    if (!run->integrator->stats)
-        return;
-    *found = (struct cs_stats){.size = sizeof *found};
     watch(run, "in stats");
-    run->integrator->stats(run->host->self, found);
+    cs_run_host_count(run->host);
     cs_crash_forget(CS_CRASH_METHOD);
-    found->rejected += before->rejected;
-    found->newton += before->newton;
-    found->setups += before->setups;
-    found->sweeps += before->sweeps;
-    found->local_error += before->local_error;
 }
 
 /* The time of a frame is computed from its number: fps need not divide it without rounding. */
@@ -317,6 +306,8 @@ void cs_run_note(struct cs_run *run, const char *format, ...) {
 void cs_run_finish(struct cs_run *run) {
     if (!run->host)
         return;
+    if (run->host->settings.pot)
+        *run->host->settings.pot -= cs_run_host_work_seconds(run->host);
     if (run->integrator->destroy && run->host->self) {
         const struct cs_process_state before = cs_process_state_save();
         watch(run, "in destroy");

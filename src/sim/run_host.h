@@ -52,21 +52,14 @@ void cs_blow_up_check_after_events(struct cs_blow_up_check *bound, struct cs_sys
 bool cs_blow_up_check_step(const struct cs_blow_up_check *bound, struct cs_run *run, double t,
                            const double *x, const double *v);
 
-/* Limit on the processor time of a run, checked every few steps. */
+/* Reads the method's own counts into run->counts, with those before the loaded checkpoint. */
+void cs_run_host_count(struct cs_run_host *host);
 
-/* Processor time and the rhythm of its checks. Zeroed: no limit. */
-struct cs_budget {
-    double end;              /* s of cs_clock_cpu; 0: no limit */
-    double last_check;       /* s of cs_clock_wall, at the last check */
-    uint32_t steps;          /* steps since the last check */
-    uint32_t check_interval; /* steps between two checks, 1 to 1024 */
-};
+/* Nominal s of the work of the run so far. */
+double cs_run_host_work_seconds(const struct cs_run_host *host);
 
-/* Grants cpu_seconds of processor time of the whole process, from now on. */
-void cs_budget_start(struct cs_budget *budget, double cpu_seconds);
-
-/* Returns true if the time is used up. Call it after every step: most calls only count. */
-bool cs_budget_is_over(struct cs_budget *budget);
+/* Returns true if the work of the run exceeds its budget, or what is left in its pot. */
+bool cs_run_host_is_over_budget(struct cs_run_host *host);
 
 /* Checks the post-conditions of advance() before a state is hashed, written
  * or drawn.
@@ -122,8 +115,8 @@ struct cs_run_host {
     bool creating;          /* in create: the method may take memory */
     struct cs_process_state process_state; /* the process as it was before the first call */
     struct cs_run_settings settings;
-    struct cs_budget budget;
-    void *self;                   /* the method's object */
+    double pass_seconds; /* nominal s of a pass over the forces, the ledger's included */
+    void *self;          /* the method's object */
     struct cs_stats stats_before; /* the method's counts before the loaded checkpoint */
     struct cs_error error;        /* the method's first message */
     struct cs_blow_up_check blow_up;

@@ -65,6 +65,17 @@ struct cs_counts {
     struct cs_stats method;       /* what the method counted itself */
 };
 
+/* The work of a run in passes over the forces: a force evaluation, a Jacobian product, a solver
+ * iteration and a sweep of the method itself count as equal. */
+static inline double cs_counts_work(const struct cs_counts *counts) {
+    return (double)(counts->forces + counts->jvps + counts->solve_iterations +
+                    counts->method.sweeps);
+}
+
+/* Nominal s of one pass over the forces of a system (cs_counts_work): a fixed cost of each call
+ * and of each spring, which no machine and no load changes. Budgets are in these seconds. */
+double cs_pass_seconds(const struct cs_system *system);
+
 /* Where and how a run blew up. */
 struct cs_blow_up {
     double time;          /* s */
@@ -116,9 +127,12 @@ struct cs_run_settings {
     /* skips the post-conditions of advance: for checks that measure them themselves */
     bool skip_advance_check;
     const volatile sig_atomic_t *stop; /* set by a signal handler; may be NULL */
-    /* s of processor time from the first step on, after which the run ends as CS_OVER_BUDGET;
-     * 0: no limit. The clock is read between steps and never reaches the state. */
+    /* Work in nominal s (cs_pass_seconds) after which the run ends as CS_OVER_BUDGET, checked
+     * at every commit; a step counts as a pass at least. 0: no limit. */
     double budget;
+    /* Nominal s that are left for all runs with this pointer. Each is limited by it too, and
+     * subtracts its work at its end. NULL: no limit. */
+    double *pot;
     /* Called at the end of every commit, and may move the state: returns whether it did. May be
      * NULL. */
     bool (*after_commit)(void *ctx, double t, double dt, double *x, double *v);

@@ -40,7 +40,12 @@ enum cs_status cs_follow_result(const struct cs_run *run, const char *interrupte
         .outcome = failed ? CS_FAILED : run->outcome,
         .reached = run->t,
         .time = cs_outcome_is_blow_up(run->outcome) ? run->blow_up.time : run->t};
-    snprintf(result->message, sizeof result->message, "%s", failed ? error->message : text);
+    if (run->outcome == CS_OVER_BUDGET)
+        snprintf(result->message, sizeof result->message,
+                 "%s after %.4g passes over the forces, at t = %.4g s", text,
+                 cs_counts_work(&run->counts), run->t);
+    else
+        snprintf(result->message, sizeof result->message, "%s", failed ? error->message : text);
     if (failed)
         *error = (struct cs_error){0};
     return cs_follow_check(run, interrupted, error);

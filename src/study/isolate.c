@@ -185,6 +185,7 @@ static enum cs_status child_start(struct child *child, const sigset_t *before,
         sigprocmask(SIG_SETMASK, before, NULL);
         child_serve(child, parent);
     }
+    child->patience.calls.process = child->pid;
     if (child->pid < 0) {
         child->pid = 0;
         cs_fail(error, CS_ERR_MEMORY, "cannot start another process: %s", strerror(errno));

@@ -122,7 +122,7 @@ static void start(struct cs_process_pool *workers, struct shared *shared, uint32
     *worker = (struct worker){.patience.looked = cs_clock_wall()};
     /* that of the worker before, which was ended in a task */
     shared->logs[number] = (struct cs_crash_log){0};
-    worker->process = fork();
+    worker->process = worker->patience.process = fork();
     if (worker->process)
         return;
     cs_crash_log_to(shared->logs + number);

@@ -1,8 +1,7 @@
 /* process_pool.h - distributes independent tasks over processes.
  *
- * Processes, not threads: a budget of processor time then belongs to one task, modules need not
- * be thread-safe, and a crash ends only its worker. Tasks are taken from a shared counter, so
- * long and short ones balance. */
+ * Processes, not threads: modules need not be thread-safe, and a crash ends only its worker.
+ * Tasks are taken from a shared counter, so long and short ones balance. */
 #ifndef CS_PROCESS_POOL_H
 #define CS_PROCESS_POOL_H
 
@@ -30,14 +29,20 @@ struct cs_process_pool {
     /* in the calling process, about ten times a second; may be NULL */
     void (*progress)(void *ctx, uint32_t ticks);
     void *progress_ctx;
-    uint32_t *ticks;         /* of the pool: in memory that all workers see while it runs */
-    double task_seconds_max; /* of processor time for a task, which is then left as it is; 0:
-                                any */
-    /* s that a method may keep from the host; 0: any */
+    uint32_t *ticks; /* of the pool: in memory that all workers see while it runs */
+    /* s of processor time for a task, which is then left as it is; 0: any */
+    double task_seconds_max;
+    /* s that a method may keep from the host (cs_crash_patience_look); 0: any */
     double silence_max;
     /* set: the workers are asked to stop, and ended if they do not; may be NULL */
     const volatile sig_atomic_t *stop;
 };
+
+/* s after which a method that keeps from the host hangs, in runs with a budget of so many
+ * nominal s: far away, since no result may depend on a clock. */
+static inline double cs_hang_seconds(double budget) {
+    return 10 + 4 * budget;
+}
 
 /* Advances the progress; callable from every worker. */
 void cs_process_pool_tick(struct cs_process_pool *workers, uint32_t ticks);
@@ -53,7 +58,7 @@ enum cs_status cs_process_pool_run(struct cs_process_pool *workers, struct cs_er
  * A child does the whole task in the same order of steps. Only its status comes back; results
  * are in files or in shared memory. It ends with this process. */
 
-/* The limits of a child. */
+/* The limits of a child, in s of cs_crash_patience_look. */
 struct cs_isolate {
     double seconds;      /* that one call into a module may take; 0: any */
     double task_seconds; /* that all of it may take; 0: any */

@@ -32,9 +32,15 @@ __attribute__((constructor)) static void loaded(void) {
 }
 
 static void act(struct hostile *self, enum when when, double *x) {
+    const char *sign = getenv("SIGN");
+    FILE *file;
     acting = self->host;
-    if (deeds[self->deed].when == when)
-        deeds[self->deed].deed(x);
+    if (deeds[self->deed].when != when)
+        return;
+    // whoever waits for the deed sees a file
+    if (sign && (file = fopen(sign, "w")))
+        fclose(file);
+    deeds[self->deed].deed(x);
 }
 
 static enum cs_step create(const struct cs_host *host, const void *options, void **out) {

@@ -100,6 +100,44 @@ TEST(step_budget_is_kept) {
     fixture_close(&cloth);
 }
 
+/* Runs a sheet for a frame with the limits; the work in passes at its end. */
+static double work_within(double budget_passes, double *pot_passes, enum cs_outcome *outcome) {
+    struct fixture cloth;
+    struct cs_error error = {0};
+    fixture_open(&cloth, "rk4:dt=1e-5", SCENE, 0.0, 0.0);
+    const double pass = cs_pass_seconds(cloth.system);
+    double pot = pot_passes ? *pot_passes * pass : 0;
+    cloth.session.settings.run.budget = budget_passes * pass;
+    cloth.session.settings.run.pot = pot_passes ? &pot : NULL;
+    fixture_start(&cloth);
+    ck_assert_int_eq(cs_run_frame(&cloth.session.run, &error), CS_OK);
+    *outcome = cloth.session.run.outcome;
+    const double work = cs_counts_work(&cloth.session.run.counts);
+    fixture_close(&cloth);
+    if (pot_passes)
+        *pot_passes = pot / pass;
+    return work;
+}
+
+/* A budget ends a run by its count of passes, at the step that exceeds it; runs with one pot
+ * share what it holds. rk4 takes four passes per step. */
+TEST(budget_counts_work) {
+    enum cs_outcome outcome;
+    const double first = work_within(1001, NULL, &outcome);
+    ck_assert_int_eq(outcome, CS_OVER_BUDGET);
+    ck_assert(first > 1001 && first <= 1006);
+    double pot = 1500;
+    ck_assert_double_eq(work_within(1001, &pot, &outcome), first);
+    ck_assert_double_eq_tol(pot, 1500 - first, 1e-6);
+    const double second = work_within(1001, &pot, &outcome);
+    ck_assert_int_eq(outcome, CS_OVER_BUDGET);
+    ck_assert(second > 1500 - first && second <= 1506 - first);
+    ck_assert_double_lt(pot, 0);
+    ck_assert_double_le(work_within(0, &pot, &outcome), 5);
+    ck_assert_double_gt(work_within(1e9, NULL, &outcome), 5000);
+    ck_assert_int_eq(outcome, CS_RUNNING);
+}
+
 /* A sheet that comes to lie on a floor: its particles are too quick for dt, which is cut for
  * most of the time. Steps that are worked out and thrown away are few, and what is known at the
  * end of a frame counts in the next. */

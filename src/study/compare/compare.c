@@ -2,7 +2,6 @@
  * rounds. */
 #include "study/compare/compare.h"
 
-#include "base/clock.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json_writer.h"
@@ -20,6 +19,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* Nominal s to open a small scene for a run. */
+#define OPEN_SECONDS 2e-3
 
 /* Reads the facts of the scene and of its smooth form (recorded_run.h). */
 static enum cs_status read_scene_facts(struct cs_compare *compare, struct cs_error *error) {
@@ -41,6 +43,7 @@ static enum cs_status read_scene_facts(struct cs_compare *compare, struct cs_err
         compare->fps = recording.session.scene.time.fps;
         /* above 0, because default steps are derived from it */
         compare->omega = fmax(system->view.omega, 1e-3);
+        compare->pass_seconds = cs_pass_seconds(system);
         compare->time = settings->frames / compare->fps;
         compare->contact = recording.session.scene.colliders.n > 0 ||
                            cs_scene_has_body_contact(&recording.session.scene);
@@ -96,12 +99,12 @@ cs_compare_reference_query(const struct cs_compare_settings *settings) {
         .ctx = settings->ctx};
 }
 
-/* Budget of one run in s of processor time.
+/* Budget of one run in nominal s of work.
  *
  * Without a budget from the user all series together get CS_COMPARE_SECONDS. Steps are halved,
  * so the last finished run of a series takes about as long as all before it (1/2 + 1/4 + ... =
  * 1): twice the budget in total. One more run may exceed the budget: three per series. */
-static void divide_time_budget(struct cs_compare *compare) {
+static void divide_budget(struct cs_compare *compare) {
     const struct cs_cell_list *sweep = &compare->cells;
     uint32_t n = 0;
     for (uint32_t k = 0; k < sweep->n; k++)
@@ -161,7 +164,7 @@ static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *er
                                                 .omega = compare->omega};
     if (!cs_cell_list_parse(&compare->cells, &asked, error) && !check_methods(compare, error)) {
         store_shard(compare);
-        divide_time_budget(compare);
+        divide_budget(compare);
     }
     return error->status;
 }
@@ -220,12 +223,12 @@ static enum cs_status measure_shared(void *ctx, struct cs_error *error) {
     return cs_compare_measure(apart->compare, apart->shared, error);
 }
 
-/* Runs a cell in a process of its own, which is ended at ten times the budget. A process that
- * dies is a failed cell. */
+/* Runs a cell in a process of its own, which is ended if it hangs. A process that dies is a
+ * failed cell. */
 static enum cs_status measure_apart(const struct cs_compare *compare, struct cs_cell *cell,
                                     struct cs_error *error) {
     struct cell_apart apart = {compare, cs_process_pool_shared_alloc(sizeof *cell, error)};
-    const struct cs_isolate isolate = {.task_seconds = 5 + 10 * compare->budget,
+    const struct cs_isolate isolate = {.task_seconds = cs_hang_seconds(10 * compare->budget),
                                        .stop_seconds = 0.5,
                                        .is_cell = true,
                                        .task = measure_shared,
@@ -293,15 +296,26 @@ static enum cs_status measure_further(struct cs_compare *compare,
     return error->status;
 }
 
+/* Nominal s of the cells that were run for equal errors, each at least as long as it takes to
+ * open a scene. */
+static double equal_seconds(const struct cs_compare *compare) {
+    double sum = 0;
+    for (uint32_t k = 0; k < compare->cells.n; k++)
+        if (isfinite(compare->cells.cells[k].target))
+            sum += fmax(compare->cells.cells[k].work * compare->pass_seconds, OPEN_SECONDS);
+    return sum;
+}
+
 /* Runs cells in between until the methods near the front have cells at the errors of the
  * verdict (equal_error.h). A shard has not all cells: that is left to the whole. */
 static enum cs_status equalise_errors(struct cs_compare *compare,
                                       struct cs_compare_results *ledger,
                                       struct cs_error *error) {
-    const double end = cs_clock_cpu() + fmax(CS_COMPARE_EQUAL_SECONDS, 20 * compare->budget);
+    const double most = fmax(CS_COMPARE_EQUAL_SECONDS, 20 * compare->budget);
     const struct cs_cell *near;
     double value, target;
-    while (compare->settings->shard.count < 2 && !error->status && cs_clock_cpu() < end &&
+    while (compare->settings->shard.count < 2 && !error->status &&
+           equal_seconds(compare) < most &&
            (near = cs_equal_error_find_next(compare, &value, &target)))
         measure_further(compare, ledger, near, value, target, error);
     return error->status;

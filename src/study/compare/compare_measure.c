@@ -19,8 +19,7 @@
 /* Largest difference of two successive slopes that counts as steady. */
 #define STEADY 0.1
 
-/* Counts, costs and outcome of a run. The unit of work counts one force evaluation, one
- * Jacobian product, one solver iteration and one sweep of the method as equal. */
+/* Counts, costs and outcome of a run. */
 static void take_counts(struct cs_cell *cell, const struct cs_recorded_run_result *end) {
     const struct cs_counts *counts = &end->counts;
     cell->steps = (double)counts->steps;
@@ -33,7 +32,7 @@ static void take_counts(struct cs_cell *cell, const struct cs_recorded_run_resul
     cell->rejected = (double)counts->method.rejected;
     cell->newton = (double)counts->method.newton;
     cell->sweeps = (double)counts->method.sweeps;
-    cell->work = cell->evals + cell->jvps + cell->iterations + cell->sweeps;
+    cell->work = cs_counts_work(counts);
     cs_machine_name(cell->machine);
     snprintf(cell->version, sizeof cell->version, "%s", CS_VERSION);
     memcpy(cell->state_hash, end->hash, sizeof cell->state_hash);

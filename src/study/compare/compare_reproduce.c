@@ -17,7 +17,7 @@ enum { PATH_BYTES = 4096 };
 static enum cs_status check_row(const struct cs_cell *cell, const char *file, uint32_t row,
                                 struct cs_error *error) {
     const char *why = !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET))
-                          ? "it exceeded its budget, which depends on the clock"
+                          ? "it exceeded its budget and has no end to compare"
                       : !strcmp(cell->outcome, "refused") ? cell->note
                       : !*cell->state_hash ? "an earlier version wrote it without a state"
                                            : NULL;

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,12 +76,14 @@ static bool is_over_budget(const struct cs_cell *cell) {
     return !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
 }
 
-/* True if an earlier row need not be run again. A run over budget is repeated if it has more
- * time now; a run without a ledger if one is requested. */
+/* True if an earlier row need not be run again. A run over budget is repeated if it may do more
+ * work now; a run without a ledger if one is requested. */
 static bool is_valid(const struct cs_cell *old, const struct cs_compare *compare) {
     if (compare->settings->ledger && cs_cell_is_finished(old) && !cs_cell_has_ledger(old))
         return false;
-    return *old->outcome && (!is_over_budget(old) || old->cpu > 0.9 * compare->budget);
+    return *old->outcome &&
+           (!is_over_budget(old) ||
+            fmax(old->work, old->steps) * compare->pass_seconds > compare->budget);
 }
 
 /* Gives a cell the results of an old row; its limits are those of this comparison. */

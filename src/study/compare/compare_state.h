@@ -41,8 +41,9 @@ double cs_norm_of(enum cs_norm norm, const struct cs_cell *cell,
  * not known. */
 double cs_norm_scale(enum cs_norm norm, const struct cs_compare_reference *reference);
 
-/* The default budget: s of processor time for the sweep of a comparison, for the search for
- * equal errors, and for the rounds, without its reference; and the most that a run may take. */
+/* The default budget: nominal s (cs_pass_seconds) for the sweep of a comparison, for the search
+ * for equal errors, and for the rounds, without its reference; and the most that a run may
+ * take. */
 #define CS_COMPARE_SECONDS         18
 #define CS_COMPARE_EQUAL_SECONDS   10.0
 #define CS_COMPARE_ROUND_SECONDS   15.0
@@ -66,7 +67,7 @@ struct cs_compare_settings {
     const char *methods;      /* list as in cell_list_parse.h; NULL: all */
     const char *reference[2]; /* "NAME:options" of its families, or NULL */
     double accuracy;          /* m, see compare_reference.h */
-    double budget;            /* s of processor time that one run may take; 0: see below */
+    double budget;            /* nominal s of work that one run may take; 0: see below */
     bool isolates_cells;      /* each first run in a process of its own: modules from outside */
     uint32_t runs;            /* rounds of timed runs, at most; up to CS_ROUNDS_MAX */
     enum cs_norm ranking_norm; /* error norm of the ranking */
@@ -102,7 +103,8 @@ struct cs_compare {
     bool contact;              /* by force: a part of the equation of motion */
     uint32_t particles, springs, n_event_times; /* cuts: times of events */
     double fps, omega, time, budget;
-    double rounds_seconds;     /* s that rounds may go on */
+    double pass_seconds;       /* nominal s of one pass over the forces */
+    double rounds_seconds;     /* nominal s that rounds may go on */
     uint32_t n_done, n_reused; /* cells; those of an earlier run */
 };
 
@@ -111,7 +113,7 @@ struct cs_compare_reference_settings
 cs_compare_reference_query(const struct cs_compare_settings *settings);
 
 /* Times the contenders for the verdict (ranking.h) in rounds. Ends when their ratios are known
- * well enough, after settings.runs rounds, or when the time for rounds is used up. Updates cpu,
+ * well enough, after settings.runs rounds, or when the work for rounds is used up. Updates cpu,
  * cpu_low, cpu_high, runs and outliers of the cells. CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
 enum cs_status cs_compare_time(struct cs_compare *compare, struct cs_error *error);
 

@@ -2,13 +2,12 @@
  *
  *   1. Rank the cells by their times so far; contenders are those the verdict depends on.
  *   2. Stop if there are none, or after LEAST_ROUNDS rounds if their ratios are narrow or the
- *    time is over.
+ *    work of the rounds exceeds its budget.
  *   3. Run each contender once and record its time.
  *   4. Update the cells' medians and quartiles, and go to 1.
  * Contenders are chosen again in every round, because better times change the ranking. */
 #include "study/compare/compare_state.h"
 
-#include "base/clock.h"
 #include "study/compare/ranking.h"
 
 #include <math.h>
@@ -127,20 +126,29 @@ static enum cs_status choose(const struct cs_compare *compare, uint32_t *order, 
     return CS_OK;
 }
 
+/* Nominal s of a round of the n cells of the list. */
+static double round_seconds(const struct cs_compare *compare, const uint32_t *order,
+                            uint32_t n) {
+    double sum = 0;
+    for (uint32_t k = 0; k < n; k++)
+        sum += fmax(compare->cells.cells[order[k]].work * compare->pass_seconds, LEAST_SECONDS);
+    return sum;
+}
+
 /* Runs rounds until a stopping rule holds, see the head of this file. */
 static enum cs_status make_rounds(struct cs_compare *compare, uint32_t *order,
                                   struct cs_error *error) {
-    const double begin = cs_clock_cpu();
     const uint32_t most = compare->settings->runs;
+    double done = 0;
     const uint32_t least = most < LEAST_ROUNDS ? most : LEAST_ROUNDS;
     uint64_t state = 1;
     for (uint32_t k = 0, n; k < most; k++) {
         bool narrow;
         if (choose(compare, order, &n, &narrow, error))
             return error->status;
-        if (n == 0 ||
-            (k >= least && (narrow || cs_clock_cpu() - begin > compare->rounds_seconds)))
+        if (n == 0 || (k >= least && (narrow || done > compare->rounds_seconds)))
             break;
+        done += round_seconds(compare, order, n);
         if (compare->settings->on_round)
             compare->settings->on_round(compare->settings->ctx, k, most);
         shuffle(order, n, &state);

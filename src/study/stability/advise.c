@@ -9,9 +9,12 @@
 
 /* Samples of a probe run, and halvings of a step that proved unstable. */
 enum { SAMPLES = 32, HALVINGS = 6 };
-#define PERTURBATION 1e-4 /* lengths of the shortest spring */
-#define MARGIN       0.9  /* fraction of the limit that is advised */
-#define GROWTH_SEEN  1e-7 /* growth per step that counts; less is rounding */
+#define PERTURBATION    1e-4 /* lengths of the shortest spring */
+#define MARGIN          0.9  /* fraction of the limit that is advised */
+#define GROWTH_SEEN     1e-7 /* growth per step that counts; less is rounding */
+#define CALL_BUDGET     20   /* nominal s of work of a call, if none is given */
+#define METHOD_BUDGET   5    /* and of each of many methods */
+#define REFERENCE_SHARE 0.5  /* of the work for a method, that its reference may take */
 
 /* Context of the worker tasks. */
 struct work {
@@ -43,6 +46,11 @@ static enum cs_status try_safe(struct cs_advice *row,
         }
     }
     row->checked_seconds = trial.result.reached;
+    if (row->verdict == CS_STABILITY_OVER_BUDGET && !(row->checked_seconds > 0)) {
+        row->kind = CS_ADVICE_REFUSED;
+        snprintf(row->message, sizeof row->message,
+                 "the budget ended before a step was tested: a larger --budget is needed");
+    }
     if (cs_outcome_has_reason(trial.result.outcome))
         snprintf(row->message, sizeof row->message, "%.300s", trial.result.message);
     if (row->checked_seconds > 0) {
@@ -132,14 +140,29 @@ static enum cs_status check_limit(struct cs_advice *row,
                                  error);
 }
 
+/* Uses a sound reference whose budget ended up to the time that it reached; tells whether. */
+static bool keep_cut_reference(struct cs_reference *reference) {
+    const struct cs_run_result *end = &reference->run.result;
+    if (reference->exists || end->outcome != CS_OVER_BUDGET || !(end->reached > 0) ||
+        !cs_stability_is_sound(reference->run.monitor.worst_verdict))
+        return false;
+    reference->exists = true;
+    reference->seconds = end->reached;
+    return true;
+}
+
 /* Advice for a method with option dt, in the order of advise.h. Steps above 1e100 s stand for
  * no limit. */
 static enum cs_status advise_fixed(struct cs_advice *row,
                                    const struct cs_sampled_run_settings *settings, double frame,
                                    bool check, struct cs_error *error) {
-    struct cs_reference reference;
-    if (cs_reference_run(&reference, settings, error))
+    struct cs_reference reference, none = {.seconds = settings->seconds};
+    struct cs_sampled_run_settings half = *settings;
+    half.session.run.budget = REFERENCE_SHARE * *settings->session.run.pot;
+    if (cs_reference_run(&reference, &half, error))
         return error->status;
+    const bool is_cut = keep_cut_reference(&reference);
+    row->cut = is_cut ? reference.seconds : 0;
     if (!reference.exists) {
         row->kind = CS_ADVICE_REFUSED;
         snprintf(row->message, sizeof row->message, "the reference run failed: %.280s",
@@ -154,7 +177,7 @@ static enum cs_status advise_fixed(struct cs_advice *row,
     row->seconds = reference.seconds;
     /* theory knows no limit */
     if (row->limit > 1e100)
-        return try_frame(row, settings, &reference, frame, error);
+        return try_frame(row, settings, is_cut ? &none : &reference, frame, error);
     row->kind = row->limit > 0 ? CS_ADVICE_THEORY : CS_ADVICE_NONE;
     row->safe = fmin(MARGIN * row->limit, fmin(frame, 10));
     if (row->kind == CS_ADVICE_NONE)
@@ -213,11 +236,11 @@ static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *err
     const double frame = 1 / advise->was_opened.scene.time.fps;
     trial.session.perturbation =
         PERTURBATION * cs_diagnostics_shortest(&advise->was_opened.system);
-    trial.session.run.budget = advise->budget;
+    trial.session.run.pot = &row->pot;
     trial.session.integrator = row->method = advise->names[task];
     /* only to learn whether the method can follow the scene, and whether it takes dt */
     if (cs_session_open_plan(&session, &trial.session, error)) {
-        cs_process_pool_tick(&work->workers, 1);
+        row->pot = 0;
         return refuse(row, error);
     }
     if (!cs_method_takes_dt(session.method.integrator))
@@ -225,14 +248,19 @@ static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *err
     else if (!advise_fixed(row, &trial, frame, advise->bisect_too, error))
         measure_growth(row, &session.method, error);
     cs_session_close(&session);
-    cs_process_pool_tick(&work->workers, 1);
+    row->pot = 0;
     return error->status;
 }
 
+/* Progress in hundredths of the budget. A method that has ended has none left. */
 static void report(void *ctx, uint32_t ticks) {
     const struct cs_advise *advise = ctx;
+    double left = 0;
+    (void)ticks;
+    for (uint32_t k = 0; k < advise->n; k++)
+        left += fmax(advise->rows[k].pot, 0);
     if (advise->progress)
-        advise->progress(advise->ctx, ticks, advise->n);
+        advise->progress(advise->ctx, (uint32_t)(100 * (1 - left / advise->budget)), 100);
 }
 
 /* The requested methods, or all of the registry. */
@@ -252,7 +280,6 @@ enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error) {
                          .task = advise_task,
                          .progress = report,
                          .progress_ctx = advise,
-                         .silence_max = 5 + 2 * advise->budget,
                          .stop = advise->stop}};
     if (cs_session_open_system(&advise->was_opened, &advise->session, error) ||
         list_methods(advise, error))
@@ -260,6 +287,11 @@ enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error) {
     work.workers.ctx = &work;
     work.workers.n_tasks = advise->n;
     advise->rows = cs_process_pool_shared_alloc(advise->n * sizeof *advise->rows, error);
+    if (!(advise->budget > 0))
+        advise->budget = fmax(CALL_BUDGET, METHOD_BUDGET * advise->n);
+    work.workers.silence_max = cs_hang_seconds(advise->budget / advise->n);
+    for (uint32_t k = 0; advise->rows && k < advise->n; k++)
+        advise->rows[k].pot = advise->budget / advise->n;
     return advise->rows ? cs_process_pool_run(&work.workers, error) : error->status;
 }
 

@@ -40,6 +40,8 @@ struct cs_advice {
     double measured;          /* s, bisected; 0: not asked for; NAN: unknown */
     double speed;             /* m/s, largest of a particle in the trusted run; 0: none */
     double steps, frame_cost; /* steps and wall time in s of a frame with the safe step */
+    double cut;               /* s, where the budget ended the reference; 0: it did not */
+    double pot;               /* nominal s of work that are left, while it is at work */
     char message[320];
 };
 
@@ -56,7 +58,8 @@ struct cs_advise {
     uint32_t n_methods;
     double
         seconds;   /* that the advice is for: of the trusted run and the probe runs, at least */
-    double budget; /* s of processor time of a probe run */
+    double budget; /* nominal s of work of all runs, divided equally among the methods; 0: 20,
+                      or 5 per method. Out: the one used */
     bool bisect_too; /* bisect the limit too */
     uint32_t workers;
     const volatile sig_atomic_t *stop;

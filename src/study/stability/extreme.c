@@ -56,7 +56,8 @@ static void step(struct cs_extreme_row *row, struct cs_session *session, double 
                    : result.outcome == CS_NOT_FINITE  ? CS_STABILITY_NOT_FINITE
                    : result.outcome == CS_UNBOUNDED   ? CS_STABILITY_GLOBAL
                                                       : monitor.worst_verdict;
-    say(row, ending->refused ? result.message : cs_text_get(&text));
+    say(row, ending->refused || result.outcome == CS_OVER_BUDGET ? result.message
+                                                                 : cs_text_get(&text));
     cs_text_finish(&text);
 }
 
@@ -214,7 +215,7 @@ static void report_rows(struct catalogue *catalogue, bool all) {
         if (!row->is_done) {
             row->as_expected = cs_extreme_expects(row->expected, "over budget");
             row->verdict = CS_STABILITY_OVER_BUDGET;
-            say(row, "no step ended within twice the budget");
+            say(row, "no step ended: it was stopped as one that hangs");
         }
         *(row->as_expected ? &extreme->n_met : &extreme->n_missed) += 1;
         if (extreme->report)
@@ -246,8 +247,8 @@ static enum cs_status run_all(struct catalogue *catalogue, struct cs_error *erro
         .progress = progress,
         .progress_ctx = catalogue,
         /* a run ends itself at its budget: only a step that never ends is cut off */
-        .silence_max = 5 + 2 * catalogue->extreme->budget,
-        .task_seconds_max = 2 * catalogue->extreme->budget + 1,
+        .silence_max = cs_hang_seconds(catalogue->extreme->budget),
+        .task_seconds_max = cs_hang_seconds(10 * catalogue->extreme->budget),
         .stop = catalogue->extreme->stop};
     return cs_process_pool_run(&workers, error);
 }

@@ -225,7 +225,7 @@ static enum cs_status distribute(struct cs_stability *map, struct cs_error *erro
                          .task = make_task,
                          .progress = report,
                          .progress_ctx = map,
-                         .silence_max = 5 + 2 * map->settings->budget,
+                         .silence_max = cs_hang_seconds(map->settings->budget),
                          .stop = map->settings->session.run.stop}};
     work.workers.ctx = &work;
     return cs_process_pool_run(&work.workers, error);

@@ -26,6 +26,10 @@ enum { STEPS = 200 };
 #define GRID_RATIO 32
 /* Fraction of the smallest limit by rate so far below which a step is looked at too. */
 #define TIGHTER 0.95
+/* Work of bounds at a state, and of amplification matrices at a look, in passes over the
+ * forces, about. */
+#define BOUND_PASSES   10
+#define TIGHTEN_PASSES 500
 
 /* Context of the steps of one run. */
 struct way {
@@ -48,6 +52,13 @@ static double limit_by_rate(double w, double r) {
     return 4 / (r + sqrt(r * r + 4 * w * w));
 }
 
+/* Subtracts passes over the forces that no run counts from the work that is left. */
+static void charge(struct way *way, double passes) {
+    const struct cs_stiffest_modes *modes = &way->theory->modes;
+    if (modes->pot)
+        *modes->pot -= passes * modes->pass_seconds;
+}
+
 /* True if the stiffness of contact at the state leaves a clearly smaller step than any before.
  * The bounds cost about an evaluation of the force, a search for the mode fifty and more.
  * Dampers are left to the looks of the grid. */
@@ -56,6 +67,7 @@ static bool is_tightest(struct way *way, const struct cs_eval *at) {
     if (!cs_spectral_bounds_depend_on_state(way->system))
         return false;
     cs_spectral_bounds_rate(way->system, at, false, way->theory->modes.dx, &w, &delta);
+    charge(way, BOUND_PASSES);
     const double limit = limit_by_rate(w, 2 * way->system->view.delta);
     if (!(limit < TIGHTER * way->smallest_rate))
         return false;
@@ -69,6 +81,7 @@ static void tighten(struct way *way, double t, const double *x, bool with_damper
     struct cs_reference *reference = way->reference;
     struct cs_theory_limit *smallest = &reference->smallest_limit;
     const double before = smallest->dt;
+    charge(way, TIGHTEN_PASSES);
     if (smallest->dt < HUGE_VAL)
         cs_theory_tighten(way->theory, x, with_dampers, smallest, way->error);
     else if (way->is_explicit && cs_spectral_bounds_depend_on_state(way->system))
@@ -190,8 +203,11 @@ static enum cs_status run_with(struct cs_reference *reference, struct cs_session
         way.theory = &theory;
         if (cs_theory_init(&theory, &session->system, session->method.integrator,
                            session->method.options, growth_of(&session->system, settings),
-                           error) ||
-            cs_theory_gershgorin(&theory, session->system.state, &reference->gershgorin_limit,
+                           error))
+            goto done;
+        theory.modes.pot = settings->session.run.pot;
+        theory.modes.pass_seconds = cs_pass_seconds(&session->system);
+        if (cs_theory_gershgorin(&theory, session->system.state, &reference->gershgorin_limit,
                                  error) ||
             cs_theory_at(&theory, session->system.state, &reference->start_limit, error))
             goto done;

@@ -87,6 +87,8 @@ static void apply(struct cs_stiffest_modes *modes, const double *x, double a, do
                                .dx = a != 0 ? dx : NULL,
                                .dv = b != 0 ? dv : NULL};
     cs_terms_jvp(system, &at, y);
+    if (modes->pot)
+        *modes->pot -= modes->pass_seconds;
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
             y[c * n + i] *= modes->root[i];

@@ -37,6 +37,7 @@ struct cs_stiffest_modes {
     double *root;                   /* (n) root of 1/m */
     double *last_vector;            /* (3,n) the motion found last, where the next starts */
     bool has_start;
+    double pass_seconds, *pot; /* nominal s of a product, and where it is subtracted, or NULL */
     struct cs_arena arena;
 };
 /* Vectors of the Krylov space per restart; each costs one product with the Jacobian and one
