@@ -14,6 +14,7 @@
 #include "planted_terms.h"
 #include "sim/energy_ledger.h"
 #include "sim/registry.h"
+#include "study/stability_verdict.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -268,4 +269,45 @@ TEST(energy_ledger_has_a_column_for_each) {
     ck_assert_double_eq(entry(&account, "events_force"), 0);
     close_account(&cloth, &account);
     planted = (struct planted){0};
+}
+
+/* What cs_singular_force_print adds for a run of a sheet that ends after so long. */
+static void find_singular(double seconds, struct cs_text *out) {
+    const struct cs_session_settings settings = {.scene = "sheet.json", .text = SHEET};
+    struct cs_error error = {0};
+    ck_assert_int_eq(cs_singular_force_print(&settings, seconds, 4000, out, &error), CS_OK);
+}
+
+/* When rk4 ends with a step, in s. */
+static double end_by_rk4(double dt) {
+    const struct cs_sampled_run_settings settings = {
+        .session = {.scene = "sheet.json", .text = SHEET, .integrator = "rk4", .dt = dt},
+        .seconds = 1,
+        .samples = 10};
+    struct cs_sampled_run run;
+    struct cs_error error = {0};
+    ck_assert_int_eq(cs_sampled_run_execute(&run, &settings, &error), CS_OK);
+    ck_assert(cs_outcome_is_blow_up(run.result.outcome));
+    return run.result.time;
+}
+
+/* A trap that pushes away, q'' = K q^3 with K = 400/(m s)^2 from q = 0, q' = 1 m/s: q is
+ * infinite at t = (2/K)^(1/4) times the integral of du/sqrt(1 + u^4), 1.8540747, and the energy
+ * is unbounded before. A step that is too long ends elsewhere at half the step. */
+TEST(singular_force_is_told_from_a_long_step) {
+    struct cs_text found = {0};
+    double t = 0;
+    planted = (struct planted){.trap = -400 * MASS};
+    find_singular(1, &found);
+    ck_assert_int_eq(sscanf(cs_text_get(&found), "a force is singular at t = %lf s, ", &t), 1);
+    const double end = 1.8540747 * pow(2.0 / 400, 0.25);
+    ck_assert_msg(t > 0.8 * end && t < end, "%g s, expected 0.8 to 1 times %g s", t, end);
+    for (double dt = 1e-3; dt > 1e-4; dt /= 2)
+        ck_assert_double_eq_tol(end_by_rk4(dt), t, 0.02 * end);
+    cs_text_finish(&found);
+    planted = (struct planted){.resist = 1e3};
+    ck_assert_double_gt(end_by_rk4(0.05), 2 * end_by_rk4(0.0125));
+    find_singular(1, &found);
+    ck_assert_msg(!found.length, "%s", cs_text_get(&found));
+    cs_text_finish(&found);
 }

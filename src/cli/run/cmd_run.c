@@ -12,6 +12,7 @@
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
 #include "model/force/diagnostics.h"
+#include "study/stability_verdict.h"
 
 #include <string.h>
 #include <strings.h>
@@ -234,6 +235,18 @@ static enum cs_status print_table(const struct cs_job *job, struct cs_error *err
     return cs_print_out(taken ? stderr : stdout, &table, error);
 }
 
+/* Adds a singular force, if that is why the run ended or made energy; else the advice. */
+static void add_cause(const struct cs_job *job, const char *advice, struct cs_text *out) {
+    const struct cs_run *run = &job->session.run;
+    struct cs_text found = {0};
+    struct cs_error error = {0};
+    const double end = cs_outcome_is_blow_up(run->outcome) ? run->blow_up.time : run->t;
+    cs_singular_force_print(&job->settings->session, end + 1 / run->system->scene->time.fps,
+                            run->counts.forces, &found, &error);
+    cs_text_add(out, found.length ? "; %s" : "%s", found.length ? cs_text_get(&found) : advice);
+    cs_text_finish(&found);
+}
+
 /* Warns of a strain limit that was missed and of a physically impossible final state, whatever
  * else is printed. */
 static void print_watch(const struct cs_job *job) {
@@ -251,8 +264,8 @@ static void print_watch(const struct cs_job *job) {
     if (found.length) {
         const struct cs_energy energy =
             cs_diagnostics_energy(run->system, run->t, run->x, run->v);
-        cs_text_add(&found, "; %.3g J at the end (clothsim advise finds stable steps)",
-                    cs_energy_without_gravity(&energy));
+        cs_text_add(&found, "; %.3g J at the end", cs_energy_without_gravity(&energy));
+        add_cause(job, " (clothsim advise finds stable steps)", &found);
         cs_print_message(cs_text_get(&found));
     }
     cs_text_finish(&found);
@@ -269,6 +282,8 @@ static enum cs_status print_outcome(const struct cs_job *job, bool strict,
     }
     cs_report_print_outcome(job, &outcome);
     cs_text_add(&outcome, "; %u of %u frames were finished", run->frame, job->frames);
+    if (cs_outcome_is_blow_up(run->outcome) || run->outcome == CS_GAVE_UP)
+        add_cause(job, "", &outcome);
     if (run->outcome == CS_INTERRUPTED)
         cs_fail(error, CS_ERR_INTERRUPT, "%s", cs_text_get(&outcome));
     else if (strict && (cs_outcome_is_blow_up(run->outcome) || run->outcome == CS_GAVE_UP))

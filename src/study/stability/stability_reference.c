@@ -152,6 +152,19 @@ static bool run_once(struct cs_reference *reference,
            cs_stability_is_sound(reference->run.monitor.worst_verdict);
 }
 
+/* Sets the message: a singular force, or else how the last run ended. */
+static void name_failure(struct cs_reference *reference,
+                         const struct cs_sampled_run_settings *settings,
+                         struct cs_error *error) {
+    struct cs_text why = {0};
+    cs_singular_force_print(&settings->session, settings->seconds, reference->run.steps, &why,
+                            error);
+    if (!why.length)
+        cs_text_add(&why, "velocity-verlet: %s", reference->run.result.message);
+    snprintf(reference->message, sizeof reference->message, "%s", cs_text_get(&why));
+    cs_text_finish(&why);
+}
+
 /* Halves the step until a run succeeds. A run out of budget ends the attempts, because a
  * shorter step costs more. */
 static void run_reference(struct cs_reference *reference,
@@ -163,9 +176,8 @@ static void run_reference(struct cs_reference *reference,
             break;
         dt /= 2;
     }
-    if (!reference->exists)
-        snprintf(reference->message, sizeof reference->message, "velocity-verlet: %.280s",
-                 reference->run.result.message);
+    if (!reference->exists && !error->status)
+        name_failure(reference, settings, error);
 }
 
 /* Growth rate in 1/s that the run cannot show: ln(length / perturbation) / seconds, from the
