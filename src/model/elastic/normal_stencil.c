@@ -42,6 +42,7 @@ void cs_normal_stencil_state(const struct cs_bending_stencil *of, size_t n, cons
     cs_vec3_cross(at->x.d[0], at->x.d[1], at->normal);
     for (int c = 0; c < 3; c++)
         at->normal[c] /= at->product;
+    // rates over time
     add_normal_change(at->product, &at->x, &at->v, at->normal_rate);
     for (int a = 0; a < 3; a++) {
         at->kappa[a] = cs_vec3_dot(at->x.k[a], at->normal);
@@ -123,6 +124,7 @@ static void change_reaction(const struct cs_normal_state *at, const struct cs_no
     for (int a = 0; a < 3; a++)
         for (int c = 0; c < 3; c++)
             out->moment[a][c] = dM[a] * at->normal[c] + M[a] * by->normal[c];
+    // product rule: m goes by M and k, the ends by m and the differences
     add_lever(at->product, M, at->x.k, m);
     add_lever(at->product, dM, at->x.k, dm);
     add_lever(at->product, M, dx->k, dm);
