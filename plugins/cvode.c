@@ -59,7 +59,7 @@ static const struct cs_option bdf_rows[] = {
               "while steps are well below 1/omega; orders above 2 by request or for strong "
               "damping use stability limit detection"),
     CS_OPTION(struct cvode_options, linear_rtol, "", 1e-4, 1e-14, 0.5,
-              "relative residual of the linear solves"),
+              "least relative residual of the linear solves: SUNDIALS may allow up to 0.05"),
 };
 
 static const struct cs_option adams_rows[] = {
