@@ -58,8 +58,8 @@ static const struct cs_option bdf_rows[] = {
               "maximum order; 0: 5 if damping is strong and rtol below 1e-3, else 2, and 5 "
               "while steps are well below 1/omega; orders above 2 by request or for strong "
               "damping use stability limit detection"),
-    CS_OPTION(struct cvode_options, linear_rtol, "", 1e-4, 1e-14, 0.5,
-              "least relative residual of the linear solves: SUNDIALS may allow up to 0.05"),
+    CS_OPTION(struct cvode_options, linear_rtol, "", 0, 0, 0.5,
+              "relative residual of the linear solves; 0: what SUNDIALS allows, 1e-4 to 0.05"),
 };
 
 static const struct cs_option adams_rows[] = {
@@ -242,7 +242,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, int 
     // is off by less than the tolerance, and the energy by a factor of thousands
     self->base.judges_contact = bdf;
     if (sundials_open(&self->base, host, &library, bdf ? BDF_VECTORS : ADAMS_VECTORS,
-                      bdf ? self->asked.linear_rtol : 0) != CS_STEP_OK)
+                      bdf ? &self->asked.linear_rtol : NULL) != CS_STEP_OK)
         return CS_STEP_FAIL;
     if (bdf)
         sundials_overstep_begin(&self->base);

@@ -43,7 +43,7 @@ struct sundials {
     struct _generic_SUNLinearSolver solver;
     struct _generic_SUNLinearSolver_Ops solver_ops;
     struct tolerance tolerance;
-    double linear_rtol; /* relative residual of the linear solves */
+    double linear_rtol; /* relative residual of the linear solves; 0: what the library allows */
     double *b;          /* (3,n), right-hand side of the reduced system */
     int64_t max_steps;  /* in an advance */
     double

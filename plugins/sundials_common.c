@@ -193,10 +193,10 @@ enum cs_step sundials_advance(void *object, double t0, double t1, double *x, dou
 
 enum cs_step sundials_open(struct sundials *self, const struct cs_host *host,
                            const struct sundials_library *library, int n_vectors,
-                           double linear_rtol) {
+                           const double *linear_rtol) {
     self->host = host;
     self->library = library;
-    self->linear_rtol = linear_rtol;
+    self->linear_rtol = linear_rtol ? *linear_rtol : 0;
     if (!open_context(self))
         return host->fail(host->ctx, "SUNDIALS made no context: out of memory");
     if (sundials_vectors_init(&self->vectors, host, n_vectors, self->context) != CS_STEP_OK)
@@ -205,7 +205,7 @@ enum cs_step sundials_open(struct sundials *self, const struct cs_host *host,
     if (CS_HAS(host, max_step_fraction) && host->max_step_fraction &&
         !(self->y_before = host->alloc(host->ctx, 6 * sizeof(double) * host->view->n)))
         return CS_STEP_FAIL;
-    return linear_rtol > 0 ? sundials_solver_init(self) : CS_STEP_OK;
+    return linear_rtol ? sundials_solver_init(self) : CS_STEP_OK;
 }
 
 void sundials_close(struct sundials *self) {

@@ -11,12 +11,12 @@
 
 #include "sundials.h"
 
-/* Creates context, n_vectors vectors and the state; with linear_rtol above 0 the linear
+/* Creates context, n_vectors vectors and the state; unless linear_rtol is NULL the linear
  * solver too. Returns CS_STEP_FAIL after a failure that the host has reported; call
  * sundials_close then too. */
 enum cs_step sundials_open(struct sundials *self, const struct cs_host *host,
                            const struct sundials_library *library, int n_vectors,
-                           double linear_rtol);
+                           const double *linear_rtol);
 /* Frees the context; call it after the library's memory was freed. self may be half made. */
 void sundials_close(struct sundials *self);
 

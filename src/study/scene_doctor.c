@@ -250,7 +250,7 @@ static double step_of(const struct cs_session *session) {
     if (!row || row->type != CS_REAL || integrator->traits & CS_ADAPTIVE)
         return 0;
     memcpy(&dt, (const char *)session->method.options + row->offset, sizeof dt);
-    return dt > 0 ? fmin(dt, frame) : integrator->traits & CS_IMPLICIT ? frame : 0;
+    return fmin(dt, frame);
 }
 
 /* m, distance of neighbours in a grid; 0 for a mesh. */

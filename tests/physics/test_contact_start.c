@@ -35,7 +35,8 @@ static const struct {
      "bodies[0] starts within the contact range of colliders[0]: ", 0.2 * G * 0.4 / 11, G},
     // two sheets over a floor, each too near to the next
     {SHEET("8, 8", "0", "0.01", "0") ", " SHEET("8, 8", "0.02", "0.02", "0.03"),
-     "\"colliders\": [{\"floor\": {\"height\": 0}}], \"pairs\": \"all\", ",
+     "\"colliders\": [{\"floor\": {\"height\": 0}, \"thickness\": 0.0571428571}], "
+     "\"pairs\": \"all\", ",
      "bodies[0] starts within the contact range of ", 0.4 * G * 0.4 / 7, G},
     // two pairs, of which the second is too near: the first is measured without it
     {SHEET("8, 8", "0", "0", "0") ", " SHEET("8, 8", "0.02", "0.05", "0.03") ", " SHEET(
@@ -43,7 +44,8 @@ static const struct {
      "\"pairs\": \"all\", ",
      "bodies[2] starts within the contact range of bodies[3]: ", 0.8 * G * 0.4 / 7, G},
     // without gravity 1e-3 k D^2 per particle
-    {SHEET("12, 12", "0", "0.005", "0"), "\"colliders\": [{\"floor\": {\"height\": 0}}], ",
+    {SHEET("12, 12", "0", "0.005", "0"),
+     "\"colliders\": [{\"floor\": {\"height\": 0}, \"thickness\": 0.0363636364}], ",
      "bodies[0] starts within the contact range of colliders[0]: ",
      144 * 1e-3 * 100 * 0.16 / 121, 0},
 };

@@ -247,8 +247,10 @@ static double frame_steps(const char *scene, const char *integrator, const char 
         .scene = scene, .overrides = &coarse, .n_overrides = 1, .integrator = integrator};
     struct cs_error error = {0};
     struct fixture cloth = {0};
-    cs_session_open(&cloth.session, &settings, &error);
+    cs_session_open_system(&cloth.session, &settings, &error);
     ck_assert_msg(!error.status, "%s", error.message);
+    fixture_step_by_frames(&cloth.session);
+    fixture_start(&cloth);
     cloth.system = &cloth.session.system;
     cloth.n = cloth.system->view.n;
     cloth.x = cloth.system->state;

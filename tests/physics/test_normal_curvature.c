@@ -180,7 +180,8 @@ static double rest_of_end(const struct cs_bending_stencil *of, const double *res
     return distance(rest, n, of->at[of->ends[2 * k]], of->at[of->ends[2 * k + 1]]);
 }
 
-/* lambda of docs/notes/singular-states.md: the largest growth of a distance within a stencil. */
+/* lambda of docs/notes/singular-states.md: the largest growth of a distance within a stencil.
+ */
 static double growth_of(const struct cs_bending_stencil *of, const double *rest,
                         const double *x, size_t n) {
     double found = 0;

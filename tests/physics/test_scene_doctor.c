@@ -105,6 +105,7 @@ static void check(const char *text, const struct cs_override *override, uint32_t
     cs_session_open(&session,
                     &(struct cs_session_settings){.scene = "trap.json",
                                                   .text = text,
+                                                  .integrator = "implicit-linearised:dt=frame",
                                                   .overrides = override,
                                                   .n_overrides = n_overrides},
                     &error);

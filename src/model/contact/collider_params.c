@@ -48,9 +48,9 @@ static double energy_of(const struct cs_system *system, uint32_t collider) {
     return energy;
 }
 
-/* m, the range that nobody gave: RANGE_FRACTION of the shortest spring, or the distance at which
- * a free particle starts, down to SHRINK_MIN of it: a body may start closer than its coarse
- * grid would have it. */
+/* m, the range that nobody gave: RANGE_FRACTION of the shortest spring, or the distance at
+ * which a free particle starts, down to SHRINK_MIN of it: a body may start closer than its
+ * coarse grid would have it. */
 static double default_range(const struct cs_system *system, uint32_t collider,
                             double shortest) {
     const size_t n = system->view.n;
@@ -58,6 +58,9 @@ static double default_range(const struct cs_system *system, uint32_t collider,
     const double whole = CS_RANGE_FRACTION * shortest, least = SHRINK_MIN * whole;
     struct cs_posed_collider obstacle;
     double range = whole, normal[3];
+    // who asks for bodies to be moved out of the range means all of it
+    if (system->scene->contact.start == CS_CONTACT_START_MOVE_OUT)
+        return whole;
     cs_posed_collider_at(system, collider, 0, &obstacle);
     for (size_t i = 0; i < n; i++) {
         const double p[3] = {x[i], x[n + i], x[2 * n + i]};
