@@ -19,6 +19,9 @@ enum {
     FILE_BYTES_MAX = 512 * 1024 * 1024
 };
 
+/* of a texture: 8192 x 8192 in all, which with its smaller copies takes 740 MB */
+enum { TEXTURE_PIXELS_MAX = 1 << 26 };
+
 /* deflate compresses by a factor of about 1032 at most */
 enum { PACKING_MAX = 1100 };
 
@@ -29,7 +32,8 @@ struct reader {
     png_structp png;
     png_infop info;
     struct cs_image image;
-    bool on_white; /* blend alpha over white; else drop it */
+    bool on_white;     /* blend alpha over white; else drop it */
+    size_t pixels_max; /* 0: any number */
     char message[128];
     const char *const *keys; /* (n) of the texts that are wanted */
     char **values;           /* (n) of the caller */
@@ -81,6 +85,12 @@ static void take_image(struct reader *reader) {
     /* a small file that claims to be huge is not worth its memory */
     if (png_get_rowbytes(reader->png, reader->info) * height / PACKING_MAX > reader->length)
         png_error(reader->png, "the file is too short for the size that it states");
+    if (reader->pixels_max && (size_t)width * height > reader->pixels_max) {
+        char found[sizeof reader->message];
+        snprintf(found, sizeof found, "it has %u x %u pixels, expected at most %zu in all",
+                 width, height, reader->pixels_max);
+        png_error(reader->png, found);
+    }
     image->rgb = calloc((size_t)width * height, 3);
     if (!image->rgb)
         png_error(reader->png, "out of memory");
@@ -192,7 +202,8 @@ enum cs_status cs_png_read_texts(const char *path, const char *const *keys, uint
 }
 
 enum cs_status cs_png_read(const char *path, struct cs_image *image, struct cs_error *error) {
-    return cs_png_read_texts(path, NULL, 0, NULL, image, error);
+    struct reader reader = {.pixels_max = TEXTURE_PIXELS_MAX};
+    return read_file(&reader, path, image, error);
 }
 
 enum cs_status cs_png_read_on_white(const char *path, struct cs_image *image,

@@ -56,12 +56,13 @@ static inline enum cs_status cs_png_write(const char *path, const struct cs_imag
     return status;
 }
 
-/* Reads any PNG of at most 16384 x 16384 pixels as 8-bit RGB (alpha dropped, grey and palette
- * widened). The caller frees image->rgb. On failure CS_ERR_FILE and *image is empty. */
+/* Reads any PNG of at most 2^26 pixels, with sides of at most 16384, as 8-bit RGB (alpha
+ * dropped, grey and palette widened). The caller frees image->rgb. On failure CS_ERR_FILE and
+ * *image is empty. */
 enum cs_status cs_png_read(const char *path, struct cs_image *image, struct cs_error *error);
 
-/* The same, with the values of text chunks: values (n), malloc'd; NULL if the file has no such
- * key. On failure all of them are NULL. */
+/* The same for any number of pixels, with the values of text chunks: values (n), malloc'd; NULL
+ * if the file has no such key. On failure all of them are NULL. */
 enum cs_status cs_png_read_texts(const char *path, const char *const *keys, uint32_t n,
                                  char **values, struct cs_image *image, struct cs_error *error);
 

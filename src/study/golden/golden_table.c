@@ -8,15 +8,23 @@
 #include <string.h>
 #include <unistd.h>
 
+enum { FRAMES_MAX = 10000000 };
+
 /* Cuts a line into fields, in place. */
 static enum cs_status read_row(const struct cs_golden_table *table, struct cs_golden_row *row,
                                char *line, struct cs_error *error) {
     char *fields[CS_GOLDEN_IMAGE_FIELDS];
     const uint32_t n = cs_csv_cut(line, '\t', fields, table->n_fields);
-    const uint32_t frames = n == table->n_fields ? (uint32_t)strtoul(fields[3], NULL, 10) : 0;
-    if (frames == 0)
-        return cs_fail(error, CS_ERR_FILE, "%s: a row has less than %u fields or no frames: %s",
-                       table->path, table->n_fields, line);
+    const char *found = n == table->n_fields ? fields[3] : "";
+    const size_t digits = strspn(found, "0123456789");
+    // more than eight digits are not read, so that none is lost
+    const uint32_t frames =
+        digits < 9 && !found[digits] ? (uint32_t)strtoul(found, NULL, 10) : 0;
+    if (frames == 0 || frames > FRAMES_MAX)
+        return cs_fail(error, CS_ERR_FILE,
+                       "%s: a row has less than %u fields, or \"%.30s\" frames, expected 1 to "
+                       "%d: %s",
+                       table->path, table->n_fields, found, FRAMES_MAX, line);
     row->run = (struct cs_golden_run){fields[0], fields[1], fields[2], frames};
     row->image = n == CS_GOLDEN_IMAGE_FIELDS ? fields[4] : NULL;
     row->hash = fields[n - 2];
