@@ -317,7 +317,7 @@ static enum cs_status print_isolated(struct output *output, struct cs_error *err
         cs_isolate_run(&isolate, &death);
         row.check = output->progress->check;
         // done, or what is no fault of a check: usage, memory, a module that cannot be loaded
-        if (death.status != CS_ERR_MODULE || !row.check) {
+        if ((death.status != CS_ERR_MODULE && death.status != CS_ERR_INTERNAL) || !row.check) {
             *error = death;
             return error->status;
         }

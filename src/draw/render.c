@@ -48,6 +48,9 @@ static enum cs_status open_path(const char *path, enum cs_renderer_kind kind,
             "renderer %s: %s has interface version %u, %u expected: install clothsim "
             "again",
             name, path, found->abi, CS_RENDERER_ABI);
+    if (!found->create || !found->paint || !found->description || !found->destroy)
+        return cs_fail(error, CS_ERR_MODULE,
+                       "renderer %s: %s lacks a call: install clothsim again", name, path);
     *renderer = found;
     return CS_OK;
 }

@@ -100,8 +100,10 @@ static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
     decide(plan, CS_FEATURE_DAMPING,
            springs && (any_body(scene, has_damping) || cs_event_key_changes(scene, ".damping")),
            "springs.damping is above 0", "springs.damping is 0");
-    for (uint32_t k = 0; k < cs_n_terms; k++)
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        cs_term_assert(cs_terms[k]);
         plan->forces[k] = cs_terms[k]->plan(scene);
+    }
     decide(plan, CS_FEATURE_AREA, cs_terms_use(scene, plan) & CS_USE_AREA,
            "a force is per area", "no force is per area");
     decide(plan, CS_FEATURE_VELOCITY_LOSS,

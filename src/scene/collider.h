@@ -81,6 +81,12 @@ struct cs_shape {
                                 struct cs_error *error);
 };
 
+/* Asserts that a shape has the calls that may not be NULL. */
+static inline void cs_shape_assert(const struct cs_shape *shape) {
+    CS_ASSERT(shape->pose && shape->distance && shape->smooth && shape->meets_line &&
+              shape->triangles);
+}
+
 #define X(name, keys, text)                                                                    \
     extern const struct cs_table cs_##name##_keys;                                             \
     extern const struct cs_shape cs_shape_##name;

@@ -154,6 +154,7 @@ static enum cs_status check_collider(const struct cs_check *at, uint32_t c,
     const struct cs_shape *shape = cs_collider_shape(collider);
     char path[64];
     snprintf(path, sizeof path, "colliders[%u]", c);
+    cs_shape_assert(shape);
     return shape->check ? shape->check(at, path, collider) : CS_OK;
 }
 

@@ -110,12 +110,18 @@ static const char *signal_text(int number) {
     return "";
 }
 
-/* The handler. A signal of the program's own goes to the handlers of before. */
+/* The handler. A signal of the program's own is noted, and goes to the handlers of before. An
+ * abort has told its reason. */
 static void report(int number) {
     /* malloc sets ENOMEM when it fails, and libraries rarely test for it: no hook is needed */
     const bool starved = errno == ENOMEM;
     struct cs_crash_call *call = find_call();
     if (!call) {
+        static const char crashed[] = "clothsim: clothsim itself crashed\n";
+        calls->own_signal = number;
+        if (calls == &own && number != SIGABRT &&
+            write(STDERR_FILENO, crashed, sizeof crashed - 1) < 0)
+            _exit(cs_status_exit_code(CS_ERR_INTERNAL));
         for (size_t k = 0; k < SIGNALS; k++)
             sigaction(signals[k].number, before + k, NULL);
         raise(number);
@@ -281,6 +287,12 @@ enum cs_status cs_crash_report_print(const struct cs_crash_log *log, int end,
     print_end(end, how);
     if (!call)
         return cs_fail(error, CS_ERR_INTERNAL, "the run was ended by %s", how);
+    if (log->own_signal && !call->signal)
+        return cs_fail(
+            error, CS_ERR_INTERNAL,
+            "clothsim itself crashed%s; the last call of a module, %s \"%s\" %s, had "
+            "returned",
+            signal_text(log->own_signal), call->kind, call->name, call->place);
     if (call->signal == ENDED_BY_EXIT)
         describe(call, "ended the program ", "", text);
     else if (call->signal == ENDED_BY_CHANGE)

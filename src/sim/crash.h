@@ -32,6 +32,7 @@ struct cs_crash_call {
 /* The calls of both sides. Zeroed: no calls yet. */
 struct cs_crash_log {
     struct cs_crash_call calls[CS_CRASH_SIDES];
+    int own_signal; /* the fatal signal of the program itself, in no call; 0: none */
 };
 
 /* A call begins. Until cs_crash_forget a fatal signal or an exit prints one line (`integrator
@@ -93,7 +94,7 @@ const struct cs_crash_call *cs_crash_find_silent(const struct cs_crash_patience 
 
 /* Reports how a process ended, from the log of its calls. end: its status as wait gives it,
  * not a success. Returns CS_ERR_MODULE, CS_ERR_MEMORY if an allocation had failed, or
- * CS_ERR_INTERNAL if it made no calls; the message is in *error. */
+ * CS_ERR_INTERNAL if it crashed in no call or made none; the message is in *error. */
 enum cs_status cs_crash_report_print(const struct cs_crash_log *log, int end,
                                      struct cs_error *error);
 

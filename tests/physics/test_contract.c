@@ -5,6 +5,7 @@
  * put into a system alone, on a cloth that is pulled, sheared and perturbed. Central
  * differences with a step of 1e-6: truncation is near 1e-11 and rounding near 1e-9 of the
  * largest entry. */
+#include "../unit/unit.h"
 #include "fixture.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
@@ -98,26 +99,38 @@ TEST(bits_and_calls_agree) {
                             CS_PART_ELASTIC | CS_PART_ELASTIC_DAMPING;
     for (uint32_t k = 0; k < cs_n_terms; k++) {
         const struct cs_term *term = cs_terms[k];
-        const bool linearised = term->part_bits & CS_PART_LINEARISED;
-        const int shares = !!term->add_scalar + !!term->add_blocks + !!term->add_diagonal;
-        const bool passive = !(term->part_bits & ~(CS_PART_LINEARISED | CS_PART_WITH_ENERGY));
-        ck_assert_msg(term->name && term->plan && term->add_force, "force %u is half made", k);
+        cs_term_assert(term);
         ck_assert_msg(term->part_bits && !(term->part_bits & own_bits & ~shared),
                       "%s: its bit is another's", term->name);
-        ck_assert_msg(!linearised || term->add_jvp, "%s: in the matrix, no jvp", term->name);
-        ck_assert_msg(shares == linearised, "%s: %d shares of the matrix", term->name, shares);
-        ck_assert_msg(!term->add_blocks == !term->add_approach,
-                      "%s: only one of add_blocks and add_approach", term->name);
-        ck_assert_msg(!linearised || term->add_bound || term->add_state_bound,
-                      "%s: in the matrix, no bound", term->name);
-        ck_assert_msg(!(term->part_bits & CS_PART_WITH_ENERGY) == !term->energy,
-                      "%s: energy and bits differ", term->name);
-        ck_assert_msg(passive || term->max_acceleration,
-                      "%s: neither an energy nor a greatest force", term->name);
         own_bits |= term->part_bits & ~shared;
         for (uint32_t j = 0; j < k; j++)
             ck_assert_str_ne(term->name, cs_terms[j]->name);
     }
+}
+
+/* A force with one of its calls gone, or half a pair of calls more, is told at once. */
+TEST(a_half_made_force_aborts) {
+    static const size_t calls[] = {offsetof(struct cs_term, plan),
+                                   offsetof(struct cs_term, add_force),
+                                   offsetof(struct cs_term, energy),
+                                   offsetof(struct cs_term, add_scalar),
+                                   offsetof(struct cs_term, add_blocks),
+                                   offsetof(struct cs_term, add_approach),
+                                   offsetof(struct cs_term, prepare_matrix),
+                                   offsetof(struct cs_term, add_matrix_product),
+                                   offsetof(struct cs_term, friction_chunks),
+                                   offsetof(struct cs_term, store_friction),
+                                   offsetof(struct cs_term, add_diagonal)};
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        for (size_t c = 0; c < LENGTH(calls); c++) {
+            struct cs_term term = *cs_terms[k];
+            void (*call)(void);
+            memcpy(&call, (const char *)&term + calls[c], sizeof call);
+            // one that is called by nothing here
+            call = call ? NULL : (void (*)(void))abort;
+            memcpy((char *)&term + calls[c], &call, sizeof call);
+            UNIT_ASSERT_ABORTS(cs_term_assert(&term));
+        }
 }
 
 TEST(every_force_acts_here) {

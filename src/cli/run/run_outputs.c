@@ -22,6 +22,7 @@ _Static_assert((int)OUTPUTS <= (int)CS_RUN_OUTPUTS_MAX, "too many outputs for on
 /* File or folder of an output; NULL: none. */
 static const char *path_of(const struct cs_job *job, const struct cs_run_output *output) {
     const char *path = NULL;
+    CS_ASSERT(output->option || !output->is_ours);
     if (output->option)
         memcpy(&path, (const char *)job->settings + output->path, sizeof path);
     return path && !output->is_ours && !strcmp(path, "-") ? NULL : path;

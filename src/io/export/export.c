@@ -70,7 +70,8 @@ enum cs_status cs_export_open(struct cs_export *export,
         const struct cs_export_writer *writer = cs_export_writers[k];
         if (settings->formats & 1u << k)
             export->states[k] = cs_arena_alloc(&export->arena, writer->size, error);
-        if (export->states[k])
+        CS_ASSERT(writer->add && writer->size);
+        if (export->states[k] && writer->open)
             writer->open(export->states[k], &export->source, &export->arena, error);
     }
     /* colliders at rest keep the positions that they get now */
@@ -144,7 +145,7 @@ enum cs_status cs_export_finish(struct cs_export *export, bool goes_on,
 
 void cs_export_close(struct cs_export *export) {
     for (uint32_t k = 0; k < CS_N_EXPORT_FORMATS; k++)
-        if (export->states[k])
+        if (export->states[k] && cs_export_writers[k]->close)
             cs_export_writers[k]->close(export->states[k]);
     cs_arena_finish(&export->arena);
     *export = (struct cs_export){0};

@@ -144,8 +144,8 @@ struct cs_export_source {
     const struct cs_seams *seams; /* NULL: none */
 };
 
-/* A format. Calls may be NULL if there is nothing to do; they fail with CS_ERR_FILE or
- * CS_ERR_MEMORY. */
+/* A format. Calls but `add` may be NULL if there is nothing to do; they fail with CS_ERR_FILE
+ * or CS_ERR_MEMORY. */
 struct cs_export_writer {
     bool holds_values;        /* beside positions */
     const char *ending;       /* of the files BODIES_00012.ENDING of samples; NULL: none */

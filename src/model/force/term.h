@@ -57,7 +57,9 @@ struct cs_term {
     void (*add_jvp)(const struct cs_system *system, const struct cs_eval *at, double *df);
 
     /* --- its energy: with a bit of CS_PART_WITH_ENERGY --- */
-    double (*energy)(const struct cs_system *system, const struct cs_eval *at); /* J */
+    /* J; at least 0 in every state, but for CS_ENERGY_GRAVITY: the blow-up check holds the sum
+     * against what the scene can have. A potential such as -G m / r needs a shift. */
+    double (*energy)(const struct cs_system *system, const struct cs_eval *at);
     enum cs_energy_kind energy_kind;
 
     /* --- its columns in the energy ledger (sim/energy_ledger.h) --- */

@@ -11,6 +11,19 @@ const struct cs_term *const cs_terms[] = {CS_TERM_LIST(X)};
 const uint32_t cs_n_terms = sizeof cs_terms / sizeof *cs_terms;
 _Static_assert(sizeof cs_terms / sizeof *cs_terms <= CS_TERMS_MAX, "a plan has a row for each");
 
+void cs_term_assert(const struct cs_term *term) {
+    const bool linearised = term->part_bits & CS_PART_LINEARISED;
+    CS_ASSERT(term->name && term->plan && term->add_force && term->part_bits);
+    CS_ASSERT(!!term->energy == !!(term->part_bits & CS_PART_WITH_ENERGY));
+    CS_ASSERT(!!term->add_scalar + !!term->add_blocks + !!term->add_diagonal == linearised);
+    CS_ASSERT(!linearised || (term->add_jvp && (term->add_bound || term->add_state_bound)));
+    CS_ASSERT(!term->add_blocks == !term->add_approach);
+    CS_ASSERT(!term->prepare_matrix == !term->add_matrix_product);
+    CS_ASSERT(!term->friction_chunks == !term->store_friction);
+    CS_ASSERT(!(term->part_bits & ~(CS_PART_LINEARISED | CS_PART_WITH_ENERGY)) ||
+              term->max_acceleration);
+}
+
 /* Arguments of the loops over blocks. */
 struct job {
     const struct cs_system *system;

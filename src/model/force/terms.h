@@ -22,6 +22,10 @@
 CS_TERM_LIST(X)
 #undef X
 
+/* Asserts that a force has the calls that its bits ask for, and no half of a pair of calls: a
+ * missing one would be left out of a sum without a word. */
+void cs_term_assert(const struct cs_term *term);
+
 /* The list; at most CS_TERMS_MAX, as many as a plan has rows for. */
 extern const struct cs_term *const cs_terms[];
 extern const uint32_t cs_n_terms;
