@@ -6,6 +6,7 @@
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "cli/run_output.h"
 #include "model/elastic/membranes.h"
 #include "scene/body_pairs.h"
 #include "scene/shape.h"
@@ -366,6 +367,8 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
         return cs_fail(
             error, CS_ERR_USAGE,
             "--json: with --error the report is compare.json's; use clothsim compare");
+    if (cs_study_output_check(&study->session, options->json, "--json", error))
+        return error->status;
     if (options->error > 0)
         return advise_for_error(args, error);
     if (options->frames &&

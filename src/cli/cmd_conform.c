@@ -8,6 +8,7 @@
 #include "base/json_writer.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "cli/run_output.h"
 #include "sim/method.h"
 #include "study/conform/conform.h"
 #include "study/conform/conform_checks.h"
@@ -334,6 +335,10 @@ static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
         return print_list(error);
     if (args->n_operands == 0)
         return cs_fail(error, CS_ERR_USAGE, "expected an integrator or a module file");
+    const struct cs_session_settings modules = {
+        .scene = "", .plugins = args->operands, .n_plugins = args->n_operands};
+    if (cs_study_output_check(&modules, options->json, "--json", error))
+        return error->status;
     output.progress = cs_process_pool_shared_alloc(sizeof *output.progress, error);
     if (options->json && !(output.json = tmpfile()))
         cs_fail(error, CS_ERR_FILE, "cannot make a temporary file: %s", strerror(errno));

@@ -49,8 +49,13 @@ enum cs_status cs_output_state(const char *folder, uint32_t number, const double
 
 /* Refuses output paths that would overwrite an input of the study. */
 
-/* CS_ERR_FILE if one of the files (names closed by NULL) to be written into the folder is the
- * session's scene or one of its modules. Files are compared as such, not by their paths. */
+/* CS_ERR_FILE if the path that an option gives, neither NULL nor "-", is the session's scene or
+ * one of its modules. Files are compared as such, not by their paths. */
+enum cs_status cs_study_output_check(const struct cs_session_settings *session,
+                                     const char *path, const char *option,
+                                     struct cs_error *error);
+/* CS_ERR_FILE if one of the files (names closed by NULL) to be written into the folder is one
+ * of these. */
 enum cs_status cs_study_files_check(const struct cs_session_settings *session,
                                     const char *folder, const char *const *names,
                                     struct cs_error *error);

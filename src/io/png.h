@@ -3,6 +3,7 @@
 #ifndef CS_PNG_H
 #define CS_PNG_H
 
+#include "base/file.h"
 #include "base/image.h"
 #include "base/status.h"
 
@@ -44,13 +45,15 @@ static inline void cs_png_join(const struct cs_image *image, size_t y, uint8_t *
     }
 }
 
-/* Writes a temporary file and renames it: RGB, or RGBA if the image has alpha, compressed at
- * `level` of 0..9 (2: fast, 6: archive), filter Sub, no time stamp. Equal pictures thus give
- * equal files with one build of the compressor. On failure CS_ERR_FILE and no file is left. */
+/* Writes a temporary file, after sweeping the path, and renames it: RGB, or RGBA if the image
+ * has alpha, compressed at `level` of 0..9 (2: fast, 6: archive), filter Sub, no time stamp.
+ * Equal pictures thus give equal files with one build of the compressor. On failure CS_ERR_FILE
+ * and no file is left. */
 static inline enum cs_status cs_png_write(const char *path, const struct cs_image *image,
                                           int level, const struct cs_png_text *texts,
                                           uint32_t n_texts, struct cs_error *error) {
     struct cs_png_encoder work = {.level = level};
+    cs_file_sweep(path, NULL);
     const enum cs_status status = cs_png_write_next(&work, path, image, texts, n_texts, error);
     cs_png_encoder_finish(&work);
     return status;
