@@ -359,16 +359,14 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
         study->n_methods = 0;
     if (!study->workers)
         study->workers = cs_pool_processors(CS_PROCESS_POOL_MAX);
-    /* one flag stops the current run and keeps further ones from starting */
     study->session.run.stop = study->stop = cs_interrupt_catch();
-    if (cs_args_refuse_both(args, "frames", "time", error))
+    if (cs_args_refuse_both(args, "frames", "time", error) ||
+        cs_study_output_check(&study->session, options->json, "--json", error))
         return error->status;
     if (options->error > 0 && options->json)
         return cs_fail(
             error, CS_ERR_USAGE,
             "--json: with --error the report is compare.json's; use clothsim compare");
-    if (cs_study_output_check(&study->session, options->json, "--json", error))
-        return error->status;
     if (options->error > 0)
         return advise_for_error(args, error);
     if (options->frames &&

@@ -255,7 +255,7 @@ enum cs_status cs_manifest_check_files(const char *folder, const char *pattern,
     return error->status;
 }
 
-enum cs_status cs_manifest_take(const char *folder, struct cs_error *error) {
+enum cs_status cs_manifest_consume(const char *folder, struct cs_error *error) {
     struct cs_text out = {0};
     char path[PATH_BYTES];
     uint32_t n, differing = 0;

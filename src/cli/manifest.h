@@ -30,7 +30,7 @@ enum cs_status cs_manifest_check_files(const char *folder, const char *pattern,
                                        struct cs_error *error);
 /* Checks the folder of a run that goes on against its manifest, and removes that: until the run
  * ends its files change. CS_ERR_FILE names the first that differs; the manifest then stays. */
-enum cs_status cs_manifest_take(const char *folder, struct cs_error *error);
+enum cs_status cs_manifest_consume(const char *folder, struct cs_error *error);
 
 /* Compares a folder with its manifest: adds a line for each file that has changed, is missing,
  * or is a run's and not in the manifest. *n: files listed; *differing: lines added. CS_ERR_FILE

@@ -19,7 +19,7 @@ enum {
     FILE_BYTES_MAX = 512 * 1024 * 1024
 };
 
-/* of a texture: 8192 x 8192 in all, which with its smaller copies takes 740 MB */
+/* limit of a texture: 8192 x 8192 in all, which with its smaller copies takes 740 MB */
 enum { TEXTURE_PIXELS_MAX = 1 << 26 };
 
 /* deflate compresses by a factor of about 1032 at most */

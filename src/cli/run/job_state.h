@@ -211,7 +211,7 @@ enum cs_status cs_run_outputs_check(const struct cs_job *job, struct cs_error *e
 enum cs_status cs_run_outputs_open(struct cs_job *job, struct cs_error *error);
 
 /* Checks the folders of a run that goes on against their manifests, and removes these. */
-enum cs_status cs_run_outputs_take(const struct cs_job *job, struct cs_error *error);
+enum cs_status cs_run_outputs_consume(const struct cs_job *job, struct cs_error *error);
 
 /* Calls the outputs in the order of the list until one fails; at CS_RUN_END all of them. */
 enum cs_status cs_run_outputs_at(struct cs_job *job, enum cs_run_stage stage,

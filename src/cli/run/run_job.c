@@ -201,7 +201,7 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
         return error->status;
     if (job->settings->resume
             ? cs_checkpointer_load(&job->checkpoints, job->frames, error) ||
-                  cs_run_outputs_take(job, error)
+                  cs_run_outputs_consume(job, error)
             : cs_energy_monitor_begin(&job->monitor, &job->session.run, error))
         return error->status;
     if (!job->settings->resume)

@@ -116,10 +116,10 @@ enum cs_status cs_run_outputs_open(struct cs_job *job, struct cs_error *error) {
     return error->status;
 }
 
-enum cs_status cs_run_outputs_take(const struct cs_job *job, struct cs_error *error) {
+enum cs_status cs_run_outputs_consume(const struct cs_job *job, struct cs_error *error) {
     for (int k = 0; k < OUTPUTS && !error->status; k++)
         if (job->folders[k].folder_lock)
-            cs_manifest_take(path_of(job, outputs[k]), error);
+            cs_manifest_consume(path_of(job, outputs[k]), error);
     return error->status;
 }
 
