@@ -195,12 +195,19 @@ static enum cs_status check_ramp(const struct look *at, const struct cs_event *e
 
 /* Checks that the times of a path ascend within the event; key: grab or move. */
 static enum cs_status check_path(const struct look *at, const char *key,
-                                 const struct cs_list *list) {
+                                 const struct cs_list *list, bool relative) {
     const struct cs_event *event = cs_scene_events(at->scene) + at->number;
     const struct cs_path_point *path = list->items;
     double before = begin_of(event);
-    for (uint32_t p = 0; p < list->n; p++) {
-        char place[64];
+    char place[64];
+    const uint32_t first = cs_path_starts_at(list, before);
+    snprintf(place, sizeof place, ".%s.path[0]", key);
+    if (first && relative && cs_check_length(path->point, 3) > 0)
+        return refuse(at, place, "at the start the shift is 0, found [%.9g, %.9g, %.9g]",
+                      path->point[0], path->point[1], path->point[2]);
+    if (first == list->n && first)
+        return refuse(at, place, "found no point after the start, %.9g s", before);
+    for (uint32_t p = first; p < list->n; p++) {
         snprintf(place, sizeof place, ".%s.path[%u]", key, p);
         if (isnan(path[p].at))
             return refuse(at, place, "missing key \"at\"");
@@ -228,8 +235,9 @@ static enum cs_status check_grab(const struct look *at, const struct cs_grab *gr
     if (grab->path.n == 0 && !spins && !grab->to.present)
         return refuse(at, ".grab.path",
                       "found no point, expected at least one, or spin, or to");
-    return check_path(at, "grab", &grab->path) ? at->error->status
-                                               : check_aim(at, ".grab", &grab->target);
+    return check_path(at, "grab", &grab->path, grab->relative)
+               ? at->error->status
+               : check_aim(at, ".grab", &grab->target);
 }
 
 /* Checks collider and path of a move, and that it moves or turns. */
@@ -245,7 +253,7 @@ static enum cs_status check_move(const struct look *at, const struct cs_move *mo
                       (long long)move->collider, n - 1);
     if (move->path.n == 0 && spin[0] == 0 && spin[1] == 0 && spin[2] == 0)
         return refuse(at, ".move", "found neither path nor spin");
-    return check_path(at, "move", &move->path);
+    return check_path(at, "move", &move->path, move->relative);
 }
 
 /* Returns the key of the number that an event changes, or NULL. */

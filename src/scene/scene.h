@@ -266,6 +266,12 @@ struct cs_path_point {
     double at;       /* s; NAN: not given, refused */
     double point[3]; /* m */
 };
+/* Returns 1 if the first point of a path is that of its beginning at t: it lies where the event
+ * finds what it moves, and no leg leads to it; else 0. */
+static inline uint32_t cs_path_starts_at(const struct cs_list *path, double t) {
+    const struct cs_path_point *first = path->items;
+    return path->n && first->at > t - 1e-6 && first->at < t + 1e-6;
+}
 enum cs_motion { CS_MOTION_LINEAR, CS_MOTION_SMOOTH };
 /* Holds particles and moves them along a path. */
 struct cs_grab {

@@ -311,7 +311,8 @@ static double wave_speed(const struct cs_system *system, size_t particle) {
 static void check_grab(const struct cs_system *system, uint32_t e, struct cs_text *out) {
     const struct cs_event *event = cs_scene_events(system->scene) + e;
     const struct cs_grab *grab = &event->grab;
-    const struct cs_path_point *to = grab->path.items;
+    const struct cs_event_path path = cs_event_path_of(event);
+    const struct cs_path_point *to = path.points;
     const size_t n = system->view.n;
     const size_t i = first_target(system, grab);
     if (i == n)
@@ -319,7 +320,7 @@ static void check_grab(const struct cs_system *system, uint32_t e, struct cs_tex
     double from[3] = {0};
     for (size_t c = 0; c < 3 && !grab->relative; c++)
         from[c] = system->state[c * n + i];
-    const double speed = grab->path.n ? first_speed(event, to, from) : 0;
+    const double speed = path.n ? first_speed(event, to, from) : 0;
     const double waves = wave_speed(system, i);
     if (speed > waves && waves > 0)
         cs_text_add(out,
@@ -355,9 +356,10 @@ static double size_of(const struct cs_posed_collider *at) {
 static void check_move(const struct cs_system *system, uint32_t e, struct cs_text *out) {
     const struct cs_event *event = cs_scene_events(system->scene) + e;
     const struct cs_move *move = &event->move;
-    const struct cs_path_point *to = move->path.items;
+    const struct cs_event_path path = cs_event_path_of(event);
+    const struct cs_path_point *to = path.points;
     struct cs_posed_collider at;
-    if (!move->path.n || !system->motions)
+    if (!path.n || !system->motions)
         return;
     cs_posed_collider_at(system, (uint32_t)move->collider, 0, &at);
     if (cs_shape_is_endless(at.shape))

@@ -18,7 +18,10 @@ struct cs_event_path cs_event_path_of(const struct cs_event *event) {
     const bool moves = event->move.present;
     const struct cs_list *list = moves ? &event->move.path : &event->grab.path;
     const int32_t motion = moves ? event->move.motion : event->grab.motion;
-    return (struct cs_event_path){list->items, list->n,
+    /* the point where the event finds what it moves: no leg leads to it */
+    const uint32_t first = cs_path_starts_at(list, begin_of(event));
+    return (struct cs_event_path){(const struct cs_path_point *)list->items + first,
+                                  list->n - first,
                                   motion == CS_MOTION_SMOOTH ? CS_EVENT_CHORDS : 1};
 }
 
