@@ -114,6 +114,7 @@ static void add_obj(const struct cs_trimesh *mesh, struct cs_text *out) {
         }
         cs_text_add(out, "\n");
     }
+    /* rows of pictures are counted from the top, those of OBJ from the bottom */
     for (size_t k = 0; mesh->uv && k < 3 * (size_t)mesh->n_triangles; k++)
         cs_text_add(out, "vt %.9g %.9g\n", (double)mesh->uv[2 * k],
                     1 - (double)mesh->uv[2 * k + 1]);
@@ -136,6 +137,7 @@ static enum cs_status mesh(struct cs_args *args, struct cs_error *error) {
         return error->status;
     if (cs_mesh_read(path, path, &source, &mesh, &args->arena, error))
         return error->status;
+    /* what fails leaves no report behind */
     add_report(&mesh, &out);
     if (options->out)
         add_obj(&mesh, &obj);

@@ -3,13 +3,8 @@
 #ifndef CS_SCENE_DOCTOR_H
 #define CS_SCENE_DOCTOR_H
 
+#include "study/scene_findings.h"
 #include "study/session.h"
-
-/* Findings about a scene, one per line. A warning is about a result that cannot be right, a
- * hint about one that may surprise. Zeroed: none. */
-struct cs_scene_findings {
-    struct cs_text warnings, hints;
-};
 
 /* Checks a session whose system is built, over the given time in s. Changes nothing, and reads
  * the state of the start only. CS_ERR_MEMORY. */

@@ -13,6 +13,18 @@ void cs_idle_keys_print(const struct cs_scene *scene, struct cs_text *out);
  * scene must have one, if only that it always acts. */
 int cs_idle_keys_rule(const char *key);
 
+/* Findings about a scene, one per line. A warning is about a result that cannot be right, a
+ * hint about one that may surprise. Zeroed: none. */
+struct cs_scene_findings {
+    struct cs_text warnings, hints;
+};
+
+/* Adds pins that hold nothing, seams over gaps, paths of colliders through held particles,
+ * releases of what nothing holds, and grabs that begin with a jump. The particles are at their
+ * start. Uses events->work. */
+void cs_trajectory_findings_print(const struct cs_system *system,
+                                  struct cs_scene_findings *out);
+
 /* Adds what is wrong with the paths of grabs and moves, one per line. */
 void cs_path_findings_print(const struct cs_system *system, struct cs_text *out);
 

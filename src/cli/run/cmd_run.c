@@ -333,6 +333,7 @@ static enum cs_status change_options(const struct cs_args *args, struct options 
                            "--resume without SCENE repeats the options of the run: remove --%s",
                            args->given[k].row->name);
     }
+    /* the folder and the interval are those of the checkpoint */
     options->is_repeated = true;
     options->resume = typed->resume;
     options->checkpoint = NULL;
@@ -363,6 +364,7 @@ static enum cs_status repeat_command(struct cs_args *args, struct cs_args *repea
     char *words = cs_arena_copy_text(&args->arena, cs_text_get(&text), error);
     char **list = cs_arena_alloc_array(&args->arena, text.length + 1, sizeof *list, error);
     cs_text_finish(&text);
+    /* strsep leaves NULL or the end behind the last word */
     while (words && list && *words)
         list[n++] = strsep(&words, "\n");
     return error->status || cs_args_parse(repeated, args->command, n, list, error)

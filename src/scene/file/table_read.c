@@ -54,6 +54,7 @@ static enum cs_status read_number(struct cs_json_context *context, const struct 
                    ? read_component(context, value, row, 0, object)
                    : fail_row(context, value, row);
     uint32_t i = 0;
+    /* one number for all components */
     if (cs_option_takes_one(row) && cs_json_kind_of(value) == CS_JSON_NUMBER) {
         while (i < row->count && !read_component(context, value, row, i, object))
             i++;

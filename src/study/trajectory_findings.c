@@ -1,0 +1,284 @@
+/* Finds mistakes in what is prescribed, which is known before a run: particles that pins hold,
+ * grabs and moves. Only what is certain is reported. Passed over are colliders that
+ * turn, carry particles or have no distance, and particles that an event may let go. */
+#include "study/scene_findings.h"
+
+#include "base/vec3.h"
+#include "model/contact/posed_collider.h"
+#include "model/event/event_state.h"
+#include "model/system/seams.h"
+#include "scene/shape.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Poses along a leg of a path at which held particles are sought. */
+enum { POSES = 256 };
+/* Depth over the size of a collider, or of the first body in a plane, that a held particle may
+ * have. */
+#define SWEPT 0.1
+/* Length of a stitch at the start over the size of its body that is reported. */
+#define GAP_MAX 1.0
+/* Length of a leg of positions over that of the same numbers as shifts that is reported, and
+ * the part of a body's size that such a leg has at least. */
+#define JUMP_RATIO 3.0
+#define JUMP_SIZE  0.25
+
+static double begin_of(const struct cs_event *event) {
+    return isnan(event->at) ? event->from : event->at;
+}
+
+/* m, diagonal of the box of a body at the start; low and high: its corners. */
+static double box_of(const struct cs_system *system, uint32_t b, double low[3],
+                     double high[3]) {
+    const struct cs_body_range *range = system->bodies + b;
+    double squared = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double *x = system->state + c * system->view.n + range->first;
+        low[c] = high[c] = x[0];
+        for (uint32_t i = 1; i < range->count; i++) {
+            low[c] = fmin(low[c], x[i]);
+            high[c] = fmax(high[c], x[i]);
+        }
+        squared += (high[c] - low[c]) * (high[c] - low[c]);
+    }
+    return sqrt(squared);
+}
+
+/* Pins that hold no particle. */
+static void check_pins(const struct cs_system *system, uint32_t b, struct cs_text *out) {
+    const struct cs_body *body = cs_scene_bodies(system->scene) + b;
+    const struct cs_body_range *range = system->bodies + b;
+    const struct cs_pin *pins = body->pins.items;
+    double low[3], high[3];
+    for (uint32_t p = 0; p < body->pins.n; p++) {
+        uint32_t i = 0;
+        while (i < range->count && !cs_shape_pin_selects(body, pins + p, system->view.n,
+                                                         range->first, i, system->start))
+            i++;
+        if (i < range->count)
+            continue;
+        box_of(system, b, low, high);
+        cs_text_add(out,
+                    "bodies[%u].pins[%u] holds no particle: the body lies between (%.4g, %.4g, "
+                    "%.4g) and (%.4g, %.4g, %.4g)\n",
+                    b, p, low[0], low[1], low[2], high[0], high[1], high[2]);
+    }
+}
+
+/* The body of a particle. */
+static uint32_t body_of(const struct cs_system *system, uint32_t particle) {
+    uint32_t b = 0;
+    while (particle - system->bodies[b].first >= system->bodies[b].count)
+        b++;
+    return b;
+}
+
+/* A stitch that is longer at the start than each of the bodies that it joins. */
+static void check_seams(const struct cs_system *system, struct cs_text *out) {
+    const struct cs_seams *seams = system->seams;
+    for (uint32_t s = 0; seams && s < seams->n; s++) {
+        const struct cs_stitch *stitch = seams->stitches + s;
+        const uint32_t a = body_of(system, stitch->at[0]), b = body_of(system, stitch->at[1]);
+        double low[3], high[3], d[3];
+        cs_stitch_difference(stitch, system->view.n, system->state, d);
+        /* one that breaks is meant to be too long */
+        const double longer = sqrt(cs_vec3_dot(d, d)) - stitch->length;
+        if (longer >
+                GAP_MAX * fmax(box_of(system, a, low, high), box_of(system, b, low, high)) &&
+            isnan(stitch->breaking_length)) {
+            cs_text_add(
+                out,
+                "a seam between bodies[%u] and bodies[%u] is %.3g m longer at the start "
+                "than its rest length, and pulls with %.3g N at each stitch: place the "
+                "bodies together, or give seams[].length\n",
+                a, b, longer, stitch->stiffness * longer);
+            return;
+        }
+    }
+}
+
+/* Particles that pins hold all the time, in ascending order; owned. */
+struct held {
+    uint32_t *particles, n;
+};
+
+/* Marks in held (n) the particles that pins hold from the start to the end: those of bodies
+ * that no collider carries and no event grabs or lets go. */
+static void mark_held(const struct cs_system *system, bool *held) {
+    const struct cs_scene *scene = system->scene;
+    for (uint32_t p = 0; p < system->n_pinned; p++) {
+        const struct cs_body *body =
+            cs_scene_bodies(scene) + body_of(system, system->pinned[p]);
+        const struct cs_pin *pins = body->pins.items;
+        bool is_carried = false;
+        for (uint32_t k = 0; k < body->pins.n; k++)
+            is_carried = is_carried || pins[k].to.present;
+        held[system->pinned[p]] = !is_carried;
+    }
+    for (uint32_t e = 0; e < scene->events.n; e++) {
+        const struct cs_event *event = cs_scene_events(scene) + e;
+        if (!event->grab.present && !event->release.present)
+            continue;
+        /* whenever it happens: only what never moves is certain */
+        cs_event_mark(system,
+                      event->grab.present ? &event->grab.target : &event->release.target);
+        for (uint32_t i = 0; i < system->view.n; i++)
+            held[i] = held[i] && !system->events->work[i];
+    }
+}
+
+/* Lists the particles that are held. Returns false if out of memory. */
+static bool list_held(const struct cs_system *system, struct held *held) {
+    bool *marks = calloc((size_t)system->view.n + 1, sizeof *marks);
+    held->particles = calloc((size_t)system->n_pinned + 1, sizeof *held->particles);
+    if (marks && held->particles) {
+        mark_held(system, marks);
+        for (uint32_t p = 0; p < system->n_pinned; p++)
+            if (marks[system->pinned[p]])
+                held->particles[held->n++] = system->pinned[p];
+    }
+    free(marks);
+    return marks && held->particles;
+}
+
+/* The deepest of the held particles in a collider that is shifted; view.n: none is inside. */
+static uint32_t find_inside(const struct cs_system *system, const struct held *held,
+                            const struct cs_posed_collider *at, const double shift[3]) {
+    const size_t n = system->view.n;
+    const double *core = at->half_sizes;
+    double low[3], high[3], normal[3];
+    const double reach = cs_shape_is_endless(at->shape) ? box_of(system, 0, low, high)
+                         : at->radius > 0               ? at->radius
+                                                        : fmin(core[0], fmin(core[1], core[2]));
+    double least = -SWEPT * reach;
+    uint32_t found = (uint32_t)n;
+    for (uint32_t k = 0; k < held->n; k++) {
+        const uint32_t i = held->particles[k];
+        /* shifting the particle back is the same as shifting the collider */
+        const double p[3] = {system->state[i] - shift[0], system->state[n + i] - shift[1],
+                             system->state[2 * n + i] - shift[2]};
+        const double distance = at->shape->distance(at, 0, p, normal);
+        found = distance < least ? i : found;
+        least = fmin(least, distance);
+    }
+    return found;
+}
+
+/* True if a collider keeps its frame, and moves by this event alone. */
+static bool moves_once(const struct cs_scene *scene, uint32_t event) {
+    const struct cs_move *move = &cs_scene_events(scene)[event].move;
+    uint32_t n = 0;
+    for (uint32_t e = 0; e < scene->events.n; e++) {
+        const struct cs_event *other = cs_scene_events(scene) + e;
+        n += (other->move.present && other->move.collider == move->collider) ||
+             other->ramp.present;
+    }
+    return n == 1 && cs_vec3_is_zero(move->spin);
+}
+
+/* A collider whose path goes through particles that pins hold. */
+static void check_sweep(const struct cs_system *system, uint32_t e, const struct held *held,
+                        struct cs_text *out) {
+    const struct cs_event *event = cs_scene_events(system->scene) + e;
+    const struct cs_event_path path = cs_event_path_of(event);
+    struct cs_posed_collider at;
+    double from[3] = {0};
+    if (!moves_once(system->scene, e))
+        return;
+    cs_posed_collider_at(system, (uint32_t)event->move.collider, 0, &at);
+    if (at.shape->bounds == CS_BOUNDS_MESH ||
+        find_inside(system, held, &at, from) < system->view.n)
+        return;
+    for (uint32_t leg = 0; leg < path.n; leg++) {
+        const struct cs_path_point *to = path.points + leg;
+        double shift[3], end[3];
+        /* a smooth leg goes through the same places */
+        for (int c = 0; c < 3; c++)
+            end[c] = to->point[c] - (event->move.relative ? 0 : at.centre[c]);
+        for (int k = 1; k <= POSES; k++) {
+            for (int c = 0; c < 3; c++)
+                shift[c] = from[c] + (end[c] - from[c]) * k / POSES;
+            const uint32_t i = find_inside(system, held, &at, shift);
+            if (i == system->view.n)
+                continue;
+            const uint32_t b = body_of(system, i);
+            cs_text_add(out,
+                        "events[%u].move leads colliders[%u] through particle %u of bodies[%u] "
+                        "before %.4g s, which pins hold: contact cannot keep them apart\n",
+                        e, (uint32_t)event->move.collider, i - system->bodies[b].first, b,
+                        to->at);
+            return;
+        }
+        memcpy(from, end, sizeof from);
+    }
+}
+
+/* A release of particles that neither pins nor an earlier event may hold. */
+static void check_release(const struct cs_system *system, uint32_t e, struct cs_text *out) {
+    const struct cs_scene *scene = system->scene;
+    const struct cs_event *event = cs_scene_events(scene) + e;
+    bool holds = false;
+    for (uint32_t other = 0; other < scene->events.n; other++) {
+        const struct cs_event *earlier = cs_scene_events(scene) + other;
+        holds = holds || ((earlier->grab.present || earlier->pin.present) &&
+                          begin_of(earlier) <= begin_of(event));
+    }
+    cs_event_mark(system, &event->release.target);
+    for (uint32_t p = 0; p < system->n_pinned; p++)
+        holds = holds || system->events->work[system->pinned[p]];
+    if (!holds)
+        cs_text_add(out, "events[%u].release lets go what nothing holds at %.4g s\n", e,
+                    begin_of(event));
+}
+
+/* A grab whose positions begin with a jump that shifts by the same numbers would not have. */
+static void check_jump(const struct cs_system *system, uint32_t e, struct cs_text *out) {
+    const struct cs_event *event = cs_scene_events(system->scene) + e;
+    const struct cs_event_path path = cs_event_path_of(event);
+    const size_t n = system->view.n;
+    double low[3], high[3], way[3];
+    if (!path.n || event->grab.relative)
+        return;
+    cs_event_mark(system, &event->grab.target);
+    const bool *first = memchr(system->events->work, true, n);
+    if (!first)
+        return;
+    const size_t i = (size_t)(first - system->events->work);
+    const double *to = path.points->point, seconds = path.points->at - begin_of(event);
+    for (size_t c = 0; c < 3; c++)
+        way[c] = to[c] - system->state[c * n + i];
+    const double jump = sqrt(cs_vec3_dot(way, way)), shift = sqrt(cs_vec3_dot(to, to));
+    const double size = box_of(system, body_of(system, (uint32_t)i), low, high);
+    /* faster than a fall over the body, and not as shifts */
+    const double fastest =
+        sqrt(2 * size *
+             sqrt(cs_vec3_dot(system->scene->forces.gravity, system->scene->forces.gravity)));
+    if (jump > JUMP_RATIO * shift && jump > JUMP_SIZE * size && jump > fastest * seconds)
+        cs_text_add(out,
+                    "events[%u].grab.path[0] is %.3g m from where its particle starts, reached "
+                    "at %.3g m/s: points are positions, and with \"relative\": true shifts\n",
+                    e, jump, jump / seconds);
+}
+
+void cs_trajectory_findings_print(const struct cs_system *system,
+                                  struct cs_scene_findings *out) {
+    const struct cs_scene *scene = system->scene;
+    struct held held = {0};
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        check_pins(system, b, &out->warnings);
+    check_seams(system, &out->warnings);
+    if (scene->events.n)
+        out->warnings.failed |= !list_held(system, &held);
+    for (uint32_t e = 0; !out->warnings.failed && e < scene->events.n; e++) {
+        const struct cs_event *event = cs_scene_events(scene) + e;
+        if (event->move.present)
+            check_sweep(system, e, &held, &out->warnings);
+        if (event->release.present)
+            check_release(system, e, &out->hints);
+        if (event->grab.present)
+            check_jump(system, e, &out->hints);
+    }
+    free(held.particles);
+}
