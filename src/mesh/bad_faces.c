@@ -1,6 +1,6 @@
-/* Removes faces without area, and faces given twice. Of the former each round treats what has
- * no part in an earlier change of the round; a division may leave another flat face, so that
- * rounds are bounded. */
+/* Removes faces without area and faces given twice, and turns the others alike. Of the former
+ * each round treats what has no part in an earlier change of the round; a division may leave
+ * another flat face, so that rounds are bounded. */
 #include "mesh/bad_faces.h"
 
 #include <stdlib.h>
@@ -222,5 +222,119 @@ enum cs_status cs_repeated_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
     free(keys);
     free(leaves);
+    return error->status;
+}
+
+/* --- orientation --- */
+
+/* A side of a triangle by its ordered ends. */
+struct end_pair {
+    uint32_t vertex[2], triangle;
+    bool falls;
+};
+
+static int by_ends(const void *left, const void *right) {
+    const struct end_pair *a = left, *b = right;
+    for (int k = 0; k < 2; k++)
+        if (a->vertex[k] != b->vertex[k])
+            return a->vertex[k] < b->vertex[k] ? -1 : 1;
+    return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
+}
+
+/* Pieces as a union-find structure; `turned`: against the parent, and of a root false. */
+struct pieces {
+    struct end_pair *sides;
+    uint32_t *parents, *counts; /* counts (2 n): of a root, triangles like it, and turned */
+    bool *turned, *one_sided;
+};
+
+/* The root of a triangle; *turned: the triangle against it. Shortens the path to one step. */
+static uint32_t piece_of(struct pieces *of, uint32_t t, bool *turned) {
+    uint32_t root = t;
+    bool whole = false;
+    for (; of->parents[root] != root; root = of->parents[root])
+        whole = whole != of->turned[root];
+    *turned = whole;
+    while (of->parents[t] != t) {
+        const uint32_t next = of->parents[t];
+        const bool rest = whole != of->turned[t];
+        of->parents[t] = root;
+        of->turned[t] = whole;
+        whole = rest;
+        t = next;
+    }
+    return root;
+}
+
+/* Joins the pieces of two neighbours; `turned`: they have opposite orientations. */
+static void join_pieces(struct pieces *of, uint32_t a, uint32_t b, bool turned) {
+    bool turned_a, turned_b;
+    a = piece_of(of, a, &turned_a);
+    b = piece_of(of, b, &turned_b);
+    const bool between = (turned_a != turned_b) != turned;
+    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    of->one_sided[low] = of->one_sided[low] || of->one_sided[high] || (a == b && between);
+    of->parents[high] = low;
+    of->turned[high] = a != b && between;
+}
+
+/* Lists the sides, and joins neighbours over edges of two triangles. */
+static void find_pieces(const struct cs_raw_mesh *raw, struct pieces *of) {
+    const uint32_t n = 3 * raw->n_triangles;
+    for (uint32_t s = 0; s < n; s++) {
+        const struct cs_raw_corner *corners = raw->triangles[s / 3].corners;
+        const uint32_t a = corners[s % 3].vertex, b = corners[(s + 1) % 3].vertex;
+        of->sides[s] = (struct end_pair){{a < b ? a : b, a < b ? b : a}, s / 3, a > b};
+        of->parents[s / 3] = s / 3;
+    }
+    qsort(of->sides, n, sizeof *of->sides, by_ends);
+    for (uint32_t s = 0, run; s < n; s += run) {
+        const struct end_pair *side = of->sides + s;
+        for (run = 1;
+             s + run < n && !memcmp(side[run].vertex, side->vertex, sizeof side->vertex);)
+            run++;
+        if (run == 2)
+            join_pieces(of, side[0].triangle, side[1].triangle, side[0].falls == side[1].falls);
+    }
+}
+
+/* Turns the fewer triangles of each piece. */
+static void turn_faces(struct cs_raw_mesh *raw, struct pieces *of,
+                       struct cs_mesh_mends *mends) {
+    bool turned;
+    for (uint32_t t = 0; t < raw->n_triangles; t++) {
+        const uint32_t root = piece_of(of, t, &turned);
+        of->counts[2 * (size_t)root + turned]++;
+    }
+    for (uint32_t t = 0; t < raw->n_triangles; t++) {
+        const uint32_t root = piece_of(of, t, &turned);
+        const uint32_t *counts = of->counts + 2 * (size_t)root;
+        if (of->one_sided[root] || turned == (counts[1] > counts[0]))
+            continue;
+        struct cs_raw_corner *corners = raw->triangles[t].corners, second = corners[1];
+        corners[1] = corners[2];
+        corners[2] = second;
+        cs_mesh_fault_count(&mends->turned, &mends->turned_line, raw->triangles[t].line);
+    }
+}
+
+enum cs_status cs_faces_orient(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
+                               struct cs_error *error) {
+    const size_t n = raw->n_triangles;
+    struct pieces pieces = {.sides = calloc(3 * n + 1, sizeof *pieces.sides),
+                            .parents = calloc(n + 1, sizeof(uint32_t)),
+                            .counts = calloc(2 * n + 1, sizeof(uint32_t)),
+                            .turned = calloc(n + 1, sizeof(bool)),
+                            .one_sided = calloc(n + 1, sizeof(bool))};
+    if (pieces.sides && pieces.parents && pieces.counts && pieces.turned && pieces.one_sided) {
+        find_pieces(raw, &pieces);
+        turn_faces(raw, &pieces, mends);
+    } else
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
+    free(pieces.sides);
+    free(pieces.parents);
+    free(pieces.counts);
+    free(pieces.turned);
+    free(pieces.one_sided);
     return error->status;
 }

@@ -1,4 +1,5 @@
-/* bad_faces.h - removes faces without area and repeated faces from a mesh. */
+/* bad_faces.h - removes faces without area and repeated faces from a mesh, and turns the others
+ * alike. */
 #ifndef CS_BAD_FACES_H
 #define CS_BAD_FACES_H
 
@@ -13,5 +14,11 @@ enum cs_status cs_flat_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mend
 /* Removes each face with the vertices of an earlier one, and counts them. CS_ERR_MEMORY. */
 enum cs_status cs_repeated_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
                                         struct cs_error *error);
+
+/* Turns faces until neighbours over an edge of two triangles have one orientation, and counts
+ * them: of each piece those that are fewer, of as many the later ones. A piece that has but one
+ * side stays as it is. CS_ERR_MEMORY. */
+enum cs_status cs_faces_orient(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
+                               struct cs_error *error);
 
 #endif

@@ -31,6 +31,7 @@ struct work {
     uint32_t
         *places; /* (n_vertices) the first vertex in the same place; itself if not welded */
     uint32_t *parents; /* (n_vertices + 3 n_triangles) of the union-find structure */
+    bool *torn;        /* (n_triangles) stays neighbour of none */
     bool *splits;      /* (n_vertices) its corners are joined one by one */
 };
 
@@ -136,12 +137,18 @@ static uint32_t mark_splits(struct work *work, bool tells) {
             cs_mesh_fault_count(&work->mends->cut, &work->mends->cut_line,
                                 work->raw->triangles[side[2].triangle].line);
         work->splits[side->vertex[0]] = work->splits[side->vertex[1]] = true;
+        /* a cut that has left the edge whole goes round it: the third triangle and more are
+         * torn */
+        for (uint32_t i = 2; i < n && !tells; i++)
+            work->torn[side[i].triangle] = true;
     }
     return found;
 }
 
 /* Joins corners: along the edges of the file, then along open edges in one place. */
 static void join_corners(struct work *work) {
+    for (uint32_t s = 0; s < 3 * work->raw->n_triangles; s++)
+        work->sides[s].paired = work->torn[work->sides[s].triangle];
     for (uint32_t s = 0, n; s < 3 * work->raw->n_triangles; s += n) {
         n = run_of(work, s, true);
         pair_sides(work, work->sides + s, n);
@@ -245,7 +252,8 @@ static enum cs_status begin(struct work *work, struct cs_error *error) {
     work->places = calloc(n + 1, sizeof *work->places);
     work->parents = calloc(n + sides + 1, sizeof *work->parents);
     work->splits = calloc(n + 1, sizeof *work->splits);
-    if (!work->sides || !work->places || !work->parents || !work->splits)
+    work->torn = calloc(sides / 3 + 1, sizeof *work->torn);
+    if (!work->torn || !work->sides || !work->places || !work->parents || !work->splits)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
     for (size_t i = 0; i < n + sides; i++)
         work->parents[i] = (uint32_t)i;
@@ -260,6 +268,7 @@ static void end(struct work *work) {
     free(work->places);
     free(work->parents);
     free(work->splits);
+    free(work->torn);
 }
 
 /* One round: cuts, and welds if asked to. *again: edges of more than two triangles are left. */
@@ -273,6 +282,7 @@ static enum cs_status mend_once(struct cs_raw_mesh *raw, bool weld, bool first,
             if (!weld || !find_places(&work, error)) {
                 join_corners(&work);
                 number_vertices(&work, error);
+                *again = *again || mends->welded;
             }
         if (!error->status)
             mends->pieces = count_pieces(raw, work.parents);
@@ -296,15 +306,26 @@ static uint32_t count_loose(const struct cs_raw_mesh *raw, struct cs_error *erro
     return loose;
 }
 
-enum cs_status cs_mesh_mend(struct cs_raw_mesh *raw, bool weld, struct cs_mesh_mends *mends,
-                            struct cs_error *error) {
+/* Rounds of cutting, until no edge has more than two triangles; the first one welds. */
+static enum cs_status mend_edges(struct cs_raw_mesh *raw, bool weld,
+                                 struct cs_mesh_mends *mends, struct cs_error *error) {
     bool again = true;
-    mends->loose = count_loose(raw, error);
-    if (error->status || cs_flat_faces_remove(raw, mends, error) ||
-        cs_repeated_faces_remove(raw, mends, error))
-        return error->status;
     for (int round = 0; again && round < ROUNDS_MAX; round++)
         if (mend_once(raw, weld && round == 0, round == 0, mends, &again, error))
             return error->status;
     return CS_OK;
+}
+
+enum cs_status cs_mesh_mend(struct cs_raw_mesh *raw, bool weld, struct cs_mesh_mends *mends,
+                            struct cs_error *error) {
+    mends->loose = count_loose(raw, error);
+    if (error->status || cs_flat_faces_remove(raw, mends, error) ||
+        cs_repeated_faces_remove(raw, mends, error) || cs_faces_orient(raw, mends, error) ||
+        mend_edges(raw, weld, mends, error))
+        return error->status;
+    /* a welded vertex may have moved onto the side of a narrow face */
+    const uint32_t flat = mends->flat;
+    return cs_flat_faces_remove(raw, mends, error) || mends->flat == flat
+               ? error->status
+               : mend_edges(raw, false, mends, error);
 }

@@ -34,6 +34,8 @@ void cs_mesh_mends_print(const struct cs_mesh_mends *mends, struct cs_text *out)
               "removed", out);
     add_fault(mends->twice, mends->twice_line, "face given twice", "faces given twice",
               "removed", out);
+    add_fault(mends->turned, mends->turned_line, "face against its neighbours",
+              "faces against their neighbours", "turned", out);
     add_fault(mends->cut, mends->cut_line, "edge of three triangles or more",
               "edges of three triangles or more", "cut", out);
     add_fault(mends->welded, 0, "doubled vertex", "doubled vertices", "welded", out);

@@ -21,6 +21,7 @@ struct cs_raw_triangle {
 struct cs_mesh_mends {
     uint32_t flat, flat_line;       /* faces without area, left out or divided by a neighbour */
     uint32_t twice, twice_line;     /* faces with the vertices of an earlier one, left out */
+    uint32_t turned, turned_line;   /* faces against their neighbours, turned round */
     uint32_t crossed, crossed_line; /* polygons that cross themselves, cut as fans */
     uint32_t cut, cut_line;         /* edges of three triangles or more, cut */
     uint32_t welded;                /* vertices that became one with another */

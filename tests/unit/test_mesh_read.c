@@ -99,8 +99,8 @@ TEST(bad_meshes_are_refused) {
                                   "removed, 2 vertices in no face removed"},
         {"v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n",
          "m.obj: found no faces: 1 face without area (line 4) removed"},
-        {TETRAHEDRON "f 1 2 3\nf 1 2 4\n",
-         "m.obj:11: the two triangles at the edge of vertices 1 and 2 have opposite"},
+        {TETRAHEDRON "v 3 1 2\nf 1 2 3\nf 2 3 4\nf 3 4 5\nf 4 5 1\nf 5 1 2\n",
+         "the two triangles at the edge of vertices 1 and 2 have opposite"},
         {"curv 1 2\nsurf 1\ncurv 1\n",
          "m.obj: found no faces: 3 lines of other programs passed over (curv, surf)"},
     };
@@ -313,6 +313,20 @@ TEST(faces_without_area_leave_no_gap) {
     cs_arena_finish(&arena);
 }
 
+/* Every face but one of two tetrahedra, and the wrong one of them is turned. */
+TEST(faces_against_their_neighbours_are_turned) {
+    struct cs_trimesh mesh, right;
+    struct cs_arena arena, of_right;
+    read_sound(TETRAHEDRON "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n", &plain, &right, &of_right);
+    read_sound(TETRAHEDRON "f 1 3 2\nf 1 2 4\nf 4 3 2\nf 1 4 3\n", &plain, &mesh, &arena);
+    ck_assert_uint_eq(mesh.n_open, 0);
+    ck_assert_str_eq(mesh.mends, "1 face against its neighbours (line 12) turned");
+    for (int k = 0; k < 3; k++)
+        ck_assert_uint_eq(mesh.triangles[6 + k], right.triangles[6 + (k + 2) % 3]);
+    cs_arena_finish(&arena);
+    cs_arena_finish(&of_right);
+}
+
 TEST(repeated_faces_and_loose_vertices_are_removed) {
     struct cs_trimesh mesh;
     struct cs_arena arena;
@@ -373,4 +387,40 @@ TEST(a_set_is_read_in_its_unit_with_its_axis) {
     read_obj(SQUARE FACES, &none, &mesh, &arena, &error);
     UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "found no group, object or material \"linen\"");
     cs_arena_finish(&arena);
+}
+
+/* A weld that leaves an edge of three triangles and a face without area, and a cut round which
+ * an edge stays whole: found among random files. */
+TEST(faults_that_mending_leaves_are_mended) {
+    static const char *const texts[] = {
+        "v 0.5 1 1\n"
+        "v 2 1.0000001 1.0000001\n"
+        "v -1 1.0000001 0.5\n"
+        "v 0 1.0000001 1\n"
+        "v 0 1.0000001 1.0000001\n"
+        "f 3 4 2\n"
+        "f 4 5 4 4\n"
+        "o x\n"
+        "f 5 1 2 1\n"
+        "f 2 5 3 2\n",
+        "v -1 2 -1\n"
+        "v 0 1 2\n"
+        "v 0 -1 1.0000001\n"
+        "v 1.0000001 -1 0\n"
+        "v 0 1 -1\n"
+        "v 1 1.0000001 0.5\n"
+        "v 0 1.0000001 2\n"
+        "v 0.5 -1 2\n"
+        "f 4 7 8\n"
+        "f 4 8 2\n"
+        "f 1 7 8\n"
+        "f 7 1 6\n",
+    };
+    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
+        struct cs_trimesh mesh;
+        struct cs_arena arena;
+        read_sound(texts[k], &plain, &mesh, &arena);
+        ck_assert_uint_ge(mesh.n_triangles, 2);
+        cs_arena_finish(&arena);
+    }
 }
