@@ -176,7 +176,8 @@ enum cs_step fixed_step_count(struct fixed_step *self, double span, double *n) {
     if (*n < 1)
         *n = 1;
     const double h = span / *n;
-    if (!self->noted && !self->dt_automatic && h < self->dt * (1 - 1e-9)) {
+    if (!self->noted && !self->dt_automatic && self->dt < HUGE_VAL &&
+        h < self->dt * (1 - 1e-9)) {
         self->host->note(self->host->ctx,
                          "dt reduced from %.6g to %.6g s to end steps on frames", self->dt, h);
         self->noted = true;

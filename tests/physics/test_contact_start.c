@@ -61,7 +61,7 @@ static void open_near(struct cs_session *session, int k, const char *contact,
     cs_session_open(session,
                     &(struct cs_session_settings){.scene = "near.json",
                                                   .text = text,
-                                                  .integrator = "implicit-linearised"},
+                                                  .integrator = "implicit-linearised:dt=frame"},
                     error);
 }
 

@@ -173,8 +173,9 @@ TEST(corrections_are_put_down_apart) {
         sum += work[k];
     ck_assert_double_eq_tol(sum, cs_energy_ledger_sum(&kept.account),
                             1e-12 * (1 + kept.moving));
-    ck_assert(work[CS_WORK_LIMIT] < 0 && work[CS_WORK_LOSS] < 0 &&
-              work[CS_WORK_ABSORPTION] < 0);
+    ck_assert_msg(
+        work[CS_WORK_LIMIT] < 0 && work[CS_WORK_LOSS] < 0 && work[CS_WORK_ABSORPTION] < 0,
+        "%g %g %g J", work[CS_WORK_LIMIT], work[CS_WORK_LOSS], work[CS_WORK_ABSORPTION]);
     ck_assert(fabs(work[CS_WORK_INTEGRATOR]) < 0.05 * kept.moving);
     ck_assert_double_eq(work[CS_WORK_EVENTS], 0);
     close_kept(&kept);

@@ -194,7 +194,8 @@ static double growth_of(const struct cs_bending_stencil *of, const double *rest,
     return found;
 }
 
-/* The sum of G_a^2 there, in 1/m4 m2. */
+/* The sum of G_a^2 there, in 1/m4 m2: of a body that is curved at rest with L0/10 for L0, and
+ * the unit normal for n. */
 static double squares_of(const struct cs_bending_stencil *of, const double *rest, size_t n) {
     const double d = rest_of_end(of, rest, n, 0), e = rest_of_end(of, rest, n, 1);
     double sum = 0;
@@ -204,7 +205,9 @@ static double squares_of(const struct cs_bending_stencil *of, const double *rest
             weights += of->weights[a][j] * of->weights[a][j];
             arms += fabs(of->weights[a][j]) * distance(rest, n, of->at[0], of->at[j]);
         }
-        const double G = (d * e * sqrt(weights) + sqrt(2) * (d + e) * arms) / of->product;
+        const double least = of->is_curved ? 0.0995 * of->product : of->product;
+        const double normal = of->is_curved ? 1.005 : d * e / of->product;
+        const double G = normal * sqrt(weights) + sqrt(2) * (d + e) * arms / least;
         sum += G * G;
     }
     return sum;
@@ -222,7 +225,8 @@ static double theory_bound(const struct fixture *sheet, const double *rest) {
             continue;
         const struct cs_moduli *A = &of.moduli;
         const double norm = fmax(A->shear, fmax(A->warp, A->weft) + fabs(A->coupling));
-        const double growth = growth_of(&of, rest, sheet->x, sheet->n);
+        const double grown = growth_of(&of, rest, sheet->x, sheet->n);
+        const double growth = of.is_curved ? fmax(grown, 1) : grown;
         const double rate =
             0.5 * norm * growth * growth * growth * growth * squares_of(&of, rest, sheet->n);
         for (uint32_t j = 0; j < of.n; j++)

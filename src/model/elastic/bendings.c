@@ -369,6 +369,7 @@ void cs_bending_stencil_at(const struct cs_bending *bending, const struct cs_mod
         stencil->at[j] = bending->first + bending->points[CS_BENDING_POINTS * (size_t)s + j];
     memcpy(stencil->weights, bending->weights + CS_BENDING_WEIGHTS * (size_t)s,
            sizeof stencil->weights);
+    stencil->is_curved = bending->rest;
     if (bending->rest)
         memcpy(stencil->rest, bending->rest + 3 * (size_t)s, sizeof stencil->rest);
 }

@@ -69,6 +69,7 @@ struct cs_bending_stencil {
     uint32_t n, at[CS_BENDING_POINTS]; /* particles of the system */
     uint32_t ends[4];                  /* points of two differences across it: from, to */
     double product;                    /* m2: length of their cross product at rest */
+    bool is_curved;                    /* the body is not flat at rest */
     double weights[3][CS_BENDING_POINTS], rest[3];
     struct cs_moduli moduli;
 };

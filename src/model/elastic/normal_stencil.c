@@ -1,9 +1,10 @@
 /* Curvatures along the normal of one stencil. The derivatives are those of the formulas of
- * normal_curvature.h by the product rule; none divides by what depends on the state. */
+ * normal_curvature.h by the product rule. */
 #include "model/elastic/normal_stencil.h"
 
 #include "base/vec3.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Forces on a stencil: along the weights for each curvature, and on the ends of d[0], d[1]. */
@@ -24,30 +25,43 @@ void cs_normal_stencil_sums(const struct cs_bending_stencil *of, size_t n, const
     }
 }
 
-/* out += the change of n with the changes `by` of both differences. */
-static void add_normal_change(double product, const struct cs_normal_sums *at,
-                              const struct cs_normal_sums *by, double out[3]) {
+/* Change of the product of the differences with the changes `by` of both. */
+static void product_rate(const struct cs_normal_sums *at, const struct cs_normal_sums *by,
+                         double out[3]) {
     double one[3], other[3];
     cs_vec3_cross(by->d[0], at->d[1], one);
     cs_vec3_cross(at->d[0], by->d[1], other);
     for (int c = 0; c < 3; c++)
-        out[c] += (one[c] + other[c]) / product;
+        out[c] = one[c] + other[c];
+}
+
+/* Change of n with a change of the product. */
+static void normal_rate(const struct cs_normal_state *at, const double rate[3], double out[3]) {
+    const double along = at->length_slope * cs_vec3_dot(at->normal, rate);
+    for (int c = 0; c < 3; c++)
+        out[c] = (rate[c] - along * at->normal[c]) / at->length;
 }
 
 void cs_normal_stencil_state(const struct cs_bending_stencil *of, size_t n, const double *x,
                              const double *v, struct cs_normal_state *at) {
-    *at = (struct cs_normal_state){.product = of->product};
     cs_normal_stencil_sums(of, n, x, &at->x);
     cs_normal_stencil_sums(of, n, v, &at->v);
     cs_vec3_cross(at->x.d[0], at->x.d[1], at->normal);
+    // of a curved body L is L0 at rest too
+    const double squared = cs_vec3_dot(at->normal, at->normal),
+                 least = of->product * of->product;
+    at->length_slope = of->is_curved ? 1 / (1 + CS_NORMAL_FLOOR) : 0;
+    at->length = of->is_curved ? sqrt(at->length_slope * (squared + CS_NORMAL_FLOOR * least))
+                               : of->product;
     for (int c = 0; c < 3; c++)
-        at->normal[c] /= at->product;
+        at->normal[c] /= at->length;
     // rates over time
-    add_normal_change(at->product, &at->x, &at->v, at->normal_rate);
+    product_rate(&at->x, &at->v, at->rate);
+    normal_rate(at, at->rate, at->turn);
     for (int a = 0; a < 3; a++) {
         at->kappa[a] = cs_vec3_dot(at->x.k[a], at->normal);
         at->kappa_rate[a] =
-            cs_vec3_dot(at->v.k[a], at->normal) + cs_vec3_dot(at->x.k[a], at->normal_rate);
+            cs_vec3_dot(at->v.k[a], at->normal) + cs_vec3_dot(at->x.k[a], at->turn);
     }
 }
 
@@ -67,51 +81,62 @@ void cs_normal_stencil_moments(const struct cs_bending_stencil *of,
     multiply(&of->moduli, s, M);
 }
 
-/* out += m of the header, from the moments and vectors k. */
-static void add_lever(double product, const double M[3], const double (*k)[3], double out[3]) {
-    for (int c = 0; c < 3; c++)
-        for (int a = 0; a < 3; a++)
-            out[c] += M[a] * k[a][c] / product;
-}
-
-/* out += the forces on the ends of the differences d, by m. */
-static void add_ends(const double (*d)[3], const double m[3], struct reaction *out) {
-    double one[3], other[3];
-    cs_vec3_cross(d[1], m, one);
-    cs_vec3_cross(m, d[0], other);
+/* m of the header. */
+static void find_lever(const struct cs_normal_state *at, const double M[3], double m[3]) {
     for (int c = 0; c < 3; c++) {
-        out->end[0][c] += one[c];
-        out->end[1][c] += other[c];
+        m[c] = 0;
+        for (int a = 0; a < 3; a++)
+            m[c] += M[a] * (at->x.k[a][c] - at->length_slope * at->kappa[a] * at->normal[c]) /
+                    at->length;
     }
 }
 
 static void find_reaction(const struct cs_normal_state *at, const double M[3],
                           struct reaction *out) {
-    double m[3] = {0};
-    *out = (struct reaction){0};
+    double m[3];
+    find_lever(at, M, m);
     for (int a = 0; a < 3; a++)
         for (int c = 0; c < 3; c++)
             out->moment[a][c] = M[a] * at->normal[c];
-    add_lever(at->product, M, at->x.k, m);
-    add_ends(at->x.d, m, out);
+    cs_vec3_cross(at->x.d[1], m, out->end[0]);
+    cs_vec3_cross(m, at->x.d[0], out->end[1]);
 }
 
-/* Change of n and of its rate, of the curvatures, and of their rates. */
+/* Change of the curvatures, and of their rates. */
 struct change {
-    double normal[3], normal_rate[3], kappa[3], kappa_rate[3];
+    double product[3], normal[3], length, kappa[3], kappa_rate[3];
 };
+
+/* Change of the rate of the normal with changes of positions and velocities. */
+static void find_turn_change(const struct cs_normal_state *at, const struct cs_normal_sums *dx,
+                             const struct cs_normal_sums *dv, const struct change *by,
+                             double out[3]) {
+    double by_velocity[3], by_position[3], product[3];
+    product_rate(&at->x, dv, by_velocity);
+    product_rate(&at->v, dx, by_position);
+    for (int c = 0; c < 3; c++)
+        product[c] = by_velocity[c] + by_position[c];
+    const double along = at->length_slope * cs_vec3_dot(at->normal, at->rate);
+    const double turned = at->length_slope * (cs_vec3_dot(by->normal, at->rate) +
+                                              cs_vec3_dot(at->normal, product));
+    for (int c = 0; c < 3; c++)
+        out[c] = (product[c] - by->normal[c] * along - at->normal[c] * turned -
+                  at->turn[c] * by->length) /
+                 at->length;
+}
 
 static void find_change(const struct cs_normal_state *at, const struct cs_normal_sums *dx,
                         const struct cs_normal_sums *dv, struct change *by) {
-    *by = (struct change){0};
-    add_normal_change(at->product, &at->x, dx, by->normal);
-    add_normal_change(at->product, &at->x, dv, by->normal_rate);
-    add_normal_change(at->product, &at->v, dx, by->normal_rate);
+    double turn[3];
+    product_rate(&at->x, dx, by->product);
+    by->length = at->length_slope * cs_vec3_dot(at->normal, by->product);
+    normal_rate(at, by->product, by->normal);
+    find_turn_change(at, dx, dv, by, turn);
     for (int a = 0; a < 3; a++) {
         by->kappa[a] = cs_vec3_dot(dx->k[a], at->normal) + cs_vec3_dot(at->x.k[a], by->normal);
-        by->kappa_rate[a] =
-            cs_vec3_dot(dv->k[a], at->normal) + cs_vec3_dot(at->v.k[a], by->normal) +
-            cs_vec3_dot(dx->k[a], at->normal_rate) + cs_vec3_dot(at->x.k[a], by->normal_rate);
+        by->kappa_rate[a] = cs_vec3_dot(dv->k[a], at->normal) +
+                            cs_vec3_dot(at->v.k[a], by->normal) +
+                            cs_vec3_dot(dx->k[a], at->turn) + cs_vec3_dot(at->x.k[a], turn);
     }
 }
 
@@ -119,17 +144,28 @@ static void find_change(const struct cs_normal_state *at, const struct cs_normal
 static void change_reaction(const struct cs_normal_state *at, const struct cs_normal_sums *dx,
                             const struct change *by, const double M[3], const double dM[3],
                             struct reaction *out) {
-    double m[3] = {0}, dm[3] = {0};
-    *out = (struct reaction){0};
-    for (int a = 0; a < 3; a++)
-        for (int c = 0; c < 3; c++)
+    double m[3], dm[3], one[3], other[3];
+    find_lever(at, M, m);
+    find_lever(at, dM, dm);
+    for (int c = 0; c < 3; c++) {
+        for (int a = 0; a < 3; a++) {
+            dm[c] += M[a] *
+                     (dx->k[a][c] - at->length_slope * (by->kappa[a] * at->normal[c] +
+                                                        at->kappa[a] * by->normal[c])) /
+                     at->length;
             out->moment[a][c] = dM[a] * at->normal[c] + M[a] * by->normal[c];
-    // product rule: m goes by M and k, the ends by m and the differences
-    add_lever(at->product, M, at->x.k, m);
-    add_lever(at->product, dM, at->x.k, dm);
-    add_lever(at->product, M, dx->k, dm);
-    add_ends(dx->d, m, out);
-    add_ends(at->x.d, dm, out);
+        }
+        // the length divides m
+        dm[c] -= m[c] * by->length / at->length;
+    }
+    cs_vec3_cross(dx->d[1], m, one);
+    cs_vec3_cross(at->x.d[1], dm, other);
+    for (int c = 0; c < 3; c++)
+        out->end[0][c] = one[c] + other[c];
+    cs_vec3_cross(dm, at->x.d[0], one);
+    cs_vec3_cross(m, dx->d[0], other);
+    for (int c = 0; c < 3; c++)
+        out->end[1][c] = one[c] + other[c];
 }
 
 /* Forces on the points, times -1. */

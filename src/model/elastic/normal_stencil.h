@@ -5,6 +5,9 @@
 
 #include "model/elastic/bendings.h"
 
+/* q of normal_curvature.h: with stretch alone kappa changes by 1 % of what it would with L0. */
+#define CS_NORMAL_FLOOR 0.01
+
 /* Numbers of a stencil's forces. */
 enum { CS_NORMAL_FORCES = 3 * CS_BENDING_POINTS };
 
@@ -16,8 +19,10 @@ struct cs_normal_sums {
 /* A stencil at a state. */
 struct cs_normal_state {
     struct cs_normal_sums x, v;
-    double product;                   /* m2: L0 of normal_curvature.h */
-    double normal[3], normal_rate[3]; /* n, and its rate in 1/s */
+    double length;           /* m2: L of normal_curvature.h */
+    double length_slope;     /* c there: L changes by c n.(change of d x e) */
+    double normal[3];        /* n */
+    double rate[3], turn[3]; /* of d x e in m2/s, and of n in 1/s */
     double kappa[3], kappa_rate[3];
 };
 
