@@ -49,8 +49,10 @@ struct pairs {
 };
 
 /* d = x_b - x_a, and d.(v_b - v_a) in *lengthening. Returns d.d. */
-CS_INLINE double difference(size_t n, const double *x, const double *v, size_t a, size_t b,
+CS_INLINE double difference(const struct cs_strain_limit_grid grid, size_t a, size_t b,
                             double d[3], double *lengthening) {
+    const double *x = grid.x, *v = grid.v;
+    const size_t n = grid.n;
     for (size_t c = 0; c < 3; c++)
         d[c] = x[c * n + b] - x[c * n + a];
     *lengthening = d[0] * (v[b] - v[a]) + d[1] * (v[n + b] - v[n + a]) +
@@ -76,13 +78,15 @@ CS_INLINE double velocity_fraction(double squared, double w, double lengthening,
 
 /* Moves the ends of a spring by inverse masses, which conserves momentum. Springs that are
  * short enough move by 0. Returns whether it was corrected. */
-CS_INLINE uint64_t shorten(size_t n, double *x, double *v, const double *inv_mass, size_t a,
-                           size_t b, double longest, double inverse_dt) {
+CS_INLINE uint64_t shorten(const struct cs_strain_limit_grid grid, size_t a, size_t b,
+                           double longest) {
+    double *x = grid.x, *v = grid.v;
+    const size_t n = grid.n;
     double d[3], lengthening;
-    const double squared = difference(n, x, v, a, b, d, &lengthening);
-    const double wa = inv_mass[a], wb = inv_mass[b], w = wa + wb;
+    const double squared = difference(grid, a, b, d, &lengthening);
+    const double wa = grid.inv_mass[a], wb = grid.inv_mass[b], w = wa + wb;
     const double share = fraction_of(squared, longest, w);
-    const double v_share = velocity_fraction(squared, w, lengthening, share, inverse_dt);
+    const double v_share = velocity_fraction(squared, w, lengthening, share, grid.inverse_dt);
     for (size_t c = 0; c < 3; c++) {
         x[c * n + a] += wa * share * d[c];
         x[c * n + b] -= wb * share * d[c];
@@ -99,8 +103,7 @@ CS_INLINE uint64_t shorten_each(const struct cs_strain_limit_grid grid, const st
     CS_INDEPENDENT
     for (size_t k = 0; k < of.count; k++) {
         const size_t a = of.first + k * step;
-        moves += shorten(grid.n, grid.x, grid.v, grid.inv_mass, a, a + of.to, of.longest,
-                         grid.inverse_dt);
+        moves += shorten(grid, a, a + of.to, of.longest);
     }
     return moves;
 }
@@ -116,8 +119,7 @@ CS_CLONES static bool any_long(const struct cs_strain_limit_grid *grid,
     uint64_t any = 0;
     for (size_t i = of->first; i < of->first + of->count; i++) {
         double d[3], lengthening;
-        any |= difference(grid->n, grid->x, grid->v, i, i + of->to, d, &lengthening) >
-               of->longest * of->longest;
+        any |= difference(*grid, i, i + of->to, d, &lengthening) > of->longest * of->longest;
     }
     return any;
 }
@@ -180,9 +182,8 @@ static void go_from_pin(const struct cs_strain_limit_grid *grid, size_t pin) {
         for (size_t c = 0; c < columns; c++, i++) {
             const size_t along = c > column ? c - column : column - c;
             const size_t down = r > row ? r - row : row - r;
-            shorten(grid->n, grid->x, grid->v, grid->inv_mass, i, pin,
-                    (double)along * grid->row_springs + (double)down * grid->column_springs,
-                    grid->inverse_dt);
+            shorten(*grid, i, pin,
+                    (double)along * grid->row_springs + (double)down * grid->column_springs);
         }
 }
 
@@ -225,6 +226,15 @@ static bool is_limited(const struct pass *pass, const struct cs_spring_run *run)
     return run->body == pass->body && run->kind == CS_SPRING_STRETCH;
 }
 
+/* The particles of all bodies, which springs of a mesh number. */
+static struct cs_strain_limit_grid all_of(const struct pass *pass) {
+    return (struct cs_strain_limit_grid){.n = pass->system->view.n,
+                                         .x = pass->x,
+                                         .v = pass->v,
+                                         .inv_mass = pass->system->inv_mass,
+                                         .inverse_dt = pass->inverse_dt};
+}
+
 /* One pass over a mesh in the order of its springs. */
 static uint64_t mesh_pass(const struct pass *pass, bool backwards) {
     const struct cs_springs *springs = &pass->system->springs;
@@ -234,9 +244,8 @@ static uint64_t mesh_pass(const struct pass *pass, bool backwards) {
         const uint32_t count = is_limited(pass, run) ? run->count : 0;
         for (uint32_t j = 0; j < count; j++) {
             const uint32_t i = backwards ? count - 1 - j : j;
-            moves += shorten(pass->system->view.n, pass->x, pass->v, pass->system->inv_mass,
-                             cs_spring_a(run, i), cs_spring_b(run, i),
-                             pass->limit * cs_spring_length(run, i), pass->inverse_dt);
+            moves += shorten(all_of(pass), cs_spring_a(run, i), cs_spring_b(run, i),
+                             pass->limit * cs_spring_length(run, i));
         }
     }
     return moves;
@@ -270,7 +279,6 @@ static struct cs_strain_limit_grid grid_of(const struct pass *pass) {
  * that long. */
 static double largest_excess(const struct pass *pass) {
     const struct cs_system *system = pass->system;
-    const size_t n = system->view.n;
     double largest = 0;
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_run *run = system->springs.runs + r;
@@ -278,7 +286,7 @@ static double largest_excess(const struct pass *pass) {
             const uint32_t a = cs_spring_a(run, i), b = cs_spring_b(run, i);
             const double longest = pass->limit * cs_spring_length(run, i);
             double d[3], lengthening;
-            const double squared = difference(n, pass->x, pass->v, a, b, d, &lengthening);
+            const double squared = difference(all_of(pass), a, b, d, &lengthening);
             if (system->inv_mass[a] + system->inv_mass[b] > 0)
                 largest = fmax(largest, squared / (longest * longest));
         }
