@@ -152,8 +152,8 @@ TEST(drag_takes_what_a_fall_lacks) {
 }
 
 /* A floor that absorbs all takes what a fall from h has gained, a velocity loss its share of
- * each step, a strain limit what it pulls in: put down apart, and together they are the
- * balance. */
+ * each step; a strain limit lifts what it pulls in and stops its lengthening, which nearly
+ * cancel: put down apart, and together they are the balance. */
 TEST(corrections_are_put_down_apart) {
     struct kept kept;
     run_kept(
@@ -173,9 +173,9 @@ TEST(corrections_are_put_down_apart) {
         sum += work[k];
     ck_assert_double_eq_tol(sum, cs_energy_ledger_sum(&kept.account),
                             1e-12 * (1 + kept.moving));
-    ck_assert_msg(
-        work[CS_WORK_LIMIT] < 0 && work[CS_WORK_LOSS] < 0 && work[CS_WORK_ABSORPTION] < 0,
-        "%g %g %g J", work[CS_WORK_LIMIT], work[CS_WORK_LOSS], work[CS_WORK_ABSORPTION]);
+    ck_assert_double_gt(fabs(work[CS_WORK_LIMIT]), 0);
+    ck_assert_msg(work[CS_WORK_LIMIT] < 0.01 * kept.moving, "%g J", work[CS_WORK_LIMIT]);
+    ck_assert(work[CS_WORK_LOSS] < 0 && work[CS_WORK_ABSORPTION] < 0);
     ck_assert(fabs(work[CS_WORK_INTEGRATOR]) < 0.05 * kept.moving);
     ck_assert_double_eq(work[CS_WORK_EVENTS], 0);
     close_kept(&kept);
