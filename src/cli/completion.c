@@ -1,184 +1,8 @@
-/* Prints completion scripts for bash, zsh and fish, and the values they offer. */
-#include "base/options.h"
+/* Prints completion scripts for bash, zsh and fish. Values that the program knows are asked of
+ * it: clothsim --complete. */
 #include "cli/commands.h"
-#include "cli/line/print.h"
-#include "io/export/export.h"
-#include "scene/scene.h"
-#include "sim/registry.h"
-#include "study/compare/compare_cell.h"
-#include "study/conform/conform.h"
 
-#include <stdio.h>
 #include <string.h>
-
-/* Source of completions for a value or an operand, derived from its placeholder in the help;
- * from METHOD on `clothsim --complete` knows them. */
-enum source { NOTHING, FOLDERS, FILES, METHOD, METHODS, PATHS, WORDS };
-
-/* Words of placeholders; with a comma in it a list of them. */
-static const char *const *words_of(const struct cs_arg *row) {
-    const char *value = row->value;
-    return row->names                       ? row->names
-           : !strcmp(value, "COLUMN")       ? cs_column_axes()
-           : !strcmp(value, "FAMILY")       ? cs_family_names
-           : !strcmp(value, "FORMAT[,...]") ? cs_export_format_names
-           : !strcmp(value, "VALUE[,...]")  ? cs_export_value_names
-           : !strcmp(value, "CHECK[,...]")  ? cs_conform_check_names()
-                                            : NULL;
-}
-
-static enum source source_of(const char *value) {
-    if (!strcmp(value, "LIST"))
-        return METHODS;
-    if (!strncmp(value, "NAME[:", 6) || !strncmp(value, "NAME:", 5) || !strcmp(value, "[NAME]"))
-        return METHOD;
-    if (!strncmp(value, "PATH=", 5))
-        return PATHS;
-    if (!strncmp(value, "DIR", 3))
-        return FOLDERS;
-    return strstr(value, "FILE") || strstr(value, "SCENE") || strstr(value, "CSV") ? FILES
-                                                                                   : NOTHING;
-}
-
-static enum source source_of_row(const struct cs_arg *row) {
-    return !row->value ? NOTHING : words_of(row) ? WORDS : source_of(row->value);
-}
-
-/* The word that is completed, and the words that it may become. */
-struct word {
-    const char *text; /* as it is typed so far */
-    size_t start;     /* of the item in it that is completed */
-    struct cs_text *out;
-};
-
-static void offer(const struct word *word, const char *item, const char *end) {
-    const char *typed = word->text + word->start;
-    if (!strncmp(item, typed, strlen(typed)))
-        cs_text_add(word->out, "%.*s%s%s\n", (int)word->start, word->text, item, end);
-}
-
-static void offer_all(const struct word *word, const char *const *items) {
-    for (; items && *items; items++)
-        offer(word, *items, "");
-}
-
-/* Start of the item behind the last separator. */
-static size_t item_start(const char *text, const char *separators) {
-    size_t start = strlen(text);
-    while (start > 0 && !strchr(separators, text[start - 1]))
-        start--;
-    return start;
-}
-
-/* The row of a key of that length, or NULL. */
-static const struct cs_option *find_key(const struct cs_table *table, const char *key,
-                                        size_t length) {
-    for (const struct cs_option *row = table->rows; row < table->rows + table->n; row++)
-        if (strlen(row->name) == length && !strncmp(row->name, key, length))
-            return row;
-    return NULL;
-}
-
-/* Keys of a table, or behind "key=" the names that the key takes. */
-static void offer_keys(struct word *word, const struct cs_table *table) {
-    static const char *const switches[] = {"true", "false", NULL};
-    const size_t length = strcspn(word->text + word->start, "=");
-    const bool valued = word->text[word->start + length] == '=';
-    const struct cs_option *row =
-        valued ? find_key(table, word->text + word->start, length) : NULL;
-    if (row) {
-        word->start += length + 1;
-        offer_all(word, row->type == CS_BOOL ? switches : row->choices);
-    }
-    for (row = table->rows; !valued && row < table->rows + table->n; row++)
-        offer(word, row->name, !row->table ? "=" : row->type == CS_LIST ? "[0]." : ".");
-}
-
-/* NAME:key=value,key=value, and in a list, behind a comma, the next NAME. */
-static void complete_methods(struct word *word, bool list) {
-    struct cs_registry registry = {0};
-    struct cs_error ignored = {0};
-    const struct cs_registry_entry *entry;
-    const char *text = word->text, *colon = strrchr(text, ':');
-    uint32_t n;
-    word->start = item_start(text, ",:");
-    if (word->start ? list && text[word->start - 1] == ',' : true)
-        offer_all(word, cs_registry_names(&registry, true, &n, &ignored));
-    /* behind a colon the options of the method before it, up to the next method */
-    if (colon) {
-        char name[64];
-        const char *first = colon;
-        while (first > text && first[-1] != ',')
-            first--;
-        snprintf(name, sizeof name, "%.*s", (int)(colon - first), first);
-        if (!cs_registry_find(&registry, name, &entry, &ignored))
-            offer_keys(word, &(struct cs_table){.rows = entry->integrator->options,
-                                                .n = entry->integrator->n_options});
-    }
-    cs_registry_finish(&registry);
-}
-
-/* One step of a path at a time: bodies[0]. springs. stretch= */
-static void complete_path(struct word *word) {
-    static const char method[] = "integrator.name=";
-    const struct cs_table *table = &cs_scene_table;
-    if (!strncmp(word->text, method, sizeof method - 1)) {
-        struct word name = {word->text + sizeof method - 1, 0, &(struct cs_text){0}};
-        complete_methods(&name, false);
-        cs_print_lines(method, cs_text_get(name.out), word->out);
-        cs_text_finish(name.out);
-        return;
-    }
-    const size_t end = strcspn(word->text, "=");
-    for (size_t dot; (dot = word->start + strcspn(word->text + word->start, ".")) < end;) {
-        const char *key = word->text + word->start;
-        const struct cs_option *row = find_key(table, key, strcspn(key, ".["));
-        if (!row || !row->table)
-            return;
-        table = row->table;
-        word->start = dot + 1;
-    }
-    /* the keys of an integrator are in no table; these two all scenes may have */
-    if (!word->start) {
-        offer(word, "integrator.name", "=");
-        offer(word, "integrator.dt", "=");
-    }
-    offer_keys(word, table);
-}
-
-/* True for the long name, its singular (--integrator for --integrators) and its old name. */
-static bool is_name(const struct cs_arg *row, const char *name) {
-    const size_t n = strlen(name);
-    return (row->old_name && !strcmp(row->old_name, name)) ||
-           (!strncmp(row->name, name, n) && (!row->name[n] || !strcmp(row->name + n, "s")));
-}
-
-/* The row of "--name" or "-n" that takes a value, or NULL. */
-static const struct cs_arg *find_row(const struct cs_command *command, const char *option) {
-    for (const struct cs_arg *row = command->rows; row < command->rows + command->n_rows; row++)
-        if (row->value && *option == '-' &&
-            (option[1] == '-' ? is_name(row, option + 2)
-                              : row->short_name && option[1] == row->short_name && !option[2]))
-            return row;
-    return NULL;
-}
-
-void cs_completion_print_values(const struct cs_command *command, const char *option,
-                                const char *text, struct cs_text *out) {
-    const struct cs_arg *row = find_row(command, option);
-    const enum source source = row ? source_of_row(row) : source_of(command->operands);
-    struct word word = {.text = text, .out = out};
-    if (source == METHOD || source == METHODS)
-        complete_methods(&word, source == METHODS);
-    else if (source == PATHS)
-        complete_path(&word);
-    else if (source == WORDS) {
-        word.start = strchr(row->value, ',') ? item_start(text, ",") : 0;
-        offer_all(&word, words_of(row));
-    }
-}
-
-/* Scripts. Values that the program knows are asked of it: clothsim --complete. */
 
 /* Adds text between single quotes; quotes and the characters of `special` are escaped. */
 static void add_quoted(const char *text, const char *quote, const char *special,
@@ -191,17 +15,26 @@ static void add_quoted(const char *text, const char *quote, const char *special,
 }
 
 /* " --name -n" of the options with that source of values, or of all. */
-static void add_names(const struct cs_command *command, bool all, enum source source,
-                      struct cs_text *out) {
+static void add_names(const struct cs_command *command, bool all,
+                      enum cs_completion_source source, struct cs_text *out) {
     for (const struct cs_arg *row = command->rows; row < command->rows + command->n_rows; row++)
-        if (row->help && (all || source_of_row(row) == source)) {
+        if (row->help && (all || cs_completion_source_of_row(row) == source)) {
             cs_text_add(out, " --%s", row->name);
             if (row->short_name)
                 cs_text_add(out, " -%c", row->short_name);
         }
 }
 
-static void add_bash(const struct cs_command *const *commands, struct cs_text *out) {
+static void add_bash_command(const struct cs_command *command, struct cs_text *out) {
+    cs_text_add(out, "    *:%s)\n        options='--help -h", command->name);
+    add_names(command, true, CS_COMPLETE_NOTHING, out);
+    cs_text_add(out, "'\n        folders='");
+    add_names(command, false, CS_COMPLETE_FOLDERS, out);
+    cs_text_add(out, " ' ;;\n");
+}
+
+static void add_bash(const struct cs_command *const *commands, const char *parts,
+                     struct cs_text *out) {
     /* bash splits words at : and =, and replaces only what stands behind the last of them */
     cs_text_add(out,
                 "# bash completion for clothsim\n"
@@ -219,17 +52,10 @@ static void add_bash(const struct cs_command *const *commands, struct cs_text *o
                      "    case ${#words[@]}:${words[1]} in\n"
                      "    2:*) options='--help --version -h -V' operands=$commands ;;\n"
                      "    3:help) operands=$commands ;;\n");
-    for (uint32_t i = 0; commands[i]; i++) {
-        cs_text_add(out, "    *:%s)\n        options='--help -h", commands[i]->name);
-        add_names(commands[i], true, NOTHING, out);
-        cs_text_add(out, "'\n        folders='");
-        add_names(commands[i], false, FOLDERS, out);
-        cs_text_add(out, " ' ;;\n");
-    }
     /* an empty reply leaves the word to the completion of file names */
     cs_text_add(
         out,
-        "    esac\n"
+        "%s    esac\n"
         "    [[ -z $breaks ]] || cut=${word%%\"${word##*[$breaks]}\"}\n"
         "    if [[ $word == -* ]]; then operands=$options\n"
         "    elif [[ $folders == *\" $before \"* ]]; then\n"
@@ -245,19 +71,20 @@ static void add_bash(const struct cs_command *const *commands, struct cs_text *o
         "    fi\n"
         "    mapfile -t COMPREPLY < <(compgen -W \"$operands\" -- \"$word\")\n"
         "}\n"
-        "complete -o default -F _clothsim clothsim\n");
+        "complete -o default -F _clothsim clothsim\n",
+        parts);
 }
 
 /* option: long name, "" of operands. The blank before a call keeps zsh from adding to it. */
 static void add_zsh_action(const struct cs_command *command, const char *option,
-                           enum source source, struct cs_text *out) {
-    if (source >= METHOD)
+                           enum cs_completion_source source, struct cs_text *out) {
+    if (source >= CS_COMPLETE_METHOD)
         cs_text_add(out, " _clothsim_values %s --%s", command->name, option);
     else
         cs_text_add(out, "%s",
-                    source == FOLDERS ? "_files -/"
-                    : source == FILES ? "_files"
-                                      : " ");
+                    source == CS_COMPLETE_FOLDERS ? "_files -/"
+                    : source == CS_COMPLETE_FILES ? "_files"
+                                                  : " ");
 }
 
 /* one argument of _arguments; attached is what lets the value follow without a blank */
@@ -272,11 +99,12 @@ static void add_zsh_option(const struct cs_command *command, const struct cs_arg
         cs_text_add(out, ":");
         add_quoted(row->value, "'\\''", "[]:\\", out);
         cs_text_add(out, ":");
-        add_zsh_action(command, row->name, source_of_row(row), out);
+        add_zsh_action(command, row->name, cs_completion_source_of_row(row), out);
     }
     cs_text_add(out, "'");
 }
 
+/* one branch per command, whose first word is then the command itself */
 static void add_zsh_command(const struct cs_command *command, struct cs_text *out) {
     cs_text_add(out, "    %s)\n        _arguments '(-h --help)'{-h,--help}'[this text]'",
                 command->name);
@@ -293,13 +121,14 @@ static void add_zsh_command(const struct cs_command *command, struct cs_text *ou
         cs_text_add(out, " \\\n            '*:");
         add_quoted(command->operands, "'\\''", "[]:\\", out);
         cs_text_add(out, ":");
-        add_zsh_action(command, "", source_of(command->operands), out);
+        add_zsh_action(command, "", cs_completion_source_of(command->operands), out);
         cs_text_add(out, "'");
     }
     cs_text_add(out, " ;;\n");
 }
 
-static void add_zsh(const struct cs_command *const *commands, struct cs_text *out) {
+static void add_zsh(const struct cs_command *const *commands, const char *parts,
+                    struct cs_text *out) {
     cs_text_add(out, "#compdef clothsim\n"
                      "_clothsim_values() {\n"
                      "    local -a values=(${(f)\"$(clothsim --complete $1 $2 \"${(Q)PREFIX}\" "
@@ -313,32 +142,31 @@ static void add_zsh(const struct cs_command *const *commands, struct cs_text *ou
         add_quoted(commands[i]->summary, "'\\''", ":\\", out);
         cs_text_add(out, "'");
     }
-    cs_text_add(out, ")\n"
-                     "    if (( CURRENT == 2 )) || [[ $words[2] == help ]]; then\n"
-                     "        _describe command commands\n"
-                     "        return\n"
-                     "    fi\n"
-                     "    shift words\n"
-                     "    (( CURRENT-- ))\n"
-                     "    case $words[1] in\n");
-    /* one branch per command, whose first word is then the command itself */
-    for (uint32_t i = 0; commands[i]; i++)
-        add_zsh_command(commands[i], out);
-    cs_text_add(out, "    esac\n"
-                     "}\n"
-                     "_clothsim \"$@\"\n");
+    cs_text_add(out,
+                ")\n"
+                "    if (( CURRENT == 2 )) || [[ $words[2] == help ]]; then\n"
+                "        _describe command commands\n"
+                "        return\n"
+                "    fi\n"
+                "    shift words\n"
+                "    (( CURRENT-- ))\n"
+                "    case $words[1] in\n"
+                "%s    esac\n"
+                "}\n"
+                "_clothsim \"$@\"\n",
+                parts);
 }
 
 /* Within double quotes; "--name=" before a value stays behind. */
 static void add_fish_action(const struct cs_command *command, const char *option,
-                            enum source source, struct cs_text *out) {
-    if (source >= METHOD)
+                            enum cs_completion_source source, struct cs_text *out) {
+    if (source >= CS_COMPLETE_METHOD)
         cs_text_add(out, " -x -a '(__clothsim_values %s --%s)'", command->name, option);
     else
         cs_text_add(out, "%s",
-                    source == FOLDERS ? " -x -a '(__fish_complete_directories)'"
-                    : source == FILES ? " -r -F"
-                                      : " -x");
+                    source == CS_COMPLETE_FOLDERS ? " -x -a '(__fish_complete_directories)'"
+                    : source == CS_COMPLETE_FILES ? " -r -F"
+                                                  : " -x");
 }
 
 static void add_fish_command(const struct cs_command *command, struct cs_text *out) {
@@ -355,21 +183,23 @@ static void add_fish_command(const struct cs_command *command, struct cs_text *o
             cs_text_add(out, " -s %c", row->short_name);
         cs_text_add(out, " -l %s", row->name);
         if (row->value)
-            add_fish_action(command, row->name, source_of_row(row), out);
+            add_fish_action(command, row->name, cs_completion_source_of_row(row), out);
         cs_text_add(out, " -d '");
         add_quoted(row->help, "\\'", "\\", out);
         cs_text_add(out, "'\n");
     }
     /* -F allows the files that -f at the top forbids */
-    const enum source source = source_of(command->operands);
-    if (source == FILES)
+    const enum cs_completion_source source = cs_completion_source_of(command->operands);
+    if (source == CS_COMPLETE_FILES)
         cs_text_add(out, "%s%s' -F\n", seen, command->name);
-    else if (source >= METHOD)
+    else if (source >= CS_COMPLETE_METHOD)
         cs_text_add(out, "%s%s' -F -a '(__clothsim_values %s --)'\n", seen, command->name,
                     command->name);
 }
 
-static void add_fish(const struct cs_command *const *commands, struct cs_text *out) {
+static void add_fish(const struct cs_command *const *commands, const char *parts,
+                     struct cs_text *out) {
+    (void)commands; // named by their parts
     cs_text_add(out,
                 "# fish completion for clothsim\n"
                 "function __clothsim_values\n"
@@ -380,21 +210,49 @@ static void add_fish(const struct cs_command *const *commands, struct cs_text *o
                 "complete -c clothsim -f\n"
                 "complete -c clothsim -n __fish_use_subcommand -s h -l help -d 'this text'\n"
                 "complete -c clothsim -n __fish_use_subcommand -s V -l version\n"
-                "complete -c clothsim -n __fish_use_subcommand -a help\n");
-    for (uint32_t i = 0; commands[i]; i++)
-        add_fish_command(commands[i], out);
+                "complete -c clothsim -n __fish_use_subcommand -a help\n%s",
+                parts);
+}
+
+static const struct {
+    const char *name;
+    void (*add_command)(const struct cs_command *command, struct cs_text *out);
+    void (*add)(const struct cs_command *const *commands, const char *parts,
+                struct cs_text *out);
+} shells[] = {{"bash", add_bash_command, add_bash},
+              {"zsh", add_zsh_command, add_zsh},
+              {"fish", add_fish_command, add_fish}};
+enum { SHELLS = sizeof shells / sizeof *shells };
+
+static size_t find_shell(const char *name, struct cs_error *error) {
+    size_t k = 0;
+    while (k < SHELLS && strcmp(shells[k].name, name) != 0)
+        k++;
+    if (k == SHELLS)
+        cs_fail(error, CS_ERR_USAGE, "no completion for \"%.60s\", expected bash, zsh or fish",
+                name);
+    return k;
+}
+
+enum cs_status cs_completion_print_command(const struct cs_command *command, const char *shell,
+                                           struct cs_text *out, struct cs_error *error) {
+    const size_t k = find_shell(shell, error);
+    if (k < SHELLS && command->main)
+        shells[k].add_command(command, out);
+    else if (k < SHELLS)
+        cs_tool_query(command, shell, out, error);
+    return error->status;
 }
 
 enum cs_status cs_completion_print(const struct cs_command *const *commands, const char *shell,
                                    struct cs_text *out, struct cs_error *error) {
-    if (!strcmp(shell, "bash"))
-        add_bash(commands, out);
-    else if (!strcmp(shell, "zsh"))
-        add_zsh(commands, out);
-    else if (!strcmp(shell, "fish"))
-        add_fish(commands, out);
-    else
-        return cs_fail(error, CS_ERR_USAGE,
-                       "no completion for \"%.60s\", expected bash, zsh or fish", shell);
-    return CS_OK;
+    const size_t k = find_shell(shell, error);
+    struct cs_text parts = {0};
+    for (uint32_t i = 0; commands[i] && !error->status; i++)
+        cs_completion_print_command(commands[i], shell, &parts, error);
+    if (!error->status)
+        shells[k].add(commands, cs_text_get(&parts), out);
+    out->failed |= parts.failed;
+    cs_text_finish(&parts);
+    return error->status;
 }

@@ -1,7 +1,9 @@
 /* clothsim: finds the command, and turns its status into a message and an exit code.
  *
  *   argv -> dispatch -> cs_args_parse -> command->main -> message on stderr -> exit code
- * All errors of commands come back here as one struct cs_error; nothing exits on its own. */
+ * All errors of commands come back here as one struct cs_error; nothing exits on its own.
+ * A command that is a program of its own (tools/) has this main too, with no other command in
+ * its table: it is started in place of this one, with the same words. */
 #include "base/ieee_check.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
@@ -14,9 +16,20 @@
 #include <string.h>
 #include <unistd.h>
 
+/* CS_TOOL: the one command of a program of its own; else all, those by name and summary */
+#ifdef CS_TOOL
+#define PROGRAM_LIST CS_TOOL
+#else
+#define PROGRAM_LIST CS_COMMAND_LIST
+#define X(name_, text)                                                                         \
+    const struct cs_command cs_command_##name_ = {.name = text, .summary = CS_SUMMARY_##name_};
+CS_TOOL_LIST(X)
+#undef X
+#endif
+
 static const struct cs_command *const commands[] = {
 #define X(name) &cs_command_##name,
-    CS_COMMAND_LIST(X)
+    PROGRAM_LIST(X)
 #undef X
         NULL};
 enum { COMMANDS = sizeof commands / sizeof *commands };
@@ -109,6 +122,18 @@ static enum cs_status print_files(struct cs_error *error) {
     return cs_print_out(stdout, &out, error);
 }
 
+/* For clothsim's own completion script: the part of a program of its own. COMMAND, SHELL. */
+static enum cs_status print_command_completion(char **argv, struct cs_error *error) {
+    const struct cs_command *command = find_command(argv[0]);
+    struct cs_text out = {0};
+    if (!command)
+        return unknown_command(argv[0], error);
+    if (!cs_completion_print_command(command, argv[1], &out, error))
+        cs_print_out(stdout, &out, error);
+    cs_text_finish(&out);
+    return error->status;
+}
+
 /* For the completion scripts: COMMAND, OPTION, WORD. */
 static enum cs_status print_values(char **argv, struct cs_error *error) {
     const struct cs_command *command = find_command(argv[0]);
@@ -136,12 +161,25 @@ static enum cs_status run_command(const struct cs_command *command, int argc, ch
     return error->status;
 }
 
+/* The command that the words are about; NULL: none. */
+static const struct cs_command *command_of(int argc, char **argv) {
+    static const char *const before[] = {"help", "--help", "-h", "--complete"};
+    int at = 1;
+    for (size_t k = 0; k < sizeof before / sizeof *before; k++)
+        if (argc > 2 && !strcmp(argv[1], before[k]))
+            at = 2;
+    return find_command(argv[at]);
+}
+
 /* Options of the program itself come first: version, completion, help. */
 static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
     if (argc < 2)
         return print_overview(stderr, error)
                    ? error->status
                    : cs_fail(error, CS_ERR_USAGE, "expected a command");
+    const struct cs_command *tool = command_of(argc, argv);
+    if (tool && !tool->main)
+        return cs_tool_start(tool, argv, error);
     if (!strcmp(argv[1], "--version") || !strcmp(argv[1], "-V"))
         return print_version(error);
     /* without a name the message lists the names */
@@ -151,7 +189,9 @@ static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
         return print_schema(argc == 3 ? argv[2] : "", error);
     if (argc == 2 && !strcmp(argv[1], "--files"))
         return print_files(error);
-    /* asked by the completion scripts, and by nobody else */
+    /* asked by the completion scripts, or for them, and by nobody else */
+    if (argc == 4 && !strcmp(argv[1], "--complete"))
+        return print_command_completion(argv + 2, error);
     if (argc == 5 && !strcmp(argv[1], "--complete"))
         return print_values(argv + 2, error);
     if (!strcmp(argv[1], "help") || !strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))
@@ -178,9 +218,14 @@ static enum cs_status open_streams(struct cs_error *error) {
 int main(int argc, char **argv) {
     struct cs_error error = {0};
     open_streams(&error);
+#ifdef CS_TOOL
+    /* clothsim, which started it, has told where it cannot find itself */
+    cs_program_from_tool();
+#else
     const char *fault = cs_program_path_fault();
     if (fault)
         cs_print_message(fault);
+#endif
     /* a file that grew too long comes back from the write as an error, and is reported */
     signal(SIGXFSZ, SIG_IGN);
     if (!error.status && !dispatch(argc, argv, &error) && (fflush(stdout) || ferror(stdout)))

@@ -92,7 +92,15 @@ struct place {
 static const struct place modules = {"plugins", CS_MODULES_FROM_PROGRAM, CS_MODULES_INSTALLED};
 static const struct place renderers = {"src/draw", CS_MODULES_FROM_PROGRAM "/render",
                                        CS_MODULES_INSTALLED "/render"};
+static const struct place tools = {"tools", CS_TOOLS_FROM_PROGRAM, CS_TOOLS_INSTALLED};
 static const struct place data = {NULL, CS_DATA_FROM_PROGRAM, CS_DATA_INSTALLED};
+
+/* from the folder of the running program to that of clothsim */
+static const char *to_clothsim = ".";
+
+void cs_program_from_tool(void) {
+    to_clothsim = CS_PROGRAM_FROM_TOOLS;
+}
 
 /* Writes the folder of a place to out: of the build, or relative to the program; as configured
  * if the program's path is unknown. out stays as it is where a build has none. */
@@ -105,7 +113,7 @@ static const char *find(const struct place *place, char *out) {
     }
     memcpy(build, program, sizeof build);
     if (!find_build(build))
-        snprintf(out, FOLDER_MAX, "%s/%s", program, place->installed);
+        snprintf(out, FOLDER_MAX, "%s/%s/%s", program, to_clothsim, place->installed);
     else if (place->in_build)
         snprintf(out, FOLDER_MAX, "%s/%s", build, place->in_build);
     return out;
@@ -130,6 +138,12 @@ const char *cs_module_folder(void) {
 const char *cs_renderer_folder(void) {
     static char folder[FOLDER_MAX];
     return *folder ? folder : find(&renderers, folder);
+}
+
+const char *cs_tool_path(const char *command, char *out, size_t size) {
+    char folder[FOLDER_MAX];
+    snprintf(out, size, "%s/clothsim-%s", find(&tools, folder), command);
+    return out;
 }
 
 /* The path if it exists, or that of an installed file; else NULL. */

@@ -14,6 +14,14 @@ const char *cs_program_path(void);
  * configured. */
 const char *cs_program_path_fault(void);
 
+/* To be called first by a command that is a program of its own, clothsim-NAME: it stands in
+ * another folder than clothsim, to which the folders below are relative. */
+void cs_program_from_tool(void);
+
+/* Writes to out (size bytes, such as CS_DATA_PATH_MAX) the path of the program of a command: in
+ * a build tree the build's, else the installed one. Returns out. */
+const char *cs_tool_path(const char *command, char *out, size_t size);
+
 /* The folders of integrator and renderer modules. In a build tree the build's, else the
  * installed ones. These are found relative to the program, so that an installed tree can be
  * moved. Absolute and static. */

@@ -3,7 +3,7 @@
  * against is the closed form where there is one. */
 #include "../suite.h"
 #include "model/force/terms.h"
-#include "study/conform/conform_checks.h"
+#include "conform/conform_checks.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,7 +9,7 @@ root = pathlib.Path(sys.argv[1])
 NAME = r"(?:Van )?[A-Z][a-zü]*'?[A-Z]?[a-zü]+"
 YEAR = r"(?:17|18|19|20)\d\d\b"
 CITED = re.compile(rf"({NAME})((?:,? and {NAME}|, {NAME})*| et al\.?),?\s+({YEAR}(?:, {YEAR})*)")
-SOURCES = ["src/**/*.[ch]", "plugins/*.[ch]", "include/**/*.h", "man/*.scd", "docs/**/*.md", "README.md"]
+SOURCES = ["src/**/*.[ch]", "tools/**/*.[ch]", "plugins/*.[ch]", "include/**/*.h", "man/*.scd", "docs/**/*.md", "README.md"]
 MONTHS = "January February March April May June July August September October November December".split()
 
 

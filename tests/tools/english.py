@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """english.py ROOT - no pattern of a translated sentence.
 
-Looked at are comments of src, plugins, include (those that begin at the left margin head a file or
+Looked at are comments of src, tools, plugins, include (those that begin at the left margin head a file or
 a declaration), manual pages, docs, README, CONTRIBUTING; line breaks count as spaces.
 """
 import re

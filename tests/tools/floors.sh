@@ -1,5 +1,6 @@
 #!/bin/sh
-# Who may include whom: the own folder, and folders on lower floors; modules: include only.
+# Who may include whom: the own folder, and folders on lower floors; modules: include only. The
+# folders of tools stand above all of src.
 # A folder of src that is not in the list below is an error, and so is one with more than 25
 # units (a unit: NAME.c, NAME.h or both). Units form no circle either, in src or in plugins: one that
 # includes another's header, or names what another's .c defines (a header may declare for several),
@@ -11,24 +12,24 @@ awk '
         n = split("base mesh scene model/spring model/system model/elastic model/force model/contact model/contact/broad_phase" \
             " model/contact/narrow_phase model/contact/ccd model/solver,model/event model/post_step model" \
             " scene/file io,draw,sim io/export draw/gl,draw/cpu study study/reference" \
-            " study/compare,study/stability,study/conform,study/golden,study/soft study/advise cli/line cli/show cli cli/film,cli/run", floors, " ")
+            " study/compare,study/stability,study/golden,study/soft study/advise cli/line cli/show cli cli/film,cli/run conform", floors, " ")
         for (i = 1; i <= n; i++) {
             count_of = split(floors[i], folders, ",")
             for (k = 1; k <= count_of; k++) floor[folders[k]] = i
         }
     }
     function folder_of(path) { sub(/\/[^\/]*$/, "", path); return path }
-    function unit_of(path) { sub(/^src\//, "", path); sub(/\.[ch]$/, "", path); return path }
+    function unit_of(path) { sub(/^(src|tools)\//, "", path); sub(/\.[ch]$/, "", path); return path }
 
     # --- who may include whom, and how many there are ---
     FNR == 1 { here = unit_of(FILENAME); in_comment = 0 }
-    FNR == 1 && FILENAME ~ /^src/ {
-        from = folder_of(substr(FILENAME, 5))
-        if (!(from in floor)) wrong(FILENAME ": the floor of src/" from " is not known")
+    FNR == 1 && FILENAME ~ /^(src|tools)/ {
+        from = folder_of(here)
+        if (!(from in floor)) wrong(FILENAME ": the floor of " from " is not known")
     }
     FNR == 1 && !(here in known) {
         known[here]; units[++n_units] = here
-        if (FILENAME ~ /^src/ && ++inside[from] == 26) wrong("src/" from " has more than 25 units")
+        if (FILENAME ~ /^(src|tools)/ && ++inside[from] == 26) wrong(from " has more than 25 units")
     }
     /^#include "/ {
         split($0, quoted, "\"")
@@ -48,7 +49,7 @@ awk '
     /cs_run_begin\(/ && from != "sim" && FILENAME != "src/study/session.c" {
         wrong(FILENAME " begins a run: see cs_session_begin")
     }
-    /cs_run_frame\(/ && FILENAME ~ /^src/ && from != "sim" && FILENAME != "src/study/follow.c" {
+    /cs_run_frame\(/ && FILENAME ~ /^(src|tools)/ && from != "sim" && FILENAME != "src/study/follow.c" {
         wrong(FILENAME " steps a run: see cs_follow_next")
     }
     FILENAME ~ /^include/ && /^#include </ && !/<(clothsim\/|std|math)/ {
@@ -58,7 +59,7 @@ awk '
     # --- circles: what each .c defines and names, without comments and texts; what plugins share
     # with each other has no prefix ---
     FNR == 1 { shared = FILENAME ~ /^plugins/ ? "[a-z][a-z0-9_]+" : "cs_[a-z0-9_]+" }
-    FILENAME !~ /^(src|plugins).*\.c$/ { next }
+    FILENAME !~ /^(src|tools|plugins).*\.c$/ { next }
     {
         line = $0
         gsub(/"([^"\\]|\\.)*"/, "", line); sub(/\/\/.*/, "", line)
@@ -111,4 +112,4 @@ awk '
         count += n_units
         print count - failures " passed, " failures + 0 " failed"
         exit failures > 0
-    }' $(find src -name '*.[ch]' | LC_ALL=C sort) plugins/*.[ch] include/clothsim/*.h
+    }' $(find src tools -name '*.[ch]' | LC_ALL=C sort) plugins/*.[ch] include/clothsim/*.h

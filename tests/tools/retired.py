@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """retired.py ROOT - no name has a word that was retired.
 
-Looked at are cs_* and CS_* identifiers and names of files in src, plugins, include, part by part
+Looked at are cs_* and CS_* identifiers and names of files in src, tools, plugins, include, part by part
 between underscores, without regard to case. retired_words.txt has the words with what the field says.
 """
 import re

@@ -3,7 +3,7 @@ import re
 
 # strings are matched first, so that a comment sign within one is none
 TOKEN = re.compile(r"\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'|(/\*.*?\*/|//[^\n]*)", re.S)
-PRODUCT = ("src", "plugins", "include")
+PRODUCT = ("src", "tools", "plugins", "include")
 
 
 def files(root, trees=PRODUCT, pattern="*.[ch]"):

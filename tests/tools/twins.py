@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""twins.py ROOT - no two places of src share ten or more equal lines.
+"""twins.py ROOT - no two places of src and tools share ten or more equal lines.
 
 Lines are trimmed; lines without a letter or digit (blank, braces), #include lines and rows of a
 table of calls (.name = value,) are left out: what fills in one contract looks alike.
@@ -42,7 +42,7 @@ def length(files, a, b):
 def main():
     root = Path(sys.argv[1])
     files = {str(path.relative_to(root)): lines(path.read_text())
-             for path in sources.files(root, ("src",))}
+             for path in sources.files(root, ("src", "tools"))}
     checks = sources.Checks()
     faults = defaultdict(list)
     for a, b in twins(files):

@@ -44,7 +44,7 @@ struct cs_arg {
     bool repeatable;          /* may be given more than once */
     bool methods;             /* each value is a list of methods NAME:key=value,...,NAME,... */
     uint32_t min, max;        /* of a whole number */
-    const char *const *names; /* closed by NULL */
+    const char *const *names; /* closed by NULL; of a text: what completions offer */
     const char *old_name;     /* long name of the release before, still taken; or NULL */
 };
 
@@ -108,6 +108,7 @@ struct cs_command {
     const void *defaults;                /* of the struct that the rows fill */
     size_t size;                         /* of that struct */
     uint32_t operands_min, operands_max; /* number of operands */
+    /* NULL: a program of its own, of which name and summary alone are known here */
     enum cs_status (*main)(struct cs_args *args, struct cs_error *error);
 };
 

@@ -10,7 +10,7 @@
 #ifndef CS_CONFORM_H
 #define CS_CONFORM_H
 
-#include "study/conform/conform_checks.h"
+#include "conform/conform_checks.h"
 
 /* Runs the checks in order and reports each row; claims that do not hold are no error. Returns
  * CS_ERR_USAGE if only_checks has a name that is no check, before any is run, and CS_ERR_MEMORY
@@ -21,6 +21,6 @@ enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error)
 void cs_conform_print_checks(struct cs_text *out);
 
 /* Names of the checks, closed by NULL. */
-const char *const *cs_conform_check_names(void);
+extern const char *const cs_conform_check_names[];
 
 #endif

@@ -6,8 +6,8 @@
  * gravity:
  *   mu v / sqrt(v^2 + ev^2) = t   =>   v = ev t / sqrt(mu^2 - t^2).
  * On a steeper slope it accelerates by g (sin a - mu cos a), once v is large against ev. */
+#include "conform/conform_checks.h"
 #include "model/contact/barrier_law.h"
-#include "study/conform/conform_checks.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* Runs the checks of a card in order and compares them with the method's own claims. */
-#include "study/conform/conform.h"
+#include "conform/conform.h"
 
-#include "study/conform/conform_checks.h"
+#include "conform/conform_checks.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -48,16 +48,15 @@ static bool is_in(const char *list, const char *name) {
     return false;
 }
 
-const char *const *cs_conform_check_names(void) {
-    static const char *names[CHECKS + 1];
-    for (uint32_t k = 0; k < CHECKS; k++)
-        names[k] = checks[k].name;
-    return names;
-}
+const char *const cs_conform_check_names[] = {
+#define X(name, function, of, what) name,
+    CS_CONFORM_LIST(X)
+#undef X
+        NULL};
 
 /* Fails if a name of the list is no check. */
 static enum cs_status check_names(const char *list, struct cs_error *error) {
-    const char *const *names = cs_conform_check_names();
+    const char *const *names = cs_conform_check_names;
     while (list && !error->status) {
         const size_t length = strcspn(list, ",");
         uint32_t k = 0;

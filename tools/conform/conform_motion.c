@@ -1,6 +1,6 @@
 /* Checks motions that are known in closed form: free fall, translation, rotation, and the
  * momenta of a free sheet. */
-#include "study/conform/conform_checks.h"
+#include "conform/conform_checks.h"
 
 #include <math.h>
 #include <string.h>

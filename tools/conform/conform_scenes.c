@@ -1,5 +1,5 @@
 /* Holds small scenes as text, in a table at the end. A new force adds its own. */
-#include "study/conform/conform_checks.h"
+#include "conform/conform_checks.h"
 
 #define FREE_OF_SPRINGS "\"springs\": {\"stretch\": 0, \"shear\": 0, \"bend\": 0}"
 #define FIVE_FRAMES     "\"time\": {\"fps\": 10}"

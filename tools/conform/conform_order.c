@@ -13,7 +13,7 @@
  * Fidelity: a method that iterates constraints or local steps does not converge to the solution
  * of the ODE by iterations alone. Its descriptor claims their limit, implicit Euler or another
  * one, which is checked at one fixed step. */
-#include "study/conform/conform_checks.h"
+#include "conform/conform_checks.h"
 
 #include <math.h>
 

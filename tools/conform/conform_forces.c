@@ -6,8 +6,8 @@
  * that is allowed, and never less than 1e-10. A force that is missed or applied twice causes an
  * error of the size of the motion at any step. Two levels of accuracy differ by 8 in h: a wrong
  * order fails at the fine level. */
+#include "conform/conform_checks.h"
 #include "model/plan.h"
-#include "study/conform/conform_checks.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Runs a small scene with one method for a check, at a given step or tolerance, and fills the
  * rows of a card. Of several figures a row keeps the most significant one. */
-#include "study/conform/conform_checks.h"
+#include "conform/conform_checks.h"
 
 #include "base/options.h"
 #include "model/force/diagnostics.h"

@@ -9,9 +9,9 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/run_output.h"
+#include "conform/conform.h"
+#include "conform/conform_checks.h"
 #include "sim/method.h"
-#include "study/conform/conform.h"
-#include "study/conform/conform_checks.h"
 #include "study/process_pool.h"
 
 #include <errno.h>
@@ -41,7 +41,8 @@ static const struct cs_arg rows[] = {
     {"json", 0, "FILE", "write the card as JSON too; -: instead of the text",
      CS_ARG_INTO(struct options, json)},
     {"list", 0, NULL, "list the checks", CS_ARG_INTO(struct options, list)},
-    {"only", 0, "CHECK[,...]", "run only these checks", CS_ARG_INTO(struct options, only)},
+    {"only", 0, "CHECK[,...]", "run only these checks", CS_ARG_INTO(struct options, only),
+     .names = cs_conform_check_names},
     {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
      CS_ARG_LIST(struct options, plugins, n_plugins)},
     CS_ARG_QUIET(struct options, quiet),
@@ -360,7 +361,7 @@ static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_conform = {
     .name = "conform",
     .operands = "NAME[:OPTIONS]|FILE.so ...",
-    .summary = "test an integrator against the properties it claims",
+    .summary = CS_SUMMARY_conform,
     .notes = "A failed claim is expected if the integrator's descriptor names the check.\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 0,

@@ -1,5 +1,5 @@
 /* Runs the drum, a stretched sheet in a fixed frame, and its reference solution. */
-#include "study/conform/conform_checks.h"
+#include "conform/conform_checks.h"
 
 #include "base/options.h"
 

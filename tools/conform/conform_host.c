@@ -4,8 +4,8 @@
 #include "base/hash.h"
 #include "base/pool.h"
 #include "base/vector.h"
+#include "conform/conform_checks.h"
 #include "sim/run.h"
-#include "study/conform/conform_checks.h"
 
 #include <stdlib.h>
 #include <string.h>

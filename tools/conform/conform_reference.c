@@ -5,7 +5,7 @@
  *   y' = y + h/6 (k_1 + 2 k_2 + 2 k_3 + k_4).
  * The module interface is used as a plugin would use it: memory in create, one commit per step.
  * Steps divide an advance equally and are at most dt. */
-#include "study/conform/conform_checks.h"
+#include "conform/conform_checks.h"
 
 #include <math.h>
 #include <stdlib.h>
