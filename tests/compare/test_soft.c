@@ -1,6 +1,6 @@
 /* The rows of soft-bench: growth and rates of rows whose law is known, and what is written. */
 #include "../suite.h"
-#include "study/soft/soft.h"
+#include "soft/soft.h"
 
 #include <math.h>
 #include <stdlib.h>

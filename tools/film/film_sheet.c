@@ -1,6 +1,6 @@
 /* Lays pictures out on a sheet: white paper, dark ink. */
-#include "cli/film/film_sheet.h"
-#include "cli/film/image_lines.h"
+#include "film/film_sheet.h"
+#include "film/image_lines.h"
 
 #include "base/file.h"
 #include "base/image.h"

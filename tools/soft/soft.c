@@ -1,5 +1,5 @@
 /* Measures the cost of spring networks and shape matching over the size of a soft body. */
-#include "study/soft/soft.h"
+#include "soft/soft.h"
 
 #include "base/clock.h"
 #include "sim/install_paths.h"

@@ -1,5 +1,5 @@
 /* Plays the pictures of a run in the terminal. */
-#include "cli/film/film_sheet.h"
+#include "film/film_sheet.h"
 
 #include "base/clock.h"
 #include "cli/line/print.h"

@@ -8,7 +8,7 @@
 #include "cli/manifest.h"
 #include "cli/run_output.h"
 #include "io/subprocess.h"
-#include "study/soft/soft.h"
+#include "soft/soft.h"
 
 #include <stdio.h>
 
@@ -99,7 +99,7 @@ static enum cs_status soft_bench(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_soft_bench = {
     .name = "soft-bench",
     .operands = "SCENE",
-    .summary = "measure spring networks against shape matching on a soft body",
+    .summary = CS_SUMMARY_soft_bench,
     .notes = "The first body of SCENE is a mesh of the shape \"limbs\" with a network.\n\n"
              "Example: clothsim soft-bench scenes/bear_springs.json -o soft\n",
     CS_COMMAND_OPTIONS(rows, defaults),

@@ -1,5 +1,5 @@
 /* Reads the report of a run for its pictures. */
-#include "cli/film/film_sheet.h"
+#include "film/film_sheet.h"
 
 #include "base/file.h"
 #include "scene/file/json.h"

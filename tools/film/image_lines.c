@@ -1,5 +1,5 @@
 /* Draws flat lines, figures and the colour bar on an image in memory. */
-#include "cli/film/image_lines.h"
+#include "film/image_lines.h"
 
 #include "draw/colour_bar.h"
 

@@ -6,9 +6,9 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/commands.h"
-#include "cli/film/film_sheet.h"
 #include "cli/line/print.h"
 #include "cli/run_output.h"
+#include "film/film_sheet.h"
 #include "io/png.h"
 #include "io/subprocess.h"
 
@@ -367,7 +367,7 @@ static enum cs_status film(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_film = {
     .name = "film",
     .operands = "DIR [DIR ...]",
-    .summary = "make a film or a contact sheet of the pictures of a run",
+    .summary = CS_SUMMARY_film,
     .notes = "DIR is a folder that clothsim run wrote; several stand side by side, the first\n"
              "being what --titles compare with. ffmpeg makes the film.\n\n"
              "Example: clothsim film out -o cloth.webm\n",
