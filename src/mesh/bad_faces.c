@@ -318,8 +318,8 @@ static void turn_faces(struct cs_raw_mesh *raw, struct pieces *of,
     }
 }
 
-enum cs_status cs_faces_orient(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
-                               struct cs_error *error) {
+enum cs_status cs_faces_turn_alike(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
+                                   struct cs_error *error) {
     const size_t n = raw->n_triangles;
     struct pieces pieces = {.sides = calloc(3 * n + 1, sizeof *pieces.sides),
                             .parents = calloc(n + 1, sizeof(uint32_t)),

@@ -18,7 +18,7 @@ enum cs_status cs_repeated_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_
 /* Turns faces until neighbours over an edge of two triangles have one orientation, and counts
  * them: of each piece those that are fewer, of as many the later ones. A piece that has but one
  * side stays as it is. CS_ERR_MEMORY. */
-enum cs_status cs_faces_orient(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
-                               struct cs_error *error);
+enum cs_status cs_faces_turn_alike(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
+                                   struct cs_error *error);
 
 #endif

@@ -320,7 +320,7 @@ enum cs_status cs_mesh_mend(struct cs_raw_mesh *raw, bool weld, struct cs_mesh_m
                             struct cs_error *error) {
     mends->loose = count_loose(raw, error);
     if (error->status || cs_flat_faces_remove(raw, mends, error) ||
-        cs_repeated_faces_remove(raw, mends, error) || cs_faces_orient(raw, mends, error) ||
+        cs_repeated_faces_remove(raw, mends, error) || cs_faces_turn_alike(raw, mends, error) ||
         mend_edges(raw, weld, mends, error))
         return error->status;
     /* a welded vertex may have moved onto the side of a narrow face */

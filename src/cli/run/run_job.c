@@ -146,7 +146,7 @@ static double distance_between(const struct cs_run *a, const struct cs_run *b) {
 }
 
 /* The error over that distance, 1/(1 - f) for a finer run with f times the error: half the
- * steps have 2^-order of it (Richardson 1911), a tenth of rtol hardly any. */
+ * steps have 2^-order of it, a tenth of rtol hardly any. */
 static double extrapolation(const struct cs_method *method) {
     const double order = cs_method_order(method->integrator, method->options, true);
     return method->integrator->traits & CS_ADAPTIVE ? 1 : 1 / (1 - exp2(-order));
