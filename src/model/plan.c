@@ -234,8 +234,8 @@ void cs_plan_choose_contact_law(struct cs_scene *scene, const struct cs_integrat
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         elastic |= bodies[b].elastic.present ||
                    (bodies[b].springs.stretch > 0 && !cs_scene_springs_left_out(bodies + b));
-    if (scene->contact.law_is_default && !cs_scene_has_body_contact(scene) &&
-        !(follows && elastic))
+    if (scene->contact.law_is_default && scene->colliders.n > 0 &&
+        !cs_scene_has_body_contact(scene) && !(follows && elastic))
         scene->contact.law = CS_CONTACT_PROJECT;
 }
 

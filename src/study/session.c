@@ -48,7 +48,8 @@ static enum cs_status read_scene(struct cs_session *session, struct cs_error *er
 static enum cs_status check_quotes(const struct cs_method *method,
                                    const struct cs_setting *option, struct cs_error *error) {
     const struct cs_option *row = cs_option_find(&method->table, option->name);
-    if (!option->is_text || !row || row->choices)
+    if (!option->is_text || !row || row->type == CS_CHOICE ||
+        (row->choices && !strcmp(option->value, row->choices[0])))
         return CS_OK;
     return cs_fail(error, CS_ERR_SCENE, "%s%s: found the text \"%.60s\", expected %s",
                    option->place, option->name, option->value,
@@ -100,7 +101,13 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
     const char *asked = session->settings.integrator, *pairs = NULL;
     struct cs_method *method = &session->method;
     struct cs_error missing = {0};
+    const struct cs_setting *idle = scene->integrator_settings.items;
     session->is_automatic = !strcmp(asked ? asked : scene->integrator, CS_INTEGRATOR_DEFAULT);
+    if (session->is_automatic && !asked && idle)
+        return cs_fail(error, CS_ERR_SCENE,
+                       "%s%s: the default method takes no options, expected a \"name\" (see: "
+                       "clothsim integrators)",
+                       idle->place, idle->name);
     if (session->is_automatic)
         return take_method(session,
                            cs_scene_first_matched(scene) < scene->bodies.n ? SHAPES_METHOD
