@@ -63,7 +63,7 @@ for name, path in cases:
 # each key that has a short form, in both forms: the schema takes them, and the program reads the
 # same from the file and from --set
 particles = [["\"top-left\"", "{\"at\": \"top-left\"}"], ["3", "{\"index\": 3}"]]
-forms = {"contact": [["\"force\"", "{\"law\": \"force\"}"]],
+forms = {"contact": [["\"project\"", "{\"law\": \"project\"}"]],
          "pairs": [["\"all\"", "{\"among\": \"all\"}"]],
          "camera": [["\"auto\"", "{\"frame\": \"auto\"}"]],
          "render.background": [["\"none\"", "{\"kind\": \"none\"}"],
