@@ -103,7 +103,8 @@ static void add_entry(cholmod_triplet *list, size_t row, size_t column, double v
 }
 
 /* Lists the lower triangle of A: M + h drag on the diagonal, and h c + h^2 k of each spring
- * in the rows of its free ends. */
+ * in the rows of its free ends. Pinned ends have zeros, so that the elimination order does not
+ * depend on which particles are pinned when it is found: a resumed run finds it again. */
 static void list_entries(const struct constant_matrix *matrix, double h,
                          cholmod_triplet *list) {
     const struct cs_view *view = matrix->host->view;
@@ -117,8 +118,7 @@ static void list_entries(const struct constant_matrix *matrix, double h,
             add_entry(list, a, a, weight);
         if (free_b)
             add_entry(list, b, b, weight);
-        if (free_a && free_b)
-            add_entry(list, a > b ? a : b, a > b ? b : a, -weight);
+        add_entry(list, a > b ? a : b, a > b ? b : a, free_a && free_b ? -weight : 0);
     }
 }
 
