@@ -32,6 +32,7 @@
 #include <clothsim/clones.h>
 #include <clothsim/option.h>
 #include <clothsim/parts.h>
+#include <clothsim/stats.h>
 #include <clothsim/system.h>
 
 #ifdef __cplusplus
@@ -276,36 +277,11 @@ struct cs_host {
      * ask CS_HAS(host, forces_depend_on_time) first. */
     bool forces_depend_on_time;
     /* For the whole run, both above 0: the longest side l in m of the box of all particles at
-     * time 0, and in m/s sqrt(g l)/pi: l over half a swing of a pendulum of that length, 1 m/s at
-     * 1 m; without gravity the largest speed at time 0, else l per second. An absolute tolerance
-     * that nobody set is a relative one times these. Not in older hosts: ask
+     * time 0, and in m/s sqrt(g l)/pi: l over half a swing of a pendulum of that length, 1 m/s
+     * at 1 m; without gravity the largest speed at time 0, else l per second. An absolute
+     * tolerance that nobody set is a relative one times these. Not in older hosts: ask
      * CS_HAS(host, speed_scale) first. */
     double length_scale, speed_scale;
-};
-
-/* Counts that only the method knows. */
-struct cs_stats {
-    uint32_t size;
-    /* Rejected steps, and nonlinear iterations. */
-    uint64_t rejected, newton;
-    /* Set-ups of the linear solver that a library asked for. */
-    uint64_t setups;
-    /* Passes of its own over all springs, each about a force evaluation; late: ask CS_HAS. */
-    uint64_t sweeps;
-    /* Errors of position of its accepted steps as it estimates them, added up: in m, as a root
-     * of the mean square over the particles. 0: it has no estimate; late: ask CS_HAS. */
-    double local_error;
-};
-
-/* The passage of a method's history into a checkpoint, or back. save and load make the same
- * calls with the same counts in the same order, so that one function may be both. */
-struct cs_archive {
-    /* sizeof at the host's build: see CS_HAS. */
-    uint32_t size;
-    void *ctx;
-    /* n values: save has them read, load has them written. */
-    void (*reals)(void *ctx, double *values, size_t n);
-    void (*integers)(void *ctx, uint64_t *values, size_t n);
 };
 
 /* A method: what it claims, and its calls. The host calls them in the order
@@ -352,8 +328,8 @@ struct cs_integrator {
      * followed by host->commit. After anything but CS_STEP_OK only stats and destroy follow. */
     enum cs_step (*advance)(void *self, double t0, double t1, double *x, double *v);
 
-    /* [any time after create, between calls and in host->commit] May be NULL. Sets the counts; the
-     * fields are 0 before, and out->size is the host's. */
+    /* [any time after create, between calls and in host->commit] May be NULL. Sets the counts;
+     * the fields are 0 before, and out->size is the host's. */
     void (*stats)(const void *self, struct cs_stats *out);
 
     /* [once, last] Gives back what is not from host->alloc: handles of foreign libraries. May

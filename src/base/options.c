@@ -394,17 +394,3 @@ static const struct cs_value_kind kinds[] = {
 const struct cs_value_kind *cs_value_kind_of(const struct cs_option *row) {
     return kinds + row->type;
 }
-
-enum { REPORTS_MAX = 16 };
-
-void cs_old_name_report(const char *place, const char *old, const char *name) {
-    static const char *reported[REPORTS_MAX];
-    static uint32_t n;
-    for (uint32_t k = 0; k < n; k++)
-        if (reported[k] == old)
-            return;
-    if (n < REPORTS_MAX)
-        reported[n++] = old;
-    fprintf(stderr, "clothsim: %s%s is now %s%s; the old name goes in the next release\n",
-            place, old, place, name);
-}

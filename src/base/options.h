@@ -114,10 +114,4 @@ struct cs_value_kind {
 /* The kind of a row. */
 const struct cs_value_kind *cs_value_kind_of(const struct cs_option *row);
 
-/* Prints "clothsim: PLACEold is now PLACEname; the old name goes in the next release" on
- * standard error, once per process and old name. old is a text of a table: old names
- * are compared by their addresses. place stands before both ("--", "newmark:"). Main thread
- * only. */
-void cs_old_name_report(const char *place, const char *old, const char *name);
-
 #endif

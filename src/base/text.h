@@ -44,4 +44,10 @@ bool cs_parse_real(const char *s, double *value);
  * beginning. */
 const char *cs_nearest_word(const char *word, const char *const *candidates);
 
+/* Prints "clothsim: PLACEold is now PLACEname; the old name goes in the next release" on
+ * standard error, once per process and old name. old is a text of a table: old names
+ * are compared by their addresses. place stands before both ("--", "newmark:"). Main thread
+ * only. */
+void cs_old_name_report(const char *place, const char *old, const char *name);
+
 #endif

@@ -1,7 +1,7 @@
 /* Removes faces without area and faces given twice, and turns the others alike. Of the former
  * each round treats what has no part in an earlier change of the round; a division may leave
  * another flat face, so that rounds are bounded. */
-#include "mesh/bad_faces.h"
+#include "mesh/raw_mesh.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,8 +3,7 @@
  * the corners of triangles that stay neighbours there. Welding joins more. */
 #include "mesh/mesh_mend.h"
 
-#include "mesh/bad_faces.h"
-#include "mesh/near_vertices.h"
+#include "mesh/raw_mesh.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Finds vertices in one place by a hash table of cubes four distances wide. The first vertices
  * of all places are more than the distance apart, so that a cube holds few of them. */
-#include "mesh/near_vertices.h"
+#include "mesh/raw_mesh.h"
 
 #include <math.h>
 #include <stdlib.h>

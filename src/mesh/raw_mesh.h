@@ -46,4 +46,31 @@ void cs_raw_mesh_finish(struct cs_raw_mesh *raw);
 /* Adds the faults, separated by commas; nothing if there are none. */
 void cs_mesh_mends_print(const struct cs_mesh_mends *mends, struct cs_text *out);
 
+/* --- vertices in one place: near_vertices.c --- */
+
+/* Sets places[i] of each vertex that `among` marks to the first marked vertex within the given
+ * fraction of the diagonal of the box of all n positions, of those that are the first in their
+ * own place; other entries stay. Returns the number of vertices that are not the first.
+ * CS_ERR_MEMORY in *error. */
+uint32_t cs_near_vertices_find(const double (*positions)[3], uint32_t n, const bool *among,
+                               double fraction, uint32_t *places, struct cs_error *error);
+
+/* --- faces: bad_faces.c --- */
+
+/* Removes the faces without area, and counts them. A vertex within 1e-6 of its longest side of
+ * another one of the face becomes that one. Otherwise its middle vertex divides the neighbour
+ * across its longest side; where there is none, the face is left out. CS_ERR_MEMORY. */
+enum cs_status cs_flat_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
+                                    struct cs_error *error);
+
+/* Removes each face with the vertices of an earlier one, and counts them. CS_ERR_MEMORY. */
+enum cs_status cs_repeated_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
+                                        struct cs_error *error);
+
+/* Turns faces until neighbours over an edge of two triangles have one orientation, and counts
+ * them: of each piece those that are fewer, of as many the later ones. A piece that has but one
+ * side stays as it is. CS_ERR_MEMORY. */
+enum cs_status cs_faces_turn_alike(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
+                                   struct cs_error *error);
+
 #endif
