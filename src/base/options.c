@@ -171,13 +171,13 @@ static enum cs_status set_bool(bool *field, const char *text, const char *where,
 
 enum cs_status cs_option_set(const struct cs_option *row, void *object, const char *text,
                              const char *where, enum cs_status status, struct cs_error *error) {
+    double value = HUGE_VAL;
     if (row->type == CS_BOOL)
         return set_bool(field_of(row, object), text, where, status, error);
     if (row->type == CS_CHOICE)
         return cs_option_set_choice(row, object, text, where, status, error);
-    double value;
     if (row->type == CS_REAL && row->choices && !strcmp(text, row->choices[0])) {
-        *(double *)field_of(row, object) = HUGE_VAL;
+        memcpy(field_of(row, object), &value, sizeof value);
         return CS_OK;
     }
     if (!cs_parse_real(text, &value))

@@ -1,9 +1,32 @@
-/* body_keys.h - keys of a scene that select particles, pins and seams between bodies, and keys
- * about friction, contact between bodies, and its start. */
+/* body_keys.h - keys of a scene that place grids, select particles, pins and seams between
+ * bodies, and keys about friction, contact between bodies, and its start. */
 #ifndef CS_BODY_KEYS_H
 #define CS_BODY_KEYS_H
 
 #include <clothsim/option.h>
+
+/* Plane of the cloth before `place` is applied. */
+enum cs_start { CS_START_HANGING, CS_START_FLAT };
+
+/* A rigid placement x = R p + translate; R from the matrix, or from the quaternion. */
+struct cs_pose {
+    double translate[3]; /* m */
+    double rotate[4];    /* quaternion x, y, z, w; normalised by cs_scene_check */
+    double matrix[9];    /* rows of a rotation matrix; first element NAN: absent */
+};
+
+/* A rectangular grid of particles, joined by springs. */
+struct cs_cloth {
+    bool present;
+    int64_t grid[2];   /* particles: columns, rows */
+    double size[2];    /* m: along a row, from row to row */
+    int32_t start;     /* enum cs_start */
+    double stretch[2]; /* size at time 0 over the rest size, along a row and from row to row */
+    double bump;       /* m, height of the middle over the edges at time 0 */
+    struct cs_pose place;
+    double velocity[3]; /* m/s, of every free particle at time 0 */
+    double spin[3];     /* rad/s, about place.translate */
+};
 
 /* An axis-parallel box that selects the particles in it. */
 struct cs_box {

@@ -4,6 +4,8 @@
 
 #include "scene/event_key.h"
 
+#include <math.h>
+
 uint32_t cs_scene_surfaces(const struct cs_scene *scene) {
     for (uint32_t c = 0; c < scene->colliders.n; c++)
         if (cs_scene_colliders(scene)[c].mesh.present)
@@ -93,4 +95,12 @@ bool cs_scene_friction_sticks(const struct cs_scene *scene) {
         if (cs_scene_sticks_to(scene, c))
             return true;
     return false;
+}
+
+void cs_scene_remove_corrections(struct cs_scene *scene) {
+    if (scene->contact.law == CS_CONTACT_PROJECT)
+        scene->colliders.n = 0;
+    scene->forces.velocity_loss = 0;
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        cs_scene_bodies(scene)[b].strain_limit = (double)NAN;
 }

@@ -36,6 +36,10 @@ bool cs_scene_sticks_to(const struct cs_scene *scene, uint32_t collider);
 /* Returns true if friction on any collider has. */
 bool cs_scene_friction_sticks(const struct cs_scene *scene);
 
+/* Removes the corrections that act after steps: contact by projection, strain limit and
+ * velocity loss. They are no part of the equation of motion; contact by force is. */
+void cs_scene_remove_corrections(struct cs_scene *scene);
+
 /* Treatment of edges that go through triangles, as the scene wants it. */
 
 /* Treatment of crossings; each includes the count but the first. */

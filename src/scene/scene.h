@@ -19,29 +19,6 @@
 
 #include <clothsim/option.h>
 
-/* Plane of the cloth before `place` is applied. */
-enum cs_start { CS_START_HANGING, CS_START_FLAT };
-
-/* A rigid placement x = R p + translate; R from the matrix, or from the quaternion. */
-struct cs_pose {
-    double translate[3]; /* m */
-    double rotate[4];    /* quaternion x, y, z, w; normalised by cs_scene_check */
-    double matrix[9];    /* rows of a rotation matrix; first element NAN: absent */
-};
-
-/* A rectangular grid of particles, joined by springs. */
-struct cs_cloth {
-    bool present;
-    int64_t grid[2];   /* particles: columns, rows */
-    double size[2];    /* m: along a row, from row to row */
-    int32_t start;     /* enum cs_start */
-    double stretch[2]; /* size at time 0 over the rest size, along a row and from row to row */
-    double bump;       /* m, height of the middle over the edges at time 0 */
-    struct cs_pose place;
-    double velocity[3]; /* m/s, of every free particle at time 0 */
-    double spin[3];     /* rad/s, about place.translate */
-};
-
 enum cs_mesh_unit { CS_MESH_M, CS_MESH_CM, CS_MESH_MM, CS_MESH_INCH, CS_MESH_FOOT };
 enum cs_mesh_up { CS_MESH_UP_Y, CS_MESH_UP_Z };
 
@@ -182,7 +159,7 @@ struct cs_collider {
 enum cs_contact_law { CS_CONTACT_PROJECT, CS_CONTACT_FORCE };
 /* Contact between particles and all colliders. */
 struct cs_contact_keys {
-    int32_t law;   /* enum cs_contact_law */
+    int32_t law; /* enum cs_contact_law */
     /* not in the tables: the scene names no law (cs_plan_choose_contact_law) */
     bool law_is_default;
     int32_t start; /* enum cs_contact_start_policy, of what starts inside or within range */

@@ -388,14 +388,13 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
 /* An event also updates the blow-up bound, the ledger, the trace and static friction. */
 bool cs_run_host_apply_events(struct cs_run_host *host, double t) {
     struct cs_system *system = host->run->system;
-    const bool changed = cs_events_apply(system, t);
-    if (changed)
-        cs_blow_up_check_after_events(&host->blow_up, system, t);
-    if (changed && host->settings.ledger)
+    if (!cs_events_apply(system, t))
+        return false;
+    cs_blow_up_check_after_events(&host->blow_up, system, t);
+    if (host->settings.ledger)
         cs_energy_ledger_store_state(host->settings.ledger, t, host->run->x, host->run->v);
-    if (changed)
-        cs_trace_state(host, "events", t, host->run->x, host->run->v);
-    if (changed && system->plan.rows[CS_FEATURE_CONTACT].built)
+    cs_trace_state(host, "events", t, host->run->x, host->run->v);
+    if (system->plan.rows[CS_FEATURE_CONTACT].built)
         cs_contact_start(&host->contact, t, host->run->x, host->run->v);
-    return changed;
+    return true;
 }

@@ -357,3 +357,14 @@ void cs_scene_findings_finish(struct cs_scene_findings *findings) {
     cs_text_finish(&findings->warnings);
     cs_text_finish(&findings->hints);
 }
+
+void cs_session_print_choice(const struct cs_session *session, struct cs_text *out) {
+    const bool is_explicit = !(session->method.integrator->traits & CS_IMPLICIT);
+    if (session->is_automatic && session->rate_limit > 0)
+        cs_text_add(
+            out, "automatic, %s: the fastest motion of the springs has %.3g 1/s, %s %.3g 1/s",
+            is_explicit ? "explicit" : "implicit", session->rate,
+            is_explicit ? "at most" : "above", session->rate_limit);
+    else if (session->is_automatic)
+        cs_text_add(out, "automatic: bodies have shape_matching");
+}

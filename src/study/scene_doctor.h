@@ -12,4 +12,7 @@ enum cs_status cs_scene_doctor_check(const struct cs_session *session, double se
                                      struct cs_scene_findings *out, struct cs_error *error);
 void cs_scene_findings_finish(struct cs_scene_findings *findings);
 
+/* Appends why "automatic" chose the method, without an end of line; nothing if it was named. */
+void cs_session_print_choice(const struct cs_session *session, struct cs_text *out);
+
 #endif

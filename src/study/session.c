@@ -208,22 +208,12 @@ static enum cs_status start_threads(struct cs_session *session, struct cs_error 
                : cs_fail(error, refused.status, "%s", refused.message);
 }
 
-/* Removes the corrections that act after steps: contact by projection, strain limit and
- * velocity loss. They are no part of the equation of motion; contact by force is. */
-static void make_smooth(struct cs_scene *scene) {
-    if (scene->contact.law == CS_CONTACT_PROJECT)
-        scene->colliders.n = 0;
-    scene->forces.velocity_loss = 0;
-    for (uint32_t b = 0; b < scene->bodies.n; b++)
-        cs_scene_bodies(scene)[b].strain_limit = (double)NAN;
-}
-
 /* Applies the changes that the session asks for to the checked scene; the caller's edit comes
  * last. */
 static void change_scene(struct cs_session *session) {
     const struct cs_session_settings *settings = &session->settings;
     if (settings->switch_off_corrections)
-        make_smooth(&session->scene);
+        cs_scene_remove_corrections(&session->scene);
     if (settings->count_crossings_only && cs_scene_crossings_by_pairs(&session->scene))
         session->scene.crossings = CS_CROSSINGS_COUNT;
     if (settings->fps > 0)
@@ -273,17 +263,6 @@ static enum cs_status open_plan(struct cs_session *session,
     change_scene(session);
     make_plan(session);
     return choose_by_cost(session, error);
-}
-
-void cs_session_print_choice(const struct cs_session *session, struct cs_text *out) {
-    const bool is_explicit = !(session->method.integrator->traits & CS_IMPLICIT);
-    if (session->is_automatic && session->rate_limit > 0)
-        cs_text_add(
-            out, "automatic, %s: the fastest motion of the springs has %.3g 1/s, %s %.3g 1/s",
-            is_explicit ? "explicit" : "implicit", session->rate,
-            is_explicit ? "at most" : "above", session->rate_limit);
-    else if (session->is_automatic)
-        cs_text_add(out, "automatic: bodies have shape_matching");
 }
 
 /* Systems of at least BUILD_PARTICLES are checked against the memory of the machine; TWIN_SIDE

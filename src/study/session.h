@@ -103,9 +103,6 @@ enum cs_status cs_session_build(struct cs_session *session, struct cs_error *err
 enum cs_status cs_session_begin(struct cs_session *session, const double *start,
                                 struct cs_error *error);
 
-/* Appends why "automatic" chose the method, without an end of line; nothing if it was named. */
-void cs_session_print_choice(const struct cs_session *session, struct cs_text *out);
-
 /* Frees everything and ends the threads that the session started; a zeroed session is allowed.
  */
 void cs_session_close(struct cs_session *session);

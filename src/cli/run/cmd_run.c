@@ -222,19 +222,6 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_error *error
     return CS_OK;
 }
 
-/* Prints the table to standard output, or to standard error if an output uses the former. */
-static enum cs_status print_table(const struct cs_job *job, struct cs_error *error) {
-    const struct cs_job_settings *settings = job->settings;
-    const bool taken = settings->hash || cs_print_is_stdout(settings->json) ||
-                       cs_print_is_stdout(settings->monitor_file) ||
-                       cs_print_is_stdout(settings->ledger) || settings->trace.is_requested;
-    struct cs_text table = {0};
-    if (settings->quiet)
-        return CS_OK;
-    cs_report_print_table(job, &table);
-    return cs_print_out(taken ? stderr : stdout, &table, error);
-}
-
 /* Adds a singular force, if that is why the run ended or made energy; else the advice. */
 static void add_cause(const struct cs_job *job, const char *advice, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
@@ -311,7 +298,7 @@ static enum cs_status run_here(void *ctx, struct cs_error *error) {
     if (job.failure && !cs_report_write_json(&job, &later))
         cs_run_outputs_sign(&job, &later);
     if (!error->status && !cs_report_write_json(&job, error) &&
-        !cs_run_outputs_sign(&job, error) && !print_table(&job, error))
+        !cs_run_outputs_sign(&job, error) && !cs_report_print(&job, error))
         print_outcome(&job, options->strict, error);
     cs_job_finish(&job);
     cs_run_range_finish(&range);

@@ -225,8 +225,9 @@ enum cs_status cs_run_outputs_sign(const struct cs_job *job, struct cs_error *er
 
 /* Reports a run as a table for readers and as JSON for programs. */
 
-/* Adds the table. */
-void cs_report_print_table(const struct cs_job *job, struct cs_text *out);
+/* Prints the table, unless quiet: to standard output, or to standard error if an output uses
+ * the former. CS_ERR_FILE. */
+enum cs_status cs_report_print(const struct cs_job *job, struct cs_error *error);
 
 /* Writes the report as JSON beside the pictures, and where --json asks for it: every value that
  * decides the run, versions, counts, energies, outcome and the hash of each frame. CS_ERR_FILE,

@@ -4,6 +4,7 @@
 #include "base/pool.h"
 #include "cli/line/print.h"
 #include "study/contact_capacity.h"
+#include "study/scene_doctor.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -196,7 +197,7 @@ static void add_files(const struct cs_job *job, struct cs_text *out) {
         add_row(out, "states", "%u in %s", job->session.run.frame + 1, settings->states);
 }
 
-void cs_report_print_table(const struct cs_job *job, struct cs_text *out) {
+static void add_rows(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     add_row(out, "scene", "%s", job->session.scene.path);
     cs_print_hanging("method", cs_text_get(&job->method), VALUE_COLUMN, out);
@@ -220,4 +221,16 @@ void cs_report_print_table(const struct cs_job *job, struct cs_text *out) {
         cs_print_hanging("note", run->notes[i], VALUE_COLUMN, out);
     add_files(job, out);
     add_row(out, "state hash", "%s", job->hash);
+}
+
+enum cs_status cs_report_print(const struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    const bool taken = settings->hash || cs_print_is_stdout(settings->json) ||
+                       cs_print_is_stdout(settings->monitor_file) ||
+                       cs_print_is_stdout(settings->ledger) || settings->trace.is_requested;
+    struct cs_text table = {0};
+    if (settings->quiet)
+        return CS_OK;
+    add_rows(job, &table);
+    return cs_print_out(taken ? stderr : stdout, &table, error);
 }
