@@ -255,20 +255,16 @@ enum cs_status cs_manifest_check_files(const char *folder, const char *pattern,
     return error->status;
 }
 
+/* One file for the whole run, such as run.npz, is made from the checkpoint again; those of
+ * single frames stay as they are. */
+#define FILES_OF_FRAMES "*_[0-9]*.*"
+
 enum cs_status cs_manifest_consume(const char *folder, struct cs_error *error) {
-    struct cs_text out = {0};
     char path[PATH_BYTES];
-    uint32_t n, differing = 0;
+    struct cs_error said = {0};
     snprintf(path, sizeof path, "%s/" CS_MANIFEST_NAME, folder);
-    if (!access(path, F_OK) && !cs_manifest_check(folder, &out, &n, &differing, error)) {
-        if (differing)
-            cs_fail(error, CS_ERR_FILE,
-                    "%s/%.*s since the run ended: restore it, or remove %s to go on without a "
-                    "check",
-                    folder, (int)strcspn(cs_text_get(&out), "\n"), cs_text_get(&out), path);
-        else
-            cs_file_remove(path, error);
-    }
-    cs_text_finish(&out);
-    return error->status;
+    if (cs_manifest_check_files(folder, FILES_OF_FRAMES, &said))
+        return cs_fail(error, said.status, "%s, or remove %s to go on without a check",
+                       said.message, path);
+    return access(path, F_OK) ? CS_OK : cs_file_remove(path, error);
 }
