@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* stats.h - counts that a method reports, and the passage of its history into a checkpoint.
+/* stats.h - counts that a method reports, and the passage of its history into a checkpoint. */
 #ifndef CLOTHSIM_STATS_H
 #define CLOTHSIM_STATS_H
 
