@@ -33,7 +33,17 @@ for alpha in 0.1 0.5 0.9 1; do
             sed 's/, particle.*//'
     done
 done >drop.txt
-gnuplot pulsation.gp
+{
+    echo "t,A_pq without the root (1 kg),A_pq without the root (362 kg),A without the root,with the root"
+    paste -d, unrooted-pq.csv unrooted-pq-heavy.csv unrooted-linear.csv polar.csv |
+        awk -F, -v OFS=, 'function in_view(x) { return x > 0.02 && x < 20 ? x : "" }
+            { print $2, in_view($3), in_view($6), in_view($9), in_view($12) }'
+} >pulsation.csv
+"$program" plot pulsation.csv --log y --format png --title "size of a ball at rest over that at the start" -q
+for over in springs vertices; do
+    "$program" plot soft.csv --x $over --y one_step_per_s,frames_per_s --log xy --format png -o soft_$over \
+        --title "soft bodies, simulated only: pictures per second over $over" -q
+done
 
 # the same body of springs and drawn back to its shape: at rest, thrown, hung by a vertex of an ear
 picture() { # NAME FRAME SETTING ...

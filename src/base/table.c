@@ -22,16 +22,16 @@ static void add_comma(struct cs_text *out) {
 }
 
 void cs_csv_add_text(struct cs_text *out, const char *text) {
+    struct cs_text plain = {0};
+    const bool quoted = strpbrk(text, ",\"\r\n");
+    cs_text_add_lines(&plain, text);
     add_comma(out);
-    if (!strpbrk(text, ",\"\r\n")) {
-        cs_text_add(out, "%s", text);
-        return;
-    }
-    cs_text_add(out, "\"");
-    for (; *text; text++)
-        cs_text_add(out, "%s%c", *text == '"' ? "\"" : "",
-                    *text == '\n' || *text == '\r' ? ' ' : *text);
-    cs_text_add(out, "\"");
+    cs_text_add(out, "%s", quoted ? "\"" : "");
+    for (const char *c = cs_text_get(&plain); *c; c++)
+        cs_text_add(out, "%s%c", quoted && *c == '"' ? "\"" : "", *c == '\n' ? ' ' : *c);
+    cs_text_add(out, "%s", quoted ? "\"" : "");
+    out->failed |= plain.failed;
+    cs_text_finish(&plain);
 }
 
 void cs_csv_add_number(struct cs_text *out, double value) {

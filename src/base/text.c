@@ -40,6 +40,14 @@ void cs_text_add(struct cs_text *text, const char *format, ...) {
     text->length += (size_t)length;
 }
 
+void cs_text_add_bytes(struct cs_text *text, const void *bytes, size_t length) {
+    if (!reserve(text, length))
+        return;
+    memcpy(text->bytes + text->length, bytes, length);
+    text->length += length;
+    text->bytes[text->length] = 0;
+}
+
 void cs_print_real(double value, char digits[CS_REAL_DIGITS]) {
     int precision = 0, before_point = 1;
     do
@@ -72,15 +80,90 @@ void cs_text_add_base64(struct cs_text *text, const void *bytes, size_t length) 
     }
 }
 
+/* Length of the character at s in UTF-8, and its number; 0: it is none (RFC 3629). */
+static size_t decode(const unsigned char *s, uint32_t *code) {
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    const size_t length = *s < 0x80       ? 1
+                          : *s >> 5 == 6  ? 2
+                          : *s >> 4 == 14 ? 3
+                          : *s >> 3 == 30 ? 4
+                                          : 0;
+    *code = length == 1 ? *s : *s & (0x7fu >> length);
+    for (size_t k = 1; k < length; k++) {
+        if (s[k] >> 6 != 2)
+            return 0;
+        *code = *code << 6 | (s[k] & 0x3f);
+    }
+    return *code >= least[length] && *code >> 11 != 0x1b && *code < 0x110000 ? length : 0;
+}
+
+/* True for a character that is a part of a text: no control character, none of Bidi_Control
+ * (Unicode 15, PropList) or that hides. */
+static bool is_text(uint32_t code) {
+    static const uint32_t others[][2] = {{0, 0x1f},        {0x7f, 0x9f},     {0x61c, 0x61c},
+                                         {0x200e, 0x200f}, {0x2028, 0x202e}, {0x2066, 0x2069},
+                                         {0xfeff, 0xfeff}};
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+        if (code >= others[k][0] && code <= others[k][1])
+            return false;
+    return true;
+}
+
+/* Adds a text with a character of `special` as its entry in `escapes`, or after a backslash;
+ * those that are no text as "?", but for those in `kept`. */
+static void add_escaped(struct cs_text *text, const char *s, const char *kept,
+                        const char *special, const char *const *escapes) {
+    while (*s) {
+        uint32_t code;
+        size_t run = 0, length;
+        while (s[run] && !strchr(special, s[run]) &&
+               (strchr(kept, s[run]) ||
+                ((length = decode((const unsigned char *)s + run, &code)) && is_text(code))))
+            run += strchr(kept, s[run]) ? 1 : length;
+        cs_text_add(text, "%.*s", (int)run, s);
+        s += run;
+        if (!*s)
+            return;
+        const char *found = strchr(special, *s);
+        if (found && escapes)
+            cs_text_add(text, "%s", escapes[found - special]);
+        else
+            cs_text_add(text, found ? "\\%c" : "?", *s);
+        length = decode((const unsigned char *)s, &code);
+        s += length ? length : 1;
+    }
+}
+
+void cs_text_add_plain(struct cs_text *text, const char *s) {
+    add_escaped(text, s, "", "", NULL);
+}
+
+void cs_text_add_lines(struct cs_text *text, const char *s) {
+    add_escaped(text, s, "\n\t", "", NULL);
+}
+
+void cs_text_add_html(struct cs_text *text, const char *s) {
+    static const char *const escapes[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
+    add_escaped(text, s, "\n\t", "&<>\"'", escapes);
+}
+
+void cs_text_add_markdown(struct cs_text *text, const char *s) {
+    add_escaped(text, s, "", "\\`*_[]<>|~&", NULL);
+}
+
 void cs_text_add_json(struct cs_text *text, const char *s) {
     cs_text_add(text, "\"");
-    for (const unsigned char *c = (const unsigned char *)s; *c; c++) {
-        if (*c == '"' || *c == '\\')
-            cs_text_add(text, "\\%c", *c);
-        else if (*c < 0x20)
-            cs_text_add(text, "\\u%04x", *c);
+    while (*s) {
+        uint32_t code;
+        const size_t length = decode((const unsigned char *)s, &code),
+                     bytes = length ? length : 1;
+        if (*s == '"' || *s == '\\')
+            cs_text_add(text, "\\%c", *s);
+        else if (length && !is_text(code))
+            cs_text_add(text, "\\u%04x", code);
         else
-            cs_text_add(text, "%c", *c);
+            cs_text_add(text, "%.*s", (int)bytes, s);
+        s += bytes;
     }
     cs_text_add(text, "\"");
 }

@@ -17,6 +17,9 @@ struct cs_text {
 void cs_text_add(struct cs_text *text, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/* Appends bytes, zeros too. */
+void cs_text_add_bytes(struct cs_text *text, const void *bytes, size_t length);
+
 enum { CS_REAL_DIGITS = 40 };
 
 /* Prints the shortest decimal that reads back as a finite value. */
@@ -28,8 +31,23 @@ void cs_text_add_real(struct cs_text *text, double value);
 /* Adds bytes as base64 (RFC 4648). */
 void cs_text_add_base64(struct cs_text *text, const void *bytes, size_t length);
 
-/* Adds s in quotes with JSON's escapes. */
+/* Adds s in quotes with JSON's escapes; characters that cs_text_add_plain replaces are escaped.
+ */
 void cs_text_add_json(struct cs_text *text, const char *s);
+
+/* Text from outside, such as names of files and of other people's methods: each kind of output
+ * has the one function that makes it data there. Characters that are no text become "?":
+ * control characters, those that turn the direction of writing or hide (Unicode's Bidi_Control,
+ * U+2028, U+2029, U+FEFF), and bytes that are no UTF-8. */
+
+/* For a terminal, a diagram, a CSV field. */
+void cs_text_add_plain(struct cs_text *text, const char *s);
+/* The same for whole lines: line breaks and tabs stay. */
+void cs_text_add_lines(struct cs_text *text, const char *s);
+/* For HTML: & < > and quotes are escaped. */
+void cs_text_add_html(struct cs_text *text, const char *s);
+/* For Markdown outside of code: characters with a meaning are escaped. */
+void cs_text_add_markdown(struct cs_text *text, const char *s);
 
 /* Returns the zero-terminated content, "" if empty. Valid until the next addition. */
 const char *cs_text_get(const struct cs_text *text);

@@ -128,12 +128,12 @@ static void show_reference(void *ctx, uint32_t done, uint32_t total, const char 
 static void show_begin(void *ctx) {
     struct screen *screen = ctx;
     struct cs_text text = {0};
-    cs_table_add_reference(&screen->compare, &text);
     if (!screen->quiet) {
+        cs_table_add_reference(&screen->compare, &text);
         cs_text_add(&text, "\n");
         cs_table_add_head(&screen->compare, &text);
+        show(screen, &text);
     }
-    show(screen, &text);
     cs_progress_begin(&screen->progress, "cell", screen->quiet);
 }
 
@@ -203,9 +203,11 @@ static enum cs_status print_verdict(struct screen *screen, struct cs_error *erro
     struct cs_text text = {0}, verdict = {0};
     if (cs_ranking_make(&ranking, &screen->compare, error))
         return error->status;
-    cs_text_add(&text, "\n");
-    cs_table_add_series(&screen->compare, !screen->quiet, &text);
-    cs_text_add(&text, "\n");
+    if (!screen->quiet) {
+        cs_text_add(&text, "\n");
+        cs_table_add_series(&screen->compare, true, &text);
+        cs_text_add(&text, "\n");
+    }
     if (screen->compare.settings->ledger && !screen->quiet) {
         cs_table_add_ledger(&screen->compare, &text);
         cs_text_add(&text, "\n");
@@ -221,18 +223,17 @@ static enum cs_status print_verdict(struct screen *screen, struct cs_error *erro
 
 /* Draws error against work, which is the same on every machine. */
 static enum cs_status print_diagram(struct screen *screen, struct cs_error *error) {
-    const struct cs_compare *compare = &screen->compare;
-    const bool known = cs_norm_is_known(compare->settings->ranking_norm, &compare->reference);
-    const struct cs_plot_settings settings = {
-        .cells = compare->cells.cells,
-        .n = compare->cells.n,
-        .x = cs_column_find("work"),
-        .y = cs_norm_column(known ? compare->settings->ranking_norm : CS_NORM_ENERGY),
-        .title = compare->scene};
+    struct cs_plot_settings settings;
+    struct cs_plot plot;
     struct cs_text text = {0};
+    cs_compare_plot_settings(&screen->compare, CS_WIDTH_COLUMN, &settings);
+    settings.title = screen->compare.scene;
+    settings.second = NULL;
     cs_text_add(&text, "\n");
-    cs_screen_print_diagram(&screen->terminal, &settings, &text);
-    return cs_print_out(stdout, &text, error);
+    if (!cs_plot_make(&plot, &settings, error))
+        cs_screen_print_diagram(&screen->terminal, &plot.diagram, &text);
+    cs_plot_finish(&plot);
+    return error->status ? error->status : cs_print_raw(stdout, &text, error);
 }
 
 /* Rebuilds the command line, for the report. */

@@ -103,11 +103,11 @@ static void add_json(const struct cs_golden_row *row, const char *verdict,
 static void add_junit(const struct cs_golden_row *row, const char *name, const char *element,
                       struct cs_text *out) {
     cs_text_add(out, "<testcase classname=\"clothsim golden\" name=\"");
-    cs_svg_add_text(out, name);
+    cs_text_add_html(out, name);
     cs_text_add(out, "\">");
     if (element) {
         cs_text_add(out, "<%s message=\"", element);
-        cs_svg_add_text(out, cs_text_get(&row->message));
+        cs_text_add_html(out, cs_text_get(&row->message));
         cs_text_add(out, "\"/>");
     }
     cs_text_add(out, "</testcase>\n");
@@ -126,13 +126,15 @@ static void print_row(void *ctx, const struct cs_golden_row *row) {
               : row->skipped ? "skipped"
                              : NULL,
               &sink->junit);
+    struct cs_text line = {0};
     if (!cs_print_is_stdout(options->json) && (is_different(row) || !options->quiet))
-        printf("%-8s   %s%s%s\n", verdict, cs_text_get(&name), row->message.length ? ": " : "",
-               cs_text_get(&row->message));
+        cs_text_add(&line, "%-8s   %s%s%s\n", verdict, cs_text_get(&name),
+                    row->message.length ? ": " : "", cs_text_get(&row->message));
     if (options->github && fails)
-        printf("::error file=%s,title=clothsim golden::%s: %s\n", row->run.scene,
-               cs_text_get(&name), cs_text_get(&row->message));
-    fflush(stdout);
+        cs_text_add(&line, "::error file=%s,title=clothsim golden::%s: %s\n", row->run.scene,
+                    cs_text_get(&name), cs_text_get(&row->message));
+    struct cs_error unseen = {0}; /* the end of the output reports a closed one */
+    cs_print_out(stdout, &line, &unseen);
     cs_text_finish(&name);
 }
 

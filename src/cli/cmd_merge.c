@@ -5,8 +5,9 @@
  * A merged map is completed by repeating its command on the merged folder. */
 #include "base/file.h"
 #include "cli/commands.h"
+#include "cli/line/print.h"
 #include "cli/manifest.h"
-#include "study/compare/compare_results.h"
+#include "study/compare/compare_state.h"
 #include "study/parameter_sweep.h"
 #include "study/stability/stability_state.h"
 
@@ -119,9 +120,11 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
             "no folder contains a compare.csv, a sweep.csv or the .partial of a map");
     if (cs_manifest_write_study(out, error))
         return error->status;
-    if (!options->quiet)
-        printf("%u cells and %u parts of maps from %u folders in %s\n", cells, maps, n, out);
-    return CS_OK;
+    struct cs_text text = {0};
+    cs_text_add(&text, "%u cells and %u parts of maps from %u folders in ", cells, maps, n);
+    cs_text_add_plain(&text, out);
+    cs_text_add(&text, "\n");
+    return options->quiet ? (cs_text_finish(&text), CS_OK) : cs_print_out(stdout, &text, error);
 }
 
 const struct cs_command cs_command_merge = {

@@ -1,10 +1,12 @@
-/* clothsim plot: draws two columns of a comparison against each other.
+/* clothsim plot: draws a table that the program wrote.
  *
- *   compare.csv -> cells -> columns of the axes -> cs_plot_write: NAME.gp and pictures */
+ *   FILE -> a comparison: cells -> cs_plot_make; a stability map or other numbers:
+ *   cs_table_plot_make -> the terminal, or NAME.png, NAME.svg, NAME.pdf */
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/show/screen.h"
-#include "study/compare/compare_cell.h"
+#include "cli/table_plot.h"
+#include "sim/install_paths.h"
 #include "study/compare/compare_curves.h"
 
 #include <stdio.h>
@@ -12,21 +14,38 @@
 #include <string.h>
 
 struct options {
-    const char *x, *y, *family, *out, *title;
+    const char *x, *y, *family, *methods, *format, *log_axes, *out, *title;
+    double width;
     bool show, quiet;
 };
-static const struct options defaults = {.x = "cpu", .y = "error"};
+static const struct options defaults = {.width = CS_WIDTH_PAGE, .log_axes = ""};
 
 static const struct cs_arg rows[] = {
-    {"x", 0, "COLUMN", "column of the x axis (default: cpu)", CS_ARG_INTO(struct options, x)},
-    {"y", 0, "COLUMN", "column of the y axis (default: error)", CS_ARG_INTO(struct options, y)},
+    {"x", 0, "COLUMN",
+     "column of the x axis (default: of a comparison work, and cpu beside it; of other tables "
+     "t)",
+     CS_ARG_INTO(struct options, x)},
+    {"y", 0, "COLUMN,...",
+     "column of the y axis (default: error); several of a table that is no comparison "
+     "(default: "
+     "all, a panel per unit)",
+     CS_ARG_INTO(struct options, y)},
     {"family", 0, "FAMILY",
      "all series of one family, such as \"adaptive implicit\" (default: the twelve nearest to "
      "the front)",
      CS_ARG_INTO(struct options, family)},
+    {"methods", 0, "NAME,...", "these methods or series alone",
+     CS_ARG_INTO(struct options, methods)},
+    {"log", 0, "AXES", "x, y or xy: logarithmic axes of a table that is no comparison",
+     CS_ARG_INTO(struct options, log_axes)},
+    {"width", 0, "MM",
+     "width in print: 180, two columns of a journal, or 88, one (default: 180)",
+     CS_ARG_INTO(struct options, width)},
+    {"format", 0, "NAME,...", "of png, svg and pdf (default: all)",
+     CS_ARG_INTO(struct options, format)},
     {"out", 'o', "NAME",
-     "write NAME.gp, and NAME.png, .svg and .pdf if gnuplot is installed (default: Y_X in the "
-     "folder of FILE)",
+     "write NAME.png, NAME.svg and NAME.pdf (default: FILE without its ending; of a comparison "
+     "Y_X[_FAMILY] in its folder where these are given)",
      CS_ARG_INTO(struct options, out)},
     {"title", 0, "TEXT", "title above the diagram (default: FILE)",
      CS_ARG_INTO(struct options, title)},
@@ -50,111 +69,176 @@ static enum cs_status check_family(const char *family, struct cs_error *error) {
     return family ? cs_arg_refuse_name("family", cs_family_names, family, error) : CS_OK;
 }
 
-/* Refuses characters that would end a quoted text of the script. */
-static enum cs_status check_name(const char *option, const char *text, struct cs_error *error) {
-    for (const char *c = text; *c; c++)
-        if (*c == '"' || *c == '\\' || (unsigned char)*c < 0x20)
-            return cs_fail(error, CS_ERR_USAGE,
-                           "--%s: quotes, backslashes and control characters cannot be drawn",
-                           option);
+static enum cs_status read_formats(const char *list, unsigned *formats,
+                                   struct cs_error *error) {
+    *formats = list ? 0 : CS_FORMATS_ALL;
+    for (size_t length; list && *list; list += length + (list[length] == ',')) {
+        char name[16];
+        length = strcspn(list, ",");
+        snprintf(name, sizeof name, "%.*s", (int)length, list);
+        int k = 0;
+        while (cs_format_names[k] && strcmp(cs_format_names[k], name) != 0)
+            k++;
+        if (!cs_format_names[k])
+            return cs_arg_refuse_name("format", cs_format_names, name, error);
+        *formats |= 1u << k;
+    }
     return CS_OK;
 }
 
-/* Splits "folder/name" into both; the folder of a bare name is ".". */
-static void split(const char *path, char folder[4096], const char **name) {
-    const char *slash = strrchr(path, '/');
-    *name = slash ? slash + 1 : path;
-    snprintf(folder, 4096, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
-}
-
-static enum cs_status print_files(const char *path, const struct cs_gnuplot *gnuplot,
-                                  struct cs_error *error) {
-    struct cs_text text = {0};
-    if (gnuplot->drawn)
-        cs_text_add(&text, "%s.gp, %s.png, %s.svg, %s.pdf\n", path, path, path, path);
-    else
-        cs_text_add(&text, "%s.gp (gnuplot, which draws it, %s)\n", path,
-                    gnuplot->n_failed ? "failed" : "was not found");
-    return cs_print_out(stdout, &text, error);
-}
-
-static enum cs_status draw(struct cs_args *args, struct cs_plot_settings *settings,
-                           struct cs_error *error) {
+/* NAME of the files: --out, Y_X[_FAMILY] of a comparison, or FILE without its ending. */
+static void find_name(const struct cs_args *args, const struct cs_plot_settings *settings,
+                      char name[4096]) {
     const struct options *options = args->options;
-    const char *file = args->operands[0], *out = options->out, *title = options->title;
-    const char *slash = strrchr(file, '/');
-    char folder[4096], path[4096];
-    struct cs_gnuplot gnuplot = {0};
-    if (out)
-        snprintf(path, sizeof path, "%s", out);
-    else
-        /* beside the file, named after the axes */
-        snprintf(path, sizeof path, "%.*s%s_%s%s%s", slash ? (int)(slash - file) + 1 : 0, file,
-                 settings->y->name, settings->x->name, settings->family ? "_" : "",
-                 settings->family ? settings->family : "");
-    for (char *c = path + strlen(path); settings->family && !out && c > path && *--c != '_';)
-        *c = *c == ' ' ? '-' : *c;
-    settings->title = title ? title : file;
-    split(path, folder, &settings->name);
-    /* both end up between quotes in the gnuplot script */
-    if (check_name("title", settings->title, error) || check_name("out", path, error))
-        return error->status;
-    if (!*settings->name)
-        return cs_fail(error, CS_ERR_USAGE, "--out: expected a file name without extension");
-    if (cs_plot_write(settings, folder, &gnuplot, error) ||
-        cs_print_gnuplot_warning(&gnuplot, error))
-        return error->status;
-    return options->quiet ? CS_OK : print_files(path, &gnuplot, error);
+    const char *file = args->operands[0], *slash = strrchr(file, '/'),
+               *dot = strrchr(file, '.');
+    const int folder = slash ? (int)(slash - file) + 1 : 0;
+    if (options->out)
+        snprintf(name, 4096, "%s", options->out);
+    else if (settings->cells && (options->x || options->y || options->family)) {
+        snprintf(name, 4096, "%.*s%s_%s%s%s", folder, file, settings->y->name,
+                 settings->x->name, options->family ? "_" : "",
+                 options->family ? options->family : "");
+        for (char *c = name + folder; *c; c++)
+            *c = *c == ' ' ? '-' : *c;
+    } else
+        snprintf(name, 4096, "%.*s", dot && dot >= file + folder ? (int)(dot - file) : 4000,
+                 file);
 }
 
-/* Draws in the terminal. */
-static enum cs_status show(struct cs_args *args, struct cs_plot_settings *settings,
-                           struct cs_error *error) {
-    const struct options *options = args->options;
+static enum cs_status show(const struct cs_diagram *diagram, struct cs_error *error) {
     struct cs_screen screen;
     struct cs_text text = {0};
-    if (options->out)
-        return cs_fail(error, CS_ERR_USAGE, "--show writes no files: remove --show or --out");
     if (cs_screen_open(&screen, false, error))
         return error->status;
-    settings->title = options->title ? options->title : args->operands[0];
-    cs_screen_print_diagram(&screen, settings, &text);
+    cs_screen_print_diagram(&screen, diagram, &text);
+    return cs_print_raw(stdout, &text, error);
+}
+
+static enum cs_status finish(struct cs_args *args, const struct cs_diagram *diagram,
+                             const struct cs_plot_settings *settings, struct cs_error *error) {
+    const struct options *options = args->options;
+    char name[4096];
+    unsigned formats;
+    struct cs_text text = {0};
+    if (options->show)
+        return show(diagram, error);
+    find_name(args, settings, name);
+    const char *slash = strrchr(name, '/');
+    if (!*name || (slash && !slash[1]))
+        return cs_fail(error, CS_ERR_USAGE, "--out: expected a file name without extension");
+    if (read_formats(options->format, &formats, error) ||
+        cs_diagram_write(cs_renderer_folder(), diagram, name, formats, error) || options->quiet)
+        return error->status;
+    for (int k = 0; k < CS_FORMATS; k++)
+        if (formats >> k & 1)
+            cs_text_add(&text, "%s%s.%s", text.length ? ", " : "", name, cs_format_names[k]);
+    cs_text_add(&text, "\n");
     return cs_print_out(stdout, &text, error);
 }
 
-/* Fails if the family has no series: an empty diagram would hide a mistake in its name. */
-static enum cs_status check_cells(const struct cs_plot_settings *settings, const char *file,
-                                  struct cs_error *error) {
-    for (uint32_t k = 0; k < settings->n; k++)
-        if (!settings->family || !strcmp(settings->cells[k].family, settings->family))
-            return CS_OK;
-    return settings->family
-               ? cs_fail(error, CS_ERR_USAGE, "--family: found no \"%s\" series in %s",
-                         settings->family, file)
-               : CS_OK;
+/* True if `methods`, "NAME,NAME", has the series or the method of a cell. */
+static bool is_listed(const char *methods, const struct cs_cell *cell) {
+    for (size_t length; *methods; methods += length + (methods[length] == ',')) {
+        length = strcspn(methods, ",");
+        const char *names[] = {cell->series, cell->method};
+        for (int k = 0; k < 2; k++)
+            if (strlen(names[k]) == length && !strncmp(methods, names[k], length))
+                return true;
+    }
+    return false;
 }
 
-static enum cs_status plot(struct cs_args *args, struct cs_error *error) {
+/* Keeps the cells of the family and methods that were given. Fails if there are none: an empty
+ * diagram would hide a mistake in a name. */
+static enum cs_status select_cells(const struct options *options, const char *file,
+                                   struct cs_cell *cells, uint32_t *n, struct cs_error *error) {
+    const char *family = options->family, *methods = options->methods;
+    const uint32_t all = *n;
+    *n = 0;
+    for (uint32_t k = 0; k < all; k++)
+        if ((!family || !strcmp(family, cells[k].family)) &&
+            (!methods || is_listed(methods, cells + k)))
+            cells[(*n)++] = cells[k];
+    return *n || !(family || methods)
+               ? CS_OK
+               : cs_fail(error, CS_ERR_USAGE, "--%s: found no \"%s\" series in %s",
+                         family ? "family" : "methods", family ? family : methods, file);
+}
+
+static enum cs_status plot_comparison(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
-    struct cs_plot_settings settings = {.family = options->family};
+    struct cs_plot_settings settings = {.all = options->family || options->methods,
+                                        .title =
+                                            options->title ? options->title : args->operands[0],
+                                        .width = options->width};
+    struct cs_plot plot = {0};
     struct cs_cell *cells;
-    if (read_axis("x", options->x, &settings.x, error) ||
-        read_axis("y", options->y, &settings.y, error) ||
+    if (read_axis("x", options->x ? options->x : "work", &settings.x, error) ||
+        read_axis("y", options->y ? options->y : "error", &settings.y, error) ||
         check_family(options->family, error) ||
         cs_csv_read(args->operands[0], true, &cells, &settings.n, error))
         return error->status;
     settings.cells = cells;
-    if (!check_cells(&settings, args->operands[0], error))
-        (options->show ? show : draw)(args, &settings, error);
+    settings.second = options->x || options->show ? NULL : cs_column_find("cpu");
+    if (!select_cells(options, args->operands[0], cells, &settings.n, error) &&
+        !cs_plot_make(&plot, &settings, error))
+        finish(args, &plot.diagram, &settings, error);
+    cs_plot_finish(&plot);
     free(cells);
     return error->status;
+}
+
+static enum cs_status plot_table(struct cs_args *args, struct cs_error *error) {
+    const struct options *options = args->options;
+    const struct cs_table_plot_settings settings = {.path = args->operands[0],
+                                                    .x = options->x,
+                                                    .y = options->y,
+                                                    .log_axes = options->log_axes,
+                                                    .title = options->title ? options->title
+                                                                            : args->operands[0],
+                                                    .width = options->width};
+    struct cs_table_plot plot;
+    if (!cs_table_plot_make(&plot, &settings, error))
+        finish(args, &plot.diagram, &(struct cs_plot_settings){0}, error);
+    cs_table_plot_finish(&plot);
+    return error->status;
+}
+
+/* True for the table of a comparison, which begins with the name of the series. */
+static enum cs_status find_kind(const char *path, bool *comparison, struct cs_error *error) {
+    struct cs_rows file;
+    if (cs_rows_open(&file, path, 0, error))
+        return error->status;
+    const char *names = cs_rows_next(&file);
+    *comparison = names && (!strncmp(names, "series,method", strlen("series,method")) ||
+                            !strncmp(names, "method", strlen("method")));
+    cs_rows_close(&file);
+    return CS_OK;
+}
+
+static enum cs_status plot(struct cs_args *args, struct cs_error *error) {
+    const struct options *options = args->options;
+    bool comparison = false;
+    if (options->show && options->out)
+        return cs_fail(error, CS_ERR_USAGE, "--show writes no files: remove --show or --out");
+    if (!(options->width >= 40 && options->width <= 1000))
+        return cs_fail(error, CS_ERR_USAGE, "--width: expected 40 to 1000 mm, found %g",
+                       options->width);
+    if (options->log_axes[strspn(options->log_axes, "xy")])
+        return cs_fail(error, CS_ERR_USAGE, "--log: expected x, y or xy, found \"%.60s\"",
+                       options->log_axes);
+    if (find_kind(args->operands[0], &comparison, error))
+        return error->status;
+    return (comparison ? plot_comparison : plot_table)(args, error);
 }
 
 const struct cs_command cs_command_plot = {
     .name = "plot",
     .operands = "FILE",
-    .summary = "draw the compare.csv of a comparison, with any two columns",
-    .notes = "Example: clothsim plot compare/compare.csv --x evals --y max_error\n",
+    .summary = "draw a comparison, a stability map, or a table of a run",
+    .notes = "Examples: clothsim plot compare/compare.csv --x evals --y max_error\n"
+             "          clothsim plot out/monitor.csv --y kinetic,elastic --width 88\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
     .operands_max = 1,

@@ -57,7 +57,8 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
                                   struct cs_error *error) {
     const struct cs_scene *scene = &session->scene;
     const struct cs_plan *plan = &session->plan;
-    cs_text_add(out, "%s: ok, ", scene->path);
+    cs_text_add_plain(out, scene->path);
+    cs_text_add(out, ": ok, ");
     if (plan->n_bodies != 1)
         cs_text_add(out, "%u bodies, ", plan->n_bodies);
     add_count(out, "", plan->n, "particle");

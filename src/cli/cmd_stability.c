@@ -1,7 +1,7 @@
 /* clothsim stability: maps the stable time steps of a method, as text, CSV, JSON and a picture.
  *
  *   options -> axis and ranges -> per method: cs_stability_run -> table, NAME.csv,
- *   NAME_border.csv, NAME.json, NAME.gp and, with gnuplot, NAME.png
+ *   NAME_border.csv, NAME.json, NAME.png, NAME.svg, NAME.pdf
  *
  * With --extreme the catalogue of extreme scenes is run instead (study/stability/extreme.h). An
  * interrupted map resumes from its journal when the command is repeated. */
@@ -62,7 +62,7 @@ static const struct cs_arg rows[] = {
     CS_ARG_SET(struct cs_stability_options, map.session),
     CS_ARG_PLUGIN(struct cs_stability_options, map.session),
     {"out", 'o', "DIR",
-     "folder for NAME.csv, NAME_border.csv, NAME.json, NAME.gp and, with gnuplot, NAME.png "
+     "folder for NAME.csv, NAME_border.csv, NAME.json, NAME.png, NAME.svg and NAME.pdf "
      "(default: stability)",
      CS_ARG_INTO(struct cs_stability_options, map.folder)},
     {"overwrite", 'y', NULL, "replace the files of an earlier map",
@@ -141,11 +141,13 @@ static void print_extreme(void *ctx, const struct cs_extreme_row *row) {
     add_json(row, &sink->json);
     if ((row->as_expected && sink->options->quiet) || cs_print_is_stdout(sink->options->json))
         return;
-    printf("%-6s %-16s %-20s %-18s expected %-24s %6.2f s%s%s\n",
-           row->as_expected ? "ok" : "MISSED", row->scene, row->method,
-           cs_stability_word(row->verdict), row->expected, row->seconds,
-           *row->message ? "  " : "", row->message);
-    fflush(stdout);
+    struct cs_text line = {0};
+    struct cs_error unseen = {0}; /* the end of the output reports a closed one */
+    cs_text_add(&line, "%-6s %-16s %-20s %-18s expected %-24s %6.2f s%s%s\n",
+                row->as_expected ? "ok" : "MISSED", row->scene, row->method,
+                cs_stability_word(row->verdict), row->expected, row->seconds,
+                *row->message ? "  " : "", row->message);
+    cs_print_out(stdout, &line, &unseen);
 }
 
 /* Writes the rows of the catalogue. Missed expectations are an error already, which stays. */

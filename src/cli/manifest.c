@@ -37,7 +37,7 @@ static bool is_of_run(const char *name) {
 
 static bool is_of_study(const char *name) {
     static const char *const endings[] = {".csv", ".json", ".md",  ".txt", ".html",   ".state",
-                                          ".gp",  ".png",  ".pdf", ".svg", ".partial"};
+                                          ".png", ".pdf",  ".svg", ".partial"};
     const char *ending = strrchr(name, '.');
     bool found = false;
     for (size_t k = 0; ending && k < sizeof endings / sizeof *endings; k++)

@@ -6,7 +6,7 @@
 #include "study/compare/compare_cell.h"
 #include "study/energy_monitor.h"
 #include "study/parameter_sweep.h"
-#include "study/stability/stability_report.h"
+#include "study/stability/stability.h"
 
 #define SCENE "path of the scene file; - for standard input"
 #define HASH  "XXH3, 128 bits, in hexadecimal digits"

@@ -6,8 +6,9 @@
 #include "cli/manifest.h"
 #include "cli/run_output.h"
 #include "cli/show/screen.h"
-#include "io/subprocess.h"
-#include "study/stability/stability_report.h"
+#include "cli/table_plot.h"
+#include "sim/install_paths.h"
+#include "study/stability/stability.h"
 
 #include <stdio.h>
 
@@ -26,7 +27,8 @@ static enum cs_status write_file(const struct cs_stability_options *options, con
  * writes none. */
 static enum cs_status check_files(const struct cs_stability_options *options,
                                   const struct cs_stability *map, struct cs_error *error) {
-    static const char *const endings[] = {".csv", "_border.csv", ".json", ".gp"};
+    static const char *const endings[] = {".csv", "_border.csv", ".json",
+                                          ".png", ".svg",        ".pdf"};
     enum { FILES = sizeof endings / sizeof *endings };
     const char *folder = options->map.folder, *list[FILES + 1] = {NULL};
     char name[CS_SERIES_BYTES], files[FILES][CS_SERIES_BYTES + 16], path[4200];
@@ -42,40 +44,82 @@ static enum cs_status check_files(const struct cs_stability_options *options,
     return cs_study_files_check(&map->settings->session, folder, list, error);
 }
 
+/* Makes the diagram of the tables that were written. */
+static enum cs_status make_plot(const struct cs_stability_options *options,
+                                const struct cs_stability *map, struct cs_table_plot *plot,
+                                char title[640], struct cs_error *error) {
+    char name[CS_SERIES_BYTES], path[4200];
+    cs_series_file_name(map->series, name);
+    snprintf(path, sizeof path, "%s/%s.csv", options->map.folder, name);
+    snprintf(title, 640, "%s: stable time steps, %.255s, %g s of motion per cell", map->series,
+             map->session.scene.path, map->settings->seconds);
+    return cs_table_plot_make(
+        plot,
+        &(struct cs_table_plot_settings){
+            .path = path, .log_axes = "", .title = title, .width = 1.35 * CS_WIDTH_COLUMN},
+        error);
+}
+
+/* *drawn: false without the module that draws, which is no failure. */
 static enum cs_status write_files(const struct cs_stability_options *options,
-                                  const struct cs_stability *map, struct cs_gnuplot *gnuplot,
-                                  struct cs_error *error) {
-    char name[CS_SERIES_BYTES];
-    struct cs_text cells = {0}, borders = {0}, json = {0}, plot = {0};
+                                  const struct cs_stability *map, struct cs_table_plot *plot,
+                                  char title[640], bool *drawn, struct cs_error *error) {
+    char name[CS_SERIES_BYTES], path[4200];
+    struct cs_text cells = {0}, borders = {0}, json = {0};
+    struct cs_error unseen = {0};
     cs_series_file_name(map->series, name);
     cs_stability_print_csv(map, &cells);
     cs_stability_print_borders_csv(map, &borders);
     cs_stability_print_json(map, &json);
-    cs_stability_print_plot(map, name, &plot);
     write_file(options, name, ".csv", &cells, error);
     if (!error->status)
         write_file(options, name, "_border.csv", &borders, error);
     if (!error->status)
         write_file(options, name, ".json", &json, error);
-    if (!error->status)
-        write_file(options, name, ".gp", &plot, error);
     /* the picture is made of the files above */
-    if (!error->status && !cs_gnuplot_run(options->map.folder, name, gnuplot, error))
-        cs_print_gnuplot_warning(gnuplot, error);
+    snprintf(path, sizeof path, "%s/%s", options->map.folder, name);
+    if (!error->status && !make_plot(options, map, plot, title, error))
+        *drawn = !cs_diagram_write(cs_renderer_folder(), &plot->diagram, path, CS_FORMATS_ALL,
+                                   &unseen);
+    if (unseen.status == CS_ERR_MODULE)
+        cs_print_message(unseen.message);
+    else if (unseen.status)
+        *error = unseen;
     /* not before all results are in files */
     if (!error->status && !cs_journal_remove(map, error))
         cs_manifest_write_study(options->map.folder, error);
     cs_text_finish(&borders);
     cs_text_finish(&json);
-    cs_text_finish(&plot);
     return error->status;
 }
 
+/* Prints the table or the diagram of a finished map. */
+static enum cs_status print_map(const struct cs_stability_options *options,
+                                const struct cs_stability *map,
+                                const struct cs_table_plot *plot, bool drawn,
+                                struct cs_error *error) {
+    char name[CS_SERIES_BYTES];
+    struct cs_screen screen;
+    struct cs_text out = {0};
+    cs_series_file_name(map->series, name);
+    if (options->show && !cs_screen_open(&screen, false, error)) {
+        cs_screen_print_diagram(&screen, &plot->diagram, &out);
+        cs_print_raw(stdout, &out, error);
+    } else if (!options->show)
+        cs_stability_print_table(map, &out);
+    if (!options->quiet)
+        cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json%s\n\n", map->wall,
+                    options->map.folder, name, drawn ? ", .png, .svg, .pdf" : "; no picture");
+    return error->status ? error->status : cs_print_out(stdout, &out, error);
+}
+
 /* Reports a shard: some of the columns are no map yet. */
-static void print_shard(const struct cs_stability *map, bool quiet) {
-    if (!quiet)
-        printf("%s: shard %u of %u is in %s (see: clothsim merge)\n", map->series,
-               map->settings->shard.index, map->settings->shard.count, map->journal.table.path);
+static enum cs_status print_shard(const struct cs_stability *map, struct cs_error *error) {
+    struct cs_text out = {0};
+    cs_text_add(&out, "%s: shard %u of %u is in %s (see: clothsim merge)\n", map->series,
+                map->settings->shard.index, map->settings->shard.count,
+                map->journal.table.path);
+    return cs_print_out(stdout, &out, error);
 }
 
 /* For --strict: fails if a cell was not stable. */
@@ -96,8 +140,10 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
     struct cs_stability map;
     struct cs_stability_settings asked = options->map;
     const bool quiet = options->quiet;
-    struct cs_gnuplot gnuplot = {0};
+    struct cs_table_plot plot = {0};
     struct cs_screen screen;
+    char title[640];
+    bool drawn = false;
     if (options->show && cs_screen_open(&screen, false, error))
         return error->status;
     asked.progress = cs_progress_show;
@@ -115,26 +161,13 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
         cs_manifest_write_study(options->map.folder, error);
     }
     if (!error->status && !map.is_complete) {
-        if (!cs_manifest_write_study(options->map.folder, error))
-            print_shard(&map, quiet);
+        if (!cs_manifest_write_study(options->map.folder, error) && !quiet)
+            print_shard(&map, error);
     } else if (!error->status && !cs_folder_create(options->map.folder, error) &&
-               !write_files(options, &map, &gnuplot, error) && (!quiet || options->show)) {
-        struct cs_text out = {0};
-        char name[CS_SERIES_BYTES];
-        cs_series_file_name(map.series, name);
-        if (options->show)
-            cs_screen_print_map(&screen, &map, &out);
-        else
-            cs_stability_print_table(&map, &out);
-        /* gnuplot may be missing or fail: the line then says that there is no picture */
-        if (!quiet)
-            cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json, .gp%s\n\n", map.wall,
-                        options->map.folder, name,
-                        gnuplot.drawn      ? ", .png"
-                        : gnuplot.n_failed ? "; no picture"
-                                           : "; gnuplot not found: no picture");
-        cs_print_out(stdout, &out, error);
-    }
+               !write_files(options, &map, &plot, title, &drawn, error) &&
+               (!quiet || options->show))
+        print_map(options, &map, &plot, drawn, error);
+    cs_table_plot_finish(&plot);
     if (!error->status && options->strict)
         check_cells(&map, error);
     cs_stability_finish(&map);

@@ -1,69 +1,62 @@
-/* Finds and loads a renderer module; part of the program, and free of OpenGL. */
+/* Finds, loads and calls modules that draw; part of the program, and free of OpenGL and cairo.
+ */
 #include "draw/render.h"
-#include "base/text.h"
+
+#include "base/file.h"
+#include "draw/diagram.h"
 
 #include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 const char *const cs_renderer_names[] = {"auto", "cpu", "osmesa", "egl", NULL};
 
-/* Debian packages of the libraries that a module is built with, and needs when it runs. */
-static const struct {
-    const char *build, *run;
-} packages[] = {[CS_RENDERER_CPU] = {NULL, NULL},
-                [CS_RENDERER_OSMESA] = {"libosmesa6-dev", "libosmesa6"},
-                [CS_RENDERER_EGL] = {"libegl-dev", "libegl1 (and libgl1-mesa-dri)"}};
+/* Debian packages that a module is built with; NULL: none. */
+static const char *const packages[] = {[CS_RENDERER_CPU] = NULL,
+                                       [CS_RENDERER_OSMESA] = "libosmesa6-dev",
+                                       [CS_RENDERER_EGL] = "libegl-dev"};
 
-static enum cs_status fail_missing(const char *path, enum cs_renderer_kind kind,
-                                   struct cs_error *error) {
-    const char *name = cs_renderer_names[kind], *package = packages[kind].build;
-    if (!package)
-        return cs_fail(error, CS_ERR_MODULE,
-                       "renderer %s: no module %s: install clothsim again", name, path);
-    return cs_fail(error, CS_ERR_MODULE,
-                   "renderer %s: no module %s: build clothsim with the Debian package %s, or "
-                   "draw with --renderer cpu",
-                   name, path, package);
-}
-
-static enum cs_status open_path(const char *path, enum cs_renderer_kind kind,
-                                const struct cs_renderer **renderer, struct cs_error *error) {
-    const char *name = cs_renderer_names[kind];
-    if (access(path, R_OK) != 0)
-        return fail_missing(path, kind, error);
+/* Loads FOLDER/NAME.so and finds its table, which begins with its ABI. package: of Debian, that
+ * builds it; NULL: it is always built. Returns NULL after failure: CS_ERR_MODULE. */
+static const void *open_module(const char *folder, const char *name, const char *symbol,
+                               unsigned abi, const char *package, struct cs_error *error) {
+    char path[4352];
+    snprintf(path, sizeof path, "%s/%s.so", folder, name);
+    if (access(path, R_OK) != 0) {
+        cs_fail(error, CS_ERR_MODULE, "no module %s: %s%s", path,
+                package ? "build clothsim with the Debian package " : "install clothsim again",
+                package ? package : "");
+        return NULL;
+    }
     // never closed: the driver leaves threads and exit handlers behind
     void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    const unsigned *found = module ? dlsym(module, symbol) : NULL;
     if (!module)
-        return cs_fail(error, CS_ERR_MODULE, "renderer %s cannot be loaded: %s; install %s%s",
-                       name, dlerror(),
-                       packages[kind].run ? "the Debian package " : "clothsim again",
-                       packages[kind].run ? packages[kind].run : "");
-    const struct cs_renderer *found = dlsym(module, "clothsim_renderer");
-    if (!found)
-        return cs_fail(error, CS_ERR_MODULE, "renderer %s: %s is not a renderer module", name,
-                       path);
-    if (found->abi != CS_RENDERER_ABI)
-        return cs_fail(
-            error, CS_ERR_MODULE,
-            "renderer %s: %s has interface version %u, %u expected: install clothsim "
-            "again",
-            name, path, found->abi, CS_RENDERER_ABI);
-    if (!found->create || !found->paint || !found->description || !found->destroy)
-        return cs_fail(error, CS_ERR_MODULE,
-                       "renderer %s: %s lacks a call: install clothsim again", name, path);
-    *renderer = found;
-    return CS_OK;
+        cs_fail(error, CS_ERR_MODULE, "%s cannot be loaded: %s", name, dlerror());
+    else if (!found)
+        cs_fail(error, CS_ERR_MODULE, "%s is no module that draws", path);
+    else if (*found != abi)
+        cs_fail(error, CS_ERR_MODULE,
+                "%s has interface version %u, %u expected: install clothsim again", path,
+                *found, abi);
+    return error->status ? NULL : found;
 }
 
 static enum cs_status open_one(const char *folder, enum cs_renderer_kind kind,
                                const struct cs_renderer **renderer, struct cs_error *error) {
-    struct cs_text path = {0};
-    cs_text_add(&path, "%s/render-%s.so", folder, cs_renderer_names[kind]);
-    if (path.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the path of a module");
-    else
-        open_path(cs_text_get(&path), kind, renderer, error);
-    cs_text_finish(&path);
+    char name[64];
+    snprintf(name, sizeof name, "render-%s", cs_renderer_names[kind]);
+    const struct cs_renderer *found =
+        open_module(folder, name, "clothsim_renderer", CS_RENDERER_ABI, packages[kind], error);
+    if (found && (!found->create || !found->paint || !found->description || !found->destroy))
+        return cs_fail(error, CS_ERR_MODULE, "%s lacks a call: install clothsim again", name);
+    *renderer = found;
     return error->status;
 }
 
@@ -82,4 +75,85 @@ enum cs_status cs_renderer_open(const char *folder, enum cs_renderer_kind kind,
     }
     // the first one needs no library: why it cannot be had is what helps
     return cs_fail(error, CS_ERR_MODULE, "%s", first.message);
+}
+
+/* --- diagrams --- */
+
+/* s of wall time after which a drawing that hangs is ended; it takes a fraction of one */
+enum { DRAW_SECONDS = 60 };
+
+/* In a process of its own: the libraries below cairo do not survive a lack of memory. */
+static void draw_and_exit(const struct cs_diagram_module *module,
+                          const struct cs_diagram *diagram, enum cs_format format, int end) {
+    static const int crashes[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL};
+    struct cs_error error = {0};
+    char *bytes;
+    size_t length;
+    for (size_t k = 0; k < sizeof crashes / sizeof *crashes; k++)
+        signal(crashes[k], SIG_DFL);
+    alarm(DRAW_SECONDS);
+    if (!module->draw(diagram, format, &bytes, &length, &error))
+        for (ssize_t n; length && (n = write(end, bytes, length)) > 0; length -= (size_t)n)
+            bytes += n;
+    _exit(error.status || length ? 1 : 0);
+}
+
+static enum cs_status draw(const char *folder, const struct cs_diagram *diagram,
+                           enum cs_format format, char **bytes, size_t *length,
+                           struct cs_error *error) {
+    const struct cs_diagram_module *module = open_module(
+        folder, "diagram-cairo", "clothsim_diagram", CS_DIAGRAM_ABI, "libcairo2-dev", error);
+    struct cs_text out = {0};
+    char part[4096];
+    int ends[2], status = -1;
+    *bytes = NULL;
+    if (!module)
+        return error->status;
+    if (pipe2(ends, O_CLOEXEC))
+        return cs_fail(error, CS_ERR_FILE, "cannot make a pipe: %s", strerror(errno));
+    const pid_t child = fork();
+    if (child == 0)
+        draw_and_exit(module, diagram, format, ends[1]);
+    close(ends[1]);
+    for (ssize_t n; child > 0 &&
+                    ((n = read(ends[0], part, sizeof part)) > 0 || (n < 0 && errno == EINTR));)
+        if (n > 0)
+            cs_text_add_bytes(&out, part, (size_t)n);
+    close(ends[0]);
+    while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR)
+        ;
+    *bytes = out.bytes;
+    *length = out.length;
+    if (!status && !out.failed && out.length)
+        return CS_OK;
+    cs_text_finish(&out);
+    return cs_fail(error, CS_ERR_MODULE,
+                   "the module diagram-cairo.so ended without a diagram: out of memory?");
+}
+
+enum cs_status cs_diagram_write(const char *folder, const struct cs_diagram *diagram,
+                                const char *path, unsigned formats, struct cs_error *error) {
+    for (int format = 0; format < CS_FORMATS && !error->status; format++) {
+        char name[4200], *bytes;
+        size_t length;
+        if (!(formats >> format & 1) ||
+            draw(folder, diagram, (enum cs_format)format, &bytes, &length, error))
+            continue;
+        snprintf(name, sizeof name, "%s.%s", path, cs_format_names[format]);
+        cs_file_write(name, bytes, length, error);
+        free(bytes);
+    }
+    return error->status;
+}
+
+enum cs_status cs_diagram_add_svg(const char *folder, const struct cs_diagram *diagram,
+                                  struct cs_text *out, struct cs_error *error) {
+    char *bytes;
+    size_t length;
+    if (!draw(folder, diagram, CS_FORMAT_SVG, &bytes, &length, error)) {
+        const char *element = strstr(bytes, "<svg"); /* without the head of an XML file */
+        cs_text_add(out, "%s", element ? element : "");
+        free(bytes);
+    }
+    return error->status;
 }

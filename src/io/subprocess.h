@@ -41,19 +41,4 @@ enum cs_status cs_subprocess_open(struct cs_subprocess *program, const char *fol
  * code, or -1 if a signal ended it. Safe on a zeroed one. */
 int cs_subprocess_close(struct cs_subprocess *program);
 
-/* The end of one script or of several; zeroed at the start. */
-struct cs_gnuplot {
-    bool drawn;        /* the last script was */
-    uint32_t n_failed; /* scripts; a missing gnuplot has not failed */
-    char first[700];   /* the first that failed, and why */
-};
-
-/* Runs FOLDER/NAME.gp in the working directory FOLDER. gnuplot may be missing or fail, which is
- * no failure here; after a failure no picture NAME.* remains. CS_ERR_MEMORY. */
-enum cs_status cs_gnuplot_run(const char *folder, const char *name, struct cs_gnuplot *gnuplot,
-                              struct cs_error *error);
-
-/* Adds a line about the scripts that gnuplot could not draw, if there are any. */
-void cs_gnuplot_warn(const struct cs_gnuplot *gnuplot, const char *bullet, struct cs_text *out);
-
 #endif

@@ -46,11 +46,9 @@ static bool is_beaten(const struct cs_plot_settings *settings, uint32_t k) {
 /* against the definition: no other cell is both cheaper and more accurate */
 TEST(front_is_what_nothing_beats) {
     const struct cs_plot_settings settings = make();
-    struct cs_curves curves;
     bool on[CELLS] = {false};
     double last = 0;
-    cs_curves_make(&curves, &settings);
-    for (uint32_t k = UINT32_MAX; cs_curves_front(&curves, &k); last = cells[k].cpu) {
+    for (uint32_t k = UINT32_MAX; cs_curves_front(&settings, &k); last = cells[k].cpu) {
         ck_assert_double_gt(cells[k].cpu, last);
         on[k] = true;
     }
@@ -61,13 +59,11 @@ TEST(front_is_what_nothing_beats) {
 
 TEST(no_front_over_what_costs_nothing) {
     struct cs_plot_settings settings = make();
-    struct cs_curves curves;
     uint32_t k = UINT32_MAX;
     for (uint32_t c = 0; c < CELLS; c++)
         cells[c].step = cells[c].cpu;
     settings.x = cs_column_find("step");
-    cs_curves_make(&curves, &settings);
-    ck_assert(!cs_curves_front(&curves, &k));
+    ck_assert(!cs_curves_front(&settings, &k));
 }
 
 TEST(twelve_curves_with_what_is_on_the_front) {
@@ -94,50 +90,85 @@ TEST(twelve_curves_with_what_is_on_the_front) {
     ck_assert_uint_eq(cs_curves_left_out(&curves), SERIES - CS_CURVES_DRAWN);
 }
 
-TEST(a_family_is_drawn_whole_and_alone) {
+TEST(all_series_are_drawn_on_request) {
     struct cs_plot_settings settings = make();
     struct cs_curves curves;
-    settings.family = "implicit";
+    settings.all = true;
     cs_curves_make(&curves, &settings);
-    for (uint32_t c = 0; c < curves.n; c++) {
-        const bool mine = !strcmp(cells[curves.list[c].first].family, "implicit");
-        ck_assert_int_eq(curves.list[c].style >= 0, mine);
-        ck_assert_uint_eq(mine ? 0 : curves.list[c].failed_marks, 0);
-    }
+    for (uint32_t c = 0; c < curves.n; c++)
+        ck_assert_int_ge(curves.list[c].style, 0);
     ck_assert_uint_eq(cs_curves_left_out(&curves), 0);
 }
 
-static double least_of(double a, double b) {
-    return a < b ? a : b;
+/* Points, bars and crosses are within the axes; points have their cells' values. Twice, beside
+ * each other: of both panels y is the same. */
+TEST(points_are_those_of_the_cells) {
+    struct cs_plot_settings settings = make();
+    struct cs_plot plot;
+    struct cs_error error = {0};
+    settings.second = settings.x;
+    settings.width = CS_WIDTH_PAGE;
+    ck_assert_int_eq(cs_plot_make(&plot, &settings, &error), CS_OK);
+    ck_assert_uint_eq(plot.diagram.n_panels, 2);
+    ck_assert_uint_eq(plot.diagram.columns, 2);
+    for (const struct cs_panel *panel = plot.panels; panel < plot.panels + 2; panel++) {
+        uint32_t full = 0, crosses = 0;
+        for (const struct cs_series *s = panel->series; s < panel->series + panel->n_series;
+             s++)
+            for (const struct cs_point *p = s->points; s->name && p < s->points + s->n; p++) {
+                const double at[] = {cs_plot_axis_at(&panel->x, p->x),
+                                     cs_plot_axis_at(&panel->y, p->y)};
+                ck_assert(at[0] > 0 && at[0] < 1 && at[1] > 0 && at[1] < 1);
+                full += p->mark == CS_MARK_FULL;
+                crosses += p->mark == CS_MARK_CROSS;
+                // above all points
+                ck_assert(p->mark != CS_MARK_CROSS || at[1] > 0.96);
+            }
+        ck_assert_uint_gt(crosses, 0);
+        ck_assert_uint_gt(full, 30);
+    }
+    cs_plot_finish(&plot);
 }
 
-/* Points, quartiles and crosses are within the ranges, and no range is more than a tenth wider
- * than what is in it. */
-TEST(axes_are_on_the_data) {
-    const struct cs_plot_settings settings = make();
-    struct cs_curves curves;
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, cross;
-    cs_curves_make(&curves, &settings);
-    for (uint32_t k = 0; k < CELLS; k++) {
-        const struct cs_cell *cell = cells + k;
-        const bool bar = cs_curves_quartiles(&settings, cell);
-        if (cs_curves_cross(&curves, cell, &cross)) {
-            ck_assert(log10(cross) > curves.x[0] && log10(cross) < curves.x[1]);
-            continue;
-        }
-        ck_assert_int_eq(bar, k % 2);
-        low[0] = least_of(low[0], log10(bar ? cell->cpu_low : cell->cpu));
-        high[0] = -least_of(-high[0], -log10(bar ? cell->cpu_high : cell->cpu));
-        low[1] = least_of(low[1], log10(cell->error));
-        high[1] = -least_of(-high[1], -log10(cell->error));
+/* A run in search of an error is a hollow mark beside its line. */
+TEST(probes_are_not_joined) {
+    struct cs_plot_settings settings = make();
+    struct cs_plot plot;
+    struct cs_error error = {0};
+    settings.n = EACH;
+    settings.width = CS_WIDTH_COLUMN;
+    cells[2].target = 1e-5;
+    ck_assert_int_eq(cs_plot_make(&plot, &settings, &error), CS_OK);
+    const struct cs_series *line = plot.panels->series + plot.panels->n_series - 1;
+    ck_assert_uint_eq(line->n, EACH);
+    for (uint32_t k = 0; k < EACH; k++) {
+        ck_assert_int_eq(line->points[k].mark, k == 2 ? CS_MARK_HOLLOW : CS_MARK_FULL);
+        ck_assert_int_eq(line->points[k].joined, k != 2);
+        ck_assert_double_eq(line->points[k].y, cells[k].error);
     }
-    const double *ranges[] = {curves.x, curves.y};
-    for (int axis = 0; axis < 2; axis++) {
-        ck_assert(ranges[axis][0] < low[axis] && ranges[axis][1] > high[axis]);
-        ck_assert_double_lt(ranges[axis][1] - ranges[axis][0], 1.17 * (high[axis] - low[axis]));
+    cs_plot_finish(&plot);
+}
+
+/* Errors on a line of slope 1 with noise of a factor: the median is on the line where the noise
+ * is symmetric, and the band holds all values of the half decades around, brought to the cell.
+ */
+TEST(typical_errors_are_medians) {
+    struct cs_plot_settings settings = make();
+    static const double noise_of[EACH] = {1, 10, 1, 0.1, 1};
+    double low, high;
+    for (uint32_t k = 0; k < EACH; k++) {
+        cells[k].adaptive = true;
+        cells[k].value = 1e-6 * pow(1.05, (double)k - 2);
+        cells[k].error = 3 * cells[k].value * noise_of[k];
     }
-    // crosses stand above all points
-    ck_assert_double_gt(log10(cs_curves_edge(&curves)), high[1]);
+    const double typical = cs_cell_typical(cells, CELLS, cells + 2, settings.y, &low, &high);
+    ck_assert_double_eq_tol(typical / cells[2].error, 1, 1e-6);
+    // least squares may turn the line by the noise: at most by its factor over the range
+    ck_assert(low < 0.11 * typical && low > 0.05 * typical);
+    ck_assert(high > 9 * typical && high < 20 * typical);
+    cells[0].adaptive = false;
+    ck_assert_double_eq(cs_cell_typical(cells, CELLS, cells, settings.y, &low, &high),
+                        cells[0].error);
 }
 
 /* One cell, or many of one value: an axis has two labels at least, and never more than twenty.
@@ -146,9 +177,10 @@ TEST(no_axis_is_without_labels) {
     for (int k = 0; k < 4000; k++) {
         const double start = -12 + 20 * noise((unsigned)k);
         const double span = log10(4) + 25 * noise((unsigned)k + 5000) * noise((unsigned)k);
-        const double range[2] = {start, start + span};
+        const struct cs_plot_axis axis = {.logarithmic = true, .range = {start, start + span}};
+        const double *range = axis.range;
         struct cs_tick ticks[CS_TICKS_MAX];
-        const uint32_t n = cs_curves_ticks(range, ticks);
+        const uint32_t n = cs_plot_axis_ticks(&axis, ticks);
         uint32_t labels = 0;
         for (uint32_t i = 0; i < n; i++) {
             ck_assert(ticks[i].position >= range[0] && ticks[i].position <= range[1]);
@@ -159,9 +191,33 @@ TEST(no_axis_is_without_labels) {
         ck_assert_msg(labels >= 2 && labels <= 20, "%u labels from 1e%g over %g decades",
                       labels, start, span);
     }
-    struct cs_plot_settings settings = make();
-    struct cs_curves curves;
-    settings.n = 1;
-    cs_curves_make(&curves, &settings);
-    ck_assert_double_ge(curves.x[1] - curves.x[0], log10(4) - 1e-12);
+    // one value
+    struct cs_plot_axis axis = {.logarithmic = true, .range = {2, 2}};
+    cs_plot_axis_widen(&axis);
+    ck_assert_double_ge(axis.range[1] - axis.range[0], log10(4) - 1e-12);
+}
+
+/* Linear axes: ticks at whole multiples of 1, 2 or 5 times a power of 10. */
+TEST(linear_ticks_are_round) {
+    for (int k = 0; k < 4000; k++) {
+        const double start = 200 * noise((unsigned)k) - 100;
+        const double span = pow(10, 8 * noise((unsigned)k + 5000) - 4);
+        const struct cs_plot_axis axis = {.range = {start, start + span}};
+        struct cs_tick ticks[CS_TICKS_MAX];
+        const uint32_t n = cs_plot_axis_ticks(&axis, ticks);
+        ck_assert_msg(n >= 3 && n <= 11, "%u ticks from %g over %g", n, start, span);
+        const double step = ticks[1].position - ticks[0].position;
+        const double digit = step / pow(10, floor(log10(step) + 1e-6));
+        ck_assert(fabs(digit - 1) < 1e-3 || fabs(digit - 2) < 1e-3 || fabs(digit - 5) < 1e-3);
+    }
+}
+
+/* Twelve series differ without their colours. */
+TEST(twelve_styles_differ_in_grey) {
+    for (uint32_t a = 0; a < CS_STYLES; a++)
+        for (uint32_t b = 0; b < a; b++) {
+            const struct cs_style one = cs_style_of(a), other = cs_style_of(b);
+            ck_assert(one.dash != other.dash || one.marker != other.marker);
+            ck_assert_uint_ne(one.colour, other.colour);
+        }
 }

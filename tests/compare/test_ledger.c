@@ -1,7 +1,7 @@
 /* The folder of a comparison: what an interrupt leaves, and what another run adds. */
 #include "place.h"
 #include "study/compare/compare_cell.h"
-#include "study/compare/compare_results.h"
+#include "study/compare/compare_state.h"
 #include "study/compare/ranking.h"
 
 #include <math.h>

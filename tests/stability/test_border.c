@@ -1,6 +1,5 @@
 /* The bisected border of stability against linear theory, on shipped scenes. */
 #include "study/stability/stability.h"
-#include "study/stability/stability_report.h"
 
 #include "../physics/fixture.h"
 

@@ -127,3 +127,57 @@ TEST(nearest_word_is_found) {
     endless[sizeof endless - 1] = 0;
     cs_nearest_word(endless, words);
 }
+
+/* What is no text: control characters of ASCII and of Unicode's second page, characters that
+ * turn the direction or hide, half characters, overlong ones, a surrogate. */
+static const char *const hostile[] = {
+    "\x01",         "\x1b",         "\x7f",         "\xc2\x80",     "\xc2\x9b",
+    "\xd8\x9c",     "\xe2\x80\x8e", "\xe2\x80\xae", "\xe2\x81\xa6", "\xe2\x80\xa8",
+    "\xef\xbb\xbf", "\xff",         "\xc3",         "\xc0\xaf",     "\xed\xa0\x80"};
+enum { HOSTILE = sizeof hostile / sizeof *hostile };
+
+typedef void add_function(struct cs_text *text, const char *s);
+
+static void check_added(add_function *add, const char *s, const char *expected) {
+    struct cs_text text = {0};
+    add(&text, s);
+    ck_assert_str_eq(cs_text_get(&text), expected);
+    cs_text_finish(&text);
+}
+
+TEST(characters_that_are_no_text_are_replaced) {
+    for (int k = 0; k < HOSTILE; k++) {
+        add_function *const all[] = {cs_text_add_plain, cs_text_add_lines, cs_text_add_html,
+                                     cs_text_add_markdown};
+        char around[16], found[16];
+        snprintf(around, sizeof around, "a%sb", hostile[k]);
+        for (int f = 0; f < 4; f++) {
+            struct cs_text text = {0};
+            all[f](&text, around);
+            // one mark per character, or per byte that is none
+            const size_t marks = text.length - 2;
+            ck_assert(marks >= 1 && marks <= strlen(hostile[k]));
+            snprintf(found, sizeof found, "a%.*sb", (int)marks, "???");
+            ck_assert_str_eq(cs_text_get(&text), found);
+            cs_text_finish(&text);
+        }
+    }
+}
+
+TEST(text_stays) {
+    static const char plain[] = "\xc3\xa9 \xe4\xb8\x96 \xf0\x9f\xa7\xb5 ~ \xc2\xa0";
+    check_added(cs_text_add_plain, plain, plain);
+    check_added(cs_text_add_html, plain, plain);
+    check_added(cs_text_add_plain, "a\nb\tc", "a?b?c");
+    check_added(cs_text_add_lines, "a\nb\tc", "a\nb\tc");
+}
+
+TEST(no_text_is_code) {
+    check_added(cs_text_add_html, "<b a=\"'\">&", "&lt;b a=&quot;&#39;&quot;&gt;&amp;");
+    check_added(cs_text_add_markdown, "`*_[x](y)<|>\\\n# ",
+                "\\`\\*\\_\\[x\\](y)\\<\\|\\>\\\\?# ");
+    struct cs_text json = {0};
+    cs_text_add_json(&json, "\"\\\n\xc2\x9b\xe2\x80\xae\xc3\xa9");
+    ck_assert_str_eq(cs_text_get(&json), "\"\\\"\\\\\\u000a\\u009b\\u202e\xc3\xa9\"");
+    cs_text_finish(&json);
+}

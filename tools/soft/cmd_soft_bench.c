@@ -1,13 +1,12 @@
 /* clothsim soft-bench: measures spring networks against shape matching on a soft body.
  *
- *   options -> checks -> cs_soft_run: a row per body -> soft.csv and diagram -> tables
+ *   options -> checks -> cs_soft_run: a row per body -> soft.csv -> tables
  * Rows measured before an interruption are written. */
 #include "base/file.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
 #include "cli/run_output.h"
-#include "io/subprocess.h"
 #include "soft/soft.h"
 
 #include <stdio.h>
@@ -27,8 +26,7 @@ static const struct cs_arg rows[] = {
      .old_name = "no-draw"},
     CS_ARG_SET(struct options, soft.session),
     CS_ARG_PLUGIN(struct options, soft.session),
-    {"out", 'o', "DIR",
-     "folder for soft.csv, soft.txt, soft.gp and, with gnuplot, soft.png (default: soft)",
+    {"out", 'o', "DIR", "folder for soft.csv and soft.txt (default: soft); see: clothsim plot",
      CS_ARG_INTO(struct options, folder)},
     {"overwrite", 'y', NULL, "replace the files of an earlier run",
      CS_ARG_INTO(struct options, overwrite)},
@@ -47,13 +45,8 @@ static enum cs_status write_one(const char *folder, const char *name,
 
 static enum cs_status write_files(const char *folder, const struct cs_soft *soft,
                                   struct cs_error *error) {
-    struct cs_gnuplot gnuplot = {0};
     if (write_one(folder, "soft.csv", cs_soft_print_csv, soft, error) ||
-        write_one(folder, "soft.txt", cs_soft_print, soft, error) ||
-        write_one(folder, "soft.gp", cs_soft_print_plot, soft, error))
-        return error->status;
-    if (cs_gnuplot_run(folder, "soft", &gnuplot, error) ||
-        cs_print_gnuplot_warning(&gnuplot, error))
+        write_one(folder, "soft.txt", cs_soft_print, soft, error))
         return error->status;
     return cs_manifest_write_study(folder, error);
 }

@@ -64,11 +64,8 @@ enum cs_status cs_soft_run(struct cs_soft *soft, struct cs_error *error);
  * of springs, or of vertices for CS_SOFT_MATCHED. NAN with fewer than two different x. */
 double cs_soft_growth(const struct cs_soft *soft, enum cs_soft_series series);
 
-/* Prints the rows of soft.h as tables, CSV and a diagram. */
-
-/* Tables and what they say; a CSV, a row a line; the script of the diagram NAME.png. */
+/* Print the rows: tables and what they say; a CSV, a row a line. */
 void cs_soft_print(const struct cs_soft *soft, struct cs_text *out);
 void cs_soft_print_csv(const struct cs_soft *soft, struct cs_text *out);
-void cs_soft_print_plot(const struct cs_soft *soft, struct cs_text *out);
 
 #endif

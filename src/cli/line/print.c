@@ -71,11 +71,15 @@ void cs_print_hanging(const char *left, const char *right, size_t column, struct
 }
 
 void cs_print_row(const char *left, const char *right, size_t column, struct cs_text *out) {
-    const size_t columns = terminal_columns(), length = strlen(right);
-    if (columns && column + length > columns)
-        cs_print_wrapped(left, right, column, columns, out);
+    const size_t columns = terminal_columns();
+    struct cs_text plain = {0};
+    cs_text_add_plain(&plain, right);
+    if (columns && column + plain.length > columns)
+        cs_print_wrapped(left, cs_text_get(&plain), column, columns, out);
     else
-        cs_text_add(out, "%-*s%s\n", (int)column, left, right);
+        cs_text_add(out, "%-*s%s\n", (int)column, left, cs_text_get(&plain));
+    out->failed |= plain.failed;
+    cs_text_finish(&plain);
 }
 
 void cs_print_sentences(const char *lines, struct cs_text *out) {
@@ -93,6 +97,13 @@ void cs_print_sentences(const char *lines, struct cs_text *out) {
 }
 
 enum cs_status cs_print_out(FILE *file, struct cs_text *text, struct cs_error *error) {
+    struct cs_text lines = {.failed = text->failed};
+    cs_text_add_lines(&lines, cs_text_get(text));
+    cs_text_finish(text);
+    return cs_print_raw(file, &lines, error);
+}
+
+enum cs_status cs_print_raw(FILE *file, struct cs_text *text, struct cs_error *error) {
     errno = 0;
     if (text->failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the output");
@@ -104,16 +115,16 @@ enum cs_status cs_print_out(FILE *file, struct cs_text *text, struct cs_error *e
 }
 
 void cs_print_message(const char *message) {
-    char line[4096];
-    const int most = sizeof line - 2;
-    int length = snprintf(line, sizeof line - 1, "clothsim: %s", message);
-    length = length < most ? length : most;
-    for (int k = 0; k < length; k++)
-        if ((unsigned char)line[k] < 0x20 || line[k] == 0x7f)
-            line[k] = '?';
-    line[length++] = '\n';
-    /* in one write, as processes share the stream */
-    fwrite(line, 1, (size_t)length, stderr);
+    struct cs_text line = {0};
+    cs_text_add(&line, "clothsim: ");
+    cs_text_add_plain(&line, message);
+    cs_text_add(&line, "\n");
+    /* in one write, as processes share the stream; without memory the message itself */
+    if (line.failed)
+        fprintf(stderr, "clothsim: %s\n", message);
+    else
+        fwrite(cs_text_get(&line), 1, line.length, stderr);
+    cs_text_finish(&line);
 }
 
 void cs_print_lines(const char *before, const char *lines, struct cs_text *out) {
@@ -121,13 +132,6 @@ void cs_print_lines(const char *before, const char *lines, struct cs_text *out) 
         length = strcspn(lines, "\n");
         cs_text_add(out, "%s%.*s\n", before, (int)length, lines);
     }
-}
-
-enum cs_status cs_print_gnuplot_warning(const struct cs_gnuplot *gnuplot,
-                                        struct cs_error *error) {
-    struct cs_text text = {0};
-    cs_gnuplot_warn(gnuplot, "clothsim: warning: ", &text);
-    return cs_print_out(stderr, &text, error);
 }
 
 bool cs_print_is_stdout(const char *path) {

@@ -4,7 +4,6 @@
 
 #include "base/status.h"
 #include "base/text.h"
-#include "io/subprocess.h"
 
 #include <signal.h>
 #include <stdbool.h>
@@ -28,20 +27,20 @@ void cs_print_row(const char *left, const char *right, size_t column, struct cs_
 /* Adds lines of words in the same way, each with its first word at its left. */
 void cs_print_sentences(const char *lines, struct cs_text *out);
 
-/* Writes a finished text to stdout or stderr and flushes it; frees the text in any case.
- * CS_ERR_MEMORY if the text failed, CS_ERR_FILE if it could not be written. */
+/* Writes a finished text to stdout or stderr, as cs_text_add_lines makes it, and flushes it;
+ * frees the text in any case. CS_ERR_MEMORY if the text failed, CS_ERR_FILE if it could not be
+ * written. */
 enum cs_status cs_print_out(FILE *file, struct cs_text *text, struct cs_error *error);
+
+/* The same for a text with control sequences of the program's own; names in it must have passed
+ * cs_text_add_plain. */
+enum cs_status cs_print_raw(FILE *file, struct cs_text *text, struct cs_error *error);
 
 /* Writes a text to a file, or to standard output for "-"; frees it in any case. */
 enum cs_status cs_print_file(const char *path, struct cs_text *text, struct cs_error *error);
 
 /* Writes "clothsim: message" to stderr in one line; control characters become "?". */
 void cs_print_message(const char *message);
-
-/* Prints on standard error what gnuplot could not draw, if there is anything. CS_ERR_FILE,
- * CS_ERR_MEMORY. */
-enum cs_status cs_print_gnuplot_warning(const struct cs_gnuplot *gnuplot,
-                                        struct cs_error *error);
 
 /* Adds each line of a text after a word: "hint: ". */
 void cs_print_lines(const char *before, const char *lines, struct cs_text *out);

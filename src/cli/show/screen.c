@@ -2,8 +2,8 @@
 #include "cli/show/screen.h"
 
 #include "cli/line/print.h"
-#include "cli/show/sixel.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <stdlib.h>
@@ -11,6 +11,69 @@
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
+
+/* --- sixel images by libsixel ---
+ * Its header is not needed to build: the calls below are those of version 1 of its interface
+ * (libsixel.so.1). */
+
+/* 24-bit RGB, and the choice of everything else left to the library. */
+enum { RGB888 = 3, AUTO = 0, COLOURS = 256, DEPTH = 8 };
+
+typedef int write_function(char *data, int size, void *ctx);
+
+static struct {
+    int (*output_new)(void **output, write_function *write, void *ctx, void *allocator);
+    void (*output_destroy)(void *output);
+    int (*dither_new)(void **dither, int colours, void *allocator);
+    int (*dither_initialize)(void *dither, unsigned char *rgb, int width, int height,
+                             int format, int largest, int representative, int quality);
+    void (*dither_destroy)(void *dither);
+    int (*encode)(unsigned char *rgb, int width, int height, int depth, void *dither,
+                  void *output);
+} sixel;
+
+static bool is_ok(int status) {
+    return !(status & 0x1000);
+}
+
+static bool load_sixel(void) {
+    const struct {
+        const char *name;
+        void *call;
+    } calls[] = {{"sixel_output_new", &sixel.output_new},
+                 {"sixel_output_destroy", &sixel.output_destroy},
+                 {"sixel_dither_new", &sixel.dither_new},
+                 {"sixel_dither_initialize", &sixel.dither_initialize},
+                 {"sixel_dither_destroy", &sixel.dither_destroy},
+                 {"sixel_encode", &sixel.encode}};
+    void *library = dlopen("libsixel.so.1", RTLD_NOW | RTLD_LOCAL);
+    for (size_t k = 0; library && k < sizeof calls / sizeof *calls; k++)
+        if (!(*(void **)calls[k].call = dlsym(library, calls[k].name)))
+            return false;
+    return library;
+}
+
+static int add_sixel_data(char *data, int size, void *ctx) {
+    cs_text_add(ctx, "%.*s", size, data);
+    return 0;
+}
+
+bool cs_sixel_add(const struct cs_image *image, struct cs_text *out) {
+    const int width = (int)image->width, height = (int)image->height;
+    void *output = NULL, *dither = NULL;
+    const bool done = is_ok(sixel.output_new(&output, add_sixel_data, out, NULL)) &&
+                      is_ok(sixel.dither_new(&dither, COLOURS, NULL)) &&
+                      is_ok(sixel.dither_initialize(dither, image->rgb, width, height, RGB888,
+                                                    AUTO, AUTO, AUTO)) &&
+                      is_ok(sixel.encode(image->rgb, width, height, DEPTH, dither, output));
+    if (dither)
+        sixel.dither_destroy(dither);
+    if (output)
+        sixel.output_destroy(output);
+    return done;
+}
+
+/* --- the terminal --- */
 
 enum { PATIENCE_MS = 1000, ANSWER_BYTES = 256 };
 
@@ -83,7 +146,7 @@ static enum cs_screen_graphics find_graphics(void) {
         return CS_SCREEN_KITTY;
     if (!has_sixel(answer))
         return CS_SCREEN_CHARACTERS;
-    if (cs_sixel_load())
+    if (load_sixel())
         return CS_SCREEN_SIXEL;
     cs_print_message("this terminal shows sixel images: install the Debian package libsixel1");
     return CS_SCREEN_CHARACTERS;
@@ -93,6 +156,10 @@ enum cs_status cs_screen_open(struct cs_screen *screen, bool images, struct cs_e
     struct winsize size = {0};
     const char *kind = getenv("TERM");
     *screen = (struct cs_screen){.colours = find_colours()};
+    if (!isatty(STDOUT_FILENO) && !images) {
+        *screen = (struct cs_screen){.columns = 80, .rows = 24};
+        return CS_OK;
+    }
     if (!isatty(STDOUT_FILENO))
         return cs_fail(
             error, CS_ERR_USAGE,
@@ -185,11 +252,21 @@ void cs_screen_add_row(const struct cs_screen *screen, const struct cs_screen_ce
 }
 
 void cs_screen_add_key(const struct cs_screen *screen, const struct cs_screen_cell *cell,
-                       const char *text, struct cs_text *out) {
-    struct cs_text wrapped = {0};
-    cs_print_wrapped("", text, 2, screen->columns, &wrapped);
+                       const char *text, uint32_t *column, struct cs_text *out) {
+    struct cs_text wrapped = {0}, plain = {0};
+    cs_text_add_plain(&plain, text);
+    if (*column && *column + plain.length + 4 > screen->columns) {
+        cs_text_add(out, "\n");
+        *column = 0;
+    }
+    cs_print_wrapped("", cs_text_get(&plain), 2, screen->columns, &wrapped);
+    cs_text_add(out, "%s", *column ? "  " : "");
     add_cells(screen, cell, 1, out);
-    cs_text_add(out, "%s", cs_text_get(&wrapped) + 1);
-    out->failed |= wrapped.failed;
+    /* without the first blank, which the character replaces, and the end of the line */
+    cs_text_add(out, "%.*s", wrapped.length ? (int)wrapped.length - 2 : 0,
+                cs_text_get(&wrapped) + 1);
+    *column += (*column ? 4 : 2) + (uint32_t)plain.length;
+    out->failed |= wrapped.failed || plain.failed;
     cs_text_finish(&wrapped);
+    cs_text_finish(&plain);
 }

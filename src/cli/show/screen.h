@@ -2,7 +2,7 @@
  *
  *   cs_screen_open: size, colours and graphics of the terminal
  *   -> cs_screen_show_image: kitty's protocol, sixel, or two pixels per character
- *   -> cs_screen_print_diagram, cs_screen_print_map: characters
+ *   -> cs_screen_print_diagram: characters
  * Nothing of it runs without --show. */
 #ifndef CS_SCREEN_H
 #define CS_SCREEN_H
@@ -10,9 +10,8 @@
 #include "base/image.h"
 #include "base/status.h"
 #include "base/text.h"
+#include "draw/diagram.h"
 #include "draw/srgb.h"
-#include "study/compare/compare_curves.h"
-#include "study/stability/stability.h"
 
 enum cs_screen_colours { CS_SCREEN_PLAIN, CS_SCREEN_256, CS_SCREEN_24_BIT };
 enum cs_screen_graphics { CS_SCREEN_CHARACTERS, CS_SCREEN_KITTY, CS_SCREEN_SIXEL };
@@ -31,8 +30,9 @@ struct cs_screen {
 
 /* Reads size and colours of the terminal: NO_COLOR, COLORTERM, TERM. images: asks the terminal
  * whether it shows images, and waits up to a second for the answer. Without colour there are no
- * images either. CS_ERR_USAGE if standard output is no terminal, or one too narrow or without
- * control sequences. */
+ * images either. Where standard output is a file or a pipe, diagrams are plain text of 80 x 24
+ * characters; for images it is CS_ERR_USAGE, as is a window too narrow or without control
+ * sequences. */
 enum cs_status cs_screen_open(struct cs_screen *screen, bool images, struct cs_error *error);
 
 /* Shows an image above a caption of one line, in place of the last one. CS_ERR_FILE,
@@ -40,14 +40,13 @@ enum cs_status cs_screen_open(struct cs_screen *screen, bool images, struct cs_e
 enum cs_status cs_screen_show_image(struct cs_screen *screen, const struct cs_image *image,
                                     const char *caption, struct cs_error *error);
 
-/* Adds the work-precision diagram: letters of series, the front between its cells, and what the
- * letters stand for. */
-void cs_screen_print_diagram(const struct cs_screen *screen,
-                             const struct cs_plot_settings *settings, struct cs_text *out);
+/* Adds an image as a sixel sequence, in a terminal that shows them. Returns false if the library
+ * fails. */
+bool cs_sixel_add(const struct cs_image *image, struct cs_text *out);
 
-/* Adds a stability map: a letter and a colour per cell, and what they stand for. */
-void cs_screen_print_map(const struct cs_screen *screen, const struct cs_stability *map,
-                         struct cs_text *out);
+/* Adds a diagram that fits the window's height: letters and colours, and their meaning. */
+void cs_screen_print_diagram(const struct cs_screen *screen, const struct cs_diagram *diagram,
+                             struct cs_text *out);
 
 /* Rows of characters, from which all views are made. */
 
@@ -65,8 +64,9 @@ struct cs_screen_cell {
 void cs_screen_add_row(const struct cs_screen *screen, const struct cs_screen_cell *row,
                        uint32_t n, struct cs_text *out);
 
-/* Adds a character and its meaning, wrapped beside it. */
+/* Adds a character and its meaning: after the last one where the line has room for it, else on
+ * a line of its own, wrapped. *column: characters in the line so far. */
 void cs_screen_add_key(const struct cs_screen *screen, const struct cs_screen_cell *cell,
-                       const char *text, struct cs_text *out);
+                       const char *text, uint32_t *column, struct cs_text *out);
 
 #endif

@@ -1,4 +1,4 @@
-/* Draws a work-precision diagram in characters. */
+/* Draws a diagram in characters. */
 #include "cli/show/screen.h"
 
 #include "cli/line/print.h"
@@ -6,10 +6,9 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { LEFT = 7, ROWS_MIN = 12, ROWS_MAX = 32 };
+enum { LEFT = 8, ROWS_MIN = 6, ROWS_MAX = 40 };
 
 /* Letters of series; x is a run that did not finish, o one with crossings. */
 static const char letters[] = "abcdefghijklmnpqrstuvwyz";
@@ -17,129 +16,140 @@ static const char letters[] = "abcdefghijklmnpqrstuvwyz";
 /* The box of the axes, rows from the top. */
 struct box {
     const struct cs_screen *screen;
-    const struct cs_curves *curves;
+    const struct cs_panel *panel;
     uint32_t columns, rows; /* of the box, without axes */
     struct cs_screen_cell cells[ROWS_MAX][CS_SCREEN_COLUMNS_MAX];
 };
-
-static uint32_t colour_of(const char *hex) {
-    return (uint32_t)strtoul(hex + 1, NULL, 16);
-}
-
-/* Black would be lost on a dark terminal. */
-static uint32_t ink_of(const struct cs_curve *curve) {
-    const uint32_t colour = colour_of(cs_curve_colours[curve->style % CS_CURVE_COLOURS]);
-    return colour ? colour : CS_SCREEN_DEFAULT;
-}
-
-static char letter_of(const struct cs_curve *curve) {
-    return letters[(size_t)curve->style % (sizeof letters - 1)];
-}
-
-/* The curve that a cell is on, or NULL: there are more than curves can be. */
-static const struct cs_curve *curve_of(const struct cs_curves *curves, uint32_t cell) {
-    for (const struct cs_curve *c = curves->list; c < curves->list + curves->n; c++)
-        if (cell < c->first + c->n)
-            return c;
-    return NULL;
-}
-
-static uint32_t position(double at, const double range[2], uint32_t n) {
-    const double part = (at - range[0]) / (range[1] - range[0]) * n;
-    return (uint32_t)fmin(fmax(part, 0), n - 1);
-}
 
 /* Row and column of a point in data coordinates. */
 struct place {
     uint32_t row, column;
 };
 
+/* Black would be lost on a dark terminal. */
+static uint32_t ink_of(const struct cs_style *style) {
+    return style->colour ? style->colour : CS_SCREEN_DEFAULT;
+}
+
+/* Letter of a series, by its place among those with a name. */
+static char letter_of(const struct cs_panel *panel, const struct cs_series *series) {
+    size_t n = 0;
+    for (const struct cs_series *s = panel->series; s < series; s++)
+        n += s->name != NULL;
+    return letters[n % (sizeof letters - 1)];
+}
+
+static uint32_t position(double part, uint32_t n) {
+    return (uint32_t)fmin(fmax(part * n, 0), n - 1);
+}
+
 static struct place place_of(const struct box *box, double x, double y) {
-    return (struct place){box->rows - 1 - position(log10(y), box->curves->y, box->rows),
-                          position(log10(x), box->curves->x, box->columns)};
+    return (struct place){box->rows - 1 -
+                              position(cs_plot_axis_at(&box->panel->y, y), box->rows),
+                          position(cs_plot_axis_at(&box->panel->x, x), box->columns)};
 }
 
-static void put(struct box *box, double x, double y, struct cs_screen_cell cell) {
+static void put(struct box *box, double x, double y, char letter, uint32_t ink,
+                uint32_t paper) {
     const struct place at = place_of(box, x, y);
-    box->cells[at.row][at.column] = cell;
+    if (!isfinite(cs_plot_axis_at(&box->panel->x, x)) ||
+        !isfinite(cs_plot_axis_at(&box->panel->y, y)))
+        return;
+    box->cells[at.row][at.column] =
+        (struct cs_screen_cell){.plain = letter, .ink = ink, .paper = paper};
 }
 
-static void clear(struct box *box) {
+/* Middle of two values on an axis. */
+static double middle(const struct cs_plot_axis *axis, double a, double b) {
+    return axis->logarithmic ? sqrt(a * b) : (a + b) / 2;
+}
+
+static void draw_boxes(struct box *box) {
+    const struct cs_panel *panel = box->panel;
+    for (const struct cs_cell_box *b = panel->boxes; b < panel->boxes + panel->n_boxes; b++) {
+        const struct place from = place_of(box, b->left, b->top),
+                           to = place_of(box, b->right, b->bottom);
+        /* the far edges are those of the next box */
+        for (uint32_t r = from.row; r <= to.row; r++)
+            for (uint32_t c = from.column; c <= to.column; c++)
+                box->cells[r][c] =
+                    (struct cs_screen_cell){.plain = ' ', .ink = 0, .paper = b->colour};
+    }
+    for (const struct cs_cell_box *b = panel->boxes; b < panel->boxes + panel->n_boxes; b++)
+        put(box, middle(&panel->x, b->left, b->right), middle(&panel->y, b->bottom, b->top),
+            b->letter, 0, b->colour);
+}
+
+/* Marks from one point of a staircase to the next: along the row of the first, then down. */
+static void draw_stairs(struct box *box, const struct cs_series *series) {
+    const struct cs_screen_cell step = {.plain = '.', .ink = 0, .paper = series->style.colour};
+    for (uint32_t k = 1; k < series->n; k++) {
+        const struct cs_point *p = series->points + k;
+        const struct place from = place_of(box, p[-1].x, p[-1].y),
+                           to = place_of(box, p->x, p->y);
+        for (uint32_t c = from.column; c <= to.column; c++)
+            box->cells[from.row][c] = step;
+        for (uint32_t r = from.row; r <= to.row; r++)
+            box->cells[r][to.column] = step;
+    }
+}
+
+/* front: those of the front alone, which come last and in capitals, or all others. */
+static void draw_points(struct box *box, const struct cs_series *series, bool front) {
+    const char letter = letter_of(box->panel, series);
+    for (const struct cs_point *p = series->points; p < series->points + series->n; p++) {
+        const char mark = p->mark == CS_MARK_CROSS ? 'x' : p->ring ? 'o' : letter;
+        if (p->front == front)
+            put(box, p->x, p->y, (char)(front ? toupper(mark) : mark),
+                front     ? 0
+                : p->ring ? CS_RING_COLOUR
+                          : ink_of(&series->style),
+                front ? CS_FRONT_COLOUR : CS_SCREEN_DEFAULT);
+    }
+}
+
+/* Number of the series that are drawn: none over boxes with letters, which they would hide. */
+static uint32_t drawn_series(const struct cs_panel *panel) {
+    return panel->n_boxes && panel->boxes->letter != ' ' ? 0 : panel->n_series;
+}
+
+/* Later ones lie on earlier ones. */
+static void draw(struct box *box) {
+    const struct cs_panel *panel = box->panel;
+    const struct cs_series *end = panel->series + drawn_series(panel);
     for (uint32_t r = 0; r < box->rows; r++)
         for (uint32_t c = 0; c < box->columns; c++)
             box->cells[r][c] =
                 (struct cs_screen_cell){.ink = CS_SCREEN_DEFAULT, .paper = CS_SCREEN_DEFAULT};
+    draw_boxes(box);
+    for (const struct cs_series *s = panel->series; s < end; s++)
+        if (s->kind == CS_SERIES_STAIRS)
+            draw_stairs(box, s);
+    for (int front = 0; front < 2; front++)
+        for (const struct cs_series *s = panel->series; s < end; s++)
+            if (s->kind == CS_SERIES_LINE && s->name)
+                draw_points(box, s, front);
 }
 
-/* Marks from one cell of the front to the next: along the row of the first, then down. */
-static void draw_step(struct box *box, double x0, double y0, double x1, double y1) {
-    const struct cs_screen_cell front = {
-        .plain = '.', .ink = 0, .paper = colour_of(CS_FRONT_COLOUR)};
-    const struct place from = place_of(box, x0, y0), to = place_of(box, x1, y1);
-    for (uint32_t c = from.column; c <= to.column; c++)
-        box->cells[from.row][c] = front;
-    for (uint32_t r = from.row; r <= to.row; r++)
-        box->cells[r][to.column] = front;
-}
-
-static void draw_front(struct box *box) {
-    const struct cs_plot_settings *settings = box->curves->settings;
-    double last[2] = {0, 0}, x, y;
-    for (uint32_t k = UINT32_MAX; cs_curves_front(box->curves, &k);) {
-        cs_curves_point(settings, settings->cells + k, &x, &y);
-        if (last[0] > 0)
-            draw_step(box, last[0], last[1], x, y);
-        last[0] = x;
-        last[1] = y;
-    }
-}
-
-static void draw_cells(struct box *box, const struct cs_curve *curve) {
-    const struct cs_plot_settings *settings = box->curves->settings;
-    for (uint32_t k = curve->first; k < curve->first + curve->n; k++) {
-        const struct cs_cell *cell = settings->cells + k;
-        struct cs_screen_cell mark = {
-            .plain = letter_of(curve), .ink = ink_of(curve), .paper = CS_SCREEN_DEFAULT};
-        double x, y;
-        if (cs_curves_point(settings, cell, &x, &y)) {
-            if (cs_cell_has_crossings(cell))
-                mark = (struct cs_screen_cell){
-                    .plain = 'o', .ink = colour_of(CS_RING_COLOUR), .paper = CS_SCREEN_DEFAULT};
-            put(box, x, y, mark);
-        } else if (cs_curves_cross(box->curves, cell, &x)) {
-            mark.plain = 'x';
-            put(box, x, cs_curves_edge(box->curves), mark);
-        }
-    }
-}
-
-/* Cells of the front come last, in capitals, since others may lie on them. */
-static void draw_front_cells(struct box *box) {
-    const struct cs_plot_settings *settings = box->curves->settings;
-    double x, y;
-    for (uint32_t k = UINT32_MAX; cs_curves_front(box->curves, &k);) {
-        const struct cs_curve *curve = curve_of(box->curves, k);
-        const bool crossed = cs_cell_has_crossings(settings->cells + k);
-        cs_curves_point(settings, settings->cells + k, &x, &y);
-        if (curve && curve->style >= 0)
-            put(box, x, y,
-                (struct cs_screen_cell){.plain =
-                                            crossed ? 'O' : (char)toupper(letter_of(curve)),
-                                        .ink = 0,
-                                        .paper = colour_of(CS_FRONT_COLOUR)});
-    }
+static void print_label(const struct cs_tick *tick, char label[32]) {
+    char digits[24];
+    cs_tick_print(tick, digits);
+    if (tick->plain)
+        snprintf(label, 32, "%s", digits);
+    else
+        snprintf(label, 32, "%de%d", tick->digit, tick->decade);
 }
 
 /* The rows with the labels of the y axis. */
 static void add_rows(const struct box *box, struct cs_text *out) {
-    char labels[ROWS_MAX][24] = {""};
+    char labels[ROWS_MAX][32] = {""};
     struct cs_tick ticks[CS_TICKS_MAX];
-    const uint32_t n = cs_curves_ticks(box->curves->y, ticks);
+    const uint32_t n = cs_plot_axis_ticks(&box->panel->y, ticks);
     for (uint32_t k = 0; k < n; k++) {
         char *label =
-            labels[box->rows - 1 - position(ticks[k].position, box->curves->y, box->rows)];
+            labels[box->rows - 1 - position(cs_tick_at(&box->panel->y, ticks + k), box->rows)];
         if (ticks[k].label && !*label)
-            snprintf(label, sizeof *labels, "%de%d", ticks[k].digit, ticks[k].decade);
+            print_label(ticks + k, label);
     }
     for (uint32_t r = 0; r < box->rows; r++) {
         cs_text_add(out, "%*s%c", LEFT - 1, labels[r], *labels[r] ? '+' : '|');
@@ -151,16 +161,15 @@ static void add_rows(const struct box *box, struct cs_text *out) {
 static void add_x_axis(const struct box *box, struct cs_text *out) {
     char axis[CS_SCREEN_COLUMNS_MAX + 1], labels[CS_SCREEN_COLUMNS_MAX + 1] = "";
     struct cs_tick ticks[CS_TICKS_MAX];
-    const uint32_t n = cs_curves_ticks(box->curves->x, ticks), end = LEFT + box->columns;
+    const uint32_t n = cs_plot_axis_ticks(&box->panel->x, ticks), end = LEFT + box->columns;
     size_t length = 0;
     memset(axis, '-', box->columns);
     axis[box->columns] = 0;
     for (uint32_t k = 0; k < n; k++) {
-        char label[24];
-        const uint32_t at = position(ticks[k].position, box->curves->x, box->columns);
-        const size_t width =
-            (size_t)snprintf(label, sizeof label, "%de%d", ticks[k].digit, ticks[k].decade);
-        const size_t start = LEFT + at - width / 2;
+        char label[32];
+        const uint32_t at = position(cs_tick_at(&box->panel->x, ticks + k), box->columns);
+        print_label(ticks + k, label);
+        const size_t width = strlen(label), start = LEFT + at - width / 2;
         /* labels that would touch the one before or end outside are left out */
         if (!ticks[k].label || start < length + (length > 0) || start + width > end)
             continue;
@@ -171,74 +180,69 @@ static void add_x_axis(const struct box *box, struct cs_text *out) {
     cs_text_add(out, "%*s+%s\n%s\n", LEFT - 1, "", axis, labels);
 }
 
-/* The name of an axis, wrapped. */
-static void add_label(const struct box *box, const char *way, const struct cs_column *column,
-                      struct cs_text *out) {
-    struct cs_text label = {0};
-    cs_column_add_label(column, &label);
-    cs_print_wrapped(way, cs_text_get(&label), strlen(way) + 1, box->screen->columns, out);
-    out->failed |= label.failed;
-    cs_text_finish(&label);
-}
-
-/* The letter of each series, in their order. */
-static void add_letters(const struct box *box, struct cs_text *out) {
-    const struct cs_curves *curves = box->curves;
-    for (int style = 0; style < (int)curves->n; style++)
-        for (const struct cs_curve *c = curves->list; c < curves->list + curves->n; c++)
-            if (c->style == style) {
-                const struct cs_screen_cell letter = {
-                    .plain = letter_of(c), .ink = ink_of(c), .paper = CS_SCREEN_DEFAULT};
-                cs_screen_add_key(box->screen, &letter,
-                                  curves->settings->cells[c->first].series, out);
-            }
-}
-
-/* Explains letters and marks, wrapped. */
-static void add_key(const struct box *box, struct cs_text *out) {
-    const struct cs_curves *curves = box->curves;
-    const uint32_t width = box->screen->columns, left_out = cs_curves_left_out(curves);
-    uint32_t crosses = 0, crossings = 0;
-    char more[80];
-    add_letters(box, out);
-    for (const struct cs_curve *c = curves->list; c < curves->list + curves->n; c++) {
-        crosses += c->style >= 0 ? c->failed_marks : 0;
-        crossings += c->style >= 0 ? c->crossing_marks : 0;
+/* The letter of each series of the panels, in their order; then the keys. */
+static void add_keys(const struct cs_screen *screen, const struct cs_diagram *diagram,
+                     struct cs_text *out) {
+    uint32_t column = 0;
+    for (uint32_t p = 0; p < diagram->n_panels; p++)
+        for (uint32_t k = 0; k < drawn_series(diagram->panels + p); k++) {
+            const struct cs_series *s = diagram->panels[p].series + k;
+            const struct cs_screen_cell letter = {.plain = letter_of(diagram->panels + p, s),
+                                                  .ink = ink_of(&s->style),
+                                                  .paper = CS_SCREEN_DEFAULT};
+            if (s->name && s->n)
+                cs_screen_add_key(screen, &letter, s->name, &column, out);
+        }
+    /* a patch is the paper of its letter, a line or mark its ink */
+    for (const struct cs_key *key = diagram->keys; key < diagram->keys + diagram->n_keys;
+         key++) {
+        const bool paper = key->kind == CS_KEY_PATCH || key->letter == 'A';
+        const struct cs_screen_cell letter = {.plain = key->letter,
+                                              .ink = paper ? 0 : CS_SCREEN_DEFAULT,
+                                              .paper = paper ? key->style.colour
+                                                             : CS_SCREEN_DEFAULT};
+        char text[2 * CS_LABEL_BYTES];
+        snprintf(text, sizeof text, "%s%s%s", key->text, key->help ? ": " : "",
+                 key->help ? key->help : "");
+        if (key->letter)
+            cs_screen_add_key(screen, &letter, text, &column, out);
     }
-    if (curves->n)
-        cs_print_wrapped("A.B", "the front: nothing is both cheaper and more accurate", 4,
-                         width, out);
-    else
-        cs_print_wrapped("", "no cell has both values", 0, width, out);
-    /* marks are explained only if they occur */
-    if (crosses)
-        cs_print_wrapped("x", "did not finish", 2, width, out);
-    if (crossings)
-        cs_print_wrapped("o", "edges through triangles", 2, width, out);
-    snprintf(more, sizeof more, "%u more series: clothsim plot --family draws them", left_out);
-    if (left_out)
-        cs_print_wrapped("", more, 0, width, out);
+    cs_text_add(out, "%s", column ? "\n" : "");
 }
 
-void cs_screen_print_diagram(const struct cs_screen *screen,
-                             const struct cs_plot_settings *settings, struct cs_text *out) {
-    struct cs_curves curves;
-    struct box box = {.screen = screen, .curves = &curves};
-    cs_curves_make(&curves, settings);
-    box.columns = screen->columns - LEFT - 1;
-    box.rows = box.columns * 3 / 10;
-    box.rows = box.rows < ROWS_MIN ? ROWS_MIN : box.rows > ROWS_MAX ? ROWS_MAX : box.rows;
-    clear(&box);
-    /* the front lies below the cells, its own cells on top */
-    draw_front(&box);
-    for (uint32_t c = 0; c < curves.n; c++)
-        if (curves.list[c].style >= 0)
-            draw_cells(&box, curves.list + c);
-    draw_front_cells(&box);
-    cs_print_wrapped("", settings->title, 0, screen->columns, out);
-    add_label(&box, "up:", settings->y, out);
-    add_label(&box, "right:", settings->x, out);
-    add_rows(&box, out);
-    add_x_axis(&box, out);
-    add_key(&box, out);
+static uint32_t count_lines(const struct cs_text *text) {
+    uint32_t n = 0;
+    for (const char *c = cs_text_get(text); *c; c++)
+        n += *c == '\n';
+    return n;
+}
+
+static void add_panel(struct box *box, struct cs_text *out) {
+    cs_print_wrapped("up:", box->panel->y.label, 4, box->screen->columns, out);
+    cs_print_wrapped("right:", box->panel->x.label, 7, box->screen->columns, out);
+    draw(box);
+    add_rows(box, out);
+    add_x_axis(box, out);
+}
+
+void cs_screen_print_diagram(const struct cs_screen *screen, const struct cs_diagram *diagram,
+                             struct cs_text *out) {
+    struct cs_text keys = {0}, title = {0};
+    struct box box = {.screen = screen, .columns = screen->columns - LEFT - 1};
+    add_keys(screen, diagram, &keys);
+    cs_text_add_plain(&title, diagram->title ? diagram->title : "");
+    cs_print_wrapped("", cs_text_get(&title), 0, screen->columns, out);
+    /* of the window's height what text and axes leave, with a line for the next command */
+    const uint32_t others = count_lines(&keys) + 2 + 4 * diagram->n_panels;
+    const uint32_t rows =
+        screen->rows > others ? (screen->rows - others) / diagram->n_panels : 0;
+    box.rows = rows < ROWS_MIN ? ROWS_MIN : rows > ROWS_MAX ? ROWS_MAX : rows;
+    for (uint32_t k = 0; k < diagram->n_panels; k++) {
+        box.panel = diagram->panels + k;
+        add_panel(&box, out);
+    }
+    cs_text_add(out, "%s", cs_text_get(&keys));
+    out->failed |= keys.failed || title.failed;
+    cs_text_finish(&keys);
+    cs_text_finish(&title);
 }

@@ -3,7 +3,6 @@
 #include "cli/show/screen.h"
 
 #include "cli/line/print.h"
-#include "cli/show/sixel.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -133,7 +132,7 @@ enum cs_status cs_screen_show_image(struct cs_screen *screen, const struct cs_im
     free(shown.rgb);
     cs_text_add(&out, "%s\033[K\n", caption);
     if (!error->status)
-        return cs_print_out(stdout, &out, error);
+        return cs_print_raw(stdout, &out, error);
     cs_text_finish(&out);
     return error->status;
 }

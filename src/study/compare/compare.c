@@ -9,7 +9,6 @@
 #include "scene/body_pairs.h"
 #include "scene/file/scene_read.h"
 #include "study/compare/cell_list_parse.h"
-#include "study/compare/compare_results.h"
 #include "study/compare/compare_state.h"
 #include "study/compare/equal_error.h"
 #include "study/process_pool.h"
@@ -37,7 +36,10 @@ static enum cs_status read_scene_facts(struct cs_compare *compare, struct cs_err
     if (!error->status &&
         !cs_recorded_run_open(&recording, settings, asked.integrator, error)) {
         const struct cs_system *system = &recording.session.system;
-        snprintf(compare->scene, sizeof compare->scene, "%.255s", asked.scene);
+        struct cs_text scene = {0};
+        cs_text_add_plain(&scene, asked.scene);
+        snprintf(compare->scene, sizeof compare->scene, "%.255s", cs_text_get(&scene));
+        cs_text_finish(&scene);
         compare->particles = system->view.n;
         compare->springs = recording.session.plan.n_springs;
         compare->fps = recording.session.scene.time.fps;

@@ -9,6 +9,7 @@
 #define CS_COMPARE_H
 
 #include "draw/render.h"
+#include "study/compare/compare_curves.h"
 #include "study/compare/compare_state.h"
 #include "study/compare/ranking.h"
 #include "study/reproduce.h"
@@ -49,7 +50,7 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
 /* Frees all results; a zeroed object is allowed. */
 void cs_compare_finish(struct cs_compare *compare);
 
-/* Adds the page: command, reference, verdict, warnings, pictures, diagrams as SVG, tables,
+/* Adds the page: command, reference, verdict, warnings, pictures, the diagram as SVG, tables,
  * machine. */
 void cs_compare_print_html(const struct cs_compare *compare, const struct cs_ranking *ranking,
                            struct cs_text *out);
@@ -57,23 +58,29 @@ void cs_compare_print_html(const struct cs_compare *compare, const struct cs_ran
 /* Writes the files of a comparison besides compare.csv: JSON, Markdown,
  * diagrams. */
 
-/* Writes compare.json, compare.md, error_time.gp and error_work.gp, and compare.html on
- * request; PNG, SVG and PDF of the diagrams if gnuplot is found. CS_ERR_FILE, CS_ERR_MEMORY. */
+/* Writes compare.json, compare.md, and compare.html on request; the diagram as compare.png,
+ * .svg and .pdf for two columns of a journal and compare_column.* for one, where the module
+ * that draws is there. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_compare_write_report(struct cs_compare *compare, struct cs_error *error);
+
+/* The settings of its diagram: error against work and, beside it, time. Without pointwise
+ * errors it is the energy error, which remains valid beyond the horizon. */
+void cs_compare_plot_settings(const struct cs_compare *compare, double width,
+                              struct cs_plot_settings *settings);
 
 /* Contact sheets: the last frame of each method, with particles coloured by
  * their distance to the reference. */
 
-/* Writes FOLDER/pictures/KIND_SERIES.png and, if gnuplot is found, FOLDER/KIND.png with all of
- * them. KIND is equal_step (the step with which most methods finished) or equal_cost (the best
- * of each method within a cost that all can keep). Colours are powers of ten from the
- * reference's bar to the largest error. Nothing is drawn without errors of position.
- * CS_ERR_MODULE (renderer), CS_ERR_FILE, CS_ERR_MEMORY, CS_ERR_INTERRUPT. */
+/* Writes FOLDER/pictures/KIND_SERIES.png. KIND is equal_step (the step with which most methods
+ * finished) or equal_cost (the best of each method within a cost that all can keep). Colours
+ * are powers of ten from the reference's bar to the largest error. Nothing is drawn without
+ * errors of position. CS_ERR_MODULE (renderer), CS_ERR_FILE, CS_ERR_MEMORY, CS_ERR_INTERRUPT.
+ */
 enum cs_status cs_compare_contact_sheet_write(struct cs_compare *compare,
                                               enum cs_renderer_kind kind,
                                               struct cs_error *error);
 /* Add the pictures that it has written to a report, if settings->pictures: as strips with one
- * colour bar, the pictures in the page; as links to the sheets. */
+ * colour bar, the pictures in the page; as a table of pictures. */
 void cs_compare_contact_sheet_add_html(const struct cs_compare *compare, struct cs_text *out);
 void cs_compare_contact_sheet_add_markdown(const struct cs_compare *compare,
                                            struct cs_text *out);

@@ -176,6 +176,35 @@ bool cs_cell_is_rounding(const struct cs_cell *cell, uint32_t n, double motion) 
     return stands;
 }
 
+static int compare_numbers(const void *a, const void *b) {
+    const double one = *(const double *)a, other = *(const double *)b;
+    return (one > other) - (one < other);
+}
+
+double cs_cell_typical(const struct cs_cell *cells, uint32_t n, const struct cs_cell *cell,
+                       const struct cs_column *column, double *low, double *high) {
+    const double own = cs_cell_number(cell, column);
+    const struct cs_cell *at = cell, *end = cells + n;
+    double near[64];
+    uint32_t count = 0;
+    *low = *high = own;
+    while (at > cells && cs_cell_same_series(at - 1, cell))
+        at--;
+    for (; cell->adaptive && at < end && cs_cell_same_series(at, cell) && count < 64; at++) {
+        /* error control holds the error to a multiple of the tolerance */
+        const double value = cs_cell_number(at, column) * cell->value / at->value;
+        if (cs_cell_is_finished(at) && value > 0 && isfinite(value) &&
+            fabs(log10(at->value / cell->value)) <= 0.5001)
+            near[count++] = value;
+    }
+    if (!(own > 0) || count < 2)
+        return own;
+    qsort(near, count, sizeof *near, compare_numbers);
+    *low = near[0];
+    *high = near[count - 1];
+    return sqrt(near[(count - 1) / 2] * near[count / 2]);
+}
+
 bool cs_cell_is_finished(const struct cs_cell *cell) {
     return !strcmp(cell->outcome, cs_outcome_text(CS_RUNNING));
 }

@@ -1,13 +1,11 @@
-/* Chooses the content of a diagram of a comparison: curves, ranges, ticks, front. */
+/* Makes the diagram of a comparison: series, styles, front, ranges. */
 #include "study/compare/compare_curves.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-const char *const cs_curve_colours[CS_CURVE_COLOURS] = {
-    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000", "#e69f00", "#56b4e9"};
-
-/* Room for crosses at the upper edge, as a fraction of the range. */
+/* Room for crosses at the upper edge. */
 #define CROSS_ROOM 0.06
 
 /* Only errors of position have an error bar of the reference. */
@@ -20,25 +18,8 @@ bool cs_curves_point(const struct cs_plot_settings *settings, const struct cs_ce
     *x = cs_cell_number(cell, settings->x);
     *y = cs_cell_number(cell, settings->y);
     const bool known = !is_position_error(settings->y) || !(cell->bar > 0) || *y >= cell->bar;
-    const bool asked = !settings->family || !strcmp(settings->family, cell->family);
-    return asked && cs_cell_is_finished(cell) && isfinite(*x) && isfinite(*y) && *x > 0 &&
-           *y > 0 && known;
-}
-
-bool cs_curves_quartiles(const struct cs_plot_settings *settings, const struct cs_cell *cell) {
-    return !strcmp(settings->x->name, "cpu") && cell->runs > 1 && cell->cpu_low > 0 &&
-           isfinite(cell->cpu_high);
-}
-
-bool cs_curves_cross(const struct cs_curves *curves, const struct cs_cell *cell, double *x) {
-    const char *family = curves->settings->family;
-    const double found = log10(cs_cell_number(cell, curves->settings->x));
-    const double margin = 0.01 * (curves->x[1] - curves->x[0]);
-    if (cs_cell_is_finished(cell) || !isfinite(found) ||
-        (family && strcmp(family, cell->family) != 0))
-        return false;
-    *x = pow(10, fmin(fmax(found, curves->x[0] + margin), curves->x[1] - margin));
-    return true;
+    return cs_cell_is_finished(cell) && isfinite(*x) && isfinite(*y) && *x > 0 && *y > 0 &&
+           known;
 }
 
 /* True for a column that smaller values make better: the front needs such an axis. */
@@ -51,14 +32,12 @@ static bool is_cost(const struct cs_column *column) {
     return false;
 }
 
-/* Scans all cells for the cheapest one that is more accurate than the last: O(n) per cell. */
-bool cs_curves_front(const struct cs_curves *curves, uint32_t *k) {
-    const struct cs_plot_settings *settings = curves->settings;
+/* O(n) per cell of the front. */
+bool cs_curves_front(const struct cs_plot_settings *settings, uint32_t *k) {
     double x, y, last = HUGE_VAL, least = HUGE_VAL, best = HUGE_VAL;
     if (*k != UINT32_MAX && cs_curves_point(settings, settings->cells + *k, &x, &y))
         last = y;
     *k = UINT32_MAX;
-    // of those more accurate than the last the cheapest
     for (uint32_t i = 0; i < settings->n && is_cost(settings->x); i++)
         if (cs_curves_point(settings, settings->cells + i, &x, &y) && y < last &&
             (x < least || (x <= least && y < best))) {
@@ -69,44 +48,7 @@ bool cs_curves_front(const struct cs_curves *curves, uint32_t *k) {
     return *k != UINT32_MAX;
 }
 
-/* Widens a range by a margin, and to at least a factor of four. */
-static void widen(double range[2]) {
-    if (!(range[0] <= range[1]))
-        range[0] = 0, range[1] = 1;
-    // a factor of four has two digits at least, so that no axis is without a label
-    const double margin = fmax(0.04 * (range[1] - range[0]), 0.05);
-    const double lacking = fmax(0, log10(4) - (range[1] - range[0]) - 2 * margin);
-    range[0] -= margin + lacking / 2;
-    range[1] += margin + lacking / 2;
-}
-
-/* Extends a range by a value above 0. */
-static void include(double range[2], double value) {
-    range[0] = fmin(range[0], log10(value));
-    range[1] = fmax(range[1], log10(value));
-}
-
-static void find_ranges(struct cs_curves *curves) {
-    const struct cs_plot_settings *settings = curves->settings;
-    curves->x[0] = curves->y[0] = HUGE_VAL;
-    curves->x[1] = curves->y[1] = -HUGE_VAL;
-    for (uint32_t k = 0; k < settings->n; k++) {
-        const struct cs_cell *cell = settings->cells + k;
-        double x, y;
-        if (!cs_curves_point(settings, cell, &x, &y))
-            continue;
-        include(curves->x, x);
-        include(curves->y, y);
-        if (cs_curves_quartiles(settings, cell)) {
-            include(curves->x, cell->cpu_low);
-            include(curves->x, cell->cpu_high);
-        }
-        if (is_position_error(settings->y))
-            curves->error_bar = fmax(curves->error_bar, cell->bar);
-    }
-    widen(curves->x);
-    widen(curves->y);
-}
+/* --- which series --- */
 
 static int family_of(const struct cs_cell *cell) {
     for (int k = 0; cs_family_names[k]; k++)
@@ -115,20 +57,7 @@ static int family_of(const struct cs_cell *cell) {
     return 0;
 }
 
-/* Cost over that of the cheapest cell at least as accurate, as a decimal logarithm: 0 on the
- * front. */
-static double excess_of(const struct cs_plot_settings *settings, const struct cs_cell *cell) {
-    double x, y, other, error, least;
-    if (!cs_curves_point(settings, cell, &x, &y))
-        return HUGE_VAL;
-    least = x;
-    for (uint32_t k = 0; k < settings->n; k++)
-        if (cs_curves_point(settings, settings->cells + k, &other, &error) && error <= y)
-            least = fmin(least, other);
-    return log10(x / least);
-}
-
-/* Groups adjacent cells to curves and counts their marks. */
+/* Groups adjacent cells to curves and counts their points. */
 static void find_curves(struct cs_curves *curves) {
     const struct cs_plot_settings *settings = curves->settings;
     for (uint32_t k = 0; k < settings->n; k++) {
@@ -137,30 +66,25 @@ static void find_curves(struct cs_curves *curves) {
         if (k == 0 || !cs_cell_same_series(cell, cell - 1)) {
             if (curves->n == CS_CURVES_MAX)
                 return;
-            curves->list[curves->n++] = (struct cs_curve){.first = k,
-                                                          .log_cost_excess = HUGE_VAL,
-                                                          .family = family_of(cell),
-                                                          .style = -1};
+            curves->list[curves->n++] =
+                (struct cs_curve){.first = k, .least = HUGE_VAL, .style = -1};
         }
         struct cs_curve *curve = curves->list + curves->n - 1;
-        const bool drawn = cs_curves_point(settings, cell, &x, &y);
         curve->n++;
-        curve->is_drawn += drawn;
-        curve->log_cost_excess = fmin(curve->log_cost_excess, excess_of(settings, cell));
-        curve->bars += drawn && cs_curves_quartiles(settings, cell);
-        curve->crossing_marks += drawn && cs_cell_has_crossings(cell);
-        curve->failed_marks += cs_curves_cross(curves, cell, &x);
+        if (cs_curves_point(settings, cell, &x, &y)) {
+            curve->is_drawn++;
+            curve->least = fmin(curve->least, x * y);
+        }
     }
-    for (uint32_t k = UINT32_MAX; cs_curves_front(curves, &k);)
+    for (uint32_t k = UINT32_MAX; cs_curves_front(settings, &k);)
         for (uint32_t c = 0; c < curves->n; c++)
             curves->list[c].on_front +=
                 k >= curves->list[c].first && k < curves->list[c].first + curves->list[c].n;
 }
 
-/* Priority of curves: cells on the front, then nearness to it. */
+/* Priority of curves: cells on the front, then the least product of cost and error. */
 static bool is_before(const struct cs_curve *a, const struct cs_curve *b) {
-    return a->on_front != b->on_front ? a->on_front > b->on_front
-                                      : a->log_cost_excess < b->log_cost_excess;
+    return a->on_front != b->on_front ? a->on_front > b->on_front : a->least < b->least;
 }
 
 /* Marks the best curve not yet marked. Returns false if there is none. */
@@ -176,22 +100,18 @@ static bool choose(struct cs_curves *curves) {
 
 void cs_curves_make(struct cs_curves *curves, const struct cs_plot_settings *settings) {
     *curves = (struct cs_curves){.settings = settings};
-    find_ranges(curves);
     find_curves(curves);
-    // whoever asks for one family has all of it
-    const uint32_t most = settings->family ? CS_CURVES_MAX : CS_CURVES_DRAWN;
+    const uint32_t most = settings->all ? CS_CURVES_MAX : CS_CURVES_DRAWN;
     for (uint32_t k = 0; k < most && choose(curves); k++) {
     }
     int style = 0;
     for (int family = 0; cs_family_names[family]; family++)
         for (uint32_t c = 0; c < curves->n; c++)
-            if (curves->list[c].style == 0 && curves->list[c].family == family)
-                curves->list[c].style = style++;
-    uint32_t crosses = 0;
+            if (curves->list[c].style == 0 &&
+                family_of(settings->cells + curves->list[c].first) == family)
+                curves->list[c].style = ++style;
     for (uint32_t c = 0; c < curves->n; c++)
-        crosses += curves->list[c].failed_marks;
-    if (crosses > 0)
-        curves->y[1] += CROSS_ROOM * (curves->y[1] - curves->y[0]);
+        curves->list[c].style -= curves->list[c].style > 0;
 }
 
 uint32_t cs_curves_left_out(const struct cs_curves *curves) {
@@ -201,31 +121,280 @@ uint32_t cs_curves_left_out(const struct cs_curves *curves) {
     return n;
 }
 
-bool cs_curves_show_bar(const struct cs_curves *curves) {
-    return curves->error_bar > 0 && log10(curves->error_bar) > curves->y[0];
+/* --- the diagram --- */
+
+/* A cell's own value on the y axis, the ends of its scatter, and whether it is on the front. */
+struct spread {
+    double own, low, high;
+    bool front;
+};
+
+/* A panel that is being filled. */
+struct filling {
+    const struct cs_curves *curves;
+    struct cs_plot_settings settings; /* with the panel's x; typical values on the y axis */
+    struct spread *spread;            /* (settings.n) */
+    struct cs_panel *panel;
+    struct cs_series *series;
+    struct cs_point *points; /* the next ones */
+};
+
+/* Replaces the values on the y axis by typical ones. */
+static void find_typical(struct filling *at, struct cs_cell *cells) {
+    const struct cs_plot_settings *given = at->curves->settings;
+    const struct cs_column *y = given->y;
+    for (uint32_t k = 0; k < given->n; k++) {
+        struct spread *spread = at->spread + k;
+        cells[k] = given->cells[k];
+        spread->own = spread->low = spread->high = cs_cell_number(cells + k, y);
+        if (!strstr(y->name, "error"))
+            continue;
+        const double typical = cs_cell_typical(given->cells, given->n, given->cells + k, y,
+                                               &spread->low, &spread->high);
+        memcpy((char *)(cells + k) + y->offset, &typical, sizeof typical);
+    }
+    at->settings.cells = cells;
 }
 
-double cs_curves_edge(const struct cs_curves *curves) {
-    return pow(10, curves->y[1] - 0.02 * (curves->y[1] - curves->y[0]));
+static bool is_probe(const struct cs_cell *cell) {
+    return isfinite(cell->target);
 }
-
-/* Decades between two labels. */
-static int stride(double span) {
-    return span > 20 ? 3 : span > 10 ? 2 : 1;
-}
-
-uint32_t cs_curves_ticks(const double range[2], struct cs_tick ticks[CS_TICKS_MAX]) {
-    const double span = range[1] - range[0];
-    const int every = stride(span);
-    uint32_t n = 0;
-    for (int decade = (int)floor(range[0]); decade <= range[1]; decade++)
-        for (int digit = 1; digit < 10; digit++) {
-            const double at = decade + log10(digit);
-            const bool half = digit == 2 || digit == 5;
-            const bool label =
-                (digit == 1 && decade % every == 0) || (span < 2 && half) || span < 1;
-            if (at >= range[0] && at <= range[1] && n < CS_TICKS_MAX)
-                ticks[n++] = (struct cs_tick){at, digit, decade, label};
+/* Ranges of all cells of the drawn series. */
+static void find_ranges(struct filling *at) {
+    struct cs_panel *panel = at->panel;
+    bool crosses = false;
+    for (uint32_t c = 0; c < at->curves->n; c++) {
+        const struct cs_curve *curve = at->curves->list + c;
+        for (uint32_t k = curve->first; curve->style >= 0 && k < curve->first + curve->n; k++) {
+            double x, y;
+            crosses |= !cs_cell_is_finished(at->settings.cells + k);
+            if (!cs_curves_point(&at->settings, at->settings.cells + k, &x, &y))
+                continue;
+            cs_plot_axis_include(&panel->x, x);
+            cs_plot_axis_include(&panel->y, y);
         }
-    return n;
+    }
+    cs_plot_axis_widen(&panel->x);
+    cs_plot_axis_widen(&panel->y);
+    if (crosses)
+        panel->y.range[1] += CROSS_ROOM * (panel->y.range[1] - panel->y.range[0]);
+}
+
+static struct cs_series *add_series(struct filling *at, enum cs_series_kind kind,
+                                    struct cs_style style) {
+    struct cs_series *series = at->series + at->panel->n_series++;
+    *series = (struct cs_series){.kind = kind, .style = style, .points = at->points};
+    return series;
+}
+
+static void add_point(struct filling *at, struct cs_series *series, struct cs_point point) {
+    *at->points++ = point;
+    series->n++;
+}
+
+static void add_front(struct filling *at) {
+    struct cs_series *front = add_series(
+        at, CS_SERIES_STAIRS, (struct cs_style){.colour = CS_FRONT_COLOUR, .width = 3.5});
+    struct cs_point point = {.joined = true};
+    for (uint32_t k = 0; k < at->settings.n; k++)
+        at->spread[k].front = false;
+    for (uint32_t k = UINT32_MAX; cs_curves_front(&at->settings, &k);) {
+        at->spread[k].front = true;
+        cs_curves_point(&at->settings, at->settings.cells + k, &point.x, &point.y);
+        add_point(at, front, point);
+    }
+}
+
+/* The scatter of a method with error control. */
+static void add_band(struct filling *at, const struct cs_curve *curve) {
+    struct cs_series *band =
+        add_series(at, CS_SERIES_BAND, cs_style_of((uint32_t)curve->style));
+    struct cs_point point = {0};
+    for (uint32_t k = curve->first; k < curve->first + curve->n; k++)
+        if (!is_probe(at->settings.cells + k) &&
+            cs_curves_point(&at->settings, at->settings.cells + k, &point.x, &point.y)) {
+            point.low = at->spread[k].low;
+            point.high = at->spread[k].high;
+            add_point(at, band, point);
+        }
+}
+
+/* The point of a cell; false: it has none. A run that did not finish stands at the upper edge.
+ */
+static bool make_point(const struct filling *at, uint32_t k, struct cs_point *point) {
+    const struct cs_cell *cell = at->settings.cells + k;
+    const struct cs_plot_axis *x = &at->panel->x, *y = &at->panel->y;
+    const bool timed = !strcmp(at->settings.x->name, "cpu") && cell->runs > 1;
+    *point = (struct cs_point){.mark = is_probe(cell) ? CS_MARK_HOLLOW : CS_MARK_FULL,
+                               .joined = !is_probe(cell),
+                               .ring = cs_cell_has_crossings(cell),
+                               .front = at->spread[k].front};
+    if (cs_curves_point(&at->settings, cell, &point->x, &point->y)) {
+        point->low = timed ? cell->cpu_low : (double)NAN;
+        point->high = timed ? cell->cpu_high : (double)NAN;
+        point->y = is_probe(cell) ? at->spread[k].own : point->y;
+        return true;
+    }
+    /* a run that did not finish has a cost, and no error */
+    const double cost = log10(cs_cell_number(cell, at->settings.x));
+    if (cs_cell_is_finished(cell) || !isfinite(cost))
+        return false;
+    const double margin = 0.01 * (x->range[1] - x->range[0]);
+    *point = (struct cs_point){
+        .x = pow(10, fmin(fmax(cost, x->range[0] + margin), x->range[1] - margin)),
+        .y = pow(10, y->range[1] - 0.02 * (y->range[1] - y->range[0])),
+        .mark = CS_MARK_CROSS};
+    return true;
+}
+
+static void add_curve(struct filling *at, const struct cs_curve *curve) {
+    struct cs_series *series =
+        add_series(at, CS_SERIES_LINE, cs_style_of((uint32_t)curve->style));
+    struct cs_point point;
+    series->name = at->settings.cells[curve->first].series;
+    for (uint32_t k = curve->first; k < curve->first + curve->n; k++)
+        if (make_point(at, k, &point))
+            add_point(at, series, point);
+}
+
+/* Grey below the reference's own error, where no difference means anything. */
+static void add_bar(struct filling *at, struct cs_cell_box *bar) {
+    const struct cs_plot_settings *settings = &at->settings;
+    const struct cs_plot_axis *x = &at->panel->x, *y = &at->panel->y;
+    double error = 0;
+    for (uint32_t k = 0; k < settings->n && is_position_error(settings->y); k++)
+        error = fmax(error, settings->cells[k].bar);
+    *bar = (struct cs_cell_box){pow(10, x->range[0]), pow(10, x->range[1]),
+                                pow(10, y->range[0]), error,
+                                CS_BAR_COLOUR,        ' '};
+    at->panel->boxes = bar;
+    at->panel->n_boxes = error > bar->bottom;
+}
+
+static void fill_panel(struct filling *at, const struct cs_column *x, struct cs_cell_box *bar) {
+    const struct cs_column *columns[2] = {x, at->settings.y};
+    struct cs_plot_axis *axes[2] = {&at->panel->x, &at->panel->y};
+    at->settings.x = x;
+    for (int k = 0; k < 2; k++) {
+        struct cs_text label = {0};
+        *axes[k] = (struct cs_plot_axis){.logarithmic = true, .range = {HUGE_VAL, -HUGE_VAL}};
+        cs_column_add_label(columns[k], &label);
+        /* in full that of work is wider than the axis */
+        snprintf(axes[k]->label, CS_LABEL_BYTES, "%s",
+                 strcmp(columns[k]->name, "work") ? cs_text_get(&label)
+                                                  : "work in passes over the springs");
+        cs_text_finish(&label);
+    }
+    at->panel->series = at->series;
+    find_ranges(at);
+    add_bar(at, bar);
+    add_front(at);
+    /* bands lie below all lines */
+    for (int pass = 0; pass < 2; pass++)
+        for (uint32_t c = 0; c < at->curves->n; c++) {
+            const struct cs_curve *curve = at->curves->list + c;
+            if (curve->style >= 0 && pass == 1)
+                add_curve(at, curve);
+            else if (curve->style >= 0 && at->settings.cells[curve->first].adaptive)
+                add_band(at, curve);
+        }
+    at->series += at->panel->n_series;
+}
+
+/* Explains the marks that occur. */
+static void add_keys(struct cs_diagram *diagram, const struct cs_curves *curves) {
+    enum { FRONT, BAND, PROBE, FAILED, RING, BAR, KEYS };
+    static const struct cs_key keys[KEYS] = {
+        {CS_KEY_LINE,
+         0,
+         {CS_FRONT_COLOUR, 0, 0, 3.5},
+         'A',
+         "front: nothing is both cheaper and more accurate",
+         NULL},
+        {CS_KEY_PATCH,
+         0,
+         {.colour = 0xc8d8e4},
+         0,
+         "scatter under error control; its line is the median",
+         NULL},
+        {CS_KEY_MARK,
+         CS_MARK_HOLLOW,
+         {.colour = 0x404040},
+         0,
+         "run in search of equal errors",
+         NULL},
+        {CS_KEY_MARK, CS_MARK_CROSS, {.colour = 0x404040}, 'x', "did not finish", NULL},
+        {CS_KEY_RING, 0, {.colour = CS_RING_COLOUR}, 'o', "edges through triangles", NULL},
+        {CS_KEY_PATCH,
+         0,
+         {.colour = CS_BAR_COLOUR},
+         0,
+         "below the reference's own error",
+         NULL},
+    };
+    /* both panels have the same series */
+    const struct cs_panel *panel = diagram->panels;
+    bool there[KEYS] = {[BAR] = panel->n_boxes};
+    char more[80];
+    for (const struct cs_series *s = panel->series; s < panel->series + panel->n_series; s++) {
+        there[FRONT] |= s->kind == CS_SERIES_STAIRS && s->n;
+        there[BAND] |= s->kind == CS_SERIES_BAND && s->n;
+        for (uint32_t i = 0; i < s->n; i++) {
+            there[PROBE] |= s->points[i].mark == CS_MARK_HOLLOW;
+            there[FAILED] |= s->points[i].mark == CS_MARK_CROSS;
+            there[RING] |= s->points[i].ring;
+        }
+    }
+    for (int k = 0; k < KEYS; k++)
+        if (there[k])
+            diagram->keys[diagram->n_keys++] = keys[k];
+    snprintf(more, sizeof more, "%u more series: clothsim plot --family",
+             cs_curves_left_out(curves));
+    if (cs_curves_left_out(curves) || panel->n_series < 2)
+        cs_diagram_add_key(diagram, CS_KEY_TEXT, 0, ' ',
+                           panel->n_series > 1 ? more : "no cell has both values");
+}
+
+enum cs_status cs_plot_make(struct cs_plot *plot, const struct cs_plot_settings *settings,
+                            struct cs_error *error) {
+    const struct cs_column *columns[] = {settings->x, settings->second};
+    const uint32_t panels = settings->second ? 2 : 1;
+    struct cs_arena *arena = &plot->arena;
+    *plot = (struct cs_plot){0};
+    struct cs_curves *curves = cs_arena_alloc(arena, sizeof *curves, error);
+    struct cs_cell *cells =
+        cs_arena_alloc_array(arena, settings->n + 1ul, sizeof *cells, error);
+    /* for each panel a front, and a line and a band for each curve */
+    struct filling at = {
+        .curves = curves,
+        .settings = *settings,
+        .spread = cs_arena_alloc_array(arena, settings->n + 1ul, sizeof *at.spread, error),
+        .series = cs_arena_alloc_array(arena, panels * (2 * CS_CURVES_MAX + 1),
+                                       sizeof *at.series, error),
+        .points = cs_arena_alloc_array(arena, panels * 3ul * settings->n + 1, sizeof *at.points,
+                                       error)};
+    if (!error->status) {
+        const bool page = settings->width >= CS_WIDTH_PAGE && panels > 1;
+        curves->settings = settings;
+        find_typical(&at, cells);
+        const struct cs_plot_settings typical = at.settings;
+        cs_curves_make(curves, &typical);
+        plot->diagram = (struct cs_diagram){.title = settings->title,
+                                            .width = settings->width,
+                                            .columns = page ? 2 : 1,
+                                            .n_panels = panels,
+                                            .panels = plot->panels};
+        for (uint32_t k = 0; k < panels; k++) {
+            at.panel = plot->panels + k;
+            at.panel->aspect = page ? 1.1 : panels > 1 ? 1.3 : 0.8;
+            fill_panel(&at, columns[k], plot->bars + k);
+        }
+        add_keys(&plot->diagram, curves);
+    }
+    return error->status;
+}
+
+void cs_plot_finish(struct cs_plot *plot) {
+    cs_arena_finish(&plot->arena);
+    *plot = (struct cs_plot){0};
 }

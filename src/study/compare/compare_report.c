@@ -1,15 +1,17 @@
 /* Writes compare.json with everything for programs, compare.md as a report for readers, and the
- * diagrams; compare_html.c prints the page. */
+ * diagram; compare_html.c prints the page. */
 #include "study/compare/compare.h"
 
 #include "base/file.h"
 #include "base/json_writer.h"
+#include "sim/install_paths.h"
 #include "study/compare/compare_curves.h"
 #include "study/compare/ranking.h"
 #include "study/provenance_write.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* --- compare.json --- */
 
@@ -112,15 +114,45 @@ static void print_json(const struct cs_compare *compare, const struct cs_ranking
 
 /* --- compare.md --- */
 
+/* Adds lines as they are; frees them. */
+static void add_code(struct cs_text *lines, struct cs_text *out) {
+    cs_text_add(out, "```\n");
+    cs_text_add_lines(out, cs_text_get(lines));
+    cs_text_add(out, "```\n");
+    out->failed |= lines->failed;
+    cs_text_finish(lines);
+}
+
+/* Adds a list of lines that begin with "- "; frees them. */
+static void add_list(const char *title, struct cs_text *lines, struct cs_text *out) {
+    const char *line = cs_text_get(lines);
+    cs_text_add(out, "## %s\n\n", title);
+    for (size_t length; *line; line += length + (line[length] == '\n')) {
+        struct cs_text item = {0};
+        length = strcspn(line, "\n");
+        cs_text_add(&item, "%.*s", (int)length, line);
+        cs_text_add_markdown(out, cs_text_get(&item));
+        cs_text_add(out, "\n");
+        cs_text_finish(&item);
+    }
+    cs_text_add(out, "\n");
+    out->failed |= lines->failed;
+    cs_text_finish(lines);
+}
+
 /* Head of the report: scene, reference, machine, and how times were measured. */
 static void add_setting(const struct cs_compare *compare, struct cs_text *out) {
     struct cs_machine machine;
+    struct cs_text reference = {0};
     cs_machine_detect(&machine);
-    cs_text_add(out, "# Error against run time: %s\n\n```\n", compare->scene);
-    cs_table_add_reference(compare, out);
+    cs_text_add(out, "# Error against run time: ");
+    cs_text_add_markdown(out, compare->scene);
+    cs_text_add(out, "\n\n");
+    cs_table_add_reference(compare, &reference);
+    add_code(&reference, out);
     cs_text_add(
         out,
-        "```\n\nMachine: %s, %ld processors, load %.1f. clothsim %s, %s, %s. Times are "
+        "\nMachine: %s, %ld processors, load %.1f. clothsim %s, %s, %s. Times are "
         "processor\ntime of stepping only. The cells that the verdict rests on were timed in "
         "turns, "
         "in %u\nrounds: medians; factors are those of pairs of one round, with their 95 %% "
@@ -129,107 +161,59 @@ static void add_setting(const struct cs_compare *compare, struct cs_text *out) {
         machine.version, machine.compiler, machine.flags, compare->rounds.n);
 }
 
-static void add_lines(const char *title, struct cs_text *lines, struct cs_text *out) {
-    cs_text_add(out, "## %s\n\n%s\n", title, cs_text_get(lines));
-    cs_text_finish(lines);
-}
-
-static void add_field(struct cs_text *out, const char *format, double value) {
-    cs_text_add(out, " | ");
-    if (isfinite(value))
-        cs_text_add(out, format[1] == 'f' ? "%.0f" : format[1] == 'o' ? "%.2f" : "%.2e", value);
-}
-
-/* One row of the Markdown table; bold if it is on the front. */
-static void add_line(const struct cs_cell *cell, bool front, struct cs_text *out) {
-    cs_text_add(out, "| %s%s%s | ", front ? "**" : "", cell->series, front ? "**" : "");
-    cs_options_add_short(cell->options, out);
-    add_field(out, "%e", cell->error);
-    add_field(out, "%e", cell->max_error);
-    add_field(out, "%e", cell->velocity_error);
-    add_field(out, "%e", cell->energy_error);
-    add_field(out, "%o", cell->order);
-    add_field(out, "%e", cell->achieved);
-    add_field(out, "%f", cell->work);
-    add_field(out, "%f", cell->evals);
-    add_field(out, "%f", cell->iterations);
-    add_field(out, "%f", cell->sweeps);
-    add_field(out, "%e", cell->cpu);
-    if (isfinite(cell->crossings))
-        cs_text_add(out, " | %s, %.0f crossings |\n", cell->outcome, cell->crossings);
-    else
-        cs_text_add(out, " | %s |\n", cell->outcome);
-}
-
-static void add_table(const struct cs_compare *compare, const struct cs_ranking *ranking,
-                      struct cs_text *out) {
-    cs_text_add(out,
-                "## All cells\n\nBold: nothing is both cheaper and more accurate. Errors in m "
-                "at the end (RMS; largest of a\nparticle) and m/s; energy as a fraction of the "
-                "largest kinetic energy; time in s.\n\n"
-                "| series | options | error | largest | velocity | energy | order | error / "
-                "(rtol x motion) | work | force evaluations | iterations | sweeps | time | |\n"
-                "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    for (uint32_t k = 0; k < compare->cells.n; k++)
-        add_line(compare->cells.cells + k, ranking->on_pareto_front[k], out);
-}
-
 static void print_markdown(const struct cs_compare *compare, const struct cs_ranking *ranking,
                            bool drawn, struct cs_text *out) {
     struct cs_text verdict = {0}, warnings = {0}, methods = {0}, ledger = {0};
     add_setting(compare, out);
     cs_verdict_print(ranking, "- ", compare, &verdict);
-    add_lines("Verdict", &verdict, out);
+    add_list("Verdict", &verdict, out);
     cs_compare_warn(compare, "- ", &warnings);
-    if (*cs_text_get(&warnings))
-        add_lines("Warnings", &warnings, out);
-    cs_text_finish(&warnings);
+    if (warnings.length)
+        add_list("Warnings", &warnings, out);
     if (drawn)
-        cs_text_add(out, "## Diagrams\n\n![error against time](error_time.png)\n\n"
-                         "![error against work](error_work.png)\n\n");
+        cs_text_add(out, "## Diagram\n\n![error against work and time](compare.png)\n\n");
     cs_compare_contact_sheet_add_markdown(compare, out);
-    cs_text_add(&methods, "```\n");
     cs_table_add_series(compare, true, &methods);
-    cs_text_add(&methods, "```\n");
-    add_lines("Methods", &methods, out);
+    cs_text_add(out, "## Methods\n\n");
+    add_code(&methods, out);
+    cs_text_add(out, "\n");
     cs_table_add_ledger(compare, &ledger);
-    if (ledger.length)
-        cs_text_add(out,
-                    "## Energy balance\n"
-                    "\n"
-                    "Energy gained by the end; `integrator` is the energy that the method "
-                    "itself gained or lost.\n"
-                    "\n"
-                    "```\n"
-                    "%s```\n"
-                    "\n",
-                    cs_text_get(&ledger));
-    cs_text_finish(&ledger);
-    add_table(compare, ranking, out);
+    if (ledger.length) {
+        cs_text_add(out, "## Energy balance\n\nEnergy gained by the end; `integrator` is the "
+                         "energy that the method itself gained or lost.\n\n");
+        add_code(&ledger, out);
+        cs_text_add(out, "\n");
+    }
+    cs_text_add(out, "All cells are in compare.csv.\n");
 }
 
 /* --- the files --- */
 
-/* Writes one diagram. Without pointwise errors the energy error is drawn, which remains valid
- * beyond the horizon. */
-static enum cs_status draw(struct cs_compare *compare, const char *name, const char *x,
-                           bool *drawn, struct cs_error *error) {
-    char title[400];
+/* Writes the diagram in two widths. Without the module that draws there is none, and a warning
+ * says so. */
+static enum cs_status draw(struct cs_compare *compare, struct cs_error *error) {
+    static const struct {
+        const char *name;
+        double width;
+    } figures[] = {{"compare", CS_WIDTH_PAGE}, {"compare_column", CS_WIDTH_COLUMN}};
+    char title[400], path[4200];
     snprintf(title, sizeof title, "%.255s, %.4g s, %u particles", compare->scene, compare->time,
              compare->particles);
-    const struct cs_plot_settings settings = {
-        .cells = compare->cells.cells,
-        .n = compare->cells.n,
-        .x = cs_column_find(x),
-        // beyond the horizon there is energy to compare
-        .y = cs_norm_column(
-            cs_norm_is_known(compare->settings->ranking_norm, &compare->reference)
-                ? compare->settings->ranking_norm
-                : CS_NORM_ENERGY),
-        .title = title,
-        .name = name};
-    cs_plot_write(&settings, compare->settings->folder, &compare->gnuplot, error);
-    *drawn = *drawn && compare->gnuplot.drawn;
+    for (int k = 0; k < 2 && !error->status; k++) {
+        struct cs_plot_settings settings;
+        struct cs_plot plot;
+        struct cs_error unseen = {0};
+        cs_compare_plot_settings(compare, figures[k].width, &settings);
+        settings.title = title;
+        snprintf(path, sizeof path, "%s/%s", compare->settings->folder, figures[k].name);
+        if (!cs_plot_make(&plot, &settings, error) &&
+            cs_diagram_write(cs_renderer_folder(), &plot.diagram, path, CS_FORMATS_ALL,
+                             &unseen) == CS_ERR_MODULE)
+            snprintf(compare->undrawn, sizeof compare->undrawn, "%.299s", unseen.message);
+        else if (unseen.status)
+            *error = unseen;
+        cs_plot_finish(&plot);
+    }
     return error->status;
 }
 
@@ -243,12 +227,12 @@ static enum cs_status write_text(const struct cs_compare *compare, const char *n
 enum cs_status cs_compare_write_report(struct cs_compare *compare, struct cs_error *error) {
     struct cs_ranking ranking;
     struct cs_text json = {0}, markdown = {0}, html = {0};
-    bool drawn = compare->reference.families_agree;
     if (cs_ranking_make(&ranking, compare, error))
         return error->status;
     // two families that disagree leave nothing to draw errors against
-    if (compare->reference.families_agree && !draw(compare, "error_time", "cpu", &drawn, error))
-        draw(compare, "error_work", "work", &drawn, error);
+    if (compare->reference.families_agree)
+        draw(compare, error);
+    const bool drawn = compare->reference.families_agree && !*compare->undrawn;
     print_json(compare, &ranking, &json);
     print_markdown(compare, &ranking, drawn, &markdown);
     if (!error->status && !write_text(compare, "compare.json", &json, error) &&

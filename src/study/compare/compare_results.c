@@ -1,5 +1,5 @@
 /* Reads, appends and rewrites the rows of compare.csv. */
-#include "study/compare/compare_results.h"
+#include "study/compare/compare_state.h"
 
 #include "base/file.h"
 

@@ -1,21 +1,19 @@
-/* Draws contact sheets: last frames of the methods, coloured by distance to the reference. */
+/* Draws the last frames of the methods, coloured by distance to the reference. */
 #include "study/compare/compare.h"
 
 #include "base/file.h"
 #include "draw/look.h"
 #include "io/png.h"
 #include "sim/install_paths.h"
-#include "study/compare/compare_curves.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-enum { TILE_WIDTH = 400, TILE_HEIGHT = 300, TILES_MAX = 64, COLUMNS = 5, SHEETS = 2 };
-/* colours of a map; pixels of a sheet for the bar; bytes of a tile's file, at most */
-enum { STOPS = 6, BAR_HEIGHT = 70, TILE_BYTES_MAX = 1 << 22 };
+enum { TILE_WIDTH = 400, TILE_HEIGHT = 300, TILES_MAX = 64, SHEETS = 2 };
+/* colours of a map; bytes of a tile's file, at most */
+enum { STOPS = 6, TILE_BYTES_MAX = 1 << 22 };
 
 /* The cells of one sheet, one per series at most. */
 struct sheet {
@@ -193,59 +191,6 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
     return error->status;
 }
 
-/* gnuplot's colour bar below the tiles, once for all. */
-static void print_bar(const struct sheet *sheet, double height, struct cs_text *out) {
-    const uint32_t *stops = cs_look_of(CS_LOOK_FORCE)->stops;
-    const double low = sheet->range[0], high = sheet->range[1];
-    /* thin rectangles: an image would be interpolated by some viewers */
-    cs_text_add(out, "set palette defined (");
-    for (int k = 0; k < STOPS; k++)
-        cs_text_add(out, "%s%d \"#%06x\"", k ? ", " : "", k, stops[k]);
-    cs_text_add(out,
-                ")\nunset colorbox\nunset title\nset size noratio\nset border\n"
-                "set lmargin at screen 0.3\nset rmargin at screen 0.7\n"
-                "set bmargin at screen %g\nset tmargin at screen %g\n"
-                "set xtics 1 format \"10^{%%.0f}\" out nomirror\n"
-                "set xlabel \"distance to the reference in m\" offset 0,0.6\n"
-                "set samples 256\nset cbrange [%g:%g]\n"
-                "plot [%g:%g] [0:1] sample [%g:%g] \"+\" using 1:(0.5):(%g):(0.5):1 "
-                "with boxxyerror fc palette fs solid\n",
-                46 / height, 60 / height, low, high, low, high, low, high, (high - low) / 256);
-}
-
-/* gnuplot script that assembles the tiles. */
-static void print_script(const struct sheet *sheet, const struct cs_compare *compare,
-                         struct cs_text *out) {
-    const uint32_t lines = (sheet->n + COLUMNS) / COLUMNS;
-    const uint32_t columns = sheet->n < COLUMNS ? sheet->n + 1 : COLUMNS;
-    const double height = 60 + lines * 275 + BAR_HEIGHT;
-    cs_text_add(
-        out,
-        "set terminal pngcairo size %u,%.0f font \"DejaVu Sans,11\"\n"
-        "set output \"%s.png\"\n"
-        "set multiplot layout %u,%u margins 0,1,%g,%g spacing 0,%g title \"%s at %.4g s\"\n"
-        "unset key\nunset border\nunset tics\nset size ratio -1\n",
-        columns * 320, height, sheet->kind, lines, columns, BAR_HEIGHT / height,
-        1 - 75 / height, 35 / height, title_of(sheet), compare->time);
-    /* paths are relative: gnuplot runs in the folder of the script */
-    cs_text_add(out,
-                "set title \"reference\\nknown to %.1e m\" noenhanced\n"
-                "plot \"pictures/%s_reference.png\" binary filetype=png with rgbimage\n",
-                compare->reference.error_bar, sheet->kind);
-    for (uint32_t k = 0; k < sheet->n; k++) {
-        const struct cs_cell *cell = sheet->cells[k];
-        char file[CS_SERIES_BYTES];
-        cs_series_file_name(cell->series, file);
-        cs_text_add(out,
-                    "set title \"%s\\n%s %.3g, %.3g ms, error %.1e m\" noenhanced\n"
-                    "plot \"pictures/%s_%s.png\" binary filetype=png with rgbimage\n",
-                    cell->series, cell->control, cell->value, 1e3 * cell->cpu, cell->error,
-                    sheet->kind, file);
-    }
-    print_bar(sheet, height, out);
-    cs_text_add(out, "unset multiplot\n");
-}
-
 /* Range of colours in log10 m, one for all sheets: from the smallest error, or the reference's
  * bar, to the largest. */
 static void set_range(struct sheet sheets[SHEETS], const struct cs_compare *compare) {
@@ -272,20 +217,14 @@ static void choose_sheets(struct sheet sheets[SHEETS], const struct cs_compare *
     set_range(sheets, compare);
 }
 
-static enum cs_status write_sheet(struct sheet *sheet, struct cs_compare *compare,
+static enum cs_status write_sheet(const struct sheet *sheet, const struct cs_compare *compare,
                                   enum cs_renderer_kind kind, struct cs_error *error) {
-    struct cs_text script = {0};
     char path[4200];
     snprintf(path, sizeof path, "%s/pictures", compare->settings->folder);
     if (sheet->n == 0 || cs_folder_create(path, error))
         return error->status;
     for (uint32_t k = 0; k < sheet->n && !error->status; k++)
         draw_tile(sheet, sheet->cells[k], compare, kind, error);
-    print_script(sheet, compare, &script);
-    snprintf(path, sizeof path, "%s/%s.gp", compare->settings->folder, sheet->kind);
-    if (!error->status && !cs_file_write_text(path, &script, error))
-        cs_gnuplot_run(compare->settings->folder, sheet->kind, &compare->gnuplot, error);
-    cs_text_finish(&script);
     return error->status;
 }
 
@@ -332,7 +271,7 @@ static void add_strip(const struct sheet *sheet, const struct cs_compare *compar
         tile_path(sheet, cell, compare, path, sizeof path);
         if (!begin_figure(path, out))
             continue;
-        cs_svg_add_text(out, cell->series);
+        cs_text_add_html(out, cell->series);
         cs_text_add(out, "<br>%s %.3g, %.3g ms, error %.1e m</figcaption></figure>\n",
                     cell->control, cell->value, 1e3 * cell->cpu, cell->error);
     }
@@ -363,14 +302,25 @@ void cs_compare_contact_sheet_add_markdown(const struct cs_compare *compare,
                                            struct cs_text *out) {
     struct sheet sheets[SHEETS];
     choose_sheets(sheets, compare);
-    if (!compare->settings->pictures)
-        return;
-    /* without gnuplot there are the tiles, and no sheet of them */
-    for (int s = 0; s < SHEETS; s++) {
-        char path[4200];
-        snprintf(path, sizeof path, "%s/%s.png", compare->settings->folder, sheets[s].kind);
-        if (sheets[s].n && !access(path, F_OK))
-            cs_text_add(out, "## %s\n\n![%s](%s.png)\n\n", title_of(sheets + s),
-                        title_of(sheets + s), sheets[s].kind);
+    for (int s = 0; s < SHEETS && compare->settings->pictures; s++) {
+        if (!sheets[s].n)
+            continue;
+        cs_text_add(
+            out,
+            "## %s\n\nColours: distance to the reference after %.4g s, from 1e%.0f m to "
+            "1e%.0f m.\n\n| | |\n|---|---|\n| ![](pictures/%s_reference.png) | "
+            "reference, known to %.1e m |\n",
+            title_of(sheets + s), compare->time, sheets[s].range[0], sheets[s].range[1],
+            sheets[s].kind, compare->reference.error_bar);
+        for (uint32_t k = 0; k < sheets[s].n; k++) {
+            const struct cs_cell *cell = sheets[s].cells[k];
+            char file[CS_SERIES_BYTES];
+            cs_series_file_name(cell->series, file);
+            cs_text_add(out, "| ![](pictures/%s_%s.png) | ", sheets[s].kind, file);
+            cs_text_add_markdown(out, cell->series);
+            cs_text_add(out, ", %s %.3g, %.3g ms, error %.1e m |\n", cell->control, cell->value,
+                        1e3 * cell->cpu, cell->error);
+        }
+        cs_text_add(out, "\n");
     }
 }

@@ -177,3 +177,15 @@ void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out) 
         cs_text_add(out, "\n");
     }
 }
+
+void cs_compare_plot_settings(const struct cs_compare *compare, double width,
+                              struct cs_plot_settings *settings) {
+    const bool known = cs_norm_is_known(compare->settings->ranking_norm, &compare->reference);
+    *settings = (struct cs_plot_settings){
+        .cells = compare->cells.cells,
+        .n = compare->cells.n,
+        .x = cs_column_find("work"),
+        .second = cs_column_find("cpu"),
+        .y = cs_norm_column(known ? compare->settings->ranking_norm : CS_NORM_ENERGY),
+        .width = width};
+}

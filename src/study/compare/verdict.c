@@ -262,7 +262,8 @@ void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
         ": close other programs, or take more --runs");
     add(out, bullet, stats.unquiet, "with outliers in more than a fifth of the runs",
         ": something else used the processor now and then");
-    cs_gnuplot_warn(&compare->gnuplot, bullet, out);
+    if (*compare->undrawn)
+        cs_text_add(out, "%sno diagrams: %s\n", bullet, compare->undrawn);
     if (getloadavg(&load, 1) == 1 && load > 0.75 * (double)processors)
         cs_text_add(out,
                     "%sthe machine is busy (load %.1f on %ld processors): factors near 1 are "

@@ -1,6 +1,6 @@
 /* Prints a stability map as text (letters for verdicts, border and theory below), as CSV and
- * JSON, and as a gnuplot script (cells coloured by verdict, theoretical limits drawn in). */
-#include "study/stability/stability_report.h"
+ * JSON. */
+#include "study/stability/stability.h"
 
 #include "base/json_writer.h"
 #include "study/contact_capacity.h"
@@ -153,9 +153,10 @@ static void add_watch(const struct cs_stability *map, struct cs_text *out) {
 
 void cs_stability_print_table(const struct cs_stability *map, struct cs_text *out) {
     const struct cs_stability_settings *settings = map->settings;
-    cs_text_add(out, "%s on %s: %.6g s per cell, dt [s] against %s [%s]", map->series,
-                map->session.scene.path, settings->seconds, cs_axis_names[settings->axis],
-                cs_axis_unit(settings->axis));
+    cs_text_add(out, "%s on ", map->series);
+    cs_text_add_plain(out, map->session.scene.path);
+    cs_text_add(out, ": %.6g s per cell, dt [s] against %s [%s]", settings->seconds,
+                cs_axis_names[settings->axis], cs_axis_unit(settings->axis));
     cs_contact_note_add(&map->session.scene, "; ", out);
     cs_text_add(out, "\n\n");
     cs_text_add(out, "%-*s", NAME_WIDTH, cs_axis_names[settings->axis]);
@@ -310,85 +311,4 @@ void cs_stability_print_json(const struct cs_stability *map, struct cs_text *out
     for (uint32_t c = 0; c < map->n_columns; c++)
         add_json_column(map, c, out);
     cs_text_add(out, "\n  ]\n}\n");
-}
-
-/* --- the diagram --- */
-
-/* Settings of the diagram: terminal, title, axes, key. */
-static void add_head(const struct cs_stability *map, const char *name, struct cs_text *out) {
-    const enum cs_axis axis = map->settings->axis;
-    cs_text_add(out,
-                "# gnuplot %s.gp\n"
-                "set terminal pngcairo size 1280,760 font 'sans,13' background '#ffffff'\n"
-                "set output '%s.png'\nset datafile separator ','\n",
-                name, name);
-    cs_text_add(out,
-                "set title \"%s: stable time steps, %s\\n%g s of motion per cell\" "
-                "font 'sans,16' noenhanced\n",
-                map->series, map->session.scene.path, map->settings->seconds);
-    cs_text_add(out, "set xlabel '%s  [%s]'\nset ylabel 'dt  [s]' offset 1,0\n",
-                cs_axis_names[axis], cs_axis_unit(axis));
-    /* columns of a grid span no decades: plain numbers serve them better */
-    cs_text_add(out, "set logscale xy\nset format y '10^{%%T}'\nset format x '%s'\n",
-                axis == CS_AXIS_RESOLUTION ? "%g" : "10^{%T}");
-    cs_text_add(out,
-                "set tics out nomirror\nset mxtics 10\nset mytics 10\n"
-                "set border 3 lc rgb '#555555'\n"
-                "set key outside right top Left reverse spacing 1.35 samplen 2.2 width -2\n"
-                "set style fill solid 1.0 %s\n",
-                // between many cells white lines would be most of the picture
-                stride(map->n_columns) > 1 || stride(map->n_rows) > 1
-                    ? "noborder"
-                    : "border lc rgb '#ffffff'");
-}
-
-/* Ranges that end at the outer edges of the cells, as `edge` draws them. */
-static void add_ranges(const struct cs_stability *map, struct cs_text *out) {
-    const uint32_t nc = map->n_columns, nr = map->n_rows;
-    const double x0 = map->columns[0].value, x1 = map->columns[nc - 1].value;
-    const double y0 = map->dt[0], y1 = map->dt[nr - 1];
-    const double dx = nc > 1 ? pow(x1 / x0, 0.5 / (nc - 1)) : ALONE;
-    const double dy = nr > 1 ? pow(y1 / y0, 0.5 / (nr - 1)) : ALONE;
-    cs_text_add(out, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", x0 / dx, x1 * dx,
-                y0 / dy, y1 * dy);
-}
-
-/* True if a cell of the map has the verdict. */
-static bool is_there(const struct cs_stability *map, int verdict) {
-    for (uint32_t c = 0; c < map->n_columns; c++)
-        for (uint32_t r = 0; r < map->n_rows; r++)
-            if ((int)map->columns[c].cells[r].verdict == verdict)
-                return true;
-    return false;
-}
-
-void cs_stability_print_plot(const struct cs_stability *map, const char *name,
-                             struct cs_text *out) {
-    /* in the order of drawing: the white dot lies on the black one */
-    static const struct {
-        int column;
-        const char *style, *title;
-    } curves[] = {
-        {5, "lines lw 2 dt (4,4) lc rgb '#6b7078'", "theory: Gershgorin"},
-        {4, "lines lw 2 dt (10,5) lc rgb '#23262b'", "theory: at the start"},
-        {3, "lines lw 3 lc rgb '#23262b'", "theory: worst on the way"},
-        {2, "points pt 7 ps 1.5 lc rgb '#23262b'", "border, bisected"},
-        {2, "points pt 7 ps 0.9 lc rgb '#ffffff'", ""},
-    };
-    add_head(map, name, out);
-    add_ranges(map, out);
-    cs_text_add(out, "plot \\\n");
-    for (int v = 0; v < CS_STABILITY_VERDICTS; v++)
-        /* only verdicts that occur have a line in the legend */
-        if (is_there(map, v))
-            cs_text_add(
-                out,
-                "  '%s.csv' using 1:($4==%d?$2:NaN):8:9:10:11 every ::1 with boxxyerror "
-                "fc rgb '#%06x' title '%s', \\\n",
-                name, v, cs_stability_colour((enum cs_stability_verdict)v),
-                cs_stability_word((enum cs_stability_verdict)v));
-    for (size_t k = 0; k < sizeof curves / sizeof *curves; k++)
-        cs_text_add(out, "  '%s_border.csv' using 1:%d every ::1 with %s %s'%s'%s\n", name,
-                    curves[k].column, curves[k].style, *curves[k].title ? "title " : "notitle ",
-                    curves[k].title, k + 1 < sizeof curves / sizeof *curves ? ", \\" : "");
 }

@@ -1,0 +1,171 @@
+/* Draws ink, text and marks. */
+#include "draw/cairo/cairo_marks.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* pt, from the middle of a mark to its corners; strokes */
+#define MARK_RADIUS 1.7
+#define MARK_LINE   0.7
+
+void cs_cairo_ink(cairo_t *cairo, uint32_t colour, double alpha) {
+    cairo_set_source_rgba(cairo, (colour >> 16) / 255.0, (colour >> 8 & 255) / 255.0,
+                          (colour & 255) / 255.0, alpha);
+}
+
+void cs_cairo_dash(cairo_t *cairo, const struct cs_style *style) {
+    static const struct {
+        int n;
+        double lengths[4];
+    } dashes[] = {{0, {0}}, {2, {4, 1.6}}, {2, {1.2, 1.2}}, {4, {5, 1.4, 1.2, 1.4}}};
+    cs_cairo_ink(cairo, style->colour, 1);
+    cairo_set_line_width(cairo, style->width);
+    cairo_set_dash(cairo, dashes[style->dash].lengths, dashes[style->dash].n, 0);
+    cairo_stroke(cairo);
+    cairo_set_dash(cairo, NULL, 0, 0);
+}
+
+void cs_cairo_line(cairo_t *cairo, double x0, double y0, double x1, double y1) {
+    cairo_move_to(cairo, x0, y0);
+    cairo_line_to(cairo, x1, y1);
+    cairo_stroke(cairo);
+}
+
+double cs_cairo_width(cairo_t *cairo, const char *text, double size) {
+    struct cs_text plain = {0};
+    cairo_text_extents_t extents;
+    cs_text_add_plain(&plain, text);
+    cairo_set_font_size(cairo, size);
+    cairo_text_extents(cairo, cs_text_get(&plain), &extents);
+    cs_text_finish(&plain);
+    return extents.x_advance;
+}
+
+double cs_cairo_text(cairo_t *cairo, const char *text, double x, double y, double align,
+                     double size) {
+    struct cs_text plain = {0};
+    const double width = cs_cairo_width(cairo, text, size);
+    cs_text_add_plain(&plain, text);
+    cairo_move_to(cairo, x - align * width, y);
+    cairo_show_text(cairo, cs_text_get(&plain));
+    cs_text_finish(&plain);
+    return width;
+}
+
+void cs_cairo_fitted(cairo_t *cairo, const char *text, double x, double y, double align,
+                     double room) {
+    const double wide = cs_cairo_width(cairo, text, CS_FONT_SIZE);
+    cs_cairo_text(cairo, text, x, y, align,
+                  wide > room ? CS_FONT_SIZE * room / wide : CS_FONT_SIZE);
+}
+
+/* The label of a tick in two parts, the second a power. */
+static void split_tick(const struct cs_tick *tick, char label[24], char power[16]) {
+    *power = 0;
+    if (cs_tick_print(tick, label))
+        snprintf(power, 16, "%s%d", tick->decade < 0 ? "\u2212" : "",
+                 tick->decade < 0 ? -tick->decade : tick->decade);
+}
+
+double cs_cairo_tick_width(cairo_t *cairo, const struct cs_tick *tick) {
+    char label[24], power[16];
+    split_tick(tick, label, power);
+    return cs_cairo_width(cairo, label, CS_FONT_SIZE) +
+           cs_cairo_width(cairo, power, CS_SMALL_SIZE);
+}
+
+void cs_cairo_tick(cairo_t *cairo, const struct cs_tick *tick, double x, double y,
+                   double align) {
+    char label[24], power[16];
+    split_tick(tick, label, power);
+    x -= align * cs_cairo_tick_width(cairo, tick);
+    x += cs_cairo_text(cairo, label, x, y, 0, CS_FONT_SIZE);
+    cs_cairo_text(cairo, power, x, y - 0.38 * CS_FONT_SIZE, 0, CS_SMALL_SIZE);
+}
+
+/* A marker: n corners, every second one at `inner` of the radius. */
+static const struct shape {
+    int n;
+    double turn, radius, inner;
+} shapes[] = {
+    /* circle, square, triangle, diamond, inverted triangle, star */
+    {24, 0, 0.95, 1},       {4, M_PI / 4, 1.2, 1},  {3, -M_PI / 2, 1.35, 1},
+    {4, M_PI / 2, 1.35, 1}, {3, M_PI / 2, 1.35, 1}, {10, M_PI / 2, 1.5, 0.42}};
+
+static void add_shape(cairo_t *cairo, const struct shape *shape, double size, double x,
+                      double y) {
+    for (int k = 0; k < shape->n; k++) {
+        const double angle = shape->turn + 2 * M_PI * k / shape->n;
+        const double r = size * shape->radius * (k % 2 ? shape->inner : 1);
+        cairo_line_to(cairo, x + r * cos(angle), y + r * sin(angle));
+    }
+    cairo_close_path(cairo);
+}
+
+void cs_cairo_mark(cairo_t *cairo, enum cs_mark mark, const struct cs_style *style, double x,
+                   double y) {
+    if (mark == CS_MARK_NONE)
+        return;
+    const double size = mark == CS_MARK_HOLLOW ? 0.8 * MARK_RADIUS : MARK_RADIUS;
+    cairo_new_path(cairo); /* a text leaves its end as the current point */
+    cairo_set_line_width(cairo, MARK_LINE);
+    if (mark == CS_MARK_CROSS) {
+        cs_cairo_ink(cairo, style->colour, 1);
+        for (int side = -1; side <= 1; side += 2)
+            cs_cairo_line(cairo, x - MARK_RADIUS, y - side * MARK_RADIUS, x + MARK_RADIUS,
+                          y + side * MARK_RADIUS);
+        return;
+    }
+    add_shape(cairo, shapes + style->marker, size, x, y);
+    cs_cairo_ink(cairo, mark == CS_MARK_HOLLOW ? 0xffffff : style->colour, 1);
+    cairo_fill_preserve(cairo);
+    cs_cairo_ink(cairo, mark == CS_MARK_HOLLOW ? style->colour : 0xffffff, 1);
+    cairo_set_line_width(cairo, mark == CS_MARK_HOLLOW ? 0.5 : 0.2);
+    cairo_stroke(cairo);
+}
+
+void cs_cairo_ring(cairo_t *cairo, double x, double y) {
+    cs_cairo_ink(cairo, CS_RING_COLOUR, 1);
+    cairo_set_line_width(cairo, MARK_LINE);
+    cairo_new_sub_path(cairo);
+    cairo_arc(cairo, x, y, 2.2 * MARK_RADIUS, 0, 2 * M_PI);
+    cairo_stroke(cairo);
+}
+
+void cs_cairo_sample(cairo_t *cairo, const struct cs_style *style, enum cs_mark mark, double x,
+                     double y) {
+    cairo_move_to(cairo, x, y);
+    cairo_line_to(cairo, x + CS_SAMPLE, y);
+    if (style->width > 0)
+        cs_cairo_dash(cairo, style);
+    cairo_new_path(cairo);
+    cs_cairo_mark(cairo, mark, style, x + CS_SAMPLE / 2.0, y);
+}
+
+void cs_cairo_keys(cairo_t *cairo, const struct cs_diagram *diagram, double width, double *y) {
+    double x = CS_MARGIN;
+    for (const struct cs_key *key = diagram->keys; key < diagram->keys + diagram->n_keys;
+         key++) {
+        const double sample = key->kind == CS_KEY_TEXT ? 0 : CS_SAMPLE + 4;
+        const double wide = sample + cs_cairo_width(cairo, key->text, CS_FONT_SIZE);
+        if (x > CS_MARGIN && x + wide > width) {
+            x = CS_MARGIN;
+            *y += CS_LINE_HEIGHT + 1;
+        }
+        const double middle = *y - 0.35 * CS_FONT_SIZE;
+        cs_cairo_ink(cairo, key->style.colour, 1);
+        if (key->kind == CS_KEY_PATCH) {
+            cairo_rectangle(cairo, x, middle - 3, CS_SAMPLE, 6);
+            cairo_fill(cairo);
+        } else if (key->kind == CS_KEY_LINE)
+            cs_cairo_sample(cairo, &key->style, key->mark, x, middle);
+        else if (key->kind == CS_KEY_MARK)
+            cs_cairo_mark(cairo, key->mark, &key->style, x + CS_SAMPLE / 2.0, middle);
+        else if (key->kind == CS_KEY_RING)
+            cs_cairo_ring(cairo, x + CS_SAMPLE / 2.0, middle);
+        cs_cairo_ink(cairo, 0, 1);
+        cs_cairo_text(cairo, key->text, x + sample, *y, 0, CS_FONT_SIZE);
+        x += wide + 10;
+    }
+    *y += diagram->n_keys ? CS_LINE_HEIGHT : 0;
+}

@@ -1,0 +1,53 @@
+/* cairo_marks.h - ink, text and marks on a cairo surface, in points. */
+#ifndef CS_CAIRO_MARKS_H
+#define CS_CAIRO_MARKS_H
+
+#include "draw/diagram.h"
+
+#include <cairo.h>
+
+/* Sizes in pt at print size: of text, and from one line of it to the next. */
+#define CS_FONT_SIZE   8.0
+#define CS_SMALL_SIZE  6.0
+#define CS_LINE_HEIGHT 10.0
+enum { CS_MARGIN = 3, CS_SAMPLE = 12 };
+
+void cs_cairo_ink(cairo_t *cairo, uint32_t colour, double alpha);
+
+/* Strokes the path in the dashes of a style. */
+void cs_cairo_dash(cairo_t *cairo, const struct cs_style *style);
+
+void cs_cairo_line(cairo_t *cairo, double x0, double y0, double x1, double y1);
+
+/* Width of a text; characters that could confuse a reader or cairo are counted as replaced. */
+double cs_cairo_width(cairo_t *cairo, const char *text, double size);
+
+/* Writes a text with its base line at y. align: 0 from x on, 0.5 around it, 1 up to it. Returns
+ * its width. */
+double cs_cairo_text(cairo_t *cairo, const char *text, double x, double y, double align,
+                     double size);
+
+/* The same, smaller where it would be wider than `room`. */
+void cs_cairo_fitted(cairo_t *cairo, const char *text, double x, double y, double align,
+                     double room);
+
+double cs_cairo_tick_width(cairo_t *cairo, const struct cs_tick *tick);
+
+/* The label of a tick, with a raised power of 10. */
+void cs_cairo_tick(cairo_t *cairo, const struct cs_tick *tick, double x, double y,
+                   double align);
+
+void cs_cairo_mark(cairo_t *cairo, enum cs_mark mark, const struct cs_style *style, double x,
+                   double y);
+
+void cs_cairo_ring(cairo_t *cairo, double x, double y);
+
+/* A short line in a style with a mark on it, from x on. */
+void cs_cairo_sample(cairo_t *cairo, const struct cs_style *style, enum cs_mark mark, double x,
+                     double y);
+
+/* The keys of a diagram in lines that end before `width`; *y: the base line of the first, then
+ * of one below the last. */
+void cs_cairo_keys(cairo_t *cairo, const struct cs_diagram *diagram, double width, double *y);
+
+#endif

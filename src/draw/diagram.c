@@ -1,0 +1,107 @@
+/* Axes, ticks, styles and keys of diagrams: the part that all their drawers share. */
+#include "draw/diagram.h"
+
+#include <math.h>
+#include <stdio.h>
+
+const char *const cs_format_names[] = {"png", "svg", "pdf", NULL};
+
+struct cs_style cs_style_of(uint32_t n) {
+    static const uint32_t colours[] = {
+        0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0x000000, 0xe69f00, 0x56b4e9,
+        /* and the same, darker; grey for black */
+        0x00436a, 0x80380a, 0x00664b, 0x7d3f63, 0x8a8a8a, 0x8a5f00, 0x2b7099};
+    /* twelve pairs of marker and dash: with each three series the dash changes */
+    return (struct cs_style){.colour = colours[n % 14],
+                             .dash = (uint8_t)(n / 3 % 4),
+                             .marker = (uint8_t)(n % 6),
+                             .width = 1};
+}
+
+static double to_range(const struct cs_plot_axis *axis, double value) {
+    return axis->logarithmic ? log10(value) : value;
+}
+
+double cs_plot_axis_at(const struct cs_plot_axis *axis, double value) {
+    return (to_range(axis, value) - axis->range[0]) / (axis->range[1] - axis->range[0]);
+}
+
+void cs_plot_axis_include(struct cs_plot_axis *axis, double value) {
+    const double at = to_range(axis, value);
+    if (!isfinite(at))
+        return;
+    axis->range[0] = fmin(axis->range[0], at);
+    axis->range[1] = fmax(axis->range[1], at);
+}
+
+void cs_plot_axis_widen(struct cs_plot_axis *axis) {
+    double *range = axis->range;
+    if (!(range[0] <= range[1]))
+        range[0] = 0, range[1] = 1;
+    const double least =
+        axis->logarithmic ? log10(4) : fmax(0.1 * fmax(fabs(range[0]), fabs(range[1])), 1e-300);
+    const double more = fmax(0.04 * (range[1] - range[0]), (least - (range[1] - range[0])) / 2);
+    range[0] -= more;
+    range[1] += more;
+}
+
+/* Decades between two labels. */
+static int stride(double span) {
+    return span > 20 ? 3 : span > 10 ? 2 : 1;
+}
+
+static uint32_t add_decades(const double range[2], struct cs_tick *ticks) {
+    const double span = range[1] - range[0];
+    /* few decades around 1 read best as plain numbers */
+    const bool plain = range[0] > -3 && range[1] < 4 && span < 4;
+    uint32_t n = 0;
+    for (int decade = (int)floor(range[0]); decade <= range[1]; decade++)
+        for (int digit = 1; digit < 10; digit++) {
+            const double at = decade + log10(digit);
+            const bool label = (digit == 1 && decade % stride(span) == 0) ||
+                               (span < 2 && (digit == 2 || digit == 5)) ||
+                               (span < 1 && digit == 3);
+            if (at >= range[0] && at <= range[1] && n < CS_TICKS_MAX)
+                ticks[n++] = (struct cs_tick){at, digit, decade, label, plain};
+        }
+    return n;
+}
+
+uint32_t cs_plot_axis_ticks(const struct cs_plot_axis *axis,
+                            struct cs_tick ticks[CS_TICKS_MAX]) {
+    if (axis->logarithmic)
+        return add_decades(axis->range, ticks);
+    /* 1, 2 or 5 times a power of 10: four to nine ticks */
+    const double span = axis->range[1] - axis->range[0],
+                 power = pow(10, floor(log10(span / 4)));
+    const double step = span / power >= 20 ? 5 * power : span / power >= 8 ? 2 * power : power;
+    uint32_t n = 0;
+    for (double k = ceil(axis->range[0] / step); k * step <= axis->range[1] && n < 16; k++)
+        ticks[n++] = (struct cs_tick){.position = k * step + 0.0, .label = true, .plain = true};
+    return n;
+}
+
+double cs_tick_at(const struct cs_plot_axis *axis, const struct cs_tick *tick) {
+    return (tick->position - axis->range[0]) / (axis->range[1] - axis->range[0]);
+}
+
+bool cs_tick_print(const struct cs_tick *tick, char label[24]) {
+    if (tick->plain)
+        snprintf(label, 24, "%.6g",
+                 tick->digit ? tick->digit * pow(10, tick->decade) : tick->position);
+    else if (tick->digit > 1)
+        snprintf(label, 24, "%d·10", tick->digit);
+    else
+        snprintf(label, 24, "10");
+    return !tick->plain;
+}
+
+struct cs_key *cs_diagram_add_key(struct cs_diagram *diagram, enum cs_key_kind kind,
+                                  uint32_t colour, char letter, const char *text) {
+    struct cs_key *key = diagram->keys + diagram->n_keys;
+    diagram->n_keys += diagram->n_keys + 1 < CS_KEYS_MAX;
+    *key = (struct cs_key){
+        .kind = kind, .style = {.colour = colour, .width = 1}, .letter = letter};
+    snprintf(key->text, sizeof key->text, "%s", text);
+    return key;
+}

@@ -1,0 +1,150 @@
+/* diagram.h - diagrams as data: panels with axes, and what is drawn in them.
+ *
+ *   a study describes a diagram
+ *   -> cs_diagram_write: PNG, SVG and PDF by the module diagram-cairo.so, loaded here
+ *   -> cs_screen_print_diagram: characters
+ * Texts are data: no character of them has a meaning. */
+#ifndef CS_DRAW_DIAGRAM_H
+#define CS_DRAW_DIAGRAM_H
+
+#include "base/status.h"
+#include "base/text.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Widths in mm: of one and of two columns of a journal. */
+#define CS_WIDTH_COLUMN 88.0
+#define CS_WIDTH_PAGE   180.0
+
+enum { CS_TICKS_MAX = 512, CS_LABEL_BYTES = 160, CS_KEYS_MAX = 16, CS_STYLES = 12 };
+
+/* The terminal's letter of a series is that of its style. */
+struct cs_style {
+    uint32_t colour;      /* 0xRRGGBB */
+    uint8_t dash, marker; /* of 4 and of 6 */
+    double width;         /* of the line in pt; 0: no line */
+};
+
+#define CS_FRONT_COLOUR 0xf0e442u
+#define CS_RING_COLOUR  0xb00020u
+#define CS_BAR_COLOUR   0xdcdcdcu
+
+/* Style of the n-th series. Twelve differ by dash and marker alone, for readers of grey prints;
+ * the colours are those of Okabe, Ito 2008, which colour-blind readers tell apart. */
+struct cs_style cs_style_of(uint32_t n);
+
+struct cs_plot_axis {
+    char label[CS_LABEL_BYTES]; /* quantity and unit */
+    bool logarithmic;
+    double range[2]; /* of a logarithmic axis decimal logarithms */
+};
+
+/* Fraction of the axis at a value; not finite where the axis has no such value. */
+double cs_plot_axis_at(const struct cs_plot_axis *axis, double value);
+/* Extends the range to a value; an empty range is HUGE_VAL, -HUGE_VAL. */
+void cs_plot_axis_include(struct cs_plot_axis *axis, double value);
+/* Widens the range by a margin, and to at least a factor of four, or by a tenth. */
+void cs_plot_axis_widen(struct cs_plot_axis *axis);
+
+/* A tick at digit times 10^decade of a logarithmic axis, else (digit 0) at its position. */
+struct cs_tick {
+    double position; /* in the unit of the range */
+    int digit, decade;
+    bool label, plain; /* it has a label; written without a power of 10 */
+};
+
+/* Fills the ticks of an axis; returns their number. Decades have a label, within two of them 2
+ * and 5 as well, within one 3; above ten decades only every second or third has one.
+ */
+uint32_t cs_plot_axis_ticks(const struct cs_plot_axis *axis,
+                            struct cs_tick ticks[CS_TICKS_MAX]);
+/* Fraction of the axis at a tick. */
+double cs_tick_at(const struct cs_plot_axis *axis, const struct cs_tick *tick);
+/* Prints the label without its power of 10, which is true for one. */
+bool cs_tick_print(const struct cs_tick *tick, char label[24]);
+
+enum cs_mark { CS_MARK_NONE, CS_MARK_FULL, CS_MARK_HOLLOW, CS_MARK_CROSS };
+
+struct cs_point {
+    double x, y;
+    double low, high; /* ends of a bar along x; of a band along y; NAN: none */
+    enum cs_mark mark;
+    bool joined, ring; /* on the line of its series; with a ring around it */
+    bool front;        /* in capitals in a terminal */
+};
+
+enum cs_series_kind { CS_SERIES_LINE, CS_SERIES_BAND, CS_SERIES_STAIRS };
+
+struct cs_series {
+    const char *name; /* borrowed; stands where its line ends; NULL: none */
+    enum cs_series_kind kind;
+    struct cs_style style;
+    uint32_t n;
+    struct cs_point *points; /* (n) borrowed */
+};
+
+/* A filled rectangle; in a terminal its letter. */
+struct cs_cell_box {
+    double left, right, bottom, top;
+    uint32_t colour;
+    char letter;
+};
+
+struct cs_panel {
+    struct cs_plot_axis x, y;
+    double aspect; /* height of the box of the axes over its width */
+    uint32_t n_boxes, n_series;
+    const struct cs_cell_box *boxes; /* (n_boxes) borrowed; below the series */
+    const struct cs_series *series;  /* (n_series) borrowed; later ones over earlier ones */
+};
+
+enum cs_key_kind { CS_KEY_TEXT, CS_KEY_PATCH, CS_KEY_LINE, CS_KEY_MARK, CS_KEY_RING };
+
+/* The meaning of a colour or mark, below the panels. */
+struct cs_key {
+    enum cs_key_kind kind;
+    enum cs_mark mark;
+    struct cs_style style;
+    char letter; /* in a terminal; 0: not there */
+    char text[CS_LABEL_BYTES];
+    const char *help; /* borrowed; follows the text in a terminal; NULL: nothing */
+};
+
+struct cs_diagram {
+    const char *title; /* borrowed; NULL: none */
+    double width;      /* mm */
+    uint32_t columns;  /* panels side by side, with one y axis */
+    uint32_t n_panels, n_keys;
+    struct cs_panel *panels; /* (n_panels) borrowed */
+    struct cs_key keys[CS_KEYS_MAX];
+};
+
+/* Adds a key unless there is no room; returns it for further settings. */
+struct cs_key *cs_diagram_add_key(struct cs_diagram *diagram, enum cs_key_kind kind,
+                                  uint32_t colour, char letter, const char *text);
+
+enum cs_format { CS_FORMAT_PNG, CS_FORMAT_SVG, CS_FORMAT_PDF, CS_FORMATS };
+extern const char *const cs_format_names[]; /* closed by NULL */
+enum { CS_FORMATS_ALL = (1 << CS_FORMATS) - 1 };
+
+#define CS_DIAGRAM_ABI 1u /* raised with every change of the structs above or below */
+/* The module exports this table as clothsim_diagram. */
+struct cs_diagram_module {
+    unsigned abi;
+    /* Draws into *bytes (length), malloc'ed, the caller's. CS_ERR_MEMORY, CS_ERR_MODULE. */
+    enum cs_status (*draw)(const struct cs_diagram *diagram, enum cs_format format,
+                           char **bytes, size_t *length, struct cs_error *error);
+};
+
+/* Writes PATH.png, PATH.svg and PATH.pdf, as far as `formats` has their bits. Equal diagrams
+ * give equal files. folder: of the module. CS_ERR_MODULE: it is missing; CS_ERR_FILE,
+ * CS_ERR_MEMORY. */
+enum cs_status cs_diagram_write(const char *folder, const struct cs_diagram *diagram,
+                                const char *path, unsigned formats, struct cs_error *error);
+
+/* Adds the diagram as an <svg> element for a page. CS_ERR_MODULE, CS_ERR_MEMORY. */
+enum cs_status cs_diagram_add_svg(const char *folder, const struct cs_diagram *diagram,
+                                  struct cs_text *out, struct cs_error *error);
+
+#endif
