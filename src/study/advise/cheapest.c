@@ -34,10 +34,6 @@ struct record {
     bool met;
 };
 
-static double error_of(const struct cs_cell *cell, const struct cs_choice *choice) {
-    return cs_norm_of(choice->norm, cell, &choice->compare->reference);
-}
-
 static bool takes_steps(const struct cs_candidate *candidate) {
     return !strcmp(candidate->probe.control, "dt");
 }
@@ -79,7 +75,7 @@ static double work_at_value(const struct cs_candidate *candidate, const struct c
  * higher than declared, or one lower where it is too accurate. */
 static double least_at_bound(const struct cs_candidate *candidate, const struct cs_cell *cell,
                              const struct cs_choice *choice) {
-    const double ratio = error_of(cell, choice) / choice->bound;
+    const double ratio = cs_choice_error(cell, choice) / choice->bound;
     return cell->work * pow(ratio, slope_of(candidate, ratio > 1 ? 1 : -1));
 }
 
@@ -89,11 +85,12 @@ static double value_at_bound(const struct cs_candidate *candidate, const struct 
                              const struct cs_cell *other, const struct cs_choice *choice) {
     double order = takes_steps(candidate) ? order_of(candidate, 0) : 1;
     if (other) {
-        const double found = log(error_of(other, choice) / error_of(cell, choice)) /
-                             log(other->value / cell->value);
+        const double found =
+            log(cs_choice_error(other, choice) / cs_choice_error(cell, choice)) /
+            log(other->value / cell->value);
         order = fmin(fmax(found, 0.5 * order), 2 * order);
     }
-    return cell->value * pow(AIM * choice->bound / error_of(cell, choice), 1 / order);
+    return cell->value * pow(AIM * choice->bound / cs_choice_error(cell, choice), 1 / order);
 }
 
 /* Step over the time scale of the motion, to which a method of that order has the error: error
@@ -107,7 +104,7 @@ static double step_at(double error, double order, const struct cs_choice *choice
 static double factor_from(const struct cs_candidate *candidate, const struct cs_cell *cell,
                           const struct cs_choice *choice) {
     const double order = order_of(candidate, 0), of_cell = fmax(cell->declared_order, 1);
-    const double steps = step_at(error_of(cell, choice), of_cell, choice) /
+    const double steps = step_at(cs_choice_error(cell, choice), of_cell, choice) /
                          step_at(choice->bound, order, choice);
     return order / of_cell * pow(steps, is_implicit(candidate) ? 0.5 : 1);
 }
@@ -138,7 +135,8 @@ static void find_record(const struct cs_candidate *candidate, const struct cs_ch
         const bool met = cs_choice_is_met(at, choice);
         record->last = at;
         if (!record->near || (met && (!record->met || at->work < record->near->work)) ||
-            (!record->met && error_of(at, choice) < error_of(record->near, choice))) {
+            (!record->met &&
+             cs_choice_error(at, choice) < cs_choice_error(record->near, choice))) {
             record->other = record->near;
             record->near = at;
             record->met = met;
@@ -180,7 +178,7 @@ static void judge_by_error(const struct cs_candidate *candidate, const struct re
         if (record->other && record->other->value > near->value)
             out->least = fmax(out->least, record->other->work);
         if (out->least > GAIN * near->work ||
-            error_of(near, choice) > (1 - CS_EQUAL_ERROR) * choice->bound)
+            cs_choice_error(near, choice) > (1 - CS_EQUAL_ERROR) * choice->bound)
             return;
     }
     if (was_run(candidate, choice, value))

@@ -35,11 +35,20 @@ bool cs_choice_is_ranked(const struct cs_cell *cell, const struct cs_choice *cho
            isfinite(cs_norm_of(choice->norm, cell, &choice->compare->reference));
 }
 
+double cs_choice_error(const struct cs_cell *cell, const struct cs_choice *choice) {
+    const struct cs_cell_list *list = &choice->compare->cells;
+    const struct cs_column *column = cs_norm_column(choice->norm);
+    struct cs_cell typical = *cell;
+    double low, high;
+    const double error = cs_cell_typical(list->cells, list->n, cell, column, &low, &high);
+    memcpy((char *)&typical + column->offset, &error, sizeof error);
+    return cs_norm_of(choice->norm, &typical, &choice->compare->reference);
+}
+
 /* A cell with an error of at most the bound; rounding may exceed it by 1e-9. */
 bool cs_choice_is_met(const struct cs_cell *cell, const struct cs_choice *choice) {
     return cs_choice_is_ranked(cell, choice) &&
-           cs_norm_of(choice->norm, cell, &choice->compare->reference) <=
-               choice->bound * (1 + 1e-9);
+           cs_choice_error(cell, choice) <= choice->bound * (1 + 1e-9);
 }
 
 double cs_choice_cost(const struct cs_cell *cell, const struct cs_choice *choice) {
@@ -53,10 +62,6 @@ static double steps_of(const struct cs_cell *cell, const struct cs_choice *choic
 
 static bool takes_steps(const struct cs_cell *cell) {
     return !strcmp(cell->control, "dt");
-}
-
-static double error_of(const struct cs_cell *cell, const struct cs_choice *choice) {
-    return cs_norm_of(choice->norm, cell, &choice->compare->reference);
 }
 
 /* The reference's own error, where it is one of the norm. */
@@ -81,14 +86,17 @@ static double find_slope(const struct cs_choice *choice, const struct cs_cell *c
     const double wide = cell->adaptive ? WIDE_NOISY : WIDE;
     const struct cs_cell *other = NULL;
     for (const struct cs_cell *at = first; at < end; at++) {
-        const double apart = fabs(log(error_of(at, choice) / error_of(cell, choice)));
+        const double apart =
+            fabs(log(cs_choice_error(at, choice) / cs_choice_error(cell, choice)));
         if (cs_choice_is_ranked(at, choice) && apart >= log(wide) &&
-            (!other || apart < fabs(log(error_of(other, choice) / error_of(cell, choice)))))
+            (!other ||
+             apart < fabs(log(cs_choice_error(other, choice) / cs_choice_error(cell, choice)))))
             other = at;
     }
-    const double slope = other ? log(other->work / cell->work) /
-                                     log(error_of(cell, choice) / error_of(other, choice))
-                               : 1;
+    const double slope =
+        other ? log(other->work / cell->work) /
+                    log(cs_choice_error(cell, choice) / cs_choice_error(other, choice))
+              : 1;
     return isfinite(slope) ? fmin(fmax(slope, SLOPE_MIN), SLOPE_MAX) : 1;
 }
 
@@ -120,8 +128,8 @@ static double next_log(const struct cs_choice *choice, const struct cs_standing 
     const double width = log(coarser->value / cell->value);
     double part = 0.5;
     if (cs_choice_is_ranked(coarser, choice) && trials % 3 != 2)
-        part = log(AIM * choice->bound / error_of(cell, choice)) /
-               log(error_of(coarser, choice) / error_of(cell, choice));
+        part = log(AIM * choice->bound / cs_choice_error(cell, choice)) /
+               log(cs_choice_error(coarser, choice) / cs_choice_error(cell, choice));
     return log(cell->value) + fmin(fmax(part, 0.02), 0.98) * width;
 }
 
@@ -165,7 +173,8 @@ static void add_noise(const struct cs_choice *choice, const struct cs_cell *firs
     double most = 0, least = 0;
     uint32_t n = 0;
     for (const struct cs_cell *at = first; at < end; at++) {
-        const double apart = log(error_of(at, choice) / choice->bound);
+        const double apart =
+            log(cs_norm_of(choice->norm, at, &choice->compare->reference) / choice->bound);
         if (!cs_choice_is_ranked(at, choice) || fabs(apart) > log(NOISE_RANGE))
             continue;
         const double more = log(at->work / standing->cell->work) + standing->slope * apart;
@@ -183,8 +192,9 @@ static void add_noise(const struct cs_choice *choice, const struct cs_cell *firs
  * next, and the slope of smaller errors would say that a longer step may save as much. */
 static void bound_slope(const struct cs_choice *choice, struct cs_standing *standing) {
     const struct cs_cell *cell = standing->cell, *coarser = standing->coarser;
-    const double between = log(cell->work / coarser->work) /
-                           log(error_of(coarser, choice) / error_of(cell, choice));
+    const double between =
+        log(cell->work / coarser->work) /
+        log(cs_choice_error(coarser, choice) / cs_choice_error(cell, choice));
     if (takes_steps(cell) && between > 0)
         standing->slope = fmin(standing->slope, between);
 }
@@ -193,7 +203,7 @@ static void bound_slope(const struct cs_choice *choice, struct cs_standing *stan
 static void find_relation(const struct cs_choice *choice, const struct cs_cell *first,
                           const struct cs_cell *end, struct cs_standing *standing) {
     const struct cs_cell *cell = standing->cell, *coarser = standing->coarser;
-    const double error = error_of(cell, choice);
+    const double error = cs_choice_error(cell, choice);
     const bool equal = error >= (1 - CS_EQUAL_ERROR) * choice->bound;
     double value;
     standing->slope = find_slope(choice, cell, first, end);
@@ -267,7 +277,7 @@ static double estimate(const struct cs_choice *choice, const struct cs_standing 
         return cost;
     if (coarser && !cs_choice_is_ranked(coarser, choice))
         return cost * sqrt(cell->value / coarser->value);
-    return cost * pow(error_of(cell, choice) / choice->bound, standing->slope);
+    return cost * pow(cs_choice_error(cell, choice) / choice->bound, standing->slope);
 }
 
 /* The two least estimates of all methods at the bound; HUGE_VAL: there are not so many. */

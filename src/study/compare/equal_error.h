@@ -59,6 +59,10 @@ cs_choice_passes cs_choice_is_ranked;
 /* True if its error is at most the bound, too; rounding may exceed it by 1e-9. */
 cs_choice_passes cs_choice_is_met;
 
+/* Error of a cell of the comparison's list in the norm; of a method with error control the
+ * typical one (cs_cell_typical), so that no lucky tolerance wins. */
+double cs_choice_error(const struct cs_cell *cell, const struct cs_choice *choice);
+
 /* Cost of a cell: s, or work. */
 double cs_choice_cost(const struct cs_cell *cell, const struct cs_choice *choice);
 

@@ -29,11 +29,11 @@ static void mark_front(struct cs_ranking *ranking, const struct cs_choice *choic
     const struct cs_compare *compare = choice->compare;
     const struct cs_cell *cells = compare->cells.cells;
     for (uint32_t k = 0; k < compare->cells.n; k++) {
-        const double error = cs_norm_of(choice->norm, cells + k, &compare->reference);
+        const double error = cs_choice_error(cells + k, choice);
         ranking->on_pareto_front[k] = cs_choice_is_ranked(cells + k, choice);
         for (uint32_t i = 0; i < compare->cells.n && ranking->on_pareto_front[k]; i++)
             if (cs_choice_is_ranked(cells + i, choice) && cells[i].cpu < cells[k].cpu &&
-                cs_norm_of(choice->norm, cells + i, &compare->reference) <= error)
+                cs_choice_error(cells + i, choice) <= error)
                 ranking->on_pareto_front[k] = false;
     }
 }
@@ -132,7 +132,7 @@ static void rank_by_other_norms(struct cs_rank *rank, const struct cs_choice *ch
         if (norm == choice->norm || !cs_norm_is_known(norm, &compare->reference) ||
             !cs_choice_is_ranked(rank->best, &by))
             continue;
-        by.bound = cs_norm_of(norm, rank->best, &compare->reference);
+        by.bound = cs_choice_error(rank->best, &by);
         struct cs_standing found;
         find_cheapest(&by, cs_choice_is_met, rank->best, &found);
         if (found.cell && found.cell->cpu < rank->best->cpu &&
