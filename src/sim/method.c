@@ -13,6 +13,7 @@
 #include "base/options.h"
 #include "base/text.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -245,6 +246,14 @@ bool cs_method_set_dt(struct cs_method *method, double dt) {
         return false;
     memcpy((char *)method->options + row->offset, &dt, sizeof dt);
     return true;
+}
+
+void cs_method_step_by_frames(struct cs_method *method) {
+    const struct cs_option *row = find_dt(method->integrator);
+    const double frame = HUGE_VAL;
+    if (row && row->choices && method->integrator->traits & CS_IMPLICIT &&
+        cs_option_is_default(row, method->options))
+        memcpy((char *)method->options + row->offset, &frame, sizeof frame);
 }
 
 void cs_method_describe(const struct cs_method *method, struct cs_text *out) {

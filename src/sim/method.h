@@ -71,6 +71,9 @@ bool cs_method_takes_dt(const struct cs_integrator *integrator);
  * range. */
 bool cs_method_set_dt(struct cs_method *method, double dt);
 
+/* Makes an implicit method whose dt is at its default take one step per frame. */
+void cs_method_step_by_frames(struct cs_method *method);
+
 /* The name of a series: a method with its options, the same in every output of a
  * study. */
 

@@ -1,6 +1,5 @@
 #include "fixture.h"
 
-#include "base/options.h"
 #include "model/contact/barrier_law.h"
 #include "model/force/diagnostics.h"
 
@@ -9,17 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-void fixture_step_by_frames(struct cs_session *session) {
-    const struct cs_option *row = cs_option_find(&session->method.table, "dt");
-    const uint32_t traits = session->method.integrator->traits;
-    if (!row || !row->choices || !(traits & CS_IMPLICIT) ||
-        !cs_option_is_default(row, session->method.options))
-        return;
-    struct cs_error error = {0};
-    cs_option_set(row, session->method.options, row->choices[0], "dt", CS_ERR_USAGE, &error);
-    ck_assert_msg(!error.status, "%s", error.message);
-}
 
 void fixture_open(struct fixture *fixture, const char *integrator, const char *format, ...) {
     char *text;
@@ -35,7 +23,7 @@ void fixture_open(struct fixture *fixture, const char *integrator, const char *f
     cs_session_open_system(session, &settings, &error);
     free(text);
     ck_assert_msg(!error.status, "%s", error.message);
-    fixture_step_by_frames(session);
+    cs_method_step_by_frames(&session->method);
     fixture->system = &session->system;
     fixture->n = session->system.view.n;
     fixture->x = session->system.state;

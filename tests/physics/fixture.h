@@ -14,10 +14,6 @@ struct fixture {
     double *x, *v;            /* (3,n) each: the state */
 };
 
-/* Makes an implicit method whose dt is not given take one step per frame: a physics test counts
- * on steps whose length it knows. */
-void fixture_step_by_frames(struct cs_session *session);
-
 /* Reads a scene and builds its system for an integrator ("NAME:key=value,..."), which steps by
  * frames; the state may then be moved before the run starts. Anything that fails fails the
  * test.

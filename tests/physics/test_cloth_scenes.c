@@ -25,7 +25,7 @@ static void run_scene(struct fixture *fixture, const char *name, const char *clo
         .scene = path, .overrides = overrides, .n_overrides = cloth ? 2 : 0};
     cs_session_open_system(&fixture->session, &settings, &error);
     ck_assert_msg(!error.status, "%s", error.message);
-    fixture_step_by_frames(&fixture->session);
+    cs_method_step_by_frames(&fixture->session.method);
     fixture->system = &fixture->session.system;
     fixture->n = fixture->system->view.n;
     fixture->x = fixture->system->state;

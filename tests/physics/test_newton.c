@@ -249,7 +249,7 @@ static double frame_steps(const char *scene, const char *integrator, const char 
     struct fixture cloth = {0};
     cs_session_open_system(&cloth.session, &settings, &error);
     ck_assert_msg(!error.status, "%s", error.message);
-    fixture_step_by_frames(&cloth.session);
+    cs_method_step_by_frames(&cloth.session.method);
     fixture_start(&cloth);
     cloth.system = &cloth.session.system;
     cloth.n = cloth.system->view.n;

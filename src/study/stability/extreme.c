@@ -149,6 +149,8 @@ static enum cs_status run_row(const struct cs_extreme *extreme,
     row->expected = cs_extreme_expected(scene, session.method.integrator);
     if (scene->dt > 0 && cs_method_set_dt(&session.method, scene->dt))
         dt = scene->dt;
+    // long steps are what is extreme
+    cs_method_step_by_frames(&session.method);
     if (!cs_session_build(&session, error)) {
         /* an instability needs something to grow from */
         cs_perturb_random(&session.system,
