@@ -70,6 +70,7 @@ static const struct cs_integrator fast_mass_spring = {
     .needs = CS_NEED_SPRINGS,
     .traits = CS_IMPLICIT | CS_LIBRARY_BITS | CS_EXPLICIT_OUTER,
     .fidelity = CS_FIDELITY_IMPLICIT_EULER,
+    .fails = local_global_fails,
     .options = rows,
     .n_options = sizeof rows / sizeof rows[0],
     .options_size = sizeof(struct local_global_options),

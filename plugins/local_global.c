@@ -79,6 +79,8 @@ enum cs_step local_global_begin(struct local_global *self, double t, double step
     return status;
 }
 
+const char *const local_global_fails[] = {"allocation", NULL};
+
 enum cs_step local_global_restart(void *object, double t, const double *x, const double *v) {
     constant_matrix_restart(&((struct local_global *)object)->matrix);
     return fixed_step_restart(object, t, x, v);

@@ -223,6 +223,7 @@ const struct cs_integrator projective_dynamics = {
     .needs = CS_NEED_SPRINGS,
     .traits = CS_IMPLICIT | CS_LIBRARY_BITS | CS_EXPLICIT_OUTER,
     .fidelity = CS_FIDELITY_IMPLICIT_EULER,
+    .fails = local_global_fails,
     .options = rows,
     .n_options = sizeof rows / sizeof rows[0],
     .options_size = sizeof(struct local_global_options),
