@@ -68,8 +68,8 @@ static void print(const struct bench_settings *settings, const struct bench_mode
     cs_text_add(json, "}],\n\"time\": {\"fps\": %.17g},\n", model->fps);
     // the sheet starts a little way into the sphere, so that some particles are pushed
     if (model->company)
-        cs_text_add(json, "\"contact\": {\"start\": \"move-out\"},\n\"colliders\": "
-                          "[{\"sphere\": {\"centre\": [0, -0.3, 0], "
+        cs_text_add(json, "\"contact\": {\"law\": \"project\", \"start\": \"move-out\"},\n"
+                          "\"colliders\": [{\"sphere\": {\"centre\": [0, -0.3, 0], "
                           "\"radius\": 0.31}}, {\"plane\": {\"point\": [0, -0.5, 0], "
                           "\"normal\": [0.4, 1, 0.1]}}],\n"
                           "\"forces\": {\"wind\": {\"direction\": [0, 0, 1], "
