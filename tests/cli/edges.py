@@ -34,6 +34,7 @@ LINES = {
     "run": "s.json -n 2 --renderer cpu -q -y",
     "integrators": "rk4",
     "scene": "s.json",
+    "new": "integrator heun -y",
     "golden": "--folder g --hashes -q",
     "conform": "rk4 --only abi,options -q",
     "compare": "s.json -t 0.02 -i rk4:dt=2e-3 --runs 1 -q -y",

@@ -1,0 +1,3 @@
+# the lines of a C source as strings
+s/[\\"]/\\&/g
+s/.*/"&\\n",/
