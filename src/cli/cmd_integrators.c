@@ -136,11 +136,7 @@ static enum cs_status add_options(const struct cs_integrator *integrator, struct
     return CS_OK;
 }
 
-static enum cs_status print_one(struct cs_registry *registry, const char *name,
-                                struct cs_error *error) {
-    const struct cs_registry_entry *found;
-    if (cs_registry_find(registry, name, &found, error))
-        return error->status;
+static enum cs_status print_one(const struct cs_registry_entry *found, struct cs_error *error) {
     const struct cs_integrator *integrator = found->integrator;
     struct cs_text out = {0}, order = {0}, list = {0};
     add_order(integrator, &order);
@@ -171,13 +167,28 @@ static enum cs_status print_one(struct cs_registry *registry, const char *name,
     return error->status;
 }
 
+/* Describes every method of a module file. */
+static enum cs_status print_file(struct cs_registry *registry, const char *file,
+                                 struct cs_error *error) {
+    const uint32_t before = registry->n;
+    if (cs_registry_add_file(registry, file, error))
+        return error->status;
+    for (uint32_t k = before; k < registry->n && !error->status; k++)
+        print_one(registry->entries + k, error);
+    return error->status;
+}
+
 static enum cs_status list(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
+    const char *operand = args->n_operands ? args->operands[0] : NULL;
+    const struct cs_registry_entry *found;
     struct cs_registry registry = {0};
     if (!cs_registry_add_files(&registry, options->plugins, options->n_plugins, error)) {
-        if (args->n_operands)
-            print_one(&registry, args->operands[0], error);
-        else
+        if (operand && cs_registry_is_file(operand))
+            print_file(&registry, operand, error);
+        else if (operand && !cs_registry_find(&registry, operand, &found, error))
+            print_one(found, error);
+        else if (!operand)
             print_list(&registry, error);
     }
     cs_registry_finish(&registry);
@@ -186,7 +197,7 @@ static enum cs_status list(struct cs_args *args, struct cs_error *error) {
 
 const struct cs_command cs_command_integrators = {
     .name = "integrators",
-    .operands = "[NAME]",
+    .operands = "[NAME|FILE.so]",
     .summary = "list the integrators, or describe one and its options",
     .notes = "Modules are loaded from the program's module folder and the folders of\n"
              "CLOTHSIM_PLUGIN_PATH (absolute, separated by colons).\n",

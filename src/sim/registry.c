@@ -86,6 +86,11 @@ static enum cs_status open_module(struct cs_registry *registry, const char *file
     return error->status;
 }
 
+bool cs_registry_is_file(const char *text) {
+    const size_t length = strlen(text);
+    return strchr(text, '/') || (length > 3 && !strcmp(text + length - 3, ".so"));
+}
+
 enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *file,
                                     struct cs_error *error) {
     char absolute[PATH_MAX];
@@ -121,10 +126,9 @@ static bool may_contain_name(const char *file, const char *name) {
     return holds;
 }
 
-/* Filter of scandir: names that end in .so. */
+/* Filter of scandir. */
 static int is_module_name(const struct dirent *entry) {
-    const size_t length = strlen(entry->d_name);
-    return length > 3 && !strcmp(entry->d_name + length - 3, ".so");
+    return cs_registry_is_file(entry->d_name);
 }
 
 /* Opens the modules of a folder in the order of their names. With a name: only those that may

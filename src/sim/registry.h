@@ -22,6 +22,9 @@ struct cs_registry {
     struct cs_arena arena;
 };
 
+/* True for what names a module file rather than a method: a path, or a name with the ending .so. */
+bool cs_registry_is_file(const char *text);
+
 /* Adds one module file (--plugin). A refused file is an error here (CS_ERR_MODULE), unlike
  * one that a folder holds. */
 enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *file,

@@ -208,12 +208,6 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
     return error->status;
 }
 
-/* True for a path or a name with the ending .so. */
-static bool is_file(const char *operand) {
-    const size_t length = strlen(operand);
-    return strchr(operand, '/') || (length > 3 && !strcmp(operand + length - 3, ".so"));
-}
-
 /* Cards of every method of a module file. */
 static enum cs_status print_file(struct output *output, struct cs_registry *registry,
                                  const char *file, struct cs_error *error) {
@@ -290,7 +284,7 @@ static enum cs_status print_cards(void *ctx, struct cs_error *error) {
     struct cs_registry registry = {0};
     cs_registry_add_files(&registry, options->plugins, options->n_plugins, error);
     for (uint32_t k = 0; k < output->args->n_operands && !error->status; k++) {
-        if (is_file(output->args->operands[k]))
+        if (cs_registry_is_file(output->args->operands[k]))
             print_file(output, &registry, output->args->operands[k], error);
         else
             print_named(output, &registry, output->args->operands[k], error);
