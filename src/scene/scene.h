@@ -162,6 +162,7 @@ struct cs_contact_keys {
     int32_t law; /* enum cs_contact_law */
     /* not in the tables: the scene names no law (cs_plan_choose_contact_law) */
     bool law_is_default;
+    bool damping_is_default; /* nor a damping: cs_session_build sets it */
     int32_t start; /* enum cs_contact_start_policy, of what starts inside or within range */
     /* of the law force: */
     double stiffness;      /* N/m per particle; NAN: from what may come (contact/approach.h) */

@@ -220,7 +220,8 @@ static const struct cs_option body_rows[] = {
     REAL(struct cs_body, strain_limit, "", ABSENT, 1, 1000,
          "largest length of a stretch spring over its rest length; absent: no limit"),
     INT(struct cs_body, strain_limit_sweeps, "", 10, 1, 10000,
-        "passes of the strain limit over the springs after each step, before rounds that meet it"),
+        "passes of the strain limit over the springs after each step, before rounds that meet "
+        "it"),
     TABLE(struct cs_body, material, material_table, "Blinn-Phong look"),
 };
 static const struct cs_table body_table = {ROWS(body_rows), .size = sizeof(struct cs_body)};
@@ -261,7 +262,8 @@ static const struct cs_option contact_rows[] = {
          "for force, per particle; absent: 40 m v^2/D^2 for the speed v at which surfaces may "
          "meet, at least springs.stretch of the softest body that has such springs"),
     REAL(struct cs_contact_keys, damping, "s", 0, 0, BIG,
-         "for force: normal damping over contact stiffness"),
+         "for force: normal damping over contact stiffness; where law is not given either: "
+         "sqrt(m/k) of the heaviest particle m and the stiffest collider k"),
     REAL(struct cs_contact_keys, friction_speed, "m/s", 1e-3, 1e-9, BIG,
          "for force, smooth: sliding speed at which friction reaches 0.7 of its limit"),
     CHOICE(struct cs_contact_keys, friction_law, friction_names, CS_FRICTION_SMOOTH,

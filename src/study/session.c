@@ -164,8 +164,7 @@ static enum cs_status choose_method(struct cs_session *session, struct cs_error 
     return error->status;
 }
 
-/* Chooses the law of contact by the method, and checks the requirements of the scene that only
- * some methods meet. */
+/* Chooses the law of contact by the method, and checks what only some methods can follow. */
 static enum cs_status check_method(struct cs_session *session, struct cs_error *error) {
     const struct cs_integrator *method = session->method.integrator;
     const bool render = session->settings.render;
@@ -339,6 +338,8 @@ enum cs_status cs_session_build(struct cs_session *session, struct cs_error *err
     if (cs_system_build(&session->system, &session->scene, &session->plan, &said))
         return said.status == CS_ERR_SCENE ? refuse(session, said.status, said.message, error)
                                            : cs_fail(error, said.status, "%s", said.message);
+    if (session->scene.contact.damping_is_default)
+        session->scene.contact.damping = session->system.default_damping;
     if (cs_initial_penetration_resolve(&session->system, &session->initial_penetration, error))
         return error->status;
     if (session->settings.perturbation > 0)

@@ -1,5 +1,5 @@
 /* Floor with restitution and friction: what a particle, and a body that lands all at once, have
- * left after the bounce. */
+ * left after the bounce; and the rest that contact by force comes to. */
 #include "fixture.h"
 
 #include <math.h>
@@ -97,4 +97,56 @@ TEST(tangential_speed_is_lost_by_the_impact) {
             }
             fixture_close(&body);
         }
+}
+
+/* A box of springs that falls by 5 cm; %s: more keys. */
+#define BOX                                                                                    \
+    "{\"bodies\": [{\"mesh\": {\"shape\": \"box\", \"detail\": 3, \"scale\": [0.3, 0.3, "      \
+    "0.3], \"place\": {\"translate\": [0, 0.2, 0]}}, \"mass\": {\"total\": 1}, \"springs\": "  \
+    "{\"stretch\": 400, \"bend\": 0, \"damping\": 0.4}, \"network\": {}}], \"colliders\": "    \
+    "[{\"floor\": {}, \"friction\": 0.5}]%s}"
+
+/* A scene that names no law comes to rest: it bounced at 0.4 m/s for 6 s. Velocities are those
+ * of the motion. */
+TEST(contact_by_default_comes_to_rest) {
+    static const char *const methods[] = {"velocity-verlet", "tr-bdf2", "implicit-midpoint",
+                                          "implicit-linearised:dt=frame"};
+    enum { LAST = 340 };
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
+        struct fixture box;
+        fixture_open(&box, methods[m], BOX, "");
+        fixture_start(&box);
+        fixture_frames(&box, LAST);
+        double before = 0, fastest = 0;
+        for (size_t i = 0; i < box.n; i++) {
+            before += box.x[box.n + i];
+            fastest = fmax(fastest, fabs(box.v[box.n + i]));
+        }
+        fixture_frames(&box, 1);
+        double rise = -before;
+        for (size_t i = 0; i < box.n; i++)
+            rise += box.x[box.n + i];
+        ck_assert_msg(fastest < 1e-3, "%s: %.3g m/s", methods[m], fastest);
+        ck_assert_double_le(fabs(rise) / (double)box.n, 1e-5);
+        fixture_close(&box);
+    }
+}
+
+/* sqrt(m/k) for the stiffness that is given; a law or a damping that is named stays as it is.
+ */
+TEST(damping_is_chosen_where_nobody_names_law_or_damping) {
+    static const struct {
+        const char *contact;
+        double damping;
+    } rows[] = {{", \"contact\": {\"stiffness\": 175}", 0.010101525445522107},
+                {", \"contact\": {\"stiffness\": 175, \"damping\": 0}", 0},
+                {", \"contact\": {\"damping\": 0.25}", 0.25},
+                {", \"contact\": {\"law\": \"force\"}", 0},
+                {", \"contact\": \"force\"", 0}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        struct fixture box;
+        fixture_open(&box, "rk4", BOX, rows[r].contact);
+        ck_assert_double_eq_tol(box.system->scene->contact.damping, rows[r].damping, 1e-15);
+        fixture_close(&box);
+    }
 }

@@ -73,11 +73,21 @@ static double default_range(const struct cs_system *system, uint32_t collider,
     return range;
 }
 
+/* s, the damping that nobody gave: half of critical damping, c = tau k = sqrt(m k), of the
+ * heaviest free particle on the stiffest collider. Tuned on a box of 56 particles that falls by
+ * 5 cm: it rests after 5 s from 0.4 of critical damping on. */
+static double default_damping(const struct cs_system *system, double stiffest) {
+    double heaviest = 0;
+    for (uint32_t i = 0; i < system->view.n; i++)
+        heaviest = fmax(heaviest, system->inv_mass[i] > 0 ? system->mass[i] : 0);
+    return sqrt(heaviest / stiffest);
+}
+
 enum cs_status cs_collider_params_table_build(struct cs_system *system,
                                               struct cs_error *error) {
     const struct cs_scene *scene = system->scene;
     const double shortest = cs_diagnostics_shortest(system);
-    double k;
+    double k, stiffest = 0;
     if (cs_collider_params_softest(system, &k, error))
         return error->status;
     struct cs_collider_params *pairings =
@@ -94,7 +104,10 @@ enum cs_status cs_collider_params_table_build(struct cs_system *system,
                 c);
         pairings[c].k =
             cs_approach_stiffness(system, k, energy_of(system, c), pairings[c].range);
+        stiffest = fmax(stiffest, pairings[c].k);
     }
+    if (scene->contact.damping_is_default)
+        system->default_damping = default_damping(system, stiffest);
     system->collider_params = pairings;
     return error->status;
 }

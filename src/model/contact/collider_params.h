@@ -25,8 +25,9 @@ enum cs_status cs_collider_params_softest(struct cs_system *system, double *k,
 
 /* Sets system->collider_params, one per collider, after the springs were built. k:
  * cs_approach_stiffness; range: the collider's thickness, or CS_RANGE_FRACTION of the shortest
- * spring, or less where a particle starts closer. The system's arena owns it. CS_ERR_SCENE if a value is neither given nor to be
- * derived; CS_ERR_MEMORY. */
+ * spring, or less where a particle starts closer. The system's arena owns it. Also sets
+ * system->default_damping, sqrt(m/k) of the heaviest free particle m and the stiffest k.
+ * CS_ERR_SCENE if a value is neither given nor to be derived; CS_ERR_MEMORY. */
 enum cs_status cs_collider_params_table_build(struct cs_system *system, struct cs_error *error);
 
 /* A posed collider with its contact parameters, ready to be evaluated at

@@ -111,6 +111,7 @@ struct cs_system {
     double *collider_motion; /* (3, colliders, 3) the view's copy of motions; NULL likewise */
     const struct cs_collider_params
         *collider_params; /* (scene->colliders.n); NULL without contact by force */
+    double default_damping; /* s, of contact by force where the scene gives none; else 0 */
     const struct cs_approach *approach; /* NULL without contact that needs it (approach.h) */
     struct cs_pairs *pairs; /* contact between bodies, and with mesh colliders; NULL: none */
     struct cs_contact_samples

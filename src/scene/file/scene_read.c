@@ -214,11 +214,14 @@ static enum cs_status read_integrator(struct cs_json_context *context,
     return context->error->status;
 }
 
-/* Finds out whether the scene leaves the law of contact to the method. */
+/* Finds out whether the scene leaves the law of contact to the method. A law that is named is
+ * taken as it stands: it keeps the energy of an impact. */
 static void find_contact_law(const struct cs_json *root, struct cs_scene *scene) {
     const struct cs_json *contact = cs_json_find(root, "contact");
     scene->contact.law_is_default = !contact || (cs_json_kind_of(contact) == CS_JSON_OBJECT &&
                                                  !cs_json_find(contact, "law"));
+    scene->contact.damping_is_default =
+        scene->contact.law_is_default && !(contact && cs_json_find(contact, "damping"));
 }
 
 /* Chooses the camera where the scene says of none where it stands. */
