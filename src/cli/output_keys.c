@@ -125,6 +125,7 @@ static const struct cs_output_key run_keys[] = {
     {"energy.other?", "number or null", "J", "of other forces, such as contact"},
     {"largest_strain", "number or null", "1", "largest strain of a spring at the end"},
     {"strain_limit_missed?", "number", "1", "largest length over the strain limit, less 1"},
+    {"projection_depth?", "number", "m", "at which projection left a particle, at most"},
     {"memory", "object", "", "arrays of the run"},
     {"memory.bytes", "whole", "B", "all"},
     {"memory.method", "whole", "B", "those of the method"},

@@ -102,6 +102,7 @@ struct cs_run {
     bool is_process_changed;   /* by the method: no other run is to follow in this process */
     struct cs_counts counts;
     struct cs_strain_limit strain_limit;
+    struct cs_projection_depth projection_left;
     double stage_seconds[CS_STAGES]; /* wall time; all 0 unless timed */
     double stage_cpu[CS_STAGES];     /* processor time of the process meanwhile; likewise */
     double advance_seconds;          /* wall time inside the method */

@@ -234,19 +234,12 @@ static void add_cause(const struct cs_job *job, const char *advice, struct cs_te
     cs_text_finish(&found);
 }
 
-/* Warns of a strain limit that was missed and of a physically impossible final state, whatever
- * else is printed. */
+/* Warns of limits that were missed and of a physically impossible final state, whatever else is
+ * printed. */
 static void print_watch(const struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
     struct cs_text found = {0};
-    if (run->strain_limit.missed > 0) {
-        cs_text_add(&found,
-                    "warning: strain_limit was missed by up to %.3g %%: stiffer springs or "
-                    "shorter steps need it less",
-                    100 * run->strain_limit.missed);
-        cs_print_message(cs_text_get(&found));
-        cs_text_finish(&found);
-    }
+    cs_report_print_shortfalls(run);
     cs_energy_monitor_print(&job->monitor, run->system, &found);
     if (found.length) {
         const struct cs_energy energy =

@@ -240,6 +240,10 @@ enum cs_status cs_run_json_close(struct cs_job *job, struct cs_error *error);
 /* Adds "blew up: ... at t = ... s, particle ..." or "finished". */
 void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out);
 
+/* Warns on standard error of a strain limit that was missed, and of particles that projection
+ * left so deep in a collider that they may leave it on the other side. */
+void cs_report_print_shortfalls(const struct cs_run *run);
+
 /* Overrides of render.range and render.marks; zeroed: nothing found. */
 struct cs_run_range {
     char value[80];

@@ -139,6 +139,8 @@ static void add_measures(const struct cs_run *run, struct cs_text *out) {
                   cs_diagnostics_strain(run->system, run->x));
     if (run->strain_limit.missed > 0)
         cs_json_write(out, "  'strain_limit_missed': %g,\n", run->strain_limit.missed);
+    if (run->projection_left.depth > 0)
+        cs_json_write(out, "  'projection_depth': %g,\n", run->projection_left.depth);
     cs_json_write(out, "  'memory': {'bytes': %zu, 'method': %zu, 'a_particle': %g},\n",
                   cs_run_bytes(run), run->method_bytes,
                   (double)cs_run_bytes(run) / run->system->view.n);

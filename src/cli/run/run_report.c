@@ -24,6 +24,28 @@ static void add_row(struct cs_text *out, const char *name, const char *format, .
     cs_print_row(name, value, VALUE_COLUMN, out);
 }
 
+void cs_report_print_shortfalls(const struct cs_run *run) {
+    const struct cs_projection_depth *left = &run->projection_left;
+    struct cs_text limit = {0}, depth = {0};
+    if (run->strain_limit.missed > 0) {
+        cs_text_add(&limit,
+                    "warning: strain_limit was missed by up to %.3g %%: stiffer springs or "
+                    "shorter steps need it less",
+                    100 * run->strain_limit.missed);
+        cs_print_message(cs_text_get(&limit));
+    }
+    if (left->may_pass) {
+        cs_text_add(&depth,
+                    "warning: contact by projection left particles up to %.3g m deep in "
+                    "colliders[%u], at t = %.6g s, and they may pass it; use shorter steps, or "
+                    "contact.law force",
+                    left->depth, left->collider, left->time);
+        cs_print_message(cs_text_get(&depth));
+    }
+    cs_text_finish(&limit);
+    cs_text_finish(&depth);
+}
+
 void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     cs_text_add(out, "%s", cs_outcome_text(run->outcome));

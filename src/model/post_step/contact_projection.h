@@ -24,6 +24,15 @@ struct cs_projection_counts {
     uint64_t tests, projected;
 };
 
+/* Depth at which the limit of energy has left a particle behind a surface. */
+struct cs_projection_depth {
+    double depth;      /* m, the largest of the run; 0: all were put on surfaces */
+    uint32_t collider; /* behind which it was */
+    double time;       /* s, at which */
+    /* deeper than CS_TUNNELLING_DEPTH of the inner radius: it may leave on the other side */
+    bool may_pass;
+};
+
 /* State of contact by projection between commits, and work arrays. */
 struct cs_contact_projection {
     const struct cs_system *system; /* borrowed */
@@ -43,6 +52,7 @@ struct cs_contact_projection {
     /* (n) pushed, or held by static friction, in the current commit */
     bool *is_pushed;
     struct cs_projection_counts counts;
+    struct cs_projection_depth left;
 };
 
 /* Prepares contact by projection for a scene with colliders; the arena owns the arrays.
@@ -112,10 +122,10 @@ struct cs_strain_limit {
  * Velocities change by the displacement over dt, but by no more than stops the lengthening of
  * the spring: they then fit the positions, and what was too long before is no blow. At most
  * strain_limit_sweeps passes, every other one backwards; fewer if a pass finds nothing. Then up
- * to 128 rounds until no spring exceeds the limit by more than CS_STRAIN_LIMIT_TOLERANCE: a pass
- * each, over a grid after passes over far pairs. A pass over a grid has the order of
- * strain_limit.c, over a mesh that of the springs. Returns the number of corrections. x, v (3,n)
- * in m and m/s are changed in place.
+ * to 128 rounds until no spring exceeds the limit by more than CS_STRAIN_LIMIT_TOLERANCE: a
+ * pass each, over a grid after passes over far pairs. A pass over a grid has the order of
+ * strain_limit.c, over a mesh that of the springs. Returns the number of corrections. x, v
+ * (3,n) in m and m/s are changed in place.
  *
  * Only stretch springs are limited: with shear and bend springs too, the passes work against
  * each other and pump energy into a hanging sheet at dt = 1/60 s. */
