@@ -6,7 +6,10 @@
  * 2. Take the smallest of: what the error allowed, dt_max, what the method can take, what
  *    contact lets pass, the rest of the advance.
  * 3. Try it. A step whose error is too large, or that contact refuses, is tried again shorter.
- * 4. Accept the new state and commit it. */
+ * 4. Accept the new state and commit it.
+ * Where steps may pass the end of the advance, 2 knows no rest of it, and 4 commits each step
+ * in parts: the interpolant's state at every end of an advance within the step, then the rest.
+ */
 #include "adaptive_step.h"
 
 #include <float.h>
@@ -16,6 +19,10 @@
  * chosen on contact_compare and self_compare. */
 #define CONTACT_GROWTH 1.1
 #define CONTACT_CUT    0.2
+
+/* s, the longest step past frames if dt_max does not say: an estimate cannot see what lies
+ * between the stages of a step that is far too long. */
+#define PAST_FRAMES 0.1
 
 enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host *host,
                                 const struct adaptive_options *options, int power) {
@@ -32,6 +39,11 @@ enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host
     for (int k = 0; k < 4; k++)
         if (!(*arrays[k] = (double *)host->alloc(host->ctx, self->length * sizeof(double))))
             return CS_STEP_FAIL;
+    /* a step that looks far ahead would pass over a force that comes later */
+    const bool passes = self->interpolate && CS_HAS(host, forces_depend_on_time) &&
+                        host->may_overstep && !host->forces_depend_on_time;
+    if (passes && !(self->start = host->alloc(host->ctx, self->length * sizeof(double))))
+        return CS_STEP_FAIL;
     return CS_STEP_OK;
 }
 
@@ -114,7 +126,7 @@ static double cut(double planned, double left) {
 /* The longest step in s from y at t that dt_max, contact and the method let pass. */
 static double longest_step(struct adaptive_step *self, double t, const double *y) {
     const struct cs_host *host = self->host;
-    const double span = self->end - self->begin;
+    const double span = self->start ? PAST_FRAMES : self->end - self->begin;
     double most = least(self->contact, self->asked.dt_max > 0 ? self->asked.dt_max : span);
     if (self->limit)
         most = least(most, self->limit(self, t, y));
@@ -148,7 +160,9 @@ static enum cs_step try_steps(struct adaptive_step *self, double t, const double
             return CS_STEP_HALT;
         }
         self->bound = longest_step(self, t, y);
-        *h = cut(least(control->h, self->bound), self->end - t);
+        *h = least(control->h, self->bound);
+        if (!self->start)
+            *h = cut(*h, self->end - t);
         /* a shorter step is lost in the rounding of t; NaN is refused too */
         if (!(*h > 4 * DBL_EPSILON * self->end)) {
             host->fail(host->ctx, "the step fell to %.3g s at t = %.9g s", *h, t);
@@ -167,6 +181,54 @@ static enum cs_step try_steps(struct adaptive_step *self, double t, const double
     }
 }
 
+/* One accepted step of *h s from y at t, which leaves the new state in next. span: s, that the
+ * first step may have. */
+static enum cs_step step(struct adaptive_step *self, double t, double span, const double *y,
+                         double *h) {
+    prepare(self, t, span, y);
+    const enum cs_step status = try_steps(self, t, y, h);
+    if (status != CS_STEP_OK)
+        return status;
+    self->contact *= CONTACT_GROWTH;
+    self->fresh = !self->accept(self);
+    return CS_STEP_OK;
+}
+
+/* One step from y at t, whose state it keeps for the interpolant. */
+static enum cs_step step_past_frames(struct adaptive_step *self, double t, const double *y) {
+    memcpy(self->start, y, self->length * sizeof *y);
+    const enum cs_step status = step(self, t, PAST_FRAMES, y, &self->last_step);
+    self->reached = t + self->last_step;
+    return status;
+}
+
+/* advance with steps that pass t1: those that reach beyond t go on in the next advance. */
+static enum cs_step pass_frames(struct adaptive_step *self, double t0, double t1, double *x,
+                                double *v) {
+    const struct cs_host *host = self->host;
+    enum cs_step status = CS_STEP_OK;
+    for (double t = t0, next; t < t1 && status == CS_STEP_OK; t = next) {
+        if (self->reached <= t)
+            status = step_past_frames(self, t, x);
+        if (status != CS_STEP_OK)
+            return status;
+        // the host sees the part of the step that lies in this advance
+        next = least(self->reached, t1);
+        if (next < self->reached)
+            self->interpolate(self, 1 - (self->reached - next) / self->last_step, x);
+        else
+            memcpy(x, self->next, self->length * sizeof *x);
+        self->changed = false;
+        status = host->commit(host->ctx, next, next - t, x, v, &self->changed);
+        if (self->changed) {
+            // the rest of the step began at another state
+            self->reached = next;
+            self->fresh = true;
+        }
+    }
+    return status;
+}
+
 enum cs_step adaptive_step_advance(void *object, double t0, double t1, double *x, double *v) {
     struct adaptive_step *self = object;
     const struct cs_host *host = self->host;
@@ -174,14 +236,13 @@ enum cs_step adaptive_step_advance(void *object, double t0, double t1, double *x
     self->begin = t0;
     self->end = t1;
     self->tries = 0;
+    if (self->start)
+        return pass_frames(self, t0, t1, x, v);
     for (double t = t0, h = 0; t < t1 && status == CS_STEP_OK;) {
-        prepare(self, t, t1 - t, x);
-        status = try_steps(self, t, x, &h);
+        status = step(self, t, t1 - t, x, &h);
         if (status != CS_STEP_OK)
             return status;
         memcpy(x, self->next, self->length * sizeof *x);
-        self->contact *= CONTACT_GROWTH;
-        self->fresh = !self->accept(self);
         /* ends at t1 itself, not at a sum that rounds beside it */
         t = h < t1 - t ? t + h : t1;
         self->changed = false;
@@ -192,8 +253,9 @@ enum cs_step adaptive_step_advance(void *object, double t0, double t1, double *x
 }
 
 enum cs_step adaptive_step_restart(void *object, double t, const double *x, const double *v) {
-    (void)t, (void)x, (void)v;
+    (void)x, (void)v;
     struct adaptive_step *self = object;
+    self->reached = t;
     self->control = (struct step_control){.power = self->control.power};
     self->contact = HUGE_VAL;
     self->fresh = true;
@@ -224,5 +286,11 @@ enum cs_step adaptive_step_archive(void *object, const struct cs_archive *archiv
     archive->reals(archive->ctx, &self->contact, 1);
     archive->reals(archive->ctx, &self->local_error, 1);
     archive->reals(archive->ctx, self->slope, self->length / 2);
+    if (self->start) {
+        archive->reals(archive->ctx, &self->reached, 1);
+        archive->reals(archive->ctx, &self->last_step, 1);
+        archive->reals(archive->ctx, self->start, self->length);
+        archive->reals(archive->ctx, self->next, self->length);
+    }
     return CS_STEP_OK;
 }

@@ -3,7 +3,8 @@
  * Error norm: the root of the mean, over the numbers that move, of (error / (atol + rtol
  * |y|))^2, |y| the larger of both ends of the step. A step is accepted at 1 or below;
  * step_control.h chooses the next one. The last steps before the end of an advance are cut so
- * that one ends there.
+ * that one ends there; but a method with an interpolant steps past that end where the host
+ * lets it (host->may_overstep), and steps then do not depend on frames.
  *
  * Contact shortens steps in two ways. host->longest_step bounds a step before it is tried. A
  * step that host->max_step_fraction refuses is tried again, shorter; that length bounds the
@@ -23,7 +24,8 @@ struct adaptive_options {
               "local error of a step, relative to the value"),                                 \
         CS_OPTION(struct_, atol, "", 0, 0, 1,                                                  \
                   "absolute local error in m and m/s; 0: rtol of the scene's own"),            \
-        CS_OPTION(struct_, dt_max, "s", 0, 0, 10, "maximum step; 0: one frame"),               \
+        CS_OPTION(struct_, dt_max, "s", 0, 0, 10,                                              \
+                  "maximum step; 0: one frame, 0.1 s if steps pass frames"),                   \
         CS_OPTION(struct_, max_steps, "", 1000000, 1, 1e9,                                     \
                   "maximum steps per frame, rejected ones included, before the run fails")
 
@@ -53,17 +55,25 @@ struct adaptive_step {
     bool started;   /* control.h was chosen */
     uint64_t rejected;
     double local_error; /* m, of all accepted steps, added up */
-    double begin, end; /* s, of the advance */
-    int64_t tries;     /* steps in it, rejected ones included */
+    double begin, end;  /* s, of the advance */
+    double *start;      /* (6n): the state at the begin of the last step; NULL: steps end at
+                         * frames. Then next is not touched between two steps. */
+    double reached;     /* s, the end of the last step, where start is not NULL */
+    double last_step;   /* s, its length */
+    int64_t tries;      /* steps in it, rejected ones included */
     adaptive_try *attempt;
     /* [after an accepted step] Makes slope that of the new state, if the method has it, and
      * returns whether it did. */
     bool (*accept)(struct adaptive_step *self);
     /* s, the longest step that the method can take at the state; NULL: any */
     double (*limit)(struct adaptive_step *self, double t, const double *y);
+    /* y (6n) = the state at the fraction theta, 0..1, of the last accepted step from start;
+     * leaves pinned particles at start + theta h v to the bit. NULL: no interpolant */
+    void (*interpolate)(struct adaptive_step *self, double theta, double *y);
 };
 
-/* Allocates the arrays and takes options; power: that of the local error in h. [create] */
+/* Allocates the arrays and takes options; power: that of the local error in h. interpolate is
+ * set before. [create] */
 enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host *host,
                                 const struct adaptive_options *options, int power);
 
@@ -81,7 +91,8 @@ double adaptive_step_norm(const struct adaptive_step *self, const double *values
 enum cs_step adaptive_step_restart(void *self, double t, const double *x, const double *v);
 enum cs_step adaptive_step_advance(void *self, double t0, double t1, double *x, double *v);
 void adaptive_step_stats(const void *self, struct cs_stats *out);
-/* save and load: the slope at the state, and what the control of the step knows. */
+/* save and load: the slope at the state, what the control of the step knows, and the ends of a
+ * step that passed the frame. */
 enum cs_step adaptive_step_archive(void *self, const struct cs_archive *archive);
 
 /* The common part of the descriptors of these methods. */

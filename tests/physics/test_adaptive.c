@@ -11,11 +11,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#define DRUM                                                                                   \
+#define DRUM DRUM_AT("20")
+#define DRUM_AT(fps)                                                                           \
     "{\"bodies\": [{\"cloth\": {\"grid\": [8, 8], \"start\": \"flat\","                        \
     " \"stretch\": [1.05, 1.05], \"bump\": 0.2}, \"mass\": {\"total\": 0.2},"                  \
     " \"springs\": {\"stretch\": 100, \"shear\": 30, \"bend\": 10, \"damping\": 0.02},"        \
-    " \"pins\": [\"edges\"]}], \"forces\": {\"drag\": 1e-3}, \"time\": {\"fps\": 20}}"
+    " \"pins\": [\"edges\"]}], \"forces\": {\"drag\": 1e-3}, \"time\": {\"fps\": " fps "}}"
 #define HANG                                                                                   \
     "{\"bodies\": [{\"cloth\": {\"grid\": [10, 10], \"size\": [1, 1], \"place\":"              \
     " {\"rotate\": [-0.38, 0, 0, 0.925]}}, \"mass\": {\"particle\": 0.0012}, \"springs\":"     \
@@ -154,26 +155,83 @@ TEST(families_agree) {
     }
 }
 
+/* A mass on three springs. */
+#define QUAD                                                                                   \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2]}, \"mass\": {\"particle\": 1},"               \
+    " \"springs\": {\"stretch\": 200}, \"pins\": [0]}]%s, \"time\": {\"fps\": %d}}"
+
+struct half_second {
+    double state[6 * 4];
+    uint64_t forces, rejected;
+};
+
+static struct half_second half_second(const char *method, const char *more, int fps) {
+    struct half_second out;
+    struct fixture cloth;
+    fixture_open(&cloth, method, QUAD, more, fps);
+    fixture_start(&cloth);
+    fixture_frames(&cloth, (uint32_t)fps / 2);
+    memcpy(out.state, cloth.x, sizeof out.state);
+    out.forces = cloth.session.run.counts.forces;
+    out.rejected = cloth.session.run.counts.method.rejected;
+    fixture_close(&cloth);
+    return out;
+}
+
 /* A step cut at every frame is no step thrown away, and the frames' number changes the end by
  * no more than the tolerance. */
 TEST(frames_do_not_disturb) {
-    static const char *const fps[] = {"20", "200"};
-    double state[2][6];
-    for (int k = 0; k < 2; k++) {
+    const struct half_second few = half_second("dop853:rtol=1e-8", "", 20);
+    const struct half_second many = half_second("dop853:rtol=1e-8", "", 200);
+    ck_assert_uint_lt(few.rejected, 5);
+    ck_assert_uint_lt(many.rejected, 5);
+    ck_assert_double_lt(cs_rms_difference(few.state, many.state, 24), 1e-7);
+}
+
+/* With an interpolant neither the motion nor its cost depends on how many frames there are.
+ * Where anything acts between steps each frame ends one. */
+TEST(steps_pass_frames) {
+    static const int fps[] = {30, 60, 240, 1200, 3000};
+    const char *const method = "dopri5:rtol=1e-6";
+    const struct half_second few = half_second(method, "", 24);
+    for (size_t k = 0; k < sizeof fps / sizeof *fps; k++) {
+        const struct half_second many = half_second(method, "", fps[k]);
+        ck_bits(few.state, many.state, 24, method);
+        ck_assert_uint_eq(few.forces, many.forces);
+    }
+    const char *const acts = ", \"forces\": {\"velocity_loss\": 1e-12}";
+    ck_assert_uint_gt(half_second(method, acts, 3000).forces, 2 * few.forces);
+}
+
+enum { INSIDE = 100 };
+
+/* The largest RMS error in m over frames that fall anywhere within steps of h. */
+static double error_within_steps(const char *method) {
+    static double reference[INSIDE][VALUES_MAX];
+    static bool known;
+    double most = 0;
+    for (int pass = known ? 1 : 0; pass < 2; pass++) {
         struct fixture cloth;
-        fixture_open(
-            &cloth, "dopri5:rtol=1e-8",
-            "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2]}, \"mass\": {\"particle\": 1},"
-            " \"springs\": {\"stretch\": 200}, \"pins\": [0]}],"
-            " \"time\": {\"fps\": %s}}",
-            fps[k]);
+        fixture_open(&cloth, pass ? method : "dop853:rtol=1e-13", "%s", DRUM_AT("1777"));
         fixture_start(&cloth);
-        fixture_frames(&cloth, k ? 100 : 10);
-        ck_assert_uint_lt(cloth.session.run.counts.method.rejected, 5);
-        memcpy(state[k], cloth.x, sizeof state[k]);
+        for (int k = 0; k < INSIDE; k++) {
+            fixture_frames(&cloth, 1);
+            if (!pass)
+                memcpy(reference[k], cloth.x, 6 * cloth.n * sizeof(double));
+            most = fmax(most, cs_rms_difference(cloth.x, reference[k], 3 * cloth.n));
+        }
         fixture_close(&cloth);
     }
-    ck_assert_double_lt(cs_rms_difference(state[0], state[1], 6), 1e-7);
+    known = true;
+    return most;
+}
+
+/* The interpolant of order 4 errs as h^5 within a step; cubic Hermite would as h^4. */
+TEST(interpolant_has_its_order) {
+    const double whole = error_within_steps("dopri5:rtol=0.1,dt_max=2e-3");
+    const double half = error_within_steps("dopri5:rtol=0.1,dt_max=1e-3");
+    ck_assert_msg(fabs(log2(whole / half) - 5) < 0.3, "order %.3f (errors %.3g m, %.3g m)",
+                  log2(whole / half), whole, half);
 }
 
 /* Lengths and gravity times a power of two: the motion is the same times that, to the bit,
