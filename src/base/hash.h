@@ -1,4 +1,4 @@
-/* hash.h - XXH3 hashes of 128 bits, as 32 hexadecimal digits and a zero byte. */
+/* hash.h - XXH3 hashes of 128 bits, as 32 hexadecimal digits and a zero byte; and CRC-32. */
 #ifndef CS_HASH_H
 #define CS_HASH_H
 
@@ -18,5 +18,9 @@ void cs_hash_bytes(const void *bytes, size_t length, char digits[CS_HASH_DIGITS]
  * CS_ERR_FILE digits is empty. */
 enum cs_status cs_hash_file(const char *path, uint64_t *size, char digits[CS_HASH_DIGITS],
                             struct cs_error *error);
+
+/* CRC-32 of ZIP archives (ISO 3309), continued from that of the bytes before, 0 at the start.
+ */
+uint32_t cs_hash_crc32(uint32_t crc, const void *bytes, size_t length);
 
 #endif

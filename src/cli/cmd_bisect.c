@@ -1,7 +1,7 @@
 /* clothsim bisect: finds the first difference of two runs of a scene. */
+#include "base/install_paths.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "sim/install_paths.h"
 #include "study/bisect.h"
 
 #include <stdio.h>

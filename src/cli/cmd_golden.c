@@ -1,11 +1,11 @@
 /* clothsim golden: recomputes golden hashes and images, and reports differences.
  *
  *   options -> cs_golden_check: per row a run, its hash or picture, a verdict -> counts */
+#include "base/install_paths.h"
 #include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "sim/install_paths.h"
 #include "study/compare/compare_curves.h"
 #include "study/golden/golden.h"
 #include "study/recorded_run.h"

@@ -2,11 +2,11 @@
  *
  *   FILE -> a comparison: cells -> cs_plot_make; a stability map or other numbers:
  *   cs_table_plot_make -> the terminal, or NAME.png, NAME.svg, NAME.pdf */
+#include "base/install_paths.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/show/screen.h"
 #include "cli/table_plot.h"
-#include "sim/install_paths.h"
 #include "study/compare/compare_curves.h"
 
 #include <stdio.h>

@@ -5,13 +5,13 @@
  *
  * With --extreme the catalogue of extreme scenes is run instead (study/stability/extreme.h). An
  * interrupted map resumes from its journal when the command is repeated. */
+#include "base/install_paths.h"
 #include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/run_output.h"
 #include "cli/stability_map.h"
-#include "sim/install_paths.h"
 #include "study/process_pool.h"
 #include "study/recorded_run.h"
 #include "study/stability/extreme.h"

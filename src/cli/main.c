@@ -5,10 +5,10 @@
  * A command that is a program of its own (tools/) has this main too, with no other command in
  * its table: it is started in place of this one, with the same words. */
 #include "base/ieee_check.h"
+#include "base/install_paths.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/output_keys.h"
-#include "sim/install_paths.h"
 
 #include <errno.h>
 #include <fcntl.h>

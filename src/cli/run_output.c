@@ -2,12 +2,12 @@
 #include "cli/run_output.h"
 
 #include "base/file.h"
+#include "base/install_paths.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "io/export/export.h"
 #include "io/file_conflicts.h"
 #include "io/npy.h"
-#include "sim/install_paths.h"
 #include "study/process_pool.h"
 
 #include <dirent.h>

@@ -2,12 +2,12 @@
 #include "cli/stability_map.h"
 
 #include "base/file.h"
+#include "base/install_paths.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
 #include "cli/run_output.h"
 #include "cli/show/screen.h"
 #include "cli/table_plot.h"
-#include "sim/install_paths.h"
 #include "study/stability/stability.h"
 
 #include <stdio.h>

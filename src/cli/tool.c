@@ -1,7 +1,7 @@
 /* Starts and asks the program of a command that is one of its own: clothsim-NAME of tools/. */
+#include "base/install_paths.h"
 #include "cli/commands.h"
 #include "io/subprocess.h"
-#include "sim/install_paths.h"
 
 #include <errno.h>
 #include <string.h>

@@ -3,9 +3,9 @@
 #include "draw/render.h"
 
 #include "base/file.h"
+#include "base/install_paths.h"
 #include "draw/diagram.h"
 
-#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -22,38 +22,12 @@ static const char *const packages[] = {[CS_RENDERER_CPU] = NULL,
                                        [CS_RENDERER_OSMESA] = "libosmesa6-dev",
                                        [CS_RENDERER_EGL] = "libegl-dev"};
 
-/* Loads FOLDER/NAME.so and finds its table, which begins with its ABI. package: of Debian, that
- * builds it; NULL: it is always built. Returns NULL after failure: CS_ERR_MODULE. */
-static const void *open_module(const char *folder, const char *name, const char *symbol,
-                               unsigned abi, const char *package, struct cs_error *error) {
-    char path[4352];
-    snprintf(path, sizeof path, "%s/%s.so", folder, name);
-    if (access(path, R_OK) != 0) {
-        cs_fail(error, CS_ERR_MODULE, "no module %s: %s%s", path,
-                package ? "build clothsim with the Debian package " : "install clothsim again",
-                package ? package : "");
-        return NULL;
-    }
-    // never closed: the driver leaves threads and exit handlers behind
-    void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    const unsigned *found = module ? dlsym(module, symbol) : NULL;
-    if (!module)
-        cs_fail(error, CS_ERR_MODULE, "%s cannot be loaded: %s", name, dlerror());
-    else if (!found)
-        cs_fail(error, CS_ERR_MODULE, "%s is no module that draws", path);
-    else if (*found != abi)
-        cs_fail(error, CS_ERR_MODULE,
-                "%s has interface version %u, %u expected: install clothsim again", path,
-                *found, abi);
-    return error->status ? NULL : found;
-}
-
 static enum cs_status open_one(const char *folder, enum cs_renderer_kind kind,
                                const struct cs_renderer **renderer, struct cs_error *error) {
     char name[64];
     snprintf(name, sizeof name, "render-%s", cs_renderer_names[kind]);
-    const struct cs_renderer *found =
-        open_module(folder, name, "clothsim_renderer", CS_RENDERER_ABI, packages[kind], error);
+    const struct cs_renderer *found = cs_table_open(folder, name, "clothsim_renderer",
+                                                    CS_RENDERER_ABI, packages[kind], error);
     if (found && (!found->create || !found->paint || !found->description || !found->destroy))
         return cs_fail(error, CS_ERR_MODULE, "%s lacks a call: install clothsim again", name);
     *renderer = found;
@@ -101,7 +75,7 @@ static void draw_and_exit(const struct cs_diagram_module *module,
 static enum cs_status draw(const char *folder, const struct cs_diagram *diagram,
                            enum cs_format format, char **bytes, size_t *length,
                            struct cs_error *error) {
-    const struct cs_diagram_module *module = open_module(
+    const struct cs_diagram_module *module = cs_table_open(
         folder, "diagram-cairo", "clothsim_diagram", CS_DIAGRAM_ABI, "libcairo2-dev", error);
     struct cs_text out = {0};
     char part[4096];

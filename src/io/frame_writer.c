@@ -30,9 +30,9 @@ struct slot {
 
 /* Members after `lock` may be read and written only with the lock held. */
 struct cs_frame_writer {
-    char *folder;               /* owned */
-    struct cs_png_encoder work; /* of the encoder */
-    uint32_t depth;             /* slots in use */
+    char *folder;   /* owned */
+    int level;      /* of compression */
+    uint32_t depth; /* slots in use */
     struct slot slots[DEPTH];
     bool threaded;
     pthread_t worker;
@@ -53,7 +53,7 @@ static void encode(struct cs_frame_writer *frames, struct slot *slot, struct cs_
     if (length < 0 || (size_t)length >= sizeof path)
         cs_fail(error, CS_ERR_FILE, "the path of frame %u is too long", slot->number);
     else
-        cs_png_write_next(&frames->work, path, &slot->image, slot->texts, slot->n_texts, error);
+        cs_png_write_next(path, &slot->image, frames->level, slot->texts, slot->n_texts, error);
     cs_arena_finish(&slot->arena);
 }
 
@@ -107,13 +107,15 @@ enum cs_status cs_frame_writer_create(const char *folder,
                                       const struct cs_frame_writer_settings *settings,
                                       struct cs_frame_writer **frames, struct cs_error *error) {
     CS_ASSERT(settings->width && settings->height);
-    struct cs_frame_writer *made = calloc(1, sizeof *made);
     *frames = NULL;
+    if (cs_png_load(error))
+        return error->status;
+    struct cs_frame_writer *made = calloc(1, sizeof *made);
     if (!made)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for frames");
     pthread_mutex_init(&made->lock, NULL);
     pthread_cond_init(&made->changed, NULL);
-    made->work.level = settings->level;
+    made->level = settings->level;
     bool enough = (made->folder = strdup(folder)) != NULL;
     made->depth = settings->threaded ? DEPTH : 1;
     for (uint32_t i = 0; enough && i < made->depth; i++)
@@ -205,7 +207,6 @@ void cs_frame_writer_destroy(struct cs_frame_writer *frames) {
         free(frames->slots[i].image.rgb);
         free(frames->slots[i].image.alpha);
     }
-    cs_png_encoder_finish(&frames->work);
     free(frames->folder);
     free(frames);
 }

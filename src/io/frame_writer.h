@@ -17,8 +17,8 @@ struct cs_frame_writer_settings {
 };
 
 /* Creates a writer into an existing folder. Allocates two images (one without a thread). If the
- * thread cannot be started, frames are written in the caller. CS_ERR_MEMORY; *frames is then
- * NULL. */
+ * thread cannot be started, frames are written in the caller. CS_ERR_MEMORY, or CS_ERR_MODULE
+ * without the module that writes PNG; *frames is then NULL. */
 enum cs_status cs_frame_writer_create(const char *folder,
                                       const struct cs_frame_writer_settings *settings,
                                       struct cs_frame_writer **frames, struct cs_error *error);

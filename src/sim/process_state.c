@@ -2,7 +2,7 @@
  * the view of the system that it sees. */
 #include "sim/process_state.h"
 
-#include "sim/install_paths.h"
+#include "base/install_paths.h"
 
 #include <dlfcn.h>
 #include <errno.h>

@@ -3,8 +3,8 @@
 #include "sim/registry.h"
 
 #include "base/file.h"
+#include "base/install_paths.h"
 #include "base/text.h"
-#include "sim/install_paths.h"
 #include "sim/module.h"
 
 #include <dirent.h>

@@ -3,8 +3,8 @@
 #define CS_REGISTRY_H
 
 #include "base/arena.h"
+#include "base/install_paths.h"
 #include "base/status.h"
-#include "sim/install_paths.h"
 
 #include <clothsim/integrator.h>
 

@@ -6,10 +6,10 @@
 #ifndef CS_FRAME_PICTURE_H
 #define CS_FRAME_PICTURE_H
 
+#include "base/install_paths.h"
 #include "base/worker_thread.h"
 #include "draw/look.h"
 #include "draw/render.h"
-#include "sim/install_paths.h"
 #include "sim/run.h"
 
 /* A ramp of a number that only pictures show (cs_event_key_is_picture). */

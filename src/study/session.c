@@ -2,12 +2,12 @@
 #include "study/session.h"
 
 #include "base/arena.h"
+#include "base/install_paths.h"
 #include "base/options.h"
 #include "base/pool.h"
 #include "model/plan.h"
 #include "scene/body_pairs.h"
 #include "scene/shape.h"
-#include "sim/install_paths.h"
 #include "study/perturb.h"
 
 #include <math.h>

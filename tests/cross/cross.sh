@@ -37,9 +37,9 @@ build() {
     fi
     [ -f "$build/build.ninja" ] || CC=${compiler%-*} meson setup "$build" $(options "$1") \
         -Dwerror=true -Doptimization="${1##*-O}" -Ddebug=false -Dsundials=disabled -Dcholmod=disabled \
-        -Drender=disabled -Ddeflate=disabled -Dman=disabled -Dtests=disabled || return 1
+        -Drender=disabled -Dman=disabled -Dtests=disabled || return 1
     ninja -C "$build" clothsim $(ninja -C "$build" -t targets all | sed -n 's/: .*//p' |
-        grep -xE '(plugins/[^/]*|src/draw/render-cpu)[.]so')
+        grep -xE '(plugins/[^/]*|src/draw/(render-cpu|png-libpng))[.]so')
 }
 
 mkdir -p "$folder/table/golden"

@@ -1,7 +1,10 @@
-/* The hash is the published XXH3-128, and the same for the same doubles everywhere. */
+/* The hash is the published XXH3-128, and the same for the same doubles everywhere; CRC-32 is
+ * zlib's. */
 #include "base/file.h"
 #include "base/hash.h"
 #include "unit.h"
+
+#include <zlib.h>
 
 /* canonical digits as `xxh128sum` prints them */
 TEST(bytes_match_known_digests) {
@@ -83,4 +86,20 @@ TEST(one_bit_changes_the_hash) {
     values[63] = -0.0;
     cs_hash_doubles(values, 64, after);
     ck_assert_str_ne(before, after);
+}
+
+/* the check value of the catalogue of CRC algorithms, then zlib's for all lengths and starts */
+TEST(crc_is_that_of_zlib) {
+    unsigned char bytes[100];
+    ck_assert_uint_eq(cs_hash_crc32(0, "123456789", 9), 0xcbf43926u);
+    for (size_t i = 0; i < sizeof bytes; i++)
+        bytes[i] = (unsigned char)(i * i * 31 / 7);
+    for (size_t begin = 0; begin < 9; begin++)
+        for (size_t n = 0; begin + n <= sizeof bytes; n++) {
+            const uint32_t whole = cs_hash_crc32(0, bytes + begin, n);
+            UNIT_ASSERT_OFTEN(whole == crc32(0, bytes + begin, (unsigned)n));
+            // in two pieces
+            UNIT_ASSERT_OFTEN(cs_hash_crc32(cs_hash_crc32(0, bytes + begin, n / 3),
+                                            bytes + begin + n / 3, n - n / 3) == whole);
+        }
 }

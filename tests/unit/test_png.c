@@ -127,24 +127,6 @@ TEST(pictures_may_have_alpha) {
     free(back.rgb);
 }
 
-/* larger, smaller and larger again than the memory that is there */
-TEST(pictures_share_work_memory) {
-    static const uint32_t sizes[][2] = {{7, 3}, {64, 48}, {1, 1}, {300, 200}};
-    struct cs_error error = {0};
-    struct cs_png_encoder work = {.level = 1};
-    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
-        struct cs_image image = make_picture(sizes[k][0], sizes[k][1]), back;
-        cs_png_write_next(&work, "w.png", &image, NULL, 0, &error);
-        cs_png_read("w.png", &back, &error);
-        UNIT_ASSERT_OK(&error);
-        ck_assert_uint_eq(back.width, image.width);
-        ck_assert_mem_eq(back.rgb, image.rgb, 3 * (size_t)image.width * image.height);
-        free(image.rgb);
-        free(back.rgb);
-    }
-    cs_png_encoder_finish(&work);
-}
-
 TEST(same_picture_same_bytes) {
     struct cs_error error = {0};
     struct cs_image image = make_picture(50, 40);

@@ -3,10 +3,10 @@
  *   NAME -> the template with its names replaced, and a Makefile -> a folder
  * The template is plugins/template.c, whose lines are built in. */
 #include "base/file.h"
+#include "base/install_paths.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/run_output.h"
-#include "sim/install_paths.h"
 
 #include <stdlib.h>
 #include <string.h>

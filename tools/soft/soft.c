@@ -2,7 +2,7 @@
 #include "soft/soft.h"
 
 #include "base/clock.h"
-#include "sim/install_paths.h"
+#include "base/install_paths.h"
 #include "study/follow.h"
 #include "study/frame_picture.h"
 

@@ -5,11 +5,11 @@
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
 #include "cli/run_output.h"
+#include "io/png.h"
 #include "study/contact_capacity.h"
 #include "study/provenance_write.h"
 
 #include <cjson/cJSON.h>
-#include <png.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,7 +19,7 @@ static void add_versions(const struct cs_job *job, struct cs_text *out) {
     cs_json_write(out, "  'versions': {'clothsim': %s, 'cjson': %s", CS_VERSION,
                   cJSON_Version());
     if (job->settings->session.render)
-        cs_json_write(out, ", 'libpng': %s", png_get_libpng_ver(NULL));
+        cs_json_write(out, ", 'libpng': %s", cs_png_version());
     cs_json_write(out, "},\n  'renderer': %s,\n  'threads': %u,\n",
                   job->renderer.length ? cs_text_get(&job->renderer) : NULL, cs_pool_threads());
 }

@@ -19,10 +19,11 @@
  */
 #include "io/export/writer.h"
 
+#include "base/hash.h"
+
 #include <endian.h>
 #include <errno.h>
 #include <string.h>
-#include <zlib.h>
 
 /* version 4.5 is the first with sizes of 64 bits; the date is 1 January 1980 */
 enum { VERSION = 45, DATE = 1 << 5 | 1, LONG_EXTRA = 1, ELSEWHERE = 0xffff };
@@ -80,14 +81,16 @@ void cs_zip_begin(struct cs_zip *zip, const char *name, uint64_t bytes) {
     CS_ASSERT(zip->n < CS_ZIP_MEMBERS_MAX);
     struct cs_zip_member *member = zip->members + zip->n++;
     *member = (struct cs_zip_member){
-        .offset = zip->offset, .bytes = bytes, .crc = (uint32_t)crc32(0, NULL, 0)};
+        .offset = zip->offset,
+        .bytes = bytes,
+    };
     snprintf(member->name, sizeof member->name, "%s", name);
     put_header(zip, member);
 }
 
 void cs_zip_put(struct cs_zip *zip, const void *bytes, size_t n) {
     struct cs_zip_member *member = zip->members + zip->n - 1;
-    member->crc = (uint32_t)crc32_z(member->crc, bytes, n);
+    member->crc = cs_hash_crc32(member->crc, bytes, n);
     zip->offset += fwrite(bytes, 1, n, zip->file);
 }
 

@@ -2,6 +2,7 @@
 #include "scene/file/key_frames_read.h"
 
 #include "base/file.h"
+#include "base/hash.h"
 #include "base/serialise.h"
 #include "base/text.h"
 #include "scene/file/mesh_read.h"
@@ -10,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 enum {
     FILE_BYTES_MAX = 1 << 30,
@@ -238,7 +238,7 @@ static enum cs_status read_npz(const struct input *in) {
         return in->error->status;
     if (npy.bytes - begin != 3 * bytes * shape[0] * shape[1])
         return fail(in, "%.60s has another size than its header says", array);
-    if (npy.crc != crc32_z(0, npy.data, (size_t)npy.bytes))
+    if (npy.crc != cs_hash_crc32(0, npy.data, (size_t)npy.bytes))
         return fail(in, "%.60s is damaged: its checksum differs", array);
     return set_positions(in, npy.data + begin, bytes);
 }

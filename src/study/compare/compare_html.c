@@ -1,6 +1,6 @@
 /* Prints a comparison as one HTML file that needs no other: legible from 400 pixels on, and
  * printed on paper. */
-#include "sim/install_paths.h"
+#include "base/install_paths.h"
 #include "study/compare/compare.h"
 #include "study/compare/compare_curves.h"
 #include "study/compare/ranking.h"

@@ -3,8 +3,8 @@
 #include "study/compare/compare.h"
 
 #include "base/file.h"
+#include "base/install_paths.h"
 #include "base/json_writer.h"
-#include "sim/install_paths.h"
 #include "study/compare/compare_curves.h"
 #include "study/compare/ranking.h"
 #include "study/provenance_write.h"

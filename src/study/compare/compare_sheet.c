@@ -2,9 +2,9 @@
 #include "study/compare/compare.h"
 
 #include "base/file.h"
+#include "base/install_paths.h"
 #include "draw/look.h"
 #include "io/png.h"
-#include "sim/install_paths.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,10 +1,11 @@
 /* install_paths.c - finds the program's own files: in its build tree, or where they are
  * installed beside it. */
-#include "sim/install_paths.h"
+#include "base/install_paths.h"
 
 #include "base/text.h"
 
 #include <dirent.h>
+#include <dlfcn.h>
 #include <limits.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -144,6 +145,30 @@ const char *cs_tool_path(const char *command, char *out, size_t size) {
     char folder[FOLDER_MAX];
     snprintf(out, size, "%s/clothsim-%s", find(&tools, folder), command);
     return out;
+}
+
+const void *cs_table_open(const char *folder, const char *name, const char *symbol,
+                          unsigned abi, const char *package, struct cs_error *error) {
+    char path[FOLDER_MAX + 256];
+    snprintf(path, sizeof path, "%s/%s.so", folder, name);
+    if (access(path, R_OK) != 0) {
+        cs_fail(error, CS_ERR_MODULE, "no module %s: %s%s", path,
+                package ? "build clothsim with the Debian package " : "install clothsim again",
+                package ? package : "");
+        return NULL;
+    }
+    // never closed: a driver leaves threads and exit handlers behind
+    void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    const unsigned *found = module ? dlsym(module, symbol) : NULL;
+    if (!module)
+        cs_fail(error, CS_ERR_MODULE, "%s cannot be loaded: %s", name, dlerror());
+    else if (!found)
+        cs_fail(error, CS_ERR_MODULE, "%s is no module for pictures", path);
+    else if (*found != abi)
+        cs_fail(error, CS_ERR_MODULE,
+                "%s has interface version %u, %u expected: install clothsim again", path,
+                *found, abi);
+    return error->status ? NULL : found;
 }
 
 /* The path if it exists, or that of an installed file; else NULL. */

@@ -2,6 +2,8 @@
 #ifndef CS_INSTALL_PATHS_H
 #define CS_INSTALL_PATHS_H
 
+#include "base/status.h"
+
 #include <stddef.h>
 
 /* Bytes that suffice for the result of cs_data_find. */
@@ -27,6 +29,12 @@ const char *cs_tool_path(const char *command, char *out, size_t size);
  * moved. Absolute and static. */
 const char *cs_module_folder(void);
 const char *cs_renderer_folder(void);
+
+/* Loads FOLDER/NAME.so, a module for pictures, and returns its table `symbol`, which begins
+ * with the version of its interface. It stays loaded. package: of Debian, that builds it; NULL:
+ * it is always built. Returns NULL after failure: CS_ERR_MODULE. */
+const void *cs_table_open(const char *folder, const char *name, const char *symbol,
+                          unsigned abi, const char *package, struct cs_error *error);
 
 /* Finds a data file or folder. Returns the path itself if it exists or is absolute. Else the
  * path of an installed file of this name ("scenes/hang.json"), written to out (size bytes,
