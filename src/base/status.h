@@ -12,7 +12,7 @@
     X(CS_ERR_MODULE, 5, "an integrator or renderer module cannot be used, or failed")          \
     X(CS_ERR_INTERNAL, 6, "an error in clothsim itself")                                       \
     X(CS_ERR_MEMORY, 7, "out of memory")                                                       \
-    X(CS_ERR_UNSTABLE, 8, "with --strict: a run blew up, or a cell of a study failed")         \
+    X(CS_ERR_UNSTABLE, 8, "no answer; with --strict: a run blew up, or a cell failed")         \
     X(CS_ERR_INTERRUPT, 130, "interrupted by SIGINT; by signal N: 128 + N; results are saved")
 
 enum cs_status {

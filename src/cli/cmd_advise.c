@@ -20,8 +20,7 @@
 #include "study/stability/stability_state.h"
 
 #include <math.h>
-
-/* Advice as aligned text. */
+#include <string.h>
 
 /* The stiffest spring at a particle. */
 struct spring {
@@ -113,6 +112,9 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
     }
     if (row->cut > 0)
         cs_text_add(out, "; its reference was over budget at %.3g s", row->cut);
+    if (row->steps_ahead > 0)
+        cs_text_add(out, "; without a reference, because %.3g explicit steps exceed the budget",
+                    row->steps_ahead);
     if (row->mode_growth > 0)
         cs_text_add(out, "; its worst mode grows at %.2g /s", row->mode_growth);
     /* a message says more than the verdict; a sound run needs neither */
@@ -205,11 +207,9 @@ static void advise_print(const struct cs_advise *advise, struct cs_text *out) {
                 advise->bisect_too ? "   found [s]" : "", "steps/frame", "ms/frame");
     for (uint32_t k = 0; k < advise->n; k++) {
         const struct cs_advice *row = advise->rows + k;
-        const bool fixed = row->kind != CS_ADVICE_ADAPTIVE && row->kind != CS_ADVICE_NONE &&
-                           row->kind != CS_ADVICE_REFUSED;
         cs_text_add(out, "%-22s", row->method);
         add_number(out, row->limit, 12);
-        add_number(out, fixed ? row->safe : 0, 12);
+        add_number(out, cs_advice_has_step(row) ? row->safe : 0, 12);
         if (advise->bisect_too)
             add_number(out, row->measured, 12);
         add_number(out, row->steps, 12);
@@ -238,11 +238,9 @@ static enum cs_status write_json(const struct cs_advise *advise, const char *pat
                   advise->session.scene, advise->seconds);
     for (uint32_t k = 0; k < advise->n; k++) {
         const struct cs_advice *row = advise->rows + k;
-        const bool fixed = row->kind != CS_ADVICE_ADAPTIVE && row->kind != CS_ADVICE_NONE &&
-                           row->kind != CS_ADVICE_REFUSED;
         cs_json_write(&out, ",\n    {'method': %s, 'kind': %s", row->method, kinds[row->kind]);
         add_json_number("limit", row->limit, &out);
-        add_json_number("advised", fixed ? row->safe : 0, &out);
+        add_json_number("advised", cs_advice_has_step(row) ? row->safe : 0, &out);
         add_json_number("found", row->measured, &out);
         add_json_number("steps_per_frame", row->steps, &out);
         add_json_number("seconds_per_frame", row->frame_cost, &out);
@@ -252,8 +250,6 @@ static enum cs_status write_json(const struct cs_advise *advise, const char *pat
     cs_text_add(&out, "\n  ]\n}\n");
     return cs_print_file(path, &out, error);
 }
-
-#include <string.h>
 
 struct options {
     struct cs_advise study;
@@ -384,6 +380,8 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
         advise_print(study, &out);
         cs_print_out(stdout, &out, error);
     }
+    if (!error->status)
+        cs_advise_check(study, error);
     cs_advise_finish(study);
     return error->status;
 }

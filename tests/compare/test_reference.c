@@ -187,7 +187,7 @@ static struct cs_horizon drape(const char *damping, double accuracy) {
     scene_write(path, DRAPE, damping);
     const struct cs_recorded_run_settings recording = {.session = {.scene = path},
                                                        .frames = 200};
-    cs_horizon_measure(&horizon, &recording, accuracy, NULL, &error);
+    cs_horizon_measure(&horizon, &recording, accuracy, "velocity-verlet", NULL, &error);
     ck_assert_msg(!error.status, "%s", error.message);
     return horizon;
 }

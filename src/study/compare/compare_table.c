@@ -23,11 +23,25 @@ void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *ou
         cs_text_add(out, "  no reference: %s\n", reference->reason);
         return;
     }
-    cs_text_add(out,
-                " error bar %.1e m (twins %.1e, %.1e; families %.1e); the motion is %.2g m%s\n",
-                reference->error_bar, reference->differences[0], reference->differences[1],
-                reference->differences[2], reference->motion_scale,
-                reference->cached ? "; from the cache" : "");
+    if (reference->explicit_passes > 0)
+        cs_text_add(
+            out,
+            "           implicit methods alone: explicit ones would take %.2g evaluations "
+            "of the forces\n",
+            reference->explicit_passes);
+    if (reference->has_one_family)
+        cs_text_add(out,
+                    " error bar %.1e m, between twins of one family: no second one finished "
+                    "(%s); the motion is %.2g m%s\n",
+                    reference->error_bar, reference->reason, reference->motion_scale,
+                    reference->cached ? "; from the cache" : "");
+    else
+        cs_text_add(
+            out,
+            " error bar %.1e m (twins %.1e, %.1e; families %.1e); the motion is %.2g m%s\n",
+            reference->error_bar, reference->differences[0], reference->differences[1],
+            reference->differences[2], reference->motion_scale,
+            reference->cached ? "; from the cache" : "");
     cs_text_add(out, "   horizon ");
     if (horizon->time <= compare->time)
         cs_text_add(out, "%.3g s", horizon->time);

@@ -12,8 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Stores a reference in a file for further comparisons of the
- * scene. */
+/* Stores a reference in a file for further comparisons of the scene. */
 
 #define MAGIC "clothsim ref 1\n"
 
@@ -215,6 +214,11 @@ static void measure_bar(struct cs_compare_reference *reference, const struct cs_
                         const struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS]) {
     double largest[3];
     compare(system, tracks, tracks + 1, reference->differences, largest);
+    reference->error_bar = reference->differences[0];
+    reference->error_bar_max = largest[0];
+    reference->differences[1] = reference->differences[2] = (double)NAN;
+    if (reference->has_one_family)
+        return;
     compare(system, tracks + 2, tracks + 3, reference->differences + 1, largest + 1);
     compare(system, tracks + 1, tracks + 3, reference->differences + 2, largest + 2);
     // what the looser twin of the other family is off by is no error of the reference
@@ -233,6 +237,15 @@ static bool has_disagreement(const struct cs_compare_reference *reference) {
 static void judge(struct cs_compare_reference *reference) {
     const double *differences = reference->differences;
     const double own = fmax(differences[0], differences[1]);
+    const bool is_lost = reference->explicit_passes > 0 && !(reference->motion_scale > 0);
+    reference->families_agree = reference->has_one_family && !is_lost;
+    if (is_lost)
+        snprintf(
+            reference->reason, sizeof reference->reason,
+            "nothing moves: the scene is at rest, or its weight is lost in the rounding of "
+            "its springs");
+    if (is_lost || reference->has_one_family)
+        return;
     const char *first = reference->methods[0], *second = reference->methods[2];
     reference->families_agree =
         differences[2] <= fmax(EXPLAINED * own, FLOOR * reference->motion_scale);
@@ -242,27 +255,6 @@ static void judge(struct cs_compare_reference *reference) {
                  "tighter twins: the two families do not solve the same problem",
                  (int)strcspn(first, ":"), first, (int)strcspn(second, ":"), second,
                  differences[2], differences[0], differences[1]);
-}
-
-/* Pointwise errors need families that agree, a horizon beyond the end, and an error bar below
- * the requested accuracy. */
-static void judge_horizon(struct cs_compare_reference *reference) {
-    const double time = reference->trajectory.frames / reference->trajectory.fps;
-    const struct cs_horizon *horizon = &reference->horizon;
-    reference->pointwise = false;
-    if (!reference->families_agree)
-        return;
-    if (!(horizon->time > time))
-        snprintf(reference->reason, sizeof reference->reason,
-                 "a displacement of %.0g m in one particle grows %.2g times and reaches %.0g m "
-                 "at %.3g s: errors of single particles have no meaning after that time",
-                 CS_HORIZON_START, horizon->growth, reference->accuracy, horizon->time);
-    else if (reference->error_bar > reference->accuracy)
-        snprintf(reference->reason, sizeof reference->reason,
-                 "the reference is accurate only to %.2g m, but %.2g m was requested",
-                 reference->error_bar, reference->accuracy);
-    else
-        reference->pointwise = true;
 }
 
 /* Records runs `from` to `to` - 1. Returns false if one of them ended early or *error is set.
@@ -324,6 +316,18 @@ static enum cs_status ask_another(struct cs_compare_reference *reference,
     return error->status;
 }
 
+/* Runs the second family. Where explicit methods are too dear, the twins of the first are a
+ * reference by themselves if the second does not finish: Richardson's comparison of two steps.
+ * Returns false if there is no reference. */
+static bool has_second(struct cs_compare_reference *reference,
+                       const struct cs_compare_reference_settings *settings,
+                       struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS],
+                       struct cs_error *error) {
+    const bool good = run_second(reference, settings, tracks, error);
+    reference->has_one_family = !good && !error->status && reference->explicit_passes > 0;
+    return good || reference->has_one_family;
+}
+
 /* The four runs; the tighter twin of the first family becomes the reference. */
 static enum cs_status compute(struct cs_compare_reference *reference,
                               const struct cs_recorded_run *probe,
@@ -332,7 +336,7 @@ static enum cs_status compute(struct cs_compare_reference *reference,
     const struct cs_system *system = &probe->session.system;
     struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS] = {0};
     if (run_some(reference, 0, 2, settings, tracks, error) &&
-        run_second(reference, settings, tracks, error)) {
+        has_second(reference, settings, tracks, error)) {
         reference->trajectory = tracks[1];
         measure_motion(reference, system);
         measure_bar(reference, system, tracks);
@@ -343,9 +347,7 @@ static enum cs_status compute(struct cs_compare_reference *reference,
         tracks[1] = (struct cs_trajectory){0};
         tell(settings, CS_COMPARE_REFERENCE_RUNS, "horizon");
         if (!error->status)
-            cs_horizon_measure(&reference->horizon, settings->run, settings->accuracy,
-                               reference->methods[0], error);
-        judge_horizon(reference);
+            cs_compare_reference_judge_horizon(reference, settings->run, error);
     }
     for (int k = 0; k < CS_COMPARE_REFERENCE_RUNS; k++)
         cs_trajectory_finish(tracks + k);
@@ -358,7 +360,7 @@ enum cs_status cs_compare_reference_plan(struct cs_compare_reference *reference,
     char chosen[2][256];
     struct cs_recorded_run probe = {0};
     *reference = (struct cs_compare_reference){.accuracy = settings->accuracy};
-    if (cs_compare_reference_choose(settings, chosen, reference->replacement, error) ||
+    if (cs_compare_reference_choose(settings, chosen, reference, error) ||
         name_twins(reference, 0, chosen[0], error) ||
         name_twins(reference, 1, chosen[1], error))
         return error->status;

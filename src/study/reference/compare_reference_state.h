@@ -21,12 +21,12 @@ struct cs_horizon {
     double time; /* s of the first frame with an RMS distance of the accuracy; HUGE_VAL: none */
 };
 
-/* Measures with velocity-verlet at its own step, or with `fallback` ("NAME:options") if that
- * does not finish. If neither finishes, growth is NAN and time 0. accuracy in m.
- * CS_ERR_INTERRUPT, CS_ERR_MEMORY, CS_ERR_MODULE. */
+/* Measures with `first` ("NAME:options"), or with `fallback` if that does not finish; NULL:
+ * none. If neither finishes, growth is NAN and time 0. accuracy in m. CS_ERR_INTERRUPT,
+ * CS_ERR_MEMORY, CS_ERR_MODULE. */
 enum cs_status cs_horizon_measure(struct cs_horizon *horizon,
                                   const struct cs_recorded_run_settings *settings,
-                                  double accuracy, const char *fallback,
+                                  double accuracy, const char *first, const char *fallback,
                                   struct cs_error *error);
 
 enum { CS_COMPARE_REFERENCE_RUNS = 4 };
@@ -55,6 +55,10 @@ struct cs_compare_reference {
     double strain;         /* largest */
     double accuracy;       /* m, as asked for */
     struct cs_horizon horizon;
+    double explicit_passes; /* evaluations of the forces that four explicit runs would take,
+                               where they are too dear and implicit ones stand for them; 0: they
+                               do not */
+    bool has_one_family;    /* the second did not finish: the bar is the distance of twins */
     bool families_agree;
     bool pointwise;   /* errors at the end of the time mean something */
     bool cached;      /* read from the cache */
@@ -68,10 +72,23 @@ struct cs_compare_reference {
 enum cs_status cs_compare_reference_tighten(const char *integrator, char *out, size_t size,
                                             struct cs_error *error);
 
-/* Chooses the best available method of each family, with its settings. instead: the next
- * candidate for the second family; "" if there is none or both families are given. */
+/* Chooses the best available method of each family, with its settings. reference->replacement:
+ * the next candidate for the second family; "" if there is none or both families are given.
+ * Sets reference->explicit_passes where two explicit families would take more than 600 nominal
+ * s (cs_pass_seconds), and chooses two implicit ones with steps of a quarter of a frame. */
 enum cs_status cs_compare_reference_choose(const struct cs_compare_reference_settings *settings,
-                                           char chosen[2][256], char instead[256],
+                                           char chosen[2][256],
+                                           struct cs_compare_reference *reference,
                                            struct cs_error *error);
+
+/* Measures the horizon and decides whether there are pointwise errors: these need families that
+ * agree, a horizon beyond the end, and an error bar below the accuracy. The bar of implicit
+ * families is the accuracy if it is larger, up to a tenth of the motion; their own method
+ * measures the horizon. A bar above that leaves statistics, and a growth of NAN. Errors as of
+ * cs_horizon_measure. */
+enum cs_status
+cs_compare_reference_judge_horizon(struct cs_compare_reference *reference,
+                                   const struct cs_recorded_run_settings *settings,
+                                   struct cs_error *error);
 
 #endif

@@ -5,6 +5,10 @@
 
 #include <math.h>
 
+/* Fraction of the motion that the bar of implicit families may be, for errors of position to
+ * tell methods apart. */
+#define RESOLVED 0.1
+
 /* Displaces the free particle in the middle of the list by CS_HORIZON_START, along the space
  * diagonal: a displacement within a plane of symmetry would stay in it. Returns false if all
  * particles are pinned. */
@@ -64,16 +68,54 @@ static enum cs_status run_twins(struct cs_horizon *horizon, struct cs_recorded_r
 
 enum cs_status cs_horizon_measure(struct cs_horizon *horizon,
                                   const struct cs_recorded_run_settings *settings,
-                                  double accuracy, const char *fallback,
+                                  double accuracy, const char *first, const char *fallback,
                                   struct cs_error *error) {
-    const char *const methods[] = {"velocity-verlet", fallback};
+    const char *const methods[] = {first, fallback};
     bool done = false;
     *horizon = (struct cs_horizon){.growth = (double)NAN, .separation = (double)NAN};
-    for (int k = 0; k < 2 && !done && methods[k] && !error->status; k++) {
+    for (int k = 0; k < 2 && !done && !error->status; k++) {
         struct cs_recorded_run recording;
+        if (!methods[k])
+            continue;
         if (!cs_recorded_run_open(&recording, settings, methods[k], error))
             run_twins(horizon, &recording, accuracy, &done, error);
         cs_recorded_run_close(&recording);
     }
+    return error->status;
+}
+
+/* Decides whether there are pointwise errors. */
+static void judge(struct cs_compare_reference *reference) {
+    const double time = reference->trajectory.frames / reference->trajectory.fps;
+    const struct cs_horizon *horizon = &reference->horizon;
+    reference->pointwise = false;
+    if (!reference->families_agree)
+        return;
+    if (!(horizon->time > time))
+        snprintf(reference->reason, sizeof reference->reason,
+                 "a displacement of %.0g m in one particle grows %.2g times and reaches %.0g m "
+                 "at %.3g s: errors of single particles have no meaning after that time",
+                 CS_HORIZON_START, horizon->growth, reference->accuracy, horizon->time);
+    else if (reference->error_bar > reference->accuracy)
+        snprintf(reference->reason, sizeof reference->reason,
+                 "the reference is accurate only to %.2g m, but %.2g m was requested",
+                 reference->error_bar, reference->accuracy);
+    else
+        reference->pointwise = true;
+}
+
+enum cs_status
+cs_compare_reference_judge_horizon(struct cs_compare_reference *reference,
+                                   const struct cs_recorded_run_settings *settings,
+                                   struct cs_error *error) {
+    const bool is_implicit = reference->explicit_passes > 0;
+    reference->horizon = (struct cs_horizon){(double)NAN, (double)NAN, HUGE_VAL};
+    if (is_implicit && reference->error_bar <= RESOLVED * reference->motion_scale)
+        reference->accuracy = fmax(reference->accuracy, reference->error_bar);
+    if (!is_implicit || reference->error_bar <= reference->accuracy)
+        cs_horizon_measure(&reference->horizon, settings, reference->accuracy,
+                           is_implicit ? NULL : "velocity-verlet", reference->methods[0],
+                           error);
+    judge(reference);
     return error->status;
 }

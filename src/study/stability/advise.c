@@ -46,6 +46,7 @@ static enum cs_status try_safe(struct cs_advice *row,
         }
     }
     row->checked_seconds = trial.result.reached;
+    row->speed = fmax(row->speed, trial.speed_max);
     if (row->verdict == CS_STABILITY_OVER_BUDGET && !(row->checked_seconds > 0)) {
         row->kind = CS_ADVICE_REFUSED;
         snprintf(row->message, sizeof row->message,
@@ -163,6 +164,10 @@ static enum cs_status advise_fixed(struct cs_advice *row,
         return error->status;
     const bool is_cut = keep_cut_reference(&reference);
     row->cut = is_cut ? reference.seconds : 0;
+    row->steps_ahead = reference.steps_ahead;
+    row->limit = row->theory = HUGE_VAL;
+    if (reference.steps_ahead > 0)
+        return try_frame(row, settings, &none, frame, error);
     if (!reference.exists) {
         row->kind = CS_ADVICE_REFUSED;
         snprintf(row->message, sizeof row->message, "the reference run failed: %.280s",
@@ -293,6 +298,15 @@ enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error) {
     for (uint32_t k = 0; advise->rows && k < advise->n; k++)
         advise->rows[k].pot = advise->budget / advise->n;
     return advise->rows ? cs_process_pool_run(&work.workers, error) : error->status;
+}
+
+enum cs_status cs_advise_check(const struct cs_advise *advise, struct cs_error *error) {
+    for (uint32_t k = 0; k < advise->n; k++)
+        if (advise->rows[k].kind != CS_ADVICE_REFUSED)
+            return CS_OK;
+    return advise->n ? cs_fail(error, CS_ERR_UNSTABLE, "no advice: %s: %.250s",
+                               advise->rows->method, advise->rows->message)
+                     : CS_OK;
 }
 
 void cs_advise_finish(struct cs_advise *advise) {

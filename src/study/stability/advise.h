@@ -7,8 +7,9 @@
  *   3. Probe runs with this step over the time of the reference, judged like a cell of a map,
  * from the perturbed start and from the scene's own.
  *   4. If it is unstable, the border is bisected by probe runs and 0.9 of it is advised.
- * Without a limit in theory one step per frame is tried, and bisected if unstable. An adaptive
- * method gets a probe run only, for its cost and verdict. */
+ * Without a limit in theory one step per frame is tried, and bisected if unstable; the
+ * reference is not begun for such a method if its steps exceed the budget. An adaptive method
+ * gets a probe run only, for its cost and verdict. */
 #ifndef CS_ADVISE_H
 #define CS_ADVISE_H
 
@@ -38,9 +39,10 @@ struct cs_advice {
     double checked_seconds;            /* s, that this run lasted */
     double mode_growth;       /* 1/s, of the worst mode at the safe step; 0: it does not grow */
     double measured;          /* s, bisected; 0: not asked for; NAN: unknown */
-    double speed;             /* m/s, largest of a particle in the trusted run; 0: none */
+    double speed;             /* m/s, largest of a particle in all runs; 0: none */
     double steps, frame_cost; /* steps and wall time in s of a frame with the safe step */
     double cut;               /* s, where the budget ended the reference; 0: it did not */
+    double steps_ahead;       /* of a reference beyond the budget, not begun; 0: begun */
     double pot;               /* nominal s of work that are left, while it is at work */
     char message[320];
 };
@@ -49,6 +51,12 @@ struct cs_advice {
  */
 static inline bool cs_advice_is_unstable(const struct cs_advice *row) {
     return !cs_stability_is_stable(row->verdict) && row->verdict != CS_STABILITY_OVER_BUDGET;
+}
+
+/* True if a row names a step. */
+static inline bool cs_advice_has_step(const struct cs_advice *row) {
+    return row->kind != CS_ADVICE_ADAPTIVE && row->kind != CS_ADVICE_NONE &&
+           row->kind != CS_ADVICE_REFUSED;
 }
 
 /* Request and results; pointers of the request are borrowed. */
@@ -77,6 +85,9 @@ struct cs_advise {
  * the scene is a row, not an error. Returns the errors of the scene and of unknown methods,
  * CS_ERR_MEMORY, CS_ERR_INTERRUPT. cs_advise_finish must be called in any case. */
 enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error);
+/* CS_ERR_UNSTABLE if no method has an answer, which a step or the lack of one is. The message
+ * names the first method. */
+enum cs_status cs_advise_check(const struct cs_advise *advise, struct cs_error *error);
 /* Frees rows and registry and closes the session; the object is then zeroed. */
 void cs_advise_finish(struct cs_advise *advise);
 

@@ -165,11 +165,28 @@ static void name_failure(struct cs_reference *reference,
     cs_text_finish(&why);
 }
 
+/* True if the method has no limit to be found along the run, and the run would take more than
+ * its budget: such a reference is not begun. A step takes an evaluation of the forces. */
+static bool is_beyond(struct cs_reference *reference,
+                      const struct cs_sampled_run_settings *settings, double dt,
+                      const struct way *way) {
+    const double steps = settings->seconds / dt, budget = settings->session.run.budget;
+    if (way->is_explicit || !way->theory || reference->start_limit.dt < HUGE_VAL ||
+        !(budget > 0) || !(steps * way->theory->modes.pass_seconds > budget))
+        return false;
+    reference->steps_ahead = steps;
+    snprintf(reference->message, sizeof reference->message,
+             "velocity-verlet: its %.3g steps exceed the budget", steps);
+    return true;
+}
+
 /* Halves the step until a run succeeds. A run out of budget ends the attempts, because a
  * shorter step costs more. */
 static void run_reference(struct cs_reference *reference,
                           const struct cs_sampled_run_settings *settings, double dt,
                           struct way *way, struct cs_error *error) {
+    if (is_beyond(reference, settings, dt, way))
+        return;
     for (int k = 0; k < MOST_HALVINGS && !reference->exists && !error->status; k++) {
         reference->exists = run_once(reference, settings, dt, way, error);
         if (reference->run.result.outcome == CS_OVER_BUDGET)

@@ -60,6 +60,7 @@ struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis)
 struct cs_reference {
     bool exists; /* else only the limits at the start exist, and message says why */
     char message[320];
+    double steps_ahead;        /* of a run that was not begun: beyond its budget; 0: begun */
     double seconds;            /* simulated: enough for 200 steps at the limit */
     struct cs_sampled_run run; /* velocity-verlet with a small step */
     double gershgorin_limit;   /* s, limit by Gershgorin bounds, of contact along the way */
@@ -75,8 +76,10 @@ struct cs_reference {
  *
  * From `settings` the run takes seconds (as a minimum), samples, perturbation and budget; it
  * chooses its step itself and halves it up to 3 times if the run is not stable. A method
- * without option dt gets no limits (HUGE_VAL). A reference that fails is a result: exists is
- * false and message says why. Errors: those of scene, method, memory, or CS_ERR_INTERRUPT. */
+ * without option dt gets no limits (HUGE_VAL). A run beyond its budget is not begun for a
+ * method with option dt and without a limit: it would show no limit. A reference that fails is
+ * a result: exists is false and message says why. Errors: those of scene, method, memory, or
+ * CS_ERR_INTERRUPT. */
 enum cs_status cs_reference_run(struct cs_reference *reference,
                                 const struct cs_sampled_run_settings *settings,
                                 struct cs_error *error);
