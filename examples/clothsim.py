@@ -4,6 +4,10 @@
 >>> import clothsim
 >>> run = clothsim.run("scenes/hang.json", set={"forces.drag": 0.01}, integrator="rk4", frames=30)
 >>> run.x.shape, run.report["outcome"]
+>>> clothsim.compare("scenes/drum.json", ["rk4", "tr-bdf2:dt=1e-3..2e-2"])
+>>> clothsim.picture("scenes/hang.json", frame=30)
+
+Tables are a pandas.DataFrame where pandas is there, else a list of dicts.
 
 The program is `clothsim` of the search path, or what the variable CLOTHSIM names.
 """
@@ -18,7 +22,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-__all__ = ["Run", "load_run", "load_compare", "run"]
+__all__ = ["Picture", "Run", "advise", "compare", "conform", "load_compare", "load_run", "picture", "run", "stability"]
 
 # columns of compare.csv that are texts, and flags; all others are numbers
 TEXTS = frozenset(("series", "method", "fixed", "options", "family", "control", "outcome", "note",
@@ -95,18 +99,96 @@ def run(scene, set: Optional[dict] = None, integrator: Optional[str] = None, fra
     with tempfile.TemporaryDirectory() as temporary:
         into = Path(folder or temporary)
         into.mkdir(parents=True, exist_ok=True)
-        words = [os.environ.get("CLOTHSIM", "clothsim"), "run",
-                 "-" if isinstance(scene, dict) else str(scene), "--frames", str(frames),
-                 "--no-render", "--quiet", "--overwrite", "--export", "npz", "--out", str(into),
-                 "--json", "-"]
-        for path, value in (set or {}).items():
-            words += ["--set", f"{path}={_text(value)}"]
-        if integrator:
-            words += ["--integrator", integrator]
-        done = subprocess.run(words, input=json.dumps(scene) if isinstance(scene, dict) else None,
-                              stdin=None if isinstance(scene, dict) else subprocess.DEVNULL,
-                              capture_output=True, encoding="utf-8", check=False)
-        if done.returncode:
-            raise RuntimeError(done.stderr.strip() or f"clothsim ended with {done.returncode}")
-        (into / "run.json").write_text(done.stdout, encoding="utf-8")
+        words = ["--frames", frames, "--no-render", "--overwrite", "--export", "npz", "--out", into, "--json", "-"]
+        report = _call("run", scene, words + (["--integrator", integrator] if integrator else []), set)
+        (into / "run.json").write_text(report, encoding="utf-8")
         return load_run(into)
+
+
+def _call(command: str, scene, words: list, set: Optional[dict] = None, results: tuple = (0,)) -> str:
+    """Standard output of a command on a scene (None: none). RuntimeError with its message if it ends with another
+    code than those of a result."""
+    by_hand = isinstance(scene, dict)
+    line = [os.environ.get("CLOTHSIM", "clothsim"), command]
+    line += [] if scene is None else ["-" if by_hand else str(scene)]
+    line += [str(word) for word in words] + ["--quiet"]
+    for path, value in (set or {}).items():
+        line += ["--set", f"{path}={_text(value)}"]
+    done = subprocess.run(line, input=json.dumps(scene) if by_hand else None,
+                          stdin=None if by_hand else subprocess.DEVNULL, capture_output=True, encoding="utf-8",
+                          check=False)
+    if done.returncode not in results:
+        raise RuntimeError(done.stderr.strip() or f"clothsim ended with {done.returncode}")
+    return done.stdout
+
+
+def _table(rows: list):
+    try:
+        import pandas  # pylint: disable=import-outside-toplevel
+    except ImportError:
+        return rows
+    return pandas.DataFrame(rows)
+
+
+def _methods(methods) -> list:
+    """Options for a list of "NAME:key=value,..."; None: those that the command takes by itself."""
+    return [word for method in methods or [] for word in ("--integrators", method)]
+
+
+def compare(scene, methods: Optional[list] = None, set: Optional[dict] = None, seconds: float = 0.5, folder=None,
+            options: tuple = ()):
+    """Compares methods on a scene: a table with a row for each step or tolerance, and the columns of compare.csv, with
+    nan for an empty number. `methods` are "NAME:key=value,..." (None: all); `options` are further words of
+    clothsim-compare(1). Files stay in `folder` if one is named, and a second call goes on there. RuntimeError."""
+    with tempfile.TemporaryDirectory() as temporary:
+        into = Path(folder or temporary)
+        words = ["--integrators", ",".join(methods)] if methods else []
+        _call("compare", scene, [*words, "--time", seconds, "--out", into, *options], set)
+        columns = load_compare(into)
+    return _table([dict(zip(columns, (value.item() for value in row))) for row in zip(*columns.values())])
+
+
+def advise(scene, methods: Optional[list] = None, set: Optional[dict] = None, seconds: float = 10,
+           options: tuple = ()):
+    """The largest safe step of each method: a table with the keys of `rows` in advise.json, None for no limit. A
+    method without an answer is a row of kind "refused" with its reason in `message`. RuntimeError."""
+    words = [*_methods(methods), "--time", seconds, "--json", "-", *options]
+    return _table(json.loads(_call("advise", scene, words, set, (0, 8)))["rows"])
+
+
+def stability(scene, method: Optional[str] = None, set: Optional[dict] = None, seconds: float = 0.5,
+              options: tuple = ()):
+    """Stable and unstable steps of a method (None: the scene's own): a table with a row for each cell of the map, of
+    its CSV file; `options` as ("--columns", 4, "--stiffness", "10..1000"). RuntimeError."""
+    with tempfile.TemporaryDirectory() as into:
+        words = [*_methods([method] if method else None), "--time", seconds, "--out", into, *options]
+        _call("stability", scene, words, set)
+        (path,) = (path for path in Path(into).glob("*.csv") if not path.stem.endswith("_border"))
+        with open(path, newline="", encoding="utf-8") as file:
+            return _table([{name: field if name == "verdict" else float(field or "nan")
+                            for name, field in row.items()} for row in csv.DictReader(file)])
+
+
+def conform(method: str, only: Optional[list] = None, options: tuple = ()):
+    """Claims of a method or a module file: a table with a row for each check, its verdict, figure and bound. A failed
+    claim is a row too. RuntimeError if the method cannot be tested."""
+    words = [method, "--json", "-", *(["--only", ",".join(only)] if only else []), *options]
+    return _table([{"integrator": card["integrator"], **check}
+                   for card in json.loads(_call("conform", None, words, None, (0, 1))) for check in card["checks"]])
+
+
+@dataclass
+class Picture:
+    """A frame that a notebook shows."""
+    png: bytes
+
+    def _repr_png_(self) -> bytes:
+        return self.png
+
+
+def picture(scene, frame: int = 0, set: Optional[dict] = None, integrator: Optional[str] = None) -> Picture:
+    """Draws one frame of a scene, as set by its `render` ({"render.size": [640, 480]}). RuntimeError."""
+    with tempfile.TemporaryDirectory() as into:
+        words = ["--frames", frame, "--every", max(frame, 1), "--overwrite", "--out", into]
+        _call("run", scene, words + (["--integrator", integrator] if integrator else []), set)
+        return Picture(sorted(Path(into).glob("*.png"))[-1].read_bytes())

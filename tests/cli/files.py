@@ -188,6 +188,41 @@ def python(folder, compared):
     except RuntimeError as error:
         message = str(error)
     told("run raises what the program says", "" if "forces.drga" in message else f"raised: {message}")
+    python_tables(module, folder)
+
+
+def python_tables(module, folder):
+    """Tables of the studies beside what the program prints itself, without pandas and with a stand-in for it."""
+    sys.modules["pandas"] = None
+    reference = ("--reference", "rk4:dt=0.0001", "--reference", "dopri5:rtol=1e-10,atol=1e-10", "--runs", 1)
+    steps = module.compare(TINY, ["rk4:dt=0.0005..0.001", "symplectic-euler:dt=0.001"], {"time.fps": 1000}, 0.004,
+                           folder / "by_python", reference)
+    errors = [row["error"] for row in steps if row["method"] == "rk4"]
+    told("compare has a row a step, of errors that fall with order 4",
+         "" if len(steps) >= 3 and {row["outcome"] for row in steps} == {"finished"} else f"{steps}",
+         "" if len(errors) >= 2 and 8 < errors[0] / errors[1] < 32 else f"errors {errors}")
+    advice = module.advise(TINY, ["velocity-verlet", "shape-matching"], seconds=0.1)
+    told("advise has the step below the limit, and why a method has none",
+         "" if 0 < advice[0]["advised"] < advice[0]["limit"] else f"{advice[0]}",
+         "" if advice[1]["kind"] == "refused" and "shape_matching" in advice[1]["message"] else f"{advice[1]}")
+    cells = module.stability(TINY, "velocity-verlet", seconds=0.05, options=("--stiffness", "50..50", "--columns", 1, "--rows", 3))
+    told("stability has a row a cell, unstable above the limit alone",
+         "" if len(cells) == 3 and cells[0]["dt"] < advice[0]["advised"] < cells[2]["dt"] else f"{cells}",
+         *(f"{row}" for row in cells if ("instability" in row["verdict"]) != (row["dt"] > advice[0]["limit"])))
+    (claim,) = module.conform("rk4", ["order"])
+    told("conform has a row a check", "" if claim["verdict"] == "pass" and claim["figure"] < claim["bound"] else f"{claim}")
+    small = {"render.size": [64, 48]}
+    start, later = module.picture(TINY, set=small), module.picture(TINY, 3, small, "rk4")
+    told("picture is a PNG of the size that a notebook shows",
+         *("" if shown[:8] == b"\x89PNG\r\n\x1a\n" and shown[16:24] == bytes((0, 0, 0, 64, 0, 0, 0, 48))
+           else "no PNG of 64 x 48" for shown in (start._repr_png_(), later._repr_png_())),
+         "" if start.png != later.png else "nothing moved")
+    sys.modules["pandas"] = type(sys)("pandas")
+    sys.modules["pandas"].DataFrame = tuple
+    told("a table is pandas' where it is there",
+         "" if module.conform("rk4", ["abi"])[0]["check"] == "abi" and
+         isinstance(module.conform("rk4", ["abi"]), tuple) else "it is not")
+    del sys.modules["pandas"]
 
 
 files = manual()
