@@ -112,7 +112,7 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
     }
     if (row->cut > 0)
         cs_text_add(out, "; its reference was over budget at %.3g s", row->cut);
-    if (row->steps_ahead > 0)
+    if (row->steps_ahead > 0 && cs_advice_has_step(row))
         cs_text_add(out, "; without a reference, because %.3g explicit steps exceed the budget",
                     row->steps_ahead);
     if (row->mode_growth > 0)
