@@ -6,6 +6,7 @@
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "io/file_conflicts.h"
 #include "study/compare/compare_curves.h"
 #include "study/golden/golden.h"
 #include "study/recorded_run.h"
@@ -245,6 +246,21 @@ static enum cs_status report(const struct cs_golden *check, struct sink *sink,
     return CS_OK;
 }
 
+/* Refuses reports that would replace a golden table. */
+static enum cs_status check_reports(const struct options *options, struct cs_error *error) {
+    static const char *const tables[] = {"hash.tsv", "image.tsv"};
+    const char *const reports[] = {cs_print_is_stdout(options->json) ? NULL : options->json,
+                                   options->junit};
+    for (int k = 0; k < 4 && !error->status; k++) {
+        char path[CS_DATA_PATH_MAX + 16];
+        snprintf(path, sizeof path, "%.*s/%s", CS_DATA_PATH_MAX - 1, options->check.folder,
+                 tables[k / 2]);
+        cs_file_conflicts_pair(reports[k % 2], k % 2 ? "--junit" : "--json", path,
+                               "a golden table", error);
+    }
+    return error->status;
+}
+
 static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
     struct cs_golden *check = &options->check;
@@ -265,7 +281,7 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     check->stop = cs_interrupt_catch();
     check->report = print_row;
     check->ctx = &sink;
-    if (!cs_golden_check(check, error))
+    if (!check_reports(options, error) && !cs_golden_check(check, error))
         report(check, &sink, error);
     cs_text_finish(&sink.json);
     cs_text_finish(&sink.junit);

@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/run_output.h"
+#include "io/file_conflicts.h"
 #include "scene/file/mesh_read.h"
 
 #include <math.h>
@@ -133,9 +134,9 @@ static enum cs_status mesh(struct cs_args *args, struct cs_error *error) {
     const char *path = args->operands[0];
     struct cs_trimesh mesh;
     struct cs_text out = {0}, obj = {0};
-    if (options->out && !options->overwrite && cs_output_check_file(options->out, error))
-        return error->status;
-    if (cs_mesh_read(path, path, &source, &mesh, &args->arena, error))
+    if (cs_file_conflicts_pair(options->out, "--out", path, "the mesh", error) ||
+        (options->out && !options->overwrite && cs_output_check_file(options->out, error)) ||
+        cs_mesh_read(path, path, &source, &mesh, &args->arena, error))
         return error->status;
     /* what fails leaves no report behind */
     add_report(&mesh, &out);

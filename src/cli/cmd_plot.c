@@ -7,6 +7,7 @@
 #include "cli/line/print.h"
 #include "cli/show/screen.h"
 #include "cli/table_plot.h"
+#include "io/file_conflicts.h"
 #include "study/compare/compare_curves.h"
 
 #include <stdio.h>
@@ -115,6 +116,18 @@ static enum cs_status show(const struct cs_diagram *diagram, struct cs_error *er
     return cs_print_raw(stdout, &text, error);
 }
 
+/* Refuses a diagram of the name of its table. */
+static enum cs_status check_names(const char *table, const char *name, unsigned formats,
+                                  struct cs_error *error) {
+    for (int k = 0; k < CS_FORMATS && !error->status; k++) {
+        char path[4096 + 8];
+        snprintf(path, sizeof path, "%s.%s", name, cs_format_names[k]);
+        if (formats >> k & 1)
+            cs_file_conflicts_pair(path, "--out", table, "the table", error);
+    }
+    return error->status;
+}
+
 static enum cs_status finish(struct cs_args *args, const struct cs_diagram *diagram,
                              const struct cs_plot_settings *settings, struct cs_error *error) {
     const struct options *options = args->options;
@@ -128,6 +141,7 @@ static enum cs_status finish(struct cs_args *args, const struct cs_diagram *diag
     if (!*name || (slash && !slash[1]))
         return cs_fail(error, CS_ERR_USAGE, "--out: expected a file name without extension");
     if (read_formats(options->format, &formats, error) ||
+        check_names(args->operands[0], name, formats, error) ||
         cs_diagram_write(cs_renderer_folder(), diagram, name, formats, error) || options->quiet)
         return error->status;
     for (int k = 0; k < CS_FORMATS; k++)

@@ -88,6 +88,15 @@ enum cs_status cs_file_conflicts_output(struct cs_file_conflicts *conflicts, con
     return CS_OK;
 }
 
+enum cs_status cs_file_conflicts_pair(const char *output, const char *what, const char *input,
+                                      const char *role, struct cs_error *error) {
+    struct cs_file_use written, read;
+    return output && stat_file(input, role, false, &read) &&
+                   stat_file(output, what, true, &written) && is_same(&written, &read)
+               ? refuse(&read, output, what, error)
+               : CS_OK;
+}
+
 enum cs_status cs_file_conflicts_folder(const struct cs_file_conflicts *conflicts,
                                         const char *folder, bool (*is_ours)(const char *name),
                                         const char *what, struct cs_error *error) {

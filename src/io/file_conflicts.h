@@ -37,6 +37,12 @@ void cs_file_conflicts_input(struct cs_file_conflicts *conflicts, const char *pa
 enum cs_status cs_file_conflicts_output(struct cs_file_conflicts *conflicts, const char *path,
                                         const char *what, struct cs_error *error);
 
+/* Checks the one output of a command, the file that the option `what` names (NULL: none),
+ * against a file that the command reads as `role`. CS_ERR_FILE if both are the same file, or
+ * one is the temporary file of the other. */
+enum cs_status cs_file_conflicts_pair(const char *output, const char *what, const char *input,
+                                      const char *role, struct cs_error *error);
+
 /* Checks a folder in which files of certain names will be written or removed: CS_ERR_FILE if
  * one of them, or a temporary file of one, is registered. A folder that does not exist holds
  * none. */

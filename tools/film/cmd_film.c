@@ -9,6 +9,7 @@
 #include "cli/line/print.h"
 #include "cli/run_output.h"
 #include "film/film_sheet.h"
+#include "io/file_conflicts.h"
 #include "io/png.h"
 #include "io/subprocess.h"
 
@@ -301,6 +302,12 @@ static enum cs_status place_sheet(const struct cs_args *args, char out[PATH_BYTE
     if (!ending || strcmp(ending, ".png"))
         return cs_fail(error, CS_ERR_USAGE,
                        "--out: expected a name that ends in .png, found \"%.60s\"", out);
+    const char *slash = strrchr(out, '/'), *name = slash ? slash + 1 : out;
+    char picture[2 * PATH_BYTES];
+    snprintf(picture, sizeof picture, "%.4000s/%s", args->operands[0], name);
+    if (cs_output_is_result(name) &&
+        cs_file_conflicts_pair(out, "--out", picture, "a picture of the run", error))
+        return error->status;
     return options->overwrite ? CS_OK : cs_output_check_file(out, error);
 }
 
