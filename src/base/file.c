@@ -181,8 +181,9 @@ static int open_temporary(const char *path) {
             remove_left(path); // of a killed process that had our number
             continue;
         }
-        flock(file, LOCK_EX | LOCK_NB);
-        // another process may have removed it before it was locked
+        // another process may have taken it for one of a killed process, and removes it now
+        while (flock(file, LOCK_EX) && errno == EINTR)
+            ;
         if (!fstat(file, &info) && info.st_nlink)
             return file;
         close(file);
@@ -269,6 +270,8 @@ enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error) {
         reason = errno;
     }
     const bool streams = !*out->temporary;
+    // the lock lasts until the file has its name: without it another process would remove it
+    const int lock = streams ? -1 : fcntl(fileno(out->file), F_DUPFD_CLOEXEC, 0);
     if (!failed && !streams && out->durable && fsync(fileno(out->file))) {
         failed = true;
         reason = errno;
@@ -278,12 +281,15 @@ enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error) {
         reason = errno;
     }
     out->file = NULL;
-    if (!failed && (streams || !rename(out->temporary, out->path))) {
+    const bool named = !failed && (streams || !rename(out->temporary, out->path));
+    reason = failed || named ? reason : errno;
+    if (lock >= 0)
+        close(lock);
+    if (named) {
         if (out->durable && !streams)
             sync_folder(out->path);
         return CS_OK;
     }
-    reason = failed ? reason : errno;
     if (!streams)
         unlink(out->temporary);
     return cs_fail(error, cs_file_status(reason), "cannot write \"%s\": %s", out->path,

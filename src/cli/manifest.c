@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/table.h"
 #include "cli/run_output.h"
 
 #include <dirent.h>
@@ -36,8 +37,8 @@ static bool is_of_run(const char *name) {
 }
 
 static bool is_of_study(const char *name) {
-    static const char *const endings[] = {".csv", ".json", ".md",  ".txt", ".html",   ".state",
-                                          ".png", ".pdf",  ".svg", ".partial"};
+    static const char *const endings[] = {".csv",   ".json", ".md",  ".txt", ".html",
+                                          ".state", ".png",  ".pdf", ".svg", ".partial"};
     const char *ending = strrchr(name, '.');
     bool found = false;
     for (size_t k = 0; ending && k < sizeof endings / sizeof *endings; k++)
@@ -132,12 +133,16 @@ enum cs_status cs_manifest_write(const char *folder, struct cs_error *error) {
 
 enum cs_status cs_manifest_write_study(const char *folder, struct cs_error *error) {
     struct cs_error later = {0};
+    struct cs_row_table lock = {0};
     if (error->status && (error->status != CS_ERR_INTERRUPT || access(folder, F_OK)))
         return error->status;
     cs_file_sweep(folder, is_swept);
-    return write_manifest(folder, is_of_study, &later)
-               ? cs_fail(error, later.status, "%s", later.message)
-               : error->status;
+    // of several processes the last one to write finds all files as they stay
+    if (!cs_row_table_open(&lock, folder, CS_MANIFEST_NAME, ".lock", 0, &later) &&
+        !cs_row_table_lock(&lock, &later))
+        write_manifest(folder, is_of_study, &later);
+    cs_row_table_unlock(&lock);
+    return later.status ? cs_fail(error, later.status, "%s", later.message) : error->status;
 }
 
 /* True if the last line is the hash of all above; cuts that line off. */
