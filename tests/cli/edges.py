@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""Every command against closed streams, kinds of targets, signals and kills (as TAP).
+"""Every command against closed streams, kinds of targets, and signals at each call (as TAP).
 
 usage: edges.py PROGRAM STEP     every STEP-th cell of the matrix; 1: all of them
 
 Commands and options come from the program's own help: a new command needs a line in LINES, and
 a new option with a FILE or a DIR is an output unless INPUTS has it. In each cell no input is
-harmed, no device, FIFO or link's target is replaced, nothing hangs, and the next run of the same
-command leaves no half-written file.
+harmed, no device, FIFO or link's target is replaced, nothing hangs, what is signed verifies, and
+the next run of the same command leaves no half-written file.
 """
+import collections
 import itertools
 import json
 import os
@@ -61,6 +62,9 @@ LONG = {
     "advise": "s.json -t 500 -q",
 }
 SIGNALS = [signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGXCPU, signal.SIGUSR1]
+ENDS = [signal.SIGKILL, *SIGNALS]
+# those that draw diagrams or run for long: a kill and SIGTERM at each call, all signals at renames
+LONG_CELLS = {"compare", "stability", "advise"}
 RESULT_NAMES = {"film": "target.png"}
 
 n, failed = 0, 0
@@ -75,10 +79,14 @@ def told(name, wrong):
         print("#   " + text.replace("\n", "\n#   "))
 
 
-def run(words, **how):
+def closing(streams, words):
+    """The words of a command with closed streams."""
+    ends = " ".join({0: "<&-", 1: ">&-", 2: "2>&-"}[k] for k in streams)
+    return ["sh", "-c", 'exec "$0" "$@" ' + ends, *words] if streams else words
+
+
+def ended(process):
     """Exit code and standard error; a process that hangs is ended, and its code is None."""
-    process = subprocess.Popen([program, *words], stdout=how.pop("stdout", subprocess.DEVNULL),
-                               stderr=subprocess.PIPE, **how)
     try:
         said = process.communicate(timeout=LIMIT)[1]
     except subprocess.TimeoutExpired:
@@ -86,6 +94,12 @@ def run(words, **how):
         process.communicate()
         return None, "it hangs"
     return process.returncode, said.decode(errors="replace")
+
+
+def run(words, streams=(), before=()):
+    return ended(subprocess.Popen([*before, *closing(streams, [program, *words])],
+                                  stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.PIPE))
 
 
 def tree():
@@ -107,25 +121,6 @@ def outputs(command):
                           check=True).stdout
     found = re.findall(r"^ +(?:-\w, )?--([a-z-]+) (FILE|DIR)\b", text, re.M)
     return [(name, kind) for name, kind in found if name not in INPUTS]
-
-
-def closed_cells(command, usual):
-    for streams in itertools.chain(*(itertools.combinations(range(3), k) for k in (1, 2, 3))):
-        def cell(streams=streams):
-            shown = "".join(str(k) for k in streams)
-            script = 'exec "$0" "$@" ' + " ".join(
-                {0: "<&-", 1: ">&-", 2: "2>&-"}[k] for k in streams)
-            try:
-                code = subprocess.run(["sh", "-c", script, program, command,
-                                       *LINES[command].split()], stdin=subprocess.DEVNULL,
-                                      stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                                      timeout=LIMIT, check=False).returncode
-            except subprocess.TimeoutExpired:
-                code = None
-            # what cannot be printed is an error
-            allowed = {usual, 4} if 1 in streams else {usual}
-            return f"{command}, closed {shown}", code, allowed, ""
-        yield cell
 
 
 def make_device(path):
@@ -167,81 +162,143 @@ FILE_KINDS = {"new": {0}, "file": {0}, "link": {0}, "dangling": {0}, "fifo": {0,
 DIR_KINDS = {"new": {0}, "folder": {0}, "file": {4}, "fifo": {4}, "device": {4}, "socket": {4}}
 
 
-def target_cells(command, usual):
+STREAMS = [()] + [c for k in (1, 2, 3) for c in itertools.combinations(range(3), k)]
+# calls that change files, at each of which a signal may come
+CALLS = ["rename", "write", "fsync", "ftruncate", "flock", "mkdir", "unlink"]
+
+
+class Cell:
+    """One job: a command, an output and what is there, closed streams, a signal at a call."""
+    def __init__(self, command, usual, target=None, streams=(), event=None):
+        self.command, self.usual, self.target = command, usual, target
+        self.streams, self.event = streams, event
+        self.name = command + (f" --{target[0]}, {target[2]}" if target else "")
+        self.name += ", closed " + "".join(map(str, streams)) if streams else ""
+        if event:
+            self.name += f", {event[0].name} at {event[1]} {event[2]}"
+
+    def words(self):
+        """Puts the target there; the words of the command line, and the codes it may end with."""
+        line = LINES[self.command]
+        if not self.target:
+            return [self.command, *line.split()], {self.usual}
+        option, metavar, kind = self.target
+        path = RESULT_NAMES.get(self.command, "target.csv")
+        words = [self.command, *re.sub(f" -{option[0]} \\S+$", "", line).split()]
+        if kind == "scene":
+            path = "s.json"
+        elif kind == "scene part":
+            path = "s.csv"
+            words = [word.replace("s.json", "s.csv.part") for word in words]
+        else:
+            make_target(kind, path)
+        if (self.command, option) == ("advise", "out"):
+            words += ["--error", "1e-3"]
+        codes = (FILE_KINDS if metavar == "FILE" else DIR_KINDS)[kind]
+        # a job that is refused for another reason may tell that first
+        allowed = {self.usual} if self.usual else set()
+        allowed |= {self.usual if code == 0 else code for code in codes}
+        return [*words, f"--{option}", path], allowed
+
+    def interrupted(self, words):
+        """Sends the signal; what is wrong then."""
+        number, call, k = self.event
+        code, said = run(words, before=["strace", "-f", "-qq", "--seccomp-bpf", "-o", "/dev/null",
+                                        "-e", f"trace={call}", "-e",
+                                        f"inject={call}:signal={number.name}:when={k}"])
+        if code is None:
+            return [said]
+        # a table that is there is signed, unless the signal came before it was caught
+        for manifest in Path(".").glob("*/manifest.txt"):
+            verified, text = run(["verify", str(manifest.parent), "-q"])
+            if verified:
+                return [f"{manifest.parent}: {text}"]
+        return []
+
+    def try_(self):
+        words, allowed = self.words()
+        path, kind, wrong, reader = words[-1], self.target and self.target[2], [], None
+        if kind == "fifo" and self.target[1] == "FILE":
+            reader = os.open(path, os.O_RDWR | os.O_NONBLOCK)
+        before = os.lstat(path) if kind and os.path.lexists(path) else None
+        if self.event:
+            wrong += self.interrupted(words)
+        if 1 in self.streams:
+            allowed = allowed | {4}  # what cannot be printed is an error
+        code, said = run(words, streams=self.streams)
+        if reader is not None:
+            os.close(reader)
+        if code not in allowed:
+            wrong.append(f"exit code {code}, expected one of {sorted(allowed)}: {said}")
+        after = os.lstat(path) if kind and os.path.lexists(path) else None
+        if kind in ("fifo", "device", "socket") and (not after or after.st_ino != before.st_ino):
+            wrong.append(f"the {kind} is replaced")
+        left = [str(path) for path in Path(".").rglob("*") if re.search(
+            r"[.]tmp[.]|[.]part$", path.name) and path.name != "s.csv.part"]
+        if left and not (kind or "").startswith("part") and code not in (3, 4):
+            wrong.append(f"left: {left}")
+        return wrong
+
+
+class Signalled:
+    """A job that goes on until it is told to stop, and is."""
+    def __init__(self, command, number, streams, after):
+        self.command, self.number, self.streams, self.after = command, number, streams, after
+        self.name = f"{command}, closed {streams}, {number.name} after {after:.2f} s"
+
+    def try_(self):
+        process = subprocess.Popen(closing(self.streams, [program, self.command,
+                                                          *LONG[self.command].split()]),
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        time.sleep(self.after)
+        process.send_signal(self.number)
+        code, said = ended(process)
+        wrong = [] if code in (128 + self.number, -self.number) else [f"exit code {code}: {said}"]
+        if code and code > 0 and list(Path(".").glob("long/*.csv")):
+            verified, text = run(["verify", "long", "-q"])
+            wrong += [text] if verified else []
+        return wrong
+
+
+def targets(command):
+    """Outputs of a command, and what may stand there."""
     for option, metavar in outputs(command):
-        for kind, codes in (FILE_KINDS if metavar == "FILE" else DIR_KINDS).items():
-            def cell(option=option, kind=kind, codes=codes, metavar=metavar):
-                path = RESULT_NAMES.get(command, "target.csv")
-                words = [command, *re.sub(f" -{option[0]} \\S+$", "", LINES[command]).split()]
-                if kind == "scene":
-                    path = "s.json"
-                elif kind == "scene part":
-                    path = "s.csv"
-                    words = [word.replace("s.json", "s.csv.part") for word in words]
-                else:
-                    make_target(kind, path)
-                if (command, option) == ("stability", "json"):
-                    return None  # of --extreme alone
-                if kind.startswith("scene") and "s.json" not in LINES[command]:
-                    return None
-                if (command, option) == ("advise", "out"):
-                    words += ["--error", "1e-3"]
-                reader = None
-                if kind == "fifo" and metavar == "FILE":
-                    reader = os.open(path, os.O_RDWR | os.O_NONBLOCK)
-                before = os.lstat(path) if os.path.lexists(path) else None
-                code, said = run([*words, f"--{option}", path])
-                if reader is not None:
-                    os.close(reader)
-                after = os.lstat(path) if os.path.lexists(path) else None
-                if kind in ("fifo", "device", "socket") and before and (
-                        not after or after.st_ino != before.st_ino):
-                    said += f"\nthe {kind} is replaced"
-                    code = None
-                # a job that is refused for another reason may tell that first
-                allowed = {usual} if usual else set()
-                allowed |= {usual if code_ == 0 else code_ for code_ in codes}
-                return f"{command} --{option}, {kind}", code, allowed, said
-            yield cell
+        for kind in FILE_KINDS if metavar == "FILE" else DIR_KINDS:
+            alone = (command, option) == ("stability", "json")  # of --extreme alone
+            if not alone and (not kind.startswith("scene") or "s.json" in LINES[command]):
+                yield option, metavar, kind
 
 
-def signal_cells(command, _usual):
-    for number in SIGNALS if command in LONG else ():
-        def cell(number=number):
-            process = subprocess.Popen([program, command, *LONG[command].split()],
-                                       stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-            time.sleep(random.uniform(0.1, 0.6))
-            process.send_signal(number)
-            try:
-                said = process.communicate(timeout=LIMIT)[1].decode(errors="replace")
-                code = process.returncode
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.communicate()
-                code, said = None, "it hangs"
-            # a table that is there is signed, unless the signal came before it was caught
-            if code and code > 0 and Path("long").is_dir() and list(Path("long").glob("*.csv")):
-                verified, text = run(["verify", "long", "-q"])
-                if verified:
-                    code, said = None, said + text
-            return f"{command}, {number.name}", code, {128 + number, -number}, said
-        yield cell
+def cells_of(command, usual, calls):
+    """The matrix of a command that makes so many calls of each kind."""
+    for streams in STREAMS:
+        yield Cell(command, usual, None, streams)
+        for number in SIGNALS if command in LONG else ():
+            yield Signalled(command, number, streams, random.uniform(0.05, 0.5))
+    for target in targets(command):
+        for streams in STREAMS:
+            yield Cell(command, usual, target, streams)
+        # one file more than usual has a rename of its own
+        for k in range(1, calls["rename"] + 2) if target[1] == "FILE" else ():
+            for number in ENDS[:2] if command in LONG_CELLS else ENDS:
+                yield Cell(command, usual, target, (), (number, "rename", k))
+    for call, most in calls.items():
+        few = command in LONG_CELLS and call != "rename"
+        for k in range(1, most + 1):
+            for number in ENDS[:2] if few else ENDS:
+                yield Cell(command, usual, None, (), (number, call, k))
 
 
-def kill_cells(command, usual):
-    writes = outputs(command) and shutil.which("strace")
-    for k in range(1, 13) if writes else ():
-        def cell(k=k):
-            words = [program, command, *LINES[command].split()]
-            subprocess.run(["strace", "-f", "-qq", "-o", "/dev/null", "-e", "trace=rename",
-                            "-e", f"inject=rename:signal=SIGKILL:when={k}", *words],
-                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
-            code, said = run(words[1:])
-            left = [str(path) for path in Path(".").rglob("*.tmp.*")]
-            if left:
-                code, said = None, f"left: {left}"
-            return f"{command}, killed at rename {k}", code, {usual}, said
-        yield cell
+def count_calls(command):
+    """Exit code and error of a command as usual, and its calls: the most that one process makes."""
+    if not shutil.which("strace"):
+        return (*run([command, *LINES[command].split()]), dict.fromkeys(CALLS, 0))
+    code, said = run([command, *LINES[command].split()],
+                     before=["strace", "-f", "-qq", "--seccomp-bpf", "-o", "calls", "-e",
+                             "trace=" + ",".join(CALLS)])
+    made = collections.Counter(re.findall(r"^(\d+) +(\w+)\(", Path("calls").read_text(), re.M))
+    return code, said, {call: max([n for (_, name), n in made.items() if name == call], default=0)
+                        for call in CALLS}
 
 
 def prepare():
@@ -264,35 +321,30 @@ def main():
         os.mkdir("given")
         os.chdir("given")
         prepare()
-        cells, usual = [], {}
+        cells = []
         for command in commands():
             if command not in LINES:
                 told(f"{command} has a line here", ["add one to LINES"])
                 continue
             shutil.copytree(work + "/given", work + "/usual", symlinks=True)
             os.chdir(work + "/usual")
-            usual[command], said = run([command, *LINES[command].split()])
+            code, said, calls = count_calls(command)
             os.chdir(work)
             shutil.rmtree(work + "/usual")
-            if usual[command] is None or usual[command] < 0 or usual[command] >= 5:
-                told(f"{command} as usual", [f"{usual[command]}: {said}"])
-            for make in closed_cells, target_cells, signal_cells, kill_cells:
-                cells += make(command, usual[command])
+            if code is None or code < 0 or code >= 5:
+                told(f"{command} as usual", [f"{code}: {said}"])
+            cells += cells_of(command, code, calls)
         for cell in cells[::step]:
             shutil.copytree(work + "/given", work + "/cell", symlinks=True)
             os.chdir(work + "/cell")
             given = tree()
-            result = cell()
-            if result:
-                name, code, allowed, said = result
-                wrong = [] if code in allowed else [
-                    f"exit code {code}, expected one of {sorted(allowed)}: {said}"]
-                try:
-                    wrong += [f"{path} is harmed" for path, bytes_ in given.items()
-                              if Path(path).read_bytes() != bytes_]
-                except OSError as error:
-                    wrong.append(f"an input is gone: {error}")
-                told(name, wrong)
+            wrong = cell.try_()
+            try:
+                wrong += [f"{path} is harmed" for path, bytes_ in given.items()
+                          if Path(path).read_bytes() != bytes_]
+            except OSError as error:
+                wrong.append(f"an input is gone: {error}")
+            told(cell.name, wrong)
             os.chdir(work)
             shutil.rmtree(work + "/cell")
     print(f"1..{n}")
