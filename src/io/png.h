@@ -66,8 +66,8 @@ enum cs_status cs_png_write(const char *path, const struct cs_image *image, int 
  * CS_ERR_MEMORY or CS_ERR_MODULE, and *image is empty. */
 enum cs_status cs_png_read(const char *path, struct cs_image *image, struct cs_error *error);
 
-/* The same for any number of pixels, with the values of text chunks: values (n), malloc'd; NULL
- * if the file has no such key. On failure all of them are NULL. */
+/* The same, with the values of text chunks: values (n), malloc'd; NULL if the file has no such
+ * key. On failure all of them are NULL. */
 enum cs_status cs_png_read_texts(const char *path, const char *const *keys, uint32_t n,
                                  char **values, struct cs_image *image, struct cs_error *error);
 

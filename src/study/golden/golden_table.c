@@ -29,7 +29,12 @@ static enum cs_status read_row(const struct cs_golden_table *table, struct cs_go
     row->image = n == CS_GOLDEN_IMAGE_FIELDS ? fields[4] : NULL;
     row->hash = fields[n - 2];
     row->note = fields[n - 1];
-    return CS_OK;
+    // pictures are written beside it, which must not lead out of the folder
+    return row->image && (!*row->image || strchr(row->image, '/'))
+               ? cs_fail(error, CS_ERR_FILE,
+                         "%s: found the image \"%.60s\", expected a name without a slash",
+                         table->path, row->image)
+               : CS_OK;
 }
 
 enum cs_status cs_golden_table_read(struct cs_golden_table *table, const char *folder,
