@@ -246,9 +246,10 @@ enum cs_status cs_manifest_check_files(const char *folder, const char *pattern,
     uint32_t differing = 0;
     // a part that is still being filled has none
     snprintf(path, sizeof path, "%s/" CS_MANIFEST_NAME, folder);
-    if (access(path, F_OK) || read_list(folder, &written, error))
+    if (access(path, F_OK))
         return error->status;
-    for (size_t k = 0; k < written.n && !differing; k++)
+    read_list(folder, &written, error);
+    for (size_t k = 0; k < written.n && !differing && !error->status; k++)
         if (!fnmatch(pattern, written.entries[k].name, 0))
             check_file(folder, written.entries + k, &out, &differing);
     if (differing)
