@@ -144,6 +144,7 @@ static void correct(struct cs_run_host *host, double t, double dt, double *x, do
     if (contact)
         resolve_contact(host, t, dt, x, v, changed);
     book_correction(host, CS_WORK_PROJECTION, contact ? "contact" : NULL, t, x, v);
+    cs_energy_input_corrections(host, t, x, v);
     if (loss)
         lose_velocity(host, v, changed);
     book_correction(host, CS_WORK_LOSS, loss ? "velocity loss" : NULL, t, x, v);
@@ -168,6 +169,7 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
     cs_events_apply_arcs(host->run->system, t, x, v);
     if (settings->ledger)
         cs_energy_ledger_book_step(settings->ledger, t, x, v);
+    cs_energy_input_step(host, t, dt, x, v);
     correct(host, t, dt, x, v, changed);
     cs_friction_anchors_commit(host->run->system, t, x, v);
     *changed |= cs_seams_break(host->run->system, x);

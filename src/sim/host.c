@@ -76,7 +76,7 @@ static void host_force(void *ctx, double t, const double *x, const double *v, ui
     cs_host_state_at(host, t, &x, &v);
     update_normals(host, x, parts);
     const struct cs_stage_start begin = cs_stage_begin(host);
-    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts};
+    const struct cs_eval at = cs_energy_input_eval(host, t, x, v, parts);
     cs_terms_force(host->run->system, &at, f);
     host->run->counts.forces++;
     cs_stage_end(host, CS_STAGE_FORCE, begin);
@@ -131,7 +131,7 @@ static void host_force_diagonal(void *ctx, double t, const double *x, const doub
     cs_host_state_at(host, t, &x, &v);
     update_normals(host, x, CS_PART_ALL);
     const struct cs_stage_start begin = cs_stage_begin(host);
-    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
+    const struct cs_eval at = cs_energy_input_eval(host, t, x, v, CS_PART_ALL);
     cs_terms_force_diagonal(host->run->system, &at, f, blocks);
     host->run->counts.forces++;
     host->run->counts.diagonals++;
@@ -369,7 +369,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
     cs_blow_up_check_set(&host->blow_up, system, 0);
     cs_run_host_set_scales(host);
     if (error->status || add_contact(host, error) || add_rate(host, error) ||
-        add_lagged_friction(host, error))
+        add_lagged_friction(host, error) || cs_energy_input_init(host, error))
         return error->status;
     // only methods with CS_NEED_SOLVE pay for the solver's memory and the copies of the state
     if (!begin(host, CS_FEATURE_SOLVER))
@@ -388,7 +388,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
 /* An event also updates the blow-up bound, the ledger, the trace and static friction. */
 bool cs_run_host_apply_events(struct cs_run_host *host, double t) {
     struct cs_system *system = host->run->system;
-    if (!cs_events_apply(system, t))
+    if (!cs_energy_input_events(host, t))
         return false;
     cs_blow_up_check_after_events(&host->blow_up, system, t);
     if (host->settings.ledger)

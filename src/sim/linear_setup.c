@@ -196,6 +196,10 @@ enum cs_step cs_host_euler_setup(void *ctx, double t, double h, const double *x,
 void cs_host_euler_finish(void *ctx, double *x, double *v) {
     struct cs_run_host *host = ctx;
     const struct cs_stage_start begin = cs_stage_begin(host);
+    if (host->power) {
+        host->has_impact = host->run->system->rebounds->any;
+        host->impact_work = cs_rebounds_work(host->run->system, host->euler.t, x);
+    }
     cs_rebounds_move(host->run->system, host->euler.h, x, v);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }

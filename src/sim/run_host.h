@@ -122,6 +122,17 @@ struct cs_run_host {
     struct cs_blow_up_check blow_up;
     struct cs_blocked_step blocked_step; /* the last step that crossings refused */
     struct cs_advance_check advance_check;
+    double *power; /* (4n) power in W by which the scene gives energy to each particle at the
+                      last evaluation of all forces, then a scratch for forces; NULL:
+                      nothing can give any */
+    bool power_is_set;  /* the method has asked for all forces since the last commit */
+    double power_t;     /* s, when */
+    bool power_by_end;  /* an implicit method with things that move: only the end of a step
+                           counts,  as an impact may begin within it */
+    bool has_impact;    /* the last linearised step stepped particles alone (rebound.h) */
+    double impact_work; /* J that colliders did on them: by their impulse, since their contact
+                           may have come and gone within the step */
+    bool corrects;      /* strain limit or contact by projection act */
     double *held;    /* two copies (6,n) of a state, for cs_host_held_at; NULL: nothing turns */
     double lag_time; /* s, of the friction that is lagged */
     struct cs_arena arena;      /* memory of the method and of the solver */
@@ -206,6 +217,36 @@ static inline bool cs_host_is_explicit(const struct cs_run_host *host) {
  * CS_STEP_FAIL with a message. */
 enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v,
                             bool *changed);
+
+/* The account of energy: adds up in run->energy_input what the scene gives to the motion.
+ *
+ * Forces. A moving surface of velocity u that presses with the force f on a particle gives the
+ * power f.u: the part of f.v that neither its potential nor friction takes up. A pinned
+ * particle that moves gives -f.v with the sum f of all forces on it, wind and pushes give f.v.
+ * The rule for a step of length h is h times the power at the last state at which the method
+ * asked for all forces: of first order, and with the same error for any smooth motion as
+ * backward Euler. Methods that make many passes over the forces per step pay one for the state
+ * that they end in.
+ *
+ * Ramps give the change of the potentials at fixed positions. Corrections after a step give the
+ * change of kinetic energy that they make, and of the potentials in one of so many steps, which
+ * stands for all since the last. Both wait until their share of the work of the method is below
+ * 3 %, in counts that no machine changes. Events between two steps give what the energy rises
+ * by. The observer of a step is left out. */
+
+/* Finds what can give energy, and takes the arrays for it. CS_ERR_MEMORY. */
+enum cs_status cs_energy_input_init(struct cs_run_host *host, struct cs_error *error);
+/* An evaluation of forces that the method asks for, with its powers if it is of all. */
+struct cs_eval cs_energy_input_eval(struct cs_run_host *host, double t, const double *x,
+                                    const double *v, uint32_t parts);
+/* Books the step of length dt that ends at t in (x, v), before the corrections. */
+void cs_energy_input_step(struct cs_run_host *host, double t, double dt, const double *x,
+                          const double *v);
+/* Books the corrections that have led from there to (x, v). */
+void cs_energy_input_corrections(struct cs_run_host *host, double t, const double *x,
+                                 const double *v);
+/* Applies and books the events at time t; returns false if nothing changed. */
+bool cs_energy_input_events(struct cs_run_host *host, double t);
 
 /* Pins the particles that static friction holds, or releases them. They are pinned during the
  * method's calls only: corrections, the ledger and outputs see them as free. */

@@ -44,6 +44,7 @@ static void record_system(struct cs_run *run, struct cs_serialiser *record) {
     CS_SERIALISER(record, run->t);
     CS_SERIALISER(record, run->frame);
     CS_SERIALISER(record, host->blow_up);
+    CS_SERIALISER(record, run->energy_input);
     cs_events_serialise(system, record);
     if (system->plan.rows[CS_FEATURE_CONTACT].built)
         cs_contact_projection_serialise(&host->contact, record);

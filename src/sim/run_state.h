@@ -86,6 +86,27 @@ struct cs_blow_up {
 /* Remarks of a method that are stored; later ones are dropped. */
 enum { CS_NOTES_MAX = 8 };
 
+/* Rows of cs_energy_input.given. */
+enum cs_given {
+    CS_GIVEN_FORCES,      /* wind, pushes, moving colliders and pins */
+    CS_GIVEN_VALUES,      /* ramps, at fixed positions */
+    CS_GIVEN_CORRECTIONS, /* strain limit and projection */
+    CS_GIVEN_EVENTS,      /* at once, between two steps */
+    CS_GIVEN
+};
+
+/* The energy that the scene has given since the start of a run; negative if it took more. */
+struct cs_energy_input {
+    double given[CS_GIVEN]; /* J */
+    double pinned;          /* J, kinetic energy of pinned particles that turn */
+    double values_t;        /* s, to which ramps are booked */
+    /* before the corrections of the running step, in J; the potential only if it is_sampled */
+    double kinetic, potential;
+    double corrected_steps; /* since the last sample, this one included */
+    bool is_sampled;
+    double powers_work, values_work, corrections_work; /* passes, when each was booked last */
+};
+
 struct cs_energy_ledger;
 struct cs_run_host;
 
@@ -103,6 +124,7 @@ struct cs_run {
     struct cs_counts counts;
     struct cs_strain_limit strain_limit;
     struct cs_projection_depth projection_left;
+    struct cs_energy_input energy_input;
     double stage_seconds[CS_STAGES]; /* wall time; all 0 unless timed */
     double stage_cpu[CS_STAGES];     /* processor time of the process meanwhile; likewise */
     double advance_seconds;          /* wall time inside the method */

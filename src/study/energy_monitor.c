@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Limit of a particle's speed over what it may reach. */
 #define SPEED_FACTOR 5
@@ -18,6 +19,9 @@
 /* Energy that was made counts from so many samples on, else only beyond so many times the
  * bound. */
 enum { SAMPLES_MIN = 8, FAR_BEYOND = 100 };
+/* Fraction of m c^2/2 with the scene's scale of speed c that nothing but errors of steps makes.
+ */
+#define LEAST_FRACTION 0.1
 
 static const struct {
     const char *word, *help;
@@ -123,33 +127,24 @@ static void start_speeds(struct cs_energy_monitor *monitor, const struct cs_run 
     monitor->acceleration = falls + pushes;
 }
 
-/* True if a sample shows all that can put energy in: no outer forces, no events, no correction
- * after steps but those that only lose. */
-static bool is_closed(const struct cs_system *system) {
-    const struct cs_plan_row *rows = system->plan.rows;
-    for (uint32_t k = 0; k < system->n_terms; k++)
-        if (system->terms[k]->part_bits & (CS_PART_WIND | CS_PART_EXTERNAL))
-            return false;
-    return !system->events && !rows[CS_FEATURE_CONTACT].built &&
-           !rows[CS_FEATURE_STRAIN_LIMIT].built && !rows[CS_FEATURE_CROSSINGS].built;
-}
-
 enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
                                        const struct cs_run *run, struct cs_error *error) {
     const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
     double speed = 0;
     *monitor = (struct cs_energy_monitor){
         .stride = 1,
-        .is_closed = is_closed(run->system),
         .may_swing =
             (run->integrator->traits & (CS_SYMPLECTIC | CS_IMPLICIT)) == CS_SYMPLECTIC};
     if (spring_speed(run, &speed, error))
         return error->status;
     start_speeds(monitor, run);
     monitor->start_speed += speed;
+    const double *g = run->system->scene->forces.gravity, c = cs_run_calls(run)->speed_scale;
+    if (length_of(g) > 0 || monitor->start_speed > 0)
+        monitor->least = 0.5 * LEAST_FRACTION * c * c;
     monitor->last_sample = run->t;
     monitor->last_total = cs_energy_total(&energy);
-    monitor->last_kinetic = energy.kinetic;
+    memcpy(monitor->last_given, run->energy_input.given, sizeof monitor->last_given);
     monitor->start_energy = cs_energy_without_gravity(&energy);
     monitor->gravity = energy.gravity;
     return CS_OK;
@@ -166,62 +161,32 @@ static bool has_event_since(const struct cs_energy_monitor *monitor, const struc
 
 /* S of the head, in J. */
 static double bound_of(const struct cs_energy_monitor *monitor) {
-    return fmax(monitor->start_energy + monitor->released + monitor->input, LEAST_ENERGY);
+    return fmax(monitor->start_energy + monitor->released + monitor->input,
+                fmax(monitor->mass * monitor->least, LEAST_ENERGY));
 }
 
-/* W in J since the last sample, by the ledger: what each column gave, and both of projection
- * together. Dampers and the velocity loss give nothing. */
-static double find_input(struct cs_energy_monitor *monitor,
-                         const struct cs_energy_ledger *ledger) {
-    double input = 0, gave[CS_WORKS_MAX];
-    for (int k = 0; k < CS_WORKS_MAX; k++) {
-        gave[k] = ledger->work[k] - monitor->last_ledger[k];
-        monitor->last_ledger[k] = ledger->work[k];
+/* W in J since the last sample: what each kind gave. One that took energy gave nothing. */
+static double find_input(struct cs_energy_monitor *monitor, const struct cs_run *run) {
+    double input = 0;
+    for (int k = 0; k < CS_GIVEN; k++) {
+        input += fmax(run->energy_input.given[k] - monitor->last_given[k], 0);
+        monitor->last_given[k] = run->energy_input.given[k];
     }
-    gave[CS_WORK_PROJECTION] += gave[CS_WORK_ABSORPTION];
-    gave[CS_WORK_INTEGRATOR] = gave[CS_WORK_ABSORPTION] = 0;
-    for (int k = 0; k < CS_WORKS_MAX; k++)
-        input += fmax(gave[k], 0);
     return input;
-}
-
-/* W in J since the last sample, without a ledger: what rose with an event, and what outer
- * forces can have given at most. */
-static double estimate_input(const struct cs_energy_monitor *monitor, const struct cs_run *run,
-                             const struct cs_energy_monitor_row *row, bool with_event) {
-    const double passed = run->t - monitor->last_sample;
-    const double rose = cs_energy_total(&row->energy) - monitor->last_total;
-    if (with_event) {
-        const double speed = run->system->events ? cs_events_speed(run->system) : 0;
-        return fmin(fmax(rose, 0), bound_of(monitor) + 0.5 * monitor->mass * speed * speed);
-    }
-    const double push = sqrt(monitor->wind_mass);
-    return push * passed *
-           (sqrt(2 * fmax(monitor->last_kinetic, row->energy.kinetic)) + push * passed);
 }
 
 /* Adds the interval since the last sample to the balance. */
 static void balance(struct cs_energy_monitor *monitor, const struct cs_run *run,
-                    const struct cs_energy_ledger *ledger, bool with_event,
                     struct cs_energy_monitor_row *row) {
-    const double total = cs_energy_total(&row->energy);
+    const double total = cs_energy_total(&row->energy), input = find_input(monitor, run);
     monitor->released = fmax(monitor->released, monitor->gravity - row->energy.gravity);
-    const double input =
-        ledger ? find_input(monitor, ledger) : estimate_input(monitor, run, row, with_event);
     monitor->input += input;
     monitor->balance += total - monitor->last_total - input;
     monitor->lowest = fmin(monitor->lowest, monitor->balance);
     row->made = monitor->balance - monitor->lowest;
     row->bound = bound_of(monitor);
-    row->ledger_made = (double)NAN;
-    if (ledger) {
-        const double made = ledger->work[CS_WORK_INTEGRATOR];
-        monitor->ledger_lowest = fmin(monitor->ledger_lowest, made);
-        row->ledger_made = made - monitor->ledger_lowest;
-    }
     monitor->last_sample = run->t;
     monitor->last_total = total;
-    monitor->last_kinetic = row->energy.kinetic;
 }
 
 /* Stores what was made; halves the resolution if the array is full. Returns whether there are
@@ -252,7 +217,8 @@ static double limit_of_speed(const struct cs_energy_monitor *monitor,
     return SPEED_FACTOR * fmax(monitor->start_speed + fall, LEAST_SPEED);
 }
 
-static void judge(struct cs_energy_monitor *monitor, const struct cs_energy_ledger *ledger,
+/* A fast particle is no instability unless the integrator has made half of its energy. */
+static void judge(struct cs_energy_monitor *monitor, double mass,
                   struct cs_energy_monitor_row *row) {
     const bool counts = has_lasted(monitor, row->made) || row->made > FAR_BEYOND * row->bound;
     /* first, because no comparison with NAN is true */
@@ -260,52 +226,37 @@ static void judge(struct cs_energy_monitor *monitor, const struct cs_energy_ledg
         row->verdict = CS_STABILITY_NOT_FINITE;
     else if (row->made > row->bound && counts)
         row->verdict = CS_STABILITY_GLOBAL;
-    else if (row->particles)
+    else if (row->particles && row->made > 0.25 * mass * row->speed * row->speed)
         row->verdict = CS_STABILITY_LOCAL;
-    row->in_doubt = row->verdict == CS_STABILITY_LOCAL ||
-                    (row->verdict == CS_STABILITY_GLOBAL && !ledger && !monitor->is_closed);
     if (row->verdict > monitor->worst_verdict) {
         monitor->worst_verdict = row->verdict;
-        /* a verdict without doubt needs no earlier one with it */
-        if (monitor->first.verdict == CS_STABILITY_BOUNDED ||
-            (monitor->first.in_doubt && !row->in_doubt))
+        if (monitor->first.verdict == CS_STABILITY_BOUNDED)
             monitor->first = *row;
-        monitor->in_doubt = row->in_doubt;
     }
 }
 
 void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs_run *run,
-                              const struct cs_energy_ledger *ledger,
                               struct cs_energy_monitor_row *row) {
     const struct cs_system *system = run->system;
     const bool with_event = has_event_since(monitor, run);
     *row = (struct cs_energy_monitor_row){.t = run->t};
     row->energy = cs_diagnostics_energy(system, run->t, run->x, run->v);
     row->strain = cs_diagnostics_strain(system, run->x);
-    balance(monitor, run, ledger, with_event, row);
+    balance(monitor, run, row);
     /* no bound of speed holds after an event has added energy */
     if (with_event)
         start_speeds(monitor, run);
     row->speed_limit = limit_of_speed(monitor, run);
     row->speed =
         cs_measure_speed(system, run->v, row->speed_limit, &row->particle, &row->particles);
-    judge(monitor, ledger, row);
+    judge(monitor, system->mass[row->particle], row);
 }
 
 void cs_energy_monitor_print(const struct cs_energy_monitor *monitor,
                              const struct cs_system *system, struct cs_text *out) {
     const struct cs_energy_monitor_row *first = &monitor->first;
-    if (first->verdict == CS_STABILITY_BOUNDED ||
-        (first->in_doubt && first->verdict == CS_STABILITY_LOCAL))
+    if (first->verdict == CS_STABILITY_BOUNDED)
         return;
-    if (first->in_doubt) {
-        cs_text_add(
-            out,
-            "in doubt from t = %.6g s on: energy rose by %.3g J, and the scene held and "
-            "gave %.3g J as far as frames show; --ledger tells who made it",
-            first->t, first->made, first->bound);
-        return;
-    }
     cs_text_add(out, "%s from t = %.6g s on: ", cs_stability_word(first->verdict), first->t);
     if (first->verdict == CS_STABILITY_GLOBAL)
         cs_text_add(out, "the integrator made %.3g J, the scene held and gave %.3g J; fastest ",
@@ -316,8 +267,8 @@ void cs_energy_monitor_print(const struct cs_energy_monitor *monitor,
     cs_system_print_particle(system, first->particle, out);
     cs_text_add(out, " at %.3g m/s", first->speed);
     if (first->verdict == CS_STABILITY_LOCAL)
-        cs_text_add(out, ", above the limit of %.3g m/s, which at half the step none exceeds",
-                    first->speed_limit);
+        cs_text_add(out, ", above the limit of %.3g m/s; the integrator made %.3g J",
+                    first->speed_limit, first->made);
     if (monitor->worst_verdict > first->verdict)
         cs_text_add(out, "; later %s", cs_stability_word(monitor->worst_verdict));
 }
@@ -355,7 +306,7 @@ void cs_energy_monitor_print_row(const struct cs_energy_monitor_row *row, uint32
     for (size_t k = 0; k < sizeof values / sizeof *values; k++)
         cs_csv_add_number(out, values[k]);
     cs_text_add(out, ",%u,%u,%s", row->particle, row->particles,
-                row->in_doubt ? "in doubt" : cs_stability_word(row->verdict));
+                cs_stability_word(row->verdict));
     cs_csv_add_number(out, row->made);
     cs_csv_add_number(out, row->bound);
     cs_text_add(out, "\n");

@@ -18,21 +18,24 @@
  * (velocity-verlet on s'' = -square s, w = s'), so energy swings by (h w)^2/4 / (1 - (h w)^2/4)
  * of itself, without bound as h approaches its limit, and comes back.
  *
- * W without a ledger, between two samples D apart: of wind and other outer forces of at most
- * m_i a_i on particle i, by the Cauchy-Schwarz inequality D sqrt(sum m a^2) sqrt(sum m v^2); of
- * events, ramps and moving things of speed u all that E rose by, up to S + M u^2/2. Corrections
- * after steps are not known. Where any of these act, the verdict of a sample is in doubt until
- * a run with a ledger confirms it (cs_stability_confirm), which takes W from its columns.
+ * S is at least m c^2/20 with the mass m that can move and the scale of speed c, of half a
+ * swing under gravity, c^2 = g L/pi^2 over the size L: what lifts all by L/200. What rests has
+ * no energy to compare with, but errors of steps that are allowed: dopri5 at its tolerance of
+ * 1e-3 makes 0.002 of m c^2/2 in a second on a sheet that rests on a floor, and a step of h
+ * that meets the floor at its end m (g h)^2/2. An unstable step passes any such bound within
+ * frames. Without gravity c is the largest speed at the start; where that is 0 too, there is no
+ * such least.
+ *
+ * W is the account of the run (run_host.h): what forces, ramps, corrections after steps and
+ * events gave, each as far as it is positive between two samples.
  *
  * Local instability: a particle is faster than five times its speed at the start, what the
- * energy of its springs could give it, and a fall over the time passed. A whip does that too:
- * it is in doubt until the same run at half the step has no such particle, and the ledger says
- * that the integrator made half of the particle's energy. */
+ * energy of its springs could give it, and a fall over the time passed, and the integrator has
+ * made half of its energy: a whip is as fast, but takes its energy from the rest. */
 #ifndef CS_ENERGY_MONITOR_H
 #define CS_ENERGY_MONITOR_H
 
 #include "base/table.h"
-#include "sim/energy_ledger.h"
 #include "sim/run.h"
 
 #include "model/force/diagnostics.h"
@@ -46,7 +49,7 @@
     X(CS_STABILITY_SHORT, "not run to the end", '>', 0xe3f1e8,                                 \
       "no sign of instability in the steps that a cell may take, fewer than its time needs")   \
     X(CS_STABILITY_LOCAL, "local instability", 'l', 0xf6d365,                                  \
-      "particles too fast, by energy of the integrator; at half the step there are none")      \
+      "particles too fast, by energy of the integrator")                                       \
     X(CS_STABILITY_GLOBAL, "global instability", 'G', 0xe8825a,                                \
       "the integrator made more energy than the scene held and gave")                          \
     X(CS_STABILITY_NOT_FINITE, "not finite", 'X', 0x8e5c86,                                    \
@@ -90,10 +93,8 @@ struct cs_energy_monitor_row {
     uint32_t particles;      /* faster than the limit */
     double speed_limit;      /* m/s */
     double made, bound;      /* J: by the integrator, and S of the head */
-    double ledger_made;      /* J, rise of the ledger's column; NAN without a ledger */
     /* BOUNDED, LOCAL, GLOBAL or NOT_FINITE, of this time alone */
     enum cs_stability_verdict verdict;
-    bool in_doubt; /* until it is confirmed */
 };
 
 enum { CS_MONITOR_PEAKS = 64 };
@@ -101,15 +102,14 @@ enum { CS_MONITOR_PEAKS = 64 };
 /* State of the monitor. */
 struct cs_energy_monitor {
     /* the balance, in J */
-    double last_sample, last_total, last_kinetic, last_ledger[CS_WORKS_MAX];
+    double last_sample, last_total, last_given[CS_GIVEN];
     double balance, lowest;                 /* R, and its least value */
-    double ledger_lowest;                   /* of the column of the integrator */
     double start_energy, gravity, released; /* at the start; most that gravity gave since */
     double input;                           /* W */
+    double least;                           /* J/kg: least of S */
     /* largest `made` in each of the CS_MONITOR_PEAKS or fewer spans of `stride` samples */
     double peaks[CS_MONITOR_PEAKS];
     uint32_t n_samples, stride;
-    bool is_closed; /* nothing can put energy in but what a sample shows */
     bool may_swing; /* an explicit symplectic method: energy that it made may go again */
     /* the speeds; they restart after a frame with an event */
     double t_begin;      /* s */
@@ -118,16 +118,14 @@ struct cs_energy_monitor {
     double mass, wind_mass; /* kg that can move; sum of m a^2 in kg m2/s4, of outer forces */
     struct cs_energy_monitor_row first; /* when an instability began; verdict BOUNDED: none */
     enum cs_stability_verdict worst_verdict;
-    bool in_doubt; /* the worst verdict or the first one is */
 };
 
 /* Begins at the start of a run, before its first frame. CS_ERR_MEMORY. */
 enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
                                        const struct cs_run *run, struct cs_error *error);
-/* Samples the run after a frame and fills *row. ledger: of this run from its start on; NULL:
- * none. Updates the worst verdict and the first instability. */
+/* Samples the run after a frame and fills *row. Updates the worst verdict and the first
+ * instability. */
 void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs_run *run,
-                              const struct cs_energy_ledger *ledger,
                               struct cs_energy_monitor_row *row);
 
 /* Adds "local instability from t = 0.35 s on: ..."; nothing if the run was sound. */

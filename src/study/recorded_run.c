@@ -106,7 +106,7 @@ static void store_state(struct cs_trajectory *track, const struct cs_run *run,
     if (!track)
         return;
     cs_crossing_stats_add(&end->crossings, run);
-    cs_energy_monitor_sample(&end->monitor, run, NULL, &row);
+    cs_energy_monitor_sample(&end->monitor, run, &row);
     memcpy(cs_trajectory_state(track, run->frame), run->x, 6 * track->n * sizeof *run->x);
     track->n_recorded = run->frame;
 }

@@ -66,7 +66,7 @@ struct cs_recorded_run_result {
     struct cs_counts counts;
     struct cs_crossing_stats
         crossings; /* of the frames of a track, where the scene counts them */
-    struct cs_energy_monitor monitor; /* of the frames of a track; not confirmed */
+    struct cs_energy_monitor monitor; /* of the frames of a track */
     char note[240];                   /* the method's remarks, or why it failed */
     char hash[CS_HASH_DIGITS];        /* of the last state */
 };

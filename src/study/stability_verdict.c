@@ -1,4 +1,4 @@
-/* Confirms verdicts in doubt, samples runs, and compares sound ones with a trusted run. */
+/* Samples runs, finds singular forces, and compares sound runs with a trusted one. */
 #include "study/stability_verdict.h"
 
 #include <math.h>
@@ -7,102 +7,6 @@
 /* J; below it the reference counts as motionless. Otherwise rounding errors alone would exceed
  * every multiple of its energy. */
 #define LEAST_ENERGY 1e-15
-/* Budget of a run that confirms, over that of the run in doubt: a ledger takes some ten
- * evaluations of the forces per step. */
-#define BUDGETS 10
-
-/* A run that confirms: its request, and what its monitor found. */
-struct check {
-    struct cs_session_settings settings;
-    double seconds;   /* to the sample at this time */
-    bool with_ledger; /* ends once the ledger shows a global instability */
-    struct cs_energy_monitor monitor;
-    struct cs_energy_monitor_row row; /* the last */
-    bool takes_dt;                    /* the method has fixed steps */
-    uint32_t particle;
-    double mass; /* kg, of that particle */
-};
-
-static void follow_check(struct check *check, struct cs_run *run,
-                         const struct cs_energy_ledger *ledger, struct cs_error *error) {
-    struct cs_follow follow = {
-        .run = run, .last = cs_follow_frames(run->system->scene, check->seconds), .every = 1};
-    struct cs_run_result result;
-    if (!cs_energy_monitor_begin(&check->monitor, run, error))
-        do
-            cs_energy_monitor_sample(&check->monitor, run, ledger, &check->row);
-        while (check->monitor.worst_verdict < CS_STABILITY_GLOBAL &&
-               cs_follow_next(&follow, error));
-    cs_follow_result(run, "", &result, error);
-}
-
-static enum cs_status run_check(struct check *check, struct cs_error *error) {
-    struct cs_session session;
-    struct cs_energy_ledger ledger = {0};
-    check->settings.run.ledger = check->with_ledger ? &ledger : NULL;
-    if (cs_session_open_system(&session, &check->settings, error))
-        return error->status;
-    check->takes_dt = cs_method_takes_dt(session.method.integrator);
-    check->mass = session.system.mass[check->particle];
-    if (!(check->with_ledger && cs_energy_ledger_open(&ledger, &session.system, 0, error)) &&
-        !cs_session_begin(&session, NULL, error))
-        follow_check(check, &session.run, check->with_ledger ? &ledger : NULL, error);
-    cs_energy_ledger_close(&ledger);
-    cs_session_close(&session);
-    return error->status;
-}
-
-/* True if the particle that was too fast is by the integrator: at half the step none is, and
- * the ledger's column rose by half of its energy. */
-static enum cs_status check_local(const struct check *asked, double half_step,
-                                  const struct cs_energy_monitor_row *first, bool *found,
-                                  struct cs_error *error) {
-    struct check check = *asked;
-    *found = false;
-    check.seconds = first->t;
-    check.particle = first->particle;
-    if (run_check(&check, error) || !check.takes_dt ||
-        !(check.row.ledger_made > 0.25 * check.mass * first->speed * first->speed))
-        return error->status;
-    check.with_ledger = false;
-    check.settings.dt = half_step;
-    if (!run_check(&check, error))
-        *found = check.monitor.worst_verdict == CS_STABILITY_BOUNDED;
-    return error->status;
-}
-
-enum cs_status cs_stability_confirm(struct cs_energy_monitor *monitor,
-                                    const struct cs_session_settings *settings, double seconds,
-                                    uint64_t steps, struct cs_error *error) {
-    const struct cs_energy_monitor_row first = monitor->first;
-    const enum cs_stability_verdict worst = monitor->worst_verdict;
-    struct check check = {.settings = *settings, .seconds = seconds, .with_ledger = true};
-    if (!monitor->in_doubt || !steps)
-        return CS_OK;
-    check.settings.threads = 0;
-    check.settings.render = false;
-    check.settings.run.trace = NULL;
-    check.settings.run.budget *= BUDGETS;
-    monitor->first = (struct cs_energy_monitor_row){0};
-    monitor->worst_verdict = CS_STABILITY_BOUNDED;
-    monitor->in_doubt = false;
-    if (worst == CS_STABILITY_GLOBAL && run_check(&check, error))
-        return error->status;
-    bool found = check.monitor.worst_verdict >= CS_STABILITY_GLOBAL;
-    if (found)
-        monitor->first = check.row;
-    else if (first.verdict == CS_STABILITY_LOCAL) {
-        if (check_local(&check, 0.5 * seconds / (double)steps, &first, &found, error))
-            return error->status;
-        monitor->first = first;
-    }
-    if (!found)
-        monitor->first = (struct cs_energy_monitor_row){0};
-    monitor->first.in_doubt = false;
-    monitor->worst_verdict = monitor->first.verdict;
-    return CS_OK;
-}
-
 /* Steps of dop853 that shrink: `tiny` in a row, below SHRUNK of the longest one before. A step
  * that ends at an event is tiny too, but alone. The stiffness of contact grows by 1.7e8 from
  * its range to its core, which shortens steps by 1.3e4. */
@@ -218,7 +122,7 @@ static void take_sample(struct cs_sampled_run *trial,
                         const struct cs_sampled_run_settings *settings,
                         const struct cs_run *run) {
     struct cs_energy_monitor_row row;
-    cs_energy_monitor_sample(&trial->monitor, run, settings->session.run.ledger, &row);
+    cs_energy_monitor_sample(&trial->monitor, run, &row);
     trial->end_energy = cs_energy_total(&row.energy);
     trial->kinetic = fmax(trial->kinetic, row.energy.kinetic);
     trial->energy_max = fmax(trial->energy_max, cs_energy_without_gravity(&row.energy));
@@ -271,9 +175,7 @@ enum cs_status cs_sampled_run_execute(struct cs_sampled_run *trial,
         return error->status;
     if (!cs_session_begin(&session, NULL, error))
         run_samples(trial, settings, &session.run, error);
-    if (!cs_follow_result(&session.run, "", &trial->result, error))
-        cs_stability_confirm(&trial->monitor, &asked, session.run.t, session.run.counts.steps,
-                             error);
+    cs_follow_result(&session.run, "", &trial->result, error);
     cs_session_close(&session);
     return error->status;
 }

@@ -1,5 +1,5 @@
-/* stability_verdict.h - sampled runs and their verdicts: the energy monitor's, confirmed, and
- * for sound runs a comparison with a trusted run of the same scene (stability_state.h). */
+/* stability_verdict.h - sampled runs and their verdicts: the energy monitor's, and for
+ * sound runs a comparison with a trusted run of the same scene (stability_state.h). */
 #ifndef CS_STABILITY_VERDICT_H
 #define CS_STABILITY_VERDICT_H
 
@@ -7,19 +7,6 @@
 #include "study/follow.h"
 #include "study/recorded_run.h"
 #include "study/session.h"
-
-/* Settles a verdict in doubt (energy_monitor.h) by more runs of the same scene from its start:
- * with a ledger to the end, or to the first sample at which it shows that the integrator made
- * more than the bound; for fast particles, at half the step and with a ledger until they
- * showed. Methods that choose their own steps have no local instability.
- *
- * settings: of the run that `monitor` saw, of so many seconds and steps; frames are its
- * samples. *monitor then has the confirmed verdict and where it began. Each of these runs has
- * ten times the budget; one that ends early confirms nothing. Costs nothing without doubt.
- * Errors: those of a session. */
-enum cs_status cs_stability_confirm(struct cs_energy_monitor *monitor,
-                                    const struct cs_session_settings *settings, double seconds,
-                                    uint64_t steps, struct cs_error *error);
 
 /* Tells a singular force from a step that is too long, for a run that ended or was unstable
  * within so many seconds. dop853 runs the scene from its start with steps by their error. Where
@@ -50,7 +37,7 @@ struct cs_sampled_run_settings {
 /* Figures of a run. They are valid up to the time that the run reached. */
 struct cs_sampled_run {
     struct cs_run_result result;
-    struct cs_energy_monitor monitor; /* confirmed */
+    struct cs_energy_monitor monitor;
     uint64_t steps;
     double mean_step;                   /* s, mean length of a step */
     double end_energy;                  /* J, whole */

@@ -6,7 +6,7 @@ Each pair is run at the default step for so many frames, plainly and with a ledg
 compare runs the same cell; stability one cell of the step h that the run took, beside a run at
 that h; advise names a step, which is then run with a ledger. Counted are
   contradiction  two commands, one of which says unstable and the other sound, of the same step and
-                 time, neither "in doubt"; advise contradicts by naming an unstable step
+                 time; advise contradicts by naming an unstable step
   dissipating    called unstable, although energy less what came in never rose
   unconfirmed    called unstable, where the ledger does not show it
   missed         called bounded by run and by the command, unstable by the ledger
@@ -257,7 +257,7 @@ def main():
     parser.add_argument("--out", default=os.devnull)
     options = parser.parse_args()
     kinds = ("contradiction", "dissipating", "unconfirmed", "missed", "only shaken")
-    count = dict.fromkeys(("pairs", "by all commands", "left out", "unstable", "in doubt") + kinds, 0)
+    count = dict.fromkeys(("pairs", "by all commands", "left out", "unstable") + kinds, 0)
     with open(options.out, "a") as out:
         for scene, method, is_adaptive in pairs_of(options):
             row = judge(options, scene, method, is_adaptive)
@@ -266,7 +266,6 @@ def main():
             if "run" in row:
                 count["by all commands"] += not row["left out"]
                 count["unstable"] += is_unstable(row["run --ledger"])
-                count["in doubt"] += row["run"] == "in doubt"
             for kind in kinds:
                 count[kind] += sum(f.startswith(kind) for f in row["found"])
             if row["found"]:

@@ -33,8 +33,7 @@ static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
 static void look(struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
     cs_run_hash(run, job->hash);
-    cs_energy_monitor_sample(&job->monitor, run, job->settings->ledger ? &job->ledger : NULL,
-                             &job->sound);
+    cs_energy_monitor_sample(&job->monitor, run, &job->sound);
     cs_crossing_stats_add(&job->crossings, run);
 }
 

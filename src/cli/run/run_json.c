@@ -42,14 +42,9 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
                       "'bound': %g}",
                       run->blow_up.time, run->blow_up.particle, run->blow_up.energy,
                       run->blow_up.bound);
-    const enum cs_stability_verdict seen = job->monitor.worst_verdict;
-    const enum cs_stability_verdict verdict =
-        cs_stability_at_end(job->failure ? CS_FAILED : run->outcome, seen);
     cs_json_write(out, ",\n  'verdict': %s",
-                  job->monitor.in_doubt && verdict == seen &&
-                          !cs_outcome_is_blow_up(run->outcome)
-                      ? "in doubt"
-                      : cs_stability_word(verdict));
+                  cs_stability_word(cs_stability_at_end(job->failure ? CS_FAILED : run->outcome,
+                                                        job->monitor.worst_verdict)));
     if (job->monitor.first.verdict != CS_STABILITY_BOUNDED)
         cs_json_write(
             out, ",\n  'unstable_from': {'time': %g, 'particle': %u, 'particles': %u}",

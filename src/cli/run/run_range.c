@@ -157,7 +157,7 @@ static enum cs_status search_instability(const struct cs_job_settings *settings,
     const struct cs_energy_monitor_row *first = &monitor.first;
     if (!cs_energy_monitor_begin(&monitor, run, error))
         while (first->verdict == CS_STABILITY_BOUNDED && cs_follow_next(&follow, error))
-            cs_energy_monitor_sample(&monitor, run, NULL, &row);
+            cs_energy_monitor_sample(&monitor, run, &row);
     if (first->verdict != CS_STABILITY_BOUNDED)
         print_marks(&session.system, first->particle, marks);
     else if (cs_outcome_is_blow_up(run->outcome))

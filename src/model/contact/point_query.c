@@ -9,7 +9,7 @@
 
 static void find_vector(const struct cs_point_query *job,
                         const struct cs_posed_collider_law *near,
-                        const struct cs_contact_sample_point *point,
+                        const struct cs_contact_sample_point *point, const double v[3],
                         const struct cs_bristle *bristle, struct cs_point_answer *answer) {
     const struct cs_contact_force_parts parts = cs_force_parts_of(job->eval.parts);
     const struct cs_point_contact *contact = &answer->contact;
@@ -31,6 +31,10 @@ static void find_vector(const struct cs_point_query *job,
         cs_point_contact_force(contact, parts, f);
         if (rubs)
             cs_bristle_add_force(contact, bristle, f);
+        // contact->v is v - u
+        answer->energy = 0;
+        for (int c = 0; c < 3; c++)
+            answer->energy += f[c] * (v[c] - contact->v[c]);
     }
 }
 
@@ -85,6 +89,6 @@ bool cs_point_evaluate(const struct cs_point_query *job,
     else if (job->quantity == CS_POINT_BOUND)
         find_bound(bristle, answer);
     else
-        find_vector(job, near, point, bristle, answer);
+        find_vector(job, near, point, v, bristle, answer);
     return true;
 }

@@ -30,7 +30,7 @@ struct cs_point_answer {
     double vector[3];          /* N: force, its change, or the approach */
     double block[6];           /* of the matrix: xx, xy, xz, yy, yz, zz */
     double stiffness, damping; /* N/m, N s/m: bounds */
-    double energy;             /* J */
+    double energy;             /* J; with a force in W, the power that the collider gives */
     struct cs_point_contact contact;
 };
 

@@ -288,6 +288,25 @@ void cs_rebounds_move(const struct cs_system *system, double h, double *x, doubl
     }
 }
 
+double cs_rebounds_work(const struct cs_system *system, double t, const double *x) {
+    const size_t n = system->view.n;
+    double work = 0;
+    for (uint32_t k = 0; system->rebounds->any && k < system->scene->colliders.n; k++) {
+        struct cs_posed_collider pose;
+        cs_posed_collider_at(system, k, t, &pose);
+        for (size_t i = 0; i < n; i++) {
+            const double p[3] = {x[i], x[n + i], x[2 * n + i]};
+            double u[3];
+            if (system->rebounds->list[i].collider != k + 1)
+                continue;
+            cs_posed_collider_velocity(&pose, p, u);
+            for (size_t c = 0; c < 3; c++)
+                work += system->mass[i] * system->rebounds->change[c * n + i] * u[c];
+        }
+    }
+    return work;
+}
+
 bool cs_rebounds_resolve_step(const struct cs_system *system, double t1, const double *x1) {
     const size_t n = system->view.n;
     for (uint32_t k = 0; k < system->scene->colliders.n; k++) {

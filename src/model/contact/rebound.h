@@ -57,6 +57,10 @@ void cs_rebounds_find(const struct cs_system *system, double t, double h, const 
  * (dv - c). The next cs_rebounds_resolve_step is about this step. */
 void cs_rebounds_move(const struct cs_system *system, double h, double *x, double *v);
 
+/* Work in J that colliders do on the particles in impact: m c.w, with the velocity w of the
+ * surface at (t, x). */
+double cs_rebounds_work(const struct cs_system *system, double t, const double *x);
+
 /* Returns whether all particles in impact end near where their flights do, at x1 and t1. */
 bool cs_rebounds_resolve_step(const struct cs_system *system, double t1, const double *x1);
 

@@ -194,6 +194,21 @@ static void add_vectors(const struct cs_point_query *job,
             add_at(f, job->system->view.n, i, answer.vector);
 }
 
+/* Adds the powers that a collider gives if it moves. */
+static void add_powers(const struct cs_point_query *job,
+                       const struct cs_posed_collider_law *near, uint32_t collider) {
+    const struct cs_posed_collider *pose = &near->collider;
+    const double *u = pose->velocity, *w = pose->spin;
+    const struct cs_block *block = job->eval.block;
+    struct cs_point_answer answer;
+    if (!job->eval.power || (u[0] == 0 && u[1] == 0 && u[2] == 0 && w[0] == 0 && w[1] == 0 &&
+                             w[2] == 0 && pose->growth == 0))
+        return;
+    for (size_t i = block->begin; i < block->end; i++)
+        if (evaluate(job, near, collider, i, &answer))
+            job->eval.power[i] += answer.energy;
+}
+
 /* Spheres and planes have a vectorised path with the same formulas. */
 static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const struct cs_contact_force_parts parts = cs_force_parts_of(at->parts);
@@ -204,6 +219,7 @@ static void add_force(const struct cs_system *system, const struct cs_eval *at, 
             contact_rows_add(&near, system->view.n, at, parts, f);
         else
             add_vectors(&job, &near, c, f);
+        add_powers(&job, &near, c);
     }
 }
 

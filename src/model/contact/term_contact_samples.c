@@ -42,7 +42,8 @@ static void meet(const struct job *job, const struct cs_posed_collider_law *near
                            &answer) ||
         cs_contact_sample_mass(system, point) == HUGE_VAL)
         return;
-    if (quantity == CS_POINT_ENERGY)
+    // of a force: the power that the collider gives
+    if (quantity == CS_POINT_ENERGY || quantity == CS_POINT_FORCE)
         chunk->energy += answer.energy;
     else if (quantity == CS_POINT_LAGGED)
         cs_lagged_friction_store(system->lagged_friction, job->first + number, &answer.contact,
@@ -185,6 +186,8 @@ static void prepare(const struct cs_system *system, const struct cs_eval *at) {
 static void add(const struct cs_system *system, const struct cs_eval *at, double *f) {
     cs_contact_set_add(&system->contact_samples->current_set, at->block->begin, at->block->end,
                        f);
+    if (at->power && at->block->begin == 0)
+        at->power[0] += cs_contact_set_energy(&system->contact_samples->current_set);
 }
 
 static double energy(const struct cs_system *system, const struct cs_eval *at) {

@@ -118,6 +118,9 @@ static void wind_force(const struct cs_system *system, const struct cs_eval *at,
         f[i] += push * w[0];
         f[n + i] += push * w[1];
         f[2 * n + i] += push * w[2];
+        if (at->power)
+            at->power[i] +=
+                push * (w[0] * at->v[i] + w[1] * at->v[n + i] + w[2] * at->v[2 * n + i]);
     }
 }
 

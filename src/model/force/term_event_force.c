@@ -22,6 +22,9 @@ static void add_force(const struct cs_system *system, const struct cs_eval *at, 
     for (size_t c = 0; c < 3; c++)
         for (size_t i = at->block->begin; i < at->block->end; i++)
             f[c * n + i] += system->mass[i] * push[c * n + i];
+    for (size_t c = 0; c < 3 && at->power; c++)
+        for (size_t i = at->block->begin; i < at->block->end; i++)
+            at->power[i] += system->mass[i] * push[c * n + i] * at->v[c * n + i];
 }
 
 /* The present force, which no state changes. */

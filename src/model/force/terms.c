@@ -52,14 +52,19 @@ static uint32_t find_pinned(const struct cs_system *system, uint32_t begin) {
     return low;
 }
 
-/* Zeroes the pinned particles of a block: they bear any force without moving. */
+/* Zeroes the pinned particles of a block: they bear any force without moving. If they do move,
+ * what moves them gives -f.v. */
 static void clear_pinned(const struct cs_system *system, const struct cs_block *block,
-                         double *f) {
+                         const struct cs_eval *at, double *f) {
     const uint32_t first = find_pinned(system, block->begin),
                    end = find_pinned(system, block->end);
     for (size_t c = 0; c < 3; c++)
-        for (uint32_t p = first; p < end; p++)
-            f[c * system->view.n + system->pinned[p]] = 0;
+        for (uint32_t p = first; p < end; p++) {
+            const size_t k = c * system->view.n + system->pinned[p];
+            if (at && at->power)
+                at->power[system->pinned[p]] -= f[k] * at->v[k];
+            f[k] = 0;
+        }
 }
 
 /* Tells whether a term is among the chosen parts. */
@@ -84,6 +89,8 @@ static void sum_block(void *arg, uint32_t number) {
     struct cs_eval at = job->at;
     at.block = &block;
     clear(system, &block, job->out);
+    if (at.power)
+        memset(at.power + block.begin, 0, sizeof *at.power * (block.end - block.begin));
     for (uint32_t k = 0; k < system->n_terms; k++) {
         const struct cs_term *term = system->terms[k];
         const bool asked = is_asked(term, job);
@@ -93,7 +100,7 @@ static void sum_block(void *arg, uint32_t number) {
         else if (asked && term->add_jvp)
             term->add_jvp(system, &at, job->out);
     }
-    clear_pinned(system, &block, job->out);
+    clear_pinned(system, &block, &at, job->out);
 }
 
 void cs_terms_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
@@ -150,7 +157,7 @@ void cs_terms_approach(const struct cs_system *system, const struct cs_matrix *m
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (system->terms[k]->add_approach)
             system->terms[k]->add_approach(system, matrix, y);
-    clear_pinned(system, &all, y);
+    clear_pinned(system, &all, NULL, y);
 }
 
 /* Adds the diagonal parts of all terms but the springs. */

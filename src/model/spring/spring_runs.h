@@ -85,7 +85,9 @@ struct cs_eval {
     const double *dx, *dv;             /* (3,n) directions; NULL: 0 */
     double *dfdx_blocks, *dfdv_blocks; /* (6,n) output: diagonal blocks of grids' springs, in
                                           the same pass as the force; NULL: not wanted */
-    const struct cs_block *block;      /* particles to add to; NULL in prepare */
+    double *power; /* (n) output with the force, in W: what gives energy adds f.u at the
+                      particle, with the velocity u that it prescribes; NULL: not wanted */
+    const struct cs_block *block; /* particles to add to; NULL in prepare */
 };
 
 /* Forces at the state of a matrix, by which friction by its chord knows where a step ends

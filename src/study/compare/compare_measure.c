@@ -74,21 +74,16 @@ static void take_errors(const struct cs_compare *compare,
         cell->adaptive ? cell->error / (cell->value * reference->motion_scale) : (double)NAN;
 }
 
-/* An instability that the monitor saw and further runs confirmed goes before the notes. */
-static enum cs_status take_verdict(struct cs_recorded_run *recording,
-                                   struct cs_energy_monitor *monitor, struct cs_cell *cell,
-                                   struct cs_error *error) {
+/* An instability that the monitor saw goes before the notes. */
+static void take_verdict(const struct cs_recorded_run *recording,
+                         const struct cs_energy_monitor *monitor, struct cs_cell *cell) {
     struct cs_text text = {0};
-    if (cs_stability_confirm(monitor, &recording->session.settings, cell->time,
-                             (uint64_t)cell->steps, error))
-        return error->status;
     cs_energy_monitor_print(monitor, &recording->session.system, &text);
     if (text.length) {
         cs_text_add(&text, "%s%s", *cell->note ? "; " : "", cell->note);
         snprintf(cell->note, sizeof cell->note, "%s", cs_text_get(&text));
     }
     cs_text_finish(&text);
-    return CS_OK;
 }
 
 /* Runs the cell again from its initial state with an energy ledger. This run is not timed. */
@@ -129,8 +124,8 @@ enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_ce
         !cs_trajectory_init(&track, &recording, error) &&
         !cs_recorded_run_execute(&recording, compare->budget, &track, &end, error)) {
         take_counts(cell, &end);
-        if (!take_module(&recording.session, cell, error) && cs_cell_is_finished(cell) &&
-            !take_verdict(&recording, &end.monitor, cell, error)) {
+        if (!take_module(&recording.session, cell, error) && cs_cell_is_finished(cell)) {
+            take_verdict(&recording, &end.monitor, cell);
             take_errors(compare, &recording, &track, cell);
             if (compare->settings->ledger)
                 take_ledger(&recording, cell, error);

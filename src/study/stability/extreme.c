@@ -29,7 +29,7 @@ static void say(struct cs_extreme_row *row, const char *text) {
 /* Steps to the end, a verdict or the end of the budget. The energy monitor samples each frame.
  * A blow-up that the run reports takes precedence over the monitor's verdict. */
 static void step(struct cs_extreme_row *row, struct cs_session *session, double seconds,
-                 double dt, struct ending *ending, struct cs_error *error) {
+                 struct ending *ending, struct cs_error *error) {
     struct cs_run *run = &session->run;
     struct cs_energy_monitor monitor;
     struct cs_energy_monitor_row look;
@@ -40,14 +40,10 @@ static void step(struct cs_extreme_row *row, struct cs_session *session, double 
     if (cs_energy_monitor_begin(&monitor, run, error))
         return;
     while (cs_follow_next(&follow, error)) {
-        cs_energy_monitor_sample(&monitor, run, NULL, &look);
+        cs_energy_monitor_sample(&monitor, run, &look);
         ending->silent |= look.verdict == CS_STABILITY_NOT_FINITE;
     }
-    struct cs_session_settings again = session->settings;
-    again.perturbation = PERTURBATION * cs_diagnostics_shortest(&session->system);
-    again.dt = dt;
-    if (cs_follow_result(run, "", &result, error) ||
-        cs_stability_confirm(&monitor, &again, run->t, run->counts.steps, error))
+    if (cs_follow_result(run, "", &result, error))
         return;
     cs_energy_monitor_print(&monitor, run->system, &text);
     ending->refused = cs_outcome_has_reason(result.outcome);
@@ -158,7 +154,7 @@ static enum cs_status run_row(const struct cs_extreme *extreme,
         if (dt > 0 && cs_extreme_expects(row->expected, "theory"))
             find_theory(&session, scene->seconds, &ending.theory, error);
         if (!error->status && !cs_session_begin(&session, NULL, error))
-            step(row, &session, scene->seconds, dt, &ending, error);
+            step(row, &session, scene->seconds, &ending, error);
     }
     if (error->status)
         take_refusal(row, &ending, error);

@@ -139,6 +139,23 @@ void cs_pairs_add(const struct cs_pairs *pairs, size_t begin, size_t end, double
         cs_gather_add(gather, gather->row_sums, 3, begin, end, f);
 }
 
+double cs_pairs_power(const struct cs_pairs *pairs, const struct cs_eval *at) {
+    const struct cs_gather *gather = &pairs->current_contacts->force_gather;
+    const struct cs_system *system = pairs->system;
+    const size_t n_points = system->surfaces->n_points;
+    const double *v = system->points && pairs->current_contacts->n
+                          ? cs_surface_points_velocities(system, at->t, at->v)
+                          : NULL;
+    double power = 0;
+    for (uint32_t l = 0; l < gather->n_chunks && v; l++) {
+        const double *f = cs_gather_of(gather->chunks + l, gather->row_sums, 3);
+        for (uint32_t row = 0; row < gather->chunks[l].n; row++)
+            for (size_t c = 0; c < 3 && gather->chunks[l].points[row] >= system->view.n; c++)
+                power -= f[3 * row + c] * v[c * n_points + gather->chunks[l].points[row]];
+    }
+    return power;
+}
+
 double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at) {
     struct cs_narrow_phase narrow = {.query = CS_CONTACT_QUERY_ENERGY, .eval = *at};
     double sum = 0;

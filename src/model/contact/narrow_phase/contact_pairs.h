@@ -88,6 +88,10 @@ void cs_pairs_set(struct cs_pairs *pairs, const struct cs_eval *at);
 /* f (3,n) += the result at the particles [begin, end). */
 void cs_pairs_add(const struct cs_pairs *pairs, size_t begin, size_t end, double *f);
 
+/* Power in W that the vertices of colliders give at the state of the last force: -f.v of each.
+ */
+double cs_pairs_power(const struct cs_pairs *pairs, const struct cs_eval *at);
+
 /* Elastic energy in J. */
 double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at);
 

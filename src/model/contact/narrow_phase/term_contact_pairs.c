@@ -19,6 +19,8 @@ static void prepare(const struct cs_system *system, const struct cs_eval *at) {
 
 static void add(const struct cs_system *system, const struct cs_eval *at, double *f) {
     cs_pairs_add(system->pairs, at->block->begin, at->block->end, f);
+    if (at->power && at->block->begin == 0)
+        at->power[0] += cs_pairs_power(system->pairs, at);
 }
 
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
