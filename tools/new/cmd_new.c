@@ -26,7 +26,7 @@ static const struct cs_arg rows[] = {
 };
 
 static const char *const template_lines[] = {
-#include "template_lines.h"
+#include <template_lines.h>
 };
 /* The method and the file of the template. */
 static const char method[] = "midpoint", file[] = "template.";
