@@ -107,21 +107,26 @@ static double strength_of(const struct cs_system *system, size_t i) {
     return wind->strength * fraction_of(system, wind->strength_unit == CS_WIND_PA, i);
 }
 
-/* Either side of the cloth catches the wind: |w.n|, along w. */
+/* Either side of the cloth catches the wind: |w.n|, in N along w. */
+static double push_on(const struct cs_system *system, size_t i) {
+    const size_t n = system->view.n;
+    const double *w = system->scene->forces.wind.direction, *normal = system->normals + i;
+    return strength_of(system, i) *
+           fabs(w[0] * normal[0] + w[1] * normal[n] + w[2] * normal[2 * n]);
+}
+
 static void wind_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const size_t n = system->view.n;
-    const double *w = system->scene->forces.wind.direction;
-    const double *nx = system->normals, *ny = nx + n, *nz = ny + n;
+    const double *w = system->scene->forces.wind.direction, *v = at->v;
     for (size_t i = at->block->begin; i < at->block->end; i++) {
-        const double push =
-            strength_of(system, i) * fabs(w[0] * nx[i] + w[1] * ny[i] + w[2] * nz[i]);
+        const double push = push_on(system, i);
         f[i] += push * w[0];
         f[n + i] += push * w[1];
         f[2 * n + i] += push * w[2];
-        if (at->power)
-            at->power[i] +=
-                push * (w[0] * at->v[i] + w[1] * at->v[n + i] + w[2] * at->v[2 * n + i]);
     }
+    // a loop of its own, as the account is not asked at every evaluation
+    for (size_t i = at->block->begin; i < at->block->end && at->power; i++)
+        at->power[i] += push_on(system, i) * (w[0] * v[i] + w[1] * v[n + i] + w[2] * v[2 * n + i]);
 }
 
 /* d|w.n| = sign(w.n) w.dn, of the particles [begin, end) of a body */
