@@ -81,38 +81,23 @@ enum cs_status cs_hash_file(const char *path, uint64_t *size, char digits[CS_HAS
     return error->status;
 }
 
-/* Divides by the polynomial edb88320 (bits in reverse), eight bytes at a time, by tables of
- * what each byte leaves at each place (Kounavis, Berry: Novel table lookup-based algorithms for
- * high-performance CRC generation, IEEE Transactions on Computers 57, 2008). */
-enum { PLACES = 8 };
-static uint32_t remainders[PLACES][256];
+/* Divides by the polynomial edb88320 (bits in reverse), a byte at a time, by a table of what
+ * each byte leaves (Sarwate 1988). */
+static uint32_t remainders[256];
 static pthread_once_t remainders_made = PTHREAD_ONCE_INIT;
 
 static void make_remainders(void) {
     for (uint32_t byte = 0; byte < 256; byte++) {
-        uint32_t rest = byte;
+        remainders[byte] = byte;
         for (int bit = 0; bit < 8; bit++)
-            rest = rest >> 1 ^ (rest & 1 ? 0xedb88320u : 0);
-        remainders[0][byte] = rest;
+            remainders[byte] = remainders[byte] >> 1 ^ (remainders[byte] & 1 ? 0xedb88320u : 0);
     }
-    for (int place = 1; place < PLACES; place++)
-        for (int byte = 0; byte < 256; byte++) {
-            const uint32_t rest = remainders[place - 1][byte];
-            remainders[place][byte] = rest >> 8 ^ remainders[0][rest & 255];
-        }
 }
 
 uint32_t cs_hash_crc32(uint32_t crc, const void *bytes, size_t length) {
-    const uint8_t *at = bytes;
     pthread_once(&remainders_made, make_remainders);
     crc = ~crc;
-    for (; length >= PLACES; length -= PLACES, at += PLACES) {
-        uint32_t rest = 0;
-        for (int k = 0; k < PLACES; k++)
-            rest ^= remainders[PLACES - 1 - k][at[k] ^ (k < 4 ? crc >> 8 * k & 255 : 0)];
-        crc = rest;
-    }
-    for (; length; length--)
-        crc = crc >> 8 ^ remainders[0][(crc ^ *at++) & 255];
+    for (size_t i = 0; i < length; i++)
+        crc = crc >> 8 ^ remainders[(crc ^ ((const uint8_t *)bytes)[i]) & 255];
     return ~crc;
 }

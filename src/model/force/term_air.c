@@ -126,7 +126,8 @@ static void wind_force(const struct cs_system *system, const struct cs_eval *at,
     }
     // a loop of its own, as the account is not asked at every evaluation
     for (size_t i = at->block->begin; i < at->block->end && at->power; i++)
-        at->power[i] += push_on(system, i) * (w[0] * v[i] + w[1] * v[n + i] + w[2] * v[2 * n + i]);
+        at->power[i] +=
+            push_on(system, i) * (w[0] * v[i] + w[1] * v[n + i] + w[2] * v[2 * n + i]);
 }
 
 /* d|w.n| = sign(w.n) w.dn, of the particles [begin, end) of a body */

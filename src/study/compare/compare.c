@@ -76,10 +76,9 @@ static enum cs_status print_origin(struct cs_compare *compare, struct cs_error *
     cs_provenance_out_print_scene(&scene, out, error);
     cs_text_add(out, ",\n  \"scene\": ");
     /* what each method chooses stays absent */
-    if (scene.contact.law_is_default)
-        scene.contact.law = -1;
-    if (scene.contact.damping_is_default)
-        scene.contact.damping = NAN;
+    struct cs_contact_keys *contact = &scene.contact;
+    contact->law = contact->law_is_default ? -1 : contact->law;
+    contact->damping = contact->damping_is_default ? (double)NAN : contact->damping;
     cs_scene_print(&scene, NULL, NULL, 2, out);
     cs_text_add(out, "\n}\n");
     cs_scene_finish(&scene);
