@@ -39,9 +39,11 @@ enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host
     for (int k = 0; k < 4; k++)
         if (!(*arrays[k] = (double *)host->alloc(host->ctx, self->length * sizeof(double))))
             return CS_STEP_FAIL;
-    /* a step that looks far ahead would pass over a force that comes later */
+    /* a step that looks far ahead would pass over a force that comes later; and with the
+     * largest atol, 1 m, nothing but the caller's frames bounds steps */
     const bool passes = self->interpolate && CS_HAS(host, forces_depend_on_time) &&
-                        host->may_overstep && !host->forces_depend_on_time;
+                        host->may_overstep && !host->forces_depend_on_time &&
+                        self->asked.atol < 1;
     if (passes && !(self->start = host->alloc(host->ctx, self->length * sizeof(double))))
         return CS_STEP_FAIL;
     return CS_STEP_OK;

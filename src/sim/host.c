@@ -10,6 +10,7 @@
 #include "model/contact/rebound.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
+#include "scene/body_pairs.h"
 #include "sim/energy_ledger.h"
 #include "sim/run_host.h"
 
@@ -318,13 +319,11 @@ static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *err
 
 /* True if commit only checks: no correction, contact or event can change the state. */
 static bool may_pass(const struct cs_system *system) {
-    static const enum cs_feature acting[] = {
-        CS_FEATURE_VELOCITY_LOSS, CS_FEATURE_CONTACT,          CS_FEATURE_CROSSINGS,
-        CS_FEATURE_STRAIN_LIMIT,  CS_FEATURE_FRICTION_ANCHORS, CS_FEATURE_EVENTS};
-    bool acts = cs_step_limit_applies(system);
-    for (size_t k = 0; k < sizeof acting / sizeof *acting; k++)
-        acts |= system->plan.rows[acting[k]].built;
-    return !acts;
+    const struct cs_plan_row *rows = system->plan.rows;
+    return !(cs_step_limit_applies(system) || rows[CS_FEATURE_VELOCITY_LOSS].built ||
+             rows[CS_FEATURE_CONTACT].built || rows[CS_FEATURE_STRAIN_LIMIT].built ||
+             rows[CS_FEATURE_FRICTION_ANCHORS].built || rows[CS_FEATURE_EVENTS].built ||
+             cs_scene_crossings(system->scene) == CS_CROSSINGS_STOP);
 }
 
 /* Takes from a system what the host of a former run has added; that host's memory is gone. */
