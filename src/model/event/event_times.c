@@ -20,8 +20,8 @@ struct cs_event_path cs_event_path_of(const struct cs_event *event) {
     const int32_t motion = moves ? event->move.motion : event->grab.motion;
     /* the point where the event finds what it moves: no leg leads to it */
     const uint32_t first = cs_path_starts_at(list, begin_of(event));
-    return (struct cs_event_path){(const struct cs_path_point *)list->items + first,
-                                  list->n - first,
+    const struct cs_path_point *points = list->items; // NULL: no path
+    return (struct cs_event_path){first ? points + first : points, list->n - first,
                                   motion == CS_MOTION_SMOOTH ? CS_EVENT_CHORDS : 1};
 }
 
