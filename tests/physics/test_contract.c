@@ -5,93 +5,14 @@
  * put into a system alone, on a cloth that is pulled, sheared and perturbed. Central
  * differences with a step of 1e-6: truncation is near 1e-11 and rounding near 1e-9 of the
  * largest entry. */
-#include "../unit/unit.h"
-#include "fixture.h"
-#include "model/force/diagnostics.h"
-#include "model/force/terms.h"
-#include "model/solver/linear.h"
-#include "planted_terms.h"
+#include "contract_fixture.h"
 #include "scene/event_key.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#define FORCES                                                                                 \
-    "\"drag\": 0.3, \"drag_unit\": \"Pa s/m\","                                                \
-    " \"wind\": {\"direction\": [0.3, 0.2, 1], \"strength\": 4}"
-#define SCENE                                                                                  \
-    "{\"bodies\": [{\"cloth\": {\"grid\": [5, 4]}, \"mass\": {\"areal_density\": 0.4},"        \
-    " \"self_contact\": true, \"thickness\": 0.199, \"friction\": 0.4,"                        \
-    " \"springs\": {\"stretch\": 200, \"shear\": 75, \"bend\": 25, \"damping\": 0.7},"         \
-    " \"pins\": [\"top-left\", 7]}, {\"cloth\": {\"grid\": [4, 3], \"size\": [0.6, 0.5], "     \
-    "\"place\": {\"translate\": [0, 0, 4]}}, \"mass\": {\"areal_density\": 0.4}, "             \
-    "\"elastic\": "                                                                            \
-    "{\"membrane\": {\"young\": 60, \"poisson\": 0.3}, \"bending\": {\"stiffness\": 0.04, "    \
-    "\"damping\": 0.02}, \"damping\": "                                                        \
-    "0.01}, "                                                                                  \
-    "\"pins\": [\"bottom-left\"]}, {\"cloth\": {\"grid\": [3, 3], \"size\": [0.4, 0.5], "      \
-    "\"place\": {\"translate\": [0, 0, 6]}}, \"mass\": {\"areal_density\": 0.4}, "             \
-    "\"elastic\": "                                                                            \
-    "{\"membrane\": {\"warp\": 60, \"weft\": 40, \"shear\": 3, \"coupling\": 9}, "             \
-    "\"bending\": {\"warp\": 0.03, \"weft\": 0.05, \"twist\": 0.01, \"coupling\": -0.02}}}, "  \
-    "{\"mesh\": {\"shape\": \"box\", \"detail\": 3, \"place\": {\"translate\": [0, 0, "        \
-    "8]}}, "                                                                                   \
-    "\"mass\": {\"areal_density\": 0.4}, \"elastic\": {\"membrane\": {\"young\": 60}, "        \
-    "\"bending\": {\"stiffness\": 0.04, \"damping\": 0.02}}}],"                                \
-    " \"events\": [{\"from\": 0, \"to\": 1, \"impact\": {\"impulse\": 1, \"direction\": [1, "  \
-    "2, 3]}}],"                                                                                \
-    " \"colliders\": [{\"sphere\": {\"centre\": [0.1, -0.05, -0.5], \"radius\": 0.35},"        \
-    " \"thickness\": 0.3, \"friction\": 0.4}, {\"capsule\": {\"from\": [-0.5, 0, 0.4], "       \
-    "\"to\": "                                                                                 \
-    "[0.2, 0.1, 0.4], \"radius\": 0.2}, \"thickness\": 0.3, \"friction\": 0.7}, {\"sphere\": " \
-    "{\"centre\": [0.1, 0.05, -0.06], \"radius\": 0.02}, \"thickness\": 0.12, \"friction\": "  \
-    "0.5}],"                                                                                   \
-    " \"contact\": {\"law\": \"force\", \"stiffness\": 50, \"damping\": 0.01,"                 \
-    " \"friction_speed\": 0.3}, \"seams\": [{\"body\": 0, \"particles\": [19], \"to\": {"      \
-    "\"body\": 0, \"particles\": [5]}, \"stiffness\": 30, \"damping\": 0.5, \"length\": 0.9}," \
-    " {\"body\": 0, \"particles\": [16], \"to\": {\"body\": 0, \"particles\": [1, 2, 8],"      \
-    " \"weights\": [0.2, 0.3, 0.5]}, \"stiffness\": 40, \"damping\": 0.4}],"                   \
-    " \"forces\": {" FORCES "%s}}"
-
-enum { N = 97, VALUES = 3 * N };
 #define STEP 1e-6
-
-#define STATE_OF(cloth, p)                                                                     \
-    { .x = (cloth)->x, .v = (cloth)->v, .parts = (p) }
-
-/* keys of `forces` that the scene does not have yet get a value */
-static void add_keys(char *text, size_t size) {
-    *text = 0;
-    for (uint32_t k = 0; k < cs_n_terms; k++)
-        for (const char *const *key = cs_terms[k]->rampable_keys; key && *key; key++) {
-            char quoted[80];
-            const char *name = strncmp(*key, "forces.", 7) ? NULL : *key + 7;
-            snprintf(quoted, sizeof quoted, "\"%s\"", name ? name : "");
-            if (name && !strchr(name, '.') && strcmp(name, "gravity") &&
-                !strstr(FORCES, quoted))
-                snprintf(text + strlen(text), size - strlen(text), ", %s: 0.7", quoted);
-        }
-}
-
-/* all forces act */
-static void open(struct fixture *cloth) {
-    char keys[800];
-    planted = (struct planted){.resist = 2, .trap = 300, .trap_damping = 5, .swing = 1};
-    add_keys(keys, sizeof keys);
-    fixture_open(cloth, "implicit-linearised", SCENE, keys);
-    ck_assert_uint_eq(cloth->n, N);
-    fixture_start(cloth);
-    cs_perturb_smooth(cloth->system, 0.06, 2);
-}
-
-static void leave_alone(struct fixture *cloth, const struct cs_term *term) {
-    cloth->system->terms[0] = term;
-    cloth->system->n_terms = 1;
-    // the solver knows springs by their factors, not by the list
-    if (!term->add_diagonal)
-        cloth->system->springs.n_runs = cloth->system->springs.n = 0;
-}
 
 TEST(bits_and_calls_agree) {
     uint32_t own_bits = 0;
@@ -170,11 +91,6 @@ TEST(events_can_change_the_keys) {
             ck_assert_msg(!error.status, "%s: %s", cs_terms[k]->name, error.message);
         }
     fixture_close(&cloth);
-}
-
-static void force(const struct fixture *cloth, struct cs_eval at, double f[VALUES]) {
-    cs_normals_update(cloth->system, at.x);
-    cs_terms_force(cloth->system, &at, f);
 }
 
 /* (f(x + e dx, v + e dv) - f(x - e dx, v - e dv)) / 2 e */
@@ -260,23 +176,6 @@ TEST(force_is_the_slope_of_its_energy) {
         }
         fixture_close(&cloth);
     }
-}
-
-/* A p - M p of a force's share of the matrix with cm = 1 */
-static void share_of(const struct fixture *cloth, struct cs_matrix matrix, const double *p,
-                     double *out) {
-    struct cs_arena arena = {0};
-    struct cs_error error = {0};
-    struct cs_linear linear;
-    matrix.x = cloth->x;
-    matrix.v = cloth->v;
-    matrix.cm = 1;
-    ck_assert_int_eq(cs_linear_init(&linear, cloth->system, &arena, &error), CS_OK);
-    cs_linear_setup(&linear, &matrix);
-    cs_linear_mul(&linear, p, out);
-    for (size_t i = 0; i < VALUES; i++)
-        out[i] -= cloth->system->mass[i % N] * p[i];
-    cs_arena_finish(&arena);
 }
 
 /* Derivatives of damping by places are left out, so that the share is symmetric: at rest they
@@ -396,77 +295,4 @@ TEST(no_force_is_above_its_greatest) {
         }
         fixture_close(&cloth);
     }
-}
-
-/* The scene's bodies on the way into degenerate shapes: every stencil folds onto a line or a
- * point, the normals of all triangles vanish, pairs in contact come to one place. */
-static void collapse(const struct fixture *cloth, const double *from, int axes, double share,
-                     double *x) {
-    for (uint32_t b = 0; b < cloth->session.scene.bodies.n; b++) {
-        const struct cs_body_range *body = cloth->system->bodies + b;
-        for (size_t c = 0; c < 3; c++)
-            for (size_t i = c * N + body->first, k = 0; k < body->count; i++, k++) {
-                const double to = from[c * N + body->first];
-                x[i] = (int)c < axes ? to + (1 - share) * (from[i] - to) : from[i];
-            }
-    }
-}
-
-static bool all_finite(const double *a) {
-    for (size_t i = 0; i < VALUES; i++)
-        if (!isfinite(a[i]))
-            return false;
-    return true;
-}
-
-static double dot(const double *a, const double *b) {
-    double sum = 0;
-    for (size_t i = 0; i < VALUES; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
-
-/* Force, derivative, energy, matrix and bounds of one force at one state are finite, and its
- * damping takes energy. */
-static void check_state(const struct fixture *cloth, const struct cs_term *term) {
-    const struct cs_eval at = STATE_OF(cloth, term->part_bits);
-    struct cs_eval change = at;
-    double f[VALUES], df[VALUES], share[VALUES], p[VALUES], work[2 * N], omega, delta;
-    for (size_t i = 0; i < VALUES; i++)
-        p[i] = cloth->system->inv_mass[i % N] > 0 ? sin(1.7 * (double)i) : 0;
-    force(cloth, at, f);
-    change.dx = change.dv = p;
-    cs_terms_jvp(cloth->system, &change, df);
-    share_of(cloth, (struct cs_matrix){.cd = -0.02, .ck = -4e-4, .psd = true}, p, share);
-    cs_spectral_bounds_at(cloth->system, &at, work, &omega, &delta);
-    ck_assert_msg(all_finite(f) && all_finite(df), "%s: no force", term->name);
-    ck_assert_msg(all_finite(share) && isfinite(omega) && isfinite(delta),
-                  "%s: no matrix or bound", term->name);
-    ck_assert_msg(!term->energy || isfinite(term->energy(cloth->system, &at)), "%s: no energy",
-                  term->name);
-    const struct cs_eval damping =
-        STATE_OF(cloth, term->part_bits & (CS_PART_DAMPING | CS_PART_ELASTIC_DAMPING |
-                                           CS_PART_DISSIPATIVE | CS_PART_DRAG));
-    if (!damping.parts)
-        return;
-    force(cloth, damping, f);
-    ck_assert_msg(dot(f, cloth->v) <= 1e-12, "%s: damping gives %g W", term->name,
-                  dot(f, cloth->v));
-}
-
-TEST(every_force_is_finite_where_shapes_collapse) {
-    for (uint32_t k = 0; k < cs_n_terms; k++)
-        for (int axes = 1; axes <= 3; axes++) {
-            struct fixture cloth;
-            double from[VALUES];
-            open(&cloth);
-            leave_alone(&cloth, cs_terms[k]);
-            memcpy(from, cloth.x, sizeof from);
-            for (int step = 0; step <= 24; step++) {
-                // to 1 in halves, and then there
-                collapse(&cloth, from, axes, step < 24 ? 1 - ldexp(1, -2 * step) : 1, cloth.x);
-                check_state(&cloth, cs_terms[k]);
-            }
-            fixture_close(&cloth);
-        }
 }
