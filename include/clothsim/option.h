@@ -71,7 +71,8 @@ struct cs_option {
     double def, min, max;
     /* Defaults of VECTOR and COUNTS; NULL: the user must give them. */
     const double *defs;
-    /* Names of a CHOICE, closed by NULL. Of a REAL: one name, of the value HUGE_VAL; or NULL. */
+    /* Names of a CHOICE, closed by NULL. Of a REAL: one name, of the value HUGE_VAL; or NULL.
+     */
     const char *const *choices;
     /* Rows of the struct of a TABLE or LIST. */
     const struct cs_table *table;

@@ -11,7 +11,8 @@ extern "C" {
 #endif
 
 /* Counts that only the method knows, from when it was created on. The host sets size, and the
- * rest to 0; it shows them in reports and in tables of comparison. No result depends on them. */
+ * rest to 0; it shows them in reports and in tables of comparison. No result depends on them.
+ */
 struct cs_stats {
     /* sizeof at the host's build: see CS_HAS. */
     uint32_t size;

@@ -139,7 +139,7 @@ static struct cs_panel *find_panel(struct cs_table_plot *plot, const struct tabl
     const bool grouped = !strcmp(table->names[0], "series");
     for (; panel < plot->panels + plot->diagram.n_panels; panel++)
         if (!grouped && ((other = known_column(panel->series->name)) == column ||
-            (column && other && !strcmp(column->unit, other->unit)))) {
+                         (column && other && !strcmp(column->unit, other->unit)))) {
             /* of several lines their names say what they are */
             snprintf(panel->y.label, CS_LABEL_BYTES, "%s%s",
                      column && !strcmp(column->unit, "J") ? "energy in " : "",
@@ -212,7 +212,7 @@ enum { EDGES = sizeof edges / sizeof *edges };
 static enum cs_status add_cells(struct cs_table_plot *plot, const struct table *table,
                                 struct cs_error *error) {
     struct cs_panel *panel = plot->panels;
-    struct cs_cell_box *box =
+    struct cs_diagram_rect *box =
         cs_arena_alloc_array(&plot->arena, table->rows, sizeof *box, error);
     bool there[CS_STABILITY_VERDICTS] = {false};
     panel->boxes = box;
@@ -226,7 +226,7 @@ static enum cs_status add_cells(struct cs_table_plot *plot, const struct table *
         if (!(at[4] >= 0 && at[4] < CS_STABILITY_VERDICTS))
             continue;
         const enum cs_stability_verdict v = (enum cs_stability_verdict)at[4];
-        box[panel->n_boxes++] = (struct cs_cell_box){
+        box[panel->n_boxes++] = (struct cs_diagram_rect){
             at[0], at[1], at[2], at[3], cs_stability_colour(v), cs_stability_letter(v)};
         if (!there[v])
             cs_diagram_add_key(&plot->diagram, CS_KEY_PATCH, cs_stability_colour(v),

@@ -85,7 +85,7 @@ struct cs_series {
 };
 
 /* A filled rectangle; in a terminal its letter. */
-struct cs_cell_box {
+struct cs_diagram_rect {
     double left, right, bottom, top;
     uint32_t colour;
     char letter;
@@ -95,7 +95,7 @@ struct cs_panel {
     struct cs_plot_axis x, y;
     double aspect; /* height of the box of the axes over its width */
     uint32_t n_boxes, n_series;
-    const struct cs_cell_box *boxes; /* (n_boxes) borrowed; below the series */
+    const struct cs_diagram_rect *boxes; /* (n_boxes) borrowed; below the series */
     const struct cs_series *series;  /* (n_series) borrowed; later ones over earlier ones */
 };
 

@@ -82,11 +82,10 @@ enum cs_status cs_png_read_texts(const char *path, const char *const *keys, uint
                                  struct cs_error *error) {
     for (uint32_t k = 0; k < n; k++)
         values[k] = NULL;
-    return read_file(&(struct cs_png_request){.keys = keys,
-                                              .values = values,
-                                              .n = n,
-                                              .pixels_max = TEXTURE_PIXELS_MAX},
-                     path, image, error);
+    return read_file(
+        &(struct cs_png_request){
+            .keys = keys, .values = values, .n = n, .pixels_max = TEXTURE_PIXELS_MAX},
+        path, image, error);
 }
 
 enum cs_status cs_png_read(const char *path, struct cs_image *image, struct cs_error *error) {

@@ -94,7 +94,7 @@ static void book_powers(struct cs_run_host *host, double t, double dt, const dou
     double power = 0;
     for (size_t i = 0; i < n; i++)
         power += host->power[i];
-    input->given[CS_GIVEN_FORCES] += host->has_impact ? host->impact_work : dt * power;
+    input->given[CS_SOURCE_FORCES] += host->has_impact ? host->impact_work : dt * power;
     host->has_impact = false;
     input->powers_work = work;
     host->power_is_set = false;
@@ -114,7 +114,7 @@ static void book_values(struct cs_run_host *host, double t, const double *x, con
     cs_events_move_values(host->run->system, input->values_t);
     const double before = potential(system, t, x, v);
     cs_events_move_values(host->run->system, t);
-    input->given[CS_GIVEN_VALUES] += potential(system, t, x, v) - before;
+    input->given[CS_SOURCE_VALUES] += potential(system, t, x, v) - before;
     input->values_t = t;
     input->values_work = work;
 }
@@ -126,7 +126,7 @@ void cs_energy_input_step(struct cs_run_host *host, double t, double dt, const d
         book_powers(host, t, dt, x, v);
     if (host->run->system->events) {
         const double pinned = pinned_energy(host->run->system, v);
-        input->given[CS_GIVEN_FORCES] += pinned - input->pinned;
+        input->given[CS_SOURCE_FORCES] += pinned - input->pinned;
         input->pinned = pinned;
         book_values(host, t, x, v);
     }
@@ -147,11 +147,11 @@ void cs_energy_input_corrections(struct cs_run_host *host, double t, const doubl
     struct cs_energy_input *input = &host->run->energy_input;
     if (!host->corrects)
         return;
-    input->given[CS_GIVEN_CORRECTIONS] +=
+    input->given[CS_SOURCE_CORRECTIONS] +=
         cs_measure_kinetic(host->run->system, v) - input->kinetic;
     if (!input->is_sampled)
         return;
-    input->given[CS_GIVEN_CORRECTIONS] +=
+    input->given[CS_SOURCE_CORRECTIONS] +=
         input->corrected_steps * (potential(host->run->system, t, x, v) - input->potential);
     input->corrected_steps = 0;
 }
@@ -161,7 +161,7 @@ bool cs_energy_input_events(struct cs_run_host *host, double t) {
     const double before = total(host, t);
     if (!cs_events_apply(host->run->system, t))
         return false;
-    input->given[CS_GIVEN_EVENTS] += total(host, t) - before;
+    input->given[CS_SOURCE_EVENTS] += total(host, t) - before;
     input->pinned = pinned_energy(host->run->system, host->run->v);
     input->values_t = t;
     host->power_is_set = false;

@@ -128,7 +128,7 @@ struct cs_run_host {
     bool power_is_set;  /* the method has asked for all forces since the last commit */
     double power_t;     /* s, when */
     bool power_by_end;  /* an implicit method with things that move: only the end of a step
-                           counts,  as an impact may begin within it */
+                           counts, as an impact may begin within it */
     bool has_impact;    /* the last linearised step stepped particles alone (rebound.h) */
     double impact_work; /* J that colliders did on them: by their impulse, since their contact
                            may have come and gone within the step */

@@ -87,17 +87,17 @@ struct cs_blow_up {
 enum { CS_NOTES_MAX = 8 };
 
 /* Rows of cs_energy_input.given. */
-enum cs_given {
-    CS_GIVEN_FORCES,      /* wind, pushes, moving colliders and pins */
-    CS_GIVEN_VALUES,      /* ramps, at fixed positions */
-    CS_GIVEN_CORRECTIONS, /* strain limit and projection */
-    CS_GIVEN_EVENTS,      /* at once, between two steps */
-    CS_GIVEN
+enum cs_energy_source {
+    CS_SOURCE_FORCES,      /* wind, pushes, moving colliders and pins */
+    CS_SOURCE_VALUES,      /* ramps, at fixed positions */
+    CS_SOURCE_CORRECTIONS, /* strain limit and projection */
+    CS_SOURCE_EVENTS,      /* at once, between two steps */
+    CS_ENERGY_SOURCES
 };
 
 /* The energy that the scene has given since the start of a run; negative if it took more. */
 struct cs_energy_input {
-    double given[CS_GIVEN]; /* J */
+    double given[CS_ENERGY_SOURCES]; /* J */
     double pinned;          /* J, kinetic energy of pinned particles that turn */
     double values_t;        /* s, to which ramps are booked */
     /* before the corrections of the running step, in J; the potential only if it is_sampled */

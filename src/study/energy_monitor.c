@@ -168,7 +168,7 @@ static double bound_of(const struct cs_energy_monitor *monitor) {
 /* W in J since the last sample: what each kind gave. One that took energy gave nothing. */
 static double find_input(struct cs_energy_monitor *monitor, const struct cs_run *run) {
     double input = 0;
-    for (int k = 0; k < CS_GIVEN; k++) {
+    for (int k = 0; k < CS_ENERGY_SOURCES; k++) {
         input += fmax(run->energy_input.given[k] - monitor->last_given[k], 0);
         monitor->last_given[k] = run->energy_input.given[k];
     }

@@ -102,7 +102,7 @@ enum { CS_MONITOR_PEAKS = 64 };
 /* State of the monitor. */
 struct cs_energy_monitor {
     /* the balance, in J */
-    double last_sample, last_total, last_given[CS_GIVEN];
+    double last_sample, last_total, last_given[CS_ENERGY_SOURCES];
     double balance, lowest;                 /* R, and its least value */
     double start_energy, gravity, released; /* at the start; most that gravity gave since */
     double input;                           /* W */

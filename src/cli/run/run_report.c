@@ -37,7 +37,7 @@ void cs_report_print_shortfalls(const struct cs_run *run) {
     if (left->may_pass) {
         cs_text_add(&depth,
                     "warning: contact by projection left particles up to %.3g m deep in "
-                    "colliders[%u], at t = %.6g s, and they may pass it; use shorter steps, or "
+                    "colliders[%u], at t = %.6g s, and they may pass through it; use shorter steps or "
                     "contact.law force",
                     left->depth, left->collider, left->time);
         cs_print_message(cs_text_get(&depth));

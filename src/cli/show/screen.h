@@ -40,8 +40,8 @@ enum cs_status cs_screen_open(struct cs_screen *screen, bool images, struct cs_e
 enum cs_status cs_screen_show_image(struct cs_screen *screen, const struct cs_image *image,
                                     const char *caption, struct cs_error *error);
 
-/* Adds an image as a sixel sequence, in a terminal that shows them. Returns false if the library
- * fails. */
+/* Adds an image as a sixel sequence, in a terminal that shows them. Returns false if the
+ * library fails. */
 bool cs_sixel_add(const struct cs_image *image, struct cs_text *out);
 
 /* Adds a diagram that fits the window's height: letters and colours, and their meaning. */

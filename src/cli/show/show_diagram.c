@@ -66,7 +66,7 @@ static double middle(const struct cs_plot_axis *axis, double a, double b) {
 
 static void draw_boxes(struct box *box) {
     const struct cs_panel *panel = box->panel;
-    for (const struct cs_cell_box *b = panel->boxes; b < panel->boxes + panel->n_boxes; b++) {
+    for (const struct cs_diagram_rect *b = panel->boxes; b < panel->boxes + panel->n_boxes; b++) {
         const struct place from = place_of(box, b->left, b->top),
                            to = place_of(box, b->right, b->bottom);
         /* the far edges are those of the next box */
@@ -75,7 +75,7 @@ static void draw_boxes(struct box *box) {
                 box->cells[r][c] =
                     (struct cs_screen_cell){.plain = ' ', .ink = 0, .paper = b->colour};
     }
-    for (const struct cs_cell_box *b = panel->boxes; b < panel->boxes + panel->n_boxes; b++)
+    for (const struct cs_diagram_rect *b = panel->boxes; b < panel->boxes + panel->n_boxes; b++)
         put(box, middle(&panel->x, b->left, b->right), middle(&panel->y, b->bottom, b->top),
             b->letter, 0, b->colour);
 }

@@ -233,9 +233,9 @@ static void record_depth(const struct step *step) {
         const double inner = cs_tunnelling_inner_radius(contact->colliders + k);
         for (size_t i = 0; i < n; i++) {
             double p[3], normal[3];
-            take(contact->state_after, n, i, p);
             if (!contact->is_pushed[i] || contact->system->inv_mass[i] <= 0)
                 continue;
+            take(contact->state_after, n, i, p);
             const double depth =
                 -cs_posed_collider_signed_distance(contact->colliders + k, p, normal);
             if (depth > left->depth)

@@ -258,20 +258,20 @@ static void add_curve(struct filling *at, const struct cs_curve *curve) {
 }
 
 /* Grey below the reference's own error, where no difference means anything. */
-static void add_bar(struct filling *at, struct cs_cell_box *bar) {
+static void add_bar(struct filling *at, struct cs_diagram_rect *bar) {
     const struct cs_plot_settings *settings = &at->settings;
     const struct cs_plot_axis *x = &at->panel->x, *y = &at->panel->y;
     double error = 0;
     for (uint32_t k = 0; k < settings->n && is_position_error(settings->y); k++)
         error = fmax(error, settings->cells[k].bar);
-    *bar = (struct cs_cell_box){pow(10, x->range[0]), pow(10, x->range[1]),
+    *bar = (struct cs_diagram_rect){pow(10, x->range[0]), pow(10, x->range[1]),
                                 pow(10, y->range[0]), error,
                                 CS_BAR_COLOUR,        ' '};
     at->panel->boxes = bar;
     at->panel->n_boxes = error > bar->bottom;
 }
 
-static void fill_panel(struct filling *at, const struct cs_column *x, struct cs_cell_box *bar) {
+static void fill_panel(struct filling *at, const struct cs_column *x, struct cs_diagram_rect *bar) {
     const struct cs_column *columns[2] = {x, at->settings.y};
     struct cs_plot_axis *axes[2] = {&at->panel->x, &at->panel->y};
     at->settings.x = x;

@@ -61,7 +61,7 @@ bool cs_curves_front(const struct cs_plot_settings *settings, uint32_t *k);
 struct cs_plot {
     struct cs_diagram diagram;
     struct cs_panel panels[CS_CURVE_PANELS];
-    struct cs_cell_box bars[CS_CURVE_PANELS]; /* below the reference's own error */
+    struct cs_diagram_rect bars[CS_CURVE_PANELS]; /* below the reference's own error */
     struct cs_arena arena;
 };
 
