@@ -111,8 +111,9 @@ static void add_makefile(const char *name, struct cs_text *out) {
         name, name, name, name);
 }
 
-static enum cs_status new (struct cs_args *args, struct cs_error *error) {
-    const struct options *options = args->options; const char *name = args->operands[1];
+static enum cs_status start_module(struct cs_args *args, struct cs_error *error) {
+    const struct options *options = args->options;
+    const char *name = args->operands[1];
     const char *folder = options->folder ? options->folder : name;
     struct cs_text source = {0}, makefile = {0}, out = {0};
     char source_path[4096], makefile_path[4096];
@@ -121,13 +122,17 @@ static enum cs_status new (struct cs_args *args, struct cs_error *error) {
     if (check_name(args->operands[0], name, error) ||
         (!options->overwrite && (cs_output_check_file(source_path, error) ||
                                  cs_output_check_file(makefile_path, error))) ||
-        cs_folder_create(folder, error)) return error->status;
+        cs_folder_create(folder, error))
+        return error->status;
     add_source(name, &source);
-    if (cs_file_write_text(source_path, &source, error) ||
-        (add_makefile(name, &makefile),
-         cs_file_write_text(makefile_path, &makefile, error))) return error->status;
+    if (cs_file_write_text(source_path, &source, error))
+        return error->status;
+    add_makefile(name, &makefile);
+    if (cs_file_write_text(makefile_path, &makefile, error))
+        return error->status;
     cs_text_add(&out,
-                "%s holds the explicit midpoint method: write yours into its step and limit\n"
+                "%s holds the explicit midpoint method: put yours into its functions step and "
+                "limit\n"
                 "  cd %s && make\n"
                 "  clothsim run SCENE.json -p ./%s.so -i %s\n"
                 "  make test\n",
@@ -139,12 +144,12 @@ const struct cs_command cs_command_new = {
     .name = "new",
     .operands = "integrator NAME",
     .summary = CS_SUMMARY_new,
-    .notes = "Writes a folder with the source of a method that runs, to be changed to your "
-             "own, and a\n"
-             "Makefile that builds and tests it: clothsim-integrator(7).\n\n"
-             "Example: clothsim new integrator heun\n",
+    .notes =
+        "Writes a folder with the source of a method that runs, which you change into your\n"
+        "own, and a Makefile that builds and tests it: clothsim-integrator(7).\n\n"
+        "Example: clothsim new integrator heun\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 2,
     .operands_max = 2,
-    .main = new,
+    .main = start_module,
 };
