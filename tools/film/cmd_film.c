@@ -32,7 +32,8 @@ static const struct options defaults = {.tile = 320};
 
 static const struct cs_arg rows[] = {
     {"out", 'o', "FILE",
-     "an .mp4 or .webm (default: film.mp4 in DIR); a .png of a sheet (sheet.png)",
+     "an .mp4, .webm, .gif or .apng (default: film.mp4 in DIR); a .png of a sheet "
+     "(sheet.png)",
      CS_ARG_INTO(struct options, out)},
     {"fps", 0, "RATE", "pictures per second (default: the speed of the scene)",
      CS_ARG_INTO(struct options, rate)},
@@ -50,16 +51,52 @@ static const struct cs_arg rows[] = {
     CS_ARG_QUIET(struct options, quiet),
 };
 
+/* Films have no alpha: what is dark counts by it, and the rest is white. ffmpeg 5.1 breaks down
+ * where pictures are laid on others by `overlay`. */
+#define WHITE "format=gbrap,negate,premultiply=inplace=1,negate,"
+/* 4:2:0 asks for even sizes. The colours are told as those of ITU-R BT.709, which players take
+ * for them. */
+#define EVEN "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv"
+#define YUV                                                                                    \
+    "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc",  \
+        "bt709"
+/* A GIF counts the time of a picture in 10 ms, and browsers slow down what is below 20 ms. */
+#define PALETTE "fps='min(source_fps,25)',split[a][b];[a]palettegen[p];[b][p]paletteuse"
+
+enum { ARGUMENTS = 48, CODEC = 16 };
+
+/* A kind of film: the ending of its name, filters without and with alpha of the pictures, and
+ * what ffmpeg is told of its codec. */
+static const struct format {
+    const char *ending, *filter, *clear_filter, *codec[CODEC];
+} formats[] = {
+    {".mp4",
+     EVEN,
+     WHITE EVEN,
+     {YUV, "-c:v", "libx264", "-crf", "18", "-movflags", "+faststart"}},
+    {".webm", EVEN, WHITE EVEN, {YUV, "-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0"}},
+    {".gif", PALETTE, WHITE PALETTE, {"-loop", "0"}},
+    {".apng", "format=rgb24", WHITE "format=rgb24", {"-plays", "0"}},
+};
+enum { FORMATS = sizeof formats / sizeof *formats };
+
 /* Input and destination of a film. ffmpeg writes to `part`, which is renamed to `out`. */
 struct film {
     const char *folder;
     double rate; /* pictures a second */
-    bool webm;
+    const struct format *format;
     bool has_gaps;      /* between the pictures' numbers, of a run by an older version */
     bool clear;         /* the pictures have alpha */
     bool awaits_ffmpeg; /* set where it was not found: the message names the folder */
     char out[PATH_BYTES], part[PATH_BYTES + 16]; /* absolute: ffmpeg works in the folder */
 };
+
+static const struct format *find_format(const char *ending) {
+    for (size_t k = 0; ending && k < FORMATS; k++)
+        if (!strcmp(ending, formats[k].ending))
+            return &formats[k];
+    return NULL;
+}
 
 /* Sets the path of the film, whose ending names the format. The temporary file keeps the
  * ending, which ffmpeg reads. */
@@ -69,10 +106,11 @@ static enum cs_status set_output_path(const struct options *options, struct film
     snprintf(made, sizeof made, "%.4000s/film.mp4", film->folder);
     const char *out = options->out ? options->out : made, *ending = strrchr(out, '.');
     bool streams;
-    film->webm = ending && !strcmp(ending, ".webm");
-    if (!film->webm && (!ending || strcmp(ending, ".mp4")))
+    film->format = find_format(ending);
+    if (!film->format)
         return cs_fail(error, CS_ERR_USAGE,
-                       "--out: expected a name that ends in .mp4 or .webm, found \"%.60s\"",
+                       "--out: expected a name that ends in .mp4, .webm, .gif or .apng, found "
+                       "\"%.60s\"",
                        out);
     if (*out != '/' && !getcwd(here, sizeof here))
         return cs_fail(error, CS_ERR_FILE, "cannot determine the current folder");
@@ -86,50 +124,27 @@ static enum cs_status set_output_path(const struct options *options, struct film
     return options->overwrite ? CS_OK : cs_output_check_file(out, error);
 }
 
-enum { ARGUMENTS = 48 };
-
-/* Filters. Films have no alpha: what is dark counts by it, and the rest is white. ffmpeg 5.1
- * breaks down where pictures are laid on others by `overlay`. Sizes are even. */
-#define EVEN  "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv"
-#define WHITE "format=gbrap,negate,premultiply=inplace=1,negate," EVEN
-
-/* The line for ffmpeg, closed by NULL. A damaged picture is an error. The colours are told as
- * those of ITU-R BT.709, which players take for them; an odd size is padded by a pixel, as
- * 4:2:0 asks for. */
+/* The line for ffmpeg, closed by NULL. A damaged picture is an error. */
 static void fill(const struct film *film, const char *rate, const char *out,
                  const char *arguments[ARGUMENTS]) {
-    static const char *const before[] = {"ffmpeg",   "-loglevel", "error",     "-xerror",
-                                         "-nostdin", "-y",        "-framerate"};
-    static const char *const between[] = {
-        "-vf",
-        NULL, // the filter
-        "-pix_fmt", "yuv420p",    "-colorspace", "bt709", "-color_primaries",
-        "bt709",    "-color_trc", "bt709"};
-    /* by number, as names of more than five digits are not in order */
-    static const char *const numbered[] = {"-start_number", "1", "-i", "frame_%05d.png"};
-    static const char *const in_order[] = {"-pattern_type", "glob", "-i", "frame_*.png"};
-    static const char *const mp4[] = {"-c:v", "libx264",   "-crf",
-                                      "18",   "-movflags", "+faststart"};
-    static const char *const webm[] = {"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0"};
-    size_t n = sizeof before / sizeof *before, filter = 0;
-    memcpy(arguments, before, sizeof before);
-    arguments[n++] = rate;
-    memcpy(arguments + n, film->has_gaps ? in_order : numbered, sizeof numbered);
-    n += sizeof numbered / sizeof *numbered;
-    memcpy(arguments + n, between, sizeof between);
-    while (between[filter])
-        filter++;
-    arguments[n + filter] = film->clear ? WHITE : EVEN;
-    n += sizeof between / sizeof *between;
-    memcpy(arguments + n, film->webm ? webm : mp4, sizeof mp4);
-    n += sizeof mp4 / sizeof *mp4;
+    const struct format *format = film->format;
+    const char *const line[] = {
+        "ffmpeg", "-loglevel", "error", "-xerror", "-nostdin", "-y", "-framerate", rate,
+        /* by number, as names of more than five digits are not in order */
+        film->has_gaps ? "-pattern_type" : "-start_number", film->has_gaps ? "glob" : "1", "-i",
+        film->has_gaps ? "frame_*.png" : "frame_%05d.png", "-vf",
+        film->clear ? format->clear_filter : format->filter};
+    size_t n = sizeof line / sizeof *line;
+    memcpy(arguments, line, sizeof line);
+    for (size_t k = 0; k < CODEC && format->codec[k]; k++)
+        arguments[n++] = format->codec[k];
     arguments[n++] = out;
     arguments[n] = NULL;
 }
 
 /* a word as it is typed: what a shell reads otherwise is quoted */
 static void add_word(struct cs_text *line, const char *word) {
-    if (!strpbrk(word, "*()' $&;\"\\")) {
+    if (!strpbrk(word, "*()[]' $&;\"\\")) {
         cs_text_add(line, " %s", word);
         return;
     }
