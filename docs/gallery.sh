@@ -69,7 +69,9 @@ make() {
         knot) run $1 reef_knot -n 120 && film $1.webm $1 ;;
         funnel) run $1 funnel -n 180 -s 'bodies[0].cloth.grid=[13,13]' -s 'bodies[1].cloth.grid=[13,13]' \
             -s 'bodies[2].cloth.grid=[13,13]' && film $1.webm $1 ;;
-        twister) run $1 twister -n 156 && film $1.webm $1 ;;
+        twister) run $1 twister -n 156 && film $1.webm $1
+            "$program" run scenes/twister.json -n 120 -s 'render.size=[360,216]' -o "$work/gif" -q
+            "$program" film "$work/gif" -o docs/films/twister.gif -y -q ;;
         bag) run $1 bag -n 90 && film $1.webm $1 ;;
         hammock) run $1 hard/hammock -n 90 -s 'bodies[0].cloth.grid=[20,20]' && film $1.webm $1 ;;
         curtain) run $1 curtain_rail -n 240 --every 2 && film $1.webm $1 ;;

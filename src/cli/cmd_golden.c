@@ -295,7 +295,8 @@ const struct cs_command cs_command_golden = {
     .notes = "Images must match pixel for pixel if the same renderer made the golden image,\n"
              "else within a tolerance that is tight enough to reveal defects. A picture that\n"
              "differs is written next to its golden image as *.actual.png, with 16 times the\n"
-             "difference as *.difference.png.\n",
+             "difference as *.difference.png.\n\n"
+             "Example: clothsim golden --hashes --only free_fall\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 0,
     .operands_max = 0,

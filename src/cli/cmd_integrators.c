@@ -200,7 +200,8 @@ const struct cs_command cs_command_integrators = {
     .operands = "[NAME|FILE.so]",
     .summary = "list the integrators, or describe one and its options",
     .notes = "Modules are loaded from the program's module folder and the folders of\n"
-             "CLOTHSIM_PLUGIN_PATH (absolute, separated by colons).\n",
+             "CLOTHSIM_PLUGIN_PATH (absolute, separated by colons).\n\n"
+             "Example: clothsim integrators cvode-bdf\n",
     CS_COMMAND_OPTIONS(rows, initial),
     .operands_min = 0,
     .operands_max = 1,

@@ -151,7 +151,8 @@ const struct cs_command cs_command_scene = {
     .name = "scene",
     .operands = "FILE",
     .summary = "check a scene, or print its plan, every value, or the schema",
-    .notes = "Without an option: one line that confirms the scene and counts its parts.\n",
+    .notes = "Without an option: one line that confirms the scene and counts its parts.\n\n"
+             "Example: clothsim scene scenes/flag_wind.json --plan\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 0,
     .operands_max = 1,

@@ -171,6 +171,10 @@ static const struct cs_command *command_of(int argc, char **argv) {
     return find_command(argv[at]);
 }
 
+static bool is_version(const char *word) {
+    return !strcmp(word, "--version") || !strcmp(word, "-V");
+}
+
 /* Options of the program itself come first: version, completion, help. */
 static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
     if (argc < 2)
@@ -178,10 +182,10 @@ static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
                    ? error->status
                    : cs_fail(error, CS_ERR_USAGE, "expected a command");
     const struct cs_command *tool = command_of(argc, argv);
+    if (is_version(argv[1]) || (tool && argc == 3 && is_version(argv[2])))
+        return print_version(error);
     if (tool && !tool->main)
         return cs_tool_start(tool, argv, error);
-    if (!strcmp(argv[1], "--version") || !strcmp(argv[1], "-V"))
-        return print_version(error);
     /* without a name the message lists the names */
     if (!strcmp(argv[1], "--completion") && argc <= 3)
         return print_completion(argc == 3 ? argv[2] : "", error);

@@ -356,7 +356,8 @@ const struct cs_command cs_command_conform = {
     .name = "conform",
     .operands = "NAME[:OPTIONS]|FILE.so ...",
     .summary = CS_SUMMARY_conform,
-    .notes = "A failed claim is expected if the integrator's descriptor names the check.\n",
+    .notes = "A failed claim is expected if the integrator's descriptor names the check.\n\n"
+             "Example: clothsim conform velocity-verlet --only order\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 0,
     .operands_max = 64,
