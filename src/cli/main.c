@@ -8,7 +8,6 @@
 #include "base/install_paths.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "cli/output_keys.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -98,52 +97,6 @@ static enum cs_status print_version(struct cs_error *error) {
     return cs_print_out(stdout, &out, error);
 }
 
-static enum cs_status print_completion(const char *shell, struct cs_error *error) {
-    struct cs_text out = {0};
-    if (!cs_completion_print(commands, shell, &out, error))
-        cs_print_out(stdout, &out, error);
-    cs_text_finish(&out);
-    return error->status;
-}
-
-/* The schema of a file that the program writes. */
-static enum cs_status print_schema(const char *name, struct cs_error *error) {
-    struct cs_text out = {0};
-    if (!cs_output_print_schema(name, &out, error))
-        cs_print_out(stdout, &out, error);
-    cs_text_finish(&out);
-    return error->status;
-}
-
-/* The source of the section FILES of clothsim-files(5). */
-static enum cs_status print_files(struct cs_error *error) {
-    struct cs_text out = {0};
-    cs_output_print_manual(&out);
-    return cs_print_out(stdout, &out, error);
-}
-
-/* For clothsim's own completion script: the part of a program of its own. COMMAND, SHELL. */
-static enum cs_status print_command_completion(char **argv, struct cs_error *error) {
-    const struct cs_command *command = find_command(argv[0]);
-    struct cs_text out = {0};
-    if (!command)
-        return unknown_command(argv[0], error);
-    if (!cs_completion_print_command(command, argv[1], &out, error))
-        cs_print_out(stdout, &out, error);
-    cs_text_finish(&out);
-    return error->status;
-}
-
-/* For the completion scripts: COMMAND, OPTION, WORD. */
-static enum cs_status print_values(char **argv, struct cs_error *error) {
-    const struct cs_command *command = find_command(argv[0]);
-    struct cs_text out = {0};
-    if (!command)
-        return unknown_command(argv[0], error);
-    cs_completion_print_values(command, argv[1], argv[2], &out);
-    return cs_print_out(stdout, &out, error);
-}
-
 /* Parses the arguments and runs the command, or prints its help. */
 static enum cs_status run_command(const struct cs_command *command, int argc, char **argv,
                                   struct cs_error *error) {
@@ -163,7 +116,7 @@ static enum cs_status run_command(const struct cs_command *command, int argc, ch
 
 /* The command that the words are about; NULL: none. */
 static const struct cs_command *command_of(int argc, char **argv) {
-    static const char *const before[] = {"help", "--help", "-h", "--complete"};
+    static const char *const before[] = {"help", "--help", "-h"};
     int at = 1;
     for (size_t k = 0; k < sizeof before / sizeof *before; k++)
         if (argc > 2 && !strcmp(argv[1], before[k]))
@@ -171,11 +124,26 @@ static const struct cs_command *command_of(int argc, char **argv) {
     return find_command(argv[at]);
 }
 
+/* Starts another program of clothsim's in place of this one. Returns only if that failed. */
+static enum cs_status start_program(const char *name, char **argv, struct cs_error *error) {
+    char path[CS_DATA_PATH_MAX];
+    execv(cs_tool_path(name, path, sizeof path), argv);
+    return cs_fail(error, CS_ERR_FILE, "%s: cannot start its program \"%.4000s\": %s", name,
+                   path, strerror(errno));
+}
+
+/* True for words that clothsim-describe answers. */
+static bool asks_description(int argc, char **argv) {
+    return (argc <= 3 && (!strcmp(argv[1], "--completion") || !strcmp(argv[1], "--schema"))) ||
+           (argc == 2 && !strcmp(argv[1], "--files")) ||
+           (argc == 5 && !strcmp(argv[1], "--complete") && find_command(argv[2]));
+}
+
 static bool is_version(const char *word) {
     return !strcmp(word, "--version") || !strcmp(word, "-V");
 }
 
-/* Options of the program itself come first: version, completion, help. */
+/* Options of the program itself come first: version, descriptions, help. */
 static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
     if (argc < 2)
         return print_overview(stderr, error)
@@ -185,19 +153,11 @@ static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
     if (is_version(argv[1]) || (tool && argc == 3 && is_version(argv[2])))
         return print_version(error);
     if (tool && !tool->main)
-        return cs_tool_start(tool, argv, error);
-    /* without a name the message lists the names */
-    if (!strcmp(argv[1], "--completion") && argc <= 3)
-        return print_completion(argc == 3 ? argv[2] : "", error);
-    if (!strcmp(argv[1], "--schema") && argc <= 3)
-        return print_schema(argc == 3 ? argv[2] : "", error);
-    if (argc == 2 && !strcmp(argv[1], "--files"))
-        return print_files(error);
-    /* asked by the completion scripts, or for them, and by nobody else */
-    if (argc == 4 && !strcmp(argv[1], "--complete"))
-        return print_command_completion(argv + 2, error);
+        return start_program(tool->name, argv, error);
+    if (asks_description(argc, argv))
+        return start_program("describe", argv, error);
     if (argc == 5 && !strcmp(argv[1], "--complete"))
-        return print_values(argv + 2, error);
+        return unknown_command(argv[2], error);
     if (!strcmp(argv[1], "help") || !strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))
         return help(argc - 2, argv + 2, error);
     const struct cs_command *command = find_command(argv[1]);

@@ -4,7 +4,12 @@
 #define CS_TABLE_PLOT_H
 
 #include "base/arena.h"
+#include "base/table.h"
 #include "draw/diagram.h"
+
+/* The columns of the ledger that stand in every one: forces may add columns of their own. */
+extern const struct cs_column cs_ledger_columns[];
+extern const uint32_t cs_n_ledger_columns;
 
 enum { CS_TABLE_PANELS = 8 };
 

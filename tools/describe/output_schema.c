@@ -1,7 +1,7 @@
 /* Prints what the program writes as a manual and as JSON schemas, from the lists of keys and
  * columns. */
 #include "base/json_writer.h"
-#include "cli/output_keys.h"
+#include "describe/output_keys.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,8 @@
 /* Prints the values that a completion offers for an option: methods, paths of a scene, names.
  */
+#include "describe/completion_values.h"
+
 #include "base/options.h"
-#include "cli/commands.h"
 #include "cli/line/print.h"
 #include "io/export/export.h"
 #include "scene/scene.h"

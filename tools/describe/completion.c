@@ -1,6 +1,8 @@
 /* Prints completion scripts for bash, zsh and fish. Values that the program knows are asked of
  * it: clothsim --complete. */
-#include "cli/commands.h"
+#include "describe/completion.h"
+
+#include "describe/completion_values.h"
 
 #include <string.h>
 
@@ -224,35 +226,19 @@ static const struct {
               {"fish", add_fish_command, add_fish}};
 enum { SHELLS = sizeof shells / sizeof *shells };
 
-static size_t find_shell(const char *name, struct cs_error *error) {
-    size_t k = 0;
-    while (k < SHELLS && strcmp(shells[k].name, name) != 0)
-        k++;
-    if (k == SHELLS)
-        cs_fail(error, CS_ERR_USAGE, "no completion for \"%.60s\", expected bash, zsh or fish",
-                name);
-    return k;
-}
-
-enum cs_status cs_completion_print_command(const struct cs_command *command, const char *shell,
-                                           struct cs_text *out, struct cs_error *error) {
-    const size_t k = find_shell(shell, error);
-    if (k < SHELLS && command->main)
-        shells[k].add_command(command, out);
-    else if (k < SHELLS)
-        cs_tool_query(command, shell, out, error);
-    return error->status;
-}
-
 enum cs_status cs_completion_print(const struct cs_command *const *commands, const char *shell,
                                    struct cs_text *out, struct cs_error *error) {
-    const size_t k = find_shell(shell, error);
     struct cs_text parts = {0};
-    for (uint32_t i = 0; commands[i] && !error->status; i++)
-        cs_completion_print_command(commands[i], shell, &parts, error);
-    if (!error->status)
-        shells[k].add(commands, cs_text_get(&parts), out);
+    size_t k = 0;
+    while (k < SHELLS && strcmp(shells[k].name, shell) != 0)
+        k++;
+    if (k == SHELLS)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "no completion for \"%.60s\", expected bash, zsh or fish", shell);
+    for (uint32_t i = 0; commands[i]; i++)
+        shells[k].add_command(commands[i], &parts);
+    shells[k].add(commands, cs_text_get(&parts), out);
     out->failed |= parts.failed;
     cs_text_finish(&parts);
-    return error->status;
+    return CS_OK;
 }

@@ -1,8 +1,8 @@
 /* Lists the keys of JSON files, and gathers the columns of tables from where they are written.
  * tests/cli/files.py holds the lists to what the program writes. */
-#include "cli/output_keys.h"
+#include "describe/output_keys.h"
 
-#include "sim/energy_ledger.h"
+#include "cli/table_plot.h"
 #include "study/compare/compare_cell.h"
 #include "study/energy_monitor.h"
 #include "study/parameter_sweep.h"
@@ -282,25 +282,6 @@ static const struct cs_output_key conform_keys[] = {
     {"[].checks[].note", "text", "", "what was measured, in words"},
 };
 
-static const struct cs_column ledger_columns[] = {
-    CS_NUMBER_COLUMN("frame", "1", "number of the frame; 0: the start"),
-    CS_NUMBER_COLUMN("t", "s", "simulated time"),
-#define X(name, column) CS_NUMBER_COLUMN(column, "J", "energy: " column),
-    CS_LEDGER_ENERGY_LIST(X)
-#undef X
-        CS_NUMBER_COLUMN("sum", "J", "sum of all energies"),
-#define X(name, column) CS_NUMBER_COLUMN(column, "J", "work since the start: " column),
-    CS_LEDGER_WORK_LIST(X)
-#undef X
-        CS_NUMBER_COLUMN("angular_x", "kg m2/s", "angular momentum about the origin"),
-    CS_NUMBER_COLUMN("angular_y", "kg m2/s", "angular momentum about the origin"),
-    CS_NUMBER_COLUMN("angular_z", "kg m2/s", "angular momentum about the origin"),
-    CS_NUMBER_COLUMN("couple_x", "kg m2/s", "what friction between surfaces has added to it"),
-    CS_NUMBER_COLUMN("couple_y", "kg m2/s", "what friction between surfaces has added to it"),
-    CS_NUMBER_COLUMN("couple_z", "kg m2/s", "what friction between surfaces has added to it"),
-};
-static const uint32_t n_ledger_columns = sizeof ledger_columns / sizeof *ledger_columns;
-
 #define KEYS(rows) .keys = rows, .n_keys = sizeof rows / sizeof *rows
 #define CHECKED    " The last column, *check*, is a hash of names and row."
 
@@ -317,8 +298,8 @@ const struct cs_output_file cs_output_files[] = {
          "Of *clothsim run --ledger*, under the name given there; *The ledger*, above, says "
          "what is booked where. A force with a column of its own stands behind _other_ or "
          "_events_.",
-     .columns = ledger_columns,
-     .n_columns = &n_ledger_columns},
+     .columns = cs_ledger_columns,
+     .n_columns = &cs_n_ledger_columns},
     {.name = "compare.csv",
      .about = "Of *clothsim compare*: a row for each method and step or tolerance." CHECKED,
      .columns = cs_columns,
