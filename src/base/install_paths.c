@@ -121,7 +121,13 @@ static const char *find(const struct place *place, char *out) {
 }
 
 const char *cs_program_path(void) {
-    return *program_path() ? program_path() : "clothsim";
+    static const struct place beside = {".", ".", "."};
+    static char path[FOLDER_MAX + sizeof "/clothsim"];
+    char folder[FOLDER_MAX];
+    if (!*program_path())
+        return "clothsim";
+    snprintf(path, sizeof path, "%s/clothsim", find(&beside, folder));
+    return path;
 }
 
 const char *cs_program_path_fault(void) {

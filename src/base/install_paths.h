@@ -9,7 +9,8 @@
 /* Bytes that suffice for the result of cs_data_find. */
 enum { CS_DATA_PATH_MAX = 8192 };
 
-/* The path of the running program; "clothsim" if the system does not tell. Static. */
+/* The path of clothsim, which a tool stands apart from; "clothsim" if the system does not tell
+ * that of the running program. Static. */
 const char *cs_program_path(void);
 
 /* NULL, or a sentence: the program's path is unknown, and the folders below are those that were

@@ -1,7 +1,7 @@
 /* Any bytes as hash.tsv and as image.tsv: rows or a refusal; a run is added once, and what is
  * written reads as the same rows. */
 #include "folder.h"
-#include "study/golden/golden_table.h"
+#include "golden/golden_table.h"
 
 #include <stdint.h>
 

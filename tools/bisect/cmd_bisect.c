@@ -1,8 +1,8 @@
 /* clothsim bisect: finds the first difference of two runs of a scene. */
 #include "base/install_paths.h"
+#include "bisect/bisect.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "study/bisect.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -6,9 +6,9 @@
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "golden/golden.h"
 #include "io/file_conflicts.h"
 #include "study/compare/compare_curves.h"
-#include "study/golden/golden.h"
 #include "study/recorded_run.h"
 
 #include <stdio.h>

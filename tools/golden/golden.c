@@ -1,5 +1,5 @@
 /* Compares state hashes and images with the golden tables, row by row. */
-#include "study/golden/golden.h"
+#include "golden/golden.h"
 
 #include "base/file.h"
 #include "draw/image_diff.h"

@@ -1,5 +1,5 @@
 /* Reads and writes the tables of golden files. */
-#include "study/golden/golden_table.h"
+#include "golden/golden_table.h"
 
 #include "base/file.h"
 

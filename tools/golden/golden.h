@@ -6,7 +6,7 @@
 #define CS_GOLDEN_H
 
 #include "draw/render.h"
-#include "study/golden/golden_table.h"
+#include "golden/golden_table.h"
 #include "study/session.h"
 
 /* Settings and counts of a check; pointers are borrowed. */

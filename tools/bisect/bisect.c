@@ -1,5 +1,5 @@
 /* Runs two programs side by side and finds the first number that differs. */
-#include "study/bisect.h"
+#include "bisect/bisect.h"
 
 #include "io/subprocess.h"
 
