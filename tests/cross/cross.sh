@@ -70,7 +70,8 @@ for name; do
         *) root=/usr/$(triple_of "$machine")
             wrapper="$(qemu_of "$machine") -L $root -E LD_LIBRARY_PATH=$root/lib" ;;
     esac
-    for n in $threads; do echo "$name $n $wrapper $folder/$name/clothsim"; done
+    # an emulator starts no second program
+    for n in $threads; do echo "$name $n $wrapper $folder/$name/tools/clothsim-golden"; done
 done | xargs -P "$(nproc)" -L 1 sh -c '
     name=$1 n=$2
     shift 2

@@ -1,7 +1,7 @@
 /* Any bytes as run.json, as origin.json or as the text in a picture: a scene that can be read
  * and run again, or a refusal. */
 #include "scene/file/scene_read.h"
-#include "study/provenance_read.h"
+#include "reproduce/provenance_read.h"
 
 #include <stdint.h>
 #include <stdlib.h>

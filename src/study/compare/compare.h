@@ -12,7 +12,6 @@
 #include "study/compare/compare_curves.h"
 #include "study/compare/compare_state.h"
 #include "study/compare/ranking.h"
-#include "study/reproduce.h"
 
 /* Prints a comparison as aligned text. */
 
@@ -84,14 +83,5 @@ enum cs_status cs_compare_contact_sheet_write(struct cs_compare *compare,
 void cs_compare_contact_sheet_add_html(const struct cs_compare *compare, struct cs_text *out);
 void cs_compare_contact_sheet_add_markdown(const struct cs_compare *compare,
                                            struct cs_text *out);
-
-/* Reproduces a row of a comparison. */
-
-/* Runs the method of a row of settings->file, a compare.csv (1: the first row after the names),
- * on the scene in origin.json beside it. Compares outcome, time, steps and final state.
- * CS_ERR_USAGE if there is no such row, or if the clock ended it. */
-enum cs_status cs_compare_reproduce_row(struct cs_reproduction *again,
-                                        const struct cs_reproduction_settings *settings,
-                                        uint32_t row, struct cs_error *error);
 
 #endif

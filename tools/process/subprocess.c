@@ -1,5 +1,5 @@
 /* Runs another program and waits for it. */
-#include "io/subprocess.h"
+#include "process/subprocess.h"
 
 #include "base/file.h"
 

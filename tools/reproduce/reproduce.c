@@ -1,5 +1,5 @@
 /* Reproduces a run or a picture, and names the first difference. */
-#include "study/reproduce.h"
+#include "reproduce/reproduce.h"
 
 #include "base/hash.h"
 #include "draw/image_diff.h"

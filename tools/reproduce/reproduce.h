@@ -2,7 +2,7 @@
 #ifndef CS_REPRODUCE_H
 #define CS_REPRODUCE_H
 
-#include "study/provenance_read.h"
+#include "reproduce/provenance_read.h"
 
 /* Request for a reproduction. */
 struct cs_reproduction_settings {

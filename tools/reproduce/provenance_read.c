@@ -1,5 +1,5 @@
 /* Reads stored provenance, and reports what has changed since. */
-#include "study/provenance_read.h"
+#include "reproduce/provenance_read.h"
 
 #include "base/file.h"
 #include "base/hash.h"

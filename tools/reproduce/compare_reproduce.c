@@ -1,7 +1,8 @@
 /* Reproduces a row of a comparison. */
-#include "study/compare/compare.h"
+#include "reproduce/compare_reproduce.h"
 
 #include "study/compare/cell_list_parse.h"
+#include "study/compare/compare.h"
 #include "study/provenance_write.h"
 #include "study/recorded_run.h"
 

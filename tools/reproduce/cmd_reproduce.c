@@ -3,8 +3,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
-#include "study/compare/compare.h"
-#include "study/reproduce.h"
+#include "reproduce/compare_reproduce.h"
 
 #include <stdio.h>
 #include <stdlib.h>
