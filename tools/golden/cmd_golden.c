@@ -9,6 +9,7 @@
 #include "golden/golden.h"
 #include "io/file_conflicts.h"
 #include "study/compare/compare_curves.h"
+#include "study/process_pool.h"
 #include "study/recorded_run.h"
 
 #include <stdio.h>
@@ -51,6 +52,8 @@ static const struct cs_arg rows[] = {
      .repeatable = true},
     {"threads", 0, "N", "threads that step each scene, 1 to 64 (default: 1)",
      CS_ARG_INTO(struct options, check.threads), .min = 1, .max = CS_POOL_THREADS_MAX},
+    {"jobs", 'j', "N", "rows in parallel, each in a process (default: one per processor)",
+     CS_ARG_INTO(struct options, check.jobs), .min = 1, .max = CS_PROCESS_POOL_MAX},
     {"json", 0, "FILE", "write the rows as JSON too; -: to standard output",
      CS_ARG_INTO(struct options, json)},
     {"junit", 0, "FILE", "write the rows as a JUnit report too",
@@ -67,7 +70,7 @@ struct sink {
 };
 
 static bool is_different(const struct cs_golden_row *row) {
-    return row->message.length > 0 && (row->added || !row->skipped);
+    return row->message.length > 0 && (row->added || !row->finding.skipped);
 }
 
 static const char *verdict_of(const struct options *options, const struct cs_golden_row *row) {
@@ -75,7 +78,7 @@ static const char *verdict_of(const struct options *options, const struct cs_gol
         return "FAILED";
     if (is_different(row) && options->check.accept_all)
         return options->check.add.scene ? "added" : "accepted";
-    return row->skipped ? "skip" : is_different(row) ? "DIFFERS" : "ok";
+    return row->finding.skipped ? "skip" : is_different(row) ? "DIFFERS" : "ok";
 }
 
 /* Adds "image NAME SCENE  INTEGRATOR  OVERRIDES  frame N", without what the row has not. */
@@ -123,9 +126,9 @@ static void print_row(void *ctx, const struct cs_golden_row *row) {
     add_name(row, &name);
     add_json(row, verdict, &sink->json);
     add_junit(row, cs_text_get(&name),
-              fails          ? "failure"
-              : row->skipped ? "skipped"
-                             : NULL,
+              fails                  ? "failure"
+              : row->finding.skipped ? "skipped"
+                                     : NULL,
               &sink->junit);
     struct cs_text line = {0};
     if (!cs_print_is_stdout(options->json) && (is_different(row) || !options->quiet))
@@ -278,6 +281,8 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
         check->hashes = check->images = true;
     if (!check->renderers)
         check->renderers = 1u << CS_RENDERER_AUTO;
+    if (!check->jobs)
+        check->jobs = cs_pool_processors(CS_PROCESS_POOL_MAX);
     check->stop = cs_interrupt_catch();
     check->report = print_row;
     check->ctx = &sink;

@@ -6,13 +6,12 @@
 #include "io/png.h"
 #include "study/follow.h"
 #include "study/frame_picture.h"
+#include "study/process_pool.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-/* Opens the session of a golden row and steps it to the row's frame. */
 
 /* Splits "path=value;path=value" in place. Returns the number of overrides. */
 static uint32_t split_overrides(char *text, struct cs_override *overrides) {
@@ -59,8 +58,6 @@ static enum cs_status step_golden(const struct cs_golden *golden,
     return error->status;
 }
 
-/* Checks one picture in two levels. */
-
 static void path_of(const struct cs_golden *golden, const struct cs_golden_row *row,
                     const char *ending, char path[1024]) {
     snprintf(path, 1024, "%.500s/image/%.400s%s", golden->folder, row->image, ending);
@@ -105,7 +102,7 @@ static enum cs_status judge(const struct cs_golden *golden, struct cs_golden_row
                             struct cs_error *error) {
     const bool same_renderer = !strcmp(renderer, row->note);
     /* equal hashes of pixels decide: the golden picture need not be read */
-    if (same_renderer && !strcmp(row->found, row->hash))
+    if (same_renderer && !strcmp(row->finding.found, row->hash))
         return CS_OK;
     char path[1024];
     struct cs_image expected;
@@ -139,11 +136,11 @@ static enum cs_status accept_image(const struct cs_golden *golden, struct cs_gol
         return cs_fail(error, CS_ERR_CHECK,
                        "%s: only --renderer cpu may accept images, found %s", row->image,
                        cs_text_get(renderer));
-    if (!strcmp(row->found, row->hash) && !strcmp(row->note, cs_text_get(renderer)))
+    if (!strcmp(row->finding.found, row->hash) && !strcmp(row->note, cs_text_get(renderer)))
         return CS_OK;
     cs_text_add(&row->message, "accepted");
-    snprintf(row->renderer, sizeof row->renderer, "%s", cs_text_get(renderer));
-    row->note = row->renderer;
+    snprintf(row->finding.renderer, sizeof row->finding.renderer, "%s", cs_text_get(renderer));
+    row->note = row->finding.renderer;
     return write_image(golden, row, ".png", found, error);
 }
 
@@ -153,7 +150,7 @@ static enum cs_status check_with(const struct cs_golden *golden, enum cs_rendere
     struct cs_image found = {0};
     struct cs_text renderer = {0};
     if (!cs_snapshot_draw(&session->run, kind, &found, &renderer, error)) {
-        cs_hash_bytes(found.rgb, cs_image_bytes(&found), row->found);
+        cs_hash_bytes(found.rgb, cs_image_bytes(&found), row->finding.found);
         if (golden->accept_all)
             accept_image(golden, row, &found, &renderer, error);
         else
@@ -181,12 +178,13 @@ static enum cs_status check_image(struct cs_golden *golden, struct cs_golden_row
  * version. */
 static bool is_for_this_build(struct cs_golden_row *row, const struct cs_integrator *method) {
     if (CS_HAS(method, library) && method->library)
-        snprintf(row->library, sizeof row->library, "%s", method->library);
-    row->skipped = strcmp(row->note, "any") != 0 && strcmp(row->note, row->library) != 0;
-    if (row->skipped)
+        snprintf(row->finding.library, sizeof row->finding.library, "%s", method->library);
+    row->finding.skipped =
+        strcmp(row->note, "any") != 0 && strcmp(row->note, row->finding.library) != 0;
+    if (row->finding.skipped)
         cs_text_add(&row->message, "golden for %s, but this build has %s", row->note,
-                    *row->library ? row->library : "no such library");
-    return !row->skipped;
+                    *row->finding.library ? row->finding.library : "no such library");
+    return !row->finding.skipped;
 }
 
 /* Compares one state hash with its golden value. */
@@ -197,15 +195,16 @@ static enum cs_status check_hash(struct cs_golden *golden, struct cs_golden_row 
     if (step_golden(golden, &row->run, false, &session, &failed)) {
         /* only a build without a library may lack an integrator, and only where the row names
          * the library */
-        row->skipped = failed.status == CS_ERR_USAGE && strcmp(row->note, "any") != 0;
-        if (!row->skipped)
+        row->finding.skipped = failed.status == CS_ERR_USAGE && strcmp(row->note, "any") != 0;
+        if (!row->finding.skipped)
             return cs_fail(error, failed.status, "%s", failed.message);
         cs_text_add(&row->message, "this build is without %s", row->note);
         return CS_OK;
     }
-    cs_run_hash(&session.run, row->found);
-    if (is_for_this_build(row, session.method.integrator) && strcmp(row->found, row->hash)) {
-        cs_text_add(&row->message, "hash %s", row->found);
+    cs_run_hash(&session.run, row->finding.found);
+    if (is_for_this_build(row, session.method.integrator) &&
+        strcmp(row->finding.found, row->hash)) {
+        cs_text_add(&row->message, "hash %s", row->finding.found);
         if (!golden->add.scene)
             cs_text_add(&row->message, ", expected %s (%s after frame %u)", row->hash,
                         cs_outcome_text(session.run.outcome), session.run.frame);
@@ -221,13 +220,13 @@ static bool is_wanted(const struct cs_golden *golden, const struct cs_golden_row
 }
 
 static void accept_row(struct cs_golden_row *row) {
-    row->hash = row->found;
-    if (*row->library)
-        row->note = row->library;
+    row->hash = row->finding.found;
+    if (*row->finding.library)
+        row->note = row->finding.library;
 }
 
 static void count(struct cs_golden *golden, const struct cs_golden_row *row) {
-    if (row->skipped && !row->added)
+    if (row->finding.skipped && !row->added)
         golden->skipped++;
     else if (row->message.length == 0)
         golden->passed++;
@@ -251,27 +250,118 @@ static const struct kind images = {
     "image.tsv", "scene\tintegrator\toverrides\tframe\timage\tpixels\trenderer",
     CS_GOLDEN_IMAGE_FIELDS, check_image};
 
-/* Checks a row. A failed run is a failed row, unless the run is added, the user interrupts, or
- * memory ends. */
-static enum cs_status check_row(struct cs_golden *golden, const struct kind *kind,
-                                const struct cs_golden_table *table, struct cs_golden_row *row,
-                                struct cs_error *error) {
-    struct cs_error own = {0};
-    if (kind->check(golden, row, &own)) {
-        if (golden->add.scene || own.status == CS_ERR_INTERRUPT || own.status == CS_ERR_MEMORY)
-            return cs_fail(error, own.status, "%s", own.message);
-        row->failed = true;
-        golden->broken++;
-        cs_text_add(&row->message, "%s", own.message);
-    }
-    row->added =
-        golden->accept_all && row->skipped && *row->library && !cs_golden_table_has(table, row);
+/* A failed run is a failed row, unless the run is added, the user interrupts, or memory ends.
+ */
+static enum cs_status take_failure(struct cs_golden *golden, struct cs_golden_row *row,
+                                   const struct cs_error *own, struct cs_error *error) {
+    if (!own->status)
+        return CS_OK;
+    if (golden->add.scene || own->status == CS_ERR_INTERRUPT || own->status == CS_ERR_MEMORY)
+        return cs_fail(error, own->status, "%s", own->message);
+    row->failed = true;
+    golden->broken++;
+    cs_text_add(&row->message, "%s", own->message);
+    return CS_OK;
+}
+
+/* Counts, reports and accepts a row that was checked. */
+static void settle(struct cs_golden *golden, const struct cs_golden_table *table,
+                   struct cs_golden_row *row) {
+    row->added = golden->accept_all && row->finding.skipped && *row->finding.library &&
+                 !cs_golden_table_has(table, row);
     count(golden, row);
     if (golden->report)
         golden->report(golden->ctx, row);
-    if (golden->accept_all && row->message.length > 0 && !row->skipped && !row->failed)
+    if (golden->accept_all && row->message.length > 0 && !row->finding.skipped && !row->failed)
         accept_row(row);
-    return CS_OK;
+}
+
+/* The answer of a child for a row: in memory that it shares with its parent. */
+struct answer {
+    struct cs_golden_finding finding;
+    char message[1024];
+};
+
+/* The rows of a table, some at a time. */
+struct rows {
+    struct cs_golden *golden;
+    const struct kind *kind;
+    struct cs_golden_table *table;
+    uint32_t begun, settled; /* rows before these are */
+    bool *done;              /* (n of the table) */
+    uint32_t row_of[CS_PROCESS_POOL_MAX];
+    struct answer *answers; /* (jobs), shared */
+};
+
+static bool next_row(void *ctx, uint32_t slot, struct cs_error *error) {
+    struct rows *rows = ctx;
+    (void)error;
+    while (rows->begun < rows->table->n &&
+           !is_wanted(rows->golden, rows->table->rows + rows->begun))
+        rows->done[rows->begun++] = true;
+    rows->row_of[slot] = rows->begun;
+    rows->answers[slot] = (struct answer){.message = ""};
+    return rows->begun++ < rows->table->n;
+}
+
+static enum cs_status answer_in_child(void *ctx, uint32_t slot, struct cs_error *error) {
+    struct rows *rows = ctx;
+    struct cs_golden_row *row = rows->table->rows + rows->row_of[slot];
+    struct answer *answer = rows->answers + slot;
+    rows->kind->check(rows->golden, row, error);
+    answer->finding = row->finding;
+    snprintf(answer->message, sizeof answer->message, "%s", cs_text_get(&row->message));
+    return error->status;
+}
+
+static void take_answer(void *ctx, uint32_t slot, const struct cs_error *result,
+                        struct cs_error *error) {
+    struct rows *rows = ctx;
+    const struct answer *answer = rows->answers + slot;
+    struct cs_golden_row *row = rows->table->rows + rows->row_of[slot];
+    row->finding = answer->finding;
+    if (*row->finding.renderer)
+        row->note = row->finding.renderer; // of an accepted picture
+    cs_text_add(&row->message, "%s", answer->message);
+    rows->done[rows->row_of[slot]] = true;
+    if (take_failure(rows->golden, row, result, error))
+        return;
+    for (; rows->settled < rows->table->n && rows->done[rows->settled]; rows->settled++)
+        if (is_wanted(rows->golden, rows->table->rows + rows->settled))
+            settle(rows->golden, rows->table, rows->table->rows + rows->settled);
+}
+
+/* Checks all rows of a table that are wanted. */
+static enum cs_status check_rows(struct cs_golden *golden, const struct kind *kind,
+                                 struct cs_golden_table *table, struct cs_error *error) {
+    struct rows rows = {.golden = golden, .kind = kind, .table = table};
+    const size_t bytes = golden->jobs * sizeof *rows.answers;
+    const struct cs_isolate_queue queue = {.limits = {.is_cell = true, .stop = golden->stop},
+                                           .n_slots = golden->jobs,
+                                           .ctx = &rows,
+                                           .next = next_row,
+                                           .task = answer_in_child,
+                                           .ended = take_answer};
+    rows.done = calloc(table->n + 1, sizeof *rows.done);
+    rows.answers = cs_process_pool_shared_alloc(bytes, error);
+    if (!rows.done)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    if (!error->status)
+        cs_isolate_queue_run(&queue, error);
+    cs_process_pool_shared_free(rows.answers, bytes);
+    free(rows.done);
+    return error->status;
+}
+
+/* Checks and adds the run of --add. */
+static enum cs_status add_row(struct cs_golden *golden, const struct kind *kind,
+                              struct cs_golden_table *table, struct cs_error *error) {
+    struct cs_golden_row *row = cs_golden_table_add(table, &golden->add);
+    struct cs_error own = {0};
+    kind->check(golden, row, &own);
+    if (!take_failure(golden, row, &own, error))
+        settle(golden, table, row);
+    return error->status;
 }
 
 static enum cs_status check_table(struct cs_golden *golden, const struct kind *kind,
@@ -280,11 +370,8 @@ static enum cs_status check_table(struct cs_golden *golden, const struct kind *k
     const uint32_t before = golden->accepted;
     const bool may_lack = golden->add.scene || golden->any_table;
     cs_golden_table_read(&table, golden->folder, kind->name, may_lack, error);
-    if (golden->add.scene && !error->status)
-        check_row(golden, kind, &table, cs_golden_table_add(&table, &golden->add), error);
-    for (uint32_t k = 0; k < table.n && !golden->add.scene && !error->status; k++)
-        if (is_wanted(golden, table.rows + k))
-            check_row(golden, kind, &table, table.rows + k, error);
+    if (!error->status)
+        (golden->add.scene ? add_row : check_rows)(golden, kind, &table, error);
     // a run that cannot be added leaves no folder
     if (!error->status && golden->accepted > before && !cs_folder_create(golden->folder, error))
         cs_golden_table_write(&table, error);

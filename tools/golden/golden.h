@@ -21,8 +21,9 @@ struct cs_golden {
     struct cs_golden_run add;
     uint32_t renderers; /* set of 1 << enum cs_renderer_kind: each draws every picture */
     uint32_t threads;   /* as in struct cs_session_settings */
+    uint32_t jobs; /* rows at a time, each in a process of its own, up to CS_PROCESS_POOL_MAX */
     const volatile sig_atomic_t *stop;
-    /* called after each row; may be NULL */
+    /* called after each row, in their order; may be NULL */
     void (*report)(void *ctx, const struct cs_golden_row *row);
     void *ctx;
     uint32_t passed, failed, skipped, accepted;

@@ -81,7 +81,8 @@ enum cs_status cs_golden_table_write(const struct cs_golden_table *table,
     for (uint32_t k = 0; k < table->n; k++) {
         add_line(table->rows + k, table->rows[k].hash, table->rows[k].note, &text);
         if (table->rows[k].added)
-            add_line(table->rows + k, table->rows[k].found, table->rows[k].library, &text);
+            add_line(table->rows + k, table->rows[k].finding.found,
+                     table->rows[k].finding.library, &text);
     }
     return cs_file_write_text(table->path, &text, error);
 }
@@ -104,7 +105,7 @@ bool cs_golden_table_has(const struct cs_golden_table *table, const struct cs_go
         const struct cs_golden_row *other = table->rows + k;
         // of two rows of other versions the first adds the row of this one
         found |= is_same_run(&other->run, &row->run) &&
-                 (other->added || !strcmp(other->note, row->library));
+                 (other->added || !strcmp(other->note, row->finding.library));
     }
     return found;
 }

@@ -20,6 +20,13 @@ struct cs_golden_run {
     uint32_t frames;
 };
 
+/* Results of a run. */
+struct cs_golden_finding {
+    char found[CS_HASH_DIGITS], renderer[256];
+    char library[64]; /* as note of a row, of this build; "": the bits are the program's own */
+    bool skipped;     /* the library is not in this build, or of another version */
+};
+
 /* A line of a table: a run and its expected result. Fields are the table's. */
 struct cs_golden_row {
     struct cs_golden_run run;
@@ -29,10 +36,8 @@ struct cs_golden_row {
     const char *note;
     const char *image; /* name of the picture; NULL in hash.tsv */
     char name[256];    /* of a picture that is added */
-    char found[CS_HASH_DIGITS], renderer[256];
-    char library[64];       /* as in note, of this build; "": the bits are the program's own */
+    struct cs_golden_finding finding;
     struct cs_text message; /* the difference, or why the row was skipped; empty: equal */
-    bool skipped;           /* the library is not in this build, or of another version */
     bool added;             /* accepted for that version, in a row of its own */
     bool failed;            /* the run or the picture failed; message has the reason */
 };
