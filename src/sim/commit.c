@@ -40,7 +40,6 @@ static void resolve_contact(struct cs_run_host *host, double t, double dt, doubl
     *changed |= cs_contact_projection_resolve(&host->contact, t, dt, x, v);
     host->run->counts.contact_tests = host->contact.counts.tests;
     host->run->counts.projected_particles = host->contact.counts.projected;
-    host->run->projection_left = host->contact.left;
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }
 

@@ -98,8 +98,8 @@ enum cs_energy_source {
 /* The energy that the scene has given since the start of a run; negative if it took more. */
 struct cs_energy_input {
     double given[CS_ENERGY_SOURCES]; /* J */
-    double pinned;          /* J, kinetic energy of pinned particles that turn */
-    double values_t;        /* s, to which ramps are booked */
+    double pinned;                   /* J, kinetic energy of pinned particles that turn */
+    double values_t;                 /* s, to which ramps are booked */
     /* before the corrections of the running step, in J; the potential only if it is_sampled */
     double kinetic, potential;
     double corrected_steps; /* since the last sample, this one included */
@@ -123,7 +123,6 @@ struct cs_run {
     bool is_process_changed;   /* by the method: no other run is to follow in this process */
     struct cs_counts counts;
     struct cs_strain_limit strain_limit;
-    struct cs_projection_depth projection_left;
     struct cs_energy_input energy_input;
     double stage_seconds[CS_STAGES]; /* wall time; all 0 unless timed */
     double stage_cpu[CS_STAGES];     /* processor time of the process meanwhile; likewise */

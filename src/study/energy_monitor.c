@@ -1,6 +1,7 @@
 /* Judges by the balance of energy whether a run is sound; the header derives the bounds. */
 #include "study/energy_monitor.h"
 
+#include "model/contact/posed_collider.h"
 #include "model/event/event_state.h"
 #include "model/event/events.h"
 #include "model/force/terms.h"
@@ -22,6 +23,12 @@ enum { SAMPLES_MIN = 8, FAR_BEYOND = 100 };
 /* Fraction of m c^2/2 with the scene's scale of speed c that nothing but errors of steps makes.
  */
 #define LEAST_FRACTION 0.1
+
+/* Bounds of "beyond cloth": strain, depth over the scene's size, and speed in m/s (of sound in
+ * air at 15 degrees Celsius). Woven cloth tears at strains of 0.1 to 0.5. */
+#define EXTENSION_MAX 0.5
+#define DEPTH_MAX     1e-3
+#define SPEED_MAX     340
 
 static const struct {
     const char *word, *help;
@@ -127,6 +134,18 @@ static void start_speeds(struct cs_energy_monitor *monitor, const struct cs_run 
     monitor->acceleration = falls + pushes;
 }
 
+/* Sets the bounds of "beyond cloth". */
+static void begin_cloth(struct cs_energy_monitor *monitor, const struct cs_run *run) {
+    struct cs_cloth_peak *cloth = monitor->cloth;
+    cloth[CS_CLOTH_EXTENSION].bound = EXTENSION_MAX;
+    cloth[CS_CLOTH_DEPTH].bound = DEPTH_MAX * cs_run_calls(run)->length_scale;
+    cloth[CS_CLOTH_SPEED].bound = SPEED_MAX;
+    for (uint32_t b = 0; b < run->system->scene->bodies.n; b++) // no limit is NAN
+        cloth[CS_CLOTH_EXTENSION].bound =
+            fmax(cloth[CS_CLOTH_EXTENSION].bound,
+                 cs_scene_bodies(run->system->scene)[b].strain_limit - 1);
+}
+
 enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
                                        const struct cs_run *run, struct cs_error *error) {
     const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
@@ -137,6 +156,7 @@ enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
             (run->integrator->traits & (CS_SYMPLECTIC | CS_IMPLICIT)) == CS_SYMPLECTIC};
     if (spring_speed(run, &speed, error))
         return error->status;
+    begin_cloth(monitor, run);
     start_speeds(monitor, run);
     monitor->start_speed += speed;
     const double *g = run->system->scene->forces.gravity, c = cs_run_calls(run)->speed_scale;
@@ -217,8 +237,26 @@ static double limit_of_speed(const struct cs_energy_monitor *monitor,
     return SPEED_FACTOR * fmax(monitor->start_speed + fall, LEAST_SPEED);
 }
 
+/* Stores the sample's largest extension, depth and speed, if they are larger than before;
+ * returns whether one is beyond its bound. Compression makes an extension superfluous. */
+static bool is_beyond_cloth(struct cs_energy_monitor *monitor, const struct cs_run *run,
+                            const struct cs_energy_monitor_row *row) {
+    struct cs_cloth_peak *cloth = monitor->cloth;
+    const double extension = row->strain > cloth[CS_CLOTH_EXTENSION].bound
+                                 ? cs_diagnostics_extension(run->system, run->x)
+                                 : 0;
+    const double values[CS_CLOTH_BOUNDS] = {extension, row->depth, row->speed};
+    bool beyond = false;
+    for (int k = 0; k < CS_CLOTH_BOUNDS; k++) {
+        if (values[k] > cloth[k].value)
+            cloth[k] = (struct cs_cloth_peak){values[k], row->t, cloth[k].bound};
+        beyond |= values[k] > cloth[k].bound;
+    }
+    return beyond;
+}
+
 /* A fast particle is no instability unless the integrator has made half of its energy. */
-static void judge(struct cs_energy_monitor *monitor, double mass,
+static void judge(struct cs_energy_monitor *monitor, double mass, bool beyond,
                   struct cs_energy_monitor_row *row) {
     const bool counts = has_lasted(monitor, row->made) || row->made > FAR_BEYOND * row->bound;
     /* first, because no comparison with NAN is true */
@@ -228,9 +266,12 @@ static void judge(struct cs_energy_monitor *monitor, double mass,
         row->verdict = CS_STABILITY_GLOBAL;
     else if (row->particles && row->made > 0.25 * mass * row->speed * row->speed)
         row->verdict = CS_STABILITY_LOCAL;
+    else if (beyond)
+        row->verdict = CS_STABILITY_BEYOND;
     if (row->verdict > monitor->worst_verdict) {
         monitor->worst_verdict = row->verdict;
-        if (monitor->first.verdict == CS_STABILITY_BOUNDED)
+        if (!cs_stability_is_stable(row->verdict) &&
+            monitor->first.verdict == CS_STABILITY_BOUNDED)
             monitor->first = *row;
     }
 }
@@ -242,6 +283,7 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
     *row = (struct cs_energy_monitor_row){.t = run->t};
     row->energy = cs_diagnostics_energy(system, run->t, run->x, run->v);
     row->strain = cs_diagnostics_strain(system, run->x);
+    row->depth = cs_posed_colliders_depth(system, run->t, run->x);
     balance(monitor, run, row);
     /* no bound of speed holds after an event has added energy */
     if (with_event)
@@ -249,7 +291,22 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
     row->speed_limit = limit_of_speed(monitor, run);
     row->speed =
         cs_measure_speed(system, run->v, row->speed_limit, &row->particle, &row->particles);
-    judge(monitor, system->mass[row->particle], row);
+    judge(monitor, system->mass[row->particle], is_beyond_cloth(monitor, run, row), row);
+}
+
+void cs_energy_monitor_print_beyond(const struct cs_energy_monitor *monitor,
+                                    struct cs_text *out) {
+    static const char *const units[CS_CLOTH_BOUNDS] = {"times the rest length more",
+                                                       "m deep in a collider", "m/s fast"};
+    const char *between = "beyond cloth: ";
+    for (int k = 0; k < CS_CLOTH_BOUNDS; k++) {
+        const struct cs_cloth_peak *peak = monitor->cloth + k;
+        if (!(peak->value > peak->bound))
+            continue;
+        cs_text_add(out, "%s%.3g %s at t = %.6g s, bound %.3g", between, peak->value, units[k],
+                    peak->t, peak->bound);
+        between = "; ";
+    }
 }
 
 void cs_energy_monitor_print(const struct cs_energy_monitor *monitor,
@@ -287,6 +344,7 @@ const struct cs_column cs_energy_monitor_columns[] = {
     CS_TEXT_COLUMN("verdict", "verdict of this time, as of clothsim-stability(1)"),
     CS_NUMBER_COLUMN("made", "J", "energy made by the integrator"),
     CS_NUMBER_COLUMN("bound", "J", "energy above which it is a global instability"),
+    CS_NUMBER_COLUMN("largest_depth", "m", "largest depth of a particle in a collider"),
 };
 const uint32_t cs_energy_monitor_n_columns =
     sizeof cs_energy_monitor_columns / sizeof *cs_energy_monitor_columns;
@@ -309,5 +367,6 @@ void cs_energy_monitor_print_row(const struct cs_energy_monitor_row *row, uint32
                 cs_stability_word(row->verdict));
     cs_csv_add_number(out, row->made);
     cs_csv_add_number(out, row->bound);
+    cs_csv_add_number(out, row->depth);
     cs_text_add(out, "\n");
 }

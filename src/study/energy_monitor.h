@@ -31,7 +31,12 @@
  *
  * Local instability: a particle is faster than five times its speed at the start, what the
  * energy of its springs could give it, and a fall over the time passed, and the integrator has
- * made half of its energy: a whip is as fast, but takes its energy from the rest. */
+ * made half of its energy: a whip is as fast, but takes its energy from the rest.
+ *
+ * Beyond cloth: a run may be stable and yet show what no cloth does. Springs or membranes, but
+ * no network, are more than half longer than at rest, where woven cloth tears, unless
+ * strain_limit allows more; a free particle is deeper in a collider than a thousandth of the
+ * size; or one is faster than sound in air. */
 #ifndef CS_ENERGY_MONITOR_H
 #define CS_ENERGY_MONITOR_H
 
@@ -46,6 +51,8 @@
     X(CS_STABILITY_BOUNDED, "bounded", '.', 0x9fd3b5, "no sign of instability")                \
     X(CS_STABILITY_DAMPED, "over-damped", 'd', 0xa9c9e8,                                       \
       "stable, but the mean kinetic energy is below half of the reference's")                  \
+    X(CS_STABILITY_BEYOND, "beyond cloth", 'c', 0xd5dc8a,                                      \
+      "stable, but strained, deep in a collider or fast as no cloth is")                       \
     X(CS_STABILITY_SHORT, "not run to the end", '>', 0xe3f1e8,                                 \
       "no sign of instability in the steps that a cell may take, fewer than its time needs")   \
     X(CS_STABILITY_LOCAL, "local instability", 'l', 0xf6d365,                                  \
@@ -76,7 +83,7 @@ uint32_t cs_stability_colour(enum cs_stability_verdict verdict);
 
 /* True if the run shows no sign of instability. */
 static inline bool cs_stability_is_stable(enum cs_stability_verdict verdict) {
-    return verdict == CS_STABILITY_BOUNDED || verdict == CS_STABILITY_DAMPED;
+    return verdict <= CS_STABILITY_BEYOND;
 }
 
 /* True for a stable run, and for one that was too short to be called stable. */
@@ -93,11 +100,20 @@ struct cs_energy_monitor_row {
     uint32_t particles;      /* faster than the limit */
     double speed_limit;      /* m/s */
     double made, bound;      /* J: by the integrator, and S of the head */
-    /* BOUNDED, LOCAL, GLOBAL or NOT_FINITE, of this time alone */
+    double depth;            /* m, largest in a collider */
+    /* BOUNDED, BEYOND, LOCAL, GLOBAL or NOT_FINITE, of this time alone */
     enum cs_stability_verdict verdict;
 };
 
 enum { CS_MONITOR_PEAKS = 64 };
+
+/* Bounds of cloth: quantities of "beyond cloth" in the order of their text. */
+enum cs_cloth_bound { CS_CLOTH_EXTENSION, CS_CLOTH_DEPTH, CS_CLOTH_SPEED, CS_CLOTH_BOUNDS };
+
+/* The largest value of the samples, its time in s, and the bound. */
+struct cs_cloth_peak {
+    double value, t, bound;
+};
 
 /* State of the monitor. */
 struct cs_energy_monitor {
@@ -116,6 +132,7 @@ struct cs_energy_monitor {
     double start_speed;  /* m/s: largest, and what the springs at one particle could give it */
     double acceleration; /* m/s2, the largest by gravity, wind and viewpoint forces */
     double mass, wind_mass; /* kg that can move; sum of m a^2 in kg m2/s4, of outer forces */
+    struct cs_cloth_peak cloth[CS_CLOTH_BOUNDS];
     struct cs_energy_monitor_row first; /* when an instability began; verdict BOUNDED: none */
     enum cs_stability_verdict worst_verdict;
 };
@@ -131,6 +148,10 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
 /* Adds "local instability from t = 0.35 s on: ..."; nothing if the run was sound. */
 void cs_energy_monitor_print(const struct cs_energy_monitor *monitor,
                              const struct cs_system *system, struct cs_text *out);
+
+/* Adds "beyond cloth: ..." with each bound that was passed; nothing if none was. */
+void cs_energy_monitor_print_beyond(const struct cs_energy_monitor *monitor,
+                                    struct cs_text *out);
 
 /* The columns of its CSV. */
 extern const struct cs_column cs_energy_monitor_columns[];

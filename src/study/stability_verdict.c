@@ -91,7 +91,7 @@ enum cs_stability_verdict cs_stability_at_end(enum cs_outcome outcome,
         return CS_STABILITY_GLOBAL;
     if (cs_outcome_has_reason(outcome))
         return CS_STABILITY_FAILED;
-    if (seen == CS_STABILITY_BOUNDED && outcome == CS_OVER_BUDGET)
+    if (cs_stability_is_stable(seen) && outcome == CS_OVER_BUDGET)
         return CS_STABILITY_OVER_BUDGET;
     return seen;
 }
@@ -101,14 +101,14 @@ enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *trial,
                                              bool is_full_length) {
     const enum cs_stability_verdict verdict =
         cs_stability_at_end(trial->result.outcome, trial->monitor.worst_verdict);
-    if (verdict != CS_STABILITY_BOUNDED)
+    if (!cs_stability_is_stable(verdict))
         return verdict;
     if (!is_full_length)
         return CS_STABILITY_SHORT;
     if (reference && reference->kinetic > LEAST_ENERGY &&
         trial->mean_kinetic < 0.5 * reference->mean_kinetic)
         return CS_STABILITY_DAMPED;
-    return CS_STABILITY_BOUNDED;
+    return verdict;
 }
 
 double cs_stability_drift(const struct cs_sampled_run *trial,

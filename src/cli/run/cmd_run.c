@@ -239,7 +239,7 @@ static void add_cause(const struct cs_job *job, const char *advice, struct cs_te
 static void print_watch(const struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
     struct cs_text found = {0};
-    cs_report_print_shortfalls(run);
+    cs_report_print_shortfalls(job);
     cs_energy_monitor_print(&job->monitor, run->system, &found);
     if (found.length) {
         const struct cs_energy energy =

@@ -103,7 +103,8 @@ void cs_run_camera_find(struct cs_scene *scene, void *camera);
 struct cs_job_picture {
     uint32_t number; /* of the picture */
     uint32_t frame;
-    double time; /* s */
+    double time;        /* s */
+    double local_error; /* m, sum of local errors at that time */
     char hash[CS_HASH_DIGITS];
     double range[2];
     const struct cs_image *image; /* of the writer; NULL: none is drawn */
@@ -240,9 +241,12 @@ enum cs_status cs_run_json_close(struct cs_job *job, struct cs_error *error);
 /* Adds "blew up: ... at t = ... s, particle ..." or "finished". */
 void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out);
 
-/* Warns on standard error of a strain limit that was missed, and of particles that projection
- * left so deep in a collider that they may leave it on the other side. */
-void cs_report_print_shortfalls(const struct cs_run *run);
+/* Adds the error as measured, or the sum of local errors in m and its worth. */
+void cs_report_print_error(const struct cs_job *job, double local, struct cs_text *out);
+
+/* Warns on standard error of a strain limit that was missed, and of what is beyond cloth in a
+ * stable run. */
+void cs_report_print_shortfalls(const struct cs_job *job);
 
 /* Overrides of render.range and render.marks; zeroed: nothing found. */
 struct cs_run_range {

@@ -45,6 +45,11 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
     cs_json_write(out, ",\n  'verdict': %s",
                   cs_stability_word(cs_stability_at_end(job->failure ? CS_FAILED : run->outcome,
                                                         job->monitor.worst_verdict)));
+    sentence = (struct cs_text){0};
+    cs_energy_monitor_print_beyond(&job->monitor, &sentence);
+    if (sentence.length)
+        cs_json_write(out, ",\n  'beyond_cloth': %s", cs_text_get(&sentence));
+    cs_text_finish(&sentence);
     if (job->monitor.first.verdict != CS_STABILITY_BOUNDED)
         cs_json_write(
             out, ",\n  'unstable_from': {'time': %g, 'particle': %u, 'particles': %u}",
@@ -124,7 +129,8 @@ static void add_contact(const struct cs_system *system, struct cs_text *out) {
                   at.comes, at.k_needed);
 }
 
-static void add_measures(const struct cs_run *run, struct cs_text *out) {
+static void add_measures(const struct cs_job *job, struct cs_text *out) {
+    const struct cs_run *run = &job->session.run;
     const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
     cs_json_write(out, "  'energy': {'kinetic': %g, 'elastic': %g, 'gravity': %g",
                   energy.kinetic, energy.elastic, energy.gravity);
@@ -134,8 +140,7 @@ static void add_measures(const struct cs_run *run, struct cs_text *out) {
                   cs_diagnostics_strain(run->system, run->x));
     if (run->strain_limit.missed > 0)
         cs_json_write(out, "  'strain_limit_missed': %g,\n", run->strain_limit.missed);
-    if (run->projection_left.depth > 0)
-        cs_json_write(out, "  'projection_depth': %g,\n", run->projection_left.depth);
+    cs_json_write(out, "  'largest_depth': %g,\n", job->monitor.cloth[CS_CLOTH_DEPTH].value);
     cs_json_write(out, "  'memory': {'bytes': %zu, 'method': %zu, 'a_particle': %g},\n",
                   cs_run_bytes(run), run->method_bytes,
                   (double)cs_run_bytes(run) / run->system->view.n);
@@ -172,7 +177,7 @@ static void print_report(const struct cs_job *job, struct cs_text *out) {
     add_counts(&run->counts, out);
     add_crossings(job, out);
     add_contact(run->system, out);
-    add_measures(run, out);
+    add_measures(job, out);
     cs_json_write(out, "  'state_hash': %s,\n", job->hash);
     add_seconds(job, out);
     cs_text_add(out, "  \"scene\": %s,\n", cs_text_get(&job->scene));

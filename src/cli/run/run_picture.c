@@ -76,11 +76,12 @@ static enum cs_status show(struct cs_job *job, struct cs_error *error) {
 static enum cs_status give(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_picture *picture = &job->has_begun;
     char frame[16], pixels[CS_HASH_DIGITS];
-    struct cs_text time = {0}, range = {0};
+    struct cs_text time = {0}, range = {0}, error_line = {0};
     snprintf(frame, sizeof frame, "%u", picture->frame);
     cs_hash_bytes(picture->image->rgb, cs_image_bytes(picture->image), pixels);
     cs_text_add_real(&time, picture->time);
     print_range(picture, &job->session.scene, &range);
+    cs_report_print_error(job, picture->local_error, &error_line);
     const struct cs_png_text texts[] = {
         {"Software", "clothsim " CS_VERSION},
         {"Source", job->scene_hash},
@@ -91,16 +92,18 @@ static enum cs_status give(struct cs_job *job, struct cs_error *error) {
         {"clothsim:renderer", cs_text_get(&job->renderer)},
         {"clothsim:pixel-hash", pixels},
         {"clothsim:run", cs_text_get(&job->picture_provenance)},
+        {"clothsim:error", cs_text_get(&error_line)},
         {"clothsim:range", cs_text_get(&range)},
     };
     /* the range comes last, so that it can be left out where nothing is coloured */
     const uint32_t n_texts = sizeof texts / sizeof *texts - !range.length;
-    if (time.failed || range.failed)
+    if (time.failed || range.failed || error_line.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of a picture");
     else
         cs_frame_writer_submit(job->writer, picture->number, texts, n_texts, error);
     cs_text_finish(&time);
     cs_text_finish(&range);
+    cs_text_finish(&error_line);
     return error->status;
 }
 
@@ -130,6 +133,7 @@ static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
         (struct cs_job_picture){.number = run->frame / job->settings->frame_interval,
                                 .frame = run->frame,
                                 .time = run->t,
+                                .local_error = run->counts.method.local_error,
                                 .image = image};
     memcpy(job->has_begun.hash, job->hash, sizeof job->hash);
     memcpy(job->has_begun.range, job->picture.range, sizeof job->has_begun.range);

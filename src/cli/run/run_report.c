@@ -24,26 +24,24 @@ static void add_row(struct cs_text *out, const char *name, const char *format, .
     cs_print_row(name, value, VALUE_COLUMN, out);
 }
 
-void cs_report_print_shortfalls(const struct cs_run *run) {
-    const struct cs_projection_depth *left = &run->projection_left;
-    struct cs_text limit = {0}, depth = {0};
-    if (run->strain_limit.missed > 0) {
-        cs_text_add(&limit,
-                    "warning: strain_limit was missed by up to %.3g %%: stiffer springs or "
-                    "shorter steps need it less",
-                    100 * run->strain_limit.missed);
-        cs_print_message(cs_text_get(&limit));
+void cs_report_print_shortfalls(const struct cs_job *job) {
+    const struct cs_run *run = &job->session.run;
+    const struct cs_cloth_peak *depth = job->monitor.cloth + CS_CLOTH_DEPTH;
+    struct cs_text text = {0}, lines = {0};
+    if (run->strain_limit.missed > 0)
+        cs_text_add(
+            &text,
+            "strain_limit was missed by up to %.3g %%: stiffer springs or shorter steps "
+            "need it less\n",
+            100 * run->strain_limit.missed);
+    if (job->monitor.worst_verdict == CS_STABILITY_BEYOND) {
+        cs_energy_monitor_print_beyond(&job->monitor, &text);
+        if (depth->value > depth->bound && run->system->plan.rows[CS_FEATURE_CONTACT].built)
+            cs_text_add(&text, "; contact.law force or shorter steps hold particles out");
     }
-    if (left->may_pass) {
-        cs_text_add(&depth,
-                    "warning: contact by projection left particles up to %.3g m deep in "
-                    "colliders[%u], at t = %.6g s, and they may pass through it; use shorter steps or "
-                    "contact.law force",
-                    left->depth, left->collider, left->time);
-        cs_print_message(cs_text_get(&depth));
-    }
-    cs_text_finish(&limit);
-    cs_text_finish(&depth);
+    cs_print_lines("clothsim: warning: ", cs_text_get(&text), &lines);
+    cs_print_out(stderr, &lines, &(struct cs_error){0});
+    cs_text_finish(&text);
 }
 
 void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out) {
@@ -79,6 +77,8 @@ static void add_frames(const struct cs_job *job, struct cs_text *out) {
 static void add_watch(const struct cs_job *job, struct cs_text *out) {
     struct cs_text found = {0};
     cs_energy_monitor_print(&job->monitor, &job->session.system, &found);
+    if (job->monitor.worst_verdict == CS_STABILITY_BEYOND)
+        cs_energy_monitor_print_beyond(&job->monitor, &found);
     if (found.length)
         cs_print_hanging("monitor", cs_text_get(&found), VALUE_COLUMN, out);
     cs_text_finish(&found);
@@ -129,22 +129,24 @@ static void add_counts(const struct cs_job *job, struct cs_text *out) {
 
 /* The error of the end as it was measured. Local errors, added up, are no measure of it:
  * contact enlarges and damping shrinks them, by factors of 0.04 to 2000 on random scenes. */
-static void add_error(const struct cs_job *job, struct cs_text *out) {
-    const struct cs_run *run = &job->session.run;
-    const double size = cs_run_calls(run)->length_scale, sum = run->counts.method.local_error;
-    struct cs_text line = {0};
+void cs_report_print_error(const struct cs_job *job, double sum, struct cs_text *out) {
+    const double size = cs_run_calls(&job->session.run)->length_scale;
     if (job->measured_error > 0)
-        cs_text_add(&line,
-                    "about %.2g m, %.2g %% of the size (distance to a run of finer steps)",
+        cs_text_add(out, "about %.2g m, %.2g %% of the size (distance to a run of finer steps)",
                     job->measured_error, 100 * job->measured_error / size);
     else if (sum > 0)
         cs_text_add(
-            &line,
+            out,
             "not known: local errors add up to %.2g m, %.2g %% of the size, which motion "
             "enlarges and damping shrinks (--error measures it)",
             sum, 100 * sum / size);
     else
-        cs_text_add(&line, "not known: no local errors are estimated (--error measures it)");
+        cs_text_add(out, "not known: no local errors are estimated (--error measures it)");
+}
+
+static void add_error(const struct cs_job *job, struct cs_text *out) {
+    struct cs_text line = {0};
+    cs_report_print_error(job, job->session.run.counts.method.local_error, &line);
     cs_print_hanging("error", cs_text_get(&line), VALUE_COLUMN, out);
     cs_text_finish(&line);
 }
@@ -158,6 +160,9 @@ static void add_measures(const struct cs_job *job, struct cs_text *out) {
     if (energy.other != 0)
         add_row(out, "other energy", "%.6g J", energy.other);
     add_row(out, "largest strain", "%.4g %%", 100 * cs_diagnostics_strain(run->system, run->x));
+    if (run->system->scene->colliders.n)
+        add_row(out, "largest depth", "%.3g m in a collider after a frame",
+                job->monitor.cloth[CS_CLOTH_DEPTH].value);
     add_row(out, "memory", "%zu bytes in arrays, %.1f per particle", cs_run_bytes(run),
             (double)cs_run_bytes(run) / run->system->view.n);
     add_row(out, "wall time", "%.3g s, %.3g s of it in the integrator", job->wall_seconds,

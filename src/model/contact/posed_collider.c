@@ -154,3 +154,18 @@ void cs_posed_collider_vertex(const struct cs_posed_collider *obstacle, uint32_t
     for (int c = 0; c < 3; c++)
         v[c] += turned[c];
 }
+
+double cs_posed_colliders_depth(const struct cs_system *system, double t, const double *x) {
+    const size_t n = system->view.n;
+    double largest = 0, normal[3];
+    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
+        struct cs_posed_collider posed;
+        cs_posed_collider_at(system, k, t, &posed);
+        for (size_t i = 0; i < n; i++) {
+            const double p[3] = {x[i], x[n + i], x[2 * n + i]};
+            if (system->inv_mass[i] > 0 && cs_posed_collider_is_near(&posed, 0, p))
+                largest = fmax(largest, -cs_posed_collider_distance(&posed, p, normal));
+        }
+    }
+    return largest;
+}

@@ -110,6 +110,11 @@ static inline bool cs_posed_collider_hits_segment(const struct cs_posed_collider
 void cs_posed_collider_velocity(const struct cs_posed_collider *obstacle, const double p[3],
                                 double v[3]);
 
+/* Largest depth in m of a free particle behind the surface of a collider at t, by the law of
+ * contact that acts or without one, at least 0. Thickness does not count, and meshes, which may
+ * be open, have no inside. */
+double cs_posed_colliders_depth(const struct cs_system *system, double t, const double *x);
+
 /* Position in m of vertex i of a mesh, and its velocity in m/s, by its pose, its motion and its
  * key frames; v may be NULL. */
 void cs_posed_collider_vertex(const struct cs_posed_collider *obstacle, uint32_t i, double p[3],

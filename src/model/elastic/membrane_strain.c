@@ -39,14 +39,22 @@ static void find_principal(double xx, double yy, double xy, double *low, double 
     *high = mid + r;
 }
 
+/* Principal strains of triangle t. */
+static void find_principal_strains(const struct cs_system *system,
+                                   const struct cs_membrane *membrane, uint32_t t,
+                                   const double *x, double *low, double *high) {
+    double E[3];
+    find_strain(membrane, t, system->view.n, x, E);
+    find_principal(E[0], E[1], E[2] / 2, low, high);
+    *high = sqrt(1 + 2 * *high) - 1;
+    *low = sqrt(fmax(1 + 2 * *low, 0)) - 1;
+}
+
 /* The principal strain of largest magnitude of triangle t, with its sign. */
 static double strain_of(const struct cs_system *system, const struct cs_membrane *membrane,
                         uint32_t t, const double *x) {
-    double E[3], low, high;
-    find_strain(membrane, t, system->view.n, x, E);
-    find_principal(E[0], E[1], E[2] / 2, &low, &high);
-    high = sqrt(1 + 2 * high) - 1;
-    low = sqrt(fmax(1 + 2 * low, 0)) - 1;
+    double low, high;
+    find_principal_strains(system, membrane, t, x, &low, &high);
     return fabs(low) > fabs(high) ? low : high;
 }
 
@@ -62,12 +70,15 @@ static double stress_of(const struct cs_system *system, const struct cs_membrane
     return fabs(low) > fabs(high) ? low : high;
 }
 
-double cs_membranes_largest_strain(const struct cs_system *system, const double *x) {
+double cs_membranes_largest_strain(const struct cs_system *system, const double *x,
+                                   bool extends) {
     const struct cs_membranes *all = system->membranes;
-    double largest = 0;
+    double largest = 0, low, high;
     for (uint32_t b = 0; all && b < all->n; b++)
-        for (uint32_t t = 0; t < all->bodies[b].n; t++)
-            largest = fmax(largest, fabs(strain_of(system, all->bodies + b, t, x)));
+        for (uint32_t t = 0; t < all->bodies[b].n; t++) {
+            find_principal_strains(system, all->bodies + b, t, x, &low, &high);
+            largest = fmax(largest, extends ? high : fmax(fabs(low), fabs(high)));
+        }
     return largest;
 }
 

@@ -6,8 +6,9 @@
 
 /* Largest magnitude of the principal strains of all triangles: with the eigenvalues e of
  * Green's strain, sqrt(1 + 2 e) - 1, the change of length over the length. NaNs are skipped; 0
- * without membranes. */
-double cs_membranes_largest_strain(const struct cs_system *system, const double *x);
+ * without membranes. extends: of tension alone. */
+double cs_membranes_largest_strain(const struct cs_system *system, const double *x,
+                                   bool extends);
 
 /* out (n): the principal strain of largest magnitude among a particle's triangles, with its
  * sign, where it is larger than what is there. */

@@ -51,7 +51,18 @@ double cs_diagnostics_shortest(const struct cs_system *system) {
 
 double cs_diagnostics_strain(const struct cs_system *system, const double *x) {
     return fmax(cs_springs_largest_strain(&system->springs, system->view.n, x),
-                cs_membranes_largest_strain(system, x));
+                cs_membranes_largest_strain(system, x, false));
+}
+
+double cs_diagnostics_extension(const struct cs_system *system, const double *x) {
+    double largest = cs_membranes_largest_strain(system, x, true);
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *run = system->springs.runs + r;
+        const bool is_soft = cs_scene_bodies(system->scene)[run->body].network.present;
+        for (uint32_t i = 0; !is_soft && i < run->count; i++)
+            largest = fmax(largest, strain_of(run, system->view.n, x, i));
+    }
+    return largest;
 }
 
 /* Comparisons are negated, to count a NaN as too fast. */

@@ -44,8 +44,13 @@ double cs_diagnostics_shortest(const struct cs_system *system);
  * both. */
 double cs_diagnostics_strain(const struct cs_system *system, const double *x);
 
-/* The same per particle: the strain of largest magnitude among its springs and triangles, with
- * its sign; out (n). */
+/* Largest l / L - 1 over the springs of all bodies without a network, which are no cloth, and
+ * largest principal strain of membranes, at least 0: tension alone, since folds compress
+ * springs without harm. */
+double cs_diagnostics_extension(const struct cs_system *system, const double *x);
+
+/* The strain per particle: the strain of largest magnitude among its springs and triangles,
+ * with its sign; out (n). */
 void cs_diagnostics_particle_strain(const struct cs_system *system, const double *x,
                                     double *out);
 

@@ -224,30 +224,6 @@ static void complete(const struct step *step) {
     }
 }
 
-/* Records the deepest particle that a shortened correction leaves behind a surface. */
-static void record_depth(const struct step *step) {
-    struct cs_contact_projection *contact = step->contact;
-    struct cs_projection_depth *left = &contact->left;
-    const size_t n = count_of(contact);
-    for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
-        const double inner = cs_tunnelling_inner_radius(contact->colliders + k);
-        for (size_t i = 0; i < n; i++) {
-            double p[3], normal[3];
-            if (!contact->is_pushed[i] || contact->system->inv_mass[i] <= 0)
-                continue;
-            take(contact->state_after, n, i, p);
-            const double depth =
-                -cs_posed_collider_signed_distance(contact->colliders + k, p, normal);
-            if (depth > left->depth)
-                *left = (struct cs_projection_depth){
-                    .depth = depth,
-                    .collider = k,
-                    .time = step->t,
-                    .may_pass = left->may_pass || depth > CS_TUNNELLING_DEPTH * inner};
-        }
-    }
-}
-
 /* Limits the energy of state_after and makes it the state. */
 static void push(const struct step *step) {
     struct cs_contact_projection *contact = step->contact;
@@ -263,10 +239,8 @@ static void push(const struct step *step) {
                                             .is_pushed = contact->is_pushed};
     complete(step);
     // If the push was cut short, a particle may still be behind a surface and is not at rest.
-    if (!cs_projection_energy_limit(&contact->energy_limit, &blow)) {
+    if (!cs_projection_energy_limit(&contact->energy_limit, &blow))
         cs_static_friction_reject(&contact->static_friction);
-        record_depth(step);
-    }
     memcpy(step->x, contact->state_after, n3 * sizeof *step->x);
     memcpy(step->v, contact->state_after + n3, n3 * sizeof *step->v);
 }
@@ -336,10 +310,6 @@ void cs_contact_projection_serialise(struct cs_contact_projection *contact,
     cs_serialiser_bytes(record, contact->state_before,
                         6 * count_of(contact) * sizeof *contact->state_before);
     CS_SERIALISER(record, contact->counts);
-    CS_SERIALISER(record, contact->left.depth);
-    CS_SERIALISER(record, contact->left.collider);
-    CS_SERIALISER(record, contact->left.time);
-    CS_SERIALISER(record, contact->left.may_pass);
     cs_static_friction_serialise(&contact->static_friction, record);
     cs_projection_energy_serialise(&contact->energy_limit, record);
 }

@@ -24,15 +24,6 @@ struct cs_projection_counts {
     uint64_t tests, projected;
 };
 
-/* Depth at which the limit of energy has left a particle behind a surface. */
-struct cs_projection_depth {
-    double depth;      /* m, the largest of the run; 0: all were put on surfaces */
-    uint32_t collider; /* behind which it was */
-    double time;       /* s, at which */
-    /* deeper than CS_TUNNELLING_DEPTH of the inner radius: it may leave on the other side */
-    bool may_pass;
-};
-
 /* State of contact by projection between commits, and work arrays. */
 struct cs_contact_projection {
     const struct cs_system *system; /* borrowed */
@@ -52,7 +43,6 @@ struct cs_contact_projection {
     /* (n) pushed, or held by static friction, in the current commit */
     bool *is_pushed;
     struct cs_projection_counts counts;
-    struct cs_projection_depth left;
 };
 
 /* Prepares contact by projection for a scene with colliders; the arena owns the arrays.

@@ -43,7 +43,7 @@ static enum cs_status try_step(const struct cs_sampled_run_settings *settings,
     if (trial.result.outcome == CS_RUNNING && asked.seconds >= reference->seconds)
         cell->drift = cs_stability_drift(&trial, &reference->run);
     /* the reported time is that of the first sign, not that of the end */
-    if (trial.monitor.worst_verdict != CS_STABILITY_BOUNDED)
+    if (trial.monitor.first.verdict != CS_STABILITY_BOUNDED)
         cell->time = trial.monitor.first.t;
     return CS_OK;
 }
