@@ -2,6 +2,7 @@
 #include "study/stability_verdict.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 /* J; below it the reference counts as motionless. Otherwise rounding errors alone would exceed
@@ -32,9 +33,9 @@ static bool watch_step(void *ctx, double t, double dt, double *x, double *v) {
     return false;
 }
 
-/* Adds where the steps shrank: the particle with the greatest acceleration. */
-static enum cs_status print_singular(const struct cs_run *run, double t, struct cs_text *out,
-                                     struct cs_error *error) {
+/* Sets where the steps shrank: the particle with the greatest acceleration. */
+static enum cs_status name_singular(const struct cs_run *run, double t,
+                                    struct cs_singular_force *found, struct cs_error *error) {
     const struct cs_system *system = run->system;
     const size_t n = system->view.n;
     double *force = calloc(4 * n, sizeof *force);
@@ -46,21 +47,26 @@ static enum cs_status print_singular(const struct cs_run *run, double t, struct 
     for (uint32_t i = 1; i < n; i++)
         if (force[i] * system->inv_mass[i] > force[at] * system->inv_mass[at])
             at = i;
-    cs_text_add(out, "a force is singular at t = %.6g s, ", t);
-    cs_system_print_particle(system, at, out);
-    cs_text_add(out, ": no step passes");
+    struct cs_text name = {0};
+    cs_system_print_particle(system, at, &name);
+    found->time = t;
+    found->particle = at;
+    snprintf(found->text, sizeof found->text,
+             "a force is singular at t = %.6g s, %s: no step passes", t, cs_text_get(&name));
+    cs_text_finish(&name);
     free(force);
     return CS_OK;
 }
 
-enum cs_status cs_singular_force_print(const struct cs_session_settings *settings,
-                                       double seconds, uint64_t evaluations,
-                                       struct cs_text *out, struct cs_error *error) {
+enum cs_status cs_singular_force_find(const struct cs_session_settings *settings,
+                                      double seconds, uint64_t evaluations,
+                                      struct cs_singular_force *found, struct cs_error *error) {
     struct cs_session_settings asked = *settings;
     struct shrinking steps = {.left = COSTS * evaluations / STAGES + SINGULAR_STEPS_MIN,
                               .interrupt = settings->run.stop};
     struct cs_session session;
     struct cs_error refused = {0};
+    *found = (struct cs_singular_force){.text = ""};
     asked.integrator = "dop853";
     asked.method = NULL;
     asked.options = NULL;
@@ -78,7 +84,7 @@ enum cs_status cs_singular_force_print(const struct cs_session_settings *setting
     struct cs_follow follow = {.run = &session.run, .last = 1};
     cs_follow_next(&follow, &refused);
     if (steps.tiny >= TINY_STEPS || cs_outcome_is_blow_up(session.run.outcome))
-        print_singular(&session.run, steps.t, out, error);
+        name_singular(&session.run, steps.t, found, error);
     cs_session_close(&session);
     return error->status;
 }

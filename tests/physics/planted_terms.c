@@ -5,7 +5,12 @@
 
 #include <math.h>
 
-struct planted planted;
+#ifndef PLANTED_START
+#define PLANTED_START                                                                          \
+    { 0 }
+#endif
+
+struct planted planted = PLANTED_START;
 const double planted_direction[3] = {0.6, 0, 0.8};
 
 static struct cs_plan_row row_of(bool acts) {
@@ -158,6 +163,83 @@ const struct cs_term cs_term_trap = {
     .add_blocks = trap_blocks,
     .add_approach = trap_approach,
     .add_state_bound = trap_bound,
+};
+
+static struct cs_plan_row attract_plan(const struct cs_scene *scene) {
+    return row_of(scene->bodies.n > 0 && planted.attract != 0);
+}
+
+static void attract_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
+    const size_t n = system->view.n;
+    for (size_t i = at->block->begin; i < at->block->end; i++) {
+        const double s = planted.distance + depth(system, at->x, i);
+        const double pull = planted.attract * system->mass[i] / (s * fabs(s));
+        for (size_t c = 0; c < 3; c++)
+            f[c * n + i] -= pull * planted_direction[c];
+    }
+}
+
+static void attract_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
+    const size_t n = system->view.n;
+    for (size_t i = at->block->begin; at->dx && i < at->block->end; i++) {
+        const double s = fabs(planted.distance + depth(system, at->x, i));
+        const double slope = 2 * planted.attract * system->mass[i] / (s * s * s);
+        for (size_t c = 0; c < 3; c++)
+            df[c * n + i] += slope * along(n, at->dx, i) * planted_direction[c];
+    }
+}
+
+static double attract_energy(const struct cs_system *system, const struct cs_eval *at) {
+    double sum = 0;
+    for (size_t i = 0; i < system->view.n; i++)
+        sum -= planted.attract * system->mass[i] /
+               fabs(planted.distance + depth(system, at->x, i));
+    return sum;
+}
+
+/* the slope only pulls apart: a definite matrix has none of it */
+static void attract_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
+                           size_t begin, size_t end, double *blocks) {
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    const size_t n = system->view.n;
+    for (size_t i = begin; i < end && !matrix->psd; i++) {
+        const double s = fabs(planted.distance + depth(system, matrix->x, i));
+        const double k = matrix->ck * 2 * planted.attract * system->mass[i] / (s * s * s);
+        for (size_t e = 0; e < 6; e++)
+            blocks[e * n + i] += k * planted_direction[row[e]] * planted_direction[column[e]];
+    }
+}
+
+static void attract_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                             double *y) {
+    const size_t n = system->view.n;
+    for (size_t i = 0; i < n && !matrix->psd; i++) {
+        const double s = fabs(planted.distance + depth(system, matrix->x, i));
+        const double k = matrix->ck * 2 * planted.attract * system->mass[i] / (s * s * s);
+        for (size_t c = 0; c < 3; c++)
+            y[c * n + i] += k * along(n, matrix->v, i) * planted_direction[c];
+    }
+}
+
+static void attract_bound(const struct cs_system *system, const struct cs_eval *at,
+                          const struct cs_gershgorin *sums) {
+    for (size_t i = 0; i < system->view.n; i++) {
+        const double s = fabs(planted.distance + depth(system, at->x, i));
+        sums->stiffness[i] += 2 * planted.attract * system->mass[i] / (s * s * s);
+    }
+}
+
+const struct cs_term cs_term_attract = {
+    .name = "planted attraction",
+    .part_bits = CS_PART_POTENTIAL,
+    .plan = attract_plan,
+    .add_force = attract_force,
+    .add_jvp = attract_jvp,
+    .energy = attract_energy,
+    .energy_kind = CS_ENERGY_GRAVITY,
+    .add_blocks = attract_blocks,
+    .add_approach = attract_approach,
+    .add_state_bound = attract_bound,
 };
 
 static struct cs_plan_row swing_plan(const struct cs_scene *scene) {

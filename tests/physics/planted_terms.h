@@ -9,6 +9,8 @@ struct planted {
     double resist; /* 1/s: f = -resist m v; dissipative, a number a particle */
     double trap;   /* N/m3: f = -trap q^3 n with q = n.(x - start); has an energy, blocks */
     double trap_damping; /* N s/m3: f = -trap_damping q^2 (v - n (n.v)); dissipative, blocks */
+    double attract;      /* m3/s2: f = -attract m s/|s|^3 n, s = distance + q; has an energy */
+    double distance;     /* m */
     double swing;        /* m/s2: f = m swing cos(3 t) along x; external */
 };
 extern struct planted planted;

@@ -271,11 +271,13 @@ TEST(energy_ledger_has_a_column_for_each) {
     planted = (struct planted){0};
 }
 
-/* What cs_singular_force_print adds for a run of a sheet that ends after so long. */
-static void find_singular(double seconds, struct cs_text *out) {
+/* The singular force of a run of a sheet that ends after so long. */
+static struct cs_singular_force find_singular(double seconds) {
     const struct cs_session_settings settings = {.scene = "sheet.json", .text = SHEET};
+    struct cs_singular_force found;
     struct cs_error error = {0};
-    ck_assert_int_eq(cs_singular_force_print(&settings, seconds, 4000, out, &error), CS_OK);
+    ck_assert_int_eq(cs_singular_force_find(&settings, seconds, 4000, &found, &error), CS_OK);
+    return found;
 }
 
 /* When rk4 ends with a step, in s. */
@@ -295,19 +297,25 @@ static double end_by_rk4(double dt) {
  * infinite at t = (2/K)^(1/4) times the integral of du/sqrt(1 + u^4), 1.8540747, and the energy
  * is unbounded before. A step that is too long ends elsewhere at half the step. */
 TEST(singular_force_is_told_from_a_long_step) {
-    struct cs_text found = {0};
-    double t = 0;
     planted = (struct planted){.trap = -400 * MASS};
-    find_singular(1, &found);
-    ck_assert_int_eq(sscanf(cs_text_get(&found), "a force is singular at t = %lf s, ", &t), 1);
-    const double end = 1.8540747 * pow(2.0 / 400, 0.25);
+    const struct cs_singular_force found = find_singular(1);
+    const double end = 1.8540747 * pow(2.0 / 400, 0.25), t = found.time;
+    ck_assert_msg(strstr(found.text, "a force is singular at t = "), "%s", found.text);
     ck_assert_msg(t > 0.8 * end && t < end, "%g s, expected 0.8 to 1 times %g s", t, end);
     for (double dt = 1e-3; dt > 1e-4; dt /= 2)
         ck_assert_double_eq_tol(end_by_rk4(dt), t, 0.02 * end);
-    cs_text_finish(&found);
     planted = (struct planted){.resist = 1e3};
     ck_assert_double_gt(end_by_rk4(0.05), 2 * end_by_rk4(0.0125));
-    find_singular(1, &found);
-    ck_assert_msg(!found.length, "%s", cs_text_get(&found));
-    cs_text_finish(&found);
+    ck_assert_str_eq(find_singular(1).text, "");
+}
+
+/* Attraction by a plane: r'' = -G/r^2 from r = R = 1/2 m and r' = -1 m/s, with G = R^2 m. Then
+ * r'^2/2 - G/r is 0 for good, and r^(3/2) = R^(3/2) - (3/2) sqrt(2 G) t. */
+TEST(singular_attraction_is_found_at_its_time) {
+    planted = (struct planted){.attract = 0.25, .distance = -0.5};
+    const double end = pow(0.5, 1.5) / (1.5 * sqrt(2 * 0.25));
+    const struct cs_singular_force found = find_singular(1);
+    ck_assert_double_eq_tol(found.time, end, 1e-3 * end);
+    for (double dt = 1e-3; dt > 1e-4; dt /= 2)
+        ck_assert_double_eq_tol(end_by_rk4(dt), end, 2 * dt);
 }

@@ -99,6 +99,7 @@ struct cs_probe {
     bool has_ended;            /* blew up or failed: error says how */
     struct cs_error error;
     struct cs_error *card_error; /* of the card */
+    char text[2048];             /* the scene */
 
     /* called within every commit once it has been done; may be NULL. Moves the state or only
      * looks; returns whether it moved. */

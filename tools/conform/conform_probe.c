@@ -6,6 +6,7 @@
 #include "model/force/diagnostics.h"
 #include "model/plan.h"
 #include "study/follow.h"
+#include "study/stability_verdict.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -138,16 +139,16 @@ static bool observe(void *ctx, double t, double dt, double *x, double *v) {
 
 bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
                    const struct cs_integrator *method, const char *format, ...) {
-    char text[2048];
+    *probe = (struct cs_probe){.card_error = card->card_error};
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    vsnprintf(probe->text, sizeof probe->text, format, args);
     va_end(args);
     // what is made for bodies that keep their shape gets the checks' body as such a one
     const struct cs_override matched = {"bodies[0].shape_matching.alpha", "0.5"};
     const struct cs_session_settings settings = {
         .scene = "conform",
-        .text = text,
+        .text = probe->text,
         .overrides = &matched,
         .n_overrides = method->needs & CS_NEED_CLUSTERS ? 1 : 0,
         .method = method,
@@ -157,7 +158,6 @@ bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
                 .stop = card->stop,
                 .after_commit = observe,
                 .ctx = probe}};
-    *probe = (struct cs_probe){.card_error = card->card_error};
     probe->has_ended = cs_session_open_system(&probe->session, &settings, &probe->error);
     if (probe->has_ended)
         return false;
@@ -181,6 +181,22 @@ void cs_probe_close(struct cs_probe *probe) {
     cs_session_close(&probe->session);
 }
 
+/* Says how the run ended; where a force is singular, that it is not the method's fault. */
+static void name_end(struct cs_probe *probe) {
+    const struct cs_run *run = &probe->session.run;
+    const double end = run->reason ? run->t : run->blow_up.time;
+    const struct cs_session_settings settings = {
+        .scene = "conform", .text = probe->text, .run.budget = BUDGET};
+    struct cs_singular_force cause = {.text = ""};
+    struct cs_error ignored = {0};
+    if (cs_outcome_is_blow_up(run->outcome) || run->outcome == CS_GAVE_UP)
+        cs_singular_force_find(&settings, end + probe->frame, run->counts.forces, &cause,
+                               &ignored);
+    cs_fail(&probe->error, CS_ERR_CHECK, "%s at t = %.6g s%s%s%s%s",
+            cs_outcome_text(run->outcome), end, run->reason ? ": " : "",
+            run->reason ? run->reason : "", *cause.text ? "; " : "", cause.text);
+}
+
 bool cs_probe_run(struct cs_probe *probe, uint32_t frames) {
     struct cs_run *run = &probe->session.run;
     if (!probe->has_ended && !run->host)
@@ -189,9 +205,7 @@ bool cs_probe_run(struct cs_probe *probe, uint32_t frames) {
     if (!probe->has_ended)
         cs_follow_next(&follow, &probe->error);
     if (run->outcome != CS_RUNNING)
-        cs_fail(&probe->error, CS_ERR_CHECK, "%s at t = %.6g s%s%s",
-                cs_outcome_text(run->outcome), run->reason ? run->t : run->blow_up.time,
-                run->reason ? ": " : "", run->reason ? run->reason : "");
+        name_end(probe);
     probe->has_ended = probe->error.status;
     return !probe->has_ended;
 }

@@ -222,16 +222,16 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_error *error
     return CS_OK;
 }
 
-/* Adds a singular force, if that is why the run ended or made energy; else the advice. */
-static void add_cause(const struct cs_job *job, const char *advice, struct cs_text *out) {
+/* Finds a singular force, if that is why the run ended or made energy. */
+static void find_cause(struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
-    struct cs_text found = {0};
-    struct cs_error error = {0};
-    const double end = cs_outcome_is_blow_up(run->outcome) ? run->blow_up.time : run->t;
-    cs_singular_force_print(&job->settings->session, end + 1 / run->system->scene->time.fps,
-                            run->counts.forces, &found, &error);
-    cs_text_add(out, found.length ? "; %s" : "%s", found.length ? cs_text_get(&found) : advice);
-    cs_text_finish(&found);
+    const bool blown = cs_outcome_is_blow_up(run->outcome);
+    const double end = blown ? run->blow_up.time : run->t;
+    struct cs_error ignored = {0};
+    if (run->system && (blown || run->outcome == CS_GAVE_UP || job->failure ||
+                        job->monitor.first.verdict != CS_STABILITY_BOUNDED))
+        cs_singular_force_find(&job->settings->session, end + 1 / run->system->scene->time.fps,
+                               run->counts.forces, &job->cause, &ignored);
 }
 
 /* Warns of limits that were missed and of a physically impossible final state, whatever else is
@@ -245,7 +245,8 @@ static void print_watch(const struct cs_job *job) {
         const struct cs_energy energy =
             cs_diagnostics_energy(run->system, run->t, run->x, run->v);
         cs_text_add(&found, "; %.3g J at the end", cs_energy_without_gravity(&energy));
-        add_cause(job, " (clothsim advise finds stable steps)", &found);
+        cs_text_add(&found, *job->cause.text ? "; %s" : " (clothsim advise finds stable steps)",
+                    job->cause.text);
         cs_print_message(cs_text_get(&found));
     }
     cs_text_finish(&found);
@@ -262,8 +263,6 @@ static enum cs_status print_outcome(const struct cs_job *job, bool strict,
     }
     cs_report_print_outcome(job, &outcome);
     cs_text_add(&outcome, "; %u of %u frames were finished", run->frame, job->frames);
-    if (cs_outcome_is_blow_up(run->outcome) || run->outcome == CS_GAVE_UP)
-        add_cause(job, "", &outcome);
     if (run->outcome == CS_INTERRUPTED)
         cs_fail(error, CS_ERR_INTERRUPT, "%s", cs_text_get(&outcome));
     else if (strict && (cs_outcome_is_blow_up(run->outcome) || run->outcome == CS_GAVE_UP))
@@ -286,8 +285,11 @@ static enum cs_status run_here(void *ctx, struct cs_error *error) {
         (options->mark_instability && cs_run_marks_set(&range, &options->job, error)))
         return error->status;
     cs_job_run(&job, &options->job, error);
+    find_cause(&job);
     /* a failed step leaves the report of the frames before; its own message stands */
     struct cs_error later = {0};
+    if (job.failure && *job.cause.text)
+        cs_print_message(job.cause.text);
     if (job.failure && !cs_report_write_json(&job, &later))
         cs_run_outputs_sign(&job, &later);
     if (!error->status && !cs_report_write_json(&job, error) &&

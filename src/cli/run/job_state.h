@@ -142,6 +142,7 @@ struct cs_job {
     struct cs_checkpointer checkpoints;
     struct cs_run_trace trace;
     struct cs_run_camera camera;
+    struct cs_singular_force cause; /* why the run ended; its text is empty if steps are */
     const char *failure; /* why a step failed, in the caller's error; NULL: none did */
     double wall_seconds, encode_seconds;
     double measured_error; /* m at the end, against a run of finer steps; 0: not asked for */

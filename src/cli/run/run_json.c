@@ -28,7 +28,8 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     struct cs_text sentence = {0};
     if (job->failure)
-        cs_text_add(&sentence, "%s", job->failure);
+        cs_text_add(&sentence, *job->cause.text ? "%s; %s" : "%s", job->failure,
+                    job->cause.text);
     else
         cs_report_print_outcome(job, &sentence);
     cs_json_write(out, "  'outcome': %s,\n  'outcome_detail': %s",
@@ -42,6 +43,9 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
                       "'bound': %g}",
                       run->blow_up.time, run->blow_up.particle, run->blow_up.energy,
                       run->blow_up.bound);
+    if (*job->cause.text)
+        cs_json_write(out, ",\n  'singular_force': {'time': %g, 'particle': %u}",
+                      job->cause.time, job->cause.particle);
     cs_json_write(out, ",\n  'verdict': %s",
                   cs_stability_word(cs_stability_at_end(job->failure ? CS_FAILED : run->outcome,
                                                         job->monitor.worst_verdict)));

@@ -54,13 +54,14 @@ void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out) {
         cs_text_add(out, ": %s", run->reason);
     else
         cs_text_add(out, " at t = %.6g s", blown ? run->blow_up.time : run->t);
-    if (!blown)
-        return;
-    cs_text_add(out, ", ");
-    cs_system_print_particle(&job->session.system, run->blow_up.particle, out);
+    if (blown) {
+        cs_text_add(out, ", ");
+        cs_system_print_particle(&job->session.system, run->blow_up.particle, out);
+    }
     if (run->outcome == CS_UNBOUNDED)
         cs_text_add(out, ", kinetic energy %.3g J exceeds %.3g J", run->blow_up.energy,
                     run->blow_up.bound);
+    cs_text_add(out, *job->cause.text ? "; %s" : "", job->cause.text);
 }
 
 /* Progress and outcome. */

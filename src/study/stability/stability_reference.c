@@ -156,13 +156,12 @@ static bool run_once(struct cs_reference *reference,
 static void name_failure(struct cs_reference *reference,
                          const struct cs_sampled_run_settings *settings,
                          struct cs_error *error) {
-    struct cs_text why = {0};
-    cs_singular_force_print(&settings->session, settings->seconds, reference->run.steps, &why,
-                            error);
-    if (!why.length)
-        cs_text_add(&why, "velocity-verlet: %s", reference->run.result.message);
-    snprintf(reference->message, sizeof reference->message, "%s", cs_text_get(&why));
-    cs_text_finish(&why);
+    struct cs_singular_force cause;
+    cs_singular_force_find(&settings->session, settings->seconds, reference->run.steps, &cause,
+                           error);
+    snprintf(reference->message, sizeof reference->message, "%s%.280s",
+             *cause.text ? "" : "velocity-verlet: ",
+             *cause.text ? cause.text : reference->run.result.message);
 }
 
 /* True if the method has no limit to be found along the run, and the run would take more than
