@@ -24,6 +24,9 @@
  * between the stages of a step that is far too long. */
 #define PAST_FRAMES 0.1
 
+/* Methods whose local error falls faster take three ends for the state at a frame. */
+#define HIGH_ORDER 5
+
 enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host *host,
                                 const struct adaptive_options *options, int power) {
     self->host = host;
@@ -41,11 +44,13 @@ enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host
             return CS_STEP_FAIL;
     /* a step that looks far ahead would pass over a force that comes later; and with the
      * largest atol, 1 m, nothing but the caller's frames bounds steps */
-    const bool passes = self->interpolate && CS_HAS(host, forces_depend_on_time) &&
+    const bool passes = !self->fixed && CS_HAS(host, forces_depend_on_time) &&
                         host->may_overstep && !host->forces_depend_on_time &&
                         self->asked.atol < 1;
-    if (passes && !(self->start = host->alloc(host->ctx, self->length * sizeof(double))))
-        return CS_STEP_FAIL;
+    self->ends = !passes ? 0 : power > HIGH_ORDER ? 3 : 2;
+    for (int k = 0; k < self->ends - 1; k++)
+        if (!(self->start[k] = host->alloc(host->ctx, 9 * sizeof(double) * host->view->n)))
+            return CS_STEP_FAIL;
     return CS_STEP_OK;
 }
 
@@ -104,7 +109,11 @@ static double least(double a, double b) {
  * below 1e-6. */
 static double trusted_step(const struct adaptive_step *self) {
     const struct cs_view *view = self->host->view;
-    return self->limit || !(view->omega > 0) ? HUGE_VAL : 0.5 / view->omega;
+    double radians = 0.5;
+    // within it are two ends alone: the error at a frame is up to (h w)^6 / (6! 4^3)
+    if (self->ends > 2)
+        radians = least(radians, step_root(46080 * self->asked.rtol, 6));
+    return self->limit || !(view->omega > 0) ? HUGE_VAL : radians / view->omega;
 }
 
 static void prepare(struct adaptive_step *self, double t, double span, const double *y) {
@@ -128,7 +137,7 @@ static double cut(double planned, double left) {
 /* The longest step in s from y at t that dt_max, contact and the method let pass. */
 static double longest_step(struct adaptive_step *self, double t, const double *y) {
     const struct cs_host *host = self->host;
-    const double span = self->start ? PAST_FRAMES : self->end - self->begin;
+    const double span = self->ends ? PAST_FRAMES : self->end - self->begin;
     double most = least(self->contact, self->asked.dt_max > 0 ? self->asked.dt_max : span);
     if (self->limit)
         most = least(most, self->limit(self, t, y));
@@ -163,7 +172,7 @@ static enum cs_step try_steps(struct adaptive_step *self, double t, const double
         }
         self->bound = longest_step(self, t, y);
         *h = least(control->h, self->bound);
-        if (!self->start)
+        if (!self->ends)
             *h = cut(*h, self->end - t);
         /* a shorter step is lost in the rounding of t; NaN is refused too */
         if (!(*h > 4 * DBL_EPSILON * self->end)) {
@@ -196,12 +205,33 @@ static enum cs_step step(struct adaptive_step *self, double t, double span, cons
     return CS_STEP_OK;
 }
 
-/* One step from y at t, whose state it keeps for the interpolant. */
+/* One step from y at t, whose state and slope it keeps for the interpolant. */
 static enum cs_step step_past_frames(struct adaptive_step *self, double t, const double *y) {
-    memcpy(self->start, y, self->length * sizeof *y);
-    const enum cs_step status = step(self, t, PAST_FRAMES, y, &self->last_step);
-    self->reached = t + self->last_step;
+    double *const oldest = self->start[self->ends - 2];
+    for (int k = self->ends - 2; k > 0; k--) {
+        self->start[k] = self->start[k - 1];
+        self->length_of[k] = self->length_of[k - 1];
+    }
+    self->start[0] = oldest;
+    prepare(self, t, PAST_FRAMES, y);
+    memcpy(oldest, y, self->length * sizeof *y);
+    memcpy(oldest + self->length, self->slope, self->length / 2 * sizeof *y);
+    const enum cs_step status = step(self, t, PAST_FRAMES, y, self->length_of);
+    self->reached = t + self->length_of[0];
     return status;
+}
+
+/* y (6n) = the state at t within the last step. */
+static void interpolate(const struct adaptive_step *self, double t, double *y) {
+    struct hermite_end ends[HERMITE_ENDS];
+    int n = 0;
+    double begin = self->reached;
+    for (; n < self->ends - 1 && self->length_of[n] > 0; n++) {
+        begin -= self->length_of[n];
+        ends[n] = (struct hermite_end){begin, self->start[n], self->start[n] + self->length};
+    }
+    ends[n++] = (struct hermite_end){self->reached, self->next, self->slope};
+    hermite_state(self->host, n, ends, t, y);
 }
 
 /* advance with steps that pass t1: those that reach beyond t go on in the next advance. */
@@ -217,7 +247,7 @@ static enum cs_step pass_frames(struct adaptive_step *self, double t0, double t1
         // the host sees the part of the step that lies in this advance
         next = least(self->reached, t1);
         if (next < self->reached)
-            self->interpolate(self, 1 - (self->reached - next) / self->last_step, x);
+            interpolate(self, next, x);
         else
             memcpy(x, self->next, self->length * sizeof *x);
         self->changed = false;
@@ -225,6 +255,7 @@ static enum cs_step pass_frames(struct adaptive_step *self, double t0, double t1
         if (self->changed) {
             // the rest of the step began at another state
             self->reached = next;
+            self->length_of[0] = 0;
             self->fresh = true;
         }
     }
@@ -238,7 +269,7 @@ enum cs_step adaptive_step_advance(void *object, double t0, double t1, double *x
     self->begin = t0;
     self->end = t1;
     self->tries = 0;
-    if (self->start)
+    if (self->ends)
         return pass_frames(self, t0, t1, x, v);
     for (double t = t0, h = 0; t < t1 && status == CS_STEP_OK;) {
         status = step(self, t, t1 - t, x, &h);
@@ -258,6 +289,7 @@ enum cs_step adaptive_step_restart(void *object, double t, const double *x, cons
     (void)x, (void)v;
     struct adaptive_step *self = object;
     self->reached = t;
+    self->length_of[0] = 0;
     self->control = (struct step_control){.power = self->control.power};
     self->contact = HUGE_VAL;
     self->fresh = true;
@@ -288,11 +320,12 @@ enum cs_step adaptive_step_archive(void *object, const struct cs_archive *archiv
     archive->reals(archive->ctx, &self->contact, 1);
     archive->reals(archive->ctx, &self->local_error, 1);
     archive->reals(archive->ctx, self->slope, self->length / 2);
-    if (self->start) {
+    if (self->ends) {
         archive->reals(archive->ctx, &self->reached, 1);
-        archive->reals(archive->ctx, &self->last_step, 1);
-        archive->reals(archive->ctx, self->start, self->length);
+        archive->reals(archive->ctx, self->length_of, HERMITE_ENDS - 1);
         archive->reals(archive->ctx, self->next, self->length);
     }
+    for (int k = 0; k < self->ends - 1; k++)
+        archive->reals(archive->ctx, self->start[k], self->length / 2 * 3);
     return CS_STEP_OK;
 }

@@ -3,8 +3,8 @@
  * Error norm: the root of the mean, over the numbers that move, of (error / (atol + rtol
  * |y|))^2, |y| the larger of both ends of the step. A step is accepted at 1 or below;
  * step_control.h chooses the next one. The last steps before the end of an advance are cut so
- * that one ends there; but a method with an interpolant steps past that end where the host
- * lets it (host->may_overstep), and steps then do not depend on frames.
+ * that one ends there; but where the host lets it (host->may_overstep) a step passes that end,
+ * hermite.h gives the state there, and steps do not depend on frames.
  *
  * Contact shortens steps in two ways. host->longest_step bounds a step before it is tried. A
  * step that host->max_step_fraction refuses is tried again, shorter; that length bounds the
@@ -12,6 +12,7 @@
 #ifndef ADAPTIVE_STEP_H
 #define ADAPTIVE_STEP_H
 
+#include "hermite.h"
 #include "step_control.h"
 
 /* Options of such a method, and their rows for a struct that has the same fields. */
@@ -53,27 +54,28 @@ struct adaptive_step {
     bool fresh;     /* slope is not that of the state */
     bool changed;   /* the last commit changed the state */
     bool started;   /* control.h was chosen */
+    bool fixed;     /* set before init: steps of dt_max, whose errors are taken for 0 */
     uint64_t rejected;
     double local_error; /* m, of all accepted steps, added up */
     double begin, end;  /* s, of the advance */
-    double *start;      /* (6n): the state at the begin of the last step; NULL: steps end at
-                         * frames. Then next is not touched between two steps. */
-    double reached;     /* s, the end of the last step, where start is not NULL */
-    double last_step;   /* s, its length */
-    int64_t tries;      /* steps in it, rejected ones included */
+    /* Where steps pass frames, the number of ends that the state there is taken from, else 0.
+     * Then next and slope are not touched between two steps. */
+    int ends;
+    double *start[HERMITE_ENDS - 1]; /* (9n): the state and its acceleration at the begin of the
+                                      * last step, and of the one before */
+    double reached;                  /* s, the end of the last step */
+    double length_of[HERMITE_ENDS - 1]; /* s, of these steps; 0: there is none */
+    int64_t tries;                      /* steps in it, rejected ones included */
     adaptive_try *attempt;
     /* [after an accepted step] Makes slope that of the new state, if the method has it, and
      * returns whether it did. */
     bool (*accept)(struct adaptive_step *self);
     /* s, the longest step that the method can take at the state; NULL: any */
     double (*limit)(struct adaptive_step *self, double t, const double *y);
-    /* y (6n) = the state at the fraction theta, 0..1, of the last accepted step from start;
-     * leaves pinned particles at start + theta h v to the bit. NULL: no interpolant */
-    void (*interpolate)(struct adaptive_step *self, double theta, double *y);
 };
 
-/* Allocates the arrays and takes options; power: that of the local error in h. interpolate is
- * set before. [create] */
+/* Allocates the arrays and takes options; power: that of the local error in h. Where the host
+ * lets steps pass frames they do, unless they are of a fixed length. [create] */
 enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host *host,
                                 const struct adaptive_options *options, int power);
 

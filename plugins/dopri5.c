@@ -1,11 +1,9 @@
 /* dopri5.c - the explicit pair 5(4) of Dormand and Prince with error control.
  *
  * The last stage is evaluated at the new state: it is the first of the next step, unless the
- * state was changed. The error is the distance from the method of order 4. Between the ends of
- * a step the stages give the state to order 4, without another evaluation.
+ * state was changed. The error is the distance from the method of order 4.
  *
- * Coefficients: Dormand, Prince 1980; Hairer, Norsett, Wanner 1993, table II.5.2, and the
- * interpolant of its appendix (CONTD5). */
+ * Coefficients: Dormand, Prince 1980; Hairer, Norsett, Wanner 1993, table II.5.2. */
 #include "high_order_methods.h"
 
 enum { STAGES = 7 };
@@ -23,29 +21,10 @@ static const double table[STAGES][NYSTROM_STAGES] = {
 };
 static const double difference[STAGES] = {
     71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
-static const double between[STAGES] = {
-    -12715105075.0 / 11282082432, 0, 87487479700.0 / 32700410799, -10690763975.0 / 1880347072,
-    701980252875.0 / 199316789632, -1453857185.0 / 822651844, 69997945.0 / 29380423};
 // clang-format on
 
-/* Cubic Hermite between the ends, from their slopes, plus a term of order 4 that leaves both
- * ends and slopes alone. */
-static void dense(double theta, double *b) {
-    const double rest = 1 - theta;
-    for (int i = 0; i < STAGES; i++) {
-        const double whole = table[STAGES - 1][i];
-        const double first = (i == 0 ? 1 : 0) - whole;
-        const double last = whole - (i == STAGES - 1 ? 1 : 0) - first;
-        b[i] = theta * (whole + rest * (first + theta * (last + rest * between[i])));
-    }
-}
-
-const struct nystrom_pair dopri5_pair = {.stages = STAGES,
-                                         .power = 5,
-                                         .nodes = nodes,
-                                         .table = table,
-                                         .difference = difference,
-                                         .dense = dense};
+const struct nystrom_pair dopri5_pair = {
+    .stages = STAGES, .power = 5, .nodes = nodes, .table = table, .difference = difference};
 
 static const struct cs_option rows[] = {ADAPTIVE_ROWS(struct adaptive_options, 1e-4)};
 

@@ -209,22 +209,6 @@ static bool accept(struct adaptive_step *base) {
     return true;
 }
 
-/* The interpolant's weights are those of a method with the stages of the step. accept has
- * exchanged the first and the last stage. */
-static void interpolate(struct adaptive_step *base, double theta, double *y) {
-    struct nystrom *self = (struct nystrom *)base;
-    const struct nystrom_pair *pair = self->own.pair;
-    const int last = pair->stages - 1;
-    double b[NYSTROM_STAGES] = {0}, *f[NYSTROM_STAGES];
-    memcpy(f, self->f, sizeof f);
-    f[0] = self->f[last];
-    f[last] = self->f[0];
-    pair->dense(theta, b);
-    struct nystrom_sum sum = nystrom_sum_of(pair->stages, pair->table, b, NULL);
-    sum.node = theta;
-    nystrom_combine(base->host, &sum, f, base->last_step, base->start, y);
-}
-
 struct nystrom_sum nystrom_stage(const struct nystrom_pair *pair, int i) {
     struct nystrom_sum sum = nystrom_sum_of(pair->stages, pair->table, pair->table[i],
                                             i == pair->stages - 1 ? pair->nodes : NULL);
@@ -254,7 +238,6 @@ enum cs_step nystrom_create(const struct cs_host *host, const void *options,
     self->taken = &self->own;
     self->base.attempt = attempt;
     self->base.accept = accept;
-    self->base.interpolate = pair->dense && !lower ? interpolate : NULL;
     if (adaptive_step_init(&self->base, host, options, pair->power) != CS_STEP_OK)
         return CS_STEP_FAIL;
     self->f[0] = self->base.slope;
@@ -276,8 +259,5 @@ enum cs_step nystrom_archive(void *object, const struct cs_archive *archive) {
     archive->integers(archive->ctx, &lower, 1);
     self->taken = lower && self->lower.pair ? &self->lower : &self->own;
     self->base.control.power = self->taken->pair->power;
-    // the slope is the first stage
-    for (int i = 1; self->base.start && i < self->own.pair->stages; i++)
-        archive->reals(archive->ctx, self->f[i], self->base.length / 2);
     return adaptive_step_archive(object, archive);
 }

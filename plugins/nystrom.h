@@ -21,9 +21,6 @@ struct nystrom_pair {
     const double *difference;              /* (stages): weights of the error estimate */
     const double *lower_order;             /* (stages) b_j minus those of a method of order 3,
                                             * see dop853.c; NULL: none */
-    /* Sets b (stages), the weights of the stages at the fraction theta of a step, whose sum is
-     * theta; NULL: no interpolant */
-    void (*dense)(double theta, double *b);
 };
 
 /* The stages that a sum takes, with their weights in velocity and position, and the time of

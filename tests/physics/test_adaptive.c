@@ -188,19 +188,26 @@ TEST(frames_do_not_disturb) {
     ck_assert_double_lt(cs_rms_difference(few.state, many.state, 24), 1e-7);
 }
 
-/* With an interpolant neither the motion nor its cost depends on how many frames there are.
- * Where anything acts between steps each frame ends one. */
+/* Neither the motion nor its cost depends on how many frames there are. Where anything acts
+ * between steps each frame ends one. */
 TEST(steps_pass_frames) {
+    static const char *const methods[] = {"dopri5:rtol=1e-6",
+                                          "dop853:rtol=1e-8",
+                                          "dop853:order=8",
+                                          "esdirk:rtol=1e-5",
+                                          "rock4",
+                                          "rkc2"};
     static const int fps[] = {30, 60, 240, 1200, 3000};
-    const char *const method = "dopri5:rtol=1e-6";
-    const struct half_second few = half_second(method, "", 24);
-    for (size_t k = 0; k < sizeof fps / sizeof *fps; k++) {
-        const struct half_second many = half_second(method, "", fps[k]);
-        ck_bits(few.state, many.state, 24, method);
-        ck_assert_uint_eq(few.forces, many.forces);
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
+        const struct half_second few = half_second(methods[m], "", 24);
+        for (size_t k = 0; k < sizeof fps / sizeof *fps; k++) {
+            const struct half_second many = half_second(methods[m], "", fps[k]);
+            ck_bits(few.state, many.state, 24, methods[m]);
+            ck_assert_uint_eq(few.forces, many.forces);
+        }
+        const char *const acts = ", \"forces\": {\"velocity_loss\": 1e-12}";
+        ck_assert_uint_gt(half_second(methods[m], acts, 3000).forces, 2 * few.forces);
     }
-    const char *const acts = ", \"forces\": {\"velocity_loss\": 1e-12}";
-    ck_assert_uint_gt(half_second(method, acts, 3000).forces, 2 * few.forces);
 }
 
 enum { INSIDE = 100 };
@@ -226,12 +233,27 @@ static double error_within_steps(const char *method) {
     return most;
 }
 
-/* The interpolant of order 4 errs as h^5 within a step; cubic Hermite would as h^4. */
-TEST(interpolant_has_its_order) {
-    const double whole = error_within_steps("dopri5:rtol=0.1,dt_max=2e-3");
-    const double half = error_within_steps("dopri5:rtol=0.1,dt_max=1e-3");
-    ck_assert_msg(fabs(log2(whole / half) - 5) < 0.3, "order %.3f (errors %.3g m, %.3g m)",
-                  log2(whole / half), whole, half);
+/* At frames that fall anywhere within steps the error falls by the order of the method: two
+ * ends of a step give positions to h^6, three to h^9. Cubics between two would give h^4. */
+TEST(frames_have_the_order_of_the_method) {
+    static const struct {
+        const char *method;
+        double h, order;
+    } rows[] = {{"dopri5:rtol=0.1,dt_max=", 4e-3, 5},
+                {"dop853:order=8,rtol=0.1,dt_max=", 6e-3, 8},
+                {"esdirk:rtol=0.1,newton_rtol=1e-12,dt_max=", 2e-3, 4},
+                {"rock4:rtol=0.1,dt_max=", 2e-3, 4}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        double errors[2];
+        for (int level = 0; level < 2; level++) {
+            char method[80];
+            snprintf(method, sizeof method, "%s%.17g", rows[k].method, rows[k].h / (1 + level));
+            errors[level] = error_within_steps(method);
+        }
+        const double order = log2(errors[0] / errors[1]);
+        ck_assert_msg(fabs(order - rows[k].order) < 0.5, "%s: order %.3f (%.3g m, %.3g m)",
+                      rows[k].method, order, errors[0], errors[1]);
+    }
 }
 
 /* Lengths and gravity times a power of two: the motion is the same times that, to the bit,
