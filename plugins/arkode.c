@@ -7,9 +7,13 @@
  * After a change of the state one-step methods lose nothing but a slope.
  */
 #include "arkode_calls.h"
+#include "arkode_ends.h"
 #include "arkode_tables.h"
 #include "fixed_step.h"
 #include "sundials_common.h"
+#include "sundials_overstep.h"
+
+#include <string.h>
 
 _Static_assert(ARK_ERR_FAILURE == SUNDIALS_ERROR_TEST &&
                    ARK_CONV_FAILURE == SUNDIALS_CONVERGENCE &&
@@ -66,15 +70,51 @@ struct ark {
     struct sundials base; /* first: its functions take it for the whole */
     struct ark_options asked;
     struct fixed_step steps; /* only to cut frames into steps of dt */
+    struct arkode_ends ends; /* where steps pass frames */
 };
 
-/* The two parts of ark-imex: x' = v and the forces that can be stiff; the other forces. */
+/* s, the longest step past frames, as in adaptive_step.c. */
+#define PAST_FRAMES 0.1
+
+/* Methods of a higher order take three ends for the state at a frame. */
+#define HIGH_ORDER 5
+
+/* sundials_slope, which takes from the last end what is known there, and leaves it the rest. */
+static int slope_of(struct ark *self, sunrealtype t, N_Vector y, uint32_t parts, bool moves,
+                    N_Vector slope) {
+    const size_t n3 = 3 * (size_t)self->base.host->view->n;
+    const double *state = sundials_data(y);
+    double *v = sundials_data(slope), *a = v + n3;
+    const int part = parts == EXPLICIT_PARTS;
+    struct arkode_end *end = arkode_ends_find(&self->ends, t, state);
+    if (!end || !end->known[part]) {
+        const int code = sundials_slope(&self->base, t, y, parts, moves, slope);
+        if (end && code == 0)
+            memcpy(end->a[part], a, n3 * sizeof *a);
+        if (end)
+            end->known[part] = code == 0;
+        return code;
+    }
+    memcpy(a, end->a[part], n3 * sizeof *a);
+    if (moves)
+        memcpy(v, state + n3, n3 * sizeof *v);
+    else
+        memset(v, 0, n3 * sizeof *v);
+    return 0;
+}
+
+/* The whole force, or the two parts of ark-imex: x' = v and the forces that can be stiff; the
+ * other forces. */
+static int whole_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object) {
+    return slope_of(object, t, y, CS_PART_ALL, true, slope);
+}
+
 static int implicit_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object) {
-    return sundials_slope(object, t, y, CS_PART_STIFF, true, slope);
+    return slope_of(object, t, y, CS_PART_STIFF, true, slope);
 }
 
 static int explicit_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object) {
-    return sundials_slope(object, t, y, EXPLICIT_PARTS, false, slope);
+    return slope_of(object, t, y, EXPLICIT_PARTS, false, slope);
 }
 
 /* `system` of struct sundials_library: time, state and g of the running Newton iteration. */
@@ -101,10 +141,32 @@ static void stats(const void *object, struct cs_stats *out) {
 /* on_state_changed: a reset keeps counts and step length. For a state from outside (dt 0)
  * with error control the library chooses the first step again. */
 static int moved(struct sundials *base, double t, double dt) {
-    const struct ark *self = (const struct ark *)base;
+    struct ark *self = (struct ark *)base;
     int code = ARK(Reset)(base->memory, t, base->state);
+    if (base->interpolated)
+        arkode_ends_restart(&self->ends, t, sundials_data(base->state));
     if (code == ARK_SUCCESS && dt <= 0 && self->asked.dt <= 0)
         code = ARK(SetInitStep)(base->memory, 0);
+    return code;
+}
+
+/* One step, whose end is kept. */
+static int evolve(void *memory, sunrealtype t1, N_Vector y, sunrealtype *reached, int task) {
+    void *object = NULL;
+    const int code = ARK(Evolve)(memory, t1, y, reached, task);
+    if (code >= 0 && ARK(GetUserData)(memory, &object) == ARK_SUCCESS &&
+        ((struct ark *)object)->base.interpolated)
+        arkode_ends_add(&((struct ark *)object)->ends, *reached, sundials_data(y));
+    return code;
+}
+
+/* `interpolate` of struct sundials_library, for k = 0. */
+static int state_at(void *memory, sunrealtype t, int k, N_Vector y) {
+    void *object = NULL;
+    const int code = ARK(GetUserData)(memory, &object);
+    (void)k;
+    if (code == ARK_SUCCESS)
+        arkode_ends_state(&((struct ark *)object)->ends, t, sundials_data(y));
     return code;
 }
 
@@ -112,8 +174,9 @@ static const struct sundials_library library = {
     .name = "ARKODE",
     .code_name = ARK(GetReturnFlagName),
     .set_stop = ARK(SetStopTime),
-    .evolve = ARK(Evolve),
+    .evolve = evolve,
     .one_step = ARK_ONE_STEP,
+    .interpolate = state_at,
     .system = newton_system,
     .on_state_changed = moved,
 };
@@ -154,11 +217,13 @@ static int open_memory(struct ark *self, ARKRhsFn explicit_part, ARKRhsFn implic
         code = ARK(WFtolerances)(base->memory, sundials_weigh);
     if (code == ARK_SUCCESS)
         code = ARK(SetMaxErrTestFails)(base->memory, ERROR_FAILURES_MAX);
-    // steps end at the frame: the default interpolant would cost an evaluation per step
+    // arkode_ends.h gives frames: the default interpolant would cost an evaluation per step
     if (code == ARK_SUCCESS)
         code = ARK(SetInterpolantType)(base->memory, ARK_INTERP_LAGRANGE);
     if (code == ARK_SUCCESS)
         code = ARK(SetInterpolantDegree)(base->memory, 1);
+    if (code == ARK_SUCCESS && base->interpolated)
+        code = ARK(SetMaxStep)(base->memory, PAST_FRAMES);
     if (code == ARK_SUCCESS && implicit_part)
         code = ARK(SetLinearSolver)(base->memory, &base->solver, NULL);
     if (code == ARK_SUCCESS && implicit_part)
@@ -166,6 +231,22 @@ static int open_memory(struct ark *self, ARKRhsFn explicit_part, ARKRhsFn implic
     if (code == ARK_SUCCESS)
         code = ARKStepSetTableName(base->memory, table->implicit, table->explicit);
     return code;
+}
+
+/* Lets steps pass frames, where the host does, no force depends on time, and their length is
+ * free. */
+static enum cs_step pass_frames(struct ark *self, bool is_additive) {
+    const struct cs_host *host = self->base.host;
+    const uint32_t parts[] = {is_additive ? CS_PART_STIFF : CS_PART_ALL,
+                              is_additive ? EXPLICIT_PARTS : 0};
+    if (self->asked.dt > 0 || self->asked.atol >= 1 || !CS_HAS(host, forces_depend_on_time) ||
+        host->forces_depend_on_time)
+        return CS_STEP_OK;
+    sundials_overstep_begin(&self->base);
+    return self->base.interpolated
+               ? arkode_ends_init(&self->ends, host, self->asked.order > HIGH_ORDER ? 3 : 2,
+                                  parts)
+               : CS_STEP_OK;
 }
 
 static enum cs_step create(const struct cs_host *host, const void *options,
@@ -188,18 +269,19 @@ static enum cs_step create(const struct cs_host *host, const void *options,
     const int slopes =
         (explicit_part ? table->stages : 0) + (implicit_part ? table->stages : 0);
     if (sundials_open(&self->base, host, &library, slopes + WORK_VECTORS,
-                      implicit_part ? &self->asked.linear_rtol : NULL) != CS_STEP_OK)
+                      implicit_part ? &self->asked.linear_rtol : NULL) != CS_STEP_OK ||
+        pass_frames(self, explicit_part && implicit_part) != CS_STEP_OK)
         return CS_STEP_FAIL;
     const int code = open_memory(self, explicit_part, implicit_part, table);
     return code == ARK_SUCCESS ? CS_STEP_OK : sundials_fail(&self->base, code, 0);
 }
 
 static enum cs_step create_erk(const struct cs_host *host, const void *options, void **out) {
-    return create(host, options, sundials_whole_slope, NULL, ark_erk_tables, out);
+    return create(host, options, whole_slope, NULL, ark_erk_tables, out);
 }
 
 static enum cs_step create_dirk(const struct cs_host *host, const void *options, void **out) {
-    return create(host, options, NULL, sundials_whole_slope, ark_dirk_tables, out);
+    return create(host, options, NULL, whole_slope, ark_dirk_tables, out);
 }
 
 static enum cs_step create_imex(const struct cs_host *host, const void *options, void **out) {

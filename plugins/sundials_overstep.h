@@ -6,9 +6,8 @@
  * on frames. The host sees a step in parts. Each is committed once, with the interpolant's
  * state at its end.
  *
- * For BDF alone, whose interpolant is its own polynomial; figures are in docs/notes. Adams
- * is limited by its stability, far below a frame. ARKODE's methods lose by it at equal error:
- * their interpolant has order 4 at most, and a shorter step of order 4 is worth its cost. */
+ * BDF's interpolant is its own polynomial, that of ARKODE's methods is hermite.h; figures are
+ * in docs/notes. Adams is limited by its stability, far below a frame. */
 #ifndef CS_SUNDIALS_OVERSTEP_H
 #define CS_SUNDIALS_OVERSTEP_H
 
