@@ -229,7 +229,8 @@ static const char *what_is_not_smooth(const struct cs_scene *scene) {
 
 void cs_plan_choose_contact_law(struct cs_scene *scene, const struct cs_integrator *method) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
-    const bool follows = !(method->traits & CS_EXPLICIT_OUTER || method->needs & CS_NEED_CLUSTERS);
+    const bool follows =
+        !(method->traits & CS_EXPLICIT_OUTER || method->needs & CS_NEED_CLUSTERS);
     bool elastic = !isnan(scene->contact.stiffness);
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         elastic |= bodies[b].elastic.present ||
@@ -281,10 +282,11 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
     return CS_OK;
 }
 
-/* One line of the plan. */
+/* One line of the plan; none for a row without a reason. */
 static void print_row(const char *name, const struct cs_plan_row *row, struct cs_text *out) {
-    cs_text_add(out, "%-18s %-9s %10zu bytes   %s\n", name, row->built ? "built" : "not built",
-                row->bytes, row->reason);
+    if (row->reason)
+        cs_text_add(out, "%-18s %-9s %10zu bytes   %s\n", name,
+                    row->built ? "built" : "not built", row->bytes, row->reason);
 }
 
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {
@@ -296,12 +298,10 @@ void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {
         cs_text_add(out, "on surfaces        %u springs\n", plan->n_surface_springs);
     if (plan->n_network_springs)
         cs_text_add(out, "inside             %u springs\n", plan->n_network_springs);
-    for (uint32_t f = 0; f < CS_FEATURES; f++) {
-        /* the forces come before the row AREA */
-        for (uint32_t k = 0; f == CS_FEATURE_AREA && k < cs_n_terms; k++)
-            if (plan->forces[k].reason)
-                print_row(cs_terms[k]->name, plan->forces + k, out);
-        if (plan->rows[f].reason)
-            print_row(feature_names[f], plan->rows + f, out);
-    }
+    for (uint32_t f = 0; f < CS_FEATURE_AREA; f++)
+        print_row(feature_names[f], plan->rows + f, out);
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        print_row(cs_terms[k]->name, plan->forces + k, out);
+    for (uint32_t f = CS_FEATURE_AREA; f < CS_FEATURES; f++)
+        print_row(feature_names[f], plan->rows + f, out);
 }

@@ -2,7 +2,7 @@
  *
  * Every shape but planes and meshes is a core - a point, a segment or a box - and all points
  * within `radius` of it: sphere, capsule, box with rounded edges. A floor is a plane. A mesh
- * has no distance here: bodies meet its features in pairs (model/pair), and
+ * has no distance here: bodies meet its features in pairs (model/contact/narrow_phase), and
  * model/contact/surface_points.h gives the positions of its vertices.
  *
  * A new shape needs: its keys and its line in CS_SHAPE_LIST (scene.h), shape_NAME.c with

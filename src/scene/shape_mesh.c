@@ -1,4 +1,5 @@
-/* The mesh as a collider. It has no distance: its triangles meet bodies in pairs (model/pair).
+/* The mesh as a collider. It has no distance: its triangles meet bodies in pairs
+ * (model/contact/narrow_phase).
  *
  * A line from + s way meets a triangle p0, p0 + u, p0 + v (Moeller, Trumbore 1997) if
  *   from - p0 + s way = a u + b v,   a, b >= 0,   a + b <= 1,   0 <= s < share.

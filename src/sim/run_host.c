@@ -199,7 +199,7 @@ void cs_blow_up_check_set(struct cs_blow_up_check *bound, const struct cs_system
 
 /* Continues the bound from t on with other forces: closes the piece before t, and takes the
  * larger rate of those now and at the end of the ramps. Leaves the values at t. */
-static void follow_looks(struct cs_blow_up_check *bound, struct cs_system *system, double t) {
+static void continue_bound(struct cs_blow_up_check *bound, struct cs_system *system, double t) {
     bound->force_gain += sqrt(bound->force_rate) * (t - bound->t_forces);
     bound->t_forces = t;
     bound->force_rate = force_power_bound(system);
@@ -216,7 +216,7 @@ void cs_blow_up_check_after_events(struct cs_blow_up_check *bound, struct cs_sys
                                    double t) {
     struct cs_blow_up_check now;
     if (system->events->begin < t) {
-        follow_looks(bound, system, t);
+        continue_bound(bound, system, t);
         return;
     }
     cs_blow_up_check_set(&now, system, t);

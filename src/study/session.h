@@ -20,7 +20,7 @@ struct cs_session_settings {
     uint32_t n_overrides;
     /* changes the scene once it was checked; may be NULL */
     void (*edit_scene)(struct cs_scene *scene, void *ctx);
-    void *ctx;                   /* of change */
+    void *ctx;                   /* of edit_scene */
     bool switch_off_corrections; /* leaves out what acts after steps: contact by projection,
                     strain limit, velocity loss */
     bool count_crossings_only;   /* crossings that the scene says nothing about: no step is cut
