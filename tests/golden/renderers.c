@@ -8,7 +8,7 @@
  * cannot be drawn with look goals is passed over. Prints a row a picture, and fails if any is
  * beyond the gate. */
 #include "base/pool.h"
-#include "draw/image_diff.h"
+#include "shared/image_diff.h"
 #include "study/frame_picture.h"
 #include "study/session.h"
 

@@ -1,5 +1,5 @@
 /* The second level of the golden gate: what passes, what does not, and the figures. */
-#include "draw/image_diff.h"
+#include "shared/image_diff.h"
 #include "unit.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Runs two programs side by side and finds the first number that differs. */
 #include "bisect/bisect.h"
 
-#include "process/subprocess.h"
+#include "shared/subprocess.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -11,7 +11,7 @@
 #include "film/film_sheet.h"
 #include "io/file_conflicts.h"
 #include "io/png.h"
-#include "process/subprocess.h"
+#include "shared/subprocess.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -2,8 +2,8 @@
 #include "golden/golden.h"
 
 #include "base/file.h"
-#include "draw/image_diff.h"
 #include "io/png.h"
+#include "shared/image_diff.h"
 #include "study/follow.h"
 #include "study/frame_picture.h"
 #include "study/process_pool.h"

@@ -2,8 +2,8 @@
 #include "reproduce/reproduce.h"
 
 #include "base/hash.h"
-#include "draw/image_diff.h"
 #include "io/png.h"
+#include "shared/image_diff.h"
 #include "sim/run.h"
 #include "study/follow.h"
 #include "study/frame_picture.h"

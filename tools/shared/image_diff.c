@@ -1,5 +1,5 @@
 /* Compares two images for the second level of the golden image gate. */
-#include "draw/image_diff.h"
+#include "shared/image_diff.h"
 
 #include "base/status.h"
 

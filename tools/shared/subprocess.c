@@ -1,5 +1,5 @@
 /* Runs another program and waits for it. */
-#include "process/subprocess.h"
+#include "shared/subprocess.h"
 
 #include "base/file.h"
 
