@@ -316,6 +316,8 @@ def prepare():
 
 def main():
     random.seed(1)
+    for number in SIGNALS:  # commands inherit what nohup and shells in the background ignore
+        signal.signal(number, signal.SIG_DFL)
     with tempfile.TemporaryDirectory() as work:
         os.chdir(work)
         os.mkdir("given")

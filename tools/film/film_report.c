@@ -5,11 +5,15 @@
 #include "scene/file/json.h"
 #include "scene/scene.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { PATH_BYTES = 4096, MOST_PICTURES = 10000000 };
+/* Frames a second, as scenes have them; a report may come from anywhere. */
+#define FPS_MIN 1e-3
+#define FPS_MAX 1e6
 
 static double number_of(const struct cs_json *object, const char *key) {
     const struct cs_json *value = cs_json_find_kind(object, key, CS_JSON_NUMBER);
@@ -39,7 +43,7 @@ static bool read_picture(const struct cs_json *frame, struct cs_film_picture *pi
     *picture = (struct cs_film_picture){.frame = number_of(frame, "number")};
     const double given = number_of(frame, "picture");
     const double number = given > 0 ? given : picture->frame;
-    if (!(number >= 0 && number <= MOST_PICTURES))
+    if (!(number >= 0 && number <= MOST_PICTURES && fabs(picture->frame) <= UINT32_MAX))
         return false;
     picture->number = (uint32_t)number;
     for (uint32_t k = 0; range && k < 2 && cs_json_count(range) == 2; k++) {
@@ -73,7 +77,7 @@ static enum cs_status read_pictures(const struct cs_json *root, struct cs_film_r
     report->look = look_of(render);
     report->clear = is_clear(render);
     read_cost(root, report);
-    if (!frames || !(report->fps > 0))
+    if (!frames || !(report->fps >= FPS_MIN && report->fps <= FPS_MAX))
         return CS_OK;
     report->pictures = calloc((size_t)cs_json_count(frames) + 1, sizeof *report->pictures);
     if (!report->pictures)

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Columns that a file may have. */
-enum { FIELDS_MAX = 128 };
+/* Columns and lines that a file may have. Diagrams and merges compare all rows with each other;
+ * a comparison of all methods has a few hundred. */
+enum { FIELDS_MAX = 128, LINES_MAX = 10000 };
 
 /* Rows of the table of columns, named after their fields; AXIS rows can be drawn. */
 #define FIELD(field, type, unit, help, drawn)                                                  \
@@ -188,7 +189,7 @@ double cs_cell_typical(const struct cs_cell *cells, uint32_t n, const struct cs_
     double near[64];
     uint32_t count = 0;
     *low = *high = own;
-    while (at > cells && cs_cell_same_series(at - 1, cell))
+    while (cell->adaptive && at > cells && cs_cell_same_series(at - 1, cell))
         at--;
     for (; cell->adaptive && at < end && cs_cell_same_series(at, cell) && count < 64; at++) {
         /* error control holds the error to a multiple of the tolerance */
@@ -233,7 +234,7 @@ static uint32_t find_columns(char *names, const struct cs_column *columns[FIELDS
     return n;
 }
 
-/* Reads rows with as many fields as the first line has; others are dropped. */
+/* Reads rows with as many fields as the first line has, and a name; others are dropped. */
 static void read_cells(struct cs_rows *rows, const struct cs_column *const *columns,
                        uint32_t n_columns, struct cs_cell *cells, uint32_t *n) {
     char *fields[FIELDS_MAX];
@@ -250,7 +251,8 @@ static void read_cells(struct cs_rows *rows, const struct cs_column *const *colu
         // files of before there were series
         if (!*cell->series)
             memcpy(cell->series, cell->method, sizeof cell->method);
-        *n += n_fields == n_columns;
+        // what follows an @ is a machine, before it is the name
+        *n += n_fields == n_columns && *cell->series && *cell->series != '@';
     }
 }
 
@@ -266,6 +268,9 @@ enum cs_status cs_csv_read(const char *path, bool unchecked, struct cs_cell **ce
     if (!n_columns || !columns[0])
         cs_fail(error, CS_ERR_FILE,
                 "%s: the first line does not name the columns of a comparison", path);
+    else if (rows.n > LINES_MAX)
+        cs_fail(error, CS_ERR_FILE, "%s: found %u lines, expected at most %d", path, rows.n,
+                LINES_MAX);
     else if (!unchecked && cs_rows_refuse_unchecked(&rows, path, error))
         ; // its cells are not read
     else if (!(*cells = calloc(rows.n, sizeof **cells)))

@@ -58,8 +58,8 @@ extern const uint32_t cs_n_columns;
 
 /* Reads a file into malloc'd cells (n), the caller's. Columns are found by name; absent ones
  * leave their fields empty, unknown ones are ignored. A last line without its end is dropped:
- * it was being written when the process ended. unchecked: a table without checks is taken too.
- * CS_ERR_FILE, CS_ERR_MEMORY. */
+ * it was being written when the process ended. Rows without a name are dropped too. unchecked: a
+ * table without checks is taken. CS_ERR_FILE: also of more than 10,000 lines; CS_ERR_MEMORY. */
 enum cs_status cs_csv_read(const char *path, bool unchecked, struct cs_cell **cells,
                            uint32_t *n, struct cs_error *error);
 
