@@ -26,7 +26,7 @@ struct adaptive_options {
         CS_OPTION(struct_, atol, "", 0, 0, 1,                                                  \
                   "absolute local error in m and m/s; 0: rtol of the scene's own"),            \
         CS_OPTION(struct_, dt_max, "s", 0, 0, 10,                                              \
-                  "maximum step; 0: one frame, 0.1 s if steps pass frames"),                   \
+                  "maximum step; 0: one frame, at most 0.1 s if steps pass frames"),           \
         CS_OPTION(struct_, max_steps, "", 1000000, 1, 1e9,                                     \
                   "maximum steps per frame, rejected ones included, before the run fails")
 
