@@ -70,9 +70,12 @@ static const struct cs_arg rows[] = {
      CS_ARG_LIST(struct options, references, n_references)},
     {"mesh", 0, "LOW..HIGH",
      "compare on grids of LOW, 2 LOW, ... HIGH cells along the first row, each in a folder of "
-     "its "
-     "own, and print the error of each mesh, against the finest, beside that of the step",
+     "its own, and print the error of each mesh, against the finest, beside that of the step",
      CS_ARG_INTO(struct options, mesh)},
+    {"reference-budget", 0, "SECONDS",
+     "maximum work of explicit methods of the reference in nominal seconds; beyond it implicit "
+     "ones take their place (default: 20)",
+     CS_ARG_INTO(struct options, compare.reference_budget)},
     {"cache", 0, "DIR", "folder of stored references (default: DIR of -o)",
      CS_ARG_INTO(struct options, compare.cache)},
     {"overwrite", 'y', NULL, "replace an existing compare.csv",
@@ -116,12 +119,20 @@ static void show(struct screen *screen, struct cs_text *text) {
     cs_print_out(stdout, text, &screen->error);
 }
 
+/* Prints a remark; a closed standard error hides no result. */
+static void remark(struct screen *screen, struct cs_text *text) {
+    struct cs_error ignored = {0};
+    cs_progress_end(&screen->progress);
+    cs_print_out(stderr, text, &ignored);
+}
+
 static void show_reference(void *ctx, uint32_t done, uint32_t total, const char *what) {
     struct screen *screen = ctx;
-    (void)what;
+    struct cs_text text = {0};
+    if (done == 0 && what && !screen->quiet)
+        cs_table_add_estimate(&screen->compare, &text);
+    remark(screen, &text);
     cs_progress_show(&screen->progress, done, total);
-    if (done == total)
-        cs_progress_end(&screen->progress);
 }
 
 /* Called after the reference: prints its summary and the head of the table. */
@@ -144,12 +155,17 @@ static void show_row(void *ctx, const struct cs_cell *cell, bool taken) {
         return;
     cs_table_add_row(&screen->compare, cell, &text);
     show(screen, &text);
-    if (!taken)
+    // how many cells equal errors need is not known
+    if (!taken && screen->compare.n_done <= screen->compare.cells.n)
         cs_progress_show(&screen->progress, screen->compare.n_done, screen->compare.cells.n);
 }
 
 static void show_round(void *ctx, uint32_t done, uint32_t most) {
     struct screen *screen = ctx;
+    struct cs_text text = {0};
+    if (done == 0 && !screen->quiet)
+        cs_verdict_print_preliminary(&screen->compare, &text, &screen->error);
+    remark(screen, &text);
     screen->progress.label = "round";
     cs_progress_show(&screen->progress, done, most);
 }
@@ -165,8 +181,7 @@ static enum cs_status set_reference(struct options *options, struct cs_error *er
     return CS_OK;
 }
 
-/* Frames of every run: as given, or those that cover the time; the length of a frame may come
- * from --set. */
+/* Frames of every run: as given, or those that cover the time. */
 static enum cs_status count_frames(struct options *options, struct cs_error *error) {
     options->compare.run.frames = options->frames;
     return options->frames
@@ -175,8 +190,7 @@ static enum cs_status count_frames(struct options *options, struct cs_error *err
                                        &options->compare.run.frames, &options->seconds, error);
 }
 
-/* Completes the settings. The number of frames comes last, because its length may come from
- * --set. */
+/* Completes the settings; the frames last, because their length may come from --set. */
 static enum cs_status make_settings(struct cs_args *args, struct cs_error *error) {
     static const char *const files[] = {"compare.csv",  "compare.json", "compare.md",
                                         "compare.html", "origin.json",  NULL};
@@ -236,18 +250,6 @@ static enum cs_status print_diagram(struct screen *screen, struct cs_error *erro
     return error->status ? error->status : cs_print_raw(stdout, &text, error);
 }
 
-/* Rebuilds the command line, for the report. */
-static void add_command(const struct cs_args *args, struct cs_text *out) {
-    cs_text_add(out, "clothsim compare");
-    for (uint32_t k = 0; k < args->n_operands; k++)
-        cs_print_shell_word(out, args->operands[k]);
-    for (uint32_t k = 0; k < args->n_given; k++) {
-        cs_text_add(out, " --%s", args->given[k].row->name);
-        if (args->given[k].row->value)
-            cs_print_shell_word(out, args->given[k].value);
-    }
-}
-
 /* For --strict: fails if a cell blew up or failed. */
 static enum cs_status check_cells(const struct cs_compare *compare, struct cs_error *error) {
     uint32_t bad = 0;
@@ -268,7 +270,7 @@ static enum cs_status compare_once(struct options *options, struct cs_mesh_study
     if (options->show && cs_screen_open(&screen.terminal, false, error))
         return error->status;
     settings->ctx = &screen;
-    cs_progress_begin(&screen.progress, "reference, run", screen.quiet);
+    cs_progress_begin(&screen.progress, "reference", screen.quiet);
     if (!cs_compare_run(&screen.compare, settings, error)) {
         cs_progress_end(&screen.progress);
         struct cs_error unseen = {0};
@@ -357,7 +359,7 @@ static enum cs_status compare_here(void *ctx, struct cs_error *error) {
         return error->status;
     // the command is part of the report
     struct cs_text command = {0};
-    add_command(args, &command);
+    cs_study_print_command(args, "compare", &command);
     settings->command = cs_text_get(&command);
     settings->reference_progress = show_reference;
     settings->on_begin = show_begin;
@@ -389,8 +391,7 @@ const struct cs_command cs_command_compare = {
     .notes =
         "Each row is written to compare.csv as it finishes: the same command continues an\n"
         "interrupted comparison, and other methods are added to it. Contact by force and\n"
-        "events stay; contact by projection, strain limit and velocity loss are off.\n"
-        "\n"
+        "events stay; contact by projection, strain limit and velocity loss are off.\n\n"
         "Example: clothsim compare scenes/drum.json -i rk4,tr-bdf2:dt=1e-3..2e-2 -o cmp\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,

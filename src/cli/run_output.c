@@ -250,3 +250,14 @@ cs_external_modules_isolate(struct cs_args *args, double seconds, double stop_se
                                        .stop = cs_interrupt_catch()};
     return cs_isolate_run(&isolate, error);
 }
+
+void cs_study_print_command(const struct cs_args *args, const char *name, struct cs_text *out) {
+    cs_text_add(out, "clothsim %s", name);
+    for (uint32_t k = 0; k < args->n_operands; k++)
+        cs_print_shell_word(out, args->operands[k]);
+    for (uint32_t k = 0; k < args->n_given; k++) {
+        cs_text_add(out, " --%s", args->given[k].row->name);
+        if (args->given[k].row->value)
+            cs_print_shell_word(out, args->given[k].value);
+    }
+}

@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 #include "base/text.h"
+#include "cli/line/args.h"
 #include "study/session.h"
 
 #include <stdbool.h>
@@ -63,5 +64,8 @@ enum cs_status cs_study_files_check(const struct cs_session_settings *session,
 /* CS_ERR_USAGE if the folder is that of the session's scene: results would lie among scenes. */
 enum cs_status cs_study_folder_check(const struct cs_session_settings *session,
                                      const char *folder, struct cs_error *error);
+
+/* Adds the line of a study for its report: "clothsim NAME OPERANDS --OPTION VALUE". */
+void cs_study_print_command(const struct cs_args *args, const char *name, struct cs_text *out);
 
 #endif

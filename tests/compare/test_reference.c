@@ -285,3 +285,45 @@ TEST(events_are_hit_again_in_every_run) {
     cs_recorded_run_close(&recording);
     cs_compare_reference_finish(&reference);
 }
+
+/* A sheet that hardly resists, hence of a low frequency and a low estimate; 16 points of a step
+ * cost more in every frame. */
+#define SLACK                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3], \"velocity\": [0, 0, 0.5]},"                 \
+    " \"mass\": {\"total\": 0.2}, \"springs\": {\"stretch\": 1e-3, \"shear\": 1e-3,"           \
+    " \"bend\": 0}, \"pins\": [\"top-left\"]}], \"time\": {\"fps\": 20}%s}"
+
+/* counted, not timed: the reference is the same on every machine */
+TEST(a_used_up_budget_leaves_implicit_families) {
+    char path[64], key[CS_HASH_DIGITS];
+    struct cs_error error = {0};
+    struct cs_compare_reference planned, found[2];
+    struct cs_recorded_run recording;
+    scene_write(path, SLACK, "");
+    const struct cs_recorded_run_settings asked = {.session = {.scene = path},
+                                                   .frames = FRAMES};
+    struct cs_compare_reference_settings settings = {.run = &asked, .accuracy = 1e-6};
+    ck_assert(!cs_recorded_run_open(&recording, &asked, "velocity-verlet", &error));
+    const double pass_seconds = cs_pass_seconds(&recording.session.system);
+    cs_recorded_run_close(&recording);
+    ck_assert(!cs_compare_reference_plan(&planned, &settings, key, &error));
+    ck_assert_double_gt(planned.passes, 0);
+    settings.explicit_seconds = 1.01 * planned.passes * pass_seconds;
+    ck_assert(!cs_compare_reference_plan(&planned, &settings, key, &error));
+    ck_assert(planned.explicit_passes == 0);
+    for (int k = 0; k < 2; k++) {
+        ck_assert(!cs_compare_reference_get(found + k, &settings, &error));
+        ck_assert_msg(found[k].families_agree, "%s", found[k].reason);
+        ck_assert_double_gt(found[k].explicit_passes, 0);
+        ck_assert_str_eq(found[k].methods[0], "tr-bdf2:dt=0.0125");
+    }
+    ck_assert(found[0].error_bar == found[1].error_bar);
+    cs_compare_reference_finish(found);
+    cs_compare_reference_finish(found + 1);
+    // a budget that suffices leaves the explicit ones
+    settings.explicit_seconds = 100;
+    ck_assert(!cs_compare_reference_get(found, &settings, &error));
+    ck_assert(found->explicit_passes == 0 && found->families_agree);
+    ck_assert_double_lt(found->error_bar, 1e-9);
+    cs_compare_reference_finish(found);
+}

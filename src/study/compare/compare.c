@@ -100,6 +100,7 @@ cs_compare_reference_query(const struct cs_compare_settings *settings) {
         .run = &settings->run,
         .methods = {settings->reference[0], settings->reference[1]},
         .accuracy = settings->accuracy,
+        .explicit_seconds = settings->reference_budget,
         .cache = settings->cache,
         .progress = settings->reference_progress,
         .ctx = settings->ctx};

@@ -19,6 +19,9 @@
  * error bar, horizon. */
 void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *out);
 
+/* Adds the estimated work of the reference, unless it is little. */
+void cs_table_add_estimate(const struct cs_compare *compare, struct cs_text *out);
+
 /* Add the names of the columns, and the row of a cell. */
 void cs_table_add_head(const struct cs_compare *compare, struct cs_text *out);
 void cs_table_add_row(const struct cs_compare *compare, const struct cs_cell *cell,

@@ -48,6 +48,9 @@ double cs_norm_scale(enum cs_norm norm, const struct cs_compare_reference *refer
 #define CS_COMPARE_ROUND_SECONDS   15.0
 #define CS_COMPARE_RUN_SECONDS_MAX 4.0
 
+/* Nominal s of work from which the parts of a comparison are announced. */
+#define CS_COMPARE_LONG_SECONDS 5.0
+
 /* Leading characters of a row's key: the same for all rows of a scene, time and reference. */
 #define CS_COMPARE_DIGITS 16
 
@@ -67,6 +70,7 @@ struct cs_compare_settings {
     const char *reference[2]; /* "NAME:options" of its families, or NULL */
     double accuracy;          /* m, see compare_reference.h */
     double budget;            /* nominal s of work that one run may take; 0: see below */
+    double reference_budget;  /* and explicit methods of a chosen reference; 0: the default */
     bool isolates_cells;      /* each first run in a process of its own: modules from outside */
     uint32_t runs;            /* rounds of timed runs, at most; up to CS_ROUNDS_MAX */
     enum cs_norm ranking_norm; /* error norm of the ranking */

@@ -27,8 +27,8 @@ void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *ou
         cs_text_add(
             out,
             "           implicit methods alone: explicit ones would take %.2g evaluations "
-            "of the forces\n",
-            reference->explicit_passes);
+            "of the forces, %.2g nominal s\n           (--reference-budget)\n",
+            reference->explicit_passes, reference->explicit_passes * compare->pass_seconds);
     if (reference->has_one_family)
         cs_text_add(out,
                     " error bar %.1e m, between twins of one family: no second one finished "
@@ -51,6 +51,14 @@ void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *ou
                 reference->accuracy, horizon->growth);
     if (!reference->pointwise)
         cs_text_add(out, "           statistics only: %s\n", reference->reason);
+}
+
+void cs_table_add_estimate(const struct cs_compare *compare, struct cs_text *out) {
+    const double passes = compare->reference.passes, seconds = passes * compare->pass_seconds;
+    if (seconds >= CS_COMPARE_LONG_SECONDS)
+        cs_text_add(out,
+                    "reference: about %.2g evaluations of the forces, %.2g nominal s of work\n",
+                    passes, seconds);
 }
 
 /* Width of the column of names: that of the longest, 20 to 48. */

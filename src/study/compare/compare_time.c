@@ -1,8 +1,8 @@
 /* Times cells in rounds, in a new random order in every round.
  *
  *   1. Rank the cells by their times so far; contenders are those the verdict depends on.
- *   2. Stop if there are none, or after LEAST_ROUNDS rounds if their ratios are narrow or the
- *    work of the rounds exceeds its budget.
+ *   2. Stop if there are none, after LEAST_ROUNDS rounds if their ratios are narrow, or when
+ * the work of the rounds exceeds its budget.
  *   3. Run each contender once and record its time.
  *   4. Update the cells' medians and quartiles, and go to 1.
  * Contenders are chosen again in every round, because better times change the ranking. */
@@ -146,11 +146,14 @@ static enum cs_status make_rounds(struct cs_compare *compare, uint32_t *order,
         bool narrow;
         if (choose(compare, order, &n, &narrow, error))
             return error->status;
-        if (n == 0 || (k >= least && (narrow || done > compare->rounds_seconds)))
+        if (n == 0 || (k >= least && narrow) || (k > 0 && done > compare->rounds_seconds))
             break;
-        done += round_seconds(compare, order, n);
+        const double round = round_seconds(compare, order, n),
+                     left = fmax(ceil((compare->rounds_seconds - done) / round), 1);
+        done += round;
         if (compare->settings->on_round)
-            compare->settings->on_round(compare->settings->ctx, k, most);
+            compare->settings->on_round(compare->settings->ctx, k,
+                                        (uint32_t)fmin(k + left, most));
         shuffle(order, n, &state);
         if (make_round(compare, order, n, &state, error))
             return error->status;

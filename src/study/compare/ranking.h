@@ -66,6 +66,10 @@ bool cs_ranking_is_narrow(const struct cs_ranking *ranking, double share);
  * were run, and claims nothing of others. */
 void cs_verdict_print(const struct cs_ranking *ranking, const char *bullet,
                       const struct cs_compare *compare, struct cs_text *out);
+/* Adds the ranking by work and single times, for the time that rounds take; nothing where the
+ * cells are of little work. CS_ERR_MEMORY. */
+enum cs_status cs_verdict_print_preliminary(const struct cs_compare *compare,
+                                            struct cs_text *out, struct cs_error *error);
 
 /* Adds a line: the cheapest way to an error of at most bound. */
 void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct cs_text *out);

@@ -148,6 +148,21 @@ void cs_verdict_print(const struct cs_ranking *ranking, const char *bullet,
     add_frame(ranking, bullet, compare, out);
 }
 
+enum cs_status cs_verdict_print_preliminary(const struct cs_compare *compare,
+                                            struct cs_text *out, struct cs_error *error) {
+    struct cs_ranking ranking;
+    double work = 0;
+    for (uint32_t k = 0; k < compare->cells.n; k++)
+        work += fmax(compare->cells.cells[k].work, 0);
+    if (work * compare->pass_seconds < CS_COMPARE_LONG_SECONDS ||
+        cs_ranking_make(&ranking, compare, error))
+        return error->status;
+    cs_text_add(out, "before rounds of timing:\n");
+    cs_verdict_print(&ranking, "  ", compare, out);
+    cs_ranking_finish(&ranking);
+    return CS_OK;
+}
+
 /* The cell with the smallest error of the norm, of all that are ranked; NULL: none. */
 static const struct cs_cell *most_accurate(const struct cs_compare *compare) {
     const enum cs_norm norm = compare->settings->ranking_norm;

@@ -1,150 +1,12 @@
 /* Computes the verified reference: four runs, their differences, and whether they agree. */
 #include "study/reference/compare_reference.h"
 
-#include "base/file.h"
-#include "base/hash.h"
 #include "model/force/diagnostics.h"
-#include "scene/file/scene_read.h"
 #include "study/reference/compare_reference_state.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* Stores a reference in a file for further comparisons of the scene. */
-
-#define MAGIC "clothsim ref 1\n"
-
-enum { FILE_BYTES_MAX = 1 << 30 };
-
-/* Head of the file, in the byte order of the machine: on another one `one` is not 1, and the
- * file counts as missing. */
-struct header {
-    char magic[16];
-    double one;
-    uint32_t n, frames;
-    double fps;
-    char hash[40];                         /* of the head without it, and of the states */
-    struct cs_compare_reference reference; /* pointers in it mean nothing */
-};
-
-/* Writes the hash of everything a reference depends on, CS_HASH_DIGITS characters.
- * CS_ERR_MEMORY. */
-static enum cs_status compare_reference_key(
-    const struct cs_compare_reference *reference, const struct cs_recorded_run *recording,
-    const struct cs_compare_reference_settings *settings, char *key, struct cs_error *error) {
-    const struct cs_session_settings *session = &settings->run->session;
-    const struct cs_scene *scene = &recording->session.scene;
-    const size_t values = 6 * (size_t)recording->session.system.view.n;
-    const struct cs_method *method = &recording->session.method;
-    char start[CS_HASH_DIGITS], of_scene[CS_HASH_DIGITS];
-    struct cs_text all = {0};
-    if (cs_scene_hash(scene, &method->table, method->options, of_scene, error))
-        return error->status;
-    // meshes are files of their own or made here: the start is as they came out
-    cs_hash_doubles(recording->initial_state, values, start);
-    cs_text_add(&all, "%s|", start);
-    cs_text_add(&all, "%s|%zu|%u|%.17g|%.17g|", CS_VERSION, sizeof(struct header),
-                settings->run->frames, scene->time.fps, settings->accuracy);
-    for (int k = 0; k < CS_COMPARE_REFERENCE_RUNS; k++)
-        cs_text_add(&all, "%s|", reference->methods[k]);
-    // where the methods are chosen here, a module that is added changes nothing
-    for (uint32_t k = 0; k < session->n_plugins && settings->methods[0]; k++)
-        cs_text_add(&all, "%s|", session->plugins[k]);
-    cs_text_add(&all, "%s", of_scene);
-    if (all.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the name of a reference");
-    else
-        cs_hash_bytes(cs_text_get(&all), all.length, key);
-    cs_text_finish(&all);
-    return error->status;
-}
-
-/* Path of the file; 16 digits of the key suffice for its name. */
-static void file_path(const char *folder, const char *key, char *path, size_t size) {
-    snprintf(path, size, "%s/reference-%.16s.state", folder, key);
-}
-
-/* Hash of everything in the file but the hash itself. */
-static void hash_file(const struct header *header, const double *states, size_t values,
-                      char hash[CS_HASH_DIGITS]) {
-    char both[2 * CS_HASH_DIGITS], head[sizeof *header];
-    memcpy(head, header, sizeof head);
-    memset(head + offsetof(struct header, hash), 0, sizeof header->hash);
-    cs_hash_bytes(head, sizeof head, both);
-    cs_hash_doubles(states, values, both + CS_HASH_DIGITS);
-    cs_hash_bytes(both, sizeof both, hash);
-}
-
-/* Reads or writes DIR/reference-KEY.state. A file that does not match the scene, the machine or
- * its own hash counts as missing. */
-static bool compare_reference_read(struct cs_compare_reference *reference, const char *folder,
-                                   const char *key, const struct cs_recorded_run *recording) {
-    char path[4096], *bytes, hash[CS_HASH_DIGITS];
-    size_t length;
-    struct cs_error missing = {0};
-    struct header header;
-    file_path(folder, key, path, sizeof path);
-    if (cs_file_read(path, FILE_BYTES_MAX, &bytes, &length, &missing))
-        return false;
-    struct cs_trajectory track;
-    bool good = length > sizeof header && !cs_trajectory_init(&track, recording, &missing);
-    /* a file that does not fit or was damaged is passed over, and the reference is computed */
-    if (good) {
-        memcpy(&header, bytes, sizeof header);
-        const size_t values = ((size_t)track.frames + 1) * 6 * track.n;
-        good = !memcmp(header.magic, MAGIC, sizeof MAGIC) && header.one == 1 &&
-               header.n == track.n && header.frames == track.frames &&
-               length == sizeof header + values * sizeof(double);
-        if (good) {
-            memcpy(track.states, bytes + sizeof header, values * sizeof(double));
-            hash_file(&header, track.states, values, hash);
-            good = !memcmp(hash, header.hash, sizeof hash);
-        }
-        if (good) {
-            *reference = header.reference;
-            track.n_recorded = track.frames;
-            reference->trajectory = track;
-            reference->cached = true;
-        } else
-            cs_trajectory_finish(&track);
-    }
-    free(bytes);
-    return good;
-}
-
-/* The file appears under its name only when it is complete, so parallel comparisons can share a
- * cache. */
-static enum cs_status compare_reference_write(const struct cs_compare_reference *reference,
-                                              const char *folder, const char *key,
-                                              struct cs_error *error) {
-    const struct cs_trajectory *track = &reference->trajectory;
-    const size_t values = ((size_t)track->frames + 1) * 6 * track->n;
-    struct header *header = calloc(1, sizeof *header);
-    struct cs_file_out out = {0};
-    char path[4096];
-    if (!header)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the reference");
-    file_path(folder, key, path, sizeof path);
-    memcpy(header->magic, MAGIC, sizeof MAGIC);
-    header->one = 1;
-    header->n = track->n;
-    header->frames = track->frames;
-    header->reference = *reference;
-    /* an address means nothing to the next run */
-    header->reference.trajectory.states = NULL;
-    header->reference.trajectory.free_from = NULL;
-    hash_file(header, track->states, values, header->hash);
-    if (!cs_folder_create(folder, error) && !cs_file_create(&out, path, error)) {
-        /* failures of fwrite are seen by cs_file_finish */
-        fwrite(header, sizeof *header, 1, out.file);
-        fwrite(track->states, sizeof(double), values, out.file);
-        cs_file_finish(&out, error);
-    }
-    free(header);
-    return error->status;
-}
 
 /* Families agree if they differ by at most EXPLAINED times the larger of their own errors, or
  * by FLOOR of the motion. */
@@ -157,11 +19,25 @@ static enum cs_status compare_reference_write(const struct cs_compare_reference 
 #define ROUGH    10
 #define ROUNDING 1e-13
 
-/* Reports the progress; the horizon counts as one more run. */
-static void tell(const struct cs_compare_reference_settings *settings, uint32_t done,
+/* Reports the progress in hundredths; the horizon counts as one more run. */
+static void tell(const struct cs_compare_reference_settings *settings, double done,
                  const char *what) {
     if (settings->progress)
-        settings->progress(settings->ctx, done, CS_COMPARE_REFERENCE_RUNS + 1, what);
+        settings->progress(settings->ctx,
+                           (uint32_t)(100 * done / (CS_COMPARE_REFERENCE_RUNS + 1)), 100, what);
+}
+
+/* A run, for the progress of its steps. */
+struct steps {
+    const struct cs_compare_reference_settings *settings;
+    double before, rate; /* runs before it; of it per s */
+};
+
+static bool tell_step(void *ctx, double t, double dt, double *x, double *v) {
+    const struct steps *steps = ctx;
+    (void)dt, (void)x, (void)v;
+    tell(steps->settings, steps->before + steps->rate * t, NULL);
+    return false;
 }
 
 /* Records run k of the four. *good: it reached its last frame. */
@@ -169,11 +45,17 @@ static enum cs_status run_one(struct cs_compare_reference *reference, int k,
                               const struct cs_compare_reference_settings *settings,
                               struct cs_trajectory *track, bool *good, struct cs_error *error) {
     struct cs_recorded_run recording;
+    struct cs_recorded_run_settings asked = *settings->run;
     struct cs_recorded_run_result end = {0};
-    tell(settings, (uint32_t)k, reference->methods[k]);
-    if (!cs_recorded_run_open(&recording, settings->run, reference->methods[k], error) &&
-        !cs_trajectory_init(track, &recording, error))
+    struct steps steps = {settings, k, 0};
+    asked.session.run.after_commit = tell_step;
+    asked.session.run.ctx = &steps;
+    tell(settings, k, reference->methods[k]);
+    if (!cs_recorded_run_open(&recording, &asked, reference->methods[k], error) &&
+        !cs_trajectory_init(track, &recording, error)) {
+        steps.rate = track->fps / track->frames;
         cs_recorded_run_execute(&recording, 0, track, &end, error);
+    }
     *good = !error->status && end.result.outcome == CS_RUNNING;
     if (!error->status && !*good)
         snprintf(reference->reason, sizeof reference->reason, "%.100s: %.200s",
@@ -365,9 +247,34 @@ enum cs_status cs_compare_reference_plan(struct cs_compare_reference *reference,
         name_twins(reference, 1, chosen[1], error))
         return error->status;
     if (!cs_recorded_run_open(&probe, settings->run, chosen[0], error))
-        compare_reference_key(reference, &probe, settings, key, error);
+        cs_compare_reference_key(reference, &probe, settings, key, error);
     cs_recorded_run_close(&probe);
     return error->status;
+}
+
+/* The runs within the budget of chosen explicit methods; where it is used up, those of implicit
+ * ones. The count of the work decides, so that every machine takes the same. */
+static enum cs_status compute_within(struct cs_compare_reference *reference,
+                                     const struct cs_recorded_run *probe,
+                                     const struct cs_compare_reference_settings *settings,
+                                     struct cs_error *error) {
+    double left = cs_compare_reference_budget(settings);
+    struct cs_recorded_run_settings bounded = *settings->run;
+    struct cs_compare_reference_settings asked = *settings;
+    char unused[CS_HASH_DIGITS];
+    if (settings->methods[0] || reference->explicit_passes > 0)
+        return compute(reference, probe, settings, error);
+    bounded.session.run.pot = &left;
+    asked.run = &bounded;
+    if (compute(reference, probe, &asked, error) || reference->families_agree || left > 0)
+        return error->status;
+    cs_compare_reference_finish(reference);
+    // less than any run takes
+    asked.run = settings->run;
+    asked.explicit_seconds = 1e-9;
+    return cs_compare_reference_plan(reference, &asked, unused, error)
+               ? error->status
+               : compute(reference, probe, settings, error);
 }
 
 enum cs_status cs_compare_reference_get(struct cs_compare_reference *reference,
@@ -379,10 +286,10 @@ enum cs_status cs_compare_reference_get(struct cs_compare_reference *reference,
         cs_recorded_run_open(&probe, settings->run, reference->methods[0], error))
         return error->status;
     const bool found =
-        settings->cache && compare_reference_read(reference, settings->cache, key, &probe);
-    if (!found && !compute(reference, &probe, settings, error) && reference->families_agree &&
-        settings->cache)
-        compare_reference_write(reference, settings->cache, key, error);
+        settings->cache && cs_compare_reference_read(reference, settings->cache, key, &probe);
+    if (!found && !compute_within(reference, &probe, settings, error) &&
+        reference->families_agree && settings->cache)
+        cs_compare_reference_write(reference, settings->cache, key, error);
     tell(settings, CS_COMPARE_REFERENCE_RUNS + 1, "");
     cs_recorded_run_close(&probe);
     if (error->status)

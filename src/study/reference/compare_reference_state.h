@@ -31,13 +31,20 @@ enum cs_status cs_horizon_measure(struct cs_horizon *horizon,
 
 enum { CS_COMPARE_REFERENCE_RUNS = 4 };
 
+/* Default of explicit_seconds. */
+#define CS_COMPARE_REFERENCE_SECONDS 20
+
 /* Request for a reference; all pointers are borrowed. */
 struct cs_compare_reference_settings {
     const struct cs_recorded_run_settings *run;
     const char *methods[2]; /* "NAME:options" of the two families; NULL: the best there are */
     double accuracy;        /* m to which pointwise errors are wanted: bounds the horizon */
-    const char *cache;      /* folder, or NULL */
-    /* called before each run and at the end; may be NULL */
+    /* nominal s (cs_pass_seconds) of work that chosen explicit methods may take in all; beyond
+     * it implicit ones stand for them. 0: the default */
+    double explicit_seconds;
+    const char *cache; /* folder, or NULL */
+    /* called before each run with its method, after each of its steps with NULL, and at the
+     * end with ""; may be NULL */
     void (*progress)(void *ctx, uint32_t done, uint32_t total, const char *what);
     void *ctx;
 };
@@ -55,6 +62,7 @@ struct cs_compare_reference {
     double strain;         /* largest */
     double accuracy;       /* m, as asked for */
     struct cs_horizon horizon;
+    double passes;          /* of the four runs by estimate (cs_counts_work); 0: not known */
     double explicit_passes; /* evaluations of the forces that four explicit runs would take,
                                where they are too dear and implicit ones stand for them; 0: they
                                do not */
@@ -65,6 +73,26 @@ struct cs_compare_reference {
     char reason[320]; /* why they do not agree, or why there are no pointwise errors */
 };
 
+/* The file of a reference, DIR/reference-KEY.state. */
+
+/* Writes the hash of everything that a reference depends on, CS_HASH_DIGITS characters.
+ * CS_ERR_MEMORY. */
+enum cs_status cs_compare_reference_key(const struct cs_compare_reference *reference,
+                                        const struct cs_recorded_run *recording,
+                                        const struct cs_compare_reference_settings *settings,
+                                        char *key, struct cs_error *error);
+
+/* Reads the reference of the key from the folder. Returns false, with *reference unchanged, if
+ * there is none, or one that does not fit the scene, the machine or its own hash. */
+bool cs_compare_reference_read(struct cs_compare_reference *reference, const char *folder,
+                               const char *key, const struct cs_recorded_run *recording);
+
+/* Writes the file. It appears under its name only when it is complete, hence parallel
+ * comparisons can share a folder. CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_compare_reference_write(const struct cs_compare_reference *reference,
+                                          const char *folder, const char *key,
+                                          struct cs_error *error);
+
 /* Chooses the two families of methods of a reference. */
 
 /* Writes the tighter settings of "NAME:key=value,...": rtol and atol divided by 10, dt by 2.
@@ -74,12 +102,16 @@ enum cs_status cs_compare_reference_tighten(const char *integrator, char *out, s
 
 /* Chooses the best available method of each family, with its settings. reference->replacement:
  * the next candidate for the second family; "" if there is none or both families are given.
- * Sets reference->explicit_passes where two explicit families would take more than 600 nominal
- * s (cs_pass_seconds), and chooses two implicit ones with steps of a quarter of a frame. */
+ * Estimates reference->passes. Sets reference->explicit_passes where two explicit families
+ * would exceed their budget, and chooses two implicit ones with steps of a quarter of a frame.
+ */
 enum cs_status cs_compare_reference_choose(const struct cs_compare_reference_settings *settings,
                                            char chosen[2][256],
                                            struct cs_compare_reference *reference,
                                            struct cs_error *error);
+
+/* Nominal s that explicit runs may take: those asked for, or the default. */
+double cs_compare_reference_budget(const struct cs_compare_reference_settings *settings);
 
 /* Measures the horizon and decides whether there are pointwise errors: these need families that
  * agree, a horizon beyond the end, and an error bar below the accuracy. The bar of implicit
