@@ -22,7 +22,8 @@ from typing import Any, Optional
 
 import numpy as np
 
-__all__ = ["Picture", "Run", "advise", "compare", "conform", "load_compare", "load_run", "picture", "run", "stability"]
+__all__ = ["Picture", "Run", "advise", "compare", "conform", "force_length", "frequencies", "load_compare", "load_run",
+           "picture", "plot", "run", "spectrum", "stability"]
 
 # columns of compare.csv that are texts, and flags; all others are numbers
 TEXTS = frozenset(("series", "method", "fixed", "options", "family", "control", "outcome", "note",
@@ -192,3 +193,66 @@ def picture(scene, frame: int = 0, set: Optional[dict] = None, integrator: Optio
         words = ["--frames", frame, "--every", max(frame, 1), "--overwrite", "--out", into]
         _call("run", scene, words + (["--integrator", integrator] if integrator else []), set)
         return Picture(sorted(Path(into).glob("*.png"))[-1].read_bytes())
+
+
+def _amplitudes(run: Run, particle: int) -> tuple:
+    """Frequencies in Hz and amplitudes in m of a particle, four times as dense as the samples give by themselves. The
+    window of Hann lets a vibration leak into its neighbours alone (Harris 1978); its mean of 1/2 is divided out."""
+    x = run.x[:, particle] - run.x[:, particle].mean(axis=0)
+    window = np.hanning(len(x))
+    lines = np.fft.rfft(x * window[:, None], 4 * len(x), axis=0)
+    return (np.fft.rfftfreq(4 * len(x), run.times[1] - run.times[0]),
+            2 / window.sum() * np.sqrt((np.abs(lines) ** 2).sum(axis=1)))
+
+
+def spectrum(run: Run, particle: int):
+    """Spectrum of a particle's motion about its mean place: a table with "frequency in Hz" and "amplitude in m"."""
+    return _table([{"frequency in Hz": f, "amplitude in m": a}
+                   for f, a in zip(*(row.tolist() for row in _amplitudes(run, particle)))])
+
+
+def frequencies(run: Run, particle: int, most: int = 3, share: float = 0.04) -> list:
+    """The lowest frequencies in Hz at which a particle moves: peaks of its spectrum above `share` of the highest one
+    (the window has side lobes of 0.027), each at the vertex of the parabola through three logarithms; two periods of it
+    are in the run."""
+    f, amplitude = _amplitudes(run, particle)
+    with np.errstate(divide="ignore"):
+        log = np.log(amplitude)
+    found = []
+    for k in range(1, len(f) - 1):
+        if f[k] * (run.times[-1] - run.times[0]) >= 2 and amplitude[k] > share * amplitude.max() and \
+           log[k - 1] < log[k] >= log[k + 1]:
+            found.append(float(f[k] + (f[1] - f[0]) * (log[k - 1] - log[k + 1]) /
+                               (2 * (log[k - 1] - 2 * log[k] + log[k + 1]))))
+    return found[:most]
+
+
+def force_length(scene, stretches, set: Optional[dict] = None):
+    """Force over length of the first body, a free cloth: a table with "length over rest", along x, and "force
+    in N", which pulls the ends together and is negative where it pushes them apart. The width stays as it is,
+    nothing moves, and gravity is off. RuntimeError."""
+    rows = []
+    for stretch in map(float, stretches):
+        with tempfile.TemporaryDirectory() as into:
+            values = {**(set or {}), "bodies[0].cloth.stretch": [stretch, 1], "forces.gravity": [0, 0, 0]}
+            _call("run", scene, ["--frames", 0, "--no-render", "--export", "npz", "--export-values", "force",
+                                 "--overwrite", "--out", into], values)
+            with np.load(Path(into) / "run.npz") as samples:
+                x, force = samples["positions"][0, :, 0], samples["forces"][0, :, 0]
+                last = samples["body_offsets"][1]
+        half = force[:last][x[:last] < x[:last].mean()]
+        rows.append({"length over rest": stretch, "force in N": float(half.sum())})
+    return _table(rows)
+
+
+def plot(table, options: tuple = ()) -> Picture:
+    """Draws a table of numbers over its first column by clothsim-plot(1); `options` as ("--log", "y"). RuntimeError."""
+    rows = table if isinstance(table, list) else table.to_dict("records")
+    with tempfile.TemporaryDirectory() as into:
+        path = Path(into) / "table.csv"
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+        _call("plot", path, ["--format", "png", "--title", " over ".join(list(rows[0])[1::-1]), *options])
+        return Picture(path.with_suffix(".png").read_bytes())
