@@ -198,8 +198,9 @@ TEST(the_rest_is_the_methods_error) {
 }
 
 /* A sheet on a sphere by projection: each step pushes particles out into springs that an
- * implicit step of a frame does not resolve. Along a path that followed their accelerations the
- * dampers took a hundred times the energy there is, and the method made as much. */
+ * implicit step of a frame does not resolve, with up to 17 J. Along a path that followed their
+ * accelerations the dampers took a hundred times the energy there is, and the method made as
+ * much. */
 TEST(dampers_take_no_more_than_there_is) {
     static const char *const methods[] = {"implicit-linearised", "backward-euler", "tr-bdf2"};
     static const char scene[] =
@@ -216,7 +217,8 @@ TEST(dampers_take_no_more_than_there_is) {
         printf("%s: %g J by dampers, %g J by the method, %g J by projection\n", methods[k],
                work[CS_WORK_DAMPERS], work[CS_WORK_INTEGRATOR], work[CS_WORK_PROJECTION]);
         ck_assert_double_le(work[CS_WORK_INTEGRATOR], 0);
-        ck_assert_double_lt(-work[CS_WORK_DAMPERS], 0.3 * 9.81 * 0.62);
+        ck_assert_double_lt(-work[CS_WORK_DAMPERS],
+                            0.3 * 9.81 * 0.62 + work[CS_WORK_PROJECTION]);
         close_kept(&kept);
     }
 }

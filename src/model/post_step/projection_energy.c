@@ -106,6 +106,14 @@ static void response_solve(struct cs_elastic_response *response, const struct cs
  * that are still behind a surface. Chosen by trial. */
 #define GIVEN_BACK 0.01
 
+/* Depth behind a collider from which on a particle is put on the surface whatever the energy,
+ * the larger of both, in inner radii and in shortest springs: a limit by energy alone puts off
+ * the rest for ever, and a sheet of 8 x 8 particles came through a ball. What lies inside a
+ * collider thinner than a spring leaves it as energy lets it. Chosen by trial: at 0.04 radii
+ * most sheets on balls change, at 0.25 three of nine methods get energy from the lift. */
+#define DEPTH_RADII   0.1
+#define DEPTH_SPRINGS 0.25
+
 /* relative difference that rounding may cause between equal energies */
 #define ROUNDING 1e-13
 
@@ -272,6 +280,25 @@ static void bisect_fraction(struct cs_projection_energy *balance,
     *part = low;
 }
 
+/* Applies the correction all the way to the particles that a shorter one leaves deep. */
+static void lift_deep(const struct cs_projection_energy *balance,
+                      const struct cs_projection_step *blow) {
+    const size_t n = balance->system->view.n;
+    const double shortest = cs_diagnostics_shortest(balance->system);
+    for (uint32_t k = 0; k < balance->system->scene->colliders.n; k++) {
+        const double most = fmax(DEPTH_RADII * cs_tunnelling_inner_radius(blow->colliders + k),
+                                 DEPTH_SPRINGS * shortest);
+        for (size_t i = 0; i < n; i++) {
+            double *x = blow->corrected + i, normal[3];
+            const double p[3] = {x[0], x[n], x[2 * n]};
+            const double gap =
+                cs_posed_collider_signed_distance(blow->colliders + k, p, normal);
+            for (size_t c = 0; c < 3 * n && blow->is_pushed[i] && gap < -most; c += n)
+                x[c] = blow->x[c + i] + balance->work[c + i];
+        }
+    }
+}
+
 /* Reduces the correction: first the velocities, which carry the momentum of the impact, then
  * the displacements. Returns the energy that results. */
 static struct cs_energy_with_scale shorten(struct cs_projection_energy *balance,
@@ -284,7 +311,9 @@ static struct cs_energy_with_scale shorten(struct cs_projection_energy *balance,
         bisect_fraction(balance, blow, allowed, &share, &share.speed);
     bisect_fraction(balance, blow, allowed, &share, &share.way);
     balance->n_scaled_commits++;
-    return try_share(balance, blow, share);
+    try_share(balance, blow, share);
+    lift_deep(balance, blow);
+    return energy_after(balance, blow);
 }
 
 /* Energies are computed lazily: the limit with external work only if the simple one is
