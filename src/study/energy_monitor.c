@@ -134,29 +134,21 @@ static void start_speeds(struct cs_energy_monitor *monitor, const struct cs_run 
     monitor->acceleration = falls + pushes;
 }
 
-/* Sets the bounds of "beyond cloth". */
-static void begin_cloth(struct cs_energy_monitor *monitor, const struct cs_run *run) {
-    struct cs_cloth_peak *cloth = monitor->cloth;
-    cloth[CS_CLOTH_EXTENSION].bound = EXTENSION_MAX;
-    cloth[CS_CLOTH_DEPTH].bound = DEPTH_MAX * cs_run_calls(run)->length_scale;
-    cloth[CS_CLOTH_SPEED].bound = SPEED_MAX;
-    for (uint32_t b = 0; b < run->system->scene->bodies.n; b++) // no limit is NAN
-        cloth[CS_CLOTH_EXTENSION].bound =
-            fmax(cloth[CS_CLOTH_EXTENSION].bound,
-                 cs_scene_bodies(run->system->scene)[b].strain_limit - 1);
-}
-
 enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
                                        const struct cs_run *run, struct cs_error *error) {
     const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
     double speed = 0;
     *monitor = (struct cs_energy_monitor){
         .stride = 1,
-        .may_swing =
-            (run->integrator->traits & (CS_SYMPLECTIC | CS_IMPLICIT)) == CS_SYMPLECTIC};
+        .may_swing = (run->integrator->traits & (CS_SYMPLECTIC | CS_IMPLICIT)) == CS_SYMPLECTIC,
+        .cloth = {{.bound = EXTENSION_MAX},
+                  {.bound = DEPTH_MAX * cs_run_calls(run)->length_scale},
+                  {.bound = SPEED_MAX}}};
+    double *const extension = &monitor->cloth[CS_CLOTH_EXTENSION].bound;
+    for (uint32_t b = 0; b < run->system->scene->bodies.n; b++) // no limit is NAN
+        *extension = fmax(*extension, cs_scene_bodies(run->system->scene)[b].strain_limit - 1);
     if (spring_speed(run, &speed, error))
         return error->status;
-    begin_cloth(monitor, run);
     start_speeds(monitor, run);
     monitor->start_speed += speed;
     const double *g = run->system->scene->forces.gravity, c = cs_run_calls(run)->speed_scale;
@@ -298,14 +290,13 @@ void cs_energy_monitor_print_beyond(const struct cs_energy_monitor *monitor,
                                     struct cs_text *out) {
     static const char *const units[CS_CLOTH_BOUNDS] = {"times the rest length more",
                                                        "m deep in a collider", "m/s fast"};
-    const char *between = "beyond cloth: ";
+    int printed = 0;
     for (int k = 0; k < CS_CLOTH_BOUNDS; k++) {
         const struct cs_cloth_peak *peak = monitor->cloth + k;
-        if (!(peak->value > peak->bound))
-            continue;
-        cs_text_add(out, "%s%.3g %s at t = %.6g s, bound %.3g", between, peak->value, units[k],
-                    peak->t, peak->bound);
-        between = "; ";
+        if (peak->value > peak->bound)
+            cs_text_add(out, "%s%.3g %s at t = %.6g s, bound %.3g",
+                        printed++ ? "; " : "beyond cloth: ", peak->value, units[k], peak->t,
+                        peak->bound);
     }
 }
 

@@ -39,22 +39,14 @@ static void find_principal(double xx, double yy, double xy, double *low, double 
     *high = mid + r;
 }
 
-/* Principal strains of triangle t. */
-static void find_principal_strains(const struct cs_system *system,
-                                   const struct cs_membrane *membrane, uint32_t t,
-                                   const double *x, double *low, double *high) {
-    double E[3];
-    find_strain(membrane, t, system->view.n, x, E);
-    find_principal(E[0], E[1], E[2] / 2, low, high);
-    *high = sqrt(1 + 2 * *high) - 1;
-    *low = sqrt(fmax(1 + 2 * *low, 0)) - 1;
-}
-
 /* The principal strain of largest magnitude of triangle t, with its sign. */
 static double strain_of(const struct cs_system *system, const struct cs_membrane *membrane,
                         uint32_t t, const double *x) {
-    double low, high;
-    find_principal_strains(system, membrane, t, x, &low, &high);
+    double E[3], low, high;
+    find_strain(membrane, t, system->view.n, x, E);
+    find_principal(E[0], E[1], E[2] / 2, &low, &high);
+    high = sqrt(1 + 2 * high) - 1;
+    low = sqrt(fmax(1 + 2 * low, 0)) - 1;
     return fabs(low) > fabs(high) ? low : high;
 }
 
@@ -73,11 +65,11 @@ static double stress_of(const struct cs_system *system, const struct cs_membrane
 double cs_membranes_largest_strain(const struct cs_system *system, const double *x,
                                    bool extends) {
     const struct cs_membranes *all = system->membranes;
-    double largest = 0, low, high;
+    double largest = 0;
     for (uint32_t b = 0; all && b < all->n; b++)
         for (uint32_t t = 0; t < all->bodies[b].n; t++) {
-            find_principal_strains(system, all->bodies + b, t, x, &low, &high);
-            largest = fmax(largest, extends ? high : fmax(fabs(low), fabs(high)));
+            const double strain = strain_of(system, all->bodies + b, t, x);
+            largest = fmax(largest, extends ? strain : fabs(strain));
         }
     return largest;
 }

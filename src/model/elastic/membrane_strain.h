@@ -6,7 +6,7 @@
 
 /* Largest magnitude of the principal strains of all triangles: with the eigenvalues e of
  * Green's strain, sqrt(1 + 2 e) - 1, the change of length over the length. NaNs are skipped; 0
- * without membranes. extends: of tension alone. */
+ * without membranes. extends: of triangles that extend more than they shrink. */
 double cs_membranes_largest_strain(const struct cs_system *system, const double *x,
                                    bool extends);
 

@@ -80,7 +80,6 @@ static void solve(struct cs_elastic_response *response, double *u) {
         cs_vector_kernels.linear_sum(n3, 1, u, now / curvature, p, u);
         cs_vector_kernels.linear_sum(n3, 1, r, -now / curvature, q, r);
         norm = sqrt(cs_vector_dot(n3, r, r));
-        response->iterations++;
     }
 }
 
@@ -96,7 +95,6 @@ static void response_solve(struct cs_elastic_response *response, const struct cs
                            const bool *pushed, double *u) {
     cs_temporary_pins_set(&response->pins, pushed);
     cs_linear_setup(&response->linear, matrix);
-    response->solves++;
     clear_free(response->linear.system, pushed, u);
     solve(response, u);
     cs_temporary_pins_clear(&response->pins, pushed);
@@ -310,7 +308,6 @@ static struct cs_energy_with_scale shorten(struct cs_projection_energy *balance,
     if (try_share(balance, blow, share).total > allowed)
         bisect_fraction(balance, blow, allowed, &share, &share.speed);
     bisect_fraction(balance, blow, allowed, &share, &share.way);
-    balance->n_scaled_commits++;
     try_share(balance, blow, share);
     lift_deep(balance, blow);
     return energy_after(balance, blow);
@@ -373,7 +370,4 @@ void cs_projection_energy_serialise(struct cs_projection_energy *balance,
     CS_SERIALISER(record, balance->energy_limit);
     CS_SERIALISER(record, balance->has_last_energy);
     CS_SERIALISER(record, balance->in_contact);
-    CS_SERIALISER(record, balance->n_scaled_commits);
-    CS_SERIALISER(record, balance->elastic_response.solves);
-    CS_SERIALISER(record, balance->elastic_response.iterations);
 }

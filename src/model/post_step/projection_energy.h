@@ -25,14 +25,12 @@
 /* Implicit elastic response of the body to the displacements that
  * projection imposed. */
 
-/* Linear solver of the response, and its counters. */
+/* Linear solver of the response. */
 struct cs_elastic_response {
     /* its own solver: a method may keep the matrix of another */
     struct cs_linear linear;
     /* pushed particles, so that the preconditioner knows them as pinned */
     struct cs_temporary_pins pins;
-    /* systems solved, and iterations of conjugate gradients, over the whole run */
-    uint64_t solves, iterations;
 };
 
 /* J: total energy, and the sum of the sizes of its parts, which scales rounding errors. */
@@ -58,8 +56,6 @@ struct cs_projection_energy {
     double energy_limit;
     bool has_last_energy,
         in_contact; /* energy is that of the state before; most is of this contact */
-    uint64_t
-        n_scaled_commits; /* commits in which pushes were cut to the energy that was there */
 };
 
 /* One commit with a push; all is borrowed. */
