@@ -18,8 +18,11 @@ static void get(struct cs_compare_reference *reference, const char *first, const
     scene_write(path, SMALL_SCENE, "0.02");
     const struct cs_recorded_run_settings recording = {
         .session = {.scene = path, .plugins = plugins, .n_plugins = 1}, .frames = FRAMES};
-    const struct cs_compare_reference_settings settings = {
-        .run = &recording, .methods = {first, second}, .accuracy = 1e-6, .cache = cache};
+    const struct cs_compare_reference_settings settings = {.run = &recording,
+                                                           .methods = {first, second},
+                                                           .accuracy = 1e-6,
+                                                           .explicit_seconds = 100,
+                                                           .cache = cache};
     cs_compare_reference_get(reference, &settings, &error);
     ck_assert_msg(!error.status, "%s", error.message);
 }
@@ -127,7 +130,8 @@ TEST(rough_scenes_take_adaptive_steps) {
     scene_write(path, ROUGH, "0.001");
     const struct cs_recorded_run_settings recording = {.session = {.scene = path},
                                                        .frames = FRAMES};
-    const struct cs_compare_reference_settings settings = {.run = &recording, .accuracy = 1e-6};
+    const struct cs_compare_reference_settings settings = {
+        .run = &recording, .accuracy = 1e-6, .explicit_seconds = 100};
     cs_compare_reference_get(&reference, &settings, &error);
     ck_assert_msg(!error.status, "%s", error.message);
     ck_assert_msg(reference.families_agree, "%s", reference.reason);
@@ -302,7 +306,8 @@ TEST(a_used_up_budget_leaves_implicit_families) {
     scene_write(path, SLACK, "");
     const struct cs_recorded_run_settings asked = {.session = {.scene = path},
                                                    .frames = FRAMES};
-    struct cs_compare_reference_settings settings = {.run = &asked, .accuracy = 1e-6};
+    struct cs_compare_reference_settings settings = {
+        .run = &asked, .accuracy = 1e-6, .explicit_seconds = 100};
     ck_assert(!cs_recorded_run_open(&recording, &asked, "velocity-verlet", &error));
     const double pass_seconds = cs_pass_seconds(&recording.session.system);
     cs_recorded_run_close(&recording);

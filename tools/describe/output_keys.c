@@ -32,6 +32,7 @@ static const struct cs_output_key origin_keys[] = {
     {"frames", "whole", "1", "frames of each run"},
     {"reference?", "list of text", "", "the two methods of --reference, where it was given"},
     {"accuracy", "number", "m", "smallest error that the comparison must resolve"},
+    {"reference_budget?", "number", "s", "nominal s of --reference-budget; 0: the default"},
     {"scene_file", "text", "", SCENE},
     {"files", "list", "", "files that the results depend on"},
     {"files[].path", "text", "", "path of a file"},

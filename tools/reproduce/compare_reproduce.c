@@ -154,6 +154,7 @@ static void read_reference(const struct cs_provenance *provenance,
         if (cs_json_kind_of(cs_json_at(pair, k)) == CS_JSON_TEXT)
             settings->reference[k] = cs_json_text(cs_json_at(pair, k));
     settings->accuracy = cs_provenance_number(provenance->json, "accuracy");
+    settings->reference_budget = cs_provenance_number(provenance->json, "reference_budget");
 }
 
 enum cs_status cs_compare_reproduce_row(struct cs_reproduction *again,

@@ -72,7 +72,8 @@ static enum cs_status print_origin(struct cs_compare *compare, struct cs_error *
     if (compare->settings->reference[0])
         cs_json_write(out, "  'reference': [%s, %s],\n", compare->settings->reference[0],
                       compare->settings->reference[1]);
-    cs_json_write(out, "  'accuracy': %g,\n", compare->settings->accuracy);
+    cs_json_write(out, "  'accuracy': %g,\n  'reference_budget': %g,\n",
+                  compare->settings->accuracy, compare->settings->reference_budget);
     cs_provenance_out_print_scene(&scene, out, error);
     cs_text_add(out, ",\n  \"scene\": ");
     /* what each method chooses stays absent */
@@ -100,7 +101,8 @@ cs_compare_reference_query(const struct cs_compare_settings *settings) {
         .run = &settings->run,
         .methods = {settings->reference[0], settings->reference[1]},
         .accuracy = settings->accuracy,
-        .explicit_seconds = settings->reference_budget,
+        .explicit_seconds = settings->reference_budget > 0 ? settings->reference_budget
+                                                           : CS_COMPARE_REFERENCE_SECONDS,
         .cache = settings->cache,
         .progress = settings->reference_progress,
         .ctx = settings->ctx};

@@ -29,19 +29,16 @@ void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *ou
             "           implicit methods alone: explicit ones would take %.2g evaluations "
             "of the forces, %.2g nominal s\n           (--reference-budget)\n",
             reference->explicit_passes, reference->explicit_passes * compare->pass_seconds);
+    const double *differences = reference->differences;
+    cs_text_add(out, " error bar %.1e m", reference->error_bar);
     if (reference->has_one_family)
-        cs_text_add(out,
-                    " error bar %.1e m, between twins of one family: no second one finished "
-                    "(%s); the motion is %.2g m%s\n",
-                    reference->error_bar, reference->reason, reference->motion_scale,
-                    reference->cached ? "; from the cache" : "");
+        cs_text_add(out, ", between twins of one family: no second one finished (%s)",
+                    reference->reason);
     else
-        cs_text_add(
-            out,
-            " error bar %.1e m (twins %.1e, %.1e; families %.1e); the motion is %.2g m%s\n",
-            reference->error_bar, reference->differences[0], reference->differences[1],
-            reference->differences[2], reference->motion_scale,
-            reference->cached ? "; from the cache" : "");
+        cs_text_add(out, " (twins %.1e, %.1e; families %.1e)", differences[0], differences[1],
+                    differences[2]);
+    cs_text_add(out, "; the motion is %.2g m%s\n", reference->motion_scale,
+                reference->cached ? "; from the cache" : "");
     cs_text_add(out, "   horizon ");
     if (horizon->time <= compare->time)
         cs_text_add(out, "%.3g s", horizon->time);
@@ -56,8 +53,7 @@ void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *ou
 void cs_table_add_estimate(const struct cs_compare *compare, struct cs_text *out) {
     const double passes = compare->reference.passes, seconds = passes * compare->pass_seconds;
     if (seconds >= CS_COMPARE_LONG_SECONDS)
-        cs_text_add(out,
-                    "reference: about %.2g evaluations of the forces, %.2g nominal s of work\n",
+        cs_text_add(out, "reference: about %.2g evaluations of the forces, %.2g nominal s\n",
                     passes, seconds);
 }
 

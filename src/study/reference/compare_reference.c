@@ -258,7 +258,7 @@ static enum cs_status compute_within(struct cs_compare_reference *reference,
                                      const struct cs_recorded_run *probe,
                                      const struct cs_compare_reference_settings *settings,
                                      struct cs_error *error) {
-    double left = cs_compare_reference_budget(settings);
+    double left = settings->explicit_seconds;
     struct cs_recorded_run_settings bounded = *settings->run;
     struct cs_compare_reference_settings asked = *settings;
     char unused[CS_HASH_DIGITS];
@@ -269,9 +269,8 @@ static enum cs_status compute_within(struct cs_compare_reference *reference,
     if (compute(reference, probe, &asked, error) || reference->families_agree || left > 0)
         return error->status;
     cs_compare_reference_finish(reference);
-    // less than any run takes
     asked.run = settings->run;
-    asked.explicit_seconds = 1e-9;
+    asked.explicit_seconds = 0;
     return cs_compare_reference_plan(reference, &asked, unused, error)
                ? error->status
                : compute(reference, probe, settings, error);

@@ -81,8 +81,7 @@ static enum cs_status measure_scale(const struct cs_compare_reference_settings *
         const double fps = recording.session.scene.time.fps,
                      omega = fmax(system->view.omega, 1);
         const double passes = EXPLICIT_PASSES * omega * settings->run->frames / fps;
-        scale->is_implicit =
-            passes * cs_pass_seconds(system) > cs_compare_reference_budget(settings);
+        scale->is_implicit = passes * cs_pass_seconds(system) > settings->explicit_seconds;
         scale->length = scale->is_implicit ? 1 / fps : 2 / omega;
         reference->explicit_passes = scale->is_implicit ? passes : 0;
         reference->passes =
@@ -95,21 +94,15 @@ static enum cs_status measure_scale(const struct cs_compare_reference_settings *
 /* Chooses the first available candidate of a family from number *k on; *k is then the next
  * number, and the choice "" if there is none. One method must not stand for both families. */
 static void take_first(const struct cs_compare_reference_settings *settings, int family,
-                       const struct scale *scale, int *k, char chosen[2][256]) {
+                       const struct scale *scale, int *k, const char *first, char chosen[256]) {
     const char *const *const list = families[scale->is_implicit][family];
     for (bool found = false; !found && list[*k]; ++*k) {
-        fill_step(list[*k], scale->length, chosen[family], sizeof chosen[family]);
-        const size_t name = strcspn(chosen[family], ":");
-        found = is_there(settings, chosen[family]) &&
-                (family == 0 || strncmp(chosen[0], chosen[1], name + 1) != 0);
+        fill_step(list[*k], scale->length, chosen, 256);
+        found = is_there(settings, chosen) &&
+                (family == 0 || strncmp(first, chosen, strcspn(chosen, ":") + 1) != 0);
         if (!found)
-            *chosen[family] = 0;
+            *chosen = 0;
     }
-}
-
-double cs_compare_reference_budget(const struct cs_compare_reference_settings *settings) {
-    return settings->explicit_seconds > 0 ? settings->explicit_seconds
-                                          : CS_COMPARE_REFERENCE_SECONDS;
 }
 
 /* Takes both families from --reference. */
@@ -137,35 +130,26 @@ enum cs_status cs_compare_reference_choose(const struct cs_compare_reference_set
         return error->status;
     for (int family = 0; family < 2; family++) {
         *chosen[family] = 0;
-        take_first(settings, family, &scale, next + family, chosen);
+        take_first(settings, family, &scale, next + family, chosen[0], chosen[family]);
         if (!*chosen[family])
             return cs_fail(
                 error, CS_ERR_MODULE,
                 "a reference needs methods of two families, but fewer are available");
     }
-    char others[2][256];
-    memcpy(others, chosen, sizeof others);
-    *others[1] = 0;
-    take_first(settings, 1, &scale, next + 1, others);
-    memcpy(reference->replacement, others[1], sizeof others[1]);
+    take_first(settings, 1, &scale, next + 1, chosen[0], reference->replacement);
     return CS_OK;
-}
-
-/* Options that set the accuracy. */
-static bool is_tightened(const char *key) {
-    return !strcmp(key, "rtol") || !strcmp(key, "atol") || !strcmp(key, "dt");
 }
 
 /* Adds one option, tightened if it sets the accuracy. */
 static void tighten(const char *key, const char *text, struct cs_text *out) {
     double value;
     cs_text_add(out, "%s=", key);
-    if (!is_tightened(key) || !cs_parse_real(text, &value))
-        cs_text_add(out, "%s", text);
-    else if (!strcmp(key, "dt"))
+    if (!strcmp(key, "dt") && cs_parse_real(text, &value))
         cs_text_add_real(out, value / 2);
-    else // 1e-12 / 10 is to read 1e-13
-        cs_text_add(out, "%.6g", value / 10);
+    else if ((!strcmp(key, "rtol") || !strcmp(key, "atol")) && cs_parse_real(text, &value))
+        cs_text_add(out, "%.6g", value / 10); // 1e-12 / 10 must read 1e-13
+    else
+        cs_text_add(out, "%s", text);
 }
 
 enum cs_status cs_compare_reference_tighten(const char *integrator, char *out, size_t size,

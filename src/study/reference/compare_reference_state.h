@@ -31,7 +31,7 @@ enum cs_status cs_horizon_measure(struct cs_horizon *horizon,
 
 enum { CS_COMPARE_REFERENCE_RUNS = 4 };
 
-/* Default of explicit_seconds. */
+/* Usual explicit_seconds. */
 #define CS_COMPARE_REFERENCE_SECONDS 20
 
 /* Request for a reference; all pointers are borrowed. */
@@ -40,7 +40,7 @@ struct cs_compare_reference_settings {
     const char *methods[2]; /* "NAME:options" of the two families; NULL: the best there are */
     double accuracy;        /* m to which pointwise errors are wanted: bounds the horizon */
     /* nominal s (cs_pass_seconds) of work that chosen explicit methods may take in all; beyond
-     * it implicit ones stand for them. 0: the default */
+     * it implicit ones stand for them */
     double explicit_seconds;
     const char *cache; /* folder, or NULL */
     /* called before each run with its method, after each of its steps with NULL, and at the
@@ -109,9 +109,6 @@ enum cs_status cs_compare_reference_choose(const struct cs_compare_reference_set
                                            char chosen[2][256],
                                            struct cs_compare_reference *reference,
                                            struct cs_error *error);
-
-/* Nominal s that explicit runs may take: those asked for, or the default. */
-double cs_compare_reference_budget(const struct cs_compare_reference_settings *settings);
 
 /* Measures the horizon and decides whether there are pointwise errors: these need families that
  * agree, a horizon beyond the end, and an error bar below the accuracy. The bar of implicit

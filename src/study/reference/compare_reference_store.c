@@ -111,27 +111,26 @@ enum cs_status cs_compare_reference_write(const struct cs_compare_reference *ref
                                           struct cs_error *error) {
     const struct cs_trajectory *track = &reference->trajectory;
     const size_t values = ((size_t)track->frames + 1) * 6 * track->n;
-    struct header *header = calloc(1, sizeof *header);
+    struct header header;
     struct cs_file_out out = {0};
     char path[4096];
-    if (!header)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the reference");
+    // the gaps between members as well
+    memset(&header, 0, sizeof header);
     file_path(folder, key, path, sizeof path);
-    memcpy(header->magic, MAGIC, sizeof MAGIC);
-    header->one = 1;
-    header->n = track->n;
-    header->frames = track->frames;
-    header->reference = *reference;
+    memcpy(header.magic, MAGIC, sizeof MAGIC);
+    header.one = 1;
+    header.n = track->n;
+    header.frames = track->frames;
+    header.reference = *reference;
     /* an address means nothing to the next run */
-    header->reference.trajectory.states = NULL;
-    header->reference.trajectory.free_from = NULL;
-    hash_file(header, track->states, values, header->hash);
+    header.reference.trajectory.states = NULL;
+    header.reference.trajectory.free_from = NULL;
+    hash_file(&header, track->states, values, header.hash);
     if (!cs_folder_create(folder, error) && !cs_file_create(&out, path, error)) {
         /* failures of fwrite are seen by cs_file_finish */
-        fwrite(header, sizeof *header, 1, out.file);
+        fwrite(&header, sizeof header, 1, out.file);
         fwrite(track->states, sizeof(double), values, out.file);
         cs_file_finish(&out, error);
     }
-    free(header);
     return error->status;
 }
