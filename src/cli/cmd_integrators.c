@@ -17,6 +17,7 @@ static const struct options initial = {NULL, 0};
 static const struct cs_arg rows[] = {
     {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
      CS_ARG_LIST(struct options, plugins, n_plugins)},
+    CS_ARG_PROGRAM(struct options, plugins, n_plugins),
 };
 
 static const struct {

@@ -104,7 +104,8 @@ static enum cs_status run_command(const struct cs_command *command, int argc, ch
     const char *fault = cs_ieee_check();
     if (fault)
         return cs_fail(error, CS_ERR_INTERNAL, "%s: results would be wrong", fault);
-    if (!cs_args_parse(&args, command, argc, argv, error)) {
+    if (!cs_args_parse(&args, command, argc, argv, error) &&
+        !cs_args_add_programs(&args, error)) {
         if (args.help)
             print_help(command, error);
         else

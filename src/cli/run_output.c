@@ -233,9 +233,11 @@ enum cs_status cs_study_folder_check(const struct cs_session_settings *session,
 bool cs_external_modules_requested(const struct cs_args *args, const char *const *texts,
                                    uint32_t n) {
     const char *folders = getenv("CLOTHSIM_PLUGIN_PATH");
-    bool named = cs_args_is_given(args, "plugin") || (folders && *folders);
+    bool named = cs_args_is_given(args, "plugin") || cs_args_is_given(args, "program") ||
+                 (folders && *folders);
     for (uint32_t k = 0; k < n; k++)
-        named |= texts[k] && (strchr(texts[k], '/') || strstr(texts[k], ".so"));
+        named |= texts[k] && (strchr(texts[k], '/') || strstr(texts[k], ".so") ||
+                              strstr(texts[k], "program:"));
     return named;
 }
 

@@ -3,6 +3,7 @@
  * The grammar of a list of methods:
  *   list   = method { "," method }
  *   method = [ SERIES "=" ] NAME [ ":" pair { "," pair } ]
+ *   NAME   = name | FILE | "program:" COMMAND
  *   pair   = key "=" value
  *
  * A comma separates both methods and pairs. A token between commas is a pair if it has a '=',
@@ -12,6 +13,7 @@
 
 #include "base/options.h"
 #include "base/text.h"
+#include "sim/module.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -40,20 +42,27 @@ void cs_method_finish(struct cs_method *method) {
     *method = (struct cs_method){0};
 }
 
+size_t cs_method_name_length(const char *text) {
+    const size_t begin = cs_program_is_named(text) ? strcspn(text, ":") + 1 : 0;
+    return begin + strcspn(text + begin, ":");
+}
+
 enum cs_status cs_method_find(struct cs_method *method, struct cs_registry *registry,
                               const char *text, const char **pairs, struct cs_error *error) {
-    const size_t length = strcspn(text, ":");
+    const size_t length = cs_method_name_length(text);
+    const bool is_program = cs_program_is_named(text);
     const struct cs_registry_entry *found;
     *method = (struct cs_method){0};
     *pairs = text[length] ? text + length + 1 : NULL;
-    if (length == 0 || strcspn(text, "=,") < length)
+    if (length == 0 || (!is_program && strcspn(text, "=,") < length))
         return cs_fail(error, CS_ERR_USAGE,
                        "found integrator \"%.60s\", expected NAME or NAME:key=value,...", text);
     char *name = strndup(text, length);
     if (!name)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the name of an integrator");
-    else if (!(strchr(name, '/') ? cs_registry_find_in(registry, name, &found, error)
-                                 : cs_registry_find(registry, name, &found, error)))
+    else if (!(strchr(name, '/') && !is_program
+                   ? cs_registry_find_in(registry, name, &found, error)
+                   : cs_registry_find(registry, name, &found, error)))
         cs_method_init(method, found->integrator, NULL, error);
     free(name);
     return error->status;

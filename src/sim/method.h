@@ -23,10 +23,15 @@ enum cs_status cs_method_init(struct cs_method *method, const struct cs_integrat
 /* Frees the options and zeroes the method. */
 void cs_method_finish(struct cs_method *method);
 
+/* The length of NAME in NAME:key=value,...; it may be "program:COMMAND", without another colon.
+ */
+size_t cs_method_name_length(const char *text);
+
 /* Reads NAME of NAME:key=value,...: the integrator with its defaults. *pairs is the text after
- * the ':', or NULL. A NAME with a '/' is a module file, and stands for its first integrator.
- * Every reader of methods uses this call and the next, so that one mistake has one message.
- * CS_ERR_USAGE with the nearest right name; the caller finishes the method on failure too. */
+ * the ':', or NULL. A NAME with a '/' is a module file, and stands for its first integrator; a
+ * program must have been added to the registry before. Every reader of methods uses this call
+ * and the next, so that one mistake has one message. CS_ERR_USAGE with the nearest right name;
+ * the caller finishes the method on failure too. */
 enum cs_status cs_method_find(struct cs_method *method, struct cs_registry *registry,
                               const char *text, const char **pairs, struct cs_error *error);
 

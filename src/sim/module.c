@@ -102,8 +102,8 @@ static enum cs_status check_renames(const struct cs_integrator *integrator,
  * CS_HAS finds them. */
 static const uint32_t least_size = offsetof(struct cs_integrator, goals);
 
-static enum cs_status check_integrator(const struct cs_integrator *integrator,
-                                       struct cs_error *error) {
+enum cs_status cs_module_check_integrator(const struct cs_integrator *integrator,
+                                          struct cs_error *error) {
     /* the name first: every message needs it */
     if (!integrator || !is_name(integrator->name, "abcdefghijklmnopqrstuvwxyz0123456789-"))
         return cs_fail(error, CS_ERR_MODULE, "an integrator's name may contain only [a-z0-9-]");
@@ -137,7 +137,7 @@ static enum cs_status check_module(const struct cs_module *module, struct cs_err
     if (module->n == 0 || !module->integrators)
         return cs_fail(error, CS_ERR_MODULE, "contains no integrator");
     for (uint32_t k = 0; k < module->n; k++)
-        if (check_integrator(module->integrators[k], error))
+        if (cs_module_check_integrator(module->integrators[k], error))
             return error->status;
     return CS_OK;
 }

@@ -18,10 +18,11 @@
 /* A larger file is opened without a search through its bytes. */
 enum { MODULE_BYTES_MAX = 256 << 20 };
 
-/* Appends an entry; file and refusal are copied. Doubles the capacity when it is full. */
+/* Appends an entry; file, program and refusal are copied. Doubles the capacity when it is full.
+ */
 static enum cs_status add_entry(struct cs_registry *registry, const char *file,
-                                const struct cs_integrator *integrator, const char *refusal,
-                                struct cs_error *error) {
+                                const char *program, const struct cs_integrator *integrator,
+                                const char *refusal, struct cs_error *error) {
     if (registry->n == registry->capacity) {
         const uint32_t capacity = 2 * registry->capacity + 32;
         /* an arena cannot grow an array: the old one stays until finish */
@@ -36,6 +37,7 @@ static enum cs_status add_entry(struct cs_registry *registry, const char *file,
     }
     const struct cs_registry_entry entry = {
         .file = cs_arena_copy_text(&registry->arena, file, error),
+        .program = program ? cs_arena_copy_text(&registry->arena, program, error) : NULL,
         .integrator = integrator,
         .refusal = refusal ? cs_arena_copy_text(&registry->arena, refusal, error) : NULL,
     };
@@ -48,7 +50,8 @@ static const struct cs_registry_entry *find_entry(const struct cs_registry *regi
                                                   const char *name) {
     for (uint32_t k = 0; k < registry->n; k++)
         if (registry->entries[k].integrator &&
-            !strcmp(registry->entries[k].integrator->name, name))
+            (!strcmp(registry->entries[k].integrator->name, name) ||
+             (registry->entries[k].program && !strcmp(registry->entries[k].program, name))))
             return registry->entries + k;
     return NULL;
 }
@@ -74,26 +77,45 @@ static enum cs_status open_module(struct cs_registry *registry, const char *file
     if (refusal.status == CS_ERR_MEMORY)
         return cs_fail(error, refusal.status, "%s: %s", file, refusal.message);
     if (refusal.status)
-        return add_entry(registry, file, NULL, refusal.message, error);
+        return add_entry(registry, file, NULL, NULL, refusal.message, error);
     for (uint32_t k = 0; k < module->n && !error->status; k++) {
         const struct cs_integrator *integrator = module->integrators[k];
         const struct cs_registry_entry *first = find_entry(registry, integrator->name);
         char why[PATH_MAX + 128];
         snprintf(why, sizeof why, "integrator \"%s\" is already in %s", integrator->name,
                  first ? first->file : "");
-        add_entry(registry, file, first ? NULL : integrator, first ? why : NULL, error);
+        add_entry(registry, file, NULL, first ? NULL : integrator, first ? why : NULL, error);
     }
     return error->status;
 }
 
 bool cs_registry_is_file(const char *text) {
     const size_t length = strlen(text);
-    return strchr(text, '/') || (length > 3 && !strcmp(text + length - 3, ".so"));
+    return cs_program_is_named(text) || strchr(text, '/') ||
+           (length > 3 && !strcmp(text + length - 3, ".so"));
+}
+
+/* Starts a program and adds it, unless it is there. */
+static enum cs_status add_program(struct cs_registry *registry, const char *text,
+                                  struct cs_error *error) {
+    const struct cs_integrator *integrator;
+    const char *file;
+    if (find_entry(registry, text) || cs_program_open(text, &integrator, &file, error))
+        return error->status;
+    const struct cs_registry_entry *first = find_entry(registry, integrator->name);
+    if (first)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "\"%.200s\": integrator \"%s\" is already in %s, expected --program "
+                       "NAME=COMMAND with another name",
+                       text, integrator->name, first->file);
+    return add_entry(registry, file, text, integrator, NULL, error);
 }
 
 enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *file,
                                     struct cs_error *error) {
     char absolute[PATH_MAX];
+    if (cs_program_is_named(file))
+        return add_program(registry, file, error);
     if (!realpath(file, absolute))
         return cs_fail(error, CS_ERR_MODULE, "%s: no such module file", file);
     const uint32_t before = registry->n;
@@ -290,6 +312,12 @@ static const char *translate_name(const char *name) {
 static enum cs_status unknown_name(struct cs_registry *registry, const char *name,
                                    struct cs_error *error) {
     uint32_t n;
+    if (cs_program_is_named(name))
+        return cs_fail(
+            error, CS_ERR_USAGE,
+            "found \"%.60s\", expected a name: only the command line starts a program, "
+            "by --integrator or --program",
+            name);
     const char *const *names = cs_registry_names(registry, true, &n, error);
     if (!names)
         return error->status;

@@ -10,7 +10,8 @@
 
 /* One integrator that can be used, or one module file that cannot. */
 struct cs_registry_entry {
-    const char *file;                       /* absolute path of the module */
+    const char *file;    /* absolute path of the module, or of a program (cs_program_open) */
+    const char *program; /* "program:COMMAND" as it was added; NULL: a module */
     const struct cs_integrator *integrator; /* NULL: refused */
     const char *refusal;                    /* why; NULL: it can be used */
 };
@@ -22,11 +23,13 @@ struct cs_registry {
     struct cs_arena arena;
 };
 
-/* True for what names a module file rather than a method: a path, or a name with the ending .so. */
+/* True for what names code rather than a method: a path, a name with the ending .so, or a
+ * program. */
 bool cs_registry_is_file(const char *text);
 
-/* Adds one module file (--plugin). A refused file is an error here (CS_ERR_MODULE), unlike
- * one that a folder holds. */
+/* Adds one module file (--plugin), or starts one program and adds it (--program). A refused
+ * file is an error here (CS_ERR_MODULE), unlike one that a folder holds. Only texts of the
+ * command line may come here: this is the one door by which programs are started. */
 enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *file,
                                     struct cs_error *error);
 
@@ -34,8 +37,9 @@ enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *fi
 enum cs_status cs_registry_add_files(struct cs_registry *registry, const char *const *files,
                                      uint32_t n, struct cs_error *error);
 
-/* Finds an integrator by name. The order of the search:
- * 1. Files that were added before.
+/* Finds an integrator by name, or a program that was added by its "program:COMMAND". The order
+ * of the search:
+ * 1. Files and programs that were added before.
  * 2. The module that the build's own list, modules.txt, names for it.
  * 3. Modules in the folder of the build or of the installation, then in the absolute folders
  *    of CLOTHSIM_PLUGIN_PATH, by their file names.

@@ -43,6 +43,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_LIST(struct options, sets, n_sets)},
     {"plugin", 'p', "FILE", "load an integrator module in both runs; may be repeated",
      CS_ARG_LIST(struct options, plugins, n_plugins)},
+    CS_ARG_PROGRAM(struct options, plugins, n_plugins),
     {"threads", 0, "N", "threads of both runs, 1 to 64", CS_ARG_INTO(struct options, threads)},
     {"tolerance", 0, "NUMBER",
      "maximum difference of two numbers, in their own unit (default: 0, equal bits)",

@@ -45,6 +45,7 @@ static const struct cs_arg rows[] = {
      .names = cs_conform_check_names},
     {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
      CS_ARG_LIST(struct options, plugins, n_plugins)},
+    CS_ARG_PROGRAM(struct options, plugins, n_plugins),
     CS_ARG_QUIET(struct options, quiet),
 };
 

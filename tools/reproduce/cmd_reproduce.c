@@ -25,6 +25,7 @@ static const struct cs_arg rows[] = {
     {"plugin", 'p', "FILE",
      "module file with the method, if a module provided it; may be repeated",
      CS_ARG_LIST(struct options, again.session.plugins, again.session.n_plugins)},
+    CS_ARG_PROGRAM(struct options, again.session.plugins, again.session.n_plugins),
     {"threads", 0, "N", "threads that step the scene, 1 to 64 (default: as run)",
      CS_ARG_INTO(struct options, again.session.threads), .min = 1, .max = CS_POOL_THREADS_MAX},
     CS_ARG_QUIET(struct options, quiet),

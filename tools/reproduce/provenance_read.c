@@ -128,7 +128,8 @@ enum cs_status cs_provenance_to_session(struct cs_provenance *provenance, const 
     /* a module file is code: it is run where the user names it, and never by a result */
     if (!settings->n_plugins && strchr(provenance->module, '/'))
         return cs_fail(error, CS_ERR_USAGE,
-                       "%s: its method is in the module %.300s; pass that with --plugin",
+                       "%s: its method is in %.300s; pass that with --plugin, or its program "
+                       "with --program",
                        provenance->name, provenance->module);
     return CS_OK;
 }

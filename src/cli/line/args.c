@@ -40,7 +40,7 @@ void cs_command_print_help(const struct cs_command *command, struct cs_text *out
 }
 
 /* Rows that a command may have; asserted. */
-enum { LONGEST_TABLE = 31 };
+enum { LONGEST_TABLE = 32 };
 
 /* CS_ERR_USAGE for an unknown option, with the nearest known one. Hidden rows are not
  * suggested. */
@@ -336,12 +336,14 @@ static void *append(const struct list *list, size_t size, struct cs_error *error
     return items + size * (*n)++;
 }
 
-/* Appends a text of argv. */
+/* Appends a text, with the row's prefix. */
 static enum cs_status add_word(const struct list *list, const char *text,
                                struct cs_error *error) {
     const char **word = append(list, sizeof *word, error);
-    if (word)
-        *word = text;
+    const char *prefix = list->row->prefix ? list->row->prefix : "";
+    char *copy = cs_arena_alloc(list->arena, strlen(prefix) + strlen(text) + 1, error);
+    if (word && copy)
+        *word = strcat(strcpy(copy, prefix), text);
     return error->status;
 }
 

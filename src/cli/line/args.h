@@ -45,6 +45,7 @@ struct cs_arg {
     bool methods;             /* each value is a list of methods NAME:key=value,...,NAME,... */
     uint32_t min, max;        /* of a whole number */
     const char *const *names; /* closed by NULL; of a text: what completions offer */
+    const char *prefix;       /* put before each item of a list; or NULL */
     const char *old_name;     /* long name of the release before, still taken; or NULL */
 };
 
@@ -74,9 +75,15 @@ struct cs_arg {
             CS_ARG_LIST(struct_, session.overrides, session.n_overrides)                       \
     }
 #define CS_ARG_PLUGIN(struct_, session)                                                        \
+    {"plugin", 'p', "FILE", "load an integrator module; may be repeated",                      \
+     CS_ARG_LIST(struct_, session.plugins, session.n_plugins)},                                \
+        CS_ARG_PROGRAM(struct_, session.plugins, session.n_plugins)
+/* Programs are items of the list of modules. */
+#define CS_ARG_PROGRAM(struct_, items, n_items)                                                \
     {                                                                                          \
-        "plugin", 'p', "FILE", "load an integrator module; may be repeated",                   \
-            CS_ARG_LIST(struct_, session.plugins, session.n_plugins)                           \
+        "program", 0, "[NAME=]COMMAND",                                                        \
+            "a method that this program computes; may be repeated",                            \
+            CS_ARG_LIST(struct_, items, n_items), .prefix = "program:"                         \
     }
 /* The same in every command that has it. */
 #define CS_ARG_QUIET(struct_, field)                                                           \
@@ -140,6 +147,11 @@ struct cs_args {
  * CS_ERR_USAGE or CS_ERR_MEMORY; cs_args_finish must be called in any case. */
 enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *command, int argc,
                              char **argv, struct cs_error *error);
+
+/* Adds the programs that --integrator names, "program:COMMAND", to the list that the option
+ * --program fills: no file reaches that list, so that no file can start a program. Call it
+ * after cs_args_parse. CS_ERR_MEMORY. */
+enum cs_status cs_args_add_programs(struct cs_args *args, struct cs_error *error);
 
 /* Frees everything that the arena owns, args->options included. */
 void cs_args_finish(struct cs_args *args);

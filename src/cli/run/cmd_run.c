@@ -351,6 +351,10 @@ static enum cs_status repeat_command(struct cs_args *args, struct cs_args *repea
         list[n++] = strsep(&words, "\n");
     return error->status || cs_args_parse(repeated, args->command, n, list, error)
                ? error->status
+           : cs_args_is_given(repeated, "program")
+               ? cs_fail(error, CS_ERR_USAGE,
+                         "--resume without SCENE starts no program: give SCENE and the options "
+                         "of the run again")
                : change_options(args, repeated->options, error);
 }
 

@@ -1,0 +1,209 @@
+#!/usr/bin/python3
+"""Methods that other processes compute (as TAP): the clients of examples give the bits of our own
+methods, every command takes them, a bad one gives one line and its exit status, and no file starts one.
+
+usage: programs.py PROGRAM SOURCE
+"""
+import csv
+import importlib.util
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+program, source = (os.path.abspath(path) for path in sys.argv[1:3])
+PYTHON, EXAMPLES = sys.executable, os.path.join(source, "examples")
+SCENE = {"bodies": [{"cloth": {"grid": [5, 4], "size": [0.8, 0.6]}, "mass": {"total": 0.2},
+                     "springs": {"stretch": 50, "shear": 20, "bend": 0.1, "damping": 0.01},
+                     "pins": ["top"]}]}
+HEAD = f"""import os, signal, sys, time
+sys.path.insert(0, {EXAMPLES!r})
+from clothsim_program import serve
+"""
+STEPS = {
+    "midpoint": "return y + h * host.rate(t + h / 2, y + h / 2 * host.rate(t, y))",
+    "dies": "os._exit(3)",
+    "killed": "os.kill(os.getpid(), signal.SIGSEGV)",
+    "raises": "raise ValueError('no\\x1bidea')",
+    "half": "host._socket.sendall(b'abc'); os._exit(0)",
+    "rubbish": "host._socket.sendall(bytes(range(200, 248))); host._receive()",
+    "needs": "host.energy(t, y)",
+    "hangs": "open('hung', 'w').close(); time.sleep(1000)",
+}
+n = failed = 0
+
+
+def told(name, good, found=""):
+    global n, failed
+    n += 1
+    failed += not good
+    print(("ok" if good else "not ok"), n, "-", name)
+    for line in [] if good else str(found).splitlines():
+        print("#  ", line)
+
+
+def call(*words, env=None):
+    done = subprocess.run([program, *words], capture_output=True, text=True,
+                          env={**os.environ, **(env or {})})
+    return done.returncode, done.stdout, done.stderr
+
+
+def run(method, *words, scene="scene.json", frames="4"):
+    return call("run", scene, "-n", frames, "--no-render", "-i", method, *words)
+
+
+def state(method, *words, **settings):
+    """The state hash of a run, or all that it said."""
+    code, out, err = run(method, *words, **settings)
+    found = [line.split()[-1] for line in out.splitlines() if line.startswith("state hash")]
+    return found[0] if code == 0 and found else f"{code} {out} {err}"
+
+
+def refused(name, code, text, *words):
+    """The call ends with that status and one line with that text."""
+    found, _, err = call(*words)
+    lines = [line for line in err.splitlines() if line.startswith("clothsim: ")]
+    told(name, found == code and len(lines) == 1 and text in lines[0], f"{found}\n{err}")
+
+
+def write_programs():
+    for name, body in STEPS.items():
+        with open(f"{name}.py", "w") as file:
+            file.write(f"{HEAD}def step(host, t, h, y):\n    if t > 0.02 or {name != 'hangs'}:\n"
+                       f"        {body}\n    return y\n"
+                       f"serve(step=step, name={name!r}, order=2)\n")
+    with open("scene.json", "w") as file:
+        json.dump(SCENE, file)
+
+
+def check_bits():
+    drum, rk4 = os.path.join(source, "scenes/drum.json"), os.path.join(EXAMPLES, "rk4_program.py")
+    ours = state("rk4:dt=0.0005", scene=drum, frames="6")
+    theirs = state(f"program:{PYTHON} {rk4}:dt=0.0005", scene=drum, frames="6")
+    told("rk4 in Python has the bits of rk4", ours == theirs, f"{ours}\n{theirs}")
+    subprocess.run(["cc", "-std=gnu17", "-O2", "-ffp-contract=off", f"-I{source}/include",
+                    f"{EXAMPLES}/midpoint_program.c", "-o", "midpoint", "-lm"], check=True)
+    c, python = state("program:./midpoint:dt=1e-3"), state(f"program:{PYTHON} midpoint.py:dt=1e-3")
+    told("a method in C has the bits of that in Python", c == python and len(c) == 32, f"{c}\n{python}")
+
+
+def check_commands():
+    midpoint = f"{PYTHON} midpoint.py"
+    whole = state(f"program:{midpoint}")
+    named = state("mine:dt=0.001", "--program", f"mine={midpoint}")
+    told("a program by a name of ours", whole == named, f"{whole}\n{named}")
+    run(f"program:{midpoint}", "-o", "parts", "--checkpoint", "2", "-q", frames="2")
+    resumed = state(f"program:{midpoint}", "--resume", "parts")
+    told("a run goes on", whole == resumed, f"{whole}\n{resumed}")
+    call("run", "scene.json", "-n", "1", "-i", f"program:{midpoint}", "-o", "whole", "-q")
+    again = call("reproduce", "whole", "--program", midpoint)
+    told("a result is reproduced", again[0] == 0, again)
+    same = call("bisect", "scene.json", "-n", "2", "-i", f"program:{midpoint}", "--b", "threads=2")
+    told("two runs are bisected", same[0] == 0 and "2 frames" in same[1], same)
+    card = call("conform", f"program:{midpoint}", "--only", "free-fall")
+    told("the card", card[0] == 0 and "1 pass" in card[1], card)
+    # a step of 8 times the length has 64 times the error
+    code, out, err = call("compare", "scene.json", "-t", "0.1", "-o", "compared", "--runs", "1",
+                          "-i", f"program:{midpoint}:dt=1e-4..8e-4")
+    rows = list(csv.DictReader(open("compared/compare.csv"))) if code == 0 else []
+    errors = {round(float(row["value"]), 7): float(row["error"]) for row in rows}
+    ratio = errors.get(8e-4, 0) / errors.get(1e-4, 1)
+    told("compare measures its order", 50 < ratio < 80, f"{ratio}\n{out}{err}")
+
+
+def check_scipy():
+    if not importlib.util.find_spec("scipy"):
+        told("SciPy's methods # SKIP no SciPy", True)
+        return
+    ours = call("run", "scene.json", "-n", "4", "--no-render", "--states", "ours", "-i",
+                "dop853:rtol=1e-10")
+    # small: a dense Jacobian has 6n columns
+    for method in ("DOP853", "RK45", "Radau"):
+        command = f"program:{PYTHON} {EXAMPLES}/scipy_methods.py {method}:rtol=1e-8"
+        done = run(command, "--states", method)
+        import numpy as np
+        gap = 1.0
+        if not done[0] and not ours[0]:
+            gap = np.abs(np.load(f"{method}/x_00004.npy") - np.load("ours/x_00004.npy")).max()
+        told(f"{method} of SciPy finds the motion", gap < 1e-6, f"{gap}\n{done}")
+
+
+def check_faults():
+    for name, text in (("dies", "its program ended with code 3"),
+                       ("killed", "its program was ended by signal 11"),
+                       ("raises", "ValueError: no idea"),
+                       ("half", "its program ended with code 0"),
+                       ("rubbish", "its program sent 0xcfcecdcccbcac9c8, expected one of the letters"),
+                       ("needs", "its program asked for 'E', which is not among its needs")):
+        refused(name, 5, f'integrator "{name}" failed at t = 0 s: {text}', "run", "scene.json", "-n",
+                "1", "--no-render", "-q", "-i", f"program:{PYTHON} {name}.py")
+    refused("one that hangs", 5, 'integrator "hangs" hung in advance: it was ended after 1 s', "run",
+            "scene.json", "-n", "4", "--no-render", "-q", "--isolate", "1", "-i",
+            f"program:{PYTHON} hangs.py")
+    refused("one that is no client", 5, "ended with code 0 before it described itself", "run",
+            "scene.json", "-i", "program:true")
+    refused("one that is not there", 5, "cannot be started: No such file or directory", "run",
+            "scene.json", "-i", "program:./missing with words")
+    wrong = "import os; os.write(3, bytes([86]) + bytes(7) + bytes([9]) + bytes(39)); os.read(3, 1)"
+    with open("wrong.py", "w") as file:
+        file.write(wrong)
+    refused("another version", 5, "sent 0x56, 9, expected 'V', 1", "run", "scene.json",
+            "-i", f"program:{PYTHON} wrong.py")
+    refused("an option it has not", 2, 'dtt: no such option; did you mean "dt"?', "run", "scene.json",
+            "-i", f"program:{PYTHON} midpoint.py:dtt=1")
+    refused("no command", 2, "expected program:COMMAND", "run", "scene.json", "-i", "program:")
+    alone = subprocess.run([PYTHON, "midpoint.py"], capture_output=True, text=True)
+    told("a program that nobody asked", alone.returncode == 1 and "Traceback" not in alone.stderr,
+         alone.stderr)
+
+
+def check_signal():
+    """A run that is asked to end while its program hangs leaves neither."""
+    os.remove("hung")
+    child = subprocess.Popen([program, "run", "scene.json", "-n", "4", "--no-render", "--hash", "-q",
+                              "-i", f"program:{PYTHON} hangs.py"], stdout=subprocess.DEVNULL,
+                             stderr=subprocess.PIPE, text=True)
+    while child.poll() is None and not os.path.exists("hung"):
+        time.sleep(0.02)
+    child.terminate()
+    err = child.communicate()[1]
+    told("SIGTERM while it hangs", child.returncode == 143, f"{child.returncode}\n{err}")
+    left = subprocess.run(["pgrep", "-f", f"{PYTHON} hangs.py"], capture_output=True, text=True,
+                          cwd="/").stdout.split()
+    mine = [pid for pid in left if os.path.realpath(f"/proc/{pid}/cwd") == os.getcwd()]
+    told("nothing of it is left", not mine, mine)
+
+
+def check_door():
+    """No scene, override or result starts a program."""
+    touch = "program:touch started"
+    with open("bad.json", "w") as file:
+        json.dump({**SCENE, "integrator": touch}, file)
+    refused("a scene names a program", 3, "a program with --program", "run", "bad.json")
+    refused("an override does", 3, "a program with --program", "run", "scene.json", "-s",
+            f"integrator={touch}")
+    run("rk4:dt=1e-3", "-o", "result", "--checkpoint", "1", "-q", frames="2")
+    path = "result/run.checkpoint"
+    bytes_of = open(path, "rb").read()
+    with open(path, "wb") as file:
+        file.write(bytes_of.replace(b"rk4:dt=1e-3", touch.encode()[:11]))
+    call("run", "--resume", "result")
+    call("run", "scene.json", "-n", "1", "-i", f"program:{PYTHON} midpoint.py", "-o", "seen", "-q")
+    refused("a result does", 2, "--program", "reproduce", "seen")
+    told("nothing was started", not os.path.exists("started"))
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    write_programs()
+    check_bits()
+    check_commands()
+    check_scipy()
+    check_faults()
+    check_signal()
+    check_door()
+    os.chdir("/")
+print(f"1..{n}")
+sys.exit(failed > 0)
