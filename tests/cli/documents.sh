@@ -22,7 +22,8 @@ told() { # NAME CODE: a line of the test, with the file "log" where it failed
     fi
 }
 
-script_of() { awk '/^```/ { inside = !inside && $0 == "```"; next } inside' "$1"; }
+# blocks that name a language, as those of a report, are no scripts
+script_of() { awk '/^```/ { open = !open; inside = open && $0 == "```"; next } inside' "$1"; }
 
 # films need a program that is no part of this
 mkdir "$work/bin" "$work/said"
