@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """links.py ROOT - every link between documents, with the heading that it names, and every file of the
 tree that a document names in backquotes, is there; tables are those of Markdown; pages have at most
-so many words, outside of blocks of code and of clothsim(1)'s table of shared options."""
+so many words, outside of blocks of code and of clothsim(1)'s table of shared options; so has a version of
+the change log."""
 import pathlib
 import re
 import sys
@@ -11,6 +12,8 @@ LINK = re.compile(r"\]\(([^)\s]+)[^)]*\)")
 PATH = re.compile(r"`((?:src|tools|plugins|include|docs|scenes|tests|man|bench|examples|debian)/[\w./-]+)`")
 WORDS = {"README.md": 500, "CONTRIBUTING.md": 1200, "tutorial.md": 800, "guide.md": 2000, "speed.md": 750, "theory.md": 3500}
 MAN_WORDS = 700
+# one screen of the change log
+VERSION_WORDS = 900
 PAGE_WORDS = {"man/clothsim-contact.7.scd": 1000, "man/clothsim-scene.5.scd": 1500}
 RESULT_WORDS, RESULT_ROWS = 600, 20
 checked, wrong = 0, []
@@ -49,6 +52,9 @@ for document in [root / "README.md", root / "CONTRIBUTING.md", *sorted(root.glob
         checked += 1
         if not path.exists():
             wrong.append(f"{document.relative_to(root)}: no {path.relative_to(root)}")
+for version in (root / "CHANGELOG.md").read_text().split("\n## ")[1:]:
+    if len(version.split()) > VERSION_WORDS:
+        wrong.append(f"CHANGELOG.md: {len(version.split())} words on {version.split()[0]}, at most {VERSION_WORDS}")
 for page in sorted(root.glob("man/*.1.scd")):
     count(page, MAN_WORDS)
 for name, most in PAGE_WORDS.items():
