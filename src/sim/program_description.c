@@ -76,8 +76,9 @@ static void find_file(struct cs_program *program, pid_t pid) {
         snprintf(program->file, sizeof program->file, "%.4000s", program->words[0]);
 }
 
-/* Cuts a command into words at spaces, and at quotes around a word. */
-static void cut_words(struct cs_program *program, char *text) {
+/* Cuts a command into words at spaces, and at quotes around a word. Returns false if there are
+ * more than fit. */
+static bool cut_words(struct cs_program *program, char *text) {
     for (int n = 0; n < CS_PROGRAM_WORDS_MAX && *(text += strspn(text, " "));) {
         const char *end = *text == '\'' ? "'" : *text == '"' ? "\"" : " ";
         text += *end != ' ';
@@ -86,6 +87,7 @@ static void cut_words(struct cs_program *program, char *text) {
         if (*text)
             *text++ = 0;
     }
+    return !text[strspn(text, " ")];
 }
 
 /* Fails unless the first message is a hello of this version; got as cs_program_receive_hello
@@ -143,7 +145,9 @@ static enum cs_status open_program(struct cs_program *program, struct cs_error *
         *command++ = 0;
     }
     // from here on the command is cut: the key has it whole
-    cut_words(program, command);
+    if (!cut_words(program, command))
+        return cs_fail(error, CS_ERR_USAGE, "\"%.60s...\": more than %d words", program->key,
+                       CS_PROGRAM_WORDS_MAX);
     if (!program->words[0])
         return cs_fail(error, CS_ERR_USAGE,
                        "found \"%.60s\", expected program:COMMAND or --program NAME=COMMAND",

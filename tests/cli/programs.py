@@ -153,6 +153,8 @@ def check_faults():
             "-i", f"program:{PYTHON} wrong.py")
     refused("an option it has not", 2, 'dtt: no such option; did you mean "dt"?', "run", "scene.json",
             "-i", f"program:{PYTHON} midpoint.py:dtt=1")
+    refused("too many words", 2, "more than 64 words", "run", "scene.json", "-i",
+            f"program:{PYTHON} midpoint.py" + 63 * " a")
     refused("no command", 2, "expected program:COMMAND", "run", "scene.json", "-i", "program:")
     alone = subprocess.run([PYTHON, "midpoint.py"], capture_output=True, text=True)
     told("a program that nobody asked", alone.returncode == 1 and "Traceback" not in alone.stderr,

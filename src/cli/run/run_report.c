@@ -61,7 +61,7 @@ void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out) {
     if (run->outcome == CS_UNBOUNDED)
         cs_text_add(out, ", kinetic energy %.3g J exceeds %.3g J", run->blow_up.energy,
                     run->blow_up.bound);
-    cs_text_add(out, *job->cause.text ? "; %s" : "", job->cause.text);
+    cs_text_add(out, "%s%s", *job->cause.text ? "; " : "", job->cause.text);
 }
 
 /* Progress and outcome. */
