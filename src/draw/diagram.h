@@ -96,7 +96,7 @@ struct cs_panel {
     double aspect; /* height of the box of the axes over its width */
     uint32_t n_boxes, n_series;
     const struct cs_diagram_rect *boxes; /* (n_boxes) borrowed; below the series */
-    const struct cs_series *series;  /* (n_series) borrowed; later ones over earlier ones */
+    const struct cs_series *series;      /* (n_series) borrowed; later ones over earlier ones */
 };
 
 enum cs_key_kind { CS_KEY_TEXT, CS_KEY_PATCH, CS_KEY_LINE, CS_KEY_MARK, CS_KEY_RING };

@@ -66,7 +66,8 @@ static double middle(const struct cs_plot_axis *axis, double a, double b) {
 
 static void draw_boxes(struct box *box) {
     const struct cs_panel *panel = box->panel;
-    for (const struct cs_diagram_rect *b = panel->boxes; b < panel->boxes + panel->n_boxes; b++) {
+    for (const struct cs_diagram_rect *b = panel->boxes; b < panel->boxes + panel->n_boxes;
+         b++) {
         const struct place from = place_of(box, b->left, b->top),
                            to = place_of(box, b->right, b->bottom);
         /* the far edges are those of the next box */

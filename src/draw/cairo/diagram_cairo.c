@@ -56,8 +56,8 @@ static void draw_boxes(cairo_t *cairo, const struct box *box, const struct cs_pa
     /* between many cells white lines would be most of the picture */
     const bool apart = panel->n_boxes < 1000;
     clip(cairo, box);
-    for (const struct cs_diagram_rect *cell = panel->boxes; cell < panel->boxes + panel->n_boxes;
-         cell++) {
+    for (const struct cs_diagram_rect *cell = panel->boxes;
+         cell < panel->boxes + panel->n_boxes; cell++) {
         const double x = to_x(box, panel, cell->left), y = to_y(box, panel, cell->top);
         cairo_rectangle(cairo, x, y, to_x(box, panel, cell->right) - x,
                         to_y(box, panel, cell->bottom) - y);
