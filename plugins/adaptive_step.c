@@ -20,13 +20,6 @@
 #define CONTACT_GROWTH 1.1
 #define CONTACT_CUT    0.2
 
-/* s, the longest step past frames if dt_max does not say: an estimate cannot see what lies
- * between the stages of a step that is far too long. */
-#define PAST_FRAMES 0.1
-
-/* Methods whose local error falls faster take three ends for the state at a frame. */
-#define HIGH_ORDER 5
-
 enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host *host,
                                 const struct adaptive_options *options, int power) {
     self->host = host;
@@ -47,7 +40,7 @@ enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host
     const bool passes = !self->fixed && CS_HAS(host, forces_depend_on_time) &&
                         host->may_overstep && !host->forces_depend_on_time &&
                         self->asked.atol < 1;
-    self->ends = !passes ? 0 : power > HIGH_ORDER ? 3 : 2;
+    self->ends = !passes ? 0 : hermite_ends_for(power);
     for (int k = 0; k < self->ends - 1; k++)
         if (!(self->start[k] = host->alloc(host->ctx, 9 * sizeof(double) * host->view->n)))
             return CS_STEP_FAIL;
@@ -137,7 +130,7 @@ static double cut(double planned, double left) {
 /* The longest step in s from y at t that dt_max, contact and the method let pass. */
 static double longest_step(struct adaptive_step *self, double t, const double *y) {
     const struct cs_host *host = self->host;
-    const double span = self->ends ? PAST_FRAMES : self->end - self->begin;
+    const double span = self->ends ? LONGEST_PAST_FRAMES : self->end - self->begin;
     double most = least(self->contact, self->asked.dt_max > 0 ? self->asked.dt_max : span);
     if (self->limit)
         most = least(most, self->limit(self, t, y));
@@ -213,10 +206,10 @@ static enum cs_step step_past_frames(struct adaptive_step *self, double t, const
         self->length_of[k] = self->length_of[k - 1];
     }
     self->start[0] = oldest;
-    prepare(self, t, PAST_FRAMES, y);
+    prepare(self, t, LONGEST_PAST_FRAMES, y);
     memcpy(oldest, y, self->length * sizeof *y);
     memcpy(oldest + self->length, self->slope, self->length / 2 * sizeof *y);
-    const enum cs_step status = step(self, t, PAST_FRAMES, y, self->length_of);
+    const enum cs_step status = step(self, t, LONGEST_PAST_FRAMES, y, self->length_of);
     self->reached = t + self->length_of[0];
     return status;
 }

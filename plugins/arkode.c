@@ -73,12 +73,6 @@ struct ark {
     struct arkode_ends ends; /* where steps pass frames */
 };
 
-/* s, the longest step past frames, as in adaptive_step.c. */
-#define PAST_FRAMES 0.1
-
-/* Methods of a higher order take three ends for the state at a frame. */
-#define HIGH_ORDER 5
-
 /* sundials_slope, which takes from the last end what is known there, and leaves it the rest. */
 static int slope_of(struct ark *self, sunrealtype t, N_Vector y, uint32_t parts, bool moves,
                     N_Vector slope) {
@@ -223,7 +217,7 @@ static int open_memory(struct ark *self, ARKRhsFn explicit_part, ARKRhsFn implic
     if (code == ARK_SUCCESS)
         code = ARK(SetInterpolantDegree)(base->memory, 1);
     if (code == ARK_SUCCESS && base->interpolated)
-        code = ARK(SetMaxStep)(base->memory, PAST_FRAMES);
+        code = ARK(SetMaxStep)(base->memory, LONGEST_PAST_FRAMES);
     if (code == ARK_SUCCESS && implicit_part)
         code = ARK(SetLinearSolver)(base->memory, &base->solver, NULL);
     if (code == ARK_SUCCESS && implicit_part)
@@ -244,8 +238,7 @@ static enum cs_step pass_frames(struct ark *self, bool is_additive) {
         return CS_STEP_OK;
     sundials_overstep_begin(&self->base);
     return self->base.interpolated
-               ? arkode_ends_init(&self->ends, host, self->asked.order > HIGH_ORDER ? 3 : 2,
-                                  parts)
+               ? arkode_ends_init(&self->ends, host, hermite_ends_for(self->asked.order), parts)
                : CS_STEP_OK;
 }
 

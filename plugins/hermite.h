@@ -11,6 +11,15 @@
 
 enum { HERMITE_ENDS = 3 };
 
+/* s, the longest step past frames if no option says: an estimate cannot see what lies between
+ * the stages of a step that is far too long. */
+#define LONGEST_PAST_FRAMES 0.1
+
+/* The number of ends for a method of that order. */
+static inline int hermite_ends_for(int64_t order) {
+    return order > 5 ? HERMITE_ENDS : 2;
+}
+
 /* An end of a step. */
 struct hermite_end {
     double t;        /* s; no two are equal */

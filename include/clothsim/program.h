@@ -37,22 +37,36 @@ enum cs_program_offer {
 
 /* One message: a letter, and what belongs to it. An answer has the letter of its request.
  *
- * From clothsim: I (the options are in head->text), R values[0]=t (restart: x, v, mass and
- * inv_mass are set), A values[0]=t0, values[1]=t1 (advance), Q (end). From the program: V
- * count=version (first, the description is in the head), and D (done, the answer to I, R and
- * A). Its requests meanwhile; those about a state take it from x and v: F count=parts,
- * values[0]=t          f = the force in N J count=parts, values[0]=t          f = (df/dx) dx +
- * (df/dv) dv; jvp G values[0]=t                       kxx, dvv = the diagonal blocks; diagonal
- *   E values[0]=t                       values[0] = the energy in J; energy
- *   L count=flags, values=t,cm,cd,ck    A = cm M + cd df/dv + ck df/dx; solve
- *   S values[0]=rtol                    dx = A^-1 f from the start in dx; count = 1: it failed
- *   M, P                                f = A dx; dx = B^-1 f
+ * From clothsim:
+ *
+ *   I                                   the options are in head->text
+ *   R values[0]=t                       restart: x, v, mass and inv_mass are set
+ *   A values[0]=t0, values[1]=t1        advance
+ *   Q                                   end
+ *
+ * From the program:
+ *
+ *   V count=version                     first; the description is in the head
+ *   D                                   done, the answer to I, R and A
+ *
+ * Requests of the program meanwhile, and what they give. The state is that in x and v:
+ *
+ *   F count=parts, values[0]=t          f = the force in N
+ *   J count=parts, values[0]=t          f = (df/dx) dx + (df/dv) dv
+ *   G values[0]=t                       kxx, dvv = the diagonal blocks
+ *   E values[0]=t                       values[0] = the energy in J
+ *   L count=flags, values=t,cm,cd,ck    sets A = cm M + cd df/dv + ck df/dx for S, M and P
+ *   S values[0]=rtol                    dx = A^-1 f, from the start in dx; count = 1: it failed
+ *   M                                   f = A dx
+ *   P                                   dx = B^-1 f, the preconditioner
  *   B values[0]=t                       values = omega, delta; bounds
  *   K values=t0,t1                      values[0] = the admissible fraction from x to dx
  *   T values[0]=t                       values[0] = the longest step in s
  *   C values=t,dt                       commit of x and v; count = 1: they were changed
- *   N, X, H                             note, failure, and a step that cannot be short enough:
- * the text is in the head L, S, M, P, K and C in advance alone; after I only N, X and H. */
+ *   N, X, H                             a note, a failure, a step that cannot be short enough;
+ *                                       the text is in the head
+ *
+ * L, S, M, P, K and C may come in advance alone; after I only N, X and H. */
 struct cs_program_message {
     uint64_t code, count;
     double values[4];

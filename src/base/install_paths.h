@@ -9,8 +9,8 @@
 /* Bytes that suffice for the result of cs_data_find. */
 enum { CS_DATA_PATH_MAX = 8192 };
 
-/* The path of clothsim, which a tool stands apart from; "clothsim" if the system does not tell
- * that of the running program. Static. */
+/* The path of the program clothsim, also when a tool asks; "clothsim" if the system does not
+ * tell where the running program is. Static. */
 const char *cs_program_path(void);
 
 /* NULL, or a sentence: the program's path is unknown, and the folders below are those that were

@@ -25,7 +25,7 @@ enum cs_status cs_module_check_integrator(const struct cs_integrator *integrator
 
 /* A method that another process computes (<clothsim/program.h>), as it has described itself. */
 enum { CS_PROGRAM_WORDS_MAX = 64 };
-struct cs_program {
+struct cs_program_method {
     struct cs_integrator integrator; /* first: the calls of the method find the program by it */
     struct cs_option options[CS_PROGRAM_OPTIONS_MAX];
     const char *fails[CS_PROGRAM_FAILS_MAX + 1];
@@ -33,8 +33,8 @@ struct cs_program {
     const struct cs_integrator *calls;           /* of plugins/program.c: the others */
     char *key, *command;                         /* the text that named it; its words, cut */
     const char *words[CS_PROGRAM_WORDS_MAX + 1]; /* closed by NULL */
-    char file[4096];                             /* see cs_program_open */
-    struct cs_program *next;
+    char file[4096];                             /* see cs_program_method_open */
+    struct cs_program_method *next;
 };
 
 /* Replaces create and destroy of a method by those that start and end its process. */
@@ -42,7 +42,7 @@ void cs_program_set_calls(struct cs_integrator *method);
 
 /* A process that was started, and the memory shared with it. */
 struct cs_program_process {
-    const struct cs_program *program;
+    const struct cs_program_method *program;
     pid_t pid; /* 0: none */
     int socket;
     struct cs_program_head *head; /* mapped */
@@ -52,7 +52,7 @@ struct cs_program_process {
 /* Starts a program that shares arrays of n particles. CS_ERR_MEMORY; a command that cannot be
  * run is told by its first message, of code 0 and an errno. */
 enum cs_status cs_program_process_start(struct cs_program_process *process,
-                                        const struct cs_program *program, size_t n,
+                                        const struct cs_program_method *program, size_t n,
                                         struct cs_error *error);
 /* Closes the socket, which asks the program to end, ends it by force after a second, and frees
  * what was shared. Adds how it ended to out, unless that is NULL. */
@@ -72,8 +72,8 @@ bool cs_program_is_named(const char *text);
  * the first argument that is a file, else of what was started, stay until the end of this
  * process: the same text gives the same method. CS_ERR_MODULE with the reason, CS_ERR_USAGE,
  * CS_ERR_MEMORY, CS_ERR_INTERRUPT. */
-enum cs_status cs_program_open(const char *text, const struct cs_integrator **integrator,
-                               const char **file, struct cs_error *error);
+enum cs_status cs_program_method_open(const char *text, const struct cs_integrator **integrator,
+                                      const char **file, struct cs_error *error);
 
 /* The hash of the file's bytes, to recognise another build, which may give other results.
  * CS_ERR_FILE; digits is then "". */

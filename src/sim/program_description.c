@@ -23,7 +23,7 @@ bool cs_program_is_named(const char *text) {
 
 /* Makes the method of a description, with the calls that all programs share. name replaces the
  * program's own, unless it is NULL. */
-static enum cs_status make_method(struct cs_program *program, const char *name,
+static enum cs_status make_method(struct cs_program_method *program, const char *name,
                                   const struct cs_module *calls, struct cs_error *error) {
     struct cs_program_description *from = &program->description;
     if (from->n_options > CS_PROGRAM_OPTIONS_MAX)
@@ -66,7 +66,7 @@ static enum cs_status make_method(struct cs_program *program, const char *name,
 }
 
 /* The first argument that is a file, else what the process runs. */
-static void find_file(struct cs_program *program, pid_t pid) {
+static void find_file(struct cs_program_method *program, pid_t pid) {
     char link[32];
     snprintf(link, sizeof link, "/proc/%d/exe", (int)pid);
     for (const char *const *word = program->words + 1; *word; word++)
@@ -78,7 +78,7 @@ static void find_file(struct cs_program *program, pid_t pid) {
 
 /* Cuts a command into words at spaces, and at quotes around a word. Returns false if there are
  * more than fit. */
-static bool cut_words(struct cs_program *program, char *text) {
+static bool cut_words(struct cs_program_method *program, char *text) {
     for (int n = 0; n < CS_PROGRAM_WORDS_MAX && *(text += strspn(text, " "));) {
         const char *end = *text == '\'' ? "'" : *text == '"' ? "\"" : " ";
         text += *end != ' ';
@@ -92,7 +92,7 @@ static bool cut_words(struct cs_program *program, char *text) {
 
 /* Fails unless the first message is a hello of this version; got as cs_program_receive_hello
  * returns it, how: how the program ended. */
-static enum cs_status check_hello(const struct cs_program *program, int got,
+static enum cs_status check_hello(const struct cs_program_method *program, int got,
                                   const struct cs_program_message *hello, const char *how,
                                   struct cs_error *error) {
     char why[160];
@@ -115,7 +115,7 @@ static enum cs_status check_hello(const struct cs_program *program, int got,
 }
 
 /* Takes the description of a program that was started, and ends it. */
-static enum cs_status ask_description(struct cs_program *program,
+static enum cs_status ask_description(struct cs_program_method *program,
                                       struct cs_program_process *process,
                                       struct cs_error *error) {
     struct cs_program_message hello = {0};
@@ -134,7 +134,7 @@ static enum cs_status ask_description(struct cs_program *program,
 }
 
 /* Fills a program that has its key and command. */
-static enum cs_status open_program(struct cs_program *program, struct cs_error *error) {
+static enum cs_status open_program(struct cs_program_method *program, struct cs_error *error) {
     struct cs_program_process process;
     const struct cs_module *calls;
     char *command = program->command, *name = NULL, file[PATH_MAX];
@@ -160,11 +160,11 @@ static enum cs_status open_program(struct cs_program *program, struct cs_error *
                : make_method(program, name, calls, error);
 }
 
-enum cs_status cs_program_open(const char *text, const struct cs_integrator **integrator,
-                               const char **file, struct cs_error *error) {
-    static struct cs_program *programs; // they stay, as modules stay open
+enum cs_status cs_program_method_open(const char *text, const struct cs_integrator **integrator,
+                                      const char **file, struct cs_error *error) {
+    static struct cs_program_method *programs; // they stay, as modules stay open
     const size_t bytes = strlen(text) + 1;
-    struct cs_program *program = programs;
+    struct cs_program_method *program = programs;
     while (program && strcmp(program->key, text) != 0)
         program = program->next;
     if (!program) {

@@ -42,7 +42,7 @@ static _Noreturn void become_program(const char *const *words, int socket, int m
 }
 
 enum cs_status cs_program_process_start(struct cs_program_process *process,
-                                        const struct cs_program *program, size_t n,
+                                        const struct cs_program_method *program, size_t n,
                                         struct cs_error *error) {
     const pid_t parent = getpid();
     const int memory = memfd_create("clothsim", MFD_CLOEXEC | MFD_ALLOW_SEALING);
@@ -113,7 +113,7 @@ int cs_program_receive_hello(const struct cs_program_process *process,
 static enum cs_step create(const struct cs_host *table, const void *options, void **self) {
     struct cs_run_host *host = table->ctx;
     // the method is the first member of its program
-    const struct cs_program *program = (const void *)host->run->integrator;
+    const struct cs_program_method *program = (const void *)host->run->integrator;
     struct cs_program_process *process = table->alloc(host, sizeof *process);
     struct cs_program_message hello;
     if (!process || cs_program_process_start(process, program, table->view->n, &host->error))

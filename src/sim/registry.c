@@ -100,7 +100,7 @@ static enum cs_status add_program(struct cs_registry *registry, const char *text
                                   struct cs_error *error) {
     const struct cs_integrator *integrator;
     const char *file;
-    if (find_entry(registry, text) || cs_program_open(text, &integrator, &file, error))
+    if (find_entry(registry, text) || cs_program_method_open(text, &integrator, &file, error))
         return error->status;
     const struct cs_registry_entry *first = find_entry(registry, integrator->name);
     if (first)

@@ -10,7 +10,8 @@
 
 /* One integrator that can be used, or one module file that cannot. */
 struct cs_registry_entry {
-    const char *file;    /* absolute path of the module, or of a program (cs_program_open) */
+    const char
+        *file; /* absolute path of the module, or of a program (cs_program_method_open) */
     const char *program; /* "program:COMMAND" as it was added; NULL: a module */
     const struct cs_integrator *integrator; /* NULL: refused */
     const char *refusal;                    /* why; NULL: it can be used */

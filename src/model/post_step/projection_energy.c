@@ -289,9 +289,10 @@ static void lift_deep(const struct cs_projection_energy *balance,
         for (size_t i = 0; i < n; i++) {
             double *x = blow->corrected + i, normal[3];
             const double p[3] = {x[0], x[n], x[2 * n]};
-            const double gap =
-                cs_posed_collider_signed_distance(blow->colliders + k, p, normal);
-            for (size_t c = 0; c < 3 * n && blow->is_pushed[i] && gap < -most; c += n)
+            if (!blow->is_pushed[i] ||
+                cs_posed_collider_signed_distance(blow->colliders + k, p, normal) >= -most)
+                continue;
+            for (size_t c = 0; c < 3 * n; c += n)
                 x[c] = blow->x[c + i] + balance->work[c + i];
         }
     }
