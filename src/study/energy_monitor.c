@@ -288,15 +288,17 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
 
 void cs_energy_monitor_print_beyond(const struct cs_energy_monitor *monitor,
                                     struct cs_text *out) {
-    static const char *const units[CS_CLOTH_BOUNDS] = {"times the rest length more",
-                                                       "m deep in a collider", "m/s fast"};
+    static const char *const words[CS_CLOTH_BOUNDS][2] = {
+        {"stretched by ", " of the rest length"},
+        {"", " m deep in a collider"},
+        {"moving at ", " m/s"}};
     int printed = 0;
     for (int k = 0; k < CS_CLOTH_BOUNDS; k++) {
         const struct cs_cloth_peak *peak = monitor->cloth + k;
         if (peak->value > peak->bound)
-            cs_text_add(out, "%s%.3g %s at t = %.6g s, bound %.3g",
-                        printed++ ? "; " : "beyond cloth: ", peak->value, units[k], peak->t,
-                        peak->bound);
+            cs_text_add(out, "%s%s%.3g%s at t = %.6g s, bound %.3g",
+                        printed++ ? "; " : "beyond cloth: ", words[k][0], peak->value,
+                        words[k][1], peak->t, peak->bound);
     }
 }
 

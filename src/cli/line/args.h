@@ -82,7 +82,7 @@ struct cs_arg {
 #define CS_ARG_PROGRAM(struct_, items, n_items)                                                \
     {                                                                                          \
         "program", 0, "[NAME=]COMMAND",                                                        \
-            "a method that this program computes; may be repeated",                            \
+            "run this command as a method; may be repeated",                            \
             CS_ARG_LIST(struct_, items, n_items), .prefix = "program:"                         \
     }
 /* The same in every command that has it. */

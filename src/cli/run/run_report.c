@@ -37,7 +37,7 @@ void cs_report_print_shortfalls(const struct cs_job *job) {
     if (job->monitor.worst_verdict == CS_STABILITY_BEYOND) {
         cs_energy_monitor_print_beyond(&job->monitor, &text);
         if (depth->value > depth->bound && run->system->plan.rows[CS_FEATURE_CONTACT].built)
-            cs_text_add(&text, "; contact.law force or shorter steps hold particles out");
+            cs_text_add(&text, "; contact.law force or shorter steps keep particles out");
     }
     cs_print_lines("clothsim: warning: ", cs_text_get(&text), &lines);
     cs_print_out(stderr, &lines, &(struct cs_error){0});
