@@ -9,6 +9,7 @@ harmed, no device, FIFO or link's target is replaced, nothing hangs, what is sig
 the next run of the same command leaves no half-written file.
 """
 import collections
+import functools
 import itertools
 import json
 import os
@@ -21,7 +22,9 @@ import stat
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+import tty
 from pathlib import Path
 
 program = str(Path(sys.argv[1]).resolve())
@@ -123,14 +126,23 @@ def outputs(command):
     return [(name, kind) for name, kind in found if name not in INPUTS]
 
 
+@functools.cache
+def own_terminal():
+    """The name of a pseudo-terminal of this test alone, which reads what it is told."""
+    reader, terminal = os.openpty()
+    tty.setraw(terminal)
+    threading.Thread(target=lambda: all(iter(lambda: os.read(reader, 65536), b"")), daemon=True).start()
+    return os.ttyname(terminal)
+
+
 def make_device(path):
     try:
         os.mknod(path, 0o666 | stat.S_IFCHR, os.makedev(1, 3))
         with open(path, "w", encoding="ascii") as file:
             file.write("x")
-    except OSError:
+    except OSError:  # where none may be made, a link to a terminal of this test alone
         Path(path).unlink(missing_ok=True)
-        os.symlink("/dev/null", path)  # where none may be made; a link to one is kept as well
+        os.symlink(own_terminal(), path)
 
 
 def make_target(kind, path):
