@@ -8,11 +8,12 @@
     " \"springs\": {\"stretch\": 200, \"shear\": 75, \"bend\": 25, \"damping\": %s}}"
 #define SCENE "{\"bodies\": [" GRID "]}"
 
-/* rows of one tile of particles, of a tile and one or two, of several */
-enum { N_GRIDS = 13 };
-static const int grids[N_GRIDS][2] = {{1, 1},  {2, 1},  {1, 2},  {2, 2}, {3, 2},
-                                      {1, 5},  {4, 1},  {7, 5},  {3, 4}, {64, 4},
-                                      {65, 5}, {66, 3}, {300, 3}};
+/* rows of which a tile packs several, of one tile of particles, of a tile and one or two, of
+ * several */
+enum { N_GRIDS = 17 };
+static const int grids[N_GRIDS][2] = {{1, 1},   {2, 1},  {1, 2},  {2, 2},  {3, 2},  {1, 5},
+                                      {4, 1},   {7, 5},  {3, 4},  {64, 4}, {65, 5}, {66, 3},
+                                      {300, 3}, {16, 9}, {24, 7}, {25, 6}, {5, 40}};
 
 /* What a body's springs are by definition: particles (row, column) and (row + down,
  * column + right) are joined for these six steps and no other. */

@@ -17,7 +17,7 @@ struct tile {
 
 /* Results of a direction; entry i belongs to particle i of the tile. */
 CS_INLINE double *rows_of(struct tile *tile, unsigned way) {
-    return tile->rows + way * tile->parts * PADDED_TILE + MARGIN;
+    return tile->rows + way * tile->parts * PADDED_TILE + BEFORE;
 }
 
 /* Particles of the row that begin a spring of a direction are [begin_of, end_of): the leftmost
@@ -110,9 +110,6 @@ CS_INLINE void make_directions(struct tile *tile, const struct stencil_input *in
     else
         for (unsigned k = 0; k < n; k++)
             tile->kernel->passes[0](in, ways + k, 0, tile->count);
-    for (unsigned way = first; way < last; way++)
-        if (tile->fan->directions[way])
-            drop_none(tile, way);
 }
 
 /* Computes the existing springs of one direction, and reads nothing else. */
@@ -141,6 +138,9 @@ CS_INLINE void make_tile(struct tile *tile, const bool at[3]) {
         make_directions(tile, &in, CS_DIRECTION_DOWN, CS_DIRECTION_DOWN_TWO);
     if (!alone && (at[0] || at[2]))
         make_directions(tile, &in, CS_DIRECTION_DOWN_TWO, CS_DIRECTIONS);
+    for (unsigned way = 0; way < CS_DIRECTIONS && !alone; way++)
+        if (tile->fan->directions[way])
+            drop_none(tile, way);
 }
 
 /* Copies the results of the tile's last two particles to the margin before the next tile, whose
@@ -217,18 +217,22 @@ CS_INLINE void add_part(struct tile *tile, const bool at[3], size_t k, const dou
         add_after(tile, k, sign, to + 2 * (size_t)first->columns);
 }
 
+/* Array of component k: of the force, of df/dx or of df/dv. */
+CS_INLINE double *array_of(const struct tile *tile, size_t k) {
+    const struct stencil_kernel *kernel = tile->kernel;
+    const struct spring_job *job = tile->job;
+    if (k < kernel->n_force)
+        return job->to + k * job->n;
+    k -= kernel->n_force;
+    return k < kernel->n_dfdx ? job->at.dfdx_blocks + k * job->n
+                              : job->at.dfdv_blocks + (k - kernel->n_dfdx) * job->n;
+}
+
 /* Adds all components: forces with the opposite sign at the other ends, blocks with the same
  * sign. */
 CS_INLINE void add_tile(struct tile *tile, const bool at[3]) {
-    const struct stencil_kernel *kernel = tile->kernel;
-    const struct spring_job *job = tile->job;
-    const size_t blocks = kernel->n_dfdx + kernel->n_dfdv;
-    for (size_t k = 0; k < kernel->n_force; k++)
-        add_part(tile, at, k, -1, job->to + k * job->n);
-    for (size_t k = 0; k < blocks; k++)
-        add_part(tile, at, kernel->n_force + k, 1,
-                 k < kernel->n_dfdx ? job->at.dfdx_blocks + k * job->n
-                                    : job->at.dfdv_blocks + (k - kernel->n_dfdx) * job->n);
+    for (size_t k = 0; k < tile->parts; k++)
+        add_part(tile, at, k, k < tile->kernel->n_force ? -1 : 1, array_of(tile, k));
 }
 
 /* Finds the rows of each direction, the same for all tiles of a row. */
@@ -236,7 +240,7 @@ CS_INLINE void find_rows(struct tile *tile) {
     static const _Alignas(64) double zeros[PADDED_TILE];
     for (unsigned way = 0; way < CS_DIRECTIONS; way++) {
         const bool exists = tile->fan->directions[way];
-        tile->results[way] = exists ? rows_of(tile, way) : zeros + MARGIN;
+        tile->results[way] = exists ? rows_of(tile, way) : zeros + BEFORE;
         tile->strides[way] = exists ? PADDED_TILE : 0;
     }
 }
@@ -260,5 +264,113 @@ CS_CLONES void cs_grid_stencil_add(const struct spring_job *job, const struct cs
         add_tile(&tile, at);
         if (left > TILE)
             carry_over_overlap(&tile);
+    }
+}
+
+/* --- packed rows --- */
+
+/* A tile of packed rows: start and count go on over the ends of rows, which lie one after
+ * another. Springs that would cross an end are computed and dropped. A particle reads what the
+ * two rows above it began, which is therefore kept before each tile. */
+
+/* Drops the results of one column. */
+CS_INLINE void drop_column(struct tile *tile, unsigned way, size_t column) {
+    const size_t columns = tile->fan->first->columns;
+    double *rows = rows_of(tile, way);
+    for (size_t i = (column + columns - tile->start % columns) % columns; i < tile->count;
+         i += columns)
+        for (size_t k = 0; k < tile->parts; k++)
+            rows[k * PADDED_TILE + i] = 0;
+}
+
+/* Drops what does not exist of a direction: springs over an end of a row, and, from `end` of
+ * the tile on, over the last row. */
+CS_INLINE void drop_packed(struct tile *tile, unsigned way, size_t end) {
+    const size_t columns = tile->fan->first->columns;
+    for (size_t column = end_of(way, columns); column < columns; column++)
+        drop_column(tile, way, column);
+    if (begin_of(way))
+        drop_column(tile, way, 0);
+    for (size_t k = 0; k < tile->parts; k++)
+        for (size_t i = end; i < tile->count; i++)
+            rows_of(tile, way)[k * PADDED_TILE + i] = 0;
+}
+
+/* Computes a tile of a grid of `all` particles; near its end direction by direction, so that
+ * nothing beyond it is read. */
+CS_INLINE void make_packed(struct tile *tile, size_t all) {
+    const struct stencil_input in = in_of(tile);
+    const size_t left = all - tile->start;
+    const bool inside = tile->count + 2 * (size_t)tile->fan->first->columns < left;
+    if (inside) {
+        make_directions(tile, &in, CS_DIRECTION_RIGHT, CS_DIRECTION_DOWN);
+        make_directions(tile, &in, CS_DIRECTION_DOWN, CS_DIRECTION_DOWN_TWO);
+        make_directions(tile, &in, CS_DIRECTION_DOWN_TWO, CS_DIRECTIONS);
+    }
+    for (unsigned way = 0; way < CS_DIRECTIONS; way++) {
+        if (!tile->fan->directions[way])
+            continue;
+        const struct stencil_direction alone = direction_of(tile, way);
+        const size_t stop = left > alone.offset ? left - alone.offset : 0;
+        const size_t end = stop < tile->count ? stop : tile->count;
+        if (!inside)
+            tile->kernel->passes[0](&in, &alone, 0, end);
+        drop_packed(tile, way, end);
+    }
+}
+
+/* Adds component k to the tile's particles from `begin` on: first what the rows above began, as
+ * add_after and add_next do, then as add_own does. */
+CS_INLINE void add_packed(struct tile *tile, size_t k, const double sign, size_t begin,
+                          double *to) {
+    const size_t count = tile->count, columns = tile->fan->first->columns;
+    const double *right = row_of(tile, CS_DIRECTION_RIGHT, k, 0);
+    const double *two = row_of(tile, CS_DIRECTION_RIGHT_TWO, k, 0);
+    const double *down = row_of(tile, CS_DIRECTION_DOWN, k, 0);
+    const double *forth = row_of(tile, CS_DIRECTION_DOWN_RIGHT, k, 0);
+    const double *back = row_of(tile, CS_DIRECTION_DOWN_LEFT, k, 0);
+    const double *after = row_of(tile, CS_DIRECTION_DOWN_TWO, k, 0);
+    CS_INDEPENDENT
+    for (size_t i = begin; i < count; i++)
+        to[i] =
+            to[i] + sign * (after - 2 * columns)[i] +
+            sign * ((down - columns)[i] + (forth - columns - 1)[i] + (back - columns + 1)[i]) +
+            ((right[i] + two[i] + (down[i] + forth[i] + back[i]) + after[i]) +
+             sign * ((right - 1)[i] + (two - 2)[i]));
+}
+
+/* Zeroes what is kept before the first tile, or keeps it before the next one. */
+CS_INLINE void keep_before(struct tile *tile, bool first) {
+    for (unsigned way = 0; way < CS_DIRECTIONS; way++) {
+        if (!tile->fan->directions[way])
+            continue;
+        double *rows = rows_of(tile, way);
+        const ptrdiff_t kept = (ptrdiff_t)direction_of(tile, way).offset + 1;
+        for (size_t k = 0; k < tile->parts; k++, rows += PADDED_TILE)
+            for (ptrdiff_t i = -kept; i < 0; i++)
+                rows[i] = first ? 0 : rows[i + TILE];
+    }
+}
+
+CS_CLONES void cs_grid_stencil_add_packed(const struct spring_job *job,
+                                          const struct cs_block *block,
+                                          const struct row_stencil *stencil,
+                                          const struct stencil_kernel *kernel) {
+    const struct cs_spring_run *first = stencil->first;
+    const size_t all = (size_t)first->columns * (first->rows_below + 1);
+    const size_t begin = block->begin > first->row ? block->begin - first->row : 0;
+    const size_t left = block->end - first->row, end = left < all ? left : all;
+    struct tile tile;
+    tile.job = job, tile.fan = stencil, tile.kernel = kernel;
+    tile.parts = kernel->n_force + kernel->n_dfdx + kernel->n_dfdv;
+    find_rows(&tile);
+    for (tile.start = 0; tile.start < end; tile.start += TILE) {
+        keep_before(&tile, tile.start == 0);
+        tile.count = end - tile.start < TILE ? end - tile.start : TILE;
+        make_packed(&tile, all);
+        const size_t from = begin > tile.start ? begin - tile.start : 0;
+        for (size_t k = 0; k < tile.parts; k++)
+            add_packed(&tile, k, k < kernel->n_force ? -1 : 1, from,
+                       array_of(&tile, k) + first->row + tile.start);
     }
 }

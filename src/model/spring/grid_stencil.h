@@ -26,7 +26,9 @@
 enum {
     TILE = 64,  /* particles per tile; 32 took 1.1 of the time at 64 x 64 (docs/notes) */
     MARGIN = 8, /* more than any spring reaches along the row, and a whole vector */
-    PADDED_TILE = MARGIN + TILE + MARGIN,
+    PACKED_COLUMNS_MAX = 24, /* of rows that a tile packs; wider ones gain nothing */
+    BEFORE = 2 * PACKED_COLUMNS_MAX + MARGIN, /* results that tiles of packed rows keep */
+    PADDED_TILE = BEFORE + TILE + MARGIN,
     NUMBERS_PER_SPRING_MAX = 15, /* most results per spring: force 3, df/dx 6, df/dv 6 */
     DIRECTIONS_AT_ONCE = 3       /* directions that one loop computes side by side */
 };
@@ -76,8 +78,20 @@ void cs_grid_stencil_add(const struct spring_job *job, const struct cs_block *bl
                          const struct row_stencil *stencil,
                          const struct stencil_kernel *kernel);
 
+/* The same for all rows of a grid from the stencil's on, several of which a tile packs; for
+ * kernels without factors of a matrix. A particle's sum has the same order. */
+void cs_grid_stencil_add_packed(const struct spring_job *job, const struct cs_block *block,
+                                const struct row_stencil *stencil,
+                                const struct stencil_kernel *kernel);
+
+/* Returns whether tiles pack the rows of a grid. */
+CS_INLINE bool is_packed(const struct spring_job *job, const struct cs_spring_run *first) {
+    return first->columns <= PACKED_COLUMNS_MAX && !job->factors;
+}
+
 /* Collects the runs of a row, from its first on, and adds a kernel's results for those that
- * `asks` accepts. Returns the number of runs in the row. */
+ * `asks` accepts. Returns the number of runs in the row, or in the grid if its rows are packed.
+ */
 CS_INLINE uint32_t add_row_stencil(const struct spring_job *job, const struct cs_block *block,
                                    const struct cs_spring_run *first, run_test *asks,
                                    const struct stencil_kernel *kernel) {
@@ -89,8 +103,13 @@ CS_INLINE uint32_t add_row_stencil(const struct spring_job *job, const struct cs
             stencil.directions[run->direction] = run;
             acts = true;
         }
-    if (acts)
+    if (acts && is_packed(job, first))
+        cs_grid_stencil_add_packed(job, block, &stencil, kernel);
+    else if (acts)
         cs_grid_stencil_add(job, block, &stencil, kernel);
+    // rows of one grid have the same springs
+    while (is_packed(job, first) && run < end && run->columns && run->body == first->body)
+        run++;
     return (uint32_t)(run - first);
 }
 
