@@ -80,19 +80,20 @@ static void set_positions(struct newton *newton, const struct newton_stage *stag
 /* Sets X, V, r, |r| and the impulse for u. Norms weight with 1/m: pinned particles count 0. */
 static void evaluate(struct newton *newton, const struct newton_stage *stage, const double *u) {
     const struct cs_host *host = newton->host;
-    const struct cs_view *view = host->view;
-    const size_t n = view->n;
+    const size_t n = host->view->n;
     set_positions(newton, stage, u);
     host->force(host->ctx, stage->t, newton->x, newton->v, CS_PART_ALL, newton->f);
+    if (stage->exchange)
+        stage->exchange(newton, stage);
     double squared = 0, impulse = 0;
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++) {
             const size_t k = c * n + i;
-            const double dp = view->mass[i] * (u[k] - stage->ub[k]);
+            const double dp = host->view->mass[i] * (u[k] - stage->ub[k]);
             const double r = dp - stage->s * newton->f[k];
             newton->r[k] = r;
-            squared += r * r * view->inv_mass[i];
-            impulse += dp * dp * view->inv_mass[i];
+            squared += r * r * host->view->inv_mass[i];
+            impulse += dp * dp * host->view->inv_mass[i];
         }
     newton->norm = sqrt(squared);
     newton->impulse = sqrt(impulse);
@@ -119,7 +120,6 @@ static enum cs_step find_direction(struct newton *newton, const struct newton_st
     const struct cs_host *host = newton->host;
     const struct cs_view *view = host->view;
     const size_t n = view->n;
-    /* far from the solution only the clamped matrix is sure to give a direction downhill */
     const bool near = newton->norm < NEAR * newton->impulse;
     // lagged friction is convex: its own slope goes downhill
     const uint32_t flags = newton->may_fail | (near ? 0 : CS_SOLVE_PSD) |

@@ -52,6 +52,12 @@
             "maximum Newton iterations; then friction of contact is lagged, or the step "      \
             "is halved, up to 12 times")
 
+struct newton;
+struct newton_stage;
+
+/* Changes newton->f, the force at newton->x. */
+typedef void newton_exchange(struct newton *newton, const struct newton_stage *stage);
+
 /* The equation of one stage, in the symbols above; the vectors are borrowed. */
 struct newton_stage {
     /* time of the force in s; its factor s in s; dX/du in s; dV/du */
@@ -60,6 +66,8 @@ struct newton_stage {
     const double *vb;      /* (3,n) in m/s; NULL: 0 */
     double c;              /* time since the begin of the step in s */
     const double *x0, *v0; /* (3,n) in m and m/s: the state at the begin of the step */
+    /* for forces that the step, not the stage, decides; A does not know them. NULL: none */
+    newton_exchange *exchange;
 };
 
 /* The solver of a method: its settings, scratch, and the result of the last evaluation. */

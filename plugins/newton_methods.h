@@ -6,7 +6,7 @@
 #include "step_halving.h"
 
 extern const struct cs_integrator backward_euler, implicit_midpoint, bdf2, tr_bdf2, sdirk2,
-    ros2, newmark, gauss, esdirk;
+    ros2, newmark, gauss, esdirk, energy_momentum;
 
 /* Arrays (3,n) of an SDIRK2 step. */
 struct sdirk2_arrays {

@@ -3,7 +3,7 @@
 
 static const struct cs_integrator *const integrators[] = {
     &backward_euler, &implicit_midpoint, &bdf2,  &tr_bdf2, &sdirk2,
-    &ros2,           &newmark,           &gauss, &esdirk,
+    &ros2,           &newmark,           &gauss, &esdirk,  &energy_momentum,
 };
 
 CS_EXPORT const struct cs_module clothsim_module = {

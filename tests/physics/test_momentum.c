@@ -1,5 +1,5 @@
 /* Without outer forces a free cloth keeps its momentum and, with axial forces, its angular
- * momentum. */
+ * momentum; by energy-momentum its energy too, at any step. */
 #include "methods.h"
 
 #include <math.h>
@@ -73,4 +73,51 @@ TEST(angular_momentum_is_kept) {
         ck_assert_msg(moved[1] < rows[i].bound, "%s: angular momentum moved by %.3g",
                       rows[i].integrator, moved[1]);
     }
+}
+
+#define VIOLENT                                                                                \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [12, 12], \"size\": [1, 1], \"stretch\": 1.3},"      \
+    " \"mass\": {\"total\": 0.2}, \"springs\": {\"stretch\": 200, \"shear\": 60, \"bend\": 2," \
+    " \"damping\": 0}, \"pins\": %s}], \"forces\": {\"gravity\": %s, \"drag\": 0}}"
+
+/* Change of the energy in half a second of a sheet that is let go stretched by 1.3, over what
+ * it is at first; of angular momentum too, in kg m2/s. */
+static double energy_gain(const char *integrator, const char *pins, const char *gravity,
+                          double *turned) {
+    struct fixture cloth;
+    double p[3], before[3], after[3];
+    fixture_open(&cloth, integrator, VIOLENT, pins, gravity);
+    cs_perturb_smooth(cloth.system, 0.02, 0.5);
+    for (size_t i = 0; i < cloth.n; i++)
+        if (cloth.system->inv_mass[i] > 0) // it turns
+            cloth.v[2 * cloth.n + i] += 3 * cloth.x[i];
+    fixture_start(&cloth);
+    fixture_momentum(&cloth, p, before);
+    const double energy = fixture_energy(&cloth);
+    fixture_frames(&cloth, 30);
+    fixture_momentum(&cloth, p, after);
+    const double gain = (fixture_energy(&cloth) - energy) / fabs(energy);
+    *turned = 0;
+    for (int c = 0; c < 3; c++)
+        *turned = fmax(*turned, fabs(after[c] - before[c]));
+    fixture_close(&cloth);
+    return gain;
+}
+
+/* The midpoint rule makes a hundred times the energy in this at 4 ms. */
+TEST(energy_momentum_keeps_both_at_any_step) {
+    static const char *const steps[] = {"1e-3", "4e-3", "frame"};
+    double turned;
+    for (size_t k = 0; k < 3; k++)
+        for (int held = 0; held < 2; held++) {
+            char integrator[64];
+            snprintf(integrator, sizeof integrator, "energy-momentum:dt=%s,rtol=1e-12",
+                     steps[k]);
+            const double gain = energy_gain(integrator, held ? "[\"top-left\"]" : "[]",
+                                            held ? "[0, -9.81, 0]" : "[0, 0, 0]", &turned);
+            ck_assert_msg(fabs(gain) < 1e-9, "%s gains %.3g", integrator, gain);
+            ck_assert_msg(held || turned < 1e-10, "%s turns by %.3g", integrator, turned);
+        }
+    ck_assert_double_gt(energy_gain("implicit-midpoint:dt=4e-3", "[]", "[0, 0, 0]", &turned),
+                        10);
 }

@@ -179,7 +179,8 @@ TEST(newmark_keeps_rho_inf_of_the_fastest_mode) {
  * counted, and then the run fails with the residual. */
 TEST(failure_is_told) {
     static const char *const methods[] = {
-        "backward-euler", "implicit-midpoint", "bdf2", "tr-bdf2", "sdirk2", "newmark"};
+        "backward-euler", "implicit-midpoint", "bdf2",           "tr-bdf2",
+        "sdirk2",         "newmark",           "energy-momentum"};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         char integrator[96];
         struct fixture chain;
