@@ -270,59 +270,6 @@ TEST(pairs_swept_by_a_step_limit_as_the_search_does) {
     fixture_close(&cloth);
 }
 
-static size_t count_listed(const struct cs_candidates *search) {
-    size_t n = 0;
-    for (uint32_t l = 0; l < search->n_chunks; l++)
-        n += search->chunks[l].n;
-    return n;
-}
-
-/* Pairs that are listed of a strip that was flat and is then bent, where the list but for what
- * was flat is taken to be good: `trusted`, that too. */
-static size_t listed_when_bent(bool trusted) {
-    struct fixture strip;
-    fixture_open(&strip, "velocity-verlet:dt=1e-3", STRIP, 0.0, 0.0);
-    struct cs_candidates *search = &strip.system->pairs->candidates;
-    ck_assert(cs_candidates_update(search, strip.x));
-    ck_assert_uint_gt(search->flat_regions.n_flat_blocks, 0);
-    ck_assert_uint_eq(count_listed(search), 0);
-    bend(&strip);
-    for (size_t i = 2 * strip.n; i < 3 * strip.n; i++)
-        strip.x[i] *= 0.5;
-    search->margin_now = HUGE_VAL;
-    search->flat_regions.margin_now = trusted ? HUGE_VAL : search->flat_regions.margin_now;
-    ck_assert(cs_candidates_update(search, strip.x));
-    const size_t n = count_listed(search);
-    fixture_close(&strip);
-    return n;
-}
-
-TEST(what_was_flat_is_looked_at_again) {
-    ck_assert_uint_gt(listed_when_bent(false), 20);
-    // a fault that is to be found
-    ck_assert_uint_eq(listed_when_bent(true), 0);
-}
-
-/* a little bent, it is found to be flat still, and the list is kept */
-TEST(what_stays_flat_makes_no_list) {
-    struct fixture strip;
-    fixture_open(&strip, "velocity-verlet:dt=1e-3", STRIP, 0.0, 0.0);
-    struct cs_candidates *search = &strip.system->pairs->candidates;
-    ck_assert(cs_candidates_update(search, strip.x));
-    const uint64_t builds = search->n_builds;
-    for (int turn = 1; turn <= 3; turn++) {
-        for (size_t i = 0; i < strip.n; i++)
-            strip.x[2 * strip.n + i] +=
-                0.6 * search->flat_regions.margin_now * sin(2.5 * strip.x[i]);
-        ck_assert(cs_candidates_update(search, strip.x));
-        ck_assert_int_eq(
-            !memcmp(search->flat_regions.x_at_build, strip.x, 3 * strip.n * sizeof *strip.x),
-            turn == 2);
-    }
-    ck_assert_uint_eq(search->n_builds, builds);
-    fixture_close(&strip);
-}
-
 static void ask_elsewhere(struct cs_pairs *pairs, const struct cs_matrix *matrix,
                           const double *x) {
     static double stiffness[600], damping[600];

@@ -263,16 +263,8 @@ struct looking {
     const struct cs_aabb_clusters *clusters;
     const struct cs_uniform_grid *cells;
     const struct cs_aabb *box;
-    const struct cs_grid_rectangle *but;
     uint32_t first[3];
 };
-
-static bool is_in(const struct cs_grid_rectangle *span, const struct cs_grid_rectangle *in) {
-    bool is = true;
-    for (int c = 0; c < 2; c++)
-        is &= span->first[c] >= in->first[c] && span->last[c] <= in->last[c];
-    return is;
-}
 
 /* Appends the clusters of one cell that pass all restrictions, each from one cell only. */
 static bool add_cell(struct cs_nearby_clusters *near, const struct looking *looking,
@@ -287,8 +279,7 @@ static bool add_cell(struct cs_nearby_clusters *near, const struct looking *look
         if (clusters->max_item[cluster] >= near->first_item &&
             (clusters->body[cluster] == near->body) == near->same_body_only &&
             cs_aabbs_overlap(looking->box, other) &&
-            is_first_cell(cells, other, looking->first, at) &&
-            !(looking->but && is_in(clusters->grid_rectangles + cluster, looking->but)))
+            is_first_cell(cells, other, looking->first, at))
             there = there && add(near, cluster, other);
     }
     return there;
@@ -316,12 +307,12 @@ static bool add_cells(struct cs_nearby_clusters *near, struct looking *looking) 
 }
 
 bool cs_nearby_clusters_find(struct cs_nearby_clusters *near,
-                             const struct cs_aabb_clusters *clusters, const struct cs_aabb *box,
-                             const struct cs_grid_rectangle *but) {
+                             const struct cs_aabb_clusters *clusters,
+                             const struct cs_aabb *box) {
     bool there = true;
     near->n = 0;
     for (int k = 0; k < 2 && box->high[0] >= box->low[0]; k++) {
-        struct looking looking = {clusters, clusters->cells + k, box, but, {0}};
+        struct looking looking = {clusters, clusters->cells + k, box, {0}};
         there = there && add_cells(near, &looking);
     }
     uint32_t *items = cs_arena_realloc(near->items, &near->items_capacity,

@@ -60,9 +60,7 @@ enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_sy
         cs_arena_alloc_array(arena, candidates->n_chunks, sizeof *candidates->chunks, error);
     candidates->body_motion = cs_arena_alloc_array(arena, 4 * (size_t)meetings->n_bodies,
                                                    sizeof *candidates->body_motion, error);
-    if (error->status ||
-        cs_candidates_flat_init(&candidates->flat_regions, system, meetings, arena, error) ||
-        cs_candidates_find_init(candidates, arena, error))
+    if (error->status || cs_candidates_find_init(candidates, arena, error))
         return error->status;
     for (uint32_t b = 0; b < meetings->n_bodies; b++)
         for (uint32_t i = surfaces->first_point[b]; i < surfaces->first_point[b + 1]; i++)
@@ -162,27 +160,8 @@ static bool is_good(const struct cs_candidates *candidates, const double *x) {
     return good;
 }
 
-/* m, margin of flat blocks for a list with the margin `margin` */
-static double flat_margin(const struct cs_candidates *candidates, double margin) {
-    const double usual = CS_CANDIDATES_FLAT_MARGIN * candidates->body_pairs->range_min;
-    return margin < usual ? margin : usual;
-}
-
-/* Returns whether bodies have deformed by no more than the margin of flat blocks. */
-static bool is_flat(const struct cs_candidates *candidates, const double *x) {
-    const struct cs_candidates_flat *flat = &candidates->flat_regions;
-    bool good = true;
-    if (flat->n_flat_blocks)
-        measure_drifts(candidates, flat->x_at_build, x);
-    for (uint32_t b = 0; flat->n_flat_blocks && b < candidates->body_pairs->n_bodies; b++)
-        good = good && (!flat->grids[b] ||
-                        candidates->body_motion[4 * (size_t)b + 3] <= flat->margin_now);
-    return good;
-}
-
-/* Builds the list at x_at_build for both margins; returns false if out of memory. */
-static bool build(struct cs_candidates *candidates, double margin, double flat) {
-    cs_candidates_flat_find(&candidates->flat_regions, candidates->x_at_build, flat);
+/* Builds the list at x_at_build for a margin; returns false if out of memory. */
+static bool build(struct cs_candidates *candidates, double margin) {
     candidates->n_builds++;
     candidates->margin_now = margin;
     cs_candidates_scale_points(candidates, candidates->x_at_build);
@@ -191,16 +170,11 @@ static bool build(struct cs_candidates *candidates, double margin, double flat) 
     return candidates->is_built;
 }
 
-/* A list that is valid but whose flat blocks are too old is kept if these can be renewed at x.
- */
 bool cs_candidates_update(struct cs_candidates *candidates, const double *x) {
-    const double flat = flat_margin(candidates, candidates->margin);
-    if (is_good(candidates, x) &&
-        (is_flat(candidates, x) ||
-         cs_candidates_flat_renew(&candidates->flat_regions, x, flat)))
+    if (is_good(candidates, x))
         return true;
     memcpy(candidates->x_at_build, x, 3 * sizeof *x * candidates->system->surfaces->n_points);
-    return build(candidates, candidates->margin, flat);
+    return build(candidates, candidates->margin);
 }
 
 /* --- for a whole move --- */
@@ -257,8 +231,7 @@ static double largest_move(const struct cs_candidates *candidates, const double 
  * because each relative displacement is a convex function along it. */
 static bool is_covered(const struct cs_candidates *candidates, const double *x0,
                        const double *x1) {
-    return is_good(candidates, x0) && is_good(candidates, x1) && is_flat(candidates, x0) &&
-           is_flat(candidates, x1);
+    return is_good(candidates, x0) && is_good(candidates, x1);
 }
 
 /* Largest multiple of the step by which the state of a new list lies ahead of its start. */
@@ -297,10 +270,7 @@ bool cs_candidates_cover_step(struct cs_candidates *candidates, const double *x0
     const double along = fmin(2 * margin / move, AHEAD);
     for (size_t i = 0; i < 3 * n; i++)
         candidates->x_at_build[i] = x0[i] + along * (x1[i] - x0[i]);
-    // a flat block stands what its body deforms, however far that moves
-    return build(
-        candidates, margin,
-        fmax(flat_margin(candidates, candidates->margin), 0.5 * along * within * (1 + 1e-9)));
+    return build(candidates, margin);
 }
 
 bool cs_candidates_is_nearby(const struct cs_candidates *candidates, const double *x) {

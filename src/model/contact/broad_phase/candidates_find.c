@@ -53,8 +53,7 @@ enum cs_status cs_candidates_find_init(struct cs_candidates *candidates, struct 
                                        struct cs_error *error) {
     const struct cs_surfaces *surfaces = candidates->system->surfaces;
     struct cs_primitive_search *search = &candidates->search;
-    if (cs_primitive_search_init(search, surfaces, candidates->flat_regions.grids, arena,
-                                 error))
+    if (cs_primitive_search_init(search, candidates->system, arena, error))
         return error->status;
     candidates->batches =
         cs_arena_alloc_array(arena, search->n_batches, sizeof *candidates->batches, error);
@@ -197,13 +196,11 @@ static struct group group_of(const struct cs_candidates *candidates, bool edges,
     return group;
 }
 
-/* Finds the clusters near a group, of its own body or of others. Those within the flat
- * neighbourhood of its block are skipped. Returns false if out of memory. */
+/* Finds the clusters near a group, of its own body or of others. Returns false if out of
+ * memory. */
 static bool find_clusters(const struct cs_candidates *candidates, const struct group *group,
                           bool own, struct cs_nearby_clusters *near) {
     const double reach = group->reach[!own];
-    const uint32_t block = group->of->grid_block[group->cluster];
-    const bool flat = own && candidates->flat_regions.n_flat_blocks && block != CS_NO_BLOCK;
     near->n = 0;
     if (!(reach > 0))
         return true;
@@ -213,13 +210,7 @@ static bool find_clusters(const struct cs_candidates *candidates, const struct g
     near->first_item =
         group->edges ? group->of->items[CS_AABB_CLUSTER * (size_t)group->cluster] : 0;
     const struct cs_aabb box = group_box(candidates, group->edges, group->cluster, reach);
-    return cs_nearby_clusters_find(
-        near, group->others, &box,
-        flat ? candidates->flat_regions
-                       .work_neighbourhood[group->edges ? CS_PAIR_EDGE_EDGE
-                                                        : CS_PAIR_POINT_TRIANGLE] +
-                   block
-             : NULL);
+    return cs_nearby_clusters_find(near, group->others, &box);
 }
 
 /* Tests the box of one item against the items of the clusters found. */

@@ -70,15 +70,15 @@ static enum cs_status alloc_batches(struct cs_primitive_search *search, struct c
 }
 
 enum cs_status cs_primitive_search_init(struct cs_primitive_search *search,
-                                        const struct cs_surfaces *surfaces,
-                                        struct cs_flat_region *const *flat_regions,
-                                        struct cs_arena *arena, struct cs_error *error) {
-    const struct cs_surfaces *s = surfaces;
-    const uint32_t n = s->n_bodies;
-    const struct cs_cluster_input points = {NULL, 1, s->first_point, n, flat_regions},
-                                  edges = {s->edges, 2, s->first_edge, n, flat_regions},
-                                  triangles = {s->triangles, 3, s->first_triangle, n,
-                                               flat_regions};
+                                        const struct cs_system *system, struct cs_arena *arena,
+                                        struct cs_error *error) {
+    const struct cs_surfaces *s = system->surfaces;
+    const struct cs_body_range *grids = system->bodies;
+    const uint32_t n = s->n_bodies, n_grids = system->scene->bodies.n;
+    const struct cs_cluster_input points = {NULL, 1, s->first_point, n, grids, n_grids},
+                                  edges = {s->edges, 2, s->first_edge, n, grids, n_grids},
+                                  triangles = {s->triangles, 3,      s->first_triangle, n,
+                                               grids,        n_grids};
     *search = (struct cs_primitive_search){.surfaces = s};
     search->body_sweeps = cs_arena_alloc_array(arena, n, sizeof *search->body_sweeps, error);
     if (error->status || cs_cluster_input_build(&points, &search->points, arena, error) ||
@@ -238,7 +238,7 @@ static void find_in_body(struct work *work, const uint32_t *items,
     near->body = body;
     near->first_item = once ? items[0] : 0;
     const struct cs_aabb box = box_in_frame(move, all, body);
-    if (!cs_nearby_clusters_find(near, others, &box, NULL)) {
+    if (!cs_nearby_clusters_find(near, others, &box)) {
         work->batch->failed = true;
         return;
     }

@@ -100,12 +100,11 @@ struct cs_primitive_search {
     struct cs_swept_aabb *body_sweeps;
 };
 
-/* Assigns all primitives to clusters and batches. flat_regions: (n_bodies) or NULL, as in
- * struct cs_cluster_input. The arena owns all memory. CS_ERR_MEMORY. */
+/* Assigns all primitives of a system with surfaces to clusters and batches. The arena owns all
+ * memory. CS_ERR_MEMORY. */
 enum cs_status cs_primitive_search_init(struct cs_primitive_search *search,
-                                        const struct cs_surfaces *surfaces,
-                                        struct cs_flat_region *const *flat_regions,
-                                        struct cs_arena *arena, struct cs_error *error);
+                                        const struct cs_system *system, struct cs_arena *arena,
+                                        struct cs_error *error);
 
 /* Sets the boxes of clusters of edges or triangles, with all threads, and sorts them into
  * cells. set_boxes gives those of the items of a cluster (CS_AABB_CLUSTER), empty ones for

@@ -60,8 +60,7 @@ static enum cs_status find_search(struct cs_system *system, struct cs_crossings 
                                              sizeof *crossings->motion, error);
     crossings->search = cs_arena_alloc(arena, sizeof *crossings->search, error);
     return error->status ? error->status
-                         : cs_primitive_search_init(crossings->search, system->surfaces, NULL,
-                                                    arena, error);
+                         : cs_primitive_search_init(crossings->search, system, arena, error);
 }
 
 enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *error) {
