@@ -89,7 +89,7 @@ TEST(clusters_near_a_box_are_found) {
     static uint32_t last[BOXES], body[BOXES];
     struct cs_aabb_clusters clusters = {
         .n = BOXES, .max_item = last, .body = body, .cluster_boxes = boxes};
-    struct cs_nearby_clusters near = {.same_body_only = true};
+    struct cs_nearby_clusters near = {0};
     uint64_t seed = 3;
     for (uint32_t k = 0; k < BOXES; k++)
         boxes[k] = draw_box(&seed, k);

@@ -277,8 +277,7 @@ static bool add_cell(struct cs_nearby_clusters *near, const struct looking *look
         const uint32_t cluster = cells->items[s];
         const struct cs_aabb *other = clusters->cluster_boxes + cluster;
         if (clusters->max_item[cluster] >= near->first_item &&
-            (clusters->body[cluster] == near->body) == near->same_body_only &&
-            cs_aabbs_overlap(looking->box, other) &&
+            clusters->body[cluster] == near->body && cs_aabbs_overlap(looking->box, other) &&
             is_first_cell(cells, other, looking->first, at))
             there = there && add(near, cluster, other);
     }

@@ -81,10 +81,7 @@ struct cs_nearby_clusters {
     size_t n, clusters_capacity, boxes_capacity, items_capacity;
     /* clusters whose items are all below it are skipped */
     uint32_t first_item;
-    /* body of the query; same_body_only: clusters of others are skipped, else those of the body
-     */
-    uint32_t body;
-    bool same_body_only;
+    uint32_t body; /* clusters of others are skipped */
 };
 
 /* Sets a lane; a box with high below low is empty and overlaps nothing. */

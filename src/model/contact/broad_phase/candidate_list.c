@@ -6,14 +6,15 @@
 
 #include <string.h>
 
-/* Insertion sort of the pairs of one item by their second number: they are few. */
-static void sort_row(uint32_t *pairs, size_t n) {
-    for (size_t i = 1; i < n; i++) {
-        const uint32_t second = pairs[2 * i + 1];
+/* Writes the n pairs of one item in the order of their second numbers, by insertion: they are
+ * few. */
+static void put_row(uint32_t item, const uint32_t *seconds, size_t n, uint32_t *pairs) {
+    for (size_t i = 0; i < n; i++) {
         size_t j = i;
-        for (; j > 0 && pairs[2 * j - 1] > second; j--)
+        for (; j > 0 && pairs[2 * j - 1] > seconds[i]; j--)
             pairs[2 * j + 1] = pairs[2 * j - 1];
-        pairs[2 * j + 1] = second;
+        pairs[2 * j + 1] = seconds[i];
+        pairs[2 * i] = item;
     }
 }
 
@@ -35,10 +36,8 @@ static void list_chunk(void *arg, uint32_t number) {
     for (uint32_t i = chunk->begin; i < chunk->end; i++) {
         if (!rows[i].n)
             continue;
-        memcpy(pairs + 2 * chunk->n,
-               candidates->batches[rows[i].batch].pairs + 2 * (size_t)rows[i].begin,
-               2 * rows[i].n * sizeof *pairs);
-        sort_row(pairs + 2 * chunk->n, rows[i].n);
+        put_row(i, candidates->batches[rows[i].batch].seconds + rows[i].begin, rows[i].n,
+                pairs + 2 * chunk->n);
         chunk->n += rows[i].n;
     }
 }

@@ -45,13 +45,14 @@ struct cs_candidate_chunk {
     double result;
 };
 
-/* Candidates of a batch of the search, item by item. */
+/* Candidates of a batch of the search. */
 struct cs_candidate_batch {
-    uint32_t *pairs; /* (n, 2) */
-    size_t n, capacity;
+    uint32_t *pairs;   /* (n, 2) as they were found */
+    uint32_t *seconds; /* (n) their second items, by first items */
+    size_t n, capacity, seconds_capacity;
 };
 
-/* Candidates of one item: pairs begin to begin + n - 1 of a batch. */
+/* Candidates of one item: seconds begin to begin + n - 1 of a batch. */
 struct cs_candidate_range {
     uint32_t batch, begin, n;
 };

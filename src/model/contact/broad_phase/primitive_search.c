@@ -25,16 +25,15 @@ enum { BATCH = 8, TOGETHER = 64 };
  */
 #define ROUNDING 1e-12
 
-const struct cs_aabb cs_aabb_empty = {{HUGE_VAL, HUGE_VAL, HUGE_VAL},
-                                      {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+static const struct cs_aabb empty = {{HUGE_VAL, HUGE_VAL, HUGE_VAL},
+                                     {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
 
 /* --- made once --- */
 
 static void finish(void *object) {
     struct cs_primitive_search *search = object;
     for (uint32_t b = 0; b < search->n_batches; b++)
-        for (int k = 0; k < 2; k++)
-            cs_nearby_clusters_finish(search->batches[b].near + k);
+        cs_nearby_clusters_finish(&search->batches[b].near);
     cs_aabb_clusters_finish(&search->triangles);
     cs_aabb_clusters_finish(&search->edges);
 }
@@ -91,42 +90,13 @@ enum cs_status cs_primitive_search_init(struct cs_primitive_search *search,
     return error->status;
 }
 
-/* --- boxes --- */
-
-struct filling {
-    struct cs_aabb_clusters *clusters;
-    cs_item_boxes *set_boxes;
-    const void *arg;
-};
-
-static void fill_some(void *arg, uint32_t block) {
-    const struct filling *filling = arg;
-    struct cs_aabb_clusters *clusters = filling->clusters;
-    for (uint32_t k = TOGETHER * block; k < TOGETHER * (block + 1) && k < clusters->n; k++) {
-        struct cs_aabb all = cs_aabb_empty, boxes[CS_AABB_CLUSTER];
-        filling->set_boxes(filling->arg, clusters->items + CS_AABB_CLUSTER * (size_t)k, boxes);
-        for (uint32_t lane = 0; lane < CS_AABB_CLUSTER; lane++) {
-            cs_aabb_cluster_set(clusters->clusters + k, lane, boxes + lane);
-            cs_aabb_merge(&all, boxes + lane);
-        }
-        clusters->cluster_boxes[k] = all;
-    }
-}
-
-bool cs_aabb_clusters_fill(struct cs_aabb_clusters *clusters, cs_item_boxes *set_boxes,
-                           const void *arg) {
-    struct filling filling = {clusters, set_boxes, arg};
-    cs_pool_run((clusters->n + TOGETHER - 1) / TOGETHER, fill_some, &filling);
-    return cs_aabb_clusters_sort(clusters);
-}
-
 /* --- the pairs of a move --- */
 
 /* One query, and a batch at work. */
 struct move {
     struct cs_primitive_search *search;
     const struct cs_move_query *query;
-    double grow; /* m, of one box of a pair */
+    double grow[2]; /* m, of one box of a pair with a triangle, and of two edges */
     uint32_t first_batch;
 };
 struct work {
@@ -148,13 +118,15 @@ CS_INLINE struct cs_swept_aabb sweep_item(const struct move *move, uint32_t each
                              : each == 2 ? surfaces->edges + 2 * (size_t)item
                                          : surfaces->triangles + 3 * (size_t)item;
     struct cs_swept_aabb swept = cs_swept_aabb_empty();
-    for (uint32_t k = 0; k < each && item != CS_NO_ITEM; k++) {
+    if (item == CS_NO_ITEM)
+        return swept;
+    bool finite = true;
+    for (uint32_t k = 0; k < each; k++) {
         for (size_t i = points[k]; i < 3 * n; i += n)
-            if (!(fabs(x0[i]) < FAR && (!x1 || fabs(x1[i]) < FAR)))
-                return cs_swept_aabb_empty();
+            finite &= fabs(x0[i]) < FAR && (!x1 || fabs(x1[i]) < FAR);
         cs_swept_aabb_add_point(&swept, n, points[k], x0, x1);
     }
-    return swept;
+    return finite ? swept : cs_swept_aabb_empty();
 }
 
 static void sweep_body(void *arg, uint32_t body) {
@@ -169,39 +141,63 @@ static void sweep_body(void *arg, uint32_t body) {
 }
 
 /* Box of a swept box in the frame of a body, grown. */
-static struct cs_aabb box_in_frame(const struct move *move, const struct cs_swept_aabb *swept,
-                                   uint32_t body) {
+CS_INLINE struct cs_aabb box_in_frame(const struct move *move,
+                                      const struct cs_swept_aabb *swept, uint32_t body,
+                                      double grow) {
     const struct cs_swept_aabb *all = move->search->body_sweeps + body;
     struct cs_aabb box;
+    if (!(swept->position_max[0] >= swept->position_min[0]))
+        return empty;
     for (int c = 0; c < 3; c++) {
-        if (!(swept->position_max[c] >= swept->position_min[c]))
-            return cs_aabb_empty;
+        box.low[c] = swept->position_min[c] - grow;
+        box.high[c] = swept->position_max[c] + grow;
+    }
+    for (int c = 0; c < 3 && move->query->x1; c++) {
         const double middle = 0.5 * (all->motion_min[c] + all->motion_max[c]);
         const double back = swept->motion_min[c] - middle, on = swept->motion_max[c] - middle;
-        box.low[c] = swept->position_min[c] + (back < 0 ? back : 0) - move->grow;
-        box.high[c] = swept->position_max[c] + (on > 0 ? on : 0) + move->grow;
+        box.low[c] += (back < 0 ? back : 0);
+        box.high[c] += (on > 0 ? on : 0);
     }
     return box;
 }
 
-/* Boxes of the items of a cluster, which are of one body, in its frame. */
-CS_INLINE void boxes_in_frame(const struct move *move, const uint32_t *items, uint32_t each,
-                              struct cs_aabb *boxes) {
-    const struct cs_surfaces *s = move->search->surfaces;
-    const uint32_t *first = each == 2 ? s->first_edge : s->first_triangle;
-    const uint32_t body = cs_surfaces_body(first, s->n_bodies, items[0]);
-    for (int l = 0; l < CS_AABB_CLUSTER; l++) {
-        const struct cs_swept_aabb swept = sweep_item(move, each, items[l]);
-        boxes[l] = box_in_frame(move, &swept, body);
+/* The boxes of edges or triangles to be set. */
+struct filling {
+    const struct move *move;
+    struct cs_aabb_clusters *clusters;
+    bool edges;
+};
+
+/* Sets the boxes of the items of a cluster in the frame of their body, and their common box. */
+static void fill_cluster(const struct filling *filling, uint32_t cluster) {
+    const uint32_t *items = filling->clusters->items + CS_AABB_CLUSTER * (size_t)cluster;
+    struct cs_aabb all = empty;
+    for (uint32_t lane = 0; lane < CS_AABB_CLUSTER; lane++) {
+        const struct cs_swept_aabb swept = filling->edges
+                                               ? sweep_item(filling->move, 2, items[lane])
+                                               : sweep_item(filling->move, 3, items[lane]);
+        const struct cs_aabb box =
+            box_in_frame(filling->move, &swept, filling->clusters->body[cluster],
+                         filling->move->grow[filling->edges]);
+        cs_aabb_cluster_set(filling->clusters->clusters + cluster, lane, &box);
+        cs_aabb_merge(&all, &box);
     }
+    filling->clusters->cluster_boxes[cluster] = all;
 }
 
-static void edge_boxes(const void *arg, const uint32_t *items, struct cs_aabb *boxes) {
-    boxes_in_frame(arg, items, 2, boxes);
+static void fill_some(void *arg, uint32_t block) {
+    const struct filling *filling = arg;
+    const uint32_t n = filling->clusters->n;
+    for (uint32_t k = TOGETHER * block; k < TOGETHER * (block + 1) && k < n; k++)
+        fill_cluster(filling, k);
 }
 
-static void triangle_boxes(const void *arg, const uint32_t *items, struct cs_aabb *boxes) {
-    boxes_in_frame(arg, items, 3, boxes);
+/* Sets the boxes of all clusters and sorts them into cells; returns false if out of memory. */
+static bool fill_clusters(const struct move *move, struct cs_aabb_clusters *clusters,
+                          bool edges) {
+    struct filling filling = {move, clusters, edges};
+    cs_pool_run((clusters->n + TOGETHER - 1) / TOGETHER, fill_some, &filling);
+    return cs_aabb_clusters_sort(clusters);
 }
 
 /* Hands over the pairs that were collected. */
@@ -233,17 +229,16 @@ static void find_in_body(struct work *work, const uint32_t *items,
     const bool once = work->batch->edges && !move->query->pierce;
     const struct cs_aabb_clusters *others =
         once ? &move->search->edges : &move->search->triangles;
-    struct cs_nearby_clusters *near = work->batch->near;
-    near->same_body_only = true;
+    struct cs_nearby_clusters *near = &work->batch->near;
     near->body = body;
     near->first_item = once ? items[0] : 0;
-    const struct cs_aabb box = box_in_frame(move, all, body);
+    const struct cs_aabb box = box_in_frame(move, all, body, move->grow[once]);
     if (!cs_nearby_clusters_find(near, others, &box)) {
         work->batch->failed = true;
         return;
     }
     for (uint32_t k = 0; k < CS_AABB_CLUSTER && near->n; k++) {
-        const struct cs_aabb one = box_in_frame(move, sweeps + k, body);
+        const struct cs_aabb one = box_in_frame(move, sweeps + k, body, move->grow[once]);
         if (one.low[0] <= one.high[0])
             collect(work, items[k], near->items, cs_nearby_clusters_items(near, others, &one),
                     once);
@@ -262,10 +257,11 @@ static void find_cluster(struct work *work, uint32_t cluster) {
         sweeps[k] = edges ? sweep_item(move, 2, items[k]) : sweep_item(move, 1, items[k]);
         cs_swept_aabb_merge(&all, sweeps + k);
     }
-    for (uint32_t body = edges && !move->query->pierce ? own : 0;
-         body < move->search->surfaces->n_bodies; body++)
+    const bool once = edges && !move->query->pierce;
+    for (uint32_t body = once ? own : 0; body < move->search->surfaces->n_bodies; body++)
         if (move->query->may_meet(move->query->arg, own, body) &&
-            cs_swept_aabbs_overlap(&all, move->search->body_sweeps + body, 2 * move->grow))
+            cs_swept_aabbs_overlap(&all, move->search->body_sweeps + body,
+                                   2 * move->grow[once]))
             find_in_body(work, items, sweeps, &all, body);
 }
 
@@ -281,13 +277,15 @@ static void find_batch(void *arg, uint32_t job) {
 }
 
 /* m, largest coordinate or displacement of all bodies */
-static double largest(const struct cs_primitive_search *search) {
+static double largest(const struct move *move) {
     double most = 0;
-    for (uint32_t b = 0; b < search->surfaces->n_bodies; b++) {
-        const struct cs_swept_aabb *all = search->body_sweeps + b;
-        for (int c = 0; c < 3 && all->position_max[c] >= all->position_min[c]; c++)
-            most = fmax(most, fmax(fmax(fabs(all->position_min[c]), fabs(all->position_max[c])),
-                                   fmax(fabs(all->motion_min[c]), fabs(all->motion_max[c]))));
+    for (uint32_t b = 0; b < move->search->surfaces->n_bodies; b++) {
+        const struct cs_swept_aabb *all = move->search->body_sweeps + b;
+        for (int c = 0; c < 3 && all->position_max[c] >= all->position_min[c]; c++) {
+            most = fmax(most, fmax(fabs(all->position_min[c]), fabs(all->position_max[c])));
+            if (move->query->x1)
+                most = fmax(most, fmax(fabs(all->motion_min[c]), fabs(all->motion_max[c])));
+        }
     }
     return most;
 }
@@ -298,9 +296,10 @@ bool cs_primitive_search_move(struct cs_primitive_search *search,
                         .query = query,
                         .first_batch = query->pierce ? search->n_point_batches : 0};
     cs_pool_run(search->surfaces->n_bodies, sweep_body, &move);
-    move.grow = query->reach + ROUNDING * largest(search);
-    bool failed = !cs_aabb_clusters_fill(&search->triangles, triangle_boxes, &move) ||
-                  (!query->pierce && !cs_aabb_clusters_fill(&search->edges, edge_boxes, &move));
+    for (int k = 0; k < 2; k++)
+        move.grow[k] = 0.5 * query->reach[k] + ROUNDING * largest(&move);
+    bool failed = !fill_clusters(&move, &search->triangles, false) ||
+                  (!query->pierce && !fill_clusters(&move, &search->edges, true));
     cs_pool_run(search->n_batches - move.first_batch, find_batch, &move);
     for (uint32_t b = move.first_batch; b < search->n_batches; b++)
         failed = failed || search->batches[b].failed;

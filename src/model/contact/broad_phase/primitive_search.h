@@ -2,9 +2,8 @@
  * at a state or swept along straight lines.
  *
  * All primitives of a system are in clusters (aabb_clusters.h), and the clusters of points and
- * of edges in batches, which threads share. Two queries use them: the candidate list of a state
- * (candidates_find.c), and the pairs of a move below, which are asked for crossings and first
- * collisions (ccd/crossings.h). */
+ * of edges in batches, which threads share. The candidate list of a state (candidates_find.c),
+ * crossings and first collisions (ccd/crossings.h) ask it. */
 #ifndef CS_BROAD_PHASE_PRIMITIVE_SEARCH_H
 #define CS_BROAD_PHASE_PRIMITIVE_SEARCH_H
 
@@ -33,13 +32,16 @@ static inline void cs_swept_aabb_widen(double *low, double *high, double below, 
     *high = above > *high ? above : *high;
 }
 
-/* Adds point i of (3,n), which moves from x0 to x1; x1 NULL: it stays. */
+/* Adds point i of (3,n), which moves from x0 to x1; x1 NULL: it stays, and no displacement is
+ * added. */
 static inline void cs_swept_aabb_add_point(struct cs_swept_aabb *swept_box, size_t n, size_t i,
                                            const double *x0, const double *x1) {
     for (size_t c = 0; c < 3; c++) {
         const double x = x0[c * n + i], move = x1 ? x1[c * n + i] - x : 0;
         cs_swept_aabb_widen(swept_box->position_min + c, swept_box->position_max + c, x, x);
-        cs_swept_aabb_widen(swept_box->motion_min + c, swept_box->motion_max + c, move, move);
+        if (x1)
+            cs_swept_aabb_widen(swept_box->motion_min + c, swept_box->motion_max + c, move,
+                                move);
     }
 }
 
@@ -83,9 +85,8 @@ static inline bool cs_swept_aabbs_overlap(const struct cs_swept_aabb *a,
 struct cs_primitive_batch {
     bool edges;
     uint32_t begin, end;
-    /* clusters near the one at hand: of its own body and of others */
-    struct cs_nearby_clusters near[2];
-    bool failed; /* there was no memory */
+    struct cs_nearby_clusters near; /* clusters near the one at hand */
+    bool failed;                    /* there was no memory */
 };
 
 /* All primitives of a system. */
@@ -106,22 +107,13 @@ enum cs_status cs_primitive_search_init(struct cs_primitive_search *search,
                                         const struct cs_system *system, struct cs_arena *arena,
                                         struct cs_error *error);
 
-/* Sets the boxes of clusters of edges or triangles, with all threads, and sorts them into
- * cells. set_boxes gives those of the items of a cluster (CS_AABB_CLUSTER), empty ones for
- * CS_NO_ITEM. Returns false if out of memory. */
-typedef void cs_item_boxes(const void *arg, const uint32_t *items, struct cs_aabb *boxes);
-bool cs_aabb_clusters_fill(struct cs_aabb_clusters *clusters, cs_item_boxes *set_boxes,
-                           const void *arg);
-
-extern const struct cs_aabb cs_aabb_empty;
-
 /* most pairs that are handed over at once */
 enum { CS_SEARCH_PAIRS = 256 };
 
 /* A query for the pairs of a move. All pointers are borrowed. */
 struct cs_move_query {
     const double *x0, *x1; /* (3,n_points) m; x1 NULL: at rest */
-    double reach;          /* m */
+    double reach[2];       /* m, of pairs with a triangle, and of two edges */
     /* edges are sought with triangles; else points with triangles, and edges with edges */
     bool pierce;
     /* whether primitives of bodies a and b count */

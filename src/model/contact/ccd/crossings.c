@@ -314,7 +314,7 @@ static struct cs_first_collision search_first(const struct cs_system *system, co
     struct cs_first_collision first = {.fraction = 1};
     const struct cs_move_query query = {.x0 = x0,
                                         .x1 = x1,
-                                        .reach = CS_ACCD_DISTANCE_MIN,
+                                        .reach = {CS_ACCD_DISTANCE_MIN, CS_ACCD_DISTANCE_MIN},
                                         .may_meet = may_meet,
                                         .take = try_found,
                                         .arg = &question};
