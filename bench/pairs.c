@@ -88,8 +88,8 @@ static void in_motion(void *object) {
 static void matrix(void *object) {
     struct bed *bed = object;
     const double h = FRAME / 4;
-    cs_pairs_set_matrix(
-        bed->session.system.pairs,
+    cs_term_pairs.prepare_matrix(
+        &bed->session.system,
         &(struct cs_matrix){
             .x = bed->x, .v = bed->v, .cm = 1, .cd = -h, .ck = -h * h, .psd = true},
         true);
@@ -97,7 +97,7 @@ static void matrix(void *object) {
 
 static void product(void *object) {
     struct bed *bed = object;
-    cs_pairs_multiply(bed->session.system.pairs, bed->v, bed->out);
+    cs_term_pairs.add_matrix_product(&bed->session.system, bed->v, bed->out);
 }
 
 static bool ask(struct bed *bed, double h) {

@@ -6,6 +6,7 @@
 #include "model/contact/ccd/accd.h"
 #include "model/contact/ccd/crossings.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
+#include "model/force/terms.h"
 #include "model/plan.h"
 #include "scene/file/scene_read.h"
 
@@ -276,12 +277,13 @@ static void ask_elsewhere(struct cs_pairs *pairs, const struct cs_matrix *matrix
     const struct cs_eval at = {.x = x, .v = matrix->v, .parts = CS_PART_ALL};
     struct cs_matrix other = *matrix;
     other.x = x;
-    cs_pairs_set(pairs, &at);
-    cs_pairs_energy(pairs, &at);
-    cs_pairs_set_matrix(pairs, &other, false);
-    cs_pairs_add_bound(pairs, &at, stiffness, damping);
+    cs_term_pairs.prepare(pairs->system, &at);
+    cs_term_pairs.energy(pairs->system, &at);
+    cs_term_pairs.prepare_matrix(pairs->system, &other, false);
+    cs_term_pairs.add_state_bound(pairs->system, &at,
+                                  &(struct cs_gershgorin){stiffness, damping});
     other.psd = false;
-    cs_pairs_set_matrix(pairs, &other, false);
+    cs_term_pairs.prepare_matrix(pairs->system, &other, false);
 }
 
 /* the kept matrix is that of its state, whatever is asked at others, and what is asked twice is
@@ -294,19 +296,21 @@ TEST(questions_do_not_disturb_each_other) {
     fixture_start(&cloth);
     fixture_frames(&cloth, FRAMES / 2);
     struct cs_pairs *pairs = cloth.system->pairs;
-    const struct cs_eval at = {.x = cloth.x, .v = cloth.v, .parts = CS_PART_ALL};
+    const struct cs_block block = {.end = (uint32_t)cloth.n};
+    const struct cs_eval at = {
+        .x = cloth.x, .v = cloth.v, .parts = CS_PART_ALL, .block = &block};
     struct cs_matrix matrix = {
         .x = cloth.x, .v = cloth.v, .cm = 1, .cd = -0.01, .ck = -1e-4, .psd = true};
     for (int k = 0; k < 4; k++) {
         matrix.psd = k < 2;
         if (k % 2 == 0)
-            cs_pairs_set_matrix(pairs, &matrix, true);
-        cs_pairs_multiply(pairs, cloth.v, y[k]);
-        cs_pairs_set(pairs, &at);
-        cs_pairs_add(pairs, 0, cloth.n, f[k]);
+            cs_term_pairs.prepare_matrix(pairs->system, &matrix, true);
+        cs_term_pairs.add_matrix_product(pairs->system, cloth.v, y[k]);
+        cs_term_pairs.prepare(pairs->system, &at);
+        cs_term_pairs.add_force(pairs->system, &at, f[k]);
         shake(&cloth, 0.1 * k, &seed, x);
         ask_elsewhere(pairs, &matrix, x);
-        cs_pairs_set(pairs, &at);
+        cs_term_pairs.prepare(pairs->system, &at);
         ask_elsewhere(pairs, &matrix, x);
     }
     for (int k = 1; k < 4; k++)

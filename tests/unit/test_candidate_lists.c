@@ -3,6 +3,7 @@
  * each other are seen whatever the age. The folder faults has lists with one thing wrong. */
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/narrow_phase/pair_contact.h"
+#include "model/force/terms.h"
 #include "pair_positions.h"
 #include "sheet.h"
 
@@ -104,8 +105,11 @@ static size_t compare(const struct sheet *sheet) {
     struct cs_pairs *pairs = sheet->system.pairs;
     ck_assert_uint_le(3 * sheet->n, MOST);
     const size_t n = add_all(sheet, all);
-    cs_pairs_set(pairs, &(struct cs_eval){.x = sheet->x, .v = sheet->v, .parts = CS_PART_ALL});
-    cs_pairs_add(pairs, 0, sheet->n, found);
+    const struct cs_block block = {.end = (uint32_t)sheet->n};
+    const struct cs_eval at = {
+        .x = sheet->x, .v = sheet->v, .parts = CS_PART_ALL, .block = &block};
+    cs_term_pairs.prepare(&sheet->system, &at);
+    cs_term_pairs.add_force(&sheet->system, &at, found);
     ck_assert_uint_eq(pairs->current_contacts->n, n);
     double most = 0, off = 0;
     for (size_t i = 0; i < 3 * sheet->n; i++) {

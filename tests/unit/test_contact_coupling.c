@@ -3,6 +3,7 @@
 #include "base/pool.h"
 #include "crumple.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
+#include "model/force/terms.h"
 #include "model/solver/extra_springs.h"
 
 #include <clothsim/small.h>
@@ -284,8 +285,8 @@ static double energy_of_pairs(struct folded *folded, const double *x) {
     const size_t n = sheet->n;
     double *blocks = calloc(6 * n, sizeof *blocks), sum = 0;
     memset(folded->y, 0, 3 * n * sizeof(double));
-    cs_pairs_multiply(pairs, x, folded->y);
-    cs_pairs_add_blocks(pairs, 0, n, blocks);
+    cs_term_pairs.add_matrix_product(pairs->system, x, folded->y);
+    cs_term_pairs.add_blocks(pairs->system, NULL, 0, n, blocks);
     for (size_t i = 0; i < n; i++) {
         double block[6], p[3], own[3];
         cs_sym3_read(n, blocks, i, block);

@@ -19,6 +19,7 @@
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/surface_points.h"
 #include "model/force/diagnostics.h"
+#include "model/force/terms.h"
 #include "model/post_step/contact_projection.h"
 #include "scene/body_pairs.h"
 
@@ -109,7 +110,8 @@ static void measure_pairs(const struct search *search, struct interface *at) {
     struct cs_system *system = search->system;
     struct cs_body_pair_table *table = &system->pairs->body_pairs;
     const size_t n = system->view.n, n_bodies = table->n_bodies;
-    const struct cs_eval eval = {.x = system->state, .parts = CS_PART_POTENTIAL};
+    const struct cs_block all = {.end = system->view.n};
+    const struct cs_eval eval = {.x = system->state, .parts = CS_PART_POTENTIAL, .block = &all};
     for (size_t k = 0; k < n_bodies * n_bodies; k++) {
         search->k[k] = table->params[k].k;
         if (k != at->a * n_bodies + at->b && k != at->b * n_bodies + at->a)
@@ -119,10 +121,10 @@ static void measure_pairs(const struct search *search, struct interface *at) {
     table->params_version++;
     at->range = cs_body_pair_params_of(table, at->a, at->b)->range;
     at->k = cs_body_pair_params_of(table, at->a, at->b)->k;
-    at->energy = cs_pairs_energy(system->pairs, &eval);
+    at->energy = cs_term_pairs.energy(system, &eval);
     memset(search->f, 0, 3 * n * sizeof *search->f);
-    cs_pairs_set(system->pairs, &eval);
-    cs_pairs_add(system->pairs, 0, n, search->f);
+    cs_term_pairs.prepare(system, &eval);
+    cs_term_pairs.add_force(system, &eval, search->f);
     for (size_t k = 0; k < n_bodies * n_bodies; k++)
         table->params[k].k = search->k[k];
     table->params_version++;
@@ -156,8 +158,8 @@ static bool find(const struct search *search, struct interface *at) {
     const struct cs_scene *scene = search->system->scene;
     // mostly none stores anything, and then none is measured by itself
     const bool pairs = search->system->pairs &&
-                       cs_pairs_energy(search->system->pairs,
-                                       &(struct cs_eval){.x = search->system->state}) != 0;
+                       cs_term_pairs.energy(search->system,
+                                            &(struct cs_eval){.x = search->system->state}) != 0;
     double friction;
     for (uint32_t a = 0; a < scene->bodies.n; a++)
         for (uint32_t b = a + 1; b < scene->bodies.n + scene->colliders.n; b++) {

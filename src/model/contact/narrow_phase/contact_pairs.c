@@ -1,4 +1,5 @@
-/* Contact pairs: updates the candidate list and evaluates the pairs in range.
+/* The force term of contact between surfaces: a body with itself, two bodies, or a body and a
+ * mesh collider. Updates the candidate list and evaluates the pairs in range.
  *
  * Two lists of active contacts exist. The solver's matrix refers to one until it is replaced,
  * while forces at other states use the other. A list is reused as long as its pairs are those
@@ -9,6 +10,8 @@
 #include "model/contact/narrow_phase/active_contacts.h"
 #include "model/contact/narrow_phase/narrow_phase.h"
 #include "model/contact/surface_points.h"
+#include "model/force/terms.h"
+#include "scene/body_pairs.h"
 
 #include <clothsim/clones.h>
 
@@ -61,7 +64,7 @@ static enum cs_status init_answers(struct cs_pairs *pairs, struct cs_arena *aren
 
 /* Order: surfaces, parameters of pairs, candidate list, features, queries; then the first list,
  * at the start positions, which check_start reads. */
-enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error) {
+static enum cs_status build(struct cs_system *system, struct cs_error *error) {
     if (cs_surface_points_build(system, error))
         return error->status;
     struct cs_pairs *pairs = cs_arena_alloc(&system->arena, sizeof *pairs, error);
@@ -127,21 +130,17 @@ static void run(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
 }
 
 /* The query is a Jacobian product as soon as one direction is given. */
-void cs_pairs_set(struct cs_pairs *pairs, const struct cs_eval *at) {
+static void prepare(const struct cs_system *system, const struct cs_eval *at) {
     struct cs_narrow_phase narrow = {
         .query = at->dx || at->dv ? CS_CONTACT_QUERY_JVP : CS_CONTACT_QUERY_FORCE, .eval = *at};
-    run(pairs, &narrow);
+    run(system->pairs, &narrow);
 }
 
-void cs_pairs_add(const struct cs_pairs *pairs, size_t begin, size_t end, double *f) {
+/* Power in W that the vertices of colliders give at the state of the last force: -f.v of each.
+ */
+static double power_of(const struct cs_system *system, const struct cs_eval *at) {
+    const struct cs_pairs *pairs = system->pairs;
     const struct cs_gather *gather = &pairs->current_contacts->force_gather;
-    if (pairs->current_contacts->n)
-        cs_gather_add(gather, gather->row_sums, 3, begin, end, f);
-}
-
-double cs_pairs_power(const struct cs_pairs *pairs, const struct cs_eval *at) {
-    const struct cs_gather *gather = &pairs->current_contacts->force_gather;
-    const struct cs_system *system = pairs->system;
     const size_t n_points = system->surfaces->n_points;
     const double *v = system->points && pairs->current_contacts->n
                           ? cs_surface_points_velocities(system, at->t, at->v)
@@ -156,7 +155,18 @@ double cs_pairs_power(const struct cs_pairs *pairs, const struct cs_eval *at) {
     return power;
 }
 
-double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at) {
+/* Adds the result at the particles of the block. */
+static void add(const struct cs_system *system, const struct cs_eval *at, double *f) {
+    const struct cs_active_contacts *contacts = system->pairs->current_contacts;
+    if (contacts->n)
+        cs_gather_add(&contacts->force_gather, contacts->force_gather.row_sums, 3,
+                      at->block->begin, at->block->end, f);
+    if (at->power && at->block->begin == 0)
+        at->power[0] += power_of(system, at);
+}
+
+static double energy(const struct cs_system *system, const struct cs_eval *at) {
+    struct cs_pairs *pairs = system->pairs;
     struct cs_narrow_phase narrow = {.query = CS_CONTACT_QUERY_ENERGY, .eval = *at};
     double sum = 0;
     run(pairs, &narrow);
@@ -165,19 +175,25 @@ double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at) {
     return sum;
 }
 
-void cs_pairs_store_friction(struct cs_pairs *pairs, double t, const double *x,
-                             uint32_t first) {
+static uint32_t friction_chunks(const struct cs_system *system) {
+    return system->pairs->candidates.n_chunks;
+}
+
+static void store_friction(const struct cs_system *system, double t, const double *x,
+                           uint32_t first) {
     // any numbers do as velocities of particles, which store_lagged leaves out
     struct cs_narrow_phase narrow = {.query = CS_CONTACT_QUERY_LAGGED_FRICTION,
                                      .eval = {.t = t, .x = x, .v = x},
                                      .first_lagged = first};
-    run(pairs, &narrow);
+    run(system->pairs, &narrow);
 }
 
 /* --- matrices --- */
 
 /* A new solver matrix first releases the list of active contacts that the old one used. */
-void cs_pairs_set_matrix(struct cs_pairs *pairs, const struct cs_matrix *matrix, bool kept) {
+static void prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
+                           bool kept) {
+    struct cs_pairs *pairs = system->pairs;
     struct cs_pair_matrix *result = kept ? &pairs->solver_matrix : &pairs->other_matrix;
     struct cs_narrow_phase narrow = {
         .query = CS_CONTACT_QUERY_MATRIX,
@@ -190,36 +206,69 @@ void cs_pairs_set_matrix(struct cs_pairs *pairs, const struct cs_matrix *matrix,
     pairs->blocks = result;
 }
 
-void cs_pairs_add_blocks(const struct cs_pairs *pairs, size_t begin, size_t end,
-                         double *blocks) {
-    if (!pairs->failed)
-        cs_pair_matrix_add_blocks(pairs->blocks, begin, end, blocks);
+static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
+                       size_t begin, size_t end, double *blocks) {
+    (void)matrix;
+    if (!system->pairs->failed)
+        cs_pair_matrix_add_blocks(system->pairs->blocks, begin, end, blocks);
 }
 
-void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y) {
-    if (!pairs->failed)
-        cs_pair_matrix_apply(&pairs->solver_matrix, p, y);
+static void add_product(const struct cs_system *system, const double *p, double *y) {
+    if (!system->pairs->failed)
+        cs_pair_matrix_apply(&system->pairs->solver_matrix, p, y);
 }
 
-void cs_pairs_add_approach(struct cs_pairs *pairs, const struct cs_matrix *matrix, double *y) {
-    const struct cs_system *system = pairs->system;
-    if (!pairs->failed)
-        cs_pair_matrix_approach(&pairs->solver_matrix, system->surfaces->n_points,
+static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                         double *y) {
+    if (!system->pairs->failed)
+        cs_pair_matrix_approach(&system->pairs->solver_matrix, system->surfaces->n_points,
                                 cs_surface_points_velocities(system, matrix->t, matrix->v), y);
 }
 
 /* Damping follows stiffness in the same array, n_rows numbers later. */
-void cs_pairs_add_bound(struct cs_pairs *pairs, const struct cs_eval *at, double *stiffness,
-                        double *damping) {
+static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
+                         const struct cs_gershgorin *sums) {
+    struct cs_pairs *pairs = system->pairs;
     struct cs_narrow_phase narrow = {.query = CS_CONTACT_QUERY_BOUND, .eval = *at};
     run(pairs, &narrow);
     const struct cs_gather *gather = &pairs->current_contacts->force_gather;
-    const size_t n = pairs->system->view.n;
+    const size_t n = system->view.n;
     if (!pairs->current_contacts->n)
         return;
-    cs_gather_add(gather, gather->row_sums, 1, 0, n, stiffness);
-    cs_gather_add(gather, gather->row_sums + gather->n_rows, 1, 0, n, damping);
+    cs_gather_add(gather, gather->row_sums, 1, 0, n, sums->stiffness);
+    cs_gather_add(gather, gather->row_sums + gather->n_rows, 1, 0, n, sums->damping);
 }
+
+static struct cs_plan_row plan(const struct cs_scene *scene) {
+    const bool built = cs_scene_has_body_contact(scene);
+    return (struct cs_plan_row){
+        .built = built,
+        .reason = built ? "self_contact, pairs of bodies, or a mesh collider" : NULL};
+}
+
+static const char *const ramps[] = {"colliders.friction", NULL};
+
+const struct cs_term cs_term_pairs = {
+    .name = "contact pairs",
+    .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
+    .plan = plan,
+    .rampable_keys = ramps,
+    .build = build,
+    .prepare = prepare,
+    .add_force = add,
+    .add_jvp = add,
+    .energy = energy,
+    .energy_kind = CS_ENERGY_OTHER,
+    .energy_column = "other",
+    .work_column = "friction",
+    .prepare_matrix = prepare_matrix,
+    .add_blocks = add_blocks,
+    .add_matrix_product = add_product,
+    .add_approach = add_approach,
+    .friction_chunks = friction_chunks,
+    .store_friction = store_friction,
+    .add_state_bound = add_bound_at,
+};
 
 /* Motion of surface points, and the swept-box test of pairs on all numbers of a point at once.
  */

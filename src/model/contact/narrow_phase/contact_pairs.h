@@ -77,48 +77,6 @@ struct cs_pairs {
     bool failed;
 };
 
-/* Builds system->pairs, and the surfaces if they are missing. CS_ERR_SCENE as
- * cs_body_pair_table_build, or if two primitives of one body start closer than its thickness;
- * CS_ERR_MEMORY. */
-enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error);
-
-/* Evaluates forces at a state, or their change if at->dx or at->dv is set, with all threads. */
-void cs_pairs_set(struct cs_pairs *pairs, const struct cs_eval *at);
-
-/* f (3,n) += the result at the particles [begin, end). */
-void cs_pairs_add(const struct cs_pairs *pairs, size_t begin, size_t end, double *f);
-
-/* Power in W that the vertices of colliders give at the state of the last force: -f.v of each.
- */
-double cs_pairs_power(const struct cs_pairs *pairs, const struct cs_eval *at);
-
-/* Elastic energy in J. */
-double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at);
-
-/* Stores the friction of all pairs at (t, x) by cs_lagged_friction_store, in the chunks from
- * `first` on: one for each chunk of the candidates. */
-void cs_pairs_store_friction(struct cs_pairs *pairs, double t, const double *x, uint32_t first);
-
-/* Evaluates the matrix terms. kept: for the solver, which will ask for products; the matrix
- * stays until the next such call. Otherwise the diagonal blocks alone are wanted, which bound
- * the whole matrix if matrix->bound is set. */
-void cs_pairs_set_matrix(struct cs_pairs *pairs, const struct cs_matrix *matrix, bool kept);
-
-/* blocks (6,n) += the diagonal blocks of the last matrix at the particles [begin, end). */
-void cs_pairs_add_blocks(const struct cs_pairs *pairs, size_t begin, size_t end,
-                         double *blocks);
-
-/* y (3,n) += (the solver's matrix - its diagonal blocks) p, with all threads. */
-void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y);
-
-/* y (3,n) += the elastic part of the solver's matrix, which was made at the state of `matrix`,
- * times the velocities of all points there: with all threads. */
-void cs_pairs_add_approach(struct cs_pairs *pairs, const struct cs_matrix *matrix, double *y);
-
-/* Adds the Gershgorin row sums of df/dx (N/m) and df/dv (N s/m) at a state. */
-void cs_pairs_add_bound(struct cs_pairs *pairs, const struct cs_eval *at, double *stiffness,
-                        double *damping);
-
 /* As cs_collider_contact_resolves_step (contact/step_check.h), for pairs that move straight
  * from x0 at t0 to x1 at t1. Samples are at most half a range of relative motion apart. The
  * energy that is not predicted must stay below CS_UNRESOLVED_ENERGY_MAX of the energy of the
