@@ -56,6 +56,24 @@
  * last two. */
 enum cs_pair_kind { CS_PAIR_POINT_TRIANGLE, CS_PAIR_EDGE_EDGE };
 
+/* Defines `linkage void name(kind, parameters)`, which calls the inline function of the same
+ * arguments with the kind as a constant. Each kind has clones of its own, because loops over
+ * lanes become vectors without branches alone. Both lists are in parentheses. */
+#define CS_PAIR_KERNEL(linkage, name, inlined, parameters, arguments)                          \
+    CS_CLONES static void name##_triangles parameters {                                        \
+        inlined(CS_PAIR_POINT_TRIANGLE, CS_UNWRAPPED arguments);                               \
+    }                                                                                          \
+    CS_CLONES static void name##_edges parameters {                                            \
+        inlined(CS_PAIR_EDGE_EDGE, CS_UNWRAPPED arguments);                                    \
+    }                                                                                          \
+    linkage void name(enum cs_pair_kind kind, CS_UNWRAPPED parameters) {                       \
+        if (kind == CS_PAIR_EDGE_EDGE)                                                         \
+            name##_edges arguments;                                                            \
+        else                                                                                   \
+            name##_triangles arguments;                                                        \
+    }
+#define CS_UNWRAPPED(...) __VA_ARGS__
+
 /* Two edges at one state, filled by cs_pair_distance_set; or a point and the plane of a
  * triangle, of which cs_pair_distance_frame fills u to unclamped. */
 struct cs_pair_distance {

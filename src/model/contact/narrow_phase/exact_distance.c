@@ -77,20 +77,8 @@ CS_INLINE void measure(enum cs_pair_kind kind, struct cs_exact_distance_lanes *r
     }
 }
 
-CS_CLONES static void measure_triangles(struct cs_exact_distance_lanes *restrict lanes) {
-    measure(CS_PAIR_POINT_TRIANGLE, lanes);
-}
-
-CS_CLONES static void measure_edges(struct cs_exact_distance_lanes *restrict lanes) {
-    measure(CS_PAIR_EDGE_EDGE, lanes);
-}
-
-void cs_exact_distance_measure(enum cs_pair_kind kind, struct cs_exact_distance_lanes *lanes) {
-    if (kind == CS_PAIR_EDGE_EDGE)
-        measure_edges(lanes);
-    else
-        measure_triangles(lanes);
-}
+CS_PAIR_KERNEL(extern, cs_exact_distance_measure, measure,
+               (struct cs_exact_distance_lanes *restrict lanes), (lanes))
 
 /* Selects the candidates in range: by the single-precision filter, then by exact distances in
  * lanes. */

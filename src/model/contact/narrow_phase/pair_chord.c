@@ -31,14 +31,15 @@ CS_INLINE void add_vertex(const struct cs_pair_lanes *lanes, const struct cs_pai
 
 /* The distance of a feature comes with the lanes, that of edges is |r|. */
 CS_INLINE void add_chord(enum cs_pair_kind kind, const struct cs_pair_lanes *restrict lanes,
-                         struct cs_contact_keys keys, struct cs_contact_pull pull,
+                         const struct cs_contact_keys *keys, struct cs_contact_pull pull,
                          const struct cs_pair_pulls *restrict pulls,
                          struct cs_pair_factors *restrict factors) {
+    const double friction_speed = keys->friction_speed;
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         double weight[4], block[6] = {0};
         struct point at = {
             .pull = pull,
-            .slides = {.friction = lanes->friction[l], .friction_speed = keys.friction_speed}};
+            .slides = {.friction = lanes->friction[l], .friction_speed = friction_speed}};
         cs_pair_distance_to_points(kind, factors->weight[0][l], factors->weight[1][l], 1,
                                    weight);
         CS_UNROLLED
@@ -58,20 +59,11 @@ CS_INLINE void add_chord(enum cs_pair_kind kind, const struct cs_pair_lanes *res
     }
 }
 
-CS_CLONES static void chord_of_triangles(const struct cs_pair_lanes *restrict lanes,
-                                         struct cs_contact_keys keys,
-                                         struct cs_contact_pull pull,
-                                         const struct cs_pair_pulls *restrict pulls,
-                                         struct cs_pair_factors *restrict factors) {
-    add_chord(CS_PAIR_POINT_TRIANGLE, lanes, keys, pull, pulls, factors);
-}
-
-CS_CLONES static void chord_of_edges(const struct cs_pair_lanes *restrict lanes,
-                                     struct cs_contact_keys keys, struct cs_contact_pull pull,
-                                     const struct cs_pair_pulls *restrict pulls,
-                                     struct cs_pair_factors *restrict factors) {
-    add_chord(CS_PAIR_EDGE_EDGE, lanes, keys, pull, pulls, factors);
-}
+CS_PAIR_KERNEL(static, add_chords, add_chord,
+               (const struct cs_pair_lanes *restrict lanes, const struct cs_contact_keys *keys,
+                struct cs_contact_pull pull, const struct cs_pair_pulls *restrict pulls,
+                struct cs_pair_factors *restrict factors),
+               (lanes, keys, pull, pulls, factors))
 
 void cs_pair_lanes_chord_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
                                 const struct cs_contact_keys *keys,
@@ -82,8 +74,5 @@ void cs_pair_lanes_chord_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *la
     memset(lanes->friction, 0, sizeof lanes->friction);
     cs_pair_lanes_matrix(kind, lanes, keys, matrix, factors);
     memcpy(lanes->friction, friction, sizeof friction);
-    if (kind == CS_PAIR_EDGE_EDGE)
-        chord_of_edges(lanes, *keys, cs_contact_pull_begin(matrix), pulls, factors);
-    else
-        chord_of_triangles(lanes, *keys, cs_contact_pull_begin(matrix), pulls, factors);
+    add_chords(kind, lanes, keys, cs_contact_pull_begin(matrix), pulls, factors);
 }

@@ -60,7 +60,8 @@ CS_INLINE void lane_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, i
 
 /* out = f_k of every lane: cs_pair_contact_force */
 CS_INLINE void force(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
-                     struct cs_pair_lane_constants law) {
+                     const struct cs_pair_lane_constants *constants) {
+    const struct cs_pair_lane_constants law = *constants;
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         struct cs_pair_contact reaction;
         double to[4][3];
@@ -72,7 +73,8 @@ CS_INLINE void force(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lane
 
 /* out = df_k of every lane: cs_pair_contact_jvp */
 CS_INLINE void jvp(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
-                   struct cs_pair_lane_constants law) {
+                   const struct cs_pair_lane_constants *constants) {
+    const struct cs_pair_lane_constants law = *constants;
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         struct cs_pair_contact reaction;
         struct cs_pair_contact_motion move;
@@ -87,33 +89,19 @@ CS_INLINE void jvp(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
     }
 }
 
-/* Defines a kernel for both kinds of pairs. Each kind has clones of its own, because the kind
- * must be a constant for the loop to vectorise. */
-#define KERNEL(name)                                                                           \
-    CS_CLONES static void name##_triangles(struct cs_pair_lanes *restrict lanes,               \
-                                           struct cs_pair_lane_constants law) {                \
-        name(CS_PAIR_POINT_TRIANGLE, lanes, law);                                              \
-    }                                                                                          \
-    CS_CLONES static void name##_edges(struct cs_pair_lanes *restrict lanes,                   \
-                                       struct cs_pair_lane_constants law) {                    \
-        name(CS_PAIR_EDGE_EDGE, lanes, law);                                                   \
-    }                                                                                          \
-    void cs_pair_lanes_##name(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,             \
-                              const struct cs_pair_lane_constants *law) {                      \
-        if (kind == CS_PAIR_EDGE_EDGE)                                                         \
-            name##_edges(lanes, *law);                                                         \
-        else                                                                                   \
-            name##_triangles(lanes, *law);                                                     \
-    }
-
-KERNEL(force)
-KERNEL(jvp)
+CS_PAIR_KERNEL(extern, cs_pair_lanes_force, force,
+               (struct cs_pair_lanes *restrict lanes, const struct cs_pair_lane_constants *law),
+               (lanes, law))
+CS_PAIR_KERNEL(extern, cs_pair_lanes_jvp, jvp,
+               (struct cs_pair_lanes *restrict lanes, const struct cs_pair_lane_constants *law),
+               (lanes, law))
 
 /* Row sums of block norms: stiffness K |g_k| sum |g_j| and damping |w_k| sum |w_j| times the
  * largest damping of the contact point. */
 CS_INLINE void find_bounds(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
-                           struct cs_contact_keys keys, struct cs_pair_bounds *restrict to) {
-    const struct cs_pair_lane_constants law = {.keys = keys};
+                           const struct cs_contact_keys *keys,
+                           struct cs_pair_bounds *restrict to) {
+    const struct cs_pair_lane_constants law = {.keys = *keys};
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         struct cs_pair_contact reaction;
         double stiffness[4], damping[4];
@@ -128,25 +116,10 @@ CS_INLINE void find_bounds(enum cs_pair_kind kind, struct cs_pair_lanes *restric
     }
 }
 
-CS_CLONES static void bound_triangles(struct cs_pair_lanes *restrict lanes,
-                                      struct cs_contact_keys keys,
-                                      struct cs_pair_bounds *restrict to) {
-    find_bounds(CS_PAIR_POINT_TRIANGLE, lanes, keys, to);
-}
-
-CS_CLONES static void bound_edges(struct cs_pair_lanes *restrict lanes,
-                                  struct cs_contact_keys keys,
-                                  struct cs_pair_bounds *restrict to) {
-    find_bounds(CS_PAIR_EDGE_EDGE, lanes, keys, to);
-}
-
-void cs_pair_lanes_bound(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
-                         const struct cs_contact_keys *keys, struct cs_pair_bounds *bounds) {
-    if (kind == CS_PAIR_EDGE_EDGE)
-        bound_edges(lanes, *keys, bounds);
-    else
-        bound_triangles(lanes, *keys, bounds);
-}
+CS_PAIR_KERNEL(extern, cs_pair_lanes_bound, find_bounds,
+               (struct cs_pair_lanes *restrict lanes, const struct cs_contact_keys *keys,
+                struct cs_pair_bounds *restrict bounds),
+               (lanes, keys, bounds))
 
 /* Stores the terms of one pair by the differences u, v, w; see struct cs_pair_factors. */
 CS_INLINE void write_factors(enum cs_pair_kind kind, double g[4][3],
@@ -190,39 +163,23 @@ CS_INLINE void share_bound(enum cs_pair_kind kind, struct cs_pair_lanes *restric
     }
 }
 
-/* Chooses the clone for matrix.bound, with both flags as constants. */
+/* Both flags are constants. */
 CS_INLINE void share_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
-                            struct cs_contact_keys keys, struct cs_matrix matrix,
+                            const struct cs_contact_keys *keys, const struct cs_matrix *matrix,
                             struct cs_pair_factors *restrict factors) {
-    const struct cs_matrix definite = {.cd = matrix.cd, .ck = matrix.ck, .psd = true};
+    const struct cs_matrix definite = {.cd = matrix->cd, .ck = matrix->ck, .psd = true};
     struct cs_matrix bound = definite;
     bound.bound = true;
-    if (matrix.bound)
-        share_bound(kind, lanes, keys, bound, factors);
+    if (matrix->bound)
+        share_bound(kind, lanes, *keys, bound, factors);
     else
-        share_bound(kind, lanes, keys, definite, factors);
+        share_bound(kind, lanes, *keys, definite, factors);
 }
 
-CS_CLONES static void share_triangles(struct cs_pair_lanes *restrict lanes,
-                                      struct cs_contact_keys keys, struct cs_matrix matrix,
-                                      struct cs_pair_factors *restrict factors) {
-    share_matrix(CS_PAIR_POINT_TRIANGLE, lanes, keys, matrix, factors);
-}
-
-CS_CLONES static void share_edges(struct cs_pair_lanes *restrict lanes,
-                                  struct cs_contact_keys keys, struct cs_matrix matrix,
-                                  struct cs_pair_factors *restrict factors) {
-    share_matrix(CS_PAIR_EDGE_EDGE, lanes, keys, matrix, factors);
-}
-
-void cs_pair_lanes_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
-                          const struct cs_contact_keys *keys, const struct cs_matrix *matrix,
-                          struct cs_pair_factors *factors) {
-    if (kind == CS_PAIR_EDGE_EDGE)
-        share_edges(lanes, *keys, *matrix, factors);
-    else
-        share_triangles(lanes, *keys, *matrix, factors);
-}
+CS_PAIR_KERNEL(extern, cs_pair_lanes_matrix, share_matrix,
+               (struct cs_pair_lanes *restrict lanes, const struct cs_contact_keys *keys,
+                const struct cs_matrix *matrix, struct cs_pair_factors *restrict factors),
+               (lanes, keys, matrix, factors))
 
 /* out = B v for the symmetric block of lane l */
 CS_INLINE void lane_tangent(const struct cs_pair_factors *factors, int l, const double v[3],
@@ -340,45 +297,19 @@ CS_INLINE void diagonal_blocks(enum cs_pair_kind kind, struct cs_pair_factors *r
     }
 }
 
-CS_CLONES static void multiply_triangles(struct cs_pair_factors *restrict factors,
-                                         double p[restrict 4][3][CS_PAIR_LANES]) {
-    multiply(CS_PAIR_POINT_TRIANGLE, factors, p);
-}
-
-CS_CLONES static void multiply_edges(struct cs_pair_factors *restrict factors,
-                                     double p[restrict 4][3][CS_PAIR_LANES]) {
-    multiply(CS_PAIR_EDGE_EDGE, factors, p);
-}
-
-void cs_pair_lanes_multiply(enum cs_pair_kind kind, struct cs_pair_factors *factors,
-                            double p[4][3][CS_PAIR_LANES]) {
-    if (kind == CS_PAIR_EDGE_EDGE)
-        multiply_edges(factors, p);
-    else
-        multiply_triangles(factors, p);
-}
-
-CS_CLONES static void diagonal_of_triangles(struct cs_pair_factors *restrict factors,
-                                            bool alone,
-                                            double own[restrict 4][6][CS_PAIR_LANES]) {
+CS_INLINE void diagonal(enum cs_pair_kind kind, struct cs_pair_factors *restrict factors,
+                        bool alone, double own[restrict 4][6][CS_PAIR_LANES]) {
     if (alone)
-        diagonal_blocks(CS_PAIR_POINT_TRIANGLE, factors, true, own);
+        diagonal_blocks(kind, factors, true, own);
     else
-        diagonal_blocks(CS_PAIR_POINT_TRIANGLE, factors, false, own);
+        diagonal_blocks(kind, factors, false, own);
 }
 
-CS_CLONES static void diagonal_of_edges(struct cs_pair_factors *restrict factors, bool alone,
-                                        double own[restrict 4][6][CS_PAIR_LANES]) {
-    if (alone)
-        diagonal_blocks(CS_PAIR_EDGE_EDGE, factors, true, own);
-    else
-        diagonal_blocks(CS_PAIR_EDGE_EDGE, factors, false, own);
-}
-
-void cs_pair_lanes_diagonal(enum cs_pair_kind kind, struct cs_pair_factors *factors, bool alone,
-                            double own[4][6][CS_PAIR_LANES]) {
-    if (kind == CS_PAIR_EDGE_EDGE)
-        diagonal_of_edges(factors, alone, own);
-    else
-        diagonal_of_triangles(factors, alone, own);
-}
+CS_PAIR_KERNEL(extern, cs_pair_lanes_multiply, multiply,
+               (struct cs_pair_factors *restrict factors,
+                double p[restrict 4][3][CS_PAIR_LANES]),
+               (factors, p))
+CS_PAIR_KERNEL(extern, cs_pair_lanes_diagonal, diagonal,
+               (struct cs_pair_factors *restrict factors, bool alone,
+                double own[restrict 4][6][CS_PAIR_LANES]),
+               (factors, alone, own))

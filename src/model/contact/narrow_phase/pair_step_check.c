@@ -168,38 +168,19 @@ CS_INLINE void sample_all(enum cs_pair_kind kind, struct lanes *restrict lanes, 
     }
 }
 
-CS_CLONES static void begin_triangles(struct lanes *restrict lanes, double h) {
-    begin_all(CS_PAIR_POINT_TRIANGLE, lanes, h);
-}
-
-CS_CLONES static void begin_edges(struct lanes *restrict lanes, double h) {
-    begin_all(CS_PAIR_EDGE_EDGE, lanes, h);
-}
-
-CS_CLONES static void sample_triangles(struct lanes *restrict lanes, double j) {
-    sample_all(CS_PAIR_POINT_TRIANGLE, lanes, j);
-}
-
-CS_CLONES static void sample_edges(struct lanes *restrict lanes, double j) {
-    sample_all(CS_PAIR_EDGE_EDGE, lanes, j);
-}
+CS_PAIR_KERNEL(static, begin_lanes, begin_all, (struct lanes *restrict lanes, double h),
+               (lanes, h))
+CS_PAIR_KERNEL(static, sample_lanes, sample_all, (struct lanes *restrict lanes, double j),
+               (lanes, j))
 
 /* Samples the steps of the first n lanes, of h seconds, at the ends of all their parts. */
 static void sample_steps(enum cs_pair_kind kind, struct lanes *lanes, uint32_t n, double h) {
-    const bool edges = kind == CS_PAIR_EDGE_EDGE;
     double parts = 1;
-    if (edges)
-        begin_edges(lanes, h);
-    else
-        begin_triangles(lanes, h);
+    begin_lanes(kind, lanes, h);
     for (uint32_t l = 0; l < n; l++)
         parts = pair_motion_max(parts, lanes->parts[l]);
-    for (double j = 1; j <= parts; j++) {
-        if (edges)
-            sample_edges(lanes, j);
-        else
-            sample_triangles(lanes, j);
-    }
+    for (double j = 1; j <= parts; j++)
+        sample_lanes(kind, lanes, j);
 }
 
 /* pairs per call of the swept-box filter */
