@@ -166,7 +166,7 @@ static enum cs_step create_velocity_verlet(const struct cs_host *host, const voi
 
 static enum cs_step create_position_verlet(const struct cs_host *host, const void *options,
                                            void **self) {
-    return create(host, options, position_verlet_limit, step_position_verlet, 2, self);
+    return create(host, options, position_verlet_limit, step_position_verlet, 3, self);
 }
 
 static enum cs_step create_rk4(const struct cs_host *host, const void *options, void **self) {
@@ -180,7 +180,7 @@ static enum cs_step verlet_archive(void *object, const struct cs_archive *archiv
     const size_t n3 = 3 * (size_t)self->fixed.host->view->n;
     archive->reals(archive->ctx, &self->h, 1);
     archive->reals(archive->ctx, self->a, n3);
-    archive->reals(archive->ctx, self->history, n3);
+    archive->reals(archive->ctx, self->history, n3); // not what a refusal takes back
     return fixed_step_archive(self, archive);
 }
 

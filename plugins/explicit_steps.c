@@ -7,7 +7,8 @@
  *   velocity-verlet   x' = x + h v + h^2/2 a,    v' = v + h/2 (a + a'),
  *                     a' = a(x', v + h a): one evaluation per step, a' is stored for the next
  *   position-verlet   x' = (2 - l) x - (1 - l) x_old + h^2 a(x, (x - x_old)/h)
- *                     (flag thesis, with its loss l), v' = (x' - x)/h + h/2 a
+ *                     (flag thesis, with its loss l), v' = (x' - x)/h + h/2 a; where h changes,
+ *                     by (h + h_old)/2 times a instead, and x - x_old as h_old would have it
  *   rk4               y' = y + h/6 (k1 + 2 k2 + 2 k3 + k4), y = (x, v), k1 = F(t, y),
  *                     k2 = F(t + h/2, y + h/2 k1), k3 = F(t + h/2, y + h/2 k2),
  *                     k4 = F(t + h, y + h k3)   (Kutta 1901)
@@ -186,33 +187,60 @@ CS_CLONES static void last_half_step_row(const struct row *row) {
 
 CS_CLONES static void position_verlet_row(const struct row *row) {
     const double h = row->h, loss = row->loss, *restrict a = row->a;
+    const double kick = row->forth;
     double *restrict x = row->x, *restrict v = row->v, *restrict u = row->kept[0];
+    double *restrict before = row->kept[1];
     for (size_t i = 0; i < row->count; i++) {
-        u[i] = (1 - loss) * u[i] + h * a[i];
+        before[i] = u[i];
+        u[i] = (1 - loss) * u[i] + kick * a[i];
         x[i] += h * u[i];
         v[i] = u[i] + h / 2 * a[i];
     }
 }
 
+/* Takes back what a refused step made of u. */
+CS_CLONES static void take_back_row(const struct row *row) {
+    double *restrict u = row->kept[0];
+    const double *restrict before = row->kept[1];
+    for (size_t i = 0; i < row->count; i++)
+        u[i] = before[i];
+}
+
 /* In u = (x - x_old)/h the recurrence is u' = (1 - l) u + h a, x' = x + h u': the same in
- * exact arithmetic, without the cancellation of nearly equal positions. If u is unknown
- * (after a restart, a commit that changed the state, or another h) it starts as v - h/2 a, a
- * Taylor step. */
+ * exact arithmetic, without the cancellation of nearly equal positions. Steps of other lengths
+ * are those of leapfrog, u' = (1 - l) u + (h + h_old)/2 a: v holds the old acceleration, and u
+ * from it would miss h/2 times the change of a, which contact makes large. If u is unknown
+ * (after a restart, or a commit that changed the state) it starts as v - h/2 a, a Taylor step.
+ */
 enum cs_step step_position_verlet(struct fixed_step *loop, double t, double h, double *x,
                                   double *v) {
     struct explicit_method *self = method_of(loop);
+    if (loop->refused) {
+        move_all(self, h, x, v, take_back_row);
+        self->h = self->h_before;
+    }
     const bool start = self->h <= 0;
     if (start) {
         evaluate(self, t, x, v);
         move_all(self, h, x, v, accelerate_row);
     }
-    if (loop->history_void || fabs(h - self->h) > 1e-9 * h)
+    const bool unknown = start || (loop->refused ? self->u_was_unknown : loop->history_void);
+    if (unknown)
         move_all(self, h, x, v, last_half_step_row);
     if (!start) {
         evaluate(self, t, x, self->history);
         move_all(self, h, x, v, accelerate_row);
     }
-    move_all(self, h, x, v, position_verlet_row);
+    const bool same = unknown || fabs(h - self->h) <= 1e-9 * h;
+    struct move move = {.row = position_verlet_row,
+                        .self = self,
+                        .x = x,
+                        .v = v,
+                        .h = h,
+                        .forth = same ? h : 0.5 * (h + self->h)};
+    share(&move);
+    self->h_before = self->h;
+    self->u_was_unknown = unknown;
     self->h = h;
     return CS_STEP_OK;
 }

@@ -8,10 +8,13 @@
 struct explicit_method {
     struct fixed_step fixed; /* first: the loop's functions take it for the whole */
     double *a;               /* (3,n) in m/s2 of the last evaluation, or still in N */
-    double *history;  /* (3,n): (x - x_old)/h of position-verlet, old a of velocity-verlet;
-                       * (12,n): a stage's x and v, and the sums of both slopes, of rk4 */
-    size_t n_history; /* arrays (3,n) in history */
-    double h;         /* s, of the last step of position-verlet; 0: none since the restart */
+    double *history;         /* (3,n): old a of velocity-verlet;
+                              * (6,n): (x - x_old)/h of position-verlet, and that before its step;
+                              * (12,n): a stage's x and v, and the sums of both slopes, of rk4 */
+    size_t n_history;        /* arrays (3,n) in history */
+    double h;           /* s, of the last step of position-verlet; 0: none since the restart */
+    double h_before;    /* s, h before its last step */
+    bool u_was_unknown; /* (x - x_old)/h was, before its last step */
     double velocity_loss;
 };
 

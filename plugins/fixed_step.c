@@ -89,6 +89,7 @@ static enum cs_step try_part(struct fixed_step *self, double t, double h, double
     if (status != CS_STEP_OK)
         return status;
     *cut = *cut || is_inaccurate(self, h, v);
+    self->refused = *cut;
     if (*cut) {
         memcpy(x, self->saved_state, bytes);
         self->history_void = true;

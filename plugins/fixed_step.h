@@ -48,7 +48,8 @@ struct fixed_step {
     const struct cs_host *host; /* borrowed */
     double dt;                  /* longest step in s; HUGE_VAL: a whole advance */
     bool history_void; /* the state was changed from outside: the method's history is void */
-    bool noted;        /* the report says already that dt was reduced */
+    bool refused; /* the last part was refused: the state is that before it, history_void too */
+    bool noted;   /* the report says already that dt was reduced */
     bool dt_automatic; /* dt was chosen here, not by the user */
     fixed_step_callback *step;
 
