@@ -39,7 +39,6 @@ static const struct bounds {
 } own_bounds[] = {
     {"backward-euler", 0.35, 1, 0.05, "dissipates: a step that is long against range/speed"},
     {"implicit-linearised", 0.97, 1.01, 0, "pairs: as backward-euler, without its iteration"},
-    {"position-verlet", 0.9, 1.06, 0.9, "its v is that of half a step before"},
     {"symplectic-euler", 0.9, 1.06, 0.9, "its energy swings by the first order of h"},
     {"vbd", 0.35, 1, 0.05, "dissipates as backward-euler"},
     {"xpbd", 0.35, 1, 0.05, "dissipates as backward-euler"},
@@ -127,6 +126,36 @@ TEST(meshes_throw_sheets_back) {
         .test = "bounce", .with = CS_IMPLICIT, .without = CS_EXPLICIT_OUTER | CS_NOT_GALILEAN});
     for (size_t m = 0; m < methods.n; m++)
         check(methods.list[m].text, &mesh, 2, 1.37);
+}
+
+/* A sheet that starts where the range of a stiff floor begins falls by micrometres. What a step
+ * may miss was once a fraction of what such contact can hold: the sheet was thrown
+ * to twice its height by implicit-linearised at a step a frame, and each refused or shortened
+ * step of position-verlet threw it. rkc2 is off by its tolerance. */
+TEST(sheets_on_stiff_floors_stay_there) {
+    static const char *const more[] = {"implicit-linearised:dt=frame", "newmark:dt=frame",
+                                       NULL};
+    static const double stiffnesses[] = {2e4, 2e6};
+    const struct methods methods = methods_find(
+        &(struct methods_query){.test = "bounce", .without = CS_EXPLICIT_OUTER, .more = more});
+    for (size_t m = 0; m < methods.n; m++)
+        for (size_t k = 0; k < LENGTH(stiffnesses); k++) {
+            struct fixture sheet;
+            struct fixture_log log;
+            fixture_open(&sheet, methods.list[m].text,
+                         "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6], \"size\": [0.5, 0.5], "
+                         "\"start\": \"flat\", \"place\": {\"translate\": [0, 0.002, 0]}}, "
+                         "\"mass\": {\"areal_density\": 0.2}}], \"contact\": {\"law\": "
+                         "\"force\", \"stiffness\": %g}, \"colliders\": [{\"floor\": "
+                         "{\"height\": 0}, \"thickness\": 0.002}]}",
+                         stiffnesses[k]);
+            fixture_start_logged(&sheet, &log);
+            fixture_frames(&sheet, 20);
+            ck_assert_msg(log.largest < 1.05 * log.first,
+                          "%s, %g N/m: energy %g of the start's", methods.list[m].text,
+                          stiffnesses[k], log.largest / log.first);
+            fixture_close(&sheet);
+        }
 }
 
 /* xpbd once lost the count of steps that were refused, and the length of parts, between

@@ -160,13 +160,38 @@ void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_syst
     cs_posed_collider_at(system, collider, t1, &passing->at_t1);
 }
 
+/* J, the most that a free particle brings: by its mean velocity relative to the collider, and
+ * by its weight over the range. */
+static double most_energy(const struct cs_collider_step *passing) {
+    const struct cs_system *system = passing->system;
+    const size_t n = system->view.n;
+    const double *g = system->scene->forces.gravity;
+    const double fall = sqrt(cs_vec3_dot(g, g)) * passing->params.range;
+    double most = 0, shift[3];
+    for (int c = 0; c < 3; c++)
+        shift[c] = passing->at_t1.centre[c] - passing->at_t0.centre[c];
+    for (size_t i = 0; i < n; i++) {
+        double squared = 0;
+        for (size_t c = 0, k = i; c < 3; c++, k += n) {
+            const double move = passing->x1[k] - passing->x0[k] - shift[c];
+            squared += move * move;
+        }
+        const double energy =
+            system->mass[i] * (0.5 * squared / (passing->h * passing->h) + fall);
+        most = system->inv_mass[i] > 0 && energy > most ? energy : most;
+    }
+    return most;
+}
+
 void cs_collider_step_set_beside_rebounds(struct cs_collider_step *passing) {
-    const double range = passing->params.range;
+    const struct cs_collider_params *params = &passing->params;
     if (!passing->system->rebounds)
         return;
     passing->unresolved_max = CS_UNRESOLVED_BESIDE_REBOUNDS;
     passing->spare_energy =
-        CS_SPARE_BESIDE_REBOUNDS * cs_barrier_energy(0.5 * range, range, passing->params.k);
+        CS_SPARE_BESIDE_REBOUNDS *
+        fmin(cs_barrier_energy(0.5 * params->range, params->range, params->k),
+             most_energy(passing));
 }
 
 /* Ends at the first collider with an unresolved particle. */

@@ -11,7 +11,8 @@
  * in impact: those are loaded by more than their contact, and need no restitution. Beside
  * CS_UNRESOLVED_ENERGY_MAX of methods without impacts. To their energy is added this fraction
  * of psi(D/2), as all of it is to that of pairs (contact_pairs.h): else particles that barely
- * touch, with energies far below what contact holds, would cut steps for all. */
+ * touch, with energies far below what contact holds, would cut steps for all. Or of the most
+ * that any particle brings, if that is less: a contact may hold 1e6 times that. */
 #define CS_UNRESOLVED_BESIDE_REBOUNDS 0.1
 #define CS_SPARE_BESIDE_REBOUNDS      0.02
 
