@@ -21,7 +21,8 @@ void cs_plan_choose_contact_law(struct cs_scene *scene, const struct cs_integrat
 
 /* Checks that a method can follow the scene. Shape matching is no force law, so it needs a
  * method of its own, and that method needs shape matching; contact by force is too stiff for
- * methods that treat it explicitly. Returns CS_ERR_SCENE; the message begins with the JSON
+ * methods that treat it explicitly, and colliders that move make energy in one whose drag holds
+ * what they should carry. Returns CS_ERR_SCENE; the message begins with the JSON
  * path. */
 enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integrator *method,
                              struct cs_error *error);
