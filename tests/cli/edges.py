@@ -108,7 +108,8 @@ def run(words, streams=(), before=()):
 def tree():
     """The bytes of all that is given, and the kind of what is no file."""
     found = {}
-    for path in ["s.json", "m.obj", "s.csv.part", "victim", *Path("made").iterdir(), *Path("g").iterdir()]:
+    stored = [path for path in Path("g").rglob("*") if path.is_file()]
+    for path in ["s.json", "m.obj", "s.csv.part", "victim", *Path("made").iterdir(), *stored]:
         found[str(path)] = Path(path).read_bytes()
     return found
 

@@ -45,6 +45,7 @@ build() {
 mkdir -p "$folder/table/golden"
 ln -sfn "$PWD/scenes" "$folder/table/scenes"
 ln -sfn "$PWD/golden/image" "$folder/table/golden/image"
+ln -sfn "$PWD/golden/state" "$folder/table/golden/state"
 # selected TABLE FIELDS KEY: rows of a golden table that rows.tsv names in lines of so many fields
 selected() {
     awk -F '\t' -v fields="$2" "NR == FNR { if (NF == fields) { wanted[\$0]; n++ } next }

@@ -8,7 +8,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length);
 
 static const struct cs_golden_table kinds[] = {
-    {.head = "scene\tintegrator\toverrides\tframes\thash\tbuilds",
+    {.head = "scene\tintegrator\toverrides\tframes\thash\tbuilds\ttolerance\tstate",
+     .former_head = "scene\tintegrator\toverrides\tframes\thash\tbuilds",
      .n_fields = CS_GOLDEN_HASH_FIELDS},
     {.head = "scene\tintegrator\toverrides\tframe\timage\tpixels\trenderer",
      .n_fields = CS_GOLDEN_IMAGE_FIELDS},
@@ -27,6 +28,8 @@ static void read_table(const struct cs_golden_table *kind, const void *bytes, si
     else {
         struct cs_golden_row *row = cs_golden_table_add(&table, &run);
         CS_ASSERT(row == cs_golden_table_add(&table, &run) && row->run.frames == 2);
+        if (!row->image)
+            cs_golden_table_name_states(&table, row);
         row->hash = row->hash ? row->hash : "0";
         row->note = row->note ? row->note : "any";
         CS_ASSERT(!cs_golden_table_write(&table, &error));

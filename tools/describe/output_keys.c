@@ -274,6 +274,16 @@ static const struct cs_output_key golden_keys[] = {
     {"rows[].overrides", "text", "", "values of --set"},
     {"rows[].message", "text", "", "what was found"},
     {"rows[].frame", "whole", "1", "frame"},
+    {"rows[].seconds", "number", "s", "wall time"},
+    {"rows[].where?", "object", "", "distances from the stored states"},
+    {"rows[].where.first_hash", "whole", "1", "first frame of another hash; 0: none"},
+    {"rows[].where.frame", "whole", "1", "first stored frame that is off; 0: none"},
+    {"rows[].where.particle", "whole", "1", "the particle that is farthest off there"},
+    {"rows[].where.distance", "number or null", "m", "its distance; null: not finite"},
+    {"rows[].where.last_frame", "whole", "1", "last stored frame that is off"},
+    {"rows[].where.last_particle", "whole", "1", "the particle that is farthest off there"},
+    {"rows[].where.last_distance", "number or null", "m", "its distance; null: not finite"},
+    {"rows[].where.off", "whole", "1", "particles that are off there"},
 };
 
 static const struct cs_output_key conform_keys[] = {

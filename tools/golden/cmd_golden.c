@@ -2,11 +2,11 @@
  *
  *   options -> cs_golden_check: per row a run, its hash or picture, a verdict -> counts */
 #include "base/install_paths.h"
-#include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "golden/golden.h"
+#include "golden/golden_report.h"
 #include "io/file_conflicts.h"
 #include "study/compare/compare_curves.h"
 #include "study/process_pool.h"
@@ -20,7 +20,7 @@ struct options {
     const struct cs_override *sets;
     uint32_t n_sets;
     double seconds; /* of the run that is added; 0: not given */
-    const char *json, *junit;
+    const char *json, *junit, *html;
     bool image, github, quiet;
 };
 static const struct options defaults = {.check = {.threads = 1}};
@@ -39,6 +39,12 @@ static const struct cs_arg rows[] = {
      CS_ARG_LIST(struct options, sets, n_sets)},
     {"image", 0, NULL, "add a picture of its last frame too",
      CS_ARG_INTO(struct options, image)},
+    {"keep", 0, "N",
+     "keep positions of N of its frames too (default: 4); with --accept of rows that have none",
+     CS_ARG_INTO(struct options, check.states), .max = CS_GOLDEN_STATES_MAX},
+    {"tolerance", 0, "METRES",
+     "judge it by these positions, instead of by bits (bits: by bits again)",
+     CS_ARG_INTO(struct options, check.add_tolerance)},
     {"accept", 0, NULL, "replace the golden files with the new results: look at them first",
      CS_ARG_INTO(struct options, check.accept_all)},
     {"hashes", 0, NULL, "state hashes only", CS_ARG_INTO(struct options, check.hashes)},
@@ -47,6 +53,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, check.only_rows)},
     {"folder", 0, "DIR", "the golden folder (default: golden here, else the installed one)",
      CS_ARG_INTO(struct options, check.folder)},
+    CS_ARG_PLUGIN(struct options, check),
     {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto); may be repeated",
      CS_ARG_INTO(struct options, check.renderers), .names = cs_renderer_names,
      .repeatable = true},
@@ -58,6 +65,8 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, json)},
     {"junit", 0, "FILE", "write the rows as a JUnit report too",
      CS_ARG_INTO(struct options, junit)},
+    {"html", 0, "FILE", "write one page with the rows, and pictures of what differs",
+     CS_ARG_INTO(struct options, html)},
     {"github", 0, NULL, "print rows that differ as annotations of GitHub",
      CS_ARG_INTO(struct options, github)},
     CS_ARG_QUIET(struct options, quiet),
@@ -66,75 +75,22 @@ static const struct cs_arg rows[] = {
 /* Destination of the rows. */
 struct sink {
     const struct options *options;
-    struct cs_text json, junit;
+    struct cs_golden_report report;
 };
-
-static bool is_different(const struct cs_golden_row *row) {
-    return row->message.length > 0 && (row->added || !row->finding.skipped);
-}
-
-static const char *verdict_of(const struct options *options, const struct cs_golden_row *row) {
-    if (row->failed)
-        return "FAILED";
-    if (is_different(row) && options->check.accept_all)
-        return options->check.add.scene ? "added" : "accepted";
-    return row->finding.skipped ? "skip" : is_different(row) ? "DIFFERS" : "ok";
-}
-
-/* Adds "image NAME SCENE  INTEGRATOR  OVERRIDES  frame N", without what the row has not. */
-static void add_name(const struct cs_golden_row *row, struct cs_text *out) {
-    const struct cs_golden_run *run = &row->run;
-    if (row->image)
-        cs_text_add(out, "image %s ", row->image);
-    cs_text_add(out, "%s", run->scene);
-    if (strcmp(run->integrator, "-"))
-        cs_text_add(out, "  %s", run->integrator);
-    if (strcmp(run->overrides, "-"))
-        cs_text_add(out, "  %s", run->overrides);
-    cs_text_add(out, "  frame %u", run->frames);
-}
-
-static void add_json(const struct cs_golden_row *row, const char *verdict,
-                     struct cs_text *out) {
-    cs_json_write(out,
-                  ",\n    {'verdict': %s, 'image': %s, 'scene': %s, 'integrator': %s, "
-                  "'overrides': %s, 'message': %s, 'frame': %u}",
-                  verdict, row->image ? row->image : "", row->run.scene, row->run.integrator,
-                  row->run.overrides, cs_text_get(&row->message), row->run.frames);
-}
-
-/* Adds a test case of a JUnit report, with the message of a failure or a skip. */
-static void add_junit(const struct cs_golden_row *row, const char *name, const char *element,
-                      struct cs_text *out) {
-    cs_text_add(out, "<testcase classname=\"clothsim golden\" name=\"");
-    cs_text_add_html(out, name);
-    cs_text_add(out, "\">");
-    if (element) {
-        cs_text_add(out, "<%s message=\"", element);
-        cs_text_add_html(out, cs_text_get(&row->message));
-        cs_text_add(out, "\"/>");
-    }
-    cs_text_add(out, "</testcase>\n");
-}
 
 static void print_row(void *ctx, const struct cs_golden_row *row) {
     struct sink *sink = ctx;
     const struct options *options = sink->options;
-    const char *verdict = verdict_of(options, row);
-    const bool fails = is_different(row) && (row->failed || !options->check.accept_all);
-    struct cs_text name = {0};
-    add_name(row, &name);
-    add_json(row, verdict, &sink->json);
-    add_junit(row, cs_text_get(&name),
-              fails                  ? "failure"
-              : row->finding.skipped ? "skipped"
-                                     : NULL,
-              &sink->junit);
-    struct cs_text line = {0};
-    if (!cs_print_is_stdout(options->json) && (is_different(row) || !options->quiet))
+    const char *verdict = cs_golden_verdict(&options->check, row);
+    const bool is_quiet =
+        options->quiet && (!strcmp(verdict, "ok") || !strcmp(verdict, "skip"));
+    struct cs_text name = {0}, line = {0};
+    cs_golden_add_name(row, &name);
+    cs_golden_report_add(&sink->report, &options->check, row);
+    if (!cs_print_is_stdout(options->json) && !is_quiet)
         cs_text_add(&line, "%-8s   %s%s%s\n", verdict, cs_text_get(&name),
                     row->message.length ? ": " : "", cs_text_get(&row->message));
-    if (options->github && fails)
+    if (options->github && cs_golden_is_failure(&options->check, row))
         cs_text_add(&line, "::error file=%s,title=clothsim golden::%s: %s\n", row->run.scene,
                     cs_text_get(&name), cs_text_get(&row->message));
     struct cs_error unseen = {0}; /* the end of the output reports a closed one */
@@ -142,35 +98,24 @@ static void print_row(void *ctx, const struct cs_golden_row *row) {
     cs_text_finish(&name);
 }
 
-static enum cs_status write_json(const struct cs_golden *check, struct sink *sink,
-                                 struct cs_error *error) {
-    const char *path = sink->options->json;
-    struct cs_text out = {0};
-    if (path) {
-        cs_json_write(&out,
-                      "{\n  'agree': %u, 'differ': %u, 'accepted': %u, 'skipped': %u,\n"
-                      "  'rows': [",
-                      check->passed, check->failed, check->accepted, check->skipped);
-        cs_text_add(&out, "%s\n  ]\n}\n", cs_text_get(&sink->json));
-        out.failed |= sink->json.failed;
-        cs_print_file(path, &out, error);
+/* Writes the reports that were asked for. */
+static enum cs_status write_reports(const struct cs_golden *check, const struct sink *sink,
+                                    struct cs_error *error) {
+    const struct {
+        const char *path;
+        void (*print)(const struct cs_golden_report *report, const struct cs_golden *check,
+                      struct cs_text *out);
+    } all[] = {{sink->options->json, cs_golden_report_print_json},
+               {sink->options->junit, cs_golden_report_print_junit},
+               {sink->options->html, cs_golden_report_print_html}};
+    for (size_t k = 0; k < sizeof all / sizeof *all && !error->status; k++) {
+        struct cs_text out = {0};
+        if (!all[k].path)
+            continue;
+        all[k].print(&sink->report, check, &out);
+        cs_print_file(all[k].path, &out, error);
     }
     return error->status;
-}
-
-static enum cs_status write_junit(const struct cs_golden *check, struct sink *sink,
-                                  struct cs_error *error) {
-    struct cs_text out = {0};
-    if (!sink->options->junit)
-        return CS_OK;
-    cs_text_add(
-        &out,
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"clothsim golden\" "
-        "tests=\"%u\" failures=\"%u\" skipped=\"%u\">\n%s</testsuite>\n",
-        check->passed + check->failed + check->accepted + check->skipped, check->failed,
-        check->skipped, cs_text_get(&sink->junit));
-    out.failed |= sink->junit.failed;
-    return cs_print_file(sink->options->junit, &out, error);
 }
 
 /* Frames of the run to be added, as given or by the time. */
@@ -185,12 +130,36 @@ static enum cs_status take_frames(struct cs_args *args, struct cs_error *error) 
     return cs_session_fit_frames(&session, &run->frames, &options->seconds, error);
 }
 
+/* Sets how many states are kept, and checks how they are to be judged. */
+static enum cs_status take_states(struct cs_args *args, struct cs_error *error) {
+    struct options *options = args->options;
+    struct cs_golden *check = &options->check;
+    const char *tolerance = check->add_tolerance, *method = check->add.integrator;
+    const bool is_given = cs_args_is_given(args, "keep");
+    double m = 0;
+    if (check->add.scene && !is_given)
+        check->states = CS_GOLDEN_STATES;
+    if (is_given && !check->accept_all && !check->add.scene)
+        cs_fail(error, CS_ERR_USAGE, "--keep is for --add SCENE or --accept");
+    else if (tolerance && strcmp(tolerance, "bits") != 0 &&
+             !(cs_parse_real(tolerance, &m) && m > 0))
+        cs_fail(error, CS_ERR_USAGE,
+                "--tolerance: found \"%.60s\", expected bits or METRES > 0", tolerance);
+    else if (m > 0 && !check->states)
+        cs_fail(error, CS_ERR_USAGE, "--tolerance needs states, found --keep 0");
+    else if (method && !strncmp(method, "program:", 8))
+        cs_fail(error, CS_ERR_USAGE,
+                "no table starts a program; expected --program NAME=COMMAND -i NAME, here and "
+                "at each check");
+    return error->status;
+}
+
 /* Fills the run to be added from the options: overrides joined by semicolons, "-" for none. */
 static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
     struct cs_golden_run *run = &options->check.add;
     const bool asked = run->frames || options->seconds > 0 || run->integrator ||
-                       options->n_sets || options->image;
+                       options->n_sets || options->image || options->check.add_tolerance;
     if (take_frames(args, error))
         return error->status;
     struct cs_text sets = {0};
@@ -201,8 +170,9 @@ static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
         has_semicolon |= strchr(set->value, ';') != NULL;
     }
     if (!run->scene && asked)
-        cs_fail(error, CS_ERR_USAGE,
-                "-n, -t, -i, -s and --image are for --add SCENE, which is missing");
+        cs_fail(
+            error, CS_ERR_USAGE,
+            "-n, -t, -i, -s, --tolerance and --image are for --add SCENE, which is missing");
     else if (run->scene && !run->frames)
         cs_fail(error, CS_ERR_USAGE,
                 "--add: the number of frames is missing, expected -n N or -t SECONDS");
@@ -227,7 +197,7 @@ static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
 
 static enum cs_status report(const struct cs_golden *check, struct sink *sink,
                              struct cs_error *error) {
-    if (write_json(check, sink, error) || write_junit(check, sink, error))
+    if (write_reports(check, sink, error))
         return error->status;
     if (!cs_print_is_stdout(sink->options->json))
         printf("%u agree, %u differ, %u accepted, %u skipped\n", check->passed, check->failed,
@@ -252,14 +222,14 @@ static enum cs_status report(const struct cs_golden *check, struct sink *sink,
 /* Refuses reports that would replace a golden table. */
 static enum cs_status check_reports(const struct options *options, struct cs_error *error) {
     static const char *const tables[] = {"hash.tsv", "image.tsv"};
+    static const char *const names[] = {"--json", "--junit", "--html"};
     const char *const reports[] = {cs_print_is_stdout(options->json) ? NULL : options->json,
-                                   options->junit};
-    for (int k = 0; k < 4 && !error->status; k++) {
+                                   options->junit, options->html};
+    for (int k = 0; k < 6 && !error->status; k++) {
         char path[CS_DATA_PATH_MAX + 16];
         snprintf(path, sizeof path, "%.*s/%s", CS_DATA_PATH_MAX - 1, options->check.folder,
-                 tables[k / 2]);
-        cs_file_conflicts_pair(reports[k % 2], k % 2 ? "--junit" : "--json", path,
-                               "a golden table", error);
+                 tables[k / 3]);
+        cs_file_conflicts_pair(reports[k % 3], names[k % 3], path, "a golden table", error);
     }
     return error->status;
 }
@@ -269,7 +239,7 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     struct cs_golden *check = &options->check;
     char installed[CS_DATA_PATH_MAX];
     struct sink sink = {.options = options};
-    if (take_run(args, error))
+    if (take_states(args, error) || take_run(args, error))
         return error->status;
     /* installed tables are for comparison only and never written */
     if (!check->folder)
@@ -288,8 +258,7 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     check->ctx = &sink;
     if (!check_reports(options, error) && !cs_golden_check(check, error))
         report(check, &sink, error);
-    cs_text_finish(&sink.json);
-    cs_text_finish(&sink.junit);
+    cs_golden_report_finish(&sink.report);
     return error->status;
 }
 

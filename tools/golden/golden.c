@@ -1,217 +1,14 @@
 /* Compares state hashes and images with the golden tables, row by row. */
 #include "golden/golden.h"
 
+#include "base/clock.h"
 #include "base/file.h"
-#include "io/png.h"
-#include "shared/image_diff.h"
-#include "study/follow.h"
-#include "study/frame_picture.h"
 #include "study/process_pool.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-/* Splits "path=value;path=value" in place. Returns the number of overrides. */
-static uint32_t split_overrides(char *text, struct cs_override *overrides) {
-    uint32_t n = 0;
-    char *pair;
-    while (n < CS_GOLDEN_SETS_MAX && (pair = strsep(&text, ";"))) {
-        char *equals = strchr(pair, '=');
-        if (!equals)
-            continue;
-        *equals = 0;
-        overrides[n++] = (struct cs_override){pair, equals + 1};
-    }
-    return n;
-}
-
-/* Steps a row's run to its last frame. On success the session is open and the caller closes it.
- */
-static enum cs_status step_golden(const struct cs_golden *golden,
-                                  const struct cs_golden_run *run, bool render,
-                                  struct cs_session *session, struct cs_error *error) {
-    char scene[1280], text[CS_GOLDEN_SETS_BYTES];
-    struct cs_override overrides[CS_GOLDEN_SETS_MAX];
-    /* scenes are named from the folder above the golden one, which is often this one */
-    const bool here = *golden->folder != '.' && !strchr(golden->folder, '/');
-    snprintf(scene, sizeof scene, "%s%s%s", here ? "" : golden->folder, here ? "" : "/../",
-             run->scene);
-    /* a copy, which split_overrides cuts up */
-    snprintf(text, sizeof text, "%s", run->overrides);
-    const struct cs_session_settings settings = {
-        .scene = scene,
-        .overrides = overrides,
-        .n_overrides = split_overrides(text, overrides),
-        .integrator = strcmp(run->integrator, "-") ? run->integrator : NULL,
-        .render = render,
-        .threads = golden->threads,
-        .run = {.stop = golden->stop},
-    };
-    if (cs_session_open(session, &settings, error))
-        return error->status;
-    struct cs_follow follow = {.run = &session->run, .last = run->frames};
-    cs_follow_next(&follow, error);
-    if (cs_follow_check(&session->run, "", error))
-        cs_session_close(session);
-    return error->status;
-}
-
-static void path_of(const struct cs_golden *golden, const struct cs_golden_row *row,
-                    const char *ending, char path[1024]) {
-    snprintf(path, 1024, "%.500s/image/%.400s%s", golden->folder, row->image, ending);
-}
-
-static enum cs_status write_image(const struct cs_golden *golden,
-                                  const struct cs_golden_row *row, const char *ending,
-                                  const struct cs_image *image, struct cs_error *error) {
-    char path[1024];
-    path_of(golden, row, ending, path);
-    return cs_png_write(path, image, 6, NULL, 0, error);
-}
-
-/* Writes the picture and 16 times the difference beside the golden image. */
-static enum cs_status write_evidence(const struct cs_golden *golden,
-                                     const struct cs_golden_row *row,
-                                     const struct cs_image *found,
-                                     const struct cs_image *expected, struct cs_error *error) {
-    struct cs_image amplified = {found->width, found->height, malloc(cs_image_bytes(found)),
-                                 NULL};
-    if (!amplified.rgb)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
-    cs_image_amplify(found, expected, &amplified);
-    if (!write_image(golden, row, ".actual.png", found, error))
-        write_image(golden, row, ".difference.png", &amplified, error);
-    free(amplified.rgb);
-    return error->status;
-}
-
-/* Removes the evidence of an earlier check. */
-static void remove_evidence(const struct cs_golden *golden, const struct cs_golden_row *row) {
-    char path[1024];
-    path_of(golden, row, ".actual.png", path);
-    remove(path);
-    path_of(golden, row, ".difference.png", path);
-    remove(path);
-}
-
-/* Fills row->message if the picture does not pass. */
-static enum cs_status judge(const struct cs_golden *golden, struct cs_golden_row *row,
-                            const struct cs_image *found, const char *renderer,
-                            struct cs_error *error) {
-    const bool same_renderer = !strcmp(renderer, row->note);
-    /* equal hashes of pixels decide: the golden picture need not be read */
-    if (same_renderer && !strcmp(row->finding.found, row->hash))
-        return CS_OK;
-    char path[1024];
-    struct cs_image expected;
-    path_of(golden, row, ".png", path);
-    if (cs_png_read(path, &expected, error))
-        return error->status;
-    if (expected.width != found->width || expected.height != found->height) {
-        cs_text_add(&row->message, "%u x %u pixels, expected %u x %u", found->width,
-                    found->height, expected.width, expected.height);
-    } else {
-        const struct cs_image_difference d = cs_image_compare(found, &expected);
-        if (same_renderer || !cs_image_difference_passes(&d)) {
-            cs_text_add(
-                &row->message,
-                "%llu pixels differ, RMSE %.3f, %.3f %% off by more than 2, largest %d%s",
-                (unsigned long long)d.pixels, d.rmse, 100 * d.share, d.largest,
-                same_renderer ? " (same renderer: every pixel counts)" : "");
-            write_evidence(golden, row, found, &expected, error);
-        }
-    }
-    free(expected.rgb);
-    return error->status;
-}
-
-/* Accepts the picture. Only the CPU renderer may, because its pixels are equal on all machines.
- */
-static enum cs_status accept_image(const struct cs_golden *golden, struct cs_golden_row *row,
-                                   const struct cs_image *found, struct cs_text *renderer,
-                                   struct cs_error *error) {
-    if (strncmp(cs_text_get(renderer), "cpu", 3))
-        return cs_fail(error, CS_ERR_CHECK,
-                       "%s: only --renderer cpu may accept images, found %s", row->image,
-                       cs_text_get(renderer));
-    if (!strcmp(row->finding.found, row->hash) && !strcmp(row->note, cs_text_get(renderer)))
-        return CS_OK;
-    cs_text_add(&row->message, "accepted");
-    snprintf(row->finding.renderer, sizeof row->finding.renderer, "%s", cs_text_get(renderer));
-    row->note = row->finding.renderer;
-    return write_image(golden, row, ".png", found, error);
-}
-
-static enum cs_status check_with(const struct cs_golden *golden, enum cs_renderer_kind kind,
-                                 struct cs_session *session, struct cs_golden_row *row,
-                                 struct cs_error *error) {
-    struct cs_image found = {0};
-    struct cs_text renderer = {0};
-    if (!cs_snapshot_draw(&session->run, kind, &found, &renderer, error)) {
-        cs_hash_bytes(found.rgb, cs_image_bytes(&found), row->finding.found);
-        if (golden->accept_all)
-            accept_image(golden, row, &found, &renderer, error);
-        else
-            judge(golden, row, &found, cs_text_get(&renderer), error);
-    }
-    free(found.rgb);
-    cs_text_finish(&renderer);
-    return error->status;
-}
-
-static enum cs_status check_image(struct cs_golden *golden, struct cs_golden_row *row,
-                                  struct cs_error *error) {
-    struct cs_session session;
-    if (step_golden(golden, &row->run, true, &session, error))
-        return error->status;
-    remove_evidence(golden, row);
-    for (int kind = 0; cs_renderer_names[kind] && !error->status; kind++)
-        if (golden->renderers >> kind & 1)
-            check_with(golden, (enum cs_renderer_kind)kind, &session, row, error);
-    cs_session_close(&session);
-    return error->status;
-}
-
-/* True if the row holds for this build. A method whose bits depend on a library has one row per
- * version. */
-static bool is_for_this_build(struct cs_golden_row *row, const struct cs_integrator *method) {
-    if (CS_HAS(method, library) && method->library)
-        snprintf(row->finding.library, sizeof row->finding.library, "%s", method->library);
-    row->finding.skipped =
-        strcmp(row->note, "any") != 0 && strcmp(row->note, row->finding.library) != 0;
-    if (row->finding.skipped)
-        cs_text_add(&row->message, "golden for %s, but this build has %s", row->note,
-                    *row->finding.library ? row->finding.library : "no such library");
-    return !row->finding.skipped;
-}
-
-/* Compares one state hash with its golden value. */
-static enum cs_status check_hash(struct cs_golden *golden, struct cs_golden_row *row,
-                                 struct cs_error *error) {
-    struct cs_session session;
-    struct cs_error failed = {0};
-    if (step_golden(golden, &row->run, false, &session, &failed)) {
-        /* only a build without a library may lack an integrator, and only where the row names
-         * the library */
-        row->finding.skipped = failed.status == CS_ERR_USAGE && strcmp(row->note, "any") != 0;
-        if (!row->finding.skipped)
-            return cs_fail(error, failed.status, "%s", failed.message);
-        cs_text_add(&row->message, "this build is without %s", row->note);
-        return CS_OK;
-    }
-    cs_run_hash(&session.run, row->finding.found);
-    if (is_for_this_build(row, session.method.integrator) &&
-        strcmp(row->finding.found, row->hash)) {
-        cs_text_add(&row->message, "hash %s", row->finding.found);
-        if (!golden->add.scene)
-            cs_text_add(&row->message, ", expected %s (%s after frame %u)", row->hash,
-                        cs_outcome_text(session.run.outcome), session.run.frame);
-    }
-    cs_session_close(&session);
-    return CS_OK;
-}
 
 /* True if the row passes the filter by scene or integrator. */
 static bool is_wanted(const struct cs_golden *golden, const struct cs_golden_row *row) {
@@ -238,17 +35,17 @@ static void count(struct cs_golden *golden, const struct cs_golden_row *row) {
 
 /* A table of one kind, and the check of its rows. */
 struct kind {
-    const char *name, *head;
+    const char *name, *head, *former_head;
     uint32_t n_fields;
     enum cs_status (*check)(struct cs_golden *golden, struct cs_golden_row *row,
                             struct cs_error *error);
 };
-static const struct kind hashes = {"hash.tsv",
-                                   "scene\tintegrator\toverrides\tframes\thash\tbuilds",
-                                   CS_GOLDEN_HASH_FIELDS, check_hash};
+#define RUN_COLUMNS "scene\tintegrator\toverrides\tframes\thash\tbuilds"
+static const struct kind hashes = {"hash.tsv", RUN_COLUMNS "\ttolerance\tstate", RUN_COLUMNS,
+                                   CS_GOLDEN_HASH_FIELDS, cs_golden_check_state};
 static const struct kind images = {
-    "image.tsv", "scene\tintegrator\toverrides\tframe\timage\tpixels\trenderer",
-    CS_GOLDEN_IMAGE_FIELDS, check_image};
+    "image.tsv", "scene\tintegrator\toverrides\tframe\timage\tpixels\trenderer", NULL,
+    CS_GOLDEN_IMAGE_FIELDS, cs_golden_check_image};
 
 /* A failed run is a failed row, unless the run is added, the user interrupts, or memory ends.
  */
@@ -264,11 +61,22 @@ static enum cs_status take_failure(struct cs_golden *golden, struct cs_golden_ro
     return CS_OK;
 }
 
+/* Checks a row by the kind of its table, and its time. */
+static enum cs_status check(struct cs_golden *golden, const struct kind *kind,
+                            struct cs_golden_row *row, struct cs_error *error) {
+    const double start = cs_clock_wall();
+    kind->check(golden, row, error);
+    row->finding.seconds = cs_clock_wall() - start;
+    return error->status;
+}
+
 /* Counts, reports and accepts a row that was checked. */
 static void settle(struct cs_golden *golden, const struct cs_golden_table *table,
                    struct cs_golden_row *row) {
     row->added = golden->accept_all && row->finding.skipped && *row->finding.library &&
                  !cs_golden_table_has(table, row);
+    if (row->is_state_new && !row->finding.has_new_states)
+        row->state = "-";
     count(golden, row);
     if (golden->report)
         golden->report(golden->ctx, row);
@@ -308,7 +116,7 @@ static enum cs_status answer_in_child(void *ctx, uint32_t slot, struct cs_error 
     struct rows *rows = ctx;
     struct cs_golden_row *row = rows->table->rows + rows->row_of[slot];
     struct answer *answer = rows->answers + slot;
-    rows->kind->check(rows->golden, row, error);
+    check(rows->golden, rows->kind, row, error);
     answer->finding = row->finding;
     snprintf(answer->message, sizeof answer->message, "%s", cs_text_get(&row->message));
     return error->status;
@@ -331,6 +139,13 @@ static void take_answer(void *ctx, uint32_t slot, const struct cs_error *result,
             settle(rows->golden, rows->table, rows->table->rows + rows->settled);
 }
 
+/* Names the states of a row that gets some. */
+static void name_states(const struct cs_golden *golden, const struct cs_golden_table *table,
+                        struct cs_golden_row *row) {
+    if (golden->accept_all && golden->states && !row->image && is_wanted(golden, row))
+        cs_golden_table_name_states(table, row);
+}
+
 /* Checks all rows of a table that are wanted. */
 static enum cs_status check_rows(struct cs_golden *golden, const struct kind *kind,
                                  struct cs_golden_table *table, struct cs_error *error) {
@@ -346,6 +161,8 @@ static enum cs_status check_rows(struct cs_golden *golden, const struct kind *ki
     rows.answers = cs_process_pool_shared_alloc(bytes, error);
     if (!rows.done)
         cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    for (uint32_t k = 0; k < table->n; k++)
+        name_states(golden, table, table->rows + k);
     if (!error->status)
         cs_isolate_queue_run(&queue, error);
     cs_process_pool_shared_free(rows.answers, bytes);
@@ -358,24 +175,16 @@ static enum cs_status add_row(struct cs_golden *golden, const struct kind *kind,
                               struct cs_golden_table *table, struct cs_error *error) {
     struct cs_golden_row *row = cs_golden_table_add(table, &golden->add);
     struct cs_error own = {0};
-    kind->check(golden, row, &own);
+    const bool is_other = golden->add_tolerance && !row->image &&
+                          strcmp(golden->add_tolerance, row->tolerance) != 0;
+    row->tolerance = is_other ? golden->add_tolerance : row->tolerance;
+    name_states(golden, table, row);
+    check(golden, kind, row, &own);
+    if (is_other)
+        cs_text_add(&row->message, "%stolerance %s", row->message.length ? ", " : "",
+                    row->tolerance);
     if (!take_failure(golden, row, &own, error))
         settle(golden, table, row);
-    return error->status;
-}
-
-static enum cs_status check_table(struct cs_golden *golden, const struct kind *kind,
-                                  struct cs_error *error) {
-    struct cs_golden_table table = {.head = kind->head, .n_fields = kind->n_fields};
-    const uint32_t before = golden->accepted;
-    const bool may_lack = golden->add.scene || golden->any_table;
-    cs_golden_table_read(&table, golden->folder, kind->name, may_lack, error);
-    if (!error->status)
-        (golden->add.scene ? add_row : check_rows)(golden, kind, &table, error);
-    // a run that cannot be added leaves no folder
-    if (!error->status && golden->accepted > before && !cs_folder_create(golden->folder, error))
-        cs_golden_table_write(&table, error);
-    cs_golden_table_close(&table);
     return error->status;
 }
 
@@ -383,6 +192,33 @@ static bool is_there(const struct cs_golden *golden, const struct kind *kind) {
     char path[1024];
     snprintf(path, sizeof path, "%.900s/%s", golden->folder, kind->name);
     return access(path, F_OK) == 0;
+}
+
+/* Makes the folder; a new one keeps pictures that differ out of a repository of git. */
+static enum cs_status make_folder(const struct cs_golden *golden, struct cs_error *error) {
+    static const char names[] = "*.actual.png\n*.difference.png\n";
+    char path[1024];
+    snprintf(path, sizeof path, "%.900s/.gitignore", golden->folder);
+    const bool is_new = !is_there(golden, &hashes);
+    if (cs_folder_create(golden->folder, error) || !is_new)
+        return error->status;
+    return cs_file_write(path, names, sizeof names - 1, error);
+}
+
+static enum cs_status check_table(struct cs_golden *golden, const struct kind *kind,
+                                  struct cs_error *error) {
+    struct cs_golden_table table = {
+        .head = kind->head, .former_head = kind->former_head, .n_fields = kind->n_fields};
+    const uint32_t before = golden->accepted;
+    const bool may_lack = golden->add.scene || golden->any_table;
+    cs_golden_table_read(&table, golden->folder, kind->name, may_lack, error);
+    if (!error->status)
+        (golden->add.scene ? add_row : check_rows)(golden, kind, &table, error);
+    // a run that cannot be added leaves no folder
+    if (!error->status && golden->accepted > before && !make_folder(golden, error))
+        cs_golden_table_write(&table, error);
+    cs_golden_table_close(&table);
+    return error->status;
 }
 
 enum cs_status cs_golden_check(struct cs_golden *golden, struct cs_error *error) {
