@@ -2,16 +2,22 @@
  *
  * The scene is built, not only planned, because bodies that start inside colliders or through
  * each other only show in a system, as do the findings of scene_doctor.h. */
+#include "base/json_writer.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "io/file_conflicts.h"
 #include "model/plan.h"
 #include "scene/file/scene_read.h"
 #include "study/contact_capacity.h"
 #include "study/scene_doctor.h"
 #include "study/session.h"
 
+#include <stdio.h>
+#include <string.h>
+
 struct options {
     struct cs_session_settings session;
+    const char *json;
     bool plan, resolved, schema, manual;
 };
 static const struct options defaults = {.session = {.render = true}};
@@ -28,6 +34,8 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, session.render)},
     {"resolved", 0, NULL, "print the scene with every value",
      CS_ARG_INTO(struct options, resolved)},
+    {"json", 0, "FILE", "write the answer as JSON too; -: instead of the text",
+     CS_ARG_INTO(struct options, json)},
     {"schema", 0, NULL, "print the JSON schema of scene files (takes no FILE)",
      CS_ARG_INTO(struct options, schema)},
     {"manual", 0, NULL, NULL, CS_ARG_INTO(struct options, manual)},
@@ -53,8 +61,8 @@ static void add_contact(const struct cs_session *session, struct cs_text *out) {
 }
 
 /* "FILE: ok, 4096 particles, ..." */
-static enum cs_status add_verdict(const struct cs_session *session, struct cs_text *out,
-                                  struct cs_error *error) {
+static void add_verdict(const struct cs_session *session,
+                        const struct cs_scene_findings *findings, struct cs_text *out) {
     const struct cs_scene *scene = &session->scene;
     const struct cs_plan *plan = &session->plan;
     cs_text_add_plain(out, scene->path);
@@ -66,12 +74,56 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
     add_count(out, ", ", scene->colliders.n, "collider");
     cs_text_add(out, ", %s\n", session->method.integrator->name);
     add_contact(session, out);
+    cs_print_lines("warning: ", cs_text_get(&findings->warnings), out);
+    cs_print_lines("hint: ", cs_text_get(&findings->hints), out);
+}
+
+/* Adds a member: the lines of a text as a list. */
+static void add_lines(const char *name, const struct cs_text *lines, struct cs_text *out) {
+    cs_json_write(out, ",\n  %s: [", name);
+    for (const char *line = cs_text_get(lines); *line; line += strcspn(line, "\n") + 1) {
+        char one[2048];
+        snprintf(one, sizeof one, "%.*s", (int)strcspn(line, "\n"), line);
+        cs_json_write(out, ", %s", one);
+    }
+    cs_text_add(out, "]");
+}
+
+/* The same for programs. */
+static void add_json(const struct cs_session *session, const struct cs_scene_findings *findings,
+                     struct cs_text *out) {
+    const struct cs_plan *plan = &session->plan;
+    struct cs_text contact = {0};
+    add_contact(session, &contact);
+    cs_json_write(out,
+                  "{\n  'file': %s, 'bodies': %u, 'particles': %u, 'springs': %u, "
+                  "'colliders': %u,\n  'integrator': %s",
+                  session->scene.path, plan->n_bodies, plan->n, plan->n_springs,
+                  session->scene.colliders.n, session->method.integrator->name);
+    add_lines("contact", &contact, out);
+    add_lines("warnings", &findings->warnings, out);
+    add_lines("hints", &findings->hints, out);
+    cs_text_add(out, "\n}\n");
+    out->failed |= contact.failed;
+    cs_text_finish(&contact);
+}
+
+/* Says what the scene holds and what will go wrong in it. */
+static enum cs_status print_answer(const struct options *options,
+                                   const struct cs_session *session, struct cs_error *error) {
     struct cs_scene_findings findings;
+    struct cs_text out = {0}, json = {0};
     if (!cs_scene_doctor_check(session, 1, &findings, error)) {
-        cs_print_lines("warning: ", cs_text_get(&findings.warnings), out);
-        cs_print_lines("hint: ", cs_text_get(&findings.hints), out);
+        add_verdict(session, &findings, &out);
+        add_json(session, &findings, &json);
+        if (!cs_print_is_stdout(options->json))
+            cs_print_out(stdout, &out, error);
+        if (options->json && !error->status)
+            cs_print_file(options->json, &json, error);
     }
     cs_scene_findings_finish(&findings);
+    cs_text_finish(&out);
+    cs_text_finish(&json);
     return error->status;
 }
 
@@ -93,15 +145,14 @@ static void add_plan(const struct cs_session *session, struct cs_text *out) {
 static enum cs_status print_scene(const struct options *options,
                                   const struct cs_session *session, struct cs_error *error) {
     struct cs_text out = {0};
+    if (!options->plan && !options->resolved)
+        return print_answer(options, session, error);
     if (options->plan)
         add_plan(session, &out);
-    else if (options->resolved) {
+    else {
         cs_scene_print(&session->scene, &session->method.table, session->method.options, 0,
                        &out);
         cs_text_add(&out, "\n");
-    } else if (add_verdict(session, &out, error)) {
-        cs_text_finish(&out);
-        return error->status;
     }
     return cs_print_out(stdout, &out, error);
 }
@@ -143,8 +194,14 @@ static enum cs_status scene(struct cs_args *args, struct cs_error *error) {
         return cs_fail(error, CS_ERR_USAGE, "expected FILE (see: clothsim scene --help)");
     if (options->plan && options->resolved)
         return cs_fail(error, CS_ERR_USAGE, "--plan and --resolved cannot both be printed");
+    if (options->json && (options->plan || options->resolved))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--json is of the check, without --plan, --resolved");
     options->session.scene = args->operands[0];
-    return open_scene(options, error);
+    return cs_file_conflicts_pair(cs_print_is_stdout(options->json) ? NULL : options->json,
+                                  "--json", args->operands[0], "the scene", error)
+               ? error->status
+               : open_scene(options, error);
 }
 
 const struct cs_command cs_command_scene = {

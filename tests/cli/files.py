@@ -279,12 +279,16 @@ with tempfile.TemporaryDirectory() as work:
     clothsim("golden", "--add", "tiny.json", "-n", 1, "--folder", "golden")
     clothsim("golden", "--hashes", "--folder", "golden", "--json", "g.json", "-q")
     check_json("golden.json", [json.loads(Path("g.json").read_text(encoding="utf-8"))])
+    clothsim("integrators", "--json", "i.json")
+    check_json("integrators.json", [json.loads(Path("i.json").read_text(encoding="utf-8"))])
+    clothsim("scene", "tiny.json", "--json", "s.json")
+    check_json("check.json", [json.loads(Path("s.json").read_text(encoding="utf-8"))])
     check_installed()
     python(here, compared)
     os.chdir("/")
 missing = set(files) - {"run.json", "monitor.csv", "ledger.csv", "compare.csv", "compare.json", "sweep.csv", "stability.csv",
                         "stability_border.csv", "stability.json", "extreme.json", "conform.json", "golden.json",
-                        "advise.json", "origin.json"}
+                        "advise.json", "origin.json", "integrators.json", "check.json"}
 told("every file of the page is looked at above", *sorted(missing))
 print(f"1..{n}")
 sys.exit(failed > 0)

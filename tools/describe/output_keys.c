@@ -297,6 +297,39 @@ static const struct cs_output_key conform_keys[] = {
     {"[].checks[].note", "text", "", "what was measured, in words"},
 };
 
+static const struct cs_output_key integrators_keys[] = {
+    {"[].name", "text", "", "method"},
+    {"[].order", "whole", "1", "order without damping and drag"},
+    {"[].order_damped", "whole", "1", "order with them"},
+    {"[].summary", "text", "", "what it does"},
+    {"[].source", "text", "", "where it is from"},
+    {"[].fidelity", "text", "", "what it converges to"},
+    {"[].library", "text or null", "", "library and version that its bits depend on"},
+    {"[].module", "text", "", "its file"},
+    {"[].family", "text", "", "as of --family"},
+    {"[].traits", "list of texts", "", "see clothsim-integrators(1)"},
+    {"[].options", "list", "", "options"},
+    {"[].options[].name", "text", "", "option"},
+    {"[].options[].unit", "text", "", "unit of SI; empty: a pure number"},
+    {"[].options[].help", "text", "", "meaning"},
+    {"[].options[].default", "any", "", "number, text or flag; null: not set"},
+    {"[].options[].min?", "number", "", "minimum, of a number"},
+    {"[].options[].max?", "number", "", "maximum, of a number"},
+    {"[].options[].names", "list of texts", "", "names that it takes"},
+};
+
+static const struct cs_output_key check_keys[] = {
+    {"file", "text", "", "the scene"},
+    {"bodies", "whole", "1", "bodies"},
+    {"particles", "whole", "1", "particles"},
+    {"springs", "whole", "1", "springs"},
+    {"colliders", "whole", "1", "colliders"},
+    {"integrator", "text", "", "method"},
+    {"contact", "list of texts", "", "moves at the start, and what contact by force holds"},
+    {"warnings", "list of texts", "", "results that cannot be right: see clothsim-scene(1)"},
+    {"hints", "list of texts", "", "results that may surprise"},
+};
+
 #define KEYS(rows) .keys = rows, .n_keys = sizeof rows / sizeof *rows
 #define CHECKED    " The last column, *check*, is a hash of names and row."
 
@@ -358,6 +391,10 @@ const struct cs_output_file cs_output_files[] = {
     {.name = "conform.json",
      .about = "Of *clothsim conform --json*: a list, with an entry for each method.",
      KEYS(conform_keys)},
+    {.name = "check.json", .about = "Of *clothsim scene --json*.", KEYS(check_keys)},
+    {.name = "integrators.json",
+     .about = "Of *clothsim integrators --json*: a list.",
+     KEYS(integrators_keys)},
     {.name = "golden.json", .about = "Of *clothsim golden --json*.", KEYS(golden_keys)},
 };
 const uint32_t cs_n_output_files = sizeof cs_output_files / sizeof *cs_output_files;

@@ -1,20 +1,32 @@
 /* clothsim integrators: lists the integrators, or describes one with its options. */
+#include "base/json_writer.h"
 #include "base/options.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "sim/registry.h"
+#include "study/compare/compare_cell.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { NAME_COLUMN = 22, INDENT = 4, DETAIL_COLUMN = 14 };
 
 struct options {
+    const char *family; /* of cs_family_names; NULL: all */
+    uint32_t order;     /* 0: any */
+    const char *json;
     const char *const *plugins; /* (n_plugins) */
     uint32_t n_plugins;
 };
-static const struct options initial = {NULL, 0};
+static const struct options initial = {.json = NULL};
 
 static const struct cs_arg rows[] = {
+    {"family", 0, "FAMILY", "only those of this one, such as \"adaptive implicit\"",
+     CS_ARG_INTO(struct options, family)},
+    {"order", 0, "N", "only those of this order", CS_ARG_INTO(struct options, order), .min = 1,
+     .max = 100},
+    {"json", 0, "FILE", "write them with their options as JSON too; -: instead of the text",
+     CS_ARG_INTO(struct options, json)},
     {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
      CS_ARG_LIST(struct options, plugins, n_plugins)},
     CS_ARG_PROGRAM(struct options, plugins, n_plugins),
@@ -34,6 +46,12 @@ static const struct {
     {CS_EXPLICIT_OUTER, "forces other than springs explicit"},
     {CS_MAKES_ENERGY, "makes energy at long steps"},
 };
+
+/* True if the filters let the method through. */
+static bool is_wanted(const struct options *options, const struct cs_integrator *method) {
+    return (!options->family || !strcmp(options->family, cs_family_of(method))) &&
+           (!options->order || method->order == options->order);
+}
 
 /* The fidelity of a method in the words of clothsim-integrator(7). */
 static const char *fidelity_text(uint32_t fidelity) {
@@ -81,16 +99,15 @@ static void add_refused(const struct cs_registry_entry *entry, struct cs_text *o
     cs_text_add(out, "refused: %s: %s\n", entry->file, entry->refusal);
 }
 
-static enum cs_status print_list(struct cs_registry *registry, struct cs_error *error) {
+static enum cs_status print_list(const struct options *options,
+                                 const struct cs_registry *registry, struct cs_error *error) {
     struct cs_text out = {0};
-    if (cs_registry_open_all(registry, error))
-        return error->status;
     for (uint32_t i = 0; i < registry->n; i++) {
         const struct cs_registry_entry *entry = registry->entries + i;
-        if (entry->integrator)
-            add_listed(entry->integrator, &out);
-        else
+        if (!entry->integrator)
             add_refused(entry, &out);
+        else if (is_wanted(options, entry->integrator))
+            add_listed(entry->integrator, &out);
     }
     return cs_print_out(stdout, &out, error);
 }
@@ -168,15 +185,106 @@ static enum cs_status print_one(const struct cs_registry_entry *found, struct cs
     return error->status;
 }
 
-/* Describes every method of a module file. */
-static enum cs_status print_file(struct cs_registry *registry, const char *file,
+/* Adds an option: default, range or names, and meaning. */
+static void add_option_json(const struct cs_option *row, const void *defaults,
+                            struct cs_text *out) {
+    cs_json_write(out, ",\n      {'name': %s, 'unit': %s, 'help': %s, 'default': ", row->name,
+                  row->unit, row->help);
+    if (cs_option_is_optional(row) && !cs_option_is_set(row, defaults))
+        cs_text_add(out, "null");
+    else
+        cs_option_print(row, defaults, out);
+    if (row->type == CS_REAL || row->type == CS_INT)
+        cs_json_write(out, ", 'min': %g, 'max': %g", row->min, row->max);
+    cs_text_add(out, ", \"names\": [");
+    for (const char *const *name = row->choices; name && *name; name++)
+        cs_json_write(out, ", %s", *name);
+    cs_text_add(out, "]}");
+}
+
+static enum cs_status add_json(const struct cs_registry_entry *entry, struct cs_text *out,
+                               struct cs_error *error) {
+    const struct cs_integrator *method = entry->integrator;
+    const bool has_library = CS_HAS(method, library) && method->library;
+    const struct cs_table table = {
+        .rows = method->options, .n = method->n_options, .size = method->options_size};
+    void *defaults = calloc(1, table.size + 1);
+    if (!defaults)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the options of %s",
+                       method->name);
+    cs_options_default(&table, defaults);
+    cs_json_write(out,
+                  ",\n  {'name': %s, 'order': %u, 'order_damped': %u, 'summary': %s,\n"
+                  "   'source': %s, 'fidelity': %s, 'library': %s, 'module': %s,\n"
+                  "   'family': %s, 'traits': [",
+                  method->name, method->order, method->order_damped, method->summary,
+                  method->source, fidelity_text(method->fidelity),
+                  has_library ? method->library : NULL, entry->file, cs_family_of(method));
+    for (size_t k = 0; k < sizeof traits / sizeof *traits; k++)
+        if (method->traits & traits[k].trait)
+            cs_json_write(out, ", %s", traits[k].text);
+    cs_text_add(out, "],\n   \"options\": [");
+    for (uint32_t r = 0; r < table.n; r++)
+        add_option_json(table.rows + r, defaults, out);
+    cs_text_add(out, "]}");
+    free(defaults);
+    return CS_OK;
+}
+
+/* Writes n entries as JSON, those that can be used and that the filters let through. */
+static enum cs_status print_json(const struct options *options,
+                                 const struct cs_registry_entry *entries, uint32_t n,
                                  struct cs_error *error) {
+    struct cs_text out = {0};
+    cs_text_add(&out, "[");
+    for (uint32_t k = 0; k < n && !error->status; k++)
+        if (entries[k].integrator && is_wanted(options, entries[k].integrator))
+            add_json(entries + k, &out, error);
+    cs_text_add(&out, "\n]\n");
+    if (error->status)
+        cs_text_finish(&out);
+    else
+        cs_print_file(options->json, &out, error);
+    return error->status;
+}
+
+/* Describes n entries. */
+static enum cs_status print_entries(const struct options *options,
+                                    const struct cs_registry_entry *entries, uint32_t n,
+                                    struct cs_error *error) {
+    for (uint32_t k = 0; k < n && !cs_print_is_stdout(options->json) && !error->status; k++)
+        print_one(entries + k, error);
+    if (!error->status && options->json)
+        print_json(options, entries, n, error);
+    return error->status;
+}
+
+/* All of the folders. */
+static enum cs_status print_all(const struct options *options, struct cs_registry *registry,
+                                struct cs_error *error) {
+    if (cs_registry_open_all(registry, error))
+        return error->status;
+    if (!cs_print_is_stdout(options->json))
+        print_list(options, registry, error);
+    if (!error->status && options->json)
+        print_json(options, registry->entries, registry->n, error);
+    return error->status;
+}
+
+/* Every method of a module file. */
+static enum cs_status print_file(const struct options *options, struct cs_registry *registry,
+                                 const char *file, struct cs_error *error) {
     const uint32_t before = registry->n;
     if (cs_registry_add_file(registry, file, error))
         return error->status;
-    for (uint32_t k = before; k < registry->n && !error->status; k++)
-        print_one(registry->entries + k, error);
-    return error->status;
+    return print_entries(options, registry->entries + before, registry->n - before, error);
+}
+
+static bool is_family(const char *name) {
+    for (const char *const *known = cs_family_names; *known; known++)
+        if (!strcmp(*known, name))
+            return true;
+    return false;
 }
 
 static enum cs_status list(struct cs_args *args, struct cs_error *error) {
@@ -184,13 +292,19 @@ static enum cs_status list(struct cs_args *args, struct cs_error *error) {
     const char *operand = args->n_operands ? args->operands[0] : NULL;
     const struct cs_registry_entry *found;
     struct cs_registry registry = {0};
+    if (options->family && !is_family(options->family))
+        return cs_arg_refuse_name("family", cs_family_names, options->family, error);
+    if (operand && (options->family || options->order))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--family and --order choose from the list, found \"%.60s\" too",
+                       operand);
     if (!cs_registry_add_files(&registry, options->plugins, options->n_plugins, error)) {
         if (operand && cs_registry_is_file(operand))
-            print_file(&registry, operand, error);
+            print_file(options, &registry, operand, error);
         else if (operand && !cs_registry_find(&registry, operand, &found, error))
-            print_one(found, error);
+            print_entries(options, found, 1, error);
         else if (!operand)
-            print_list(&registry, error);
+            print_all(options, &registry, error);
     }
     cs_registry_finish(&registry);
     return error->status;
@@ -202,7 +316,7 @@ const struct cs_command cs_command_integrators = {
     .summary = "list the integrators, or describe one and its options",
     .notes = "Modules are loaded from the program's module folder and the folders of\n"
              "CLOTHSIM_PLUGIN_PATH (absolute, separated by colons).\n\n"
-             "Example: clothsim integrators cvode-bdf\n",
+             "Example: clothsim integrators --family explicit --order 4\n",
     CS_COMMAND_OPTIONS(rows, initial),
     .operands_min = 0,
     .operands_max = 1,
