@@ -170,3 +170,38 @@ TEST(other_machines_are_told_apart) {
     cs_ranking_finish(&ranking);
     cs_compare_finish(&compare);
 }
+
+/* What a reference takes by estimate is taken from the search and the rounds, never from a
+ * sweep. The runs are interrupted: the budget stands before the first one. */
+TEST(dear_references_shorten_search_and_rounds) {
+    static const uint32_t frames[] = {6, 600, 20000};
+    double equal[3], rounds[3];
+    for (int k = 0; k < 3; k++) {
+        struct place place;
+        struct cs_compare compare;
+        struct cs_compare_settings settings;
+        struct cs_error error = {0};
+        place_make(&place, "0.02");
+        stop = 1;
+        settings = (struct cs_compare_settings){
+            .run = {.session = {.scene = place.scene, .run = {.stop = &stop}},
+                    .frames = frames[k]},
+            .methods = "rk4",
+            .accuracy = 1e-6,
+            .reference_budget = 1e9,
+            .runs = 1,
+            .folder = place.folder};
+        ck_assert_int_eq(cs_compare_run(&compare, &settings, &error), CS_ERR_INTERRUPT);
+        ck_assert_double_eq(compare.budget, CS_COMPARE_RUN_SECONDS_MAX);
+        equal[k] = compare.equal_seconds;
+        rounds[k] = compare.rounds_seconds;
+        cs_compare_finish(&compare);
+    }
+    stop = 0;
+    ck_assert_double_eq(equal[0], CS_COMPARE_EQUAL_SECONDS);
+    ck_assert_double_eq(rounds[0], CS_COMPARE_ROUND_SECONDS);
+    ck_assert_msg(equal[1] < equal[0] && equal[1] > equal[2], "%g %g %g", equal[0], equal[1],
+                  equal[2]);
+    ck_assert_double_eq_tol(rounds[1] / rounds[0], equal[1] / equal[0], 1e-12);
+    ck_assert_double_eq(rounds[2], CS_COMPARE_PART_MIN * CS_COMPARE_ROUND_SECONDS);
+}

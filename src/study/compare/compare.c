@@ -108,21 +108,26 @@ cs_compare_reference_query(const struct cs_compare_settings *settings) {
         .ctx = settings->ctx};
 }
 
-/* Budget of one run in nominal s of work.
+/* Budget of one run, of the search and of the rounds in nominal s of work.
  *
  * Without a budget from the user all series together get CS_COMPARE_SECONDS. Steps are halved,
  * so the last finished run of a series takes about as long as all before it (1/2 + 1/4 + ... =
- * 1): twice the budget in total. One more run may exceed the budget: three per series. */
-static void divide_budget(struct cs_compare *compare) {
+ * 1): twice the budget in total. One more run may exceed the budget: three per series.
+ * of_reference: estimated nominal s, which do not depend on what the cache has. */
+static void divide_budget(struct cs_compare *compare, double of_reference) {
     const struct cs_cell_list *sweep = &compare->cells;
+    const double asked = compare->settings->budget,
+                 left = CS_COMPARE_ALL_SECONDS - CS_COMPARE_SECONDS - of_reference,
+                 part = left / (CS_COMPARE_EQUAL_SECONDS + CS_COMPARE_ROUND_SECONDS),
+                 bounded = fmin(fmax(part, CS_COMPARE_PART_MIN), 1);
     uint32_t n = 0;
     for (uint32_t k = 0; k < sweep->n; k++)
         n += k == 0 || !cs_cell_same_series(sweep->cells + k, sweep->cells + k - 1);
     compare->budget =
-        compare->settings->budget > 0
-            ? compare->settings->budget
-            : fmin(CS_COMPARE_SECONDS / (3 * fmax(n, 1)), CS_COMPARE_RUN_SECONDS_MAX);
-    compare->rounds_seconds = fmax(CS_COMPARE_ROUND_SECONDS, 5 * compare->settings->budget);
+        asked > 0 ? asked
+                  : fmin(CS_COMPARE_SECONDS / (3 * fmax(n, 1)), CS_COMPARE_RUN_SECONDS_MAX);
+    compare->equal_seconds = fmax(bounded * CS_COMPARE_EQUAL_SECONDS, 20 * asked);
+    compare->rounds_seconds = fmax(bounded * CS_COMPARE_ROUND_SECONDS, 5 * asked);
 }
 
 /* A method that refuses a scene which others accept becomes one row with the reason. */
@@ -171,10 +176,8 @@ static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *er
                                                 .n_plugins = session->n_plugins,
                                                 .fps = compare->fps,
                                                 .omega = compare->omega};
-    if (!cs_cell_list_parse(&compare->cells, &asked, error) && !check_methods(compare, error)) {
+    if (!cs_cell_list_parse(&compare->cells, &asked, error) && !check_methods(compare, error))
         store_shard(compare);
-        divide_budget(compare);
-    }
     return error->status;
 }
 
@@ -195,6 +198,7 @@ static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *err
     struct cs_compare_reference reference;
     char of_reference[CS_HASH_DIGITS];
     cs_compare_reference_plan(&reference, &asked, of_reference, error);
+    divide_budget(compare, reference.passes * compare->pass_seconds);
     for (uint32_t k = 0; k < compare->cells.n && !error->status; k++) {
         struct cs_cell *cell = compare->cells.cells + k;
         make_key(cell, of_reference, cell->module);
@@ -307,7 +311,7 @@ static enum cs_status measure_further(struct cs_compare *compare,
 
 /* Nominal s of the cells that were run for equal errors, each at least as long as it takes to
  * open a scene. */
-static double equal_seconds(const struct cs_compare *compare) {
+static double searched_seconds(const struct cs_compare *compare) {
     double sum = 0;
     for (uint32_t k = 0; k < compare->cells.n; k++)
         if (isfinite(compare->cells.cells[k].target))
@@ -320,11 +324,10 @@ static double equal_seconds(const struct cs_compare *compare) {
 static enum cs_status equalise_errors(struct cs_compare *compare,
                                       struct cs_compare_results *ledger,
                                       struct cs_error *error) {
-    const double most = fmax(CS_COMPARE_EQUAL_SECONDS, 20 * compare->budget);
     const struct cs_cell *near;
     double value, target;
     while (compare->settings->shard.count < 2 && !error->status &&
-           equal_seconds(compare) < most &&
+           searched_seconds(compare) < compare->equal_seconds &&
            (near = cs_equal_error_find_next(compare, &value, &target)))
         measure_further(compare, ledger, near, value, target, error);
     return error->status;

@@ -10,6 +10,7 @@
  * velocity-verlet is the last resort of both families. "@" stands for 2/omega, the longest
  * stable step of the leap-frog. */
 static const char *const one_step[] = {"ark-erk:order=8,rtol=1e-12,atol=1e-12",
+                                       "dop853:order=8,rtol=1e-12,atol=1e-12",
                                        "ark-erk:rtol=1e-12,atol=1e-12",
                                        "dopri5:rtol=1e-12,atol=1e-12",
                                        "rk4:dt=@0.04",
