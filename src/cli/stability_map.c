@@ -53,11 +53,7 @@ static enum cs_status make_plot(const struct cs_stability_options *options,
     snprintf(path, sizeof path, "%s/%s.csv", options->map.folder, name);
     snprintf(title, 640, "%s: stable time steps, %.255s, %g s of motion per cell", map->series,
              map->session.scene.path, map->settings->seconds);
-    return cs_table_plot_make(
-        plot,
-        &(struct cs_table_plot_settings){
-            .path = path, .log_axes = "", .title = title, .width = 1.35 * CS_WIDTH_COLUMN},
-        error);
+    return cs_table_plot_open(plot, path, title, 1.35 * CS_WIDTH_COLUMN, error);
 }
 
 /* *drawn: false without the module that draws, which is no failure. */

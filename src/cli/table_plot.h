@@ -1,4 +1,4 @@
-/* table_plot.h - diagrams of tables that the program writes: monitors, ledgers, stability maps.
+/* table_plot.h - tables of numbers that the program writes, and the diagrams of stability maps.
  */
 #ifndef CS_TABLE_PLOT_H
 #define CS_TABLE_PLOT_H
@@ -7,36 +7,48 @@
 #include "base/table.h"
 #include "draw/diagram.h"
 
-/* The columns of the ledger that stand in every one: forces may add columns of their own. */
-extern const struct cs_column cs_ledger_columns[];
-extern const uint32_t cs_n_ledger_columns;
+enum { CS_TABLE_PANELS = 8, CS_TABLE_COLUMNS = 128 };
 
-enum { CS_TABLE_PANELS = 8 };
+/* A CSV in memory, whose first line names its columns; a field that is no number is NAN. */
+struct cs_number_table {
+    char *names[CS_TABLE_COLUMNS]; /* (columns) */
+    uint32_t columns, rows;
+    double *values; /* (rows, columns) */
+    char **first;   /* (rows) the fields of the first column; NULL: they are numbers */
+};
+
+/* Reads a CSV into the arena. CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_number_table_read(const char *path, struct cs_arena *arena,
+                                    struct cs_number_table *table, struct cs_error *error);
+
+/* Number of a column; that of the columns if there is none of this name. */
+uint32_t cs_number_table_find(const struct cs_number_table *table, const char *name);
+
+static inline double cs_number_table_at(const struct cs_number_table *table, uint32_t row,
+                                        uint32_t column) {
+    return table->values[(size_t)row * table->columns + column];
+}
 
 /* A diagram with its memory. */
 struct cs_table_plot {
     struct cs_diagram diagram;
+    struct cs_number_table table;
     struct cs_panel panels[CS_TABLE_PANELS];
     struct cs_arena arena; /* names, points, boxes */
 };
 
-/* Request for a diagram; texts are borrowed. */
-struct cs_table_plot_settings {
-    const char *path;     /* a CSV whose first line names its columns */
-    const char *x, *y;    /* NULL: see below; y: "NAME,NAME" */
-    const char *log_axes; /* "", "x", "y" or "xy"; not of maps */
-    const char *title;
-    double width; /* mm */
-};
-
-/* Makes the diagram of a stability map, with its border in NAME_border.csv where that is there;
- * of other tables lines over x ("t", or the first column), a panel per unit: of all columns
- * that are not zero throughout, but for indices and bounds. A table whose first column is
- * "series" has a line for each. cs_table_plot_finish must be called in any case. CS_ERR_USAGE
- * for names that are not there, CS_ERR_FILE, CS_ERR_MEMORY. */
-enum cs_status cs_table_plot_make(struct cs_table_plot *plot,
-                                  const struct cs_table_plot_settings *settings,
-                                  struct cs_error *error);
+/* Reads the table, and makes the diagram of a stability map, with its border in NAME_border.csv
+ * where that is there; the diagram of another table has no panels yet. title: borrowed; width
+ * in mm. cs_table_plot_finish must be called in any case. CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_table_plot_open(struct cs_table_plot *plot, const char *path,
+                                  const char *title, double width, struct cs_error *error);
 void cs_table_plot_finish(struct cs_table_plot *plot);
+
+/* Adds a line of the second column over the first to a panel, whose series have room for it,
+ * through the rows whose first field is `group`; NULL: all. */
+enum cs_status cs_table_plot_add_series(struct cs_table_plot *plot, struct cs_panel *panel,
+                                        const struct cs_number_table *table,
+                                        const uint32_t columns[2], const char *group,
+                                        struct cs_error *error);
 
 #endif

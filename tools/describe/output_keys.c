@@ -2,7 +2,7 @@
  * tests/cli/files.py holds the lists to what the program writes. */
 #include "describe/output_keys.h"
 
-#include "cli/table_plot.h"
+#include "shared/known_columns.h"
 #include "study/compare/compare_cell.h"
 #include "study/energy_monitor.h"
 #include "study/parameter_sweep.h"

@@ -1,12 +1,17 @@
 /* clothsim plot: draws a table that the program wrote.
  *
- *   FILE -> a comparison: cells -> cs_plot_make; a stability map or other numbers:
- *   cs_table_plot_make -> the terminal, or NAME.png, NAME.svg, NAME.pdf */
+ *   FILE -> a comparison: cells -> cs_plot_make; a stability map: cs_table_plot_open; other
+ *   numbers, of which a spectrum may be made: cs_table_lines_add
+ *   -> the terminal, or NAME.png, NAME.svg, NAME.pdf */
+#include "base/file.h"
 #include "base/install_paths.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/show/screen.h"
-#include "cli/table_plot.h"
+#include "files/force_length.h"
+#include "files/particle_read.h"
+#include "files/spectrum.h"
+#include "files/table_lines.h"
 #include "io/file_conflicts.h"
 #include "study/compare/compare_curves.h"
 
@@ -15,11 +20,13 @@
 #include <string.h>
 
 struct options {
-    const char *x, *y, *family, *methods, *format, *log_axes, *out, *title;
+    const char *x, *y, *family, *methods, *format, *log_axes, *out, *title, *stretch;
     double width;
-    bool show, quiet;
+    uint32_t particle;
+    bool spectrum, show, quiet;
 };
-static const struct options defaults = {.width = CS_WIDTH_PAGE, .log_axes = ""};
+static const struct options defaults = {
+    .width = CS_WIDTH_PAGE, .log_axes = "", .particle = UINT32_MAX};
 
 static const struct cs_arg rows[] = {
     {"x", 0, "COLUMN",
@@ -39,6 +46,14 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, methods)},
     {"log", 0, "AXES", "x, y or xy: logarithmic axes of a table that is no comparison",
      CS_ARG_INTO(struct options, log_axes)},
+    {"spectrum", 0, NULL,
+     "draw amplitudes over the frequency instead, and name the lowest frequencies",
+     CS_ARG_INTO(struct options, spectrum)},
+    {"particle", 0, "N", "motion of particle N of a run.npz, of run --export npz",
+     CS_ARG_INTO(struct options, particle), .max = UINT32_MAX - 1},
+    {"stretch", 0, "LOW..HIGH",
+     "force of the first body of a scene over its length along x, in lengths of the start",
+     CS_ARG_INTO(struct options, stretch)},
     {"width", 0, "MM",
      "width in print: 180, two columns of a journal, or 88, one (default: 180)",
      CS_ARG_INTO(struct options, width)},
@@ -87,7 +102,12 @@ static enum cs_status read_formats(const char *list, unsigned *formats,
     return CS_OK;
 }
 
-/* NAME of the files: --out, Y_X[_FAMILY] of a comparison, or FILE without its ending. */
+static bool is_of_particle(const struct options *options) {
+    return options->particle != UINT32_MAX;
+}
+
+/* NAME of the files: --out, Y_X[_FAMILY] of a comparison, or FILE without its ending and with
+ * what is computed from it. */
 static void find_name(const struct cs_args *args, const struct cs_plot_settings *settings,
                       char name[4096]) {
     const struct options *options = args->options;
@@ -103,8 +123,13 @@ static void find_name(const struct cs_args *args, const struct cs_plot_settings 
         for (char *c = name + folder; *c; c++)
             *c = *c == ' ' ? '-' : *c;
     } else
-        snprintf(name, 4096, "%.*s", dot && dot >= file + folder ? (int)(dot - file) : 4000,
-                 file);
+        snprintf(name, 4096, "%.*s%s%s", dot && dot >= file + folder ? (int)(dot - file) : 4000,
+                 file, options->stretch || is_of_particle(options) ? "-" : "",
+                 options->stretch          ? "stretch"
+                 : is_of_particle(options) ? "particle"
+                                           : "");
+    if (!options->out && options->spectrum)
+        strncat(name, "-spectrum", 4095 - strlen(name));
 }
 
 static enum cs_status show(const struct cs_diagram *diagram, struct cs_error *error) {
@@ -128,8 +153,32 @@ static enum cs_status check_names(const char *table, const char *name, unsigned 
     return error->status;
 }
 
+/* Writes NAME.csv: the numbers that were computed for the diagram. */
+static enum cs_status write_table(const struct cs_number_table *table, const char *table_file,
+                                  const char *name, struct cs_error *error) {
+    struct cs_text text = {0};
+    char path[4096 + 8];
+    snprintf(path, sizeof path, "%s.csv", name);
+    if (cs_file_conflicts_pair(path, "--out", table_file, "the table", error))
+        return error->status;
+    for (uint32_t c = 0; c < table->columns; c++)
+        cs_text_add(&text, "%s%s", c ? "," : "", table->names[c]);
+    for (uint32_t r = 0; r < table->rows; r++)
+        for (uint32_t c = 0; c < table->columns; c++) {
+            char number[CS_REAL_DIGITS];
+            cs_print_real(cs_number_table_at(table, r, c), number);
+            cs_text_add(&text, "%s%s", c ? "," : "\n", number);
+        }
+    cs_text_add(&text, "\n");
+    cs_file_write_text(path, &text, error);
+    cs_text_finish(&text);
+    return error->status;
+}
+
+/* computed: for the diagram; NULL: it draws the file's own numbers */
 static enum cs_status finish(struct cs_args *args, const struct cs_diagram *diagram,
-                             const struct cs_plot_settings *settings, struct cs_error *error) {
+                             const struct cs_plot_settings *settings,
+                             const struct cs_number_table *computed, struct cs_error *error) {
     const struct options *options = args->options;
     char name[4096];
     unsigned formats;
@@ -142,11 +191,14 @@ static enum cs_status finish(struct cs_args *args, const struct cs_diagram *diag
         return cs_fail(error, CS_ERR_USAGE, "--out: expected a file name without extension");
     if (read_formats(options->format, &formats, error) ||
         check_names(args->operands[0], name, formats, error) ||
+        (computed && write_table(computed, args->operands[0], name, error)) ||
         cs_diagram_write(cs_renderer_folder(), diagram, name, formats, error) || options->quiet)
         return error->status;
     for (int k = 0; k < CS_FORMATS; k++)
         if (formats >> k & 1)
             cs_text_add(&text, "%s%s.%s", text.length ? ", " : "", name, cs_format_names[k]);
+    if (computed)
+        cs_text_add(&text, ", %s.csv", name);
     cs_text_add(&text, "\n");
     return cs_print_out(stdout, &text, error);
 }
@@ -197,24 +249,73 @@ static enum cs_status plot_comparison(struct cs_args *args, struct cs_error *err
     settings.second = options->x || options->show ? NULL : cs_column_find("cpu");
     if (!select_cells(options, args->operands[0], cells, &settings.n, error) &&
         !cs_plot_make(&plot, &settings, error))
-        finish(args, &plot.diagram, &settings, error);
+        finish(args, &plot.diagram, &settings, NULL, error);
     cs_plot_finish(&plot);
     free(cells);
     return error->status;
 }
 
+/* Replaces the table by its spectrum, and draws it with its lowest frequencies. */
+static enum cs_status add_spectrum(struct cs_table_plot *plot,
+                                   const struct cs_line_settings *lines, uint32_t particle,
+                                   struct cs_error *error) {
+    double seconds;
+    char name[32];
+    const bool joint = particle != UINT32_MAX;
+    snprintf(name, sizeof name, "particle %u", particle);
+    if (cs_spectrum_make(&plot->table, joint ? name : NULL, &seconds, &plot->arena, error) ||
+        cs_table_lines_add(plot, lines, error))
+        return error->status;
+    if (joint)
+        snprintf(plot->panels->y.label, CS_LABEL_BYTES, "amplitude in m");
+    cs_spectrum_add_peaks(plot, seconds);
+    return CS_OK;
+}
+
+/* Opens the table that the options ask for: of a particle, of a force, or the file. */
+static enum cs_status open_table(const struct cs_args *args, const char *title,
+                                 struct cs_table_plot *plot, struct cs_error *error) {
+    const struct options *options = args->options;
+    const char *file = args->operands[0];
+    const char *dots = options->stretch ? strstr(options->stretch, "..") : NULL;
+    double low, high;
+    char text[64] = "";
+    if (!options->stretch && !is_of_particle(options))
+        return cs_table_plot_open(plot, file, title, options->width, error);
+    *plot = (struct cs_table_plot){
+        .diagram = {
+            .title = title, .width = options->width, .columns = 1, .panels = plot->panels}};
+    if (!options->stretch)
+        return cs_particle_read(file, options->particle, &plot->arena, &plot->table, error);
+    if (dots && dots - options->stretch < (ptrdiff_t)sizeof text)
+        memcpy(text, options->stretch, (size_t)(dots - options->stretch));
+    if (!dots || !cs_parse_real(text, &low) || !cs_parse_real(dots + 2, &high) ||
+        !(low > 0 && low < high && high <= 100))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--stretch: expected LOW..HIGH, both above 0 and up to 100, found "
+                       "\"%.60s\"",
+                       options->stretch);
+    return cs_force_length_measure(file, low, high, &plot->arena, &plot->table, error);
+}
+
 static enum cs_status plot_table(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
-    const struct cs_table_plot_settings settings = {.path = args->operands[0],
-                                                    .x = options->x,
-                                                    .y = options->y,
-                                                    .log_axes = options->log_axes,
-                                                    .title = options->title ? options->title
-                                                                            : args->operands[0],
-                                                    .width = options->width};
+    const bool computed = options->spectrum || options->stretch || is_of_particle(options);
+    const struct cs_line_settings lines = {options->x, options->y, options->log_axes};
     struct cs_table_plot plot;
-    if (!cs_table_plot_make(&plot, &settings, error))
-        finish(args, &plot.diagram, &(struct cs_plot_settings){0}, error);
+    if (!open_table(args, options->title ? options->title : args->operands[0], &plot, error)) {
+        if (plot.diagram.n_panels && options->spectrum)
+            cs_fail(error, CS_ERR_USAGE, "--spectrum: a stability map has none");
+        else if (!plot.diagram.n_panels && options->spectrum)
+            add_spectrum(&plot, &lines, options->particle, error);
+        else if (!plot.diagram.n_panels)
+            cs_table_lines_add(&plot, &lines, error);
+        if (!error->status && is_of_particle(options) && !options->spectrum)
+            snprintf(plot.panels->y.label, CS_LABEL_BYTES, "position in m");
+        if (!error->status)
+            finish(args, &plot.diagram, &(struct cs_plot_settings){0},
+                   computed ? &plot.table : NULL, error);
+    }
     cs_table_plot_finish(&plot);
     return error->status;
 }
@@ -242,8 +343,13 @@ static enum cs_status plot(struct cs_args *args, struct cs_error *error) {
     if (options->log_axes[strspn(options->log_axes, "xy")])
         return cs_fail(error, CS_ERR_USAGE, "--log: expected x, y or xy, found \"%.60s\"",
                        options->log_axes);
-    if (find_kind(args->operands[0], &comparison, error))
+    const bool computed = options->stretch || is_of_particle(options);
+    if (cs_args_refuse_both(args, "stretch", "particle", error) ||
+        cs_args_refuse_both(args, "stretch", "spectrum", error) ||
+        (!computed && find_kind(args->operands[0], &comparison, error)))
         return error->status;
+    if (comparison && options->spectrum)
+        return cs_fail(error, CS_ERR_USAGE, "--spectrum: a comparison has none");
     return (comparison ? plot_comparison : plot_table)(args, error);
 }
 
@@ -252,7 +358,8 @@ const struct cs_command cs_command_plot = {
     .operands = "FILE",
     .summary = "draw a comparison, a stability map, or a table of a run",
     .notes = "Examples: clothsim plot compare/compare.csv --x evals --y max_error\n"
-             "          clothsim plot out/monitor.csv --y kinetic,elastic --width 88\n",
+             "          clothsim plot out/monitor.csv --y kinetic,elastic --width 88\n"
+             "          clothsim plot out/run.npz --particle 12 --spectrum --log y\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
     .operands_max = 1,

@@ -1,0 +1,80 @@
+/* Measures the elastic force of a body at given lengths. */
+#include "files/force_length.h"
+
+#include "model/force/terms.h"
+#include "study/session.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ROWS = 101 };
+
+/* Sum along x of the forces on the half of the body that lies below the middle. */
+static double pull(const struct cs_system *system, const double *start, double middle,
+                   double *x, const double *at_rest, double *f, double stretch) {
+    const struct cs_body_range *body = system->bodies;
+    const struct cs_eval at = {
+        .x = x, .v = at_rest, .parts = CS_PART_SPRINGS | CS_PART_ELASTIC};
+    double sum = 0;
+    for (uint32_t i = body->first; i < body->first + body->count; i++)
+        x[i] = middle + stretch * (start[i] - middle);
+    cs_terms_force(system, &at, f);
+    for (uint32_t i = body->first; i < body->first + body->count; i++)
+        sum += start[i] < middle ? f[i] : 0;
+    return sum;
+}
+
+/* Middle of the body along x, in m. */
+static double middle_of(const struct cs_body_range *body, const double *x) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (uint32_t i = body->first; i < body->first + body->count; i++) {
+        low = fmin(low, x[i]);
+        high = fmax(high, x[i]);
+    }
+    return (low + high) / 2;
+}
+
+/* Fills the rows. */
+static enum cs_status measure(const struct cs_system *system, double low, double high,
+                              struct cs_arena *arena, struct cs_number_table *table,
+                              struct cs_error *error) {
+    const size_t n = 3 * (size_t)system->view.n;
+    const double *start = system->state;
+    const double middle = middle_of(system->bodies, start);
+    double *arrays = cs_arena_alloc_array(arena, 3 * n, sizeof *arrays, error);
+    table->values = cs_arena_alloc_array(arena, 2 * (size_t)ROWS, sizeof(double), error);
+    if (error->status)
+        return error->status;
+    double *x = arrays, *at_rest = arrays + n, *f = arrays + 2 * n;
+    memcpy(x, start, n * sizeof *x);
+    for (uint32_t r = 0; r < ROWS; r++) {
+        double *row = table->values + (size_t)2 * r;
+        row[0] = low + (high - low) * r / (ROWS - 1);
+        row[1] = pull(system, start, middle, x, at_rest, f, row[0]);
+    }
+    return CS_OK;
+}
+
+/* The forces of pinned particles count too. */
+static void free_particles(struct cs_scene *scene, void *ctx) {
+    struct cs_body *bodies = cs_scene_bodies(scene);
+    (void)ctx;
+    bodies->pins.n = 0;
+}
+
+enum cs_status cs_force_length_measure(const char *scene, double low, double high,
+                                       struct cs_arena *arena, struct cs_number_table *table,
+                                       struct cs_error *error) {
+    const struct cs_session_settings settings = {.scene = scene, .edit_scene = free_particles};
+    struct cs_session session;
+    *table = (struct cs_number_table){
+        .columns = 2,
+        .rows = ROWS,
+        .names = {cs_arena_copy_text(arena, "length over start", error),
+                  cs_arena_copy_text(arena, "force in N", error)}};
+    if (!error->status && !cs_session_open_system(&session, &settings, error)) {
+        measure(&session.system, low, high, arena, table, error);
+        cs_session_close(&session);
+    }
+    return error->status;
+}

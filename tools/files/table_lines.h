@@ -1,0 +1,20 @@
+/* table_lines.h - draws columns of a table as lines. */
+#ifndef CS_TABLE_LINES_H
+#define CS_TABLE_LINES_H
+
+#include "cli/table_plot.h"
+
+/* Texts are borrowed. */
+struct cs_line_settings {
+    const char *x, *y;    /* NULL: see below; y: "NAME,NAME" */
+    const char *log_axes; /* "", "x", "y" or "xy" */
+};
+
+/* Adds lines over x ("t", or the first column), a panel per unit: of all columns that are not
+ * zero throughout, but for indices and bounds. A table whose first column is "series" has a
+ * line for each. CS_ERR_USAGE for names that are not there, CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_table_lines_add(struct cs_table_plot *plot,
+                                  const struct cs_line_settings *settings,
+                                  struct cs_error *error);
+
+#endif
