@@ -101,9 +101,10 @@ struct cs_view {
 
     /* The scene's colliders, where an event or key frames move one; else n_colliders is 0: all
      * stand still. A mesh with key frames deforms besides, about a centre that moves so.
-     * Each is on a straight line between restarts: at time t its centre (of a plane: the point
-     * that the scene gives) is at origin + t velocity, and its matter at p moves with velocity
-     * + spin x (p - centre). Later than the first release: ask CS_HAS(view, collider_spin). */
+     * The point that each turns about, its centre (of a plane: the point that the scene gives)
+     * unless an event names another, is on a straight line between restarts: at time t it is at
+     * origin + t velocity, and matter at p moves with velocity + spin x (p - it). Later than
+     * the first release: ask CS_HAS(view, collider_spin). */
     uint32_t n_colliders;
     /* (n_colliders, 3) in m, m/s and rad/s. */
     const double *collider_origin, *collider_velocity, *collider_spin;

@@ -28,7 +28,7 @@ struct cs_posed_collider {
     double velocity[3];   /* m/s, of the pivot */
     double spin[3];       /* rad/s */
     double growth;        /* m/s, of the radius and the thickness by ramps */
-    double rotation_centre[3];   /* m, what it turns about: the centre */
+    double rotation_centre[3];   /* m, what it turns about: the centre, or that of a move */
     struct cs_path_weights path; /* of a mesh with key frames: at its time; else 0 */
 };
 

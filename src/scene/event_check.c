@@ -2,6 +2,7 @@
  * paths, overlaps. */
 
 #include "base/options.h"
+#include "base/vec3.h"
 #include "scene/check.h"
 #include "scene/event_key.h"
 #include "scene/shape.h"
@@ -251,8 +252,10 @@ static enum cs_status check_move(const struct look *at, const struct cs_move *mo
     if (move->collider >= n)
         return refuse(at, ".move.collider", "collider %lld does not exist (0..%u)",
                       (long long)move->collider, n - 1);
-    if (move->path.n == 0 && spin[0] == 0 && spin[1] == 0 && spin[2] == 0)
+    if (move->path.n == 0 && cs_vec3_is_zero(spin))
         return refuse(at, ".move", "found neither path nor spin");
+    if (!isnan(move->centre[0]) && cs_vec3_is_zero(spin))
+        return refuse(at, ".move.centre", "without spin it has no effect");
     return check_path(at, "move", &move->path, move->relative);
 }
 

@@ -182,9 +182,12 @@ static const struct cs_option move_rows[] = {
          "displacements in order of time; it stays at the last"),
     CHOICE(struct cs_move, motion, motion_names, CS_MOTION_LINEAR, "as in grab"),
     BOOL(struct cs_move, relative, 1,
-         "points are displacements; false: positions of the collider's centre"),
+         "points are displacements; false: positions of the centre"),
     VECTOR(struct cs_move, spin, 3, "rad/s", zero3, -BIG, BIG,
-           "angular velocity about its centre, a plane's point or a floor's x = z = 0"),
+           "angular velocity about the centre, which follows the path"),
+    VECTOR(struct cs_move, centre, 3, "m", absent3, -BIG, BIG,
+           "of the spin, such as a hinge, when the move begins; absent: the collider's centre, "
+           "a plane's point or a floor's x = z = 0"),
 };
 
 static const struct cs_table move_table = {ROWS(move_rows), .size = sizeof(struct cs_move),

@@ -274,7 +274,8 @@ struct cs_move {
     int64_t collider;       /* -1: not given, refused */
     struct cs_list path;    /* struct cs_path_point */
     int32_t motion;         /* enum cs_motion */
-    double spin[3];         /* rad/s, about its centre */
+    double spin[3];         /* rad/s, about the centre */
+    double centre[3];       /* m, at the beginning; first component NAN: the collider's */
 };
 
 /* An event: exactly one of impact ... move; with `at`, or with `from` and `to`. */

@@ -13,53 +13,87 @@
 
 #define SPIN 3.0
 
-/* a hanging cloth whose upper edge a sphere carries that moves and turns; %s: of the springs */
-#define CARRIED                                                                                \
+/* a hanging cloth whose upper edge a sphere carries that moves and turns; %s: of the springs.
+ * keys: of the move */
+#define CARRIED_BY(keys)                                                                       \
     "{\"bodies\": [{\"cloth\": {\"grid\": [4, 4]}, \"mass\": {\"particle\": 0.1},"             \
     " \"springs\": {\"stretch\": 40, \"shear\": 15, \"bend\": 5%s},"                           \
     " \"pins\": [{\"at\": \"top\", \"to\": {\"collider\": 0}}]}],"                             \
     " \"colliders\": [{\"sphere\": {\"centre\": [0.1, 0.8, 0.05], \"radius\": 0.05}}],"        \
-    " \"events\": [{\"from\": 0, \"to\": 10, \"move\": {\"collider\": 0,"                      \
+    " \"events\": [{\"from\": 0, \"to\": 10, \"move\": {\"collider\": 0," keys                 \
     " \"spin\": [0, 3, 0], \"path\": [{\"at\": 10, \"point\": [5, 0, -2.5]}]}}],"              \
     " \"time\": {\"fps\": %d}}"
+#define CARRIED CARRIED_BY("")
+/* about a hinge that is not in the sphere, as a door */
+#define HINGED CARRIED_BY("\"centre\": [0.7, -0.2, -0.3],")
+static const double sphere[3] = {0.1, 0.8, 0.05}, hinge[3] = {0.7, -0.2, -0.3};
 
-/* Position and velocity of a point that starts at p, about the centre of CARRIED at t. */
-static void carried_at(const double p[3], double t, double x[3], double v[3]) {
-    const double arm[3] = {p[0] - 0.1, p[1] - 0.8, p[2] - 0.05};
+/* Position and velocity at t of a point that starts at p and turns about a centre. */
+static void carried_at(const double centre[3], const double p[3], double t, double x[3],
+                       double v[3]) {
+    const double arm[3] = {p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]};
     const double c = cos(SPIN * t), s = sin(SPIN * t);
     const double turned[3] = {c * arm[0] + s * arm[2], arm[1], -s * arm[0] + c * arm[2]};
-    const double rate[3] = {0.5, 0, -0.25}, centre[3] = {0.1, 0.8, 0.05};
+    const double rate[3] = {0.5, 0, -0.25};
     for (int k = 0; k < 3; k++) {
         x[k] = centre[k] + rate[k] * t + turned[k];
         v[k] = rate[k] + (k == 0 ? SPIN * turned[2] : k == 2 ? -SPIN * turned[0] : 0);
     }
 }
 
+/* Each held particle at a time in s; text: of the method. */
+static void check_carried(const struct fixture *cloth, const char *text, const double centre[3],
+                          double t) {
+    const size_t n = cloth->n;
+    const double *start = cloth->system->start;
+    for (size_t i = 0; i < 4; i++) {
+        double x[3], v[3];
+        carried_at(centre, (const double[3]){start[i], start[n + i], start[2 * n + i]}, t, x,
+                   v);
+        for (size_t c = 0; c < 3; c++)
+            ck_assert_msg(fabs(cloth->x[c * n + i] - x[c]) < 1e-14 &&
+                              fabs(cloth->v[c * n + i] - v[c]) < 1e-13,
+                          "%s: %.17g at %.17g m/s, not %.17g at %.17g", text,
+                          cloth->x[c * n + i], cloth->v[c * n + i], x[c], v[c]);
+    }
+}
+
 /* With every method, frame by frame. */
-TEST(carried_particles_are_on_their_arc) {
+static void check_all(const char *scene, const double centre[3]) {
     const struct methods methods = methods_find(&(struct methods_query){.test = "moves"});
     for (size_t k = 0; k < methods.n; k++) {
         struct fixture cloth;
-        fixture_open(&cloth, methods.list[k].text, CARRIED, ", \"damping\": 0.01", 60);
-        const size_t n = cloth.n;
+        fixture_open(&cloth, methods.list[k].text, scene, ", \"damping\": 0.01", 60);
         fixture_start(&cloth);
         for (int frame = 1; frame < 20; frame++) {
             fixture_frames(&cloth, 1);
-            for (size_t i = 0; i < 4; i++) {
-                double x[3], v[3];
-                const double *start = cloth.system->start;
-                carried_at((const double[3]){start[i], start[n + i], start[2 * n + i]},
-                           frame / 60.0, x, v);
-                for (size_t c = 0; c < 3; c++)
-                    ck_assert_msg(fabs(cloth.x[c * n + i] - x[c]) < 1e-14 &&
-                                      fabs(cloth.v[c * n + i] - v[c]) < 1e-13,
-                                  "%s: %.17g at %.17g m/s, not %.17g at %.17g",
-                                  methods.list[k].text, cloth.x[c * n + i], cloth.v[c * n + i],
-                                  x[c], v[c]);
-            }
+            check_carried(&cloth, methods.list[k].text, centre, frame / 60.0);
         }
         fixture_close(&cloth);
     }
+}
+
+TEST(carried_particles_are_on_their_arc) {
+    check_all(CARRIED, sphere);
+}
+
+/* A point at radius r goes r w t along its arc, and the sphere itself too. */
+TEST(a_hinge_is_the_centre_of_arcs) {
+    struct cs_posed_collider at;
+    struct fixture cloth;
+    double x[3], v[3], found[3];
+    check_all(HINGED, hinge);
+    fixture_open(&cloth, "rk4", HINGED, "", 60);
+    fixture_start(&cloth);
+    fixture_frames(&cloth, 40);
+    cs_posed_collider_at(cloth.system, 0, 40 / 60.0, &at);
+    cs_posed_collider_velocity(&at, at.centre, found);
+    carried_at(hinge, sphere, 40 / 60.0, x, v);
+    for (int c = 0; c < 3; c++) {
+        ck_assert_double_eq_tol(at.centre[c], x[c], 1e-14);
+        ck_assert_double_eq_tol(found[c], v[c], 1e-13);
+    }
+    fixture_close(&cloth);
 }
 
 enum { VALUES = 6 * 16 };
@@ -225,11 +259,11 @@ TEST(grabs_hold_to_colliders) {
 }
 
 /* The work of the collider is what the cloth gains. */
-TEST(ledger_has_the_work) {
+static void check_work(const char *scene) {
     struct fixture cloth;
     struct cs_energy_ledger ledger = {0};
     struct cs_error error = {0};
-    fixture_open(&cloth, "rk4:dt=1e-3", CARRIED, "", 60);
+    fixture_open(&cloth, "rk4:dt=1e-3", scene, "", 60);
     cs_energy_ledger_open(&ledger, cloth.system, 0, &error);
     ck_assert_int_eq(error.status, CS_OK);
     cloth.session.settings.run.ledger = &ledger;
@@ -243,4 +277,9 @@ TEST(ledger_has_the_work) {
     ck_assert_double_lt(fabs(ledger.work[CS_WORK_INTEGRATOR]), 1e-8);
     cs_energy_ledger_close(&ledger);
     fixture_close(&cloth);
+}
+
+TEST(ledger_has_the_work) {
+    check_work(CARRIED);
+    check_work(HINGED);
 }

@@ -116,6 +116,36 @@ TEST(turn_is_exact) {
     fixture_close(&far);
 }
 
+/* A quarter turn about an edge on a moving hinge, and back about another: chord by chord. */
+TEST(hinge_is_exact) {
+    struct fixture far;
+    struct cs_posed_collider before, after;
+    fixture_open(&far, "velocity-verlet", FAR,
+                 "{\"from\": 0.1, \"to\": 0.6, \"move\": {\"collider\": 1,"
+                 " \"spin\": [0, 3.14159265358979324, 0], \"centre\": [2, -7, 1],"
+                 " \"motion\": \"smooth\", \"path\": [{\"at\": 0.6, \"point\": [0, 1, 0]}]}},"
+                 "{\"from\": 0.7, \"to\": 1.2, \"move\": {\"collider\": 1,"
+                 " \"spin\": [0, -3.14159265358979324, 0], \"centre\": [1, 0, 3],"
+                 " \"relative\": false, \"path\": [{\"at\": 1.2, \"point\": [1, 0, 7]}]}}");
+    fixture_start(&far);
+    cs_posed_collider_at(far.system, 1, 0, &before);
+    fixture_frames(&far, 39); /* 0.65 s: (-2, -1) from the hinge has become (-1, 2) */
+    cs_posed_collider_at(far.system, 1, 0.65, &after);
+    ck_assert_double_eq_tol(after.centre[0], 1, 1e-14);
+    ck_assert_double_eq_tol(after.centre[1], -6, 1e-14);
+    ck_assert_double_eq_tol(after.centre[2], 3, 1e-14);
+    fixture_frames(&far, 18); /* 0.95 s: the view has the hinge */
+    ck_assert_double_eq_tol(far.system->view.collider_origin[5] +
+                                0.95 * far.system->view.collider_velocity[5],
+                            5, 1e-13);
+    fixture_frames(&far, 18); /* 1.25 s: (0, 0) from this one, shifted along z */
+    check_centre(&far, 1, 1.25, 1, -6, 7);
+    cs_posed_collider_at(far.system, 1, 1.25, &after);
+    for (int k = 0; k < 9; k++)
+        ck_assert_double_eq_tol(after.axes[k / 3][k % 3], before.axes[k / 3][k % 3], 1e-14);
+    fixture_close(&far);
+}
+
 /* The second move begins while the first is under way: it goes on from where the collider is,
  * and the end of the first changes nothing. */
 TEST(later_move_takes_over) {

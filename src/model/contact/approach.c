@@ -132,6 +132,14 @@ static double half_diagonal(const struct surface *surface) {
     return isfinite(length) ? length : 0;
 }
 
+/* m, from the point that a move turns about to the centre at the start */
+static double lever_of(const struct cs_move *move, const double centre[3]) {
+    double arm[3] = {0};
+    for (int c = 0; c < 3 && !isnan(move->centre[0]); c++)
+        arm[c] = centre[c] - move->centre[c];
+    return length_of(arm);
+}
+
 /* Adds the events that move bodies and colliders along paths, and key frames. */
 static void add_paths(const struct cs_scene *scene, struct cs_approach *approach) {
     for (uint32_t e = 0; e < scene->events.n; e++) {
@@ -145,7 +153,8 @@ static void add_paths(const struct cs_scene *scene, struct cs_approach *approach
             at->path_speed =
                 fmax(at->path_speed,
                      speed_along(&event->move.path, event->move.motion, centre, begin) +
-                         length_of(event->move.spin) * half_diagonal(at));
+                         length_of(event->move.spin) *
+                             (half_diagonal(at) + lever_of(&event->move, at->point)));
         }
         // a grab without a body acts on all
         for (uint32_t b = 0; event->grab.present && b < approach->n_bodies; b++) {

@@ -82,6 +82,10 @@ static void move(struct cs_posed_collider *out, const struct cs_collider_motion 
     }
     for (int c = 0; c < 3; c++) {
         out->centre[c] += shift[c];
+        out->rotation_centre[c] = out->centre[c] + motion->pivot[c];
+        if (motion->pivot[0] != 0 || motion->pivot[1] != 0 || motion->pivot[2] != 0)
+            out->centre[c] =
+                out->rotation_centre[c] + cs_vec3_dot(turn + 3 * (size_t)c, motion->arm);
         out->velocity[c] = motion->rate[c];
         out->spin[c] = motion->spin[c];
     }
@@ -94,11 +98,11 @@ static void move(struct cs_posed_collider *out, const struct cs_collider_motion 
 static void pose_at(const struct cs_collider *collider, const struct cs_collider_motion *motion,
                     double t, struct cs_posed_collider *out) {
     pose(out, collider);
+    memcpy(out->rotation_centre, out->centre, sizeof out->rotation_centre);
     if (motion)
         move(out, motion, t);
     if (collider->mesh.paths)
         out->path = cs_vertex_paths_weights(collider->mesh.paths, t);
-    memcpy(out->rotation_centre, out->centre, sizeof out->rotation_centre);
 }
 
 void cs_posed_collider_at(const struct cs_system *system, uint32_t k, double t,

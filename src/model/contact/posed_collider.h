@@ -8,14 +8,18 @@
 #include "scene/collider.h"
 
 /* Motion of one collider by an event, until the next change of its path. Its shift is
- * shift_begin + rate (t - t_begin), and it rotates with `spin` on from `rotation`. Both
- * continue beyond t_end, so that a stage of a method that lies there meets no kink. */
+ * s = shift_begin + rate (t - t_begin), and it rotates with `spin` on from `rotation` to R(t):
+ * its centre is at c + s + pivot + R arm, c in the scene. Both continue beyond t_end, so that a
+ * stage of a method that lies there meets no kink. */
 struct cs_collider_motion {
     double t_begin, t_end;                        /* s */
     double shift_begin[3], shift_end[3], rate[3]; /* m, m, m/s: the shift at both ends */
     /* rotation reached at t_begin, by rows */
     double rotation[9];
     double spin[3]; /* rad/s */
+    /* m, from the shifted centre at rest to the point of rotation, and from there to the centre
+     * of the collider in its own frame; 0: it turns about its centre. */
+    double pivot[3], arm[3];
     uint32_t event; /* number of the event that moves it + 1; 0: none */
     /* While a ramp changes the radius: radius_begin + radius_rate (t - t_growth) in m and m/s.
      * growth: its rate and that of the thickness; 0: neither changes. */

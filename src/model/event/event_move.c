@@ -6,6 +6,7 @@
  * reached. */
 #include "model/event/event_state.h"
 
+#include "base/vec3.h"
 #include "model/contact/posed_collider.h"
 #include "scene/body_pairs.h"
 
@@ -52,7 +53,7 @@ void cs_event_show_moves(struct cs_system *system) {
         struct cs_posed_collider at;
         cs_posed_collider_at(system, k, since, &at);
         for (int c = 0; c < 3; c++) {
-            shown[c] = at.centre[c] - since * at.velocity[c];
+            shown[c] = at.rotation_centre[c] - since * at.velocity[c];
             shown[3 * n + c] = at.velocity[c];
             shown[6 * n + c] = at.spin[c];
         }
@@ -75,13 +76,32 @@ static void stop(struct cs_collider_motion *motion, double t) {
     struct cs_collider_motion stopped = at_rest;
     stopped.t_begin = t;
     cs_posed_collider_translate(motion, t, stopped.shift_begin);
-    memcpy(stopped.shift_end, stopped.shift_begin, sizeof stopped.shift_end);
     cs_posed_collider_rotate(motion, t, stopped.rotation);
+    // where the centre has come to about another point
+    for (int c = 0; c < 3; c++)
+        stopped.shift_begin[c] +=
+            motion->pivot[c] + cs_vec3_dot(stopped.rotation + 3 * (size_t)c, motion->arm);
+    memcpy(stopped.shift_end, stopped.shift_begin, sizeof stopped.shift_end);
     *motion = stopped;
 }
 
+/* Sets the point that a stopped collider turns about from t on. */
+static void turn_about(const struct cs_system *system, const struct cs_move *move, double t,
+                       struct cs_collider_motion *motion) {
+    const double *m = motion->rotation;
+    struct cs_posed_collider at;
+    if (isnan(move->centre[0]))
+        return;
+    cs_posed_collider_at(system, (uint32_t)move->collider, t, &at);
+    for (int c = 0; c < 3; c++)
+        motion->pivot[c] = move->centre[c] - at.centre[c];
+    for (int c = 0; c < 3; c++)
+        motion->arm[c] = -(m[c] * motion->pivot[0] + m[3 + c] * motion->pivot[1] +
+                           m[6 + c] * motion->pivot[2]);
+}
+
 /* Sets where a path begins and the shift of its origin: of a relative one the present position,
- * else the centre of the scene's own collider at the world's origin. */
+ * else that which puts the centre of its rotation at the world's origin. */
 static void begin_path_at(const struct cs_system *system, const struct cs_move *move, double t,
                           const struct cs_collider_motion *motion,
                           struct cs_event_state *state) {
@@ -92,8 +112,8 @@ static void begin_path_at(const struct cs_system *system, const struct cs_move *
         return;
     cs_posed_collider_at(system, (uint32_t)move->collider, t, &at);
     for (int c = 0; c < 3; c++) {
-        state->origin[c] = motion->shift_begin[c] - at.centre[c];
-        state->chord_to[c] = at.centre[c];
+        state->origin[c] = motion->shift_begin[c] - at.rotation_centre[c];
+        state->chord_to[c] = at.rotation_centre[c];
     }
 }
 
@@ -104,6 +124,7 @@ void cs_event_begin_move(struct cs_system *system, uint32_t event, double t) {
         return;
     stop(motion, t);
     motion->event = event + 1;
+    turn_about(system, move_of(system, event), t, motion);
     memcpy(motion->spin, move_of(system, event)->spin, sizeof motion->spin);
     begin_path_at(system, move_of(system, event), t, motion, state);
     cs_event_begin_path(state, t);
@@ -191,7 +212,8 @@ double cs_event_angular_speed(const struct cs_system *system) {
         if (rate == 0)
             continue;
         cs_posed_collider_at(system, k, motion->t_begin, &obstacle);
-        speed = fmax(speed, rate * reach_of(system, &obstacle));
+        speed = fmax(speed, rate * (reach_of(system, &obstacle) +
+                                    sqrt(cs_vec3_dot(motion->arm, motion->arm))));
     }
     return speed;
 }

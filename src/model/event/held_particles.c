@@ -1,9 +1,10 @@
 /* held_particles.c - particles whose motion is prescribed: grabs on paths, and particles that a
  * collider carries.
  *
- * A holder is a frame that moves: x = p(t) + R(t) r and v = p' + w x (R r), with r constant
- * (events->offsets). A grab's p is the point of its path, and R turns with its spin w. A
- * collider's are its pose. p is linear between two events; where w is 0, x is so too, and
+ * A holder is a frame that moves: x = p(t) + R(t) r and v = c' + w x (R r + p - c), with r
+ * constant (events->offsets). A grab's p = c is the point of its path, and R turns with its
+ * spin w. A collider's are its pose, c the point that it turns about. c is linear between two
+ * events; where w is 0, x is so too, and
  * methods move such particles exactly by x + h v. Where w is not 0 the host sets them to x(t)
  * at every time that a method asks about (cs_host_state_at in sim/run_host.h): forces then
  * depend on t, and the order of a method stays. */
@@ -16,10 +17,11 @@
 #include <math.h>
 #include <string.h>
 
-/* A holder at a time: p in m, p' in m/s, R by rows, w in rad/s. */
+/* A holder at a time: p in m, its rate in m/s without w, R by rows, w in rad/s. */
 struct frame {
     double point[3], rate[3], turn[9], spin[3];
-    bool is_turned; /* R is not the identity, or will not be */
+    double lever[3]; /* m, from the point of rotation, whose rate it is, to p */
+    bool is_turned;  /* R is not the identity, or will not be */
 };
 
 static const double no_turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -49,7 +51,10 @@ static void collider_frame(const struct cs_system *system, uint32_t k, double t,
     memcpy(out->spin, at.spin, sizeof out->spin);
     if (system->motions)
         cs_posed_collider_rotate(system->motions + k, t, out->turn);
-    out->is_turned = memcmp(out->turn, no_turn, sizeof no_turn);
+    for (int c = 0; c < 3; c++)
+        out->lever[c] = at.centre[c] - at.rotation_centre[c];
+    out->is_turned =
+        memcmp(out->turn, no_turn, sizeof no_turn) || cs_vec3_dot(at.spin, at.spin) > 0;
 }
 
 /* Position chord_from + rate (t - chord_begin), and exactly chord_to at its end; with a spin
@@ -111,8 +116,10 @@ void cs_events_apply_paths(const struct cs_system *system, double t, double *x, 
         if (holder != last)
             frame = frame_at(system, last = holder, t);
         arm_of(system, &frame, i, arm);
+        const double lever[3] = {arm[0] + frame.lever[0], arm[1] + frame.lever[1],
+                                 arm[2] + frame.lever[2]};
         if (frame.is_turned)
-            cs_vec3_cross(frame.spin, arm, turning);
+            cs_vec3_cross(frame.spin, lever, turning);
         for (size_t c = 0; c < 3; c++) {
             x[c * n + i] = arm[c] + frame.point[c];
             v[c * n + i] = frame.rate[c] + turning[c];
@@ -265,6 +272,8 @@ void cs_event_find_held(struct cs_system *system, double t) {
             frame = frame_at(system, last = holder, t);
         const double spin = sqrt(cs_vec3_dot(frame.spin, frame.spin));
         arm_of(system, &frame, i, arm);
+        for (int c = 0; c < 3; c++)
+            arm[c] += frame.lever[c];
         // of the turning alone: the rates of paths are bounded elsewhere
         events->has_grabs = true;
         events->has_turns |= spin > 0;

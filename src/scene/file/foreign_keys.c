@@ -52,6 +52,8 @@ static const struct {
     {"seams", "k", "seams.stiffness"}, {"seams", "rest_length", "seams.length"},
     {"seams", "max_length", "seams.breaking_length"}, {"seams", "break_threshold", "seams.breaking_length"},
     {"events", "time", "events.at"}, {"events", "start", "events.from"}, {"events", "end", "events.to"},
+    {"move", "pivot", "centre"}, {"grab", "pivot", "centre"}, {"move", "axis", "spin"}, {"grab", "axis", "spin"},
+    {"move", "hinge", "centre"}, {"move", "angle", "spin"}, {"move", "rotation", "spin"},
     {"events", "drag", "events.grab"}, {"events", "unpin", "events.release"},
     {"events", "detach", "events.release"}, {"events", "attach", "events.pin"},
     {"", "tension_stiffness", "springs.stretch"}, {"", "compression_stiffness", "springs.stretch"},
