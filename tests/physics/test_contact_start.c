@@ -3,6 +3,8 @@
 #include "fixture.h"
 #include "model/contact/approach.h"
 #include "model/contact/barrier_law.h"
+#include "model/contact/narrow_phase/contact_pairs.h"
+#include "model/force/diagnostics.h"
 #include "study/contact_capacity.h"
 
 #include <math.h>
@@ -29,8 +31,8 @@ static const struct {
     {SHEET("12, 12", "0", "0", "0") ", " SHEET("12, 12", "0.01", "0.0005", "0.02"),
      "\"pairs\": \"all\", ",
      "bodies[0] starts within the contact range of bodies[1]: ", 0.4 * G * 0.4 / 11, G},
-    // 1 mm above the face of a mesh
-    {SHEET("12, 12", "0.01", "0.251", "0.02"),
+    // 0.6 mm above the face of a mesh
+    {SHEET("12, 12", "0.01", "0.2506", "0.02"),
      "\"colliders\": [{\"mesh\": {\"shape\": \"box\", \"scale\": [1.5, 0.5, 1.5]}}], ",
      "bodies[0] starts within the contact range of colliders[0]: ", 0.2 * G * 0.4 / 11, G},
     // two sheets over a floor, each too near to the next
@@ -85,6 +87,42 @@ TEST(start_with_more_energy_than_at_rest_is_refused) {
         ck_assert(stored > admitted && by > 0);
         ck_assert_double_eq_tol(admitted, near[k].admitted, 0.005 * admitted);
         cs_session_close(&session);
+    }
+}
+
+/* A range that nobody set is what the start leaves, here 2 and 5 mm of 36: nothing is stored,
+ * and the sheet stays on the other surface. */
+TEST(open_ranges_shrink_to_the_start) {
+    static const struct {
+        const char *scene;
+        double gap, height;
+    } rows[] = {
+        {"{\"bodies\": [" SHEET(
+             "12, 12", "0.01", "0.252",
+             "0.02") "], \"colliders\": "
+                     "[{\"mesh\": {\"shape\": \"box\", \"scale\": [1.5, 0.5, 1.5]}}]}",
+         0.002, 0.25},
+        {"{\"bodies\": [" SHEET(
+             "12, 12", "0", "0.005",
+             "0") ", {\"cloth\": {\"grid\": "
+                  "[8, 8], \"size\": [1.5, 1.5], \"start\": \"flat\"}, \"mass\": {\"total\": "
+                  "1}, "
+                  "\"pins\": [{\"box\": {\"min\": [-2, -1, -2], \"max\": [2, 1e-3, 2]}}]}], "
+                  "\"pairs\": \"all\"}",
+         0.005, 0}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct fixture sheet;
+        fixture_open(&sheet, "velocity-verlet", "%s", rows[k].scene);
+        const double range =
+            cs_body_pair_params_of(&sheet.system->pairs->body_pairs, 0, 1)->range;
+        // the distance of the law is smooth, and slightly more
+        ck_assert_double_eq_tol(range, rows[k].gap, 0.02 * rows[k].gap);
+        ck_assert_double_eq(cs_diagnostics_energy(sheet.system, 0, sheet.x, sheet.v).other, 0);
+        fixture_start(&sheet);
+        fixture_frames(&sheet, 20);
+        for (size_t i = 0; i < sheet.n; i++)
+            ck_assert_double_gt(sheet.x[sheet.n + i], rows[k].height - 1e-9);
+        fixture_close(&sheet);
     }
 }
 

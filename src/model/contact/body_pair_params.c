@@ -72,8 +72,7 @@ enum cs_status cs_body_pair_table_build(struct cs_system *system,
         cs_arena_alloc_array(&system->arena, (size_t)n * n, sizeof *body_pairs->params, error);
     body_pairs->has_partner =
         cs_arena_alloc_array(&system->arena, n, sizeof *body_pairs->has_partner, error);
-    double softest;
-    if (error->status || cs_collider_params_softest(system, &softest, error))
+    if (error->status || cs_collider_params_softest(system, &body_pairs->softest, error))
         return error->status;
     for (uint32_t a = 0; a < n; a++)
         for (uint32_t b = a; b < n && !error->status; b++) {
@@ -81,11 +80,22 @@ enum cs_status cs_body_pair_table_build(struct cs_system *system,
                 continue;
             // the stiffness depends on the range, and on what comes to these two
             meeting.range = range_between(system, a, b, error);
-            meeting.k = cs_approach_stiffness(system, softest, cs_approach_energy(system, a, b),
-                                              meeting.range);
+            meeting.k = cs_approach_stiffness(system, body_pairs->softest,
+                                              cs_approach_energy(system, a, b), meeting.range);
             meet(body_pairs, a, b, &meeting);
         }
     return error->status;
+}
+
+void cs_body_pair_table_set_range(const struct cs_system *system,
+                                  struct cs_body_pair_table *body_pairs, uint32_t a, uint32_t b,
+                                  double range) {
+    struct cs_body_pair_params meeting = *cs_body_pair_params_of(body_pairs, a, b);
+    meeting.range = range;
+    meeting.k = cs_approach_stiffness(system, body_pairs->softest,
+                                      cs_approach_energy(system, a, b), range);
+    meet(body_pairs, a, b, &meeting);
+    body_pairs->params_version++;
 }
 
 void cs_body_pair_table_update_friction(const struct cs_system *system,

@@ -48,6 +48,8 @@ struct cs_body_pair_table {
     bool *has_partner;
     /* m, largest and smallest range of pairs with contact */
     double range_max, range_min;
+    /* N/m, softest spring or membrane, from which stiffnesses are derived */
+    double softest;
     /* number of changes of params after the build */
     uint64_t params_version;
 };
@@ -57,6 +59,12 @@ struct cs_body_pair_table {
 enum cs_status cs_body_pair_table_build(struct cs_system *system,
                                         struct cs_body_pair_table *body_pairs,
                                         struct cs_error *error);
+
+/* Sets the range in m, at most that of the build, of two surfaces that have contact; their
+ * stiffness follows unless the scene gives it. */
+void cs_body_pair_table_set_range(const struct cs_system *system,
+                                  struct cs_body_pair_table *body_pairs, uint32_t a, uint32_t b,
+                                  double range);
 
 /* Reads the friction of colliders from the scene again, because events may change it. */
 void cs_body_pair_table_update_friction(const struct cs_system *system,

@@ -9,9 +9,6 @@
 
 #include <math.h>
 
-/* Least fraction to which a range shrinks to fit the start; chosen by trial. */
-#define SHRINK_MIN 0.02
-
 /* N/m, softest stretch spring, or membrane along its threads; HUGE_VAL without one */
 static double softest(const struct cs_system *system) {
     const struct cs_springs *springs = &system->springs;
@@ -49,13 +46,13 @@ static double energy_of(const struct cs_system *system, uint32_t collider) {
 }
 
 /* m, the range that nobody gave: RANGE_FRACTION of the shortest spring, or the distance at
- * which a free particle starts, down to SHRINK_MIN of it: a body may start closer than its
- * coarse grid would have it. */
+ * which a free particle starts, down to CS_RANGE_SHRINK_MIN of it: a body may start closer than
+ * its coarse grid would have it. */
 static double default_range(const struct cs_system *system, uint32_t collider,
                             double shortest) {
     const size_t n = system->view.n;
     const double *x = system->state;
-    const double whole = CS_RANGE_FRACTION * shortest, least = SHRINK_MIN * whole;
+    const double whole = CS_RANGE_FRACTION * shortest, least = CS_RANGE_SHRINK_MIN * whole;
     struct cs_posed_collider obstacle;
     double range = whole, normal[3];
     // who asks for bodies to be moved out of the range means all of it

@@ -11,6 +11,9 @@
  * collider from one range to the other. */
 #define CS_RANGE_FRACTION 0.4
 
+/* Least fraction to which a range that nobody set shrinks to fit the start; chosen by trial. */
+#define CS_RANGE_SHRINK_MIN 0.02
+
 /* Parameters of one collider. */
 struct cs_collider_params {
     double k;     /* N/m a particle */

@@ -153,10 +153,14 @@ enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
                                               struct cs_initial_penetration *inside,
                                               struct cs_error *error);
 
+/* Looks for surfaces with contact that touch at the start, so that no side can be told.
+ * CS_ERR_SCENE, with both; CS_ERR_MEMORY. */
+enum cs_status cs_touching_surfaces_check(struct cs_system *system, struct cs_error *error);
+
 /* The part for contact by force, after which no two surfaces touch, or store more energy than
- * at rest (initial_layer.c). contact.start "move-out" moves bodies to balance, and counts them
- * in *inside. CS_ERR_SCENE, with both surfaces, their energy and the move that would do;
- * CS_ERR_MEMORY. */
+ * at rest (initial_layer.c). Ranges that nobody set shrink for that;
+ * contact.start "move-out" moves bodies to balance instead, and counts them in *inside.
+ * CS_ERR_SCENE, with both surfaces, their energy and the move that would do; CS_ERR_MEMORY. */
 enum cs_status cs_initial_layer_resolve(struct cs_system *system,
                                         struct cs_initial_penetration *inside,
                                         struct cs_error *error);

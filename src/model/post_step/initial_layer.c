@@ -11,9 +11,13 @@
  * with D the range of the two. The measure is taken for each two surfaces by themselves,
  * because a stack of bodies has a balance at each of its interfaces.
  *
+ * A range that nobody set shrinks first, until its two surfaces start out of it: bodies may
+ * start closer than their coarse grid would have it.
+ *
  * contact.start "move-out" moves one of both bodies as a whole along the mean of its contact
  * forces, until the energy is at most W and their sum carries at most the body's weight. */
 #include "model/contact/ccd/crossings.h"
+#include "model/contact/collider_params.h"
 #include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/active_contacts.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
@@ -267,6 +271,47 @@ static bool find_way(const struct search *search, const struct interface *at, st
     return true;
 }
 
+/* --- a smaller range --- */
+
+/* Returns whether the scene leaves the range of two surfaces open. */
+static bool is_open(const struct cs_scene *scene, const struct interface *at) {
+    const struct cs_collider *collider = cs_scene_collider_at(scene, at->b);
+    const struct cs_body *bodies = cs_scene_bodies(scene);
+    return bodies[at->a].thickness == 0 &&
+           (collider ? collider->mesh.present && collider->thickness == 0
+                     : bodies[at->b].thickness == 0);
+}
+
+/* Returns whether two surfaces store nothing with a range in m, which is set. */
+static bool is_free(const struct search *search, struct interface *at, double range) {
+    cs_body_pair_table_set_range(search->system, &search->system->pairs->body_pairs, at->a,
+                                 at->b, range);
+    measure(search, at);
+    return at->energy == 0;
+}
+
+/* Shrinks the range of two surfaces that the scene leaves open, by halving, to the largest one
+ * out of which they start. Returns false, with the range as before, if that is below
+ * CS_RANGE_SHRINK_MIN of it. */
+static bool shrink(const struct search *search, struct interface *at) {
+    const double whole = at->range;
+    double low = CS_RANGE_SHRINK_MIN * whole, high = whole;
+    if (!is_open(search->system->scene, at))
+        return false;
+    if (!is_free(search, at, low)) {
+        is_free(search, at, whole);
+        return false;
+    }
+    for (int k = 0; k < HALVINGS; k++) {
+        const double middle = 0.5 * (low + high);
+        if (is_free(search, at, middle))
+            low = middle;
+        else
+            high = middle;
+    }
+    return is_free(search, at, low);
+}
+
 /* --- messages --- */
 
 /* Reports two surfaces, what they store, and the move that would do. */
@@ -294,59 +339,6 @@ static enum cs_status refuse(const struct search *search, const struct interface
     return error->status;
 }
 
-/* --- surfaces that touch --- */
-
-/* m: surfaces this close touch. No side of the other one can be told from rounding then, so
- * the force has no direction, and continuous collision detection admits no motion. */
-#define TOUCHING 1e-9
-
-/* Refuses a candidate if it touches, unless all its points are held. x (3,n_points) in m. */
-static void check_candidate(const struct cs_system *system, const double *x,
-                            enum cs_pair_kind kind, const uint32_t at[4],
-                            struct cs_error *error) {
-    const bool edges = kind == CS_PAIR_EDGE_EDGE;
-    const size_t n = system->surfaces->n_points;
-    struct cs_exact_distance_lanes lanes;
-    struct cs_text first = {0}, second = {0};
-    double inverse_mass = 0;
-    for (size_t k = 0; k < 4; k++) {
-        inverse_mass += cs_surface_points_inverse_mass(system, at[k]);
-        for (size_t c = 0; c < 3; c++)
-            for (int l = 0; l < CS_EXACT_DISTANCE_LANES; l++)
-                lanes.p[k][c][l] = x[c * n + at[k]];
-    }
-    // all lanes hold this candidate
-    cs_exact_distance_measure(kind, &lanes);
-    if (lanes.squared[0] > TOUCHING * TOUCHING || inverse_mass == 0)
-        return;
-    cs_surfaces_print_point(system, at[0], &first);
-    cs_surfaces_print_point(system, at[edges ? 2 : 1], &second);
-    cs_fail(error, CS_ERR_SCENE,
-            "%s: two surfaces touch at the start, so contact cannot tell their sides: %s%s and "
-            "the %s at %s; move them apart",
-            system->scene->path, edges ? "the edge at " : "", cs_text_get(&first),
-            edges ? "edge" : "triangle", cs_text_get(&second));
-    cs_text_finish(&first);
-    cs_text_finish(&second);
-}
-
-/* Refuses surfaces in contact that touch. */
-static enum cs_status check_touching(struct cs_system *system, struct cs_error *error) {
-    const double *x = cs_surface_points_positions(system, CS_POINTS_BEGIN, 0, system->state);
-    const struct cs_candidates *candidates = &system->pairs->candidates;
-    if (!cs_candidates_update(&system->pairs->candidates, x))
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the contact pairs");
-    for (uint32_t l = 0; l < candidates->n_chunks; l++)
-        for (size_t p = 0; p < candidates->chunks[l].n && !error->status; p++) {
-            const enum cs_pair_kind kind = candidates->chunks[l].kind;
-            uint32_t at[4];
-            cs_candidate_vertices(system->surfaces, kind, candidates->chunks[l].pairs + 2 * p,
-                                  at);
-            check_candidate(system, x, kind, at, error);
-        }
-    return error->status;
-}
-
 /* --- all of it --- */
 
 /* J, all energy of contact. */
@@ -356,7 +348,8 @@ static double stored(const struct cs_system *system) {
         .other;
 }
 
-/* Moves bodies until no two surfaces store too much, or refuses. */
+/* Shrinks ranges, or moves bodies if the scene asks for that, until no two surfaces store too
+ * much; or refuses. */
 static enum cs_status balance(struct search *search, struct cs_initial_penetration *inside,
                               struct cs_error *error) {
     const bool asked = search->system->scene->contact.start == CS_CONTACT_START_MOVE_OUT;
@@ -364,6 +357,8 @@ static enum cs_status balance(struct search *search, struct cs_initial_penetrati
     struct interface at;
     struct way way;
     for (uint32_t k = 0; find(search, &at); k++) {
+        if (!asked && shrink(search, &at))
+            continue;
         if (!asked || k == most || !find_way(search, &at, &way))
             return refuse(search, &at, error);
         move(search->system, &way, way.length);
@@ -381,7 +376,7 @@ enum cs_status cs_initial_layer_resolve(struct cs_system *system,
     inside->energy[0] = inside->energy[1] = stored(system);
     if (!(inside->energy[0] > 0))
         return CS_OK;
-    if (system->pairs && check_touching(system, error))
+    if (system->pairs && cs_touching_surfaces_check(system, error))
         return error->status;
     struct search search = {.system = system,
                             .f = calloc(6 * n, sizeof(double)),
