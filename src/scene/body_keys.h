@@ -84,6 +84,7 @@ struct cs_seam {
     double damping;         /* N s/m of each stitch */
     double length;          /* m, rest length */
     double breaking_length; /* m, of a stitch; NAN: it never breaks */
+    double breaking_force;  /* N, of its spring; NAN: likewise */
 };
 
 /* Friction of contact by force: a function of the velocity, or with a memory

@@ -63,8 +63,9 @@ static enum cs_status check_times(const struct look *at, const struct cs_event *
                              : "no time");
     if (!once && !(event->to >= event->from + APART))
         return refuse(at, ".to", "%.9g s is not after from = %.9g s", event->to, event->from);
-    if (event->release.present && !once)
-        return refuse(at, ".release", "is instantaneous, expected at");
+    if ((event->release.present || event->unsew.present) && !once)
+        return refuse(at, event->release.present ? ".release" : ".unsew",
+                      "is instantaneous, expected at");
     return CS_OK;
 }
 
@@ -259,6 +260,17 @@ static enum cs_status check_move(const struct look *at, const struct cs_move *mo
     return check_path(at, "move", &move->path, move->relative);
 }
 
+/* Checks that the seam exists. */
+static enum cs_status check_unsew(const struct look *at, const struct cs_unsew *unsew) {
+    const uint32_t n = at->scene->seams.n;
+    if (unsew->seam < 0)
+        return refuse(at, ".unsew", "missing key \"seam\", expected its number");
+    if (unsew->seam >= n)
+        return refuse(at, ".unsew.seam", "seam %lld does not exist, the scene has %u",
+                      (long long)unsew->seam, n);
+    return CS_OK;
+}
+
 /* Returns the key of the number that an event changes, or NULL. */
 static const char *moved_key(const struct cs_event *event) {
     return event->ramp.present   ? event->ramp.key
@@ -298,6 +310,8 @@ static enum cs_status check_event(const struct look *at, struct cs_event *event)
         return check_grab(at, &event->grab);
     if (event->move.present)
         return check_move(at, &event->move);
+    if (event->unsew.present)
+        return check_unsew(at, &event->unsew);
     return event->pin.present ? check_aim(at, ".pin", &event->pin.target)
                               : check_aim(at, ".release", &event->release.target);
 }

@@ -2,6 +2,7 @@
 #include "scene/event_key.h"
 
 #include "base/options.h"
+#include "scene/shape.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -24,6 +25,7 @@ static const char *const changeable[] = {"bodies.springs.stretch",
                                          "colliders.sphere.radius",
                                          "colliders.capsule.radius",
                                          "colliders.thickness",
+                                         "bodies.pressure",
                                          "bodies.shape_matching.alpha",
                                          "bodies.shape_matching.beta",
                                          "bodies.elastic.membrane.young",
@@ -238,6 +240,10 @@ static enum cs_status check_there(const struct walk *walk, const struct cs_scene
     if (!strcmp(walk->plain, "forces.wind.strength") && !scene->forces.wind.present)
         return cs_fail(walk->error, CS_ERR_SCENE,
                        "%.120s cannot change: the scene has no forces.wind", walk->path);
+    if (!strcmp(walk->plain, "bodies.pressure") && !cs_shape_is_closed(body_of(walk, scene)))
+        return cs_fail(walk->error, CS_ERR_SCENE,
+                       "%.120s cannot change: the body is open, expected a closed mesh",
+                       walk->path);
     return strncmp(walk->plain, "bodies.springs.", 15)
                ? CS_OK
                : check_springs(walk, body_of(walk, scene), value);

@@ -193,6 +193,14 @@ static const struct cs_option move_rows[] = {
 static const struct cs_table move_table = {ROWS(move_rows), .size = sizeof(struct cs_move),
                                            .optional = true};
 
+static const struct cs_option unsew_rows[] = {
+    INT(struct cs_unsew, seam, "", -1, 0, 4294967295.0,
+        "number of the seam from 0; must be given"),
+};
+
+static const struct cs_table unsew_table = {ROWS(unsew_rows), .size = sizeof(struct cs_unsew),
+                                            .optional = true};
+
 static const struct cs_option event_rows[] = {
     REAL(struct cs_event, at, "s", ABSENT, 0, BIG, "time of an instantaneous event"),
     REAL(struct cs_event, from, "s", ABSENT, 0, BIG, "start time, instead of at"),
@@ -212,6 +220,7 @@ static const struct cs_option event_rows[] = {
           "particles become free and keep their velocity"),
     TABLE(struct cs_event, move, move_table,
           "a collider moves along a path and turns, until to or another move"),
+    TABLE(struct cs_event, unsew, unsew_table, "the stitches of a seam are gone"),
 };
 
 const struct cs_table cs_event_table = {ROWS(event_rows), .size = sizeof(struct cs_event),

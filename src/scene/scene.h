@@ -102,6 +102,7 @@ struct cs_body {
     double friction;     /* Coulomb coefficient of self-contact */
     double strain_limit; /* max length of a stretch spring / rest length; NAN: none */
     int64_t strain_limit_sweeps; /* passes over the springs per step */
+    double pressure;             /* Pa, inside a closed mesh over outside */
     struct cs_material material;
 };
 
@@ -175,9 +176,13 @@ enum cs_wind_unit { CS_WIND_PA, CS_WIND_N };
 /* Uniform wind; strength in Pa (times each particle's area) or in N per particle. */
 struct cs_wind {
     bool present;
-    double direction[3]; /* made a unit vector by cs_scene_check */
+    double direction[3]; /* made a unit vector by cs_scene_check; along velocity if absent */
     double strength;
     int32_t strength_unit; /* enum cs_wind_unit */
+    /* of air that flows past the cloth (model/force/term_airflow.c) */
+    double velocity[3]; /* m/s; first component NAN: none does */
+    double density;     /* kg/m3 */
+    double drag;        /* coefficient of the pressure across the surface */
 };
 enum cs_drag_unit { CS_DRAG_PARTICLE, CS_DRAG_AREA };
 
@@ -278,7 +283,13 @@ struct cs_move {
     double centre[3];       /* m, at the beginning; first component NAN: the collider's */
 };
 
-/* An event: exactly one of impact ... move; with `at`, or with `from` and `to`. */
+/* Opens a seam. */
+struct cs_unsew {
+    bool present;
+    int64_t seam; /* -1: not given, refused */
+};
+
+/* An event: exactly one of impact ... unsew; with `at`, or with `from` and `to`. */
 struct cs_event {
     double at, from, to; /* s; NAN: absent */
     struct cs_impact impact;
@@ -288,6 +299,7 @@ struct cs_event {
     struct cs_grab grab;
     struct cs_pin_change pin, release;
     struct cs_move move;
+    struct cs_unsew unsew;
 };
 
 struct cs_time {

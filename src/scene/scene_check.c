@@ -115,6 +115,16 @@ static enum cs_status check_elastic(const struct cs_check *at, const char *body,
 }
 
 /* Checks one body: a shape, then all that depends on it. */
+/* Refuses a pressure in what has an edge: it would push the body away. */
+static enum cs_status check_pressure(const struct cs_check *at, const char *body,
+                                     const struct cs_body *of) {
+    char path[128];
+    snprintf(path, sizeof path, "%s.pressure", body);
+    if (of->pressure > 0 && !cs_shape_is_closed(of))
+        return cs_check_refuse(at, path, "the body is open, expected a closed mesh");
+    return CS_OK;
+}
+
 static enum cs_status check_body(const struct cs_check *at, const struct cs_scene *scene,
                                  uint32_t b, struct cs_body *body) {
     char path[64];
@@ -126,7 +136,8 @@ static enum cs_status check_body(const struct cs_check *at, const struct cs_scen
         check_matching(at, path, body) ||
         cs_check_pose(at, path, "cloth", &body->cloth.place) ||
         cs_check_pose(at, path, "mesh", &body->mesh.place) || check_mass(at, path, body) ||
-        check_pins(at, scene, path, body) || check_texture(at, path, body->material.texture))
+        check_pins(at, scene, path, body) || check_pressure(at, path, body) ||
+        check_texture(at, path, body->material.texture))
         return at->error->status;
     return CS_OK;
 }
@@ -343,16 +354,33 @@ static enum cs_status check_render(const struct cs_check *at, const struct cs_re
     return CS_OK;
 }
 
+/* Makes the direction of the wind a unit vector, and checks that it is there unless the air has
+ * a velocity. */
+static enum cs_status check_wind(const struct cs_check *at, struct cs_wind *wind) {
+    const bool flows = !isnan(wind->velocity[0]);
+    // none yet: an event may bring it
+    for (int c = 0; c < 3 && !wind->present; c++)
+        wind->direction[c] = 0;
+    if (!wind->present)
+        return CS_OK;
+    if (isnan(wind->direction[0]) && (!flows || wind->strength > 0))
+        return cs_check_refuse(at, "forces.wind.direction",
+                               "missing, expected a list of 3 numbers%s",
+                               flows ? " for strength" : ", or velocity in m/s");
+    // events may give it a strength
+    for (int c = 0; c < 3 && isnan(wind->direction[2]); c++)
+        wind->direction[c] = cs_vec3_is_zero(wind->velocity) ? c == 0 : wind->velocity[c];
+    return cs_check_unit(at, "forces.wind.direction", wind->direction, 3);
+}
+
 enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_error *error) {
     const struct cs_check at = {path_out, error};
     path_out[0] = 0;
     if (check_bodies(&at, scene) || check_colliders(&at, scene) || check_meetings(&at, scene) ||
         check_sticking(&at, scene) || cs_seams_check(&at, scene) ||
-        (scene->forces.wind.present &&
-         cs_check_unit(&at, "forces.wind.direction", scene->forces.wind.direction, 3)) ||
-        check_camera(&at, &scene->camera) || check_lights(&at, scene) ||
-        check_render(&at, &scene->render) || check_marks(&at, scene) ||
-        cs_events_check(scene, path_out, error))
+        check_wind(&at, &scene->forces.wind) || check_camera(&at, &scene->camera) ||
+        check_lights(&at, scene) || check_render(&at, &scene->render) ||
+        check_marks(&at, scene) || cs_events_check(scene, path_out, error))
         return error->status;
     return CS_OK;
 }

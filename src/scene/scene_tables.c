@@ -222,6 +222,8 @@ static const struct cs_option body_rows[] = {
     INT(struct cs_body, strain_limit_sweeps, "", 10, 1, 10000,
         "passes of the strain limit over the springs after each step, before rounds that meet "
         "it"),
+    REAL(struct cs_body, pressure, "Pa", 0, 0, BIG,
+         "inside a closed mesh over that outside, whatever its volume, as from a pump"),
     TABLE(struct cs_body, material, material_table, "Blinn-Phong look"),
 };
 static const struct cs_table body_table = {ROWS(body_rows), .size = sizeof(struct cs_body)};
@@ -293,14 +295,22 @@ static const struct cs_option pairs_rows[] = {
 static const struct cs_table pairs_table = {
     ROWS(pairs_rows), .size = sizeof(struct cs_body_pairs_keys), .shorthand_text = "among"};
 
+static const double absent3[3] = {ABSENT, ABSENT, ABSENT};
 static const char *const wind_units[] = {"Pa", "N", NULL};
 static const struct cs_option wind_rows[] = {
-    VECTOR(struct cs_wind, direction, 3, "", NULL, -BIG, BIG,
-           "direction in which the wind blows, of any non-zero length"),
+    VECTOR(struct cs_wind, direction, 3, "", absent3, -BIG, BIG,
+           "direction of strength, of any non-zero length; required without velocity"),
     REAL(struct cs_wind, strength, "Pa or N", 0, 0, BIG,
          "pressure or force where the cloth faces it; times |direction . normal| elsewhere"),
     CHOICE(struct cs_wind, strength_unit, wind_units, CS_WIND_PA,
            "Pa: times the area of the particle, independent of the grid; N: on each particle"),
+    VECTOR(struct cs_wind, velocity, 3, "m/s", absent3, -BIG, BIG,
+           "of the air, which the cloth feels by its own velocity against it; 0, 0, 0: still "
+           "air; absent: none"),
+    REAL(struct cs_wind, density, "kg/m3", 1.2, 0, BIG, "of the air, with velocity"),
+    REAL(struct cs_wind, drag, "", 1.2, 0, 1000,
+         "with velocity: coefficient of the pressure density/2 u^2 by the velocity u across "
+         "the surface; drag and lift are its parts along the wind and across"),
 };
 static const struct cs_table wind_table = {ROWS(wind_rows), .size = sizeof(struct cs_wind),
                                            .optional = true};

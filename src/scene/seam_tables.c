@@ -44,6 +44,8 @@ static const struct cs_option seam_rows[] = {
     REAL(struct cs_seam, length, "m", 0, 0, BIG, "rest length of a stitch"),
     REAL(struct cs_seam, breaking_length, "m", ABSENT, 1e-12, BIG,
          "a stitch that is longer after a step is gone; absent: none breaks"),
+    REAL(struct cs_seam, breaking_force, "N", ABSENT, 1e-12, BIG,
+         "likewise one whose spring pulls more: length + breaking_force/stiffness"),
 };
 const struct cs_table cs_seam_table = {ROWS(seam_rows), .size = sizeof(struct cs_seam)};
 

@@ -173,6 +173,10 @@ void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const 
                 pinned[at] = true;
 }
 
+bool cs_shape_is_closed(const struct cs_body *body) {
+    return body->mesh.present && !body->mesh.geometry->n_open;
+}
+
 bool cs_holder_fault(const struct cs_scene *scene, const struct cs_holder *holder, char *text,
                      size_t size) {
     const uint32_t n = scene->colliders.n;

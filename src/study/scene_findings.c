@@ -105,9 +105,14 @@ static bool has_drag(const struct cs_scene *scene, uint32_t k) {
     (void)k;
     return cs_event_key_acts(scene, scene->forces.drag, "forces.drag");
 }
+static bool flows(const struct cs_scene *scene, uint32_t k) {
+    (void)k;
+    return scene->forces.wind.present && !isnan(scene->forces.wind.velocity[0]);
+}
 static bool blows(const struct cs_scene *scene, uint32_t k) {
     (void)k;
-    bool any = cs_event_key_acts(scene, scene->forces.wind.strength, "forces.wind.strength");
+    bool any = flows(scene, k) ||
+               cs_event_key_acts(scene, scene->forces.wind.strength, "forces.wind.strength");
     for (uint32_t e = 0; e < scene->events.n; e++)
         any = any || cs_scene_events(scene)[e].wind.present;
     return any;
@@ -183,6 +188,8 @@ static const struct {
     {"pairs.friction", are_all_pairs, "it belongs to pairs \"all\" of several bodies"},
     {"pairs", has_pairs, "the scene has one body, expected self_contact true"},
     {"forces.drag_unit", has_drag, "forces.drag is 0"},
+    {"forces.wind.density", flows, "it belongs to forces.wind.velocity"},
+    {"forces.wind.drag", flows, "it belongs to forces.wind.velocity"},
     {"forces.wind", blows, "forces.wind.strength is 0"},
     {"forces", NULL, NULL},
     {"events[]", NULL, NULL},

@@ -15,7 +15,8 @@
 
 #define FORCES                                                                                 \
     "\"drag\": 0.3, \"drag_unit\": \"Pa s/m\","                                                \
-    " \"wind\": {\"direction\": [0.3, 0.2, 1], \"strength\": 4}"
+    " \"wind\": {\"direction\": [0.3, 0.2, 1], \"strength\": 4,"                               \
+    " \"velocity\": [2, -1, 3]}"
 #define SCENE                                                                                  \
     "{\"bodies\": [{\"cloth\": {\"grid\": [5, 4]}, \"mass\": {\"areal_density\": 0.4},"        \
     " \"self_contact\": true, \"thickness\": 0.199, \"friction\": 0.4,"                        \
@@ -33,7 +34,8 @@
     "\"bending\": {\"warp\": 0.03, \"weft\": 0.05, \"twist\": 0.01, \"coupling\": -0.02}}}, "  \
     "{\"mesh\": {\"shape\": \"box\", \"detail\": 3, \"place\": {\"translate\": [0, 0, "        \
     "8]}}, "                                                                                   \
-    "\"mass\": {\"areal_density\": 0.4}, \"elastic\": {\"membrane\": {\"young\": 60}, "        \
+    "\"mass\": {\"areal_density\": 0.4}, \"pressure\": 7, \"elastic\": {\"membrane\": "        \
+    "{\"young\": 60}, "                                                                        \
     "\"bending\": {\"stiffness\": 0.04, \"damping\": 0.02}}}],"                                \
     " \"events\": [{\"from\": 0, \"to\": 1, \"impact\": {\"impulse\": 1, \"direction\": [1, "  \
     "2, 3]}}],"                                                                                \

@@ -1,6 +1,7 @@
 /* Seams: stitches as springs between particles and points of triangles. Closed forms, momentum,
  * orders, breaking, contact beside them. */
 #include "methods.h"
+#include "sim/energy_ledger.h"
 
 #include "base/pool.h"
 #include "model/system/seams.h"
@@ -143,13 +144,18 @@ TEST(stitches_break_at_their_length) {
         ck_assert_double_eq_tol(apart, u * cos(sqrt(k / 0.05) * 0.1), 1e-8);
         fixture_close(&pair);
     }
+}
+
+/* the same by a length and by the force k l of the default stiffness, 100 N/m */
+static void check_break(const char *key) {
     struct fixture pair;
-    fixture_open(&pair, "rk4:dt=1e-5",
-                 "{\"bodies\": [{\"cloth\": {\"grid\": [1, 1]}, \"mass\": {\"particle\": 0.1}},"
-                 " {\"cloth\": {\"grid\": [1, 1], \"velocity\": [6, 0, 0]}, \"mass\":"
-                 " {\"particle\": 0.1}}], \"seams\": [{\"body\": 0, \"particles\": [0], \"to\":"
-                 " {\"body\": 1, \"particles\": [0]}, \"breaking_length\": 0.1}], \"forces\":"
-                 " {\"gravity\": [0, 0, 0]}}");
+    fixture_open(
+        &pair, "rk4:dt=1e-5",
+        "{\"bodies\": [{\"cloth\": {\"grid\": [1, 1]}, \"mass\": {\"particle\": 0.1}},"
+        " {\"cloth\": {\"grid\": [1, 1], \"velocity\": [6, 0, 0]}, \"mass\":"
+        " {\"particle\": 0.1}}], \"seams\": [{\"body\": 0, \"particles\": [0], \"to\":"
+        " {\"body\": 1, \"particles\": [0]}, %s}], \"forces\": {\"gravity\": [0, 0, 0]}}",
+        key);
     char before[CS_HASH_DIGITS], after[CS_HASH_DIGITS];
     fixture_start(&pair);
     fixture_frames(&pair, 6);
@@ -163,6 +169,42 @@ TEST(stitches_break_at_their_length) {
     pair.system->seams->n_broken = 0;
     cs_run_hash(&pair.session.run, after);
     ck_assert_str_ne(before, after);
+    fixture_close(&pair);
+}
+
+TEST(stitches_break_at_their_force) {
+    check_break("\"breaking_length\": 0.1");
+    check_break("\"breaking_force\": 10");
+    // the weaker of the two holds
+    check_break("\"breaking_length\": 0.2, \"breaking_force\": 10");
+}
+
+/* An event opens one seam of two, and takes what it stores: k l^2 / 2 goes to the ledger. */
+TEST(events_open_a_seam) {
+    struct fixture pair;
+    struct cs_energy_ledger ledger = {0};
+    struct cs_error error = {0};
+    fixture_open(
+        &pair, "rk4:dt=1e-4",
+        "{\"bodies\": [{\"cloth\": {\"grid\": [1, 2], \"size\": [1, 1]}, \"springs\":"
+        " {\"stretch\": 0}, \"mass\": {\"particle\": 0.1}}, {\"cloth\": {\"grid\": [1, 2],"
+        " \"size\": [1, 1], \"velocity\": [1, 0, 0]}, \"springs\": {\"stretch\": 0},"
+        " \"mass\": {\"particle\": 0.1}}], \"seams\": [{\"body\": 0, \"particles\": [0],"
+        " \"to\": {\"body\": 1, \"particles\": [0]}}, {\"body\": 0, \"particles\": [1],"
+        " \"to\": {\"body\": 1, \"particles\": [1]}}], \"forces\": {\"gravity\": [0, 0, 0]},"
+        " \"events\": [{\"at\": 0.02, \"unsew\": {\"seam\": 1}}]%s}",
+        "");
+    cs_energy_ledger_open(&ledger, pair.system, 0, &error);
+    pair.session.settings.run.ledger = &ledger;
+    fixture_start(&pair);
+    fixture_frames(&pair, 6);
+    // l = u / w sin w t with w^2 = k / (m / 2)
+    const double w = sqrt(100 / 0.05), length = sin(w * 0.02) / w;
+    ck_assert(!pair.system->seams->broken[0] && pair.system->seams->broken[1]);
+    ck_assert_double_eq_tol(ledger.work[CS_WORK_EVENTS], -0.5 * 100 * length * length, 1e-9);
+    ck_assert_double_eq_tol(pair.v[3] - pair.v[1], cos(w * 0.02), 1e-8);
+    ck_assert_double_eq_tol(pair.v[2] - pair.v[0], cos(w * 0.1), 1e-7);
+    cs_energy_ledger_close(&ledger);
     fixture_close(&pair);
 }
 

@@ -6,6 +6,7 @@
  * / (m T) acts. */
 #include "model/event/event_state.h"
 
+#include "model/system/seams.h"
 #include "model/system/shape_clusters.h"
 #include "scene/shape.h"
 
@@ -172,6 +173,8 @@ void cs_event_start(struct cs_system *system, uint32_t event) {
         cs_event_mark(system, &of->pin.target);
         pin_marked(system, event);
     }
+    if (of->unsew.present)
+        cs_seams_open(system, (uint32_t)of->unsew.seam);
     if (of->release.present) {
         cs_event_mark(system, &of->release.target);
         for (uint32_t i = 0; i < system->view.n; i++)

@@ -195,8 +195,9 @@ void cs_events_set_bounds(struct cs_system *system, double *work) {
             continue;
         state->first = *state->value;
         /* the stiffest springs and the lightest particles: omega^2 = k/m is largest */
-        *state->value = cs_event_changes_mass(event) ? fmin(*state->value, event->ramp.value)
-                                                     : fmax(*state->value, event->ramp.value);
+        if (cs_event_changes_mass(event) ? event->ramp.value < *state->value
+                                         : fabs(event->ramp.value) > fabs(*state->value))
+            *state->value = event->ramp.value;
     }
     refresh(system);
     if (any(&events->scene, releases))

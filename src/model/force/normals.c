@@ -158,6 +158,18 @@ static void mesh_change(const struct cs_body_range *body, uint32_t i, uint32_t n
     }
 }
 
+void cs_normal_product(const struct cs_system *system, const struct cs_body_range *body,
+                       uint32_t i, const struct cs_eval *at, double product[3]) {
+    struct change sum = {{0}, {0}};
+    if (!at->dx) {
+        mesh_product(body, i, system->view.n, at->x, product);
+        return;
+    }
+    mesh_change(body, i, system->view.n, at, &sum);
+    for (int c = 0; c < 3; c++)
+        product[c] = sum.by[c];
+}
+
 void cs_normal_derivative(const struct cs_system *system, const struct cs_body_range *body,
                           uint32_t i, const struct cs_eval *at, double dn[3]) {
     struct change sum = {{0}, {0}};

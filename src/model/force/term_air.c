@@ -174,3 +174,91 @@ const struct cs_term cs_term_wind = {
     .add_jvp = wind_jvp,
     .max_acceleration = strength_of,
 };
+
+/* Pressure in a closed mesh: f = p dV/dx with the enclosed volume V. At a vertex dV/dx = N/6
+ * with the sum N of the products (b - a) x (c - a) of its triangles, so that forces and moments
+ * of a closed mesh add up to 0. The pressure does not depend on V, as from a pump: it has no
+ * energy, but does work. df/dx is not in the solver's matrix. */
+
+/* Area over that at rest beyond which a balloon may be called a blow-up. */
+#define GROWTH_MAX 100
+
+static double pressure_of(const struct cs_system *system, uint32_t b) {
+    return cs_scene_bodies(system->scene)[b].pressure;
+}
+
+static struct cs_plan_row pressure_plan(const struct cs_scene *scene) {
+    bool acts = cs_event_key_changes(scene, ".pressure");
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        acts |= cs_scene_bodies(scene)[b].pressure != 0;
+    return (struct cs_plan_row){.built = acts,
+                                .reason = acts ? "a body has an inner pressure" : NULL};
+}
+
+/* Closed meshes may have their faces inwards: V < 0 then, by 18 V = sum x.N. */
+static enum cs_status find_outwards(struct cs_system *system, struct cs_error *error) {
+    const size_t n = system->view.n;
+    const struct cs_eval at = {.x = system->state};
+    (void)error;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        struct cs_body_range *body = system->bodies + b;
+        double volume = 0, product[3];
+        for (uint32_t i = body->first; body->mesh && i < body->first + body->count; i++) {
+            cs_normal_product(system, body, i, &at, product);
+            for (size_t c = 0; c < 3; c++)
+                volume += system->state[c * n + i] * product[c];
+        }
+        body->outwards = volume < 0 ? -1 : 1;
+    }
+    return CS_OK;
+}
+
+static uint32_t pressure_uses(const struct cs_scene *scene) {
+    (void)scene;
+    return CS_USE_AREA;
+}
+
+/* f += p N / 6 at the particles of the block, or p dN / 6 along at->dx. */
+static void add_pressure(const struct cs_system *system, const struct cs_eval *at, double *f) {
+    const size_t n = system->view.n;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_body_range *body = system->bodies + b;
+        const double p = pressure_of(system, b) * body->outwards;
+        const uint32_t begin = at->block->begin > body->first ? at->block->begin : body->first;
+        for (uint32_t i = begin; p != 0 && i < at->block->end && i < body->first + body->count;
+             i++) {
+            double product[3];
+            cs_normal_product(system, body, i, at, product);
+            for (size_t c = 0; c < 3; c++)
+                f[c * n + i] += p / 6 * product[c];
+            for (size_t c = 0; c < 3 && at->power && !at->dx; c++)
+                at->power[i] += p / 6 * product[c] * at->v[c * n + i];
+        }
+    }
+}
+
+static void pressure_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
+    if (at->dx)
+        add_pressure(system, at, df);
+}
+
+static double max_pressure(const struct cs_system *system, size_t i) {
+    uint32_t b = 0;
+    while (i >= (size_t)system->bodies[b].first + system->bodies[b].count)
+        b++;
+    return GROWTH_MAX * pressure_of(system, b) * system->area[i];
+}
+
+static const char *const pressure_ramps[] = {"bodies.pressure", NULL};
+
+const struct cs_term cs_term_pressure = {
+    .name = "pressure",
+    .part_bits = CS_PART_WIND,
+    .plan = pressure_plan,
+    .uses = pressure_uses,
+    .build = find_outwards,
+    .rampable_keys = pressure_ramps,
+    .add_force = add_pressure,
+    .add_jvp = pressure_jvp,
+    .max_acceleration = max_pressure,
+};

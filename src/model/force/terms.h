@@ -14,8 +14,8 @@
 // the formatter would move the list at each run
 // clang-format off
 #define CS_TERM_LIST(X)                                                                        \
-    X(springs) X(membrane) X(bending) X(gravity) X(drag) X(wind) X(push) X(seams) X(contact)   \
-    X(pairs) X(cover) CS_TERM_LIST_MORE(X)
+    X(springs) X(membrane) X(bending) X(gravity) X(drag) X(wind) X(airflow) X(pressure)        \
+    X(push) X(seams) X(contact) X(pairs) X(cover) CS_TERM_LIST_MORE(X)
 // clang-format on
 
 #define X(name) extern const struct cs_term cs_term_##name;
@@ -86,6 +86,11 @@ uint32_t cs_terms_use(const struct cs_scene *scene, const struct cs_plan *plan);
  * eq. 4.6-4.9). On a mesh, along the sum of the normals of its triangles, each as long as its
  * triangle is large. Where that vector is 0 the normal is 0. */
 void cs_normals_update(const struct cs_system *system, const double *x);
+
+/* The vector along the normal of particle i of a mesh, in m2: the sum of the products
+ * (b - a) x (c - a) of its triangles. With at->dx its change. */
+void cs_normal_product(const struct cs_system *system, const struct cs_body_range *body,
+                       uint32_t i, const struct cs_eval *at, double product[3]);
 
 /* Change dn of the unit normal of particle i of a body when at->x changes along at->dx. */
 void cs_normal_derivative(const struct cs_system *system, const struct cs_body_range *body,

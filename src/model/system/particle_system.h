@@ -51,7 +51,7 @@ struct cs_plan_row {
 };
 
 /* Most forces that a plan has rows for. */
-enum { CS_TERMS_MAX = 16 };
+enum { CS_TERMS_MAX = 20 };
 
 /* The features of a scene with a method, decided before anything is built. */
 struct cs_plan {
@@ -72,6 +72,8 @@ struct cs_trimesh;
 struct cs_body_range {
     uint32_t first, count, columns, rows;
     const struct cs_trimesh *mesh; /* borrowed from the scene; NULL: a grid */
+    double outwards; /* 1 or -1: the side of a closed mesh to which its faces look; with
+                        pressure */
 };
 
 struct cs_approach;
@@ -110,7 +112,7 @@ struct cs_system {
         *motions;            /* (scene->colliders.n); NULL: no event moves a collider */
     double *collider_motion; /* (3, colliders, 3) the view's copy of motions; NULL likewise */
     const struct cs_collider_params
-        *collider_params; /* (scene->colliders.n); NULL without contact by force */
+        *collider_params;   /* (scene->colliders.n); NULL without contact by force */
     double default_damping; /* s, of contact by force where the scene gives none; else 0 */
     const struct cs_approach *approach; /* NULL without contact that needs it (approach.h) */
     struct cs_pairs *pairs; /* contact between bodies, and with mesh colliders; NULL: none */

@@ -57,14 +57,18 @@ static enum cs_status add_seam(struct cs_seams *seams, uint32_t number,
     const bool triangle = !isnan(seam->to.weights[0]);
     for (uint32_t s = 0; s < n; s++) {
         struct cs_stitch *stitch = seams->stitches + seams->n++;
-        *stitch = (struct cs_stitch){.at = {sides[0][s]},
-                                     .n = triangle ? 4 : 2,
-                                     .weight = {1},
-                                     .stiffness = seam->stiffness,
-                                     .damping = seam->damping,
-                                     .length = seam->length,
-                                     .breaking_length = seam->breaking_length};
-        seams->breaks |= !isnan(seam->breaking_length);
+        *stitch = (struct cs_stitch){
+            .at = {sides[0][s]},
+            .n = triangle ? 4 : 2,
+            .weight = {1},
+            .stiffness = seam->stiffness,
+            .damping = seam->damping,
+            .length = seam->length,
+            // fmin passes over NAN
+            .breaking_length = fmin(seam->breaking_length,
+                                    seam->length + seam->breaking_force / seam->stiffness),
+            .seam = number};
+        seams->breaks |= !isnan(stitch->breaking_length);
         // weights add up to 0, so that a translation stretches nothing
         for (uint32_t k = 1; k < stitch->n; k++) {
             stitch->at[k] = sides[1][triangle ? k - 1 : s];
@@ -175,4 +179,14 @@ bool cs_seams_break(const struct cs_system *system, const double *x) {
         seams->n_broken++;
     }
     return any;
+}
+
+void cs_seams_open(const struct cs_system *system, uint32_t seam) {
+    struct cs_seams *seams = system->seams;
+    for (uint32_t s = 0; s < seams->n; s++) {
+        if (seams->stitches[s].seam != seam || seams->broken[s])
+            continue;
+        seams->broken[s] = true;
+        seams->n_broken++;
+    }
 }

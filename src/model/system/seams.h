@@ -18,6 +18,7 @@ struct cs_stitch {
     uint32_t at[4], n;                                  /* particles: p, then 1 or 3 of q */
     double weight[4];                                   /* 1 of p, those of q times -1 */
     double stiffness, damping, length, breaking_length; /* N/m, N s/m, m, m or NAN */
+    uint32_t seam;                                      /* its number in the scene */
 };
 
 /* Part of a stitch at one of its particles. */
@@ -59,6 +60,9 @@ static inline void cs_stitch_difference(const struct cs_stitch *stitch, size_t n
 /* Breaks the stitches that are too long at x (3,n), after an accepted step. Returns true if one
  * did. Nothing without seams. */
 bool cs_seams_break(const struct cs_system *system, const double *x);
+
+/* Breaks the stitches of a seam of the scene that are whole. */
+void cs_seams_open(const struct cs_system *system, uint32_t seam);
 
 /* The particle that stands for a point in tests for common points: sewn particles are one. */
 static inline uint32_t cs_seams_merged(const struct cs_system *system, uint32_t point) {

@@ -86,6 +86,8 @@ static void apply(struct cs_stiffest_modes *modes, const double *x, double a, do
                                .parts = modes->parts,
                                .dx = a != 0 ? dx : NULL,
                                .dv = b != 0 ? dv : NULL};
+    if (cs_terms_need_normals(system, at.parts))
+        cs_normals_update(system, x);
     cs_terms_jvp(system, &at, y);
     if (modes->pot)
         *modes->pot -= modes->pass_seconds;

@@ -233,6 +233,7 @@ enum { MOST_TURNS = 5 };
 /* True if friction is all of CS_PART_DISSIPATIVE. */
 static bool is_friction_alone(const struct cs_scene *scene) {
     return !(scene->contact.damping > 0) && !scene->seams.n &&
+           !(scene->forces.wind.present && !isnan(scene->forces.wind.velocity[0])) &&
            scene->contact.friction_law == CS_FRICTION_SMOOTH;
 }
 
