@@ -72,6 +72,7 @@ struct cs_point {
     enum cs_mark mark;
     bool joined, ring; /* on the line of its series; with a ring around it */
     bool front;        /* in capitals in a terminal */
+    const char *note;  /* borrowed; what an SVG tells of its mark with the values; NULL: none */
 };
 
 enum cs_series_kind { CS_SERIES_LINE, CS_SERIES_BAND, CS_SERIES_STAIRS };
@@ -128,7 +129,7 @@ enum cs_format { CS_FORMAT_PNG, CS_FORMAT_SVG, CS_FORMAT_PDF, CS_FORMATS };
 extern const char *const cs_format_names[]; /* closed by NULL */
 enum { CS_FORMATS_ALL = (1 << CS_FORMATS) - 1 };
 
-#define CS_DIAGRAM_ABI 1u /* raised with every change of the structs above or below */
+#define CS_DIAGRAM_ABI 2u /* raised with every change of the structs above or below */
 /* The module exports this table as clothsim_diagram. */
 struct cs_diagram_module {
     unsigned abi;

@@ -23,7 +23,7 @@ NAME = SHELL + MARKUP + CONTROL
 # no text: control characters but line breaks and tabs, those that turn the direction, or hide
 FORBIDDEN = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]")
 TAGS = set("html head meta title style body h1 h2 h3 pre p code table tbody tr th td div span i figure img figcaption br "
-           "script svg defs g symbol path use rect clippath mask".split())
+           "script svg defs g symbol path use rect clippath mask circle".split())
 SCENE = {"about": NAME, "bodies": [{"cloth": {"grid": [2, 2], "velocity": [0, 0, 0.1]}, "mass": {"particle": 0.01},
                                     "springs": {"stretch": 40, "damping": 0.01}, "pins": [0]}],
          "render": {"size": [32, 24]}, "time": {"fps": 20}}

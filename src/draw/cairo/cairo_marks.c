@@ -1,8 +1,9 @@
-/* Draws ink, text and marks. */
+/* Draws ink, text and marks, and gathers their titles. */
 #include "draw/cairo/cairo_marks.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* pt, from the middle of a mark to its corners; strokes */
 #define MARK_RADIUS 1.7
@@ -168,4 +169,50 @@ void cs_cairo_keys(cairo_t *cairo, const struct cs_diagram *diagram, double widt
         x += wide + 10;
     }
     *y += diagram->n_keys ? CS_LINE_HEIGHT : 0;
+}
+
+/* --- titles --- */
+
+/* of the text that gathers the titles of a context */
+static const cairo_user_data_key_t titles_key;
+
+void cs_cairo_gather_titles(cairo_t *cairo, struct cs_text *titles) {
+    cairo_set_user_data(cairo, &titles_key, titles, NULL);
+}
+
+void cs_cairo_title(cairo_t *cairo, const struct cs_panel *panel,
+                    const struct cs_series *series, const struct cs_point *p, double x,
+                    double y) {
+    struct cs_text *titles = cairo_get_user_data(cairo, &titles_key);
+    if (!titles)
+        return;
+    cs_text_add(titles, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"transparent\"><title>",
+                x, y);
+    cs_text_add_html(titles, series->name ? series->name : "");
+    cs_text_add(titles, " ");
+    cs_text_add_html(titles, p->note ? p->note : "");
+    if (p->mark == CS_MARK_CROSS)
+        cs_text_add(titles, "\ndid not finish");
+    else {
+        cs_text_add(titles, "\n%.3g ", p->x);
+        cs_text_add_html(titles, panel->x.label);
+        cs_text_add(titles, "\n%.3g ", p->y);
+        cs_text_add_html(titles, panel->y.label);
+    }
+    cs_text_add(titles, "</title></circle>\n");
+}
+
+void cs_cairo_finish_svg(struct cs_text *out, struct cs_text *titles) {
+    static const char end[] = "</svg>";
+    char *number = out->bytes ? strstr(out->bytes, "surface") : NULL;
+    if (number) {
+        const size_t digits = strspn(number + 7, "0123456789");
+        memmove(number + 7, number + 7 + digits, strlen(number + 7 + digits) + 1);
+        out->length -= digits;
+    }
+    for (char *at = out->bytes; at && (at = strstr(at, end)); at += strlen(end))
+        out->length = (size_t)(at - out->bytes);
+    cs_text_add(out, "%s%s\n", cs_text_get(titles), end);
+    out->failed |= titles->failed;
+    cs_text_finish(titles);
 }

@@ -50,4 +50,16 @@ void cs_cairo_sample(cairo_t *cairo, const struct cs_style *style, enum cs_mark 
  * of one below the last. */
 void cs_cairo_keys(cairo_t *cairo, const struct cs_diagram *diagram, double width, double *y);
 
+/* Titles of an SVG, which browsers show under the pointer: of circles that are not seen, with
+ * the series, the note and the values of a mark. A context gathers them in a text; NULL: it
+ * does not. */
+void cs_cairo_gather_titles(cairo_t *cairo, struct cs_text *titles);
+void cs_cairo_title(cairo_t *cairo, const struct cs_panel *panel,
+                    const struct cs_series *series, const struct cs_point *p, double x,
+                    double y);
+
+/* Mends the bytes of an SVG: drops the surface's number, which counts those of the process, and
+ * puts the titles at the end. Frees the titles. */
+void cs_cairo_finish_svg(struct cs_text *out, struct cs_text *titles);
+
 #endif

@@ -147,6 +147,7 @@ static void draw_marks(cairo_t *cairo, const struct box *box, const struct cs_pa
         cs_cairo_mark(cairo, mark, &series->style, x, y);
         if (p->ring)
             cs_cairo_ring(cairo, x, y);
+        cs_cairo_title(cairo, panel, series, p, x, y);
     }
 }
 
@@ -324,11 +325,12 @@ static cairo_surface_t *make_surface(enum cs_format format, double width, double
     return pdf;
 }
 
-/* Draws on a surface; returns the height. */
-static double draw_on(cairo_surface_t *surface, double scale,
-                      const struct cs_diagram *diagram) {
+/* Draws on a surface, and gathers titles unless they are NULL; returns the height. */
+static double draw_on(cairo_surface_t *surface, double scale, const struct cs_diagram *diagram,
+                      struct cs_text *titles) {
     cairo_font_options_t *options = cairo_font_options_create();
     cairo_t *cairo = cairo_create(surface);
+    cs_cairo_gather_titles(cairo, titles);
     /* letters have the same shape and width in pixels as in the files without */
     cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
     cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
@@ -350,10 +352,12 @@ static enum cs_status draw(const struct cs_diagram *diagram, enum cs_format form
                            char **bytes, size_t *length, struct cs_error *error) {
     const double width = diagram->width * PT_PER_MM;
     const bool pixels = format == CS_FORMAT_PNG;
-    struct cs_text out = {0};
+    const bool is_svg = format == CS_FORMAT_SVG;
+    struct cs_text out = {0}, titles = {0};
     cairo_surface_t *empty = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 1, 1);
-    cairo_surface_t *surface = make_surface(format, width, draw_on(empty, 1, diagram), &out);
-    draw_on(surface, pixels ? PNG_SCALE : 1, diagram);
+    cairo_surface_t *surface =
+        make_surface(format, width, draw_on(empty, 1, diagram, NULL), &out);
+    draw_on(surface, pixels ? PNG_SCALE : 1, diagram, is_svg ? &titles : NULL);
     cairo_status_t status = cairo_surface_status(surface);
     if (pixels && !status)
         status = cairo_surface_write_to_png_stream(surface, store, &out);
@@ -361,13 +365,10 @@ static enum cs_status draw(const struct cs_diagram *diagram, enum cs_format form
     status = status ? status : cairo_surface_status(surface);
     cairo_surface_destroy(surface);
     cairo_surface_destroy(empty);
-    /* the surface's number, which counts those of the process */
-    char *number = format == CS_FORMAT_SVG && out.bytes ? strstr(out.bytes, "surface") : NULL;
-    if (number) {
-        const size_t digits = strspn(number + 7, "0123456789");
-        memmove(number + 7, number + 7 + digits, strlen(number + 7 + digits) + 1);
-        out.length -= digits;
-    }
+    if (is_svg)
+        cs_cairo_finish_svg(&out, &titles);
+    if (out.failed)
+        status = CAIRO_STATUS_NO_MEMORY;
     *bytes = out.bytes;
     *length = out.length;
     if (!status)

@@ -228,7 +228,7 @@ static bool make_point(const struct filling *at, uint32_t k, struct cs_point *po
     *point = (struct cs_point){.mark = is_probe(cell) ? CS_MARK_HOLLOW : CS_MARK_FULL,
                                .joined = !is_probe(cell),
                                .ring = cs_cell_has_crossings(cell),
-                               .front = at->spread[k].front};
+                               .front = at->spread[k].front, .note = cell->options};
     if (cs_curves_point(&at->settings, cell, &point->x, &point->y)) {
         point->low = timed ? cell->cpu_low : (double)NAN;
         point->high = timed ? cell->cpu_high : (double)NAN;
@@ -243,7 +243,7 @@ static bool make_point(const struct filling *at, uint32_t k, struct cs_point *po
     *point = (struct cs_point){
         .x = pow(10, fmin(fmax(cost, x->range[0] + margin), x->range[1] - margin)),
         .y = pow(10, y->range[1] - 0.02 * (y->range[1] - y->range[0])),
-        .mark = CS_MARK_CROSS};
+        .mark = CS_MARK_CROSS, .note = cell->options};
     return true;
 }
 
