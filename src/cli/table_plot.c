@@ -23,7 +23,7 @@ enum cs_status cs_number_table_read(const char *path, struct cs_arena *arena,
     *table = (struct cs_number_table){0};
     if (cs_rows_open(&rows, path, 0, error))
         return error->status;
-    /* names and first fields point into the file's bytes */
+    /* names and words point into the file's bytes */
     char *bytes = cs_arena_alloc(arena, rows.length + 1, error);
     if (bytes) {
         memcpy(bytes, rows.bytes, rows.length + 1);
@@ -33,13 +33,15 @@ enum cs_status cs_number_table_read(const char *path, struct cs_arena *arena,
     }
     if (bytes && (line = cs_rows_next(&rows)))
         table->columns = cs_csv_cut(line, ',', table->names, CS_TABLE_COLUMNS);
+    const bool grouped = table->columns && !strcmp(table->names[0], "series");
+    const uint32_t verdict = grouped ? 0 : cs_number_table_find(table, "verdict");
     table->values = cs_arena_alloc_array(arena, (size_t)rows.n * table->columns + 1,
                                          sizeof *table->values, error);
-    table->first = cs_arena_alloc_array(arena, rows.n + 1, sizeof *table->first, error);
+    table->words = cs_arena_alloc_array(arena, rows.n + 1, sizeof *table->words, error);
     while (!error->status && (line = cs_rows_next(&rows))) {
         double *row = table->values + (size_t)table->rows * table->columns;
         const uint32_t n = cs_csv_cut(line, ',', fields, CS_TABLE_COLUMNS);
-        table->first[table->rows++] = fields[0];
+        table->words[table->rows++] = fields[verdict < n ? verdict : 0];
         for (uint32_t c = 0; c < table->columns; c++)
             if (c >= n || !cs_parse_real(fields[c], row + c))
                 row[c] = (double)NAN;
@@ -61,7 +63,7 @@ enum cs_status cs_table_plot_add_series(struct cs_table_plot *plot, struct cs_pa
                                  .points = cs_arena_alloc_array(&plot->arena, table->rows,
                                                                 sizeof *series->points, error)};
     for (uint32_t r = 0; series->points && r < table->rows; r++)
-        if (!group || !strcmp(group, table->first[r])) {
+        if (!group || !strcmp(group, table->words[r])) {
             const struct cs_point point = {.x = cs_number_table_at(table, r, columns[0]),
                                            .y = cs_number_table_at(table, r, columns[1]),
                                            .mark = group ? CS_MARK_FULL : CS_MARK_NONE,
@@ -75,8 +77,7 @@ enum cs_status cs_table_plot_add_series(struct cs_table_plot *plot, struct cs_pa
 
 /* --- maps --- */
 
-static const char *const edges[] = {"cell_left", "cell_right", "cell_bottom", "cell_top",
-                                    "verdict_number"};
+static const char *const edges[] = {"cell_left", "cell_right", "cell_bottom", "cell_top"};
 enum { EDGES = sizeof edges / sizeof *edges };
 
 static enum cs_status add_cells(struct cs_table_plot *plot, const struct cs_number_table *table,
@@ -90,12 +91,15 @@ static enum cs_status add_cells(struct cs_table_plot *plot, const struct cs_numb
         double at[EDGES];
         for (int k = 0; k < EDGES; k++)
             at[k] = cs_number_table_at(table, r, cs_number_table_find(table, edges[k]));
-        for (int k = 0; k < 4; k++)
+        for (int k = 0; k < EDGES; k++)
             cs_plot_axis_include(k < 2 ? &panel->x : &panel->y, at[k]);
+        /* by the word: numbers shift where a verdict comes in between */
+        enum cs_stability_verdict v = 0;
+        while (v < CS_STABILITY_VERDICTS && strcmp(cs_stability_word(v), table->words[r]) != 0)
+            v++;
         /* a cell that was not run yet has room, and no colour */
-        if (!(at[4] >= 0 && at[4] < CS_STABILITY_VERDICTS))
+        if (v == CS_STABILITY_VERDICTS)
             continue;
-        const enum cs_stability_verdict v = (enum cs_stability_verdict)at[4];
         box[panel->n_boxes++] = (struct cs_diagram_rect){
             at[0], at[1], at[2], at[3], cs_stability_colour(v), cs_stability_letter(v)};
         if (!there[v])

@@ -14,7 +14,7 @@ struct cs_number_table {
     char *names[CS_TABLE_COLUMNS]; /* (columns) */
     uint32_t columns, rows;
     double *values; /* (rows, columns) */
-    char **first;   /* (rows) the fields of the first column; NULL: they are numbers */
+    char **words; /* (rows) of "verdict", else, or where it is "series", of the first column */
 };
 
 /* Reads a CSV into the arena. CS_ERR_FILE, CS_ERR_MEMORY. */
@@ -45,7 +45,7 @@ enum cs_status cs_table_plot_open(struct cs_table_plot *plot, const char *path,
 void cs_table_plot_finish(struct cs_table_plot *plot);
 
 /* Adds a line of the second column over the first to a panel, whose series have room for it,
- * through the rows whose first field is `group`; NULL: all. */
+ * through the rows whose word is `group`; NULL: all. */
 enum cs_status cs_table_plot_add_series(struct cs_table_plot *plot, struct cs_panel *panel,
                                         const struct cs_number_table *table,
                                         const uint32_t columns[2], const char *group,

@@ -117,7 +117,7 @@ enum cs_status cs_spectrum_make(struct cs_number_table *table, const char *joint
             set_amplitudes(&out, into, line, 0.5 * (table->rows - 1), joint);
             into += !joint;
         }
-    out.first = table->first;
+    out.words = table->words;
     if (!error->status)
         *table = out;
     return error->status;

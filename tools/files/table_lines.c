@@ -84,8 +84,8 @@ static enum cs_status add_lines(struct cs_table_plot *plot, const struct cs_numb
             cs_table_plot_add_series(plot, panel, table, columns, NULL, error);
         /* rows of a series stand together */
         for (uint32_t r = 0; panel && grouped && !error->status && r < table->rows; r++)
-            if (r == 0 || strcmp(table->first[r], table->first[r - 1]) != 0)
-                cs_table_plot_add_series(plot, panel, table, columns, table->first[r], error);
+            if (r == 0 || strcmp(table->words[r], table->words[r - 1]) != 0)
+                cs_table_plot_add_series(plot, panel, table, columns, table->words[r], error);
     }
     for (uint32_t k = 0; k < plot->diagram.n_panels; k++) {
         cs_plot_axis_widen(&plot->panels[k].y);
