@@ -213,6 +213,13 @@ bool cs_spectral_bounds_depend_on_state(const struct cs_system *system) {
     return any_at_state(system, false);
 }
 
+bool cs_spectral_bounds_can_jump(const struct cs_system *system) {
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (has_rate(system->terms[k]))
+            return true;
+    return false;
+}
+
 /* Takes friction as far as it limits the step of an explicit method. sums: of contact alone,
  * where a damper has contact.damping times the stiffness, and friction the rest. */
 static void limit_friction(const struct cs_system *system, const struct cs_gershgorin *sums) {

@@ -110,6 +110,10 @@ void cs_spectral_bounds_rate(const struct cs_system *system, const struct cs_eva
 /* Tells whether the scene has forces with bounds at a state. */
 bool cs_spectral_bounds_depend_on_state(const struct cs_system *system);
 
+/* Tells whether bounds can rise from one step to the next, as those of contact do: bounds of
+ * elastic bodies change with their motion. */
+bool cs_spectral_bounds_can_jump(const struct cs_system *system);
+
 /* Sets view.omega and view.delta to the bounds for the whole run. */
 void cs_spectral_bounds_set(struct cs_system *system, double *work);
 

@@ -5,8 +5,9 @@
  *    the limit 2/omega, because an instability near the border grows slowly.
  *   2. Limits at the unperturbed start: worst mode, and Gershgorin bounds.
  *   3. Run velocity-verlet at half of its Gershgorin limit from the perturbed start. At each
- *    step: bounds that depend on the state, by rate. Where they are tightest so far, and at
- * times of a fixed grid: tighten the limit of the worst mode, and the Gershgorin limit.
+ *    step, or each eighth without contact: bounds that depend on the state, by rate. Where they
+ * are tightest so far, and at times of a fixed grid: tighten the limit of the worst mode, and
+ * the Gershgorin limit.
  *   4. If the run is not stable, reset the limits to those of the start and halve the step. */
 #include "study/stability/stability_state.h"
 
@@ -26,10 +27,14 @@ enum { STEPS = 200 };
 #define GRID_RATIO 32
 /* Fraction of the smallest limit by rate so far below which a step is looked at too. */
 #define TIGHTER 0.95
-/* Work of bounds at a state, and of amplification matrices at a look, in passes over the
- * forces, about. */
+/* Work of bounds at a state, of those with bending, and of amplification matrices at a look, in
+ * passes over the forces, about. */
 #define BOUND_PASSES   10
+#define BENDING_PASSES 35
 #define TIGHTEN_PASSES 500
+/* Steps from one bound to the next where bounds change with the motion alone: a step is at most
+ * 1/omega, hence about a period of the stiffest mode. */
+enum { STEPS_PER_BOUND = 8 };
 
 /* Context of the steps of one run. */
 struct way {
@@ -40,6 +45,7 @@ struct way {
     double gershgorin;    /* s, at the start */
     double next;          /* s, time of the next look */
     double smallest_rate; /* s, smallest limit by rate so far */
+    uint64_t steps;       /* that were looked at */
     struct cs_error *error;
 };
 
@@ -64,10 +70,11 @@ static void charge(struct way *way, double passes) {
  * Dampers are left to the looks of the grid. */
 static bool is_tightest(struct way *way, const struct cs_eval *at) {
     double w, delta;
-    if (!cs_spectral_bounds_depend_on_state(way->system))
+    if (!cs_spectral_bounds_depend_on_state(way->system) ||
+        (way->steps++ % STEPS_PER_BOUND && !cs_spectral_bounds_can_jump(way->system)))
         return false;
     cs_spectral_bounds_rate(way->system, at, false, way->theory->modes.dx, &w, &delta);
-    charge(way, BOUND_PASSES);
+    charge(way, way->system->bendings ? BENDING_PASSES : BOUND_PASSES);
     const double limit = limit_by_rate(w, 2 * way->system->view.delta);
     if (!(limit < TIGHTER * way->smallest_rate))
         return false;
@@ -143,6 +150,7 @@ static bool run_once(struct cs_reference *reference,
     way->system = NULL;
     way->next = 0;
     way->smallest_rate = HUGE_VAL;
+    way->steps = 0;
     reference->smallest_time = 0;
     // limits along a failed run do not count
     reference->smallest_limit = reference->start_limit;
