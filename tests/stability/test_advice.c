@@ -180,3 +180,58 @@ TEST(friction_limits_no_step) {
     }
     cs_advise_finish(&advise);
 }
+
+/* Advice and bisected border in s of velocity-verlet on a scene; %s stands for friction. */
+static void advise_sliding(const char *format, const char *friction, double *safe,
+                           double *border) {
+    char text[1024];
+    struct cs_error error = {0};
+    struct cs_advise advise = {.session = {.scene = "sliding", .text = text},
+                               .methods = (const char *const[]){"velocity-verlet"},
+                               .n_methods = 1,
+                               .seconds = 0.3,
+                               .bisect_too = true,
+                               .workers = 1};
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+    snprintf(text, sizeof text, format, friction);
+#pragma GCC diagnostic pop
+    cs_advise_run(&advise, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    ck_assert_int_eq(advise.rows->verdict, CS_STABILITY_BOUNDED);
+    ck_assert(advise.was_opened.system.scene->contact.damping > 0);
+    *safe = advise.rows->safe;
+    *border = advise.rows->measured;
+    cs_advise_finish(&advise);
+}
+
+/* Dampers of contact limit steps, friction beside them does not: a sheet on a floor, and one on
+ * another. Advice and border are those without friction. With the slope of friction in it the
+ * advice was 50 and 300 times shorter, and the border ended at 1.5 times the limit. */
+TEST(friction_beside_dampers_limits_no_step) {
+#define SPRINGS                                                                                \
+    "\"springs\": {\"stretch\": 20, \"shear\": 5, \"bend\": 0.1, \"damping\": 0.002}, "        \
+    "\"mass\": {\"areal_density\": 0.2}"
+    static const char *const scenes[] = {
+        "{\"bodies\": [{\"cloth\": {\"grid\": [10, 10], \"size\": 0.5, \"start\": \"flat\", "
+        "\"place\": "
+        "{\"translate\": [0, 0.02, 0]}, \"velocity\": [1, 0, 0]}, " SPRINGS
+        "}], \"colliders\": [{\"floor\": {\"height\": 0}, \"friction\": %s}]}",
+        "{\"bodies\": [{\"cloth\": {\"grid\": [8, 8], \"size\": 0.4, \"start\": "
+        "\"flat\"}, " SPRINGS
+        ", \"pins\": [\"edges\"]}, {\"cloth\": {\"grid\": [4, 4], \"size\": 0.15, \"start\": "
+        "\"flat\", \"velocity\": [0.5, 0, 0], \"place\": {\"translate\": [0, 0.02, "
+        "0]}}, " SPRINGS "}], \"pairs\": {\"among\": \"all\", \"friction\": %s}, \"contact\": "
+                         "{\"damping\": 2e-3}}"};
+#undef SPRINGS
+    for (int k = 0; k < 2; k++) {
+        double safe[2], border[2];
+        advise_sliding(scenes[k], "0", safe, border);
+        advise_sliding(scenes[k], "0.5", safe + 1, border + 1);
+        printf("advised %g and %g s, borders %g and %g s\n", safe[0], safe[1], border[0],
+               border[1]);
+        ck_assert_double_eq_tol(safe[1] / safe[0], 1, 0.05);
+        ck_assert_double_eq_tol(border[1] / border[0], 1, 0.05);
+        ck_assert(border[1] > safe[1] && border[1] < 1.3 * safe[1]);
+    }
+}

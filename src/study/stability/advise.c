@@ -131,13 +131,17 @@ static enum cs_status try_lower(struct cs_advice *row,
     return try_shorter(row, settings, reference, frame, error);
 }
 
-/* Bisects the border for comparison with theory, starting from 1.5 times the theoretical limit.
- */
+/* Bisects the border for comparison with theory, up to 1.5 times its limit; a border there is
+ * not known to be unstable, and the search goes on from it. */
 static enum cs_status check_limit(struct cs_advice *row,
                                   const struct cs_sampled_run_settings *settings,
                                   const struct cs_reference *reference,
                                   struct cs_error *error) {
-    return cs_stability_boundary(settings, reference, 0, 1.5 * row->limit, &row->measured,
+    const double most = 1.5 * row->limit;
+    if (cs_stability_boundary(settings, reference, 0, most, &row->measured, error) ||
+        !(row->measured > 0.98 * most && row->measured < HUGE_VAL))
+        return error->status;
+    return cs_stability_boundary(settings, reference, 0.98 * most, HUGE_VAL, &row->measured,
                                  error);
 }
 

@@ -40,7 +40,7 @@ enum { STEPS_PER_BOUND = 8 };
 struct way {
     struct cs_theory *theory; /* NULL: no limits are asked for */
     struct cs_reference *reference;
-    const struct cs_system *system; /* of the run: its colliders move, and its ramps continue */
+    struct cs_system *system; /* of the run: its colliders move, and its ramps continue */
     bool is_explicit;
     double gershgorin;    /* s, at the start */
     double next;          /* s, time of the next look */

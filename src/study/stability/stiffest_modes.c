@@ -20,11 +20,13 @@ enum { MOST_RESTARTS = 12, MOST_SWEEPS = 40 };
 /* Relative change of the Ritz value between restarts that ends the search. The step limit goes
  * as value^(-1/2) without damping, hence half of this error. */
 #define TOLERANCE 1e-4
+/* m/s, at which smooth friction has no slope that counts; its fourth power is finite. */
+#define NO_FRICTION_SPEED 1e12
 
-enum cs_status cs_stiffest_modes_init(struct cs_stiffest_modes *modes,
-                                      const struct cs_system *system, struct cs_error *error) {
+enum cs_status cs_stiffest_modes_init(struct cs_stiffest_modes *modes, struct cs_system *system,
+                                      struct cs_error *error) {
     const size_t n = system->view.n;
-    *modes = (struct cs_stiffest_modes){.system = system, .parts = CS_PART_LINEARISED};
+    *modes = (struct cs_stiffest_modes){.system = system};
     double **arrays[] = {&modes->dx, &modes->dv, &modes->zeros, &modes->last_vector};
     modes->basis = cs_arena_alloc_array(&modes->arena, (CS_STIFFEST_MODES_BASIS + 1) * 3 * n,
                                         sizeof(double), error);
@@ -69,9 +71,13 @@ static bool normalise(size_t n, double *p) {
  * = -b M^-1/2 p. A term with factor 0 is not evaluated. */
 static void apply(struct cs_stiffest_modes *modes, const double *x, double a, double b,
                   const double *p, double *y) {
-    const struct cs_system *system = modes->system;
+    struct cs_system *system = modes->system;
+    const struct cs_scene *given = system->scene;
+    struct cs_scene frictionless = *given;
     const size_t n = system->view.n;
     double *dx = modes->dx, *dv = modes->dv;
+    /* the slope of friction goes as 1/friction_speed */
+    frictionless.contact.friction_speed = NO_FRICTION_SPEED;
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
             /* negative, because the product of the Jacobian is -K dx - C dv */
@@ -83,12 +89,14 @@ static void apply(struct cs_stiffest_modes *modes, const double *x, double a, do
     const struct cs_eval at = {.t = modes->t,
                                .x = x,
                                .v = modes->zeros,
-                               .parts = modes->parts,
+                               .parts = CS_PART_LINEARISED,
                                .dx = a != 0 ? dx : NULL,
                                .dv = b != 0 ? dv : NULL};
     if (cs_terms_need_normals(system, at.parts))
         cs_normals_update(system, x);
+    system->scene = &frictionless;
     cs_terms_jvp(system, &at, y);
+    system->scene = given;
     if (modes->pot)
         *modes->pot -= modes->pass_seconds;
     for (size_t c = 0; c < 3; c++)

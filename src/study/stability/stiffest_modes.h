@@ -29,13 +29,12 @@ struct cs_mode {
 
 /* Memory of the search; zeroed: empty. */
 struct cs_stiffest_modes {
-    const struct cs_system *system; /* borrowed */
-    double t;                       /* s, at which forces are taken */
-    uint32_t parts;                 /* of the forces; CS_PART_LINEARISED unless set */
-    double *basis;                  /* (CS_STIFFEST_MODES_BASIS + 1, 3n) */
-    double *dx, *dv, *zeros;        /* (3,n) each: arguments of the products */
-    double *root;                   /* (n) root of 1/m */
-    double *last_vector;            /* (3,n) the motion found last, where the next starts */
+    struct cs_system *system; /* borrowed; products give it another scene for their time */
+    double t;                 /* s, at which forces are taken */
+    double *basis;            /* (CS_STIFFEST_MODES_BASIS + 1, 3n) */
+    double *dx, *dv, *zeros;  /* (3,n) each: arguments of the products */
+    double *root;             /* (n) root of 1/m */
+    double *last_vector;      /* (3,n) the motion found last, where the next starts */
     bool has_start;
     double pass_seconds, *pot; /* nominal s of a product, and where it is subtracted, or NULL */
     struct cs_arena arena;
@@ -46,12 +45,13 @@ enum { CS_STIFFEST_MODES_BASIS = 24 };
 
 /* Allocates for the particles of the system, which is borrowed. Returns CS_ERR_MEMORY; the
  * object is then empty. */
-enum cs_status cs_stiffest_modes_init(struct cs_stiffest_modes *modes,
-                                      const struct cs_system *system, struct cs_error *error);
+enum cs_status cs_stiffest_modes_init(struct cs_stiffest_modes *modes, struct cs_system *system,
+                                      struct cs_error *error);
 /* Frees all arrays; a zeroed object is allowed. */
 void cs_stiffest_modes_finish(struct cs_stiffest_modes *modes);
 
-/* Finds the motion with the largest a square + b rate at the positions x (3,n) in m.
+/* Finds the motion with the largest a square + b rate at the positions x (3,n) in m, without
+ * smooth friction.
  *
  * Power iteration accelerated over its Krylov space (Lanczos 1950; Golub and Van Loan 2013, ch.
  * 10), restarted with the best vector until the value changes by less than a relative 1e-4.

@@ -230,23 +230,12 @@ static enum cs_status normal_amplification(const struct cs_amplification *amplif
  * %. */
 enum { MOST_TURNS = 5 };
 
-/* True if friction is all of CS_PART_DISSIPATIVE. */
-static bool is_friction_alone(const struct cs_scene *scene) {
-    return !(scene->contact.damping > 0) && !scene->seams.n &&
-           !(scene->forces.wind.present && !isnan(scene->forces.wind.velocity[0])) &&
-           scene->contact.friction_law == CS_FRICTION_SMOOTH;
-}
-
-enum cs_status cs_theory_init(struct cs_theory *theory, const struct cs_system *system,
+enum cs_status cs_theory_init(struct cs_theory *theory, struct cs_system *system,
                               const struct cs_integrator *integrator, const void *options,
                               double growth, struct cs_error *error) {
     *theory = (struct cs_theory){.amplification = {integrator, options, growth},
                                  .stiffness_damping_direction = {1, 0}};
-    if (cs_stiffest_modes_init(&theory->modes, system, error))
-        return error->status;
-    if (is_friction_alone(system->scene))
-        theory->modes.parts = CS_PART_LINEARISED & ~(uint32_t)CS_PART_DISSIPATIVE;
-    return CS_OK;
+    return cs_stiffest_modes_init(&theory->modes, system, error);
 }
 
 void cs_theory_finish(struct cs_theory *theory) {
@@ -364,7 +353,7 @@ enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
  * that is only damped: the fastest of those is searched by itself. */
 static enum cs_status consider_dampers(struct cs_theory *theory, const double *x,
                                        struct cs_theory_limit *limit, struct cs_error *error) {
-    if (!(theory->modes.parts & CS_PART_DISSIPATIVE) ||
+    if (!(theory->modes.system->scene->contact.damping > 0) ||
         !cs_spectral_bounds_depend_on_state(theory->modes.system))
         return CS_OK;
     theory->modes.has_start = false;

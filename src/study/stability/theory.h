@@ -18,7 +18,7 @@
  * the largest eigenvalue of a K + b C with a = n1 h^2 and b = n2 h. The search alternates
  * between this eigenvalue problem and the normal at the new limit.
  *
- * Smooth friction is left out where nothing else dissipates in contact. Its slope is up to mu
+ * Smooth friction is left out of modes, dampers of contact are not. Its slope is up to mu
  * N/ev, but its force is bounded by mu N: whatever the step h, it changes a velocity by mu N
  * h/m at most, which is mu times what the load does. In steps that are too long for it a
  * velocity along the surface turns round in each, and stays at half of that change. */
@@ -95,7 +95,7 @@ struct cs_theory_limit {
  *
  * The system is read at each request of a limit. It may be rebuilt in between from the same
  * scene. Returns CS_ERR_MEMORY; the object is then empty. */
-enum cs_status cs_theory_init(struct cs_theory *theory, const struct cs_system *system,
+enum cs_status cs_theory_init(struct cs_theory *theory, struct cs_system *system,
                               const struct cs_integrator *integrator, const void *options,
                               double growth, struct cs_error *error);
 
