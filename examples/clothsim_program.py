@@ -69,7 +69,10 @@ class Host:
     def _receive(self):
         message = b""
         while len(message) < MESSAGE.size:
-            more = self._socket.recv(MESSAGE.size - len(message))
+            try:
+                more = self._socket.recv(MESSAGE.size - len(message))
+            except ConnectionError:
+                more = b""
             if not more:
                 os._exit(0)  # the run is over
             message += more

@@ -3,6 +3,7 @@
 methods, every command takes them, a bad one gives one line and its exit status, and no file starts one.
 
 usage: programs.py PROGRAM SOURCE
+       programs.py PROGRAM SOURCE card      the whole card on both clients
 """
 import csv
 import importlib.util
@@ -83,10 +84,28 @@ def check_bits():
     ours = state("rk4:dt=0.0005", scene=drum, frames="6")
     theirs = state(f"program:{PYTHON} {rk4}:dt=0.0005", scene=drum, frames="6")
     told("rk4 in Python has the bits of rk4", ours == theirs, f"{ours}\n{theirs}")
-    subprocess.run(["cc", "-std=gnu17", "-O2", "-ffp-contract=off", f"-I{source}/include",
-                    f"{EXAMPLES}/midpoint_program.c", "-o", "midpoint", "-lm"], check=True)
+    build_client()
     c, python = state("program:./midpoint:dt=1e-3"), state(f"program:{PYTHON} midpoint.py:dt=1e-3")
     told("a method in C has the bits of that in Python", c == python and len(c) == 32, f"{c}\n{python}")
+
+
+def build_client():
+    subprocess.run(["cc", "-std=gnu17", "-O2", "-ffp-contract=off", f"-I{source}/include",
+                    f"{EXAMPLES}/midpoint_program.c", "-o", "midpoint", "-lm"], check=True)
+
+
+def check_cards():
+    """The whole card passes; a program that claims too high an order is found."""
+    build_client()
+    for name in ("./midpoint", f"{PYTHON} midpoint.py"):
+        code, out, err = call("conform", "-q", f"program:{name}")
+        told(f"the card of {name}", code == 0 and " 0 fail" in out and not err, f"{code}\n{out}{err}")
+    with open("midpoint.py") as file:
+        claims = file.read().replace("order=2", "order=3")
+    with open("claims.py", "w") as file:
+        file.write(claims)
+    code, out, err = call("conform", "--only", "order", f"program:{PYTHON} claims.py")
+    told("an order that it has not", code == 1 and "FAIL      order" in out, f"{code}\n{out}{err}")
 
 
 def check_commands():
@@ -111,6 +130,20 @@ def check_commands():
     errors = {round(float(row["value"]), 7): float(row["error"]) for row in rows}
     ratio = errors.get(8e-4, 0) / errors.get(1e-4, 1)
     told("compare measures its order", 50 < ratio < 80, f"{ratio}\n{out}{err}")
+
+
+def check_ranking():
+    """Beside a program all are ranked by work, whatever the times were."""
+    code, out, err = call("compare", "scene.json", "-t", "0.1", "-o", "ranked", "--runs", "3", "-q", "-i",
+                          f"program:{PYTHON} midpoint.py:dt=1e-4..8e-4,velocity-verlet")
+    with open("ranked/compare.json") as file:
+        report = json.load(file) if code == 0 else {"cells": [], "verdict": []}
+    cells, ranks = report["cells"], [rank for rank in report["verdict"] if "factor" in rank]
+    exact = [rank["factor"] == rank["work_factor"] == cells[rank["next"]]["work"] / cells[rank["best"]]["work"] >= 1
+             and rank["best"] == rank["least_work"] for rank in ranks]
+    told("a factor beside a program is that of the work", exact and all(exact), f"{ranks}\n{out}{err}")
+    told("the verdict says so", "warning: ranked by work" in out and "times less work than" in out
+         and "cheaper than" not in out and " ms, work" not in out, out)
 
 
 def check_scipy():
@@ -200,12 +233,9 @@ def check_door():
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     write_programs()
-    check_bits()
-    check_commands()
-    check_scipy()
-    check_faults()
-    check_signal()
-    check_door()
+    for check in ([check_cards] if "card" in sys.argv[3:] else
+                  [check_bits, check_commands, check_ranking, check_scipy, check_faults, check_signal, check_door]):
+        check()
     os.chdir("/")
 print(f"1..{n}")
 sys.exit(failed > 0)

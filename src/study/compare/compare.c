@@ -8,6 +8,7 @@
 #include "model/event/events.h"
 #include "scene/body_pairs.h"
 #include "scene/file/scene_read.h"
+#include "sim/module.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_state.h"
 #include "study/compare/equal_error.h"
@@ -176,6 +177,8 @@ static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *er
                                                 .n_plugins = session->n_plugins,
                                                 .fps = compare->fps,
                                                 .omega = compare->omega};
+    for (uint32_t k = 0; k < asked.n_plugins; k++)
+        compare->by_work |= cs_program_is_named(asked.plugins[k]);
     if (!cs_cell_list_parse(&compare->cells, &asked, error) && !check_methods(compare, error))
         store_shard(compare);
     return error->status;

@@ -108,6 +108,7 @@ struct cs_compare {
     char undrawn[300];           /* why there are no diagrams, "" they are there */
     struct cs_text provenance; /* origin.json: everything a row depends on besides its method */
     bool contact;              /* by force: a part of the equation of motion */
+    bool by_work; /* methods are ranked by it: a program's time is that of two processes */
     uint32_t particles, springs, n_event_times; /* cuts: times of events */
     double fps, omega, time, budget;
     double pass_seconds;                  /* nominal s of one pass over the forces */

@@ -29,24 +29,30 @@ static void mark_front(struct cs_ranking *ranking, const struct cs_choice *choic
     const struct cs_compare *compare = choice->compare;
     const struct cs_cell *cells = compare->cells.cells;
     for (uint32_t k = 0; k < compare->cells.n; k++) {
-        const double error = cs_choice_error(cells + k, choice);
+        const double error = cs_choice_error(cells + k, choice),
+                     cost = cs_choice_cost(cells + k, choice);
         ranking->on_pareto_front[k] = cs_choice_is_ranked(cells + k, choice);
         for (uint32_t i = 0; i < compare->cells.n && ranking->on_pareto_front[k]; i++)
-            if (cs_choice_is_ranked(cells + i, choice) && cells[i].cpu < cells[k].cpu &&
+            if (cs_choice_is_ranked(cells + i, choice) &&
+                cs_choice_cost(cells + i, choice) < cost &&
                 cs_choice_error(cells + i, choice) <= error)
                 ranking->on_pareto_front[k] = false;
     }
 }
 
 /* Cost ratio of a cell to a base. Returns whether it differs from 1: by the interval of pairs
- * if there is one, else by a factor of CS_APART_UNPAIRED at least. */
+ * if there is one, else by a factor of CS_APART_UNPAIRED at least; work is exact. */
 static bool compare_costs(const struct cs_compare *compare, const struct cs_cell *cell,
                           const struct cs_cell *base, struct cs_ratio *ratio) {
     const struct cs_cell *cells = compare->cells.cells;
+    const double work = cell->work / base->work;
     *ratio = (struct cs_ratio){
         .median = cell->cpu / base->cpu, .low = (double)NAN, .high = (double)NAN};
-    if (compare->rounds.n == 0 || !cs_rounds_ratio(&compare->rounds, (uint32_t)(cell - cells),
-                                                   (uint32_t)(base - cells), ratio))
+    if (compare->by_work)
+        *ratio = (struct cs_ratio){.median = work, .low = work, .high = work};
+    else if (compare->rounds.n == 0 ||
+             !cs_rounds_ratio(&compare->rounds, (uint32_t)(cell - cells),
+                              (uint32_t)(base - cells), ratio))
         return ratio->median >= CS_APART_UNPAIRED;
     return ratio->low > 1;
 }
@@ -77,7 +83,8 @@ static void mark_contenders(struct cs_ranking *ranking, const struct cs_rank *ra
         struct cs_standing standing;
         end = cs_choice_series_end(choice, first);
         cs_standing_find(choice, pass, first, end, &standing);
-        if (standing.cell && standing.cell->cpu <= far * rank->best->cpu)
+        if (standing.cell &&
+            cs_choice_cost(standing.cell, choice) <= far * cs_choice_cost(rank->best, choice))
             ranking->is_contender[standing.cell - sweep->cells] = true;
     }
     if (rank->runner_up && (rank->runner_up->cpu <= FAR_NEXT * rank->best->cpu ||
@@ -93,6 +100,7 @@ static void find_best(struct cs_rank *rank, const struct cs_choice *choice,
     struct cs_standing frugal;
     find_cheapest(choice, pass, NULL, rank->of);
     rank->best = rank->of[0].cell;
+    rank->by_work = choice->by_work;
     if (!rank->best)
         return;
     by_work.by_work = true;
@@ -127,7 +135,7 @@ static void choose(struct cs_ranking *ranking, struct cs_rank *rank,
 static void rank_by_other_norms(struct cs_rank *rank, const struct cs_choice *choice) {
     const struct cs_compare *compare = choice->compare;
     for (enum cs_norm norm = 0; norm < CS_NORMS; norm++) {
-        struct cs_choice by = {.compare = compare, .norm = norm};
+        struct cs_choice by = {.compare = compare, .norm = norm, .by_work = compare->by_work};
         struct cs_ratio ratio;
         if (norm == choice->norm || !cs_norm_is_known(norm, &compare->reference) ||
             !cs_choice_is_ranked(rank->best, &by))
@@ -135,7 +143,7 @@ static void rank_by_other_norms(struct cs_rank *rank, const struct cs_choice *ch
         by.bound = cs_choice_error(rank->best, &by);
         struct cs_standing found;
         find_cheapest(&by, cs_choice_is_met, rank->best, &found);
-        if (found.cell && found.cell->cpu < rank->best->cpu &&
+        if (found.cell && cs_choice_cost(found.cell, &by) < cs_choice_cost(rank->best, &by) &&
             compare_costs(compare, rank->best, found.cell, &ratio))
             rank->better_by_norm[norm] = found.cell;
     }
@@ -172,7 +180,9 @@ static void make_frame(struct cs_ranking *ranking, const struct cs_choice *choic
 
 enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compare *compare,
                                struct cs_error *error) {
-    struct cs_choice choice = {.compare = compare, .norm = compare->settings->ranking_norm};
+    struct cs_choice choice = {.compare = compare,
+                               .norm = compare->settings->ranking_norm,
+                               .by_work = compare->by_work};
     *ranking = (struct cs_ranking){.norm = choice.norm};
     ranking->on_pareto_front = calloc(compare->cells.n + 1, sizeof *ranking->on_pareto_front);
     ranking->is_contender = calloc(compare->cells.n + 1, sizeof *ranking->is_contender);
@@ -189,8 +199,10 @@ enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compa
 }
 
 void cs_ranking_at(const struct cs_compare *compare, double bound, struct cs_rank *rank) {
-    const struct cs_choice choice = {
-        .compare = compare, .norm = compare->settings->ranking_norm, .bound = bound};
+    const struct cs_choice choice = {.compare = compare,
+                                     .norm = compare->settings->ranking_norm,
+                                     .bound = bound,
+                                     .by_work = compare->by_work};
     *rank = (struct cs_rank){.exponent = (int)floor(log10(bound))};
     find_best(rank, &choice, cs_choice_is_met);
 }
@@ -204,7 +216,7 @@ void cs_ranking_finish(struct cs_ranking *ranking) {
 /* True if more rounds would not change the statement on this rank. */
 static bool is_narrow(const struct cs_rank *rank, double share) {
     const struct cs_ratio *ratio = &rank->ratio;
-    if (!rank->has_factor || ratio->median > FAR_NEXT)
+    if (!rank->has_factor || rank->by_work || ratio->median > FAR_NEXT)
         return true;
     return ratio->pairs > 0 && ratio->pair_uncertainty <= share;
 }

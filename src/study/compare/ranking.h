@@ -2,7 +2,8 @@
  * margin.
  *
  * For each power of ten of the error the cheapest method is the best, and the next one the
- * runner-up. Cost is the median processor time; the ranking by work is told beside it. The
+ * runner-up. Cost is the median processor time, and the ranking by work is told beside it; in a
+ * comparison with programs cost is work alone. The
  * Pareto front holds the cells with no other one both cheaper and at least as accurate. Only
  * cells that were timed on this machine are ranked. */
 #ifndef CS_RANKING_H
@@ -23,6 +24,7 @@ struct cs_rank {
     const struct cs_cell *best, *runner_up; /* borrowed; NULL: no other series was run to it */
     struct cs_standing of[2];               /* of the two */
     bool has_factor;                        /* neither of them is somewhere below */
+    bool by_work;                           /* cost is work, and no times are compared */
     struct cs_ratio ratio;                  /* runner-up over best, if has_factor */
     struct cs_ratio work;         /* the same of counts, with the last level of the interval */
     bool is_significant;          /* their costs differ significantly */

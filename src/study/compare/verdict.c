@@ -16,9 +16,10 @@ static void add_cell(const struct cs_cell *cell, struct cs_text *out) {
         cs_text_add(out, "%s", cell->series);
 }
 
-/* Time and work of a cell. */
-static void add_cost(const struct cs_cell *cell, struct cs_text *out) {
-    cs_text_add(out, ", %.3g ms", 1e3 * cell->cpu);
+/* Time and work of a cell; by_work: without the time. */
+static void add_cost(const struct cs_cell *cell, bool by_work, struct cs_text *out) {
+    if (!by_work)
+        cs_text_add(out, ", %.3g ms", 1e3 * cell->cpu);
     if (isfinite(cell->work))
         cs_text_add(out, ", work %.0f", cell->work);
 }
@@ -38,7 +39,9 @@ static void add_factor(const struct cs_rank *rank, const char *none, struct cs_t
         cs_text_add(out, "\n");
         return;
     }
-    if (!rank->is_significant)
+    if (rank->by_work)
+        cs_text_add(out, "; %.2f times less work than ", rank->work.median);
+    else if (!rank->is_significant)
         cs_text_add(out, "; not significantly different from ");
     else if (ratio->pairs > 0)
         cs_text_add(out, "; %.2f times (%.2f to %.2f) cheaper than ", ratio->median, ratio->low,
@@ -46,7 +49,7 @@ static void add_factor(const struct cs_rank *rank, const char *none, struct cs_t
     else
         cs_text_add(out, "; about %.1f times cheaper than ", ratio->median);
     add_cell(rank->runner_up, out);
-    if (rank->best->work > 0)
+    if (rank->best->work > 0 && !rank->by_work)
         cs_text_add(out, ", by work %.2f", rank->work.median);
     cs_text_add(out, "\n");
 }
@@ -81,7 +84,8 @@ static void add_others(const struct cs_rank *rank, const char *bullet, struct cs
                 cs_text_add(out, "%s%s", also > norm ? ", " : "", cs_norm_words(also));
         cs_text_add(out, ", and cheaper: ");
         add_cell(other, out);
-        cs_text_add(out, ", %.3g ms\n", 1e3 * other->cpu);
+        cs_text_add(out, rank->by_work ? ", work %.0f\n" : ", %.3g ms\n",
+                    rank->by_work ? other->work : 1e3 * other->cpu);
     }
 }
 
@@ -96,7 +100,7 @@ static void add_rank(const struct cs_ranking *ranking, const struct cs_rank *ran
     add_cell(rank->best, out);
     if (rank->of[0].relation == CS_BOUND_LIMIT)
         cs_text_add(out, " at its limit");
-    add_cost(rank->best, out);
+    add_cost(rank->best, rank->by_work, out);
     add_factor(rank, "no other series was run to that error", out);
     add_frugal(rank, bullet, out);
     add_others(rank, bullet, out);
@@ -123,7 +127,7 @@ static void add_frame(const struct cs_ranking *ranking, const char *bullet,
         cs_text_add(out, "\n");
     } else {
         add_cell(best, out);
-        add_cost(best, out);
+        add_cost(best, compare->by_work, out);
         if (isfinite(best->error))
             cs_text_add(out, ", error %.1e m", best->error);
         if (isfinite(best->energy_error))
@@ -191,9 +195,13 @@ void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct 
     const struct cs_cell *nearest = most_accurate(compare);
     if (rank.best) {
         cs_cell_integrator(rank.best, integrator, sizeof integrator);
-        cs_text_add(out, "%s of at most %.3g %s after %.4g s: -i %s, %.3g ms per frame",
-                    cs_norm_words(norm), bound, cs_norm_unit(norm), compare->time, integrator,
-                    1e3 * rank.best->cpu / compare->settings->run.frames);
+        cs_text_add(out, "%s of at most %.3g %s after %.4g s: -i %s", cs_norm_words(norm),
+                    bound, cs_norm_unit(norm), compare->time, integrator);
+        if (rank.by_work)
+            add_cost(rank.best, true, out);
+        else
+            cs_text_add(out, ", %.3g ms per frame",
+                        1e3 * rank.best->cpu / compare->settings->run.frames);
         add_factor(&rank, "no other series was run to that error", out);
     } else if (nearest) {
         cs_cell_integrator(nearest, integrator, sizeof integrator);
@@ -263,6 +271,8 @@ void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
     if (cs_text_get(&compare->switched_off)[0])
         cs_text_add(out, "%s%s switched off: not part of the equation of motion\n", bullet,
                     cs_text_get(&compare->switched_off));
+    if (compare->by_work)
+        cs_text_add(out, "%sranked by work: times of programs are not comparable\n", bullet);
     /* one line for all cells of a kind, however many there are */
     add(out, bullet, stats.below, "below the reference's own error",
         ": not drawn, and ranked as if at it");
