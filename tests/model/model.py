@@ -8,6 +8,7 @@ neither lists nor gradients are shared with the program. SciPy's DOP853 integrat
 """
 import itertools
 import json
+from functools import reduce
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ TINY = 1e-30  # complex step
 
 
 def dot(a, b):
-    return np.sum(a * b, axis=-1)
+    return sum(a[..., c] * b[..., c] for c in range(a.shape[-1]))  # np.sum is slow over three
 
 
 def smooth_positive(x, e):
@@ -81,13 +82,12 @@ def feature(p, form, e):
 
 
 def gradient(distance, p, *args):
-    """d, its gradient by the points (n, 4, 3) and the weights: 13 states of each pair at a time."""
+    """The gradient of a distance by the points (n, 4, 3): 12 states of each pair at a time."""
     n = len(p)
-    states = np.tile(p, (13, 1, 1)).astype(complex)
-    for k in range(12):
-        states[n * k:n * (k + 1), k // 3, k % 3] += 1j * TINY
-    d, weights = distance(states, *(np.tile(a, 13) if np.ndim(a) else a for a in args))
-    return np.real(d[12 * n:]), np.imag(d[:12 * n]).reshape(12, n).T.reshape(n, 4, 3) / TINY, np.real(weights[12 * n:])
+    states = np.tile(p.astype(complex), (12, 1, 1)).reshape(12, n, 12)
+    states[np.arange(12), :, np.arange(12)] += 1j * TINY
+    d, _ = distance(states.reshape(-1, 4, 3), *(np.tile(a, 12) if np.ndim(a) else a for a in args))
+    return np.imag(d).reshape(12, n).T.reshape(n, 4, 3) / TINY
 
 
 class Model:
@@ -151,13 +151,15 @@ class Model:
             yield D, mu, rows, inner, share, np.array(edges, int).reshape(-1, 4)
 
     def near(self, x, rows, split, D):  # which pairs have boxes nearer than D
-        p = x[rows]
-        low = p[:, :split].min(1) - p[:, split:].max(1), p[:, split:].min(1) - p[:, :split].max(1)
-        return np.all(np.maximum(*low) < D, axis=1)
+        p = [x[column] for column in rows.T]
+        low, high = ([reduce(least, side) for side in (p[:split], p[split:])] for least in (np.minimum, np.maximum))
+        gap = np.maximum(low[0] - high[1], low[1] - high[0])
+        return (gap[:, 0] < D) & (gap[:, 1] < D) & (gap[:, 2] < D)
 
-    def add_pairs(self, f, x, v, d, g, weights, rows, D, k, mu):
-        inside = (d < D) & (k != 0)
-        d, g, weights, rows, k = d[inside], g[inside], weights[inside], rows[inside], k[inside]
+    def add_pairs(self, f, x, v, distance, found, args, rows, D, k, mu):
+        inside = (found[0] < D) & (k != 0)
+        d, weights, rows, k = found[0][inside], found[1][inside], rows[inside], k[inside]
+        g = gradient(distance, x[rows], *(a[inside] if np.ndim(a) else a for a in args))
         F, K = barrier(d, D, k)
         r, V = np.einsum("nk,nkc->nc", weights, x[rows]), np.einsum("nk,nkc->nc", weights, v[rows])
         normal = r / np.sqrt(dot(r, r) + 1e-24)[:, None]
@@ -175,14 +177,16 @@ class Model:
             beyond = np.stack([l2, 1 - l1 - l2, l1]) < 0  # edges 12, 23, 31
             # the plane, three edges and three vertices: rows turned so that each comes first
             turned = np.concatenate([rows] + 2 * [rows[:, [0, 1, 2, 3]], rows[:, [0, 2, 3, 1]], rows[:, [0, 3, 1, 2]]])
-            d, g, weights = gradient(feature, x[turned], np.repeat([0, 1, 1, 1, 2, 2, 2], len(rows)), e)
-            reach = np.where(beyond, d.reshape(7, -1)[1:4], np.inf)
+            args = np.repeat([0, 1, 1, 1, 2, 2, 2], len(rows)), e
+            found = feature(x[turned], *args)
+            reach = np.where(beyond, found[0].reshape(7, -1)[1:4], np.inf)
             nearest = beyond & (np.arange(3)[:, None] == reach.argmin(0))
             times = np.concatenate([[~beyond.any(0)], nearest - inner.T / 2, share.T]).ravel()
-            self.add_pairs(f, x, v, d, g, weights, turned, range_, k * times, mu)
+            self.add_pairs(f, x, v, feature, found, args, turned, range_, k * times, mu)
         edges = edges[self.near(x, edges, 2, D / 2)]
         if len(edges):
-            self.add_pairs(f, x, v, *gradient(edge_pair, x[edges], D / 2), edges, D / 2, np.full(len(edges), 4 * k), mu)
+            found = edge_pair(x[edges], D / 2)
+            self.add_pairs(f, x, v, edge_pair, found, (D / 2,), edges, D / 2, np.full(len(edges), 4 * k), mu)
 
     def collider_distance(self, c, x):
         """Distance of points from a sphere, plane, floor, box or capsule."""
