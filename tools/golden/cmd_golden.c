@@ -145,6 +145,7 @@ static enum cs_status take_states(struct cs_args *args, struct cs_error *error) 
              !(cs_parse_real(tolerance, &m) && m > 0))
         cs_fail(error, CS_ERR_USAGE,
                 "--tolerance: found \"%.60s\", expected bits or METRES > 0", tolerance);
+    // a distance is measured from something that is kept
     else if (m > 0 && !check->states)
         cs_fail(error, CS_ERR_USAGE, "--tolerance needs states, found --keep 0");
     else if (method && !strncmp(method, "program:", 8))
@@ -164,6 +165,7 @@ static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
         return error->status;
     struct cs_text sets = {0};
     bool has_semicolon = false;
+    // a semicolon stands between the overrides of a row, so none may hold one
     for (uint32_t k = 0; k < options->n_sets; k++) {
         const struct cs_override *set = options->sets + k;
         cs_text_add(&sets, "%s%s=%s", k ? ";" : "", set->path, set->value);

@@ -161,6 +161,7 @@ static enum cs_status check_rows(struct cs_golden *golden, const struct kind *ki
     rows.answers = cs_process_pool_shared_alloc(bytes, error);
     if (!rows.done)
         cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    // before rows are shared out: no two processes may choose the same name
     for (uint32_t k = 0; k < table->n; k++)
         name_states(golden, table, table->rows + k);
     if (!error->status)

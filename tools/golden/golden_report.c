@@ -110,6 +110,7 @@ static void add_html(const struct cs_golden *check, const struct cs_golden_row *
     cs_text_add(out, is_bad ? "</h2>\n<p>" : " ");
     cs_text_add_html(out, cs_text_get(&row->message));
     cs_text_add(out, "</p>\n");
+    // side by side, as far as a window is wide
     if (is_bad && row->image) {
         add_picture(check, row, ".png", "expected", out);
         add_picture(check, row, ".actual.png", "actual", out);

@@ -107,6 +107,7 @@ void cs_golden_where_print(const struct cs_golden_where *where, bool by_bits,
     else if (!where->first.frame)
         cs_text_add(out, "by less than a float32 tells");
     else {
+        // the first frame of another hash need not be one that is kept
         print_offset(&where->first, out);
         if (where->first.frame != first)
             cs_text_add(out, " at frame %u", where->first.frame);

@@ -114,6 +114,7 @@ enum cs_status cs_golden_states_write(const struct cs_golden_states *states, con
 static unsigned char *inflate_bytes(unsigned char *packed, size_t packed_length,
                                     size_t *length) {
     const unsigned char *end = packed + packed_length;
+    // head and end of a stream of gzip; the last four bytes are the length of what is packed
     if (packed_length < 18)
         return NULL;
     *length = end[-4] | (size_t)end[-3] << 8 | (size_t)end[-2] << 16 | (size_t)end[-1] << 24;

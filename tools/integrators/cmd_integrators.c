@@ -212,6 +212,7 @@ static enum cs_status add_json(const struct cs_registry_entry *entry, struct cs_
     if (!defaults)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the options of %s",
                        method->name);
+    // as they are before a scene is known
     cs_options_default(&table, defaults);
     cs_json_write(out,
                   ",\n  {'name': %s, 'order': %u, 'order_damped': %u, 'summary': %s,\n"

@@ -103,6 +103,7 @@ static void find_best(struct cs_rank *rank, const struct cs_choice *choice,
     rank->by_work = choice->by_work;
     if (!rank->best)
         return;
+    // the least work is named beside the least time
     by_work.by_work = true;
     find_cheapest(&by_work, pass, NULL, &frugal);
     rank->frugal = frugal.relation == CS_BOUND_BELOW ? rank->best : frugal.cell;
