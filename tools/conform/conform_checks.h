@@ -3,6 +3,7 @@
  *   motion    exact motions and conserved momenta               conform_motion.c
  *   order     oscillators, order, tolerance, limit, events      conform_order.c
  *   forces    each force alone, unequal masses, time            conform_forces.c
+ *   invariance copies of a body, and the unit of mass           conform_invariance.c
  *   energy    symmetry in time, bounded energy                  conform_motion.c
  *   contact   incline, rest, bounce, impacts, crossings         conform_contact.c
  *   rules     descriptor, imports, commits, pins, failures      conform_rules.c
@@ -52,6 +53,7 @@ struct cs_conform_row {
     enum cs_verdict verdict;
     double figure, bound; /* passes where figure <= bound; both NAN: nothing was measured */
     char note[320];       /* what the figure is, or why there is none */
+    bool is_guard;        /* of a guard that the method does not claim: may stand in `fails` */
 };
 
 struct cs_conform_cache;
@@ -100,6 +102,8 @@ struct cs_probe {
     struct cs_error error;
     struct cs_error *card_error; /* of the card */
     char text[2048];             /* the scene */
+    bool asks_step_fraction;     /* the method called max_step_fraction */
+    struct cs_trace trace;       /* sees that */
 
     /* called within every commit once it has been done; may be NULL. Moves the state or only
      * looks; returns whether it moved. */
@@ -132,6 +136,10 @@ bool cs_probe_set(struct cs_probe *probe, const char *name, double value);
 void cs_probe_set_step(struct cs_probe *probe, double dt);
 void cs_probe_set_tolerance(struct cs_probe *probe, double rtol);
 
+/* The tolerance at which an adaptive method is compared with the solution. A hundred thousand
+ * steps of order 2 are within the bound at a looser tolerance already. */
+double cs_probe_tightest_tolerance(const struct cs_conform *card);
+
 /* True if the accuracy can be set; else the row is skipped. */
 bool cs_probe_can_be_set(const struct cs_conform *card, struct cs_conform_row *row);
 
@@ -147,6 +155,14 @@ double cs_probe_set_level(struct cs_probe *probe, double h, double w, uint32_t o
 /* Runs that many frames; begins the run at the first call. Returns false if the run ended
  * early: error says how. */
 bool cs_probe_run(struct cs_probe *probe, uint32_t frames);
+
+/* Richardson extrapolation to h = 0. With e(h) = c_p h^p + c_(p+1) h^(p+1) + ..., the
+ * combination
+ *   S'(h/2) = S(h/2) + (S(h/2) - S(h)) / (2^p - 1)
+ * removes the term of h^p; each further column removes the next power. states (levels, stride),
+ * of which n values each count, belong to the steps h, h/2, h/4, ... and are overwritten; the
+ * last one is the result. */
+void cs_extrapolate(double *states, int levels, size_t stride, size_t n, uint32_t order);
 
 /* Returns the kinetic and potential energy in J. */
 double cs_probe_energy(const struct cs_probe *probe);
@@ -207,6 +223,8 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     X("options", options, ANY, "every option at the ends of its range")                        \
     X("free-fall", free_fall, ANY, "a sheet falls straight, at its method's order")            \
     X("translation", translation, ANY, "a uniform velocity changes nothing else")              \
+    X("copies", copies, ANY, "equal sheets of 513 particles move alike")                       \
+    X("units", units, ANY, "masses and forces a million times change nothing")                 \
     X("rotation", rotation, SPRINGS, "a stretched pair turns on its circle")                   \
     X("commit", commit, ANY, "every step is committed, and they fill the time")                \
     X("momentum", momentum, ANY, "momentum is conserved without external forces")              \
@@ -224,6 +242,7 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     X("force-push", force_push, ANY, "under impacts and viewpoint forces")                     \
     X("force-contact", force_contact, ANY, "near a collider, by contact.law force")            \
     X("unequal-masses", unequal_masses, ANY, "under all forces, with unequal masses")          \
+    X("mixed-laws", mixed_laws, SPRINGS, "a membrane, springs, a seam, air and contact")       \
     X("time-dependence", time_dependence, ANY, "forces that change with time are followed")    \
     X("stage-times", stage_times, ANY, "at the method's own order")                            \
     X("order", order, SPRINGS, "order on the drum without damping")                            \

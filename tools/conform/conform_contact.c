@@ -239,25 +239,37 @@ void cs_check_restitution(const struct cs_conform *card, struct cs_conform_row *
                      slow[0], slow[1], fast[0], fast[1]);
 }
 
-/* A method asks max_step_fraction and shortens its step. The particles of the thrown sheet that
- * lie below all of the other sheet are counted. Where the step is the user's to choose, the
- * sheets may well fly apart too fast: that is for `restitution` to judge. */
-void cs_check_crossing(const struct cs_conform *card, struct cs_conform_row *row) {
-    struct cs_probe sheets;
+/* Particles of the thrown sheet that lie below all of the other sheet. */
+static uint32_t count_passed(const struct cs_probe *sheets) {
     double low = HUGE_VAL;
     uint32_t passed = 0;
+    for (size_t i = 0; i < sheets->n; i++) {
+        const double y = sheets->x[sheets->n + i];
+        low = i < THIN_BELOW ? fmin(low, y) : low;
+        passed += i >= THIN_BELOW && y < low;
+    }
+    return passed;
+}
+
+/* A method that asks max_step_fraction claims to shorten its step. One that never asks claims
+ * nothing, and is right as it is: the guard is then nobody's. Where the step is the user's to
+ * choose, the sheets may well fly apart too fast: that is for `restitution` to judge. */
+void cs_check_crossing(const struct cs_conform *card, struct cs_conform_row *row) {
+    struct cs_probe sheets;
     if (card->method->traits & CS_EXPLICIT_OUTER) {
         cs_row_skip(row, "it is refused with contact by force");
         return;
     }
-    cs_probe_open(&sheets, card, card->method, THIN);
-    if (!cs_probe_run(&sheets, THIN_FRAMES) && sheets.session.run.outcome != CS_UNBOUNDED)
+    if (cs_probe_open(&sheets, card, card->method, THIN))
+        sheets.trace.enabled = true;
+    const bool ended = !cs_probe_run(&sheets, THIN_FRAMES);
+    if (!sheets.asks_step_fraction && sheets.session.run.outcome != CS_GAVE_UP) {
+        cs_row_skip(row, "a guard and no claim: it never asks max_step_fraction");
+        row->is_guard = true;
+    } else if (ended && sheets.session.run.outcome != CS_UNBOUNDED)
         cs_row_fail(row, "%s", sheets.error.message);
-    for (size_t i = 0; i < sheets.n; i++) {
-        const double y = sheets.x[sheets.n + i];
-        low = i < THIN_BELOW ? fmin(low, y) : low;
-        passed += i >= THIN_BELOW && y < low;
-    }
-    cs_row_state(row, passed, 0, "particles of a thrown sheet passed through another one");
+    else
+        cs_row_state(row, count_passed(&sheets), 0,
+                     "particles of a thrown sheet passed through another one");
     cs_probe_close(&sheets);
 }

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 const char *cs_verdict_text(enum cs_verdict verdict) {
     static const char *const texts[] = {
@@ -111,6 +112,10 @@ void cs_probe_set_tolerance(struct cs_probe *probe, double rtol) {
     set_inner(probe);
 }
 
+double cs_probe_tightest_tolerance(const struct cs_conform *card) {
+    return cs_method_order(card->method, card->options, true) > 2 ? 1e-11 : 1e-10;
+}
+
 bool cs_probe_can_be_set(const struct cs_conform *card, struct cs_conform_row *row) {
     const bool adaptive = card->method->traits & CS_ADAPTIVE;
     if (cs_method_has(card->method, adaptive ? "rtol" : "dt"))
@@ -137,9 +142,16 @@ static bool observe(void *ctx, double t, double dt, double *x, double *v) {
     return probe->on_commit && probe->on_commit(probe, t, dt, x, v);
 }
 
+/* Notes which calls of the host the method makes. */
+static void note_call(void *ctx, const struct cs_trace_record *point) {
+    struct cs_probe *probe = ctx;
+    probe->asks_step_fraction |= !strcmp(point->phase, "longest move");
+}
+
 bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
                    const struct cs_integrator *method, const char *format, ...) {
-    *probe = (struct cs_probe){.card_error = card->card_error};
+    *probe = (struct cs_probe){.card_error = card->card_error,
+                               .trace = {.emit = note_call, .ctx = probe}};
     va_list args;
     va_start(args, format);
     vsnprintf(probe->text, sizeof probe->text, format, args);
@@ -157,6 +169,7 @@ bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
                 .budget = BUDGET,
                 .stop = card->stop,
                 .after_commit = observe,
+                .trace = &probe->trace,
                 .ctx = probe}};
     probe->has_ended = cs_session_open_system(&probe->session, &settings, &probe->error);
     if (probe->has_ended)
@@ -214,4 +227,15 @@ double cs_probe_energy(const struct cs_probe *probe) {
     const struct cs_energy energy =
         cs_diagnostics_energy(&probe->session.system, probe->session.run.t, probe->x, probe->v);
     return cs_energy_total(&energy);
+}
+
+void cs_extrapolate(double *states, int levels, size_t stride, size_t n, uint32_t order) {
+    for (int column = 1; column < levels; column++) {
+        const double power = ldexp(1, (int)order + column - 1);
+        for (int k = levels - 1; k >= column; k--) {
+            double *state = states + (size_t)k * stride;
+            for (size_t i = 0; i < n; i++)
+                state[i] += (state[i] - state[i - stride]) / (power - 1);
+        }
+    }
 }

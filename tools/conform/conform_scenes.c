@@ -105,6 +105,30 @@
     "0]}]}}"                                                                                   \
     "], " FIVE_FRAMES "}"
 
+/* A sheet between a pinned edge and one that an event moves, or lets go. */
+#define HELD(pins, event)                                                                      \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3], \"stretch\": [1.1, 0.95], \"bump\": 0.1},"   \
+    " \"mass\": {\"degree\": 0.02}, \"springs\": {\"stretch\": 1, \"shear\": 0.5, \"bend\": "  \
+    "0.3, \"damping\": 0.05}, \"pins\": [" pins "]}], \"forces\": {" NO_GRAVITY "}, "          \
+    "\"events\": [{" event "}], " FIVE_FRAMES "}"
+
+/* A membrane and a sheet of springs, sewn together, over a plane in range. */
+#define MIXED                                                                                  \
+    "{\"bodies\": [{" CLOTH ", \"elastic\": {\"membrane\": {\"young\": 1, \"poisson\": 0.3}, " \
+    "\"damping\": 0.1, \"bending\": {\"stiffness\": 0.05, \"damping\": 0.05}}}, {\"cloth\": "  \
+    "{\"grid\": [3, 3], \"velocity\": [0.3, 0.1, 0.4], \"place\": {\"translate\": [1.2, 0, "   \
+    "0.1]}}, \"mass\": {\"degree\": 0.02}, \"springs\": {\"stretch\": 1, \"shear\": 0.5, "     \
+    "\"bend\": 0.3, \"damping\": 0.02}}], \"seams\": [{\"body\": 0, \"particles\": [2, 5], "   \
+    "\"to\": {\"body\": 1, \"particles\": [0, 3]}, \"stiffness\": 1, \"damping\": 0.05}], "    \
+    "\"forces\": {\"gravity\": [0, -2, -1], \"drag\": 0.1, " WIND(                             \
+        "0.2",                                                                                 \
+        "Pa") "}, "                                                                            \
+              "\"colliders\": [{\"plane\": {\"point\": [0, 0, -1.5], \"normal\": [0, 0, 1]}, " \
+              "\"thickness\": 4, \"friction\": 0.3}], \"contact\": {\"law\": \"force\", "      \
+              "\"start\": "                                                                    \
+              "\"allow\", \"stiffness\": 0.5, \"damping\": 0.02, \"friction_speed\": 0.5}, "   \
+              "\"events\": [{" RAMP("bodies[1].springs.stretch", "2") "}], " FIVE_FRAMES "}"
+
 // ends of ramps lie between frames
 #define RAMP(key, value)                                                                       \
     "\"from\": 0.05, \"to\": 0.45, \"ramp\": {\"key\": \"" key "\", \"value\": " value "}"
@@ -173,6 +197,15 @@ const struct cs_force_scene cs_force_scenes[] = {
      " \"shear\": 0.5, \"bend\": 0.3, \"damping\": 0.02}}], \"forces\": {" NO_GRAVITY "}, "
      FIVE_FRAMES "}", 9, true, true},
 
+    {"mixed-laws", "a membrane sewn to springs, in air and in contact", MIXED, 9, true, true},
+
+    {"time-dependence", "an edge that is moved along a line",
+     HELD("\"left\"", "\"from\": 0.05, \"to\": 0.45, \"grab\": {\"particles\": [\"right\"],"
+          " \"relative\": true, \"path\": [{\"at\": 0.45, \"point\": [-0.2, 0.1, 0.3]}]}"),
+     9, true, true},
+    {"time-dependence", "a pinned edge that is let go",
+     HELD("\"left\", \"right\"", "\"at\": 0.25, \"release\": {\"particles\": [\"right\"]}"),
+     9, true, true},
     {"time-dependence", "a ramp of gravity",
      SHEETS_WITH("\"gravity\": [0, -2, 0]", RAMP("forces.gravity[1]", "-9")),
      4, false, false},
