@@ -117,7 +117,7 @@ static void share(void *object) {
     struct bed *bed = object;
     move(bed, bed->taken);
     bed->out[0] =
-        cs_crossings_safe_fraction(&bed->session.system, 0, bed->x, bed->taken, bed->at, false);
+        cs_crossings_safe_fraction(&bed->session.system, 0, bed->x, bed->taken, bed->at);
     move(bed, 0);
 }
 

@@ -153,7 +153,7 @@ static enum cs_status add_strain_limit(struct cs_run *run, struct cs_error *erro
 /* Creates the method, counts its memory in run->method_bytes, and restarts it at 0. */
 static enum cs_status start(struct cs_run *run, const void *options, struct cs_error *error) {
     struct cs_run_host *host = run->host;
-    cs_friction_anchors_start(run->system, 0, run->x);
+    cs_friction_anchors_commit(run->system, 0, run->x, NULL);
     host->process_state = cs_process_state_save();
     cs_crash_begin(CS_CRASH_METHOD);
     cs_run_host_set_scales(host);

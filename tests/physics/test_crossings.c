@@ -80,8 +80,7 @@ TEST(limited_sheets_stop_before_they_meet) {
         double *next = malloc(3 * fixture.n * sizeof *next);
         for (size_t i = 0; i < 3 * fixture.n; i++)
             next[i] = run->x[i] + 1e-4 * run->v[i];
-        ck_assert_double_lt(
-            cs_crossings_safe_fraction(fixture.system, 0, run->x, 1, next, false), 1);
+        ck_assert_double_lt(cs_crossings_safe_fraction(fixture.system, 0, run->x, 1, next), 1);
         free(next);
         fixture_close(&fixture);
     }

@@ -278,13 +278,13 @@ TEST(crossings_are_counted_and_foreseen) {
         memcpy(to, net.x, sizeof to);
         // obstacles go through each other as they like
         ck_assert_uint_eq(cs_crossings_count(system, 0, net.x).n, 0);
-        ck_assert_double_eq(cs_crossings_safe_fraction(system, 0, net.x, 0, to, false), 1);
+        ck_assert_double_eq(cs_crossings_safe_fraction(system, 0, net.x, 0, to), 1);
         for (int i = 0; i < 4; i++)
             to[4 + i] = 0.17;
         // the needle ends at 0.2: 8 edges along its sides, and 8 across them
         const struct cs_crossing_count found = cs_crossings_count(system, 0, to);
         ck_assert_uint_ge(found.n, 8);
-        const double share = cs_crossings_safe_fraction(system, 0, net.x, 0, to, false);
+        const double share = cs_crossings_safe_fraction(system, 0, net.x, 0, to);
         ck_assert_msg(share < 0.1 / 0.13 && share > 0.6, "%.3g", share);
         struct cs_text text = {0};
         cs_crossings_print(system, &found, &text);
@@ -305,8 +305,7 @@ TEST(what_comes_is_foreseen) {
     fixture_frames(&net, 1);
     for (int i = 0; i < 4; i++)
         net.x[4 + i] = 0.3;
-    const double share =
-        cs_crossings_safe_fraction(net.system, 1.0 / 60, net.x, 0.5, net.x, false);
+    const double share = cs_crossings_safe_fraction(net.system, 1.0 / 60, net.x, 0.5, net.x);
     const double whole = 0.6 * (0.5 - 1.0 / 60), gap = 0.1 - 0.6 / 60;
     ck_assert_msg(share < gap / whole && share > 0.8 * gap / whole, "%.3g", share);
     ck_assert_uint_eq(cs_crossings_count(net.system, 1.0 / 60, net.x).n, 0);
@@ -322,11 +321,10 @@ TEST(what_comes_is_foreseen) {
         covered += cs_crossings_list_suffices(
             system, cs_surface_points_positions(system, CS_POINTS_BEGIN, 1.0 / 60, net.x),
             cs_surface_points_positions(system, CS_POINTS_END, t, net.x));
-        const double listed =
-            cs_crossings_safe_fraction(system, 1.0 / 60, net.x, t, net.x, false);
+        const double listed = cs_crossings_safe_fraction(system, 1.0 / 60, net.x, t, net.x);
         system->pairs = NULL;
-        ck_assert_double_eq(
-            cs_crossings_safe_fraction(system, 1.0 / 60, net.x, t, net.x, false), listed);
+        ck_assert_double_eq(cs_crossings_safe_fraction(system, 1.0 / 60, net.x, t, net.x),
+                            listed);
         cut += listed < 1;
     }
     ck_assert_uint_gt(cut, 10);

@@ -212,12 +212,11 @@ static void shake(const struct fixture *cloth, double ranges, uint64_t *seed, do
 }
 
 /* Share of a move by the list, which must be that by a search of all primitives. */
-static double share_of(const struct fixture *cloth, const double *x, bool resolved) {
+static double share_of(const struct fixture *cloth, const double *x) {
     struct cs_pairs *pairs = cloth->system->pairs;
-    const double share = cs_crossings_safe_fraction(cloth->system, 0, cloth->x, 0, x, resolved);
+    const double share = cs_crossings_safe_fraction(cloth->system, 0, cloth->x, 0, x);
     cloth->system->pairs = NULL;
-    ck_assert_double_eq(cs_crossings_safe_fraction(cloth->system, 0, cloth->x, 0, x, false),
-                        share);
+    ck_assert_double_eq(cs_crossings_safe_fraction(cloth->system, 0, cloth->x, 0, x), share);
     cloth->system->pairs = pairs;
     return share;
 }
@@ -234,40 +233,12 @@ TEST(list_limits_as_the_search_does) {
     for (uint32_t k = 0; k < 60; k++) {
         shake(&cloth, 0.05 * (1 + k), &seed, x);
         listed += cs_crossings_list_suffices(cloth.system, cloth.x, x);
-        cut += share_of(&cloth, x, false) < 1;
+        cut += share_of(&cloth, x) < 1;
     }
     ck_assert_uint_gt(listed, 20);
     ck_assert_uint_lt(listed, 60);
     ck_assert_uint_gt(cut, 20);
     ck_assert_uint_lt(cut, 60);
-    fixture_close(&cloth);
-}
-
-/* The pairs that a resolved step swept give the same share, and where only those nearby were
- * asked, all do. Steps of 0.1 us have so much kinetic energy that all are resolved, those too
- * that meet. */
-TEST(pairs_swept_by_a_step_limit_as_the_search_does) {
-    struct fixture cloth;
-    static double x[3 * 600];
-    uint64_t seed = 3;
-    uint32_t swept = 0, cut = 0, all = 0;
-    fixture_open(&cloth, "velocity-verlet:dt=5e-4", "%s", crumple);
-    fixture_start(&cloth);
-    fixture_frames(&cloth, FRAMES);
-    struct cs_pairs *pairs = cloth.system->pairs;
-    for (uint32_t k = 0; k < 60; k++) {
-        shake(&cloth, 0.05 * (1 + k), &seed, x);
-        if (!cs_contact_pairs_resolve_step(pairs, 0, cloth.x, 1e-7, x))
-            continue;
-        const bool known = pairs->swept_build == pairs->candidates.n_builds;
-        const double share = share_of(&cloth, x, true);
-        swept += known;
-        cut += known && share < 1;
-        all += !known;
-    }
-    ck_assert_uint_gt(swept, 15);
-    ck_assert_uint_gt(cut, 10);
-    ck_assert_uint_gt(all, 0);
     fixture_close(&cloth);
 }
 

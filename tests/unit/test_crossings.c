@@ -194,8 +194,8 @@ TEST(shares_are_those_of_all_pairs) {
         for (uint32_t threads = 1; threads < 4; threads++) {
             cs_pool_start(threads, &error);
             UNIT_ASSERT_OK(&error);
-            ck_assert_double_eq(
-                cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, to, false), all);
+            ck_assert_double_eq(cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, to),
+                                all);
             cs_pool_stop();
         }
         cut += all < 1;
@@ -220,8 +220,7 @@ TEST(spikes_of_either_body_are_seen) {
         memcpy(to, sheet.x, 3 * sheet.n * sizeof *to);
         for (size_t i = 16; i < 32; i++)
             to[2 * sheet.n + i] -= 0.1;
-        const double share =
-            cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, to, false);
+        const double share = cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, to);
         ck_assert_msg(share < 0.5 && share > 0.44, "%zu: %g", spiked, share);
         free(to);
         sheet_close(&sheet);
@@ -236,12 +235,11 @@ TEST(shared_moves_and_blow_ups) {
     sheet_stir(&sheet, 0.01, 0);
     for (size_t i = 0; i < 3 * sheet.n; i++)
         to[i] = sheet.x[i] + 0.5;
-    ck_assert_double_eq(cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, to, false), 1);
-    ck_assert_double_eq(
-        cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, sheet.x, false), 1);
+    ck_assert_double_eq(cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, to), 1);
+    ck_assert_double_eq(cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, sheet.x), 1);
     for (size_t i = 0; i < 3 * sheet.n; i += 5)
         to[i] = i % 2 ? (double)NAN : HUGE_VAL;
-    cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, to, false);
+    cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, to);
     cs_crossings_count(&sheet.system, 0, to);
     free(to);
     sheet_close(&sheet);

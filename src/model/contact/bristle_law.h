@@ -110,12 +110,9 @@ struct cs_friction_anchors {
  * forces are built. CS_ERR_MEMORY. */
 enum cs_status cs_friction_anchors_build(struct cs_system *system, struct cs_error *error);
 
-/* Puts all anchors where their points are at t: the start of a run. Nothing without anchors.
- */
-void cs_friction_anchors_start(const struct cs_system *system, double t, const double *x);
-
 /* Moves the anchors of points that slip or are out of range, after an accepted step that ended
- * in (x, v) at t. With all threads. Nothing without anchors. */
+ * in (x, v) at t. v NULL: puts all anchors where their points are, at the start of a run. With
+ * all threads. Nothing without anchors. */
 void cs_friction_anchors_commit(const struct cs_system *system, double t, const double *x,
                                 const double *v);
 

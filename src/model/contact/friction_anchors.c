@@ -164,10 +164,6 @@ void cs_friction_anchors_commit(const struct cs_system *system, double t, const 
         cs_pool_run(system->contact_samples->n_chunks, follow_samples, &job);
 }
 
-void cs_friction_anchors_start(const struct cs_system *system, double t, const double *x) {
-    cs_friction_anchors_commit(system, t, x, NULL);
-}
-
 /* --- making --- */
 
 /* Numbers the samples of all chunks through. */

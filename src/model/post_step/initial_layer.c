@@ -19,7 +19,6 @@
 #include "model/contact/ccd/crossings.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/contact_samples.h"
-#include "model/contact/narrow_phase/active_contacts.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/surface_points.h"
 #include "model/force/diagnostics.h"

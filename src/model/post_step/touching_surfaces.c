@@ -1,5 +1,6 @@
 /* Refuses surfaces in contact that touch at the start. */
 #include "base/text.h"
+#include "model/contact/ccd/accd.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/surface_points.h"
 #include "model/post_step/contact_projection.h"
@@ -14,18 +15,15 @@ static void check_candidate(const struct cs_system *system, const double *x,
                             struct cs_error *error) {
     const bool edges = kind == CS_PAIR_EDGE_EDGE;
     const size_t n = system->surfaces->n_points;
-    struct cs_exact_distance_lanes lanes;
     struct cs_text first = {0}, second = {0};
-    double inverse_mass = 0;
+    double p[4][3], inverse_mass = 0;
     for (size_t k = 0; k < 4; k++) {
         inverse_mass += cs_surface_points_inverse_mass(system, at[k]);
         for (size_t c = 0; c < 3; c++)
-            for (int l = 0; l < CS_EXACT_DISTANCE_LANES; l++)
-                lanes.p[k][c][l] = x[c * n + at[k]];
+            p[k][c] = x[c * n + at[k]];
     }
-    // all lanes hold this candidate
-    cs_exact_distance_measure(kind, &lanes);
-    if (lanes.squared[0] > TOUCHING * TOUCHING || inverse_mass == 0)
+    if (cs_exact_distance_squared(kind, (const double(*)[3])p) > TOUCHING * TOUCHING ||
+        inverse_mass == 0)
         return;
     cs_surfaces_print_point(system, at[0], &first);
     cs_surfaces_print_point(system, at[edges ? 2 : 1], &second);

@@ -38,9 +38,6 @@ struct cs_candidate_chunk {
     /* (n_nearby, 2) those within CS_CANDIDATES_NEARBY ranges more, and perhaps some beyond */
     uint32_t *nearby;
     size_t n_nearby, nearby_capacity;
-    /* (n_swept, 2) those whose swept boxes came into range in the last step that was checked */
-    uint32_t *swept;
-    size_t n_swept, swept_capacity;
     /* answer of one chunk to a query over all candidates; the query defines it */
     double result;
 };
@@ -100,10 +97,6 @@ struct cs_candidates {
     uint64_t n_builds;
 };
 
-/* Fills all chunks from the batches in the order of keys, with all threads. Returns false if
- * out of memory. */
-bool cs_candidates_merge_batches(struct cs_candidates *candidates);
-
 /* Sets scaled_points to the positions x (3, n_points), with all threads. */
 void cs_candidates_scale_points(struct cs_candidates *candidates, const double *x);
 
@@ -138,8 +131,8 @@ static inline void cs_candidate_vertices(const struct cs_surfaces *surfaces,
 enum cs_status cs_candidates_find_init(struct cs_candidates *candidates, struct cs_arena *arena,
                                        struct cs_error *error);
 
-/* Fills batches and rows for the state x_at_build, which scaled_points must hold too, and the
- * margin margin_now, with all threads. Returns false if out of memory. */
+/* Fills all chunks for the state x_at_build, which scaled_points must hold too, and the margin
+ * margin_now, with all threads. Returns false if out of memory. */
 bool cs_candidates_find(struct cs_candidates *candidates);
 
 /* Frees the memory that does not belong to the arena. */

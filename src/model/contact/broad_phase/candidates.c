@@ -17,7 +17,6 @@ static void finish(void *object) {
         free(candidates->chunks[l].pairs);
         free(candidates->chunks[l].in_range);
         free(candidates->chunks[l].nearby);
-        free(candidates->chunks[l].swept);
     }
     cs_candidates_find_finish(candidates);
 }
@@ -130,7 +129,9 @@ static void measure_drift(const struct cs_candidates *candidates, uint32_t body,
 }
 
 /* Bound of the relative displacement of two bodies in m; NaN fails every comparison. */
-static double apart(const double *a, const double *b) {
+static double apart(const struct cs_candidates *candidates, size_t body, size_t other) {
+    const double *a = candidates->body_motion + 4 * body,
+                 *b = candidates->body_motion + 4 * other;
     double squared = 0;
     for (int c = 0; c < 3; c++)
         squared += (a[c] - b[c]) * (a[c] - b[c]);
@@ -154,9 +155,7 @@ static bool is_good(const struct cs_candidates *candidates, const double *x) {
     for (uint32_t a = 0; a < meetings->n_bodies && good; a++)
         for (uint32_t b = a; b < meetings->n_bodies; b++)
             good = good && (!(cs_body_pair_params_of(meetings, a, b)->range > 0) ||
-                            apart(candidates->body_motion + 4 * (size_t)a,
-                                  candidates->body_motion + 4 * (size_t)b) <=
-                                2 * candidates->margin_now);
+                            apart(candidates, a, b) <= 2 * candidates->margin_now);
     return good;
 }
 
@@ -165,8 +164,7 @@ static bool build(struct cs_candidates *candidates, double margin) {
     candidates->n_builds++;
     candidates->margin_now = margin;
     cs_candidates_scale_points(candidates, candidates->x_at_build);
-    candidates->is_built =
-        cs_candidates_find(candidates) && cs_candidates_merge_batches(candidates);
+    candidates->is_built = cs_candidates_find(candidates);
     return candidates->is_built;
 }
 
@@ -217,8 +215,7 @@ static double largest_move(const struct cs_candidates *candidates, const double 
         for (uint32_t b = a; b < meetings->n_bodies; b++) {
             // without a range the two do not push each other
             const double range = cs_body_pair_params_of(meetings, a, b)->range;
-            const double move = apart(candidates->body_motion + 4 * (size_t)a,
-                                      candidates->body_motion + 4 * (size_t)b);
+            const double move = apart(candidates, a, b);
             if (range > 0 && move > most && (a == b || may_come_near(candidates, a, b, x0, x1)))
                 most = move;
             if (range > 0 && move > *within && a == b)
@@ -288,9 +285,7 @@ double cs_candidates_max_motion(const struct cs_candidates *candidates, const do
     for (uint32_t a = 0; a < meetings->n_bodies; a++)
         for (uint32_t b = a; b < meetings->n_bodies; b++) {
             const double range = cs_body_pair_params_of(meetings, a, b)->range;
-            const double moves = apart(candidates->body_motion + 4 * (size_t)a,
-                                       candidates->body_motion + 4 * (size_t)b) /
-                                 range;
+            const double moves = apart(candidates, a, b) / range;
             // not a number stays
             most = range > 0 && !(moves <= most) ? moves : most;
         }

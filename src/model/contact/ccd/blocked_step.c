@@ -138,9 +138,11 @@ static void try_samples(const struct cs_system *system, struct point_search *sea
         }
 }
 
-/* Searches the particles or samples near search->collider; returns false if none is found. */
+/* Searches the particles or samples near search->collider; returns false if none goes deeper
+ * than search->y. */
 static bool find_point(const struct cs_blocked_step *blocked, const struct cs_system *system,
                        struct point_search *search) {
+    const double before = search->y;
     struct cs_collider_step step = {.x0 = blocked->x,
                                     .x1 = blocked->x + 3 * (size_t)system->view.n};
     cs_collider_step_set(&step, system, search->collider, blocked->t[0], blocked->t[1]);
@@ -152,7 +154,7 @@ static bool find_point(const struct cs_blocked_step *blocked, const struct cs_sy
     else
         try_particles(system, search);
     search->step = NULL;
-    return search->y < HUGE_VAL;
+    return search->y < before;
 }
 
 static void print_point(const struct point_search *found, const struct cs_system *system,
@@ -163,33 +165,23 @@ static void print_point(const struct point_search *found, const struct cs_system
     print_place(&found->place, out);
 }
 
-/* Adds the point of a body that misses contact with a collider; returns false if none does. */
-static bool print_missed_point(const struct cs_blocked_step *blocked,
-                               const struct cs_system *system, struct cs_text *out) {
-    for (uint32_t c = 0; c < system->scene->colliders.n; c++)
-        for (int samples = 0; samples < 2; samples++) {
-            struct point_search search = {.collider = c, .samples = samples > 0, .y = HUGE_VAL};
-            // the first collider with such a point rejected the step
-            if (!find_point(blocked, system, &search))
-                continue;
-            print_point(&search, system, out);
-            return true;
-        }
-    return false;
-}
-
-/* The point of a body that is deepest in the range of a collider; false if none is in range. */
-static bool find_deepest_point(const struct cs_blocked_step *blocked,
-                               const struct cs_system *system, struct point_search *found) {
-    *found = (struct point_search){.y = 1};
+/* Finds a point of a body at a collider: the deepest one in range, if resolved ones count, else
+ * the first that misses contact, which rejected the step. Returns false if there is none. */
+static bool find_first_point(const struct cs_blocked_step *blocked,
+                             const struct cs_system *system, bool resolved,
+                             struct point_search *found) {
+    *found = (struct point_search){.y = resolved ? 1 : HUGE_VAL};
     for (uint32_t c = 0; c < system->scene->colliders.n && system->collider_params; c++)
         for (int samples = 0; samples < 2; samples++) {
             struct point_search search = {
-                .collider = c, .samples = samples > 0, .resolved = true, .y = HUGE_VAL};
-            if (find_point(blocked, system, &search) && search.y < found->y)
-                *found = search;
+                .collider = c, .samples = samples > 0, .resolved = resolved, .y = found->y};
+            if (!find_point(blocked, system, &search))
+                continue;
+            *found = search;
+            if (!resolved)
+                return true;
         }
-    return found->y < 1;
+    return resolved && found->y < 1;
 }
 
 /* --- pairs --- */
@@ -339,9 +331,12 @@ void cs_blocked_step_print(const struct cs_blocked_step *blocked,
                            const struct cs_system *system, struct cs_text *out) {
     const double *x[2];
     struct pair_move nearest;
+    struct point_search point;
     const bool moves = blocked->t[1] > blocked->t[0];
-    if (system->collider_params && moves && print_missed_point(blocked, system, out))
+    if (moves && find_first_point(blocked, system, false, &point)) {
+        print_point(&point, system, out);
         return;
+    }
     if (!system->surfaces)
         return;
     // in the order of cs_step_limit_fraction: pairs before crossings
@@ -377,7 +372,7 @@ void cs_blocked_step_print_deepest(struct cs_blocked_step *blocked,
     if (!blocked->x)
         return;
     store_instant(blocked, system, t, x, v);
-    const bool touches = find_deepest_point(blocked, system, &point);
+    const bool touches = find_first_point(blocked, system, true, &point);
     if (system->pairs) {
         read_ends(blocked, system, ends);
         pairs_resolve_step(blocked, system);

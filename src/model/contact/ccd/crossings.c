@@ -94,7 +94,6 @@ struct question {
     const struct cs_scene *scene;
     /* marks of triangles; NULL: not wanted */
     uint8_t *marks;
-    bool swept; /* the swept pairs of the list suffice */
 };
 
 static void clear_found(struct cs_crossings *crossings) {
@@ -366,27 +365,21 @@ static void try_chunk(void *arg, uint32_t number) {
     const struct question *question = arg;
     struct cs_candidate_chunk *chunk = question->system->pairs->candidates.chunks + number;
     struct cs_first_collision first = {.fraction = 1};
-    const uint32_t *pairs = question->swept ? chunk->swept : chunk->pairs;
-    const size_t n = question->swept ? chunk->n_swept : chunk->n;
-    for (size_t p = 0; p < n; p += CS_SEARCH_PAIRS)
-        try_pairs(question, chunk->kind, (const uint32_t(*)[2])(pairs + 2 * p),
-                  n - p < CS_SEARCH_PAIRS ? n - p : CS_SEARCH_PAIRS, &first);
+    for (size_t p = 0; p < chunk->n; p += CS_SEARCH_PAIRS)
+        try_pairs(question, chunk->kind, (const uint32_t(*)[2])(chunk->pairs + 2 * p),
+                  chunk->n - p < CS_SEARCH_PAIRS ? chunk->n - p : CS_SEARCH_PAIRS, &first);
     chunk->result = first.fraction;
 }
 
-/* Pairs that come into range in a resolved step are known: those that meet are among them. */
 double cs_crossings_safe_fraction(const struct cs_system *system, double t0, const double *x0,
-                                  double t1, const double *x1, bool resolved) {
+                                  double t1, const double *x1) {
     const double *from = cs_surface_points_positions(system, CS_POINTS_BEGIN, t0, x0);
     const double *to = cs_surface_points_positions(system, CS_POINTS_END, t1, x1);
-    if (!resolved)
-        cs_point_motion_set(system, from, to, system->crossings->motion);
+    cs_point_motion_set(system, from, to, system->crossings->motion);
     if (!cs_crossings_list_suffices(system, from, to))
         return search_first(system, from, to).fraction;
     const struct cs_candidates *list = &system->pairs->candidates;
     struct question question = {.system = system, .crossings = system->crossings, .x = from};
-    question.swept = resolved && system->pairs->swept_build == list->n_builds &&
-                     system->pairs->body_pairs.range_max > 2 * CS_ACCD_DISTANCE_MIN;
     double share = 1;
     cs_pool_run(list->n_chunks, try_chunk, &question);
     for (uint32_t l = 0; l < list->n_chunks; l++)

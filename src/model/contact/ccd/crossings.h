@@ -56,10 +56,9 @@ struct cs_first_collision cs_crossings_first_collision(const struct cs_system *s
                                                        const double *x1);
 
 /* The fraction alone, to the same bit: from the list of contact's candidates if it holds all
- * pairs that may meet, in about a fifth of the time. resolved: cs_contact_pairs_resolve_step
- * has just resolved this step, so that the pairs that it swept suffice. */
+ * pairs that may meet, in about a fifth of the time. */
 double cs_crossings_safe_fraction(const struct cs_system *system, double t0, const double *x0,
-                                  double t1, const double *x1, bool resolved);
+                                  double t1, const double *x1);
 
 /* Returns whether that list holds all pairs that may meet on the way from x0 to x1
  * (3,n_points): contact is defined between all bodies, or the limit is for those with contact

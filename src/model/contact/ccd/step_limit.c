@@ -36,11 +36,11 @@ double cs_step_limit_fraction(const struct cs_system *system, double t0, const d
     if (system->contact_samples && t1 > t0 &&
         !cs_contact_samples_resolve_step(system->contact_samples, t0, x0, t1, x1))
         return 0.5;
-    const bool asked = system->pairs && t1 > t0;
-    if (asked && !cs_contact_pairs_resolve_step(system->pairs, t0, x0, t1, x1))
+    if (system->pairs && t1 > t0 &&
+        !cs_contact_pairs_resolve_step(system->pairs, t0, x0, t1, x1))
         return 0.5;
     return cs_scene_crossings(system->scene) == CS_CROSSINGS_LIMIT
-               ? cs_crossings_safe_fraction(system, t0, x0, t1, x1, asked)
+               ? cs_crossings_safe_fraction(system, t0, x0, t1, x1)
                : 1;
 }
 

@@ -111,7 +111,6 @@ static bool answer(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
         return false;
     pairs->current_contacts = narrow->contacts;
     if (narrow->query != CS_CONTACT_QUERY_ENERGY &&
-        narrow->query != CS_CONTACT_QUERY_LAGGED_FRICTION &&
         !cs_active_contacts_gather(pairs->current_contacts))
         return false;
     if (narrow->result &&
@@ -181,9 +180,8 @@ static uint32_t friction_chunks(const struct cs_system *system) {
 
 static void store_friction(const struct cs_system *system, double t, const double *x,
                            uint32_t first) {
-    // any numbers do as velocities of particles, which store_lagged leaves out
     struct cs_narrow_phase narrow = {.query = CS_CONTACT_QUERY_LAGGED_FRICTION,
-                                     .eval = {.t = t, .x = x, .v = x},
+                                     .eval = {.t = t, .x = x},
                                      .first_lagged = first};
     run(system->pairs, &narrow);
 }

@@ -68,9 +68,6 @@ struct cs_pairs {
     const struct cs_pair_matrix *blocks; /* the one that was made last */
     /* (n_points) of the last step that was checked */
     struct cs_point_motion *point_motion;
-    /* n_builds of the list, all of whose pairs were resolved in that step; 0: not all were.
-     * The swept pairs of its chunks are then all whose swept boxes come within range. */
-    uint64_t swept_build;
     /* chunk that rejected the last step */
     uint32_t unresolved_chunk;
     /* out of memory: pairs are missing, and the run must end */

@@ -36,13 +36,6 @@ struct work {
     const double *rows;
 };
 
-/* Reads four points of an array (3, n); points from n on, which it does not have, are 0. */
-static void read(const double *from, size_t n, const uint32_t at[4], double to[4][3]) {
-    for (size_t k = 0; k < 4; k++)
-        for (size_t c = 0; c < 3; c++)
-            to[k][c] = from && at[k] < n ? from[c * n + at[k]] : 0;
-}
-
 /* Copies three columns of the rows of a pair into its lane. */
 static void read_lane(const double *rows, size_t width, const uint32_t to[4], uint32_t lane,
                       double out[4][3][CS_PAIR_LANES]) {
@@ -53,27 +46,34 @@ static void read_lane(const double *rows, size_t width, const uint32_t to[4], ui
 
 /* --- one by one --- */
 
-/* Stores the friction of a pair. Only points of colliders move: V without the particles. */
-static void store_lagged(const struct work *work, const struct cs_pair_lanes *from,
-                         uint32_t lane, const uint32_t at[4]) {
-    const struct cs_narrow_phase *narrow = work->narrow;
-    const struct cs_system *system = narrow->contacts->candidates->system;
-    const size_t n_points = system->surfaces->n_points;
-    const struct cs_body_pair_params params = {from->range[lane], from->k[lane],
-                                               from->friction[lane]};
-    const struct cs_feature_kind form = {from->is_edge[lane], from->is_off_plane[lane],
-                                         from->blend_radius[lane]};
-    struct cs_pair_contact reaction;
+/* Sets the contact of one lane from its points and parameters. */
+static void contact_of(const struct work *work, const struct cs_pair_lanes *lanes, uint32_t l,
+                       struct cs_pair_contact *contact) {
+    const struct cs_system *system = work->narrow->contacts->candidates->system;
+    const struct cs_body_pair_params params = {lanes->range[l], lanes->k[l],
+                                               lanes->friction[l]};
+    const struct cs_feature_kind form = {lanes->is_edge[l], lanes->is_off_plane[l],
+                                         lanes->blend_radius[l]};
     double p[4][3], v[4][3];
-    read(narrow->x, n_points, at, p);
-    read(narrow->v, n_points, at, v);
-    for (int k = 0; k < 4; k++)
-        if (at[k] < system->view.n)
-            memset(v[k], 0, sizeof v[k]);
-    cs_pair_contact_measure(&reaction, work->chunk->kind, form, params.range, p);
-    cs_pair_contact_set(&reaction, &params, &system->scene->contact, v);
-    cs_lagged_friction_store(system->lagged_friction, narrow->first_lagged + work->number,
-                             &reaction.contact, 4, at, reaction.weight);
+    for (int k = 0; k < 12; k++) {
+        p[k / 3][k % 3] = lanes->p[k / 3][k % 3][l];
+        v[k / 3][k % 3] = lanes->v[k / 3][k % 3][l];
+    }
+    cs_pair_contact_measure(contact, work->chunk->kind, form, params.range, p);
+    cs_pair_contact_set(contact, &params, &system->scene->contact, v);
+}
+
+/* Stores the friction of a block of pairs. The velocities are those of colliders alone. */
+static void store_lagged(const struct work *work, const struct cs_pair_lanes *lanes,
+                         size_t first) {
+    const struct cs_narrow_phase *narrow = work->narrow;
+    struct cs_pair_contact contact;
+    for (uint32_t l = 0; l < lanes->n; l++) {
+        contact_of(work, lanes, l, &contact);
+        cs_lagged_friction_store(narrow->contacts->candidates->system->lagged_friction,
+                                 narrow->first_lagged + work->number, &contact.contact, 4,
+                                 work->chunk->points[first + l], contact.weight);
+    }
 }
 
 /* --- in lanes --- */
@@ -136,25 +136,6 @@ static void read_pulls(const struct work *work, size_t first, uint32_t n,
     }
 }
 
-/* Sets ck F H of each pair of a block. */
-static void set_hessians(const struct work *work, const struct cs_pair_lanes *lanes,
-                         struct cs_pair_hessian *hessians) {
-    const struct cs_narrow_phase *narrow = work->narrow;
-    for (uint32_t l = 0; l < lanes->n; l++) {
-        const struct cs_body_pair_params params = {lanes->range[l], lanes->k[l], 0};
-        const struct cs_feature_kind form = {lanes->is_edge[l], lanes->is_off_plane[l],
-                                             lanes->blend_radius[l]};
-        struct cs_pair_contact reaction;
-        double p[4][3], rest[4][3] = {{0}};
-        for (int k = 0; k < 12; k++)
-            p[k / 3][k % 3] = lanes->p[k / 3][k % 3][l];
-        cs_pair_contact_measure(&reaction, work->chunk->kind, form, params.range, p);
-        cs_pair_contact_set(&reaction, &params,
-                            &narrow->contacts->candidates->system->scene->contact, rest);
-        cs_pair_matrix_set_hessian(&reaction, narrow->matrix, hessians + l);
-    }
-}
-
 /* Stores the matrix terms of a block, which the operator multiplies with later. */
 static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     const struct cs_narrow_phase *narrow = work->narrow;
@@ -168,8 +149,11 @@ static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t f
                                    factors);
     } else
         cs_pair_lanes_matrix(work->chunk->kind, lanes, keys, narrow->matrix, factors);
-    if (narrow->result->exact)
-        set_hessians(work, lanes, terms->hessians + first);
+    for (uint32_t l = 0; l < lanes->n && narrow->result->exact; l++) {
+        struct cs_pair_contact contact;
+        contact_of(work, lanes, l, &contact);
+        cs_pair_matrix_set_hessian(&contact, narrow->matrix, terms->hessians + first + l);
+    }
 }
 
 /* Adds bounds to rows: stiffness in row_sums[row], damping in row_sums[n_rows + row]. */
@@ -197,12 +181,6 @@ static bool has_chord(const struct cs_narrow_phase *narrow) {
     return narrow->query == CS_CONTACT_QUERY_MATRIX && narrow->matrix->chord;
 }
 
-/* points are gathered for all queries but energies and those that go pair by pair */
-static bool has_rows(const struct cs_narrow_phase *narrow) {
-    return narrow->query != CS_CONTACT_QUERY_ENERGY &&
-           narrow->query != CS_CONTACT_QUERY_LAGGED_FRICTION;
-}
-
 /* Evaluates a block whose pairs begin at `first`. */
 static void evaluate_block(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     if (work->narrow->query == CS_CONTACT_QUERY_ENERGY)
@@ -212,8 +190,7 @@ static void evaluate_block(const struct work *work, struct cs_pair_lanes *lanes,
     else if (work->narrow->query == CS_CONTACT_QUERY_BOUND)
         add_bounds(work, lanes, first);
     else if (work->narrow->query == CS_CONTACT_QUERY_LAGGED_FRICTION)
-        for (uint32_t l = 0; l < lanes->n; l++)
-            store_lagged(work, lanes, l, work->chunk->points[first + l]);
+        store_lagged(work, lanes, first);
     else
         share(work, lanes, first);
 }
@@ -333,7 +310,7 @@ static void do_chunk(void *arg, uint32_t number) {
     struct work work = {narrow, narrow->contacts->chunks + number, number, NULL};
     if (!begin(&work))
         return;
-    if (has_rows(narrow))
+    if (narrow->query != CS_CONTACT_QUERY_ENERGY)
         work.rows = read_rows(narrow, number);
     for (size_t p = 0; p < work.chunk->n; p += TOGETHER * CS_PAIR_LANES)
         do_some(&work, p);
@@ -344,7 +321,8 @@ static void do_chunk(void *arg, uint32_t number) {
 /* A row has 6 columns, or 12 for a Jacobian product and friction by its chord. */
 bool cs_narrow_phase_run(struct cs_narrow_phase *narrow) {
     const size_t width = narrow->query == CS_CONTACT_QUERY_JVP || has_chord(narrow) ? 12 : 6;
-    if (has_rows(narrow) && !cs_gather_reserve(&narrow->contacts->force_gather, width))
+    if (narrow->query != CS_CONTACT_QUERY_ENERGY &&
+        !cs_gather_reserve(&narrow->contacts->force_gather, width))
         return false;
     cs_pool_run(narrow->contacts->candidates->n_chunks, do_chunk, narrow);
     return narrow->query != CS_CONTACT_QUERY_MATRIX || cs_pair_matrix_end(narrow->result);

@@ -180,26 +180,21 @@ CS_INLINE void cs_pair_contact_jvp(const struct cs_pair_contact *reaction,
                 dpush * reaction->g[k][c] + push * dg[k][c] + dw[k] * rub[c] + w[k] * drub[c];
 }
 
-/* Matrix terms of the pair, and its gradient in to[4][3]. ck F H is not among them
- * (pair_matrix.h), nor is the change of the weights. */
+/* Weights and block of the matrix terms. ck F H is not among them (pair_matrix.h), nor is the
+ * change of the weights. */
 CS_INLINE void cs_pair_contact_matrix(const struct cs_pair_contact *reaction,
-                                      const struct cs_matrix *matrix, double to[4][3],
+                                      const struct cs_matrix *matrix,
                                       struct cs_pair_matrix_terms *share) {
-    const struct cs_point_contact *touch = &reaction->contact;
-    const struct cs_barrier law = cs_barrier_at(touch->d, touch->range, touch->k);
     // the law's own slope has another gradient than the touch
     struct cs_matrix rubbing = *matrix;
     rubbing.ck = 0;
-    share->gradient_weight = -matrix->ck * law.stiffness;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; k++)
         share->weight[k] = reaction->weight[k];
-        for (int c = 0; c < 3; c++)
-            to[k][c] = reaction->g[k][c];
-    }
     for (int e = 0; e < 6; e++)
         share->block[e] = 0;
-    cs_point_contact_add_block(touch, &rubbing, share->block);
+    cs_point_contact_add_block(&reaction->contact, &rubbing, share->block);
 }
+
 /* Gershgorin bounds in N/m and N s/m. The block of df/dx at points k and j is -K g_k g_j^T, of
  * norm K |g_k| |g_j|, so the row of k sums to K |g_k| sum |g_j|; likewise |w_k| sum |w_j| for
  * damping. F H is left out. */

@@ -153,13 +153,12 @@ CS_INLINE void share_bound(enum cs_pair_kind kind, struct cs_pair_lanes *restric
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         struct cs_pair_contact reaction;
         struct cs_pair_matrix_terms share;
-        double g[4][3];
         lane_force(kind, lanes, l, &law, &reaction);
-        cs_pair_contact_matrix(&reaction, &matrix, g, &share);
+        cs_pair_contact_matrix(&reaction, &matrix, &share);
         share.gradient_weight = -matrix.ck * cs_barrier_at(reaction.contact.d, lanes->range[l],
                                                            lanes->psd_stiffness[l])
                                                  .stiffness;
-        write_factors(kind, g, &share, l, factors);
+        write_factors(kind, reaction.g, &share, l, factors);
     }
 }
 

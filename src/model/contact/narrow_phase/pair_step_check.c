@@ -201,7 +201,7 @@ struct job {
 /* One chunk at work; pairs are collected until a block of lanes is full. */
 struct work {
     struct job *job;
-    struct cs_candidate_chunk *chunk;
+    const struct cs_candidate_chunk *chunk;
     enum cs_pair_kind kind;
     struct lanes lanes;
     uint32_t points[LANES]; /* of points and triangles */
@@ -281,33 +281,23 @@ static void take(struct work *work, const uint32_t pair[2]) {
         ask(work);
 }
 
-/* Checks those candidates of a chunk whose swept boxes come within the range, and notes them
- * for the limit of crossings, which asks the same motion. */
+/* Checks those candidates of a chunk whose swept boxes come within the range. */
 static void check_chunk(struct work *work) {
     const struct cs_pairs *pairs = work->job->pairs;
-    struct cs_candidate_chunk *chunk = work->chunk;
+    const struct cs_candidate_chunk *chunk = work->chunk;
     const bool edges = chunk->kind == CS_PAIR_EDGE_EDGE;
     const struct cs_body_pair_params widest = {.range = pairs->body_pairs.range_max};
     const double reach = cs_body_pair_params_range(&widest, edges) * (1 + 1e-9);
     struct cs_moving_pairs items = {.surfaces = pairs->system->surfaces, .edges = edges};
     const uint32_t *all = work->job->nearby ? chunk->nearby : chunk->pairs;
     const size_t n_all = work->job->nearby ? chunk->n_nearby : chunk->n;
-    chunk->n_swept = 0;
+    uint32_t some[SOME][2];
     for (size_t p = 0; p < n_all && !work->unseen; p += SOME) {
-        uint32_t *some = cs_arena_realloc(chunk->swept, &chunk->swept_capacity,
-                                          chunk->n_swept + SOME, 2 * sizeof *some);
-        chunk->swept = some ? some : chunk->swept;
-        if (!some) {
-            __atomic_store_n(&work->job->pairs->failed, true, __ATOMIC_RELAXED);
-            return;
-        }
-        some += 2 * chunk->n_swept;
         items.items = all + 2 * p;
         items.n = n_all - p < SOME ? n_all - p : SOME;
-        const size_t n = cs_point_motion_filter(pairs->point_motion, &items, reach, some);
-        chunk->n_swept += n;
+        const size_t n = cs_point_motion_filter(pairs->point_motion, &items, reach, some[0]);
         for (size_t k = 0; k < n && !work->unseen; k++)
-            take(work, some + 2 * k);
+            take(work, some[k]);
     }
     ask(work);
 }
@@ -348,7 +338,6 @@ bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const doub
     struct job job = {.pairs = pairs, .from = from, .to = to, .h = t1 - t0, .unseen = NONE};
     const uint64_t build = search->n_builds;
     cs_point_motion_set(pairs->system, from, to, pairs->point_motion);
-    pairs->swept_build = 0;
     // Pairs in range anywhere on the way are nearby, because the motion from where these were
     // collected is largest at one of its ends. A pair that rejects the step again makes a list
     // that covers the step unnecessary.
@@ -361,7 +350,5 @@ bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const doub
         job.nearby = false;
         job.n_checked = 0;
     }
-    const bool resolved = are_seen(&job, search->n_chunks);
-    pairs->swept_build = resolved && !job.nearby && !pairs->failed ? search->n_builds : 0;
-    return resolved;
+    return are_seen(&job, search->n_chunks);
 }
