@@ -5,7 +5,6 @@
 #include "base/arena.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -91,14 +90,20 @@ void cs_arena_adopt(struct cs_arena *arena, void (*finish)(void *object), void *
     arena->adopted = owned;
 }
 
-void *cs_arena_realloc(void *items, size_t *room, size_t needed, size_t size) {
-    if (needed <= *room)
-        return items;
-    const size_t larger = needed > 2 * *room ? needed : 2 * *room;
+bool cs_arena_grow(void *address, size_t *capacity, size_t needed, size_t size) {
+    if (needed <= *capacity)
+        return true;
+    const size_t larger = needed > 2 * *capacity ? needed : 2 * *capacity;
     size_t bytes;
-    void *moved = __builtin_mul_overflow(larger, size, &bytes) ? NULL : realloc(items, bytes);
-    *room = moved ? larger : *room;
-    return moved;
+    void *items;
+    // the type of the pointer is the caller's
+    memcpy(&items, address, sizeof items);
+    items = __builtin_mul_overflow(larger, size, &bytes) ? NULL : realloc(items, bytes);
+    if (!items)
+        return false;
+    memcpy(address, &items, sizeof items);
+    *capacity = larger;
+    return true;
 }
 
 void cs_arena_finish(struct cs_arena *arena) {

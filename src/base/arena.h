@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 struct cs_arena_block;
@@ -32,6 +33,9 @@ void *cs_arena_alloc(struct cs_arena *arena, size_t bytes, struct cs_error *erro
 /* The same for n items of size bytes; an overflow of the product counts as out of memory. */
 void *cs_arena_alloc_array(struct cs_arena *arena, size_t n, size_t size,
                            struct cs_error *error);
+/* Sets a pointer to n items of its type. */
+#define CS_ARENA_ARRAY(arena, items, n, error)                                                 \
+    ((items) = cs_arena_alloc_array(arena, n, sizeof *(items), error))
 
 /* Copies a zero-terminated string. Returns NULL if out of memory. */
 char *cs_arena_copy_text(struct cs_arena *arena, const char *text, struct cs_error *error);
@@ -42,11 +46,13 @@ char *cs_arena_copy_text(struct cs_arena *arena, const char *text, struct cs_err
 void cs_arena_adopt(struct cs_arena *arena, void (*finish)(void *object), void *object,
                     struct cs_error *error);
 
-/* Grows a malloc'd array to at least `needed` items of size bytes, at least doubling it.
- * Returns it, moved, and sets *capacity; returns it unchanged if it is large enough. The caller
- * frees it. Returns NULL if out of memory; items and *capacity are then as before. May be
- * called by several threads, unlike an arena. */
-void *cs_arena_realloc(void *items, size_t *capacity, size_t needed, size_t size);
+/* Grows a malloc'd array to at least `needed` items of size bytes, at least doubling it, unless
+ * it is large enough. address: of the pointer to it, which moves with it. The caller frees it.
+ * Returns false if out of memory; the array and *capacity are then as before. May be called by
+ * several threads, unlike an arena. */
+bool cs_arena_grow(void *address, size_t *capacity, size_t needed, size_t size);
+#define CS_ARENA_GROW(items, capacity, needed)                                                 \
+    cs_arena_grow(&(items), &(capacity), needed, sizeof *(items))
 
 /* Finishes adopted objects and frees all blocks; the arena is empty afterwards. */
 void cs_arena_finish(struct cs_arena *arena);

@@ -2,27 +2,15 @@
  * without names or lengths; only texts have their length. */
 #include "base/serialise.h"
 
+#include "base/arena.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-/* Grows the buffer to hold n more bytes. Returns false if out of memory. */
-static bool has_room(struct cs_serialiser *record, size_t n) {
-    if (n <= record->capacity - record->length)
-        return true;
-    if (n > (size_t)-1 / 4 - record->length)
-        return false;
-    const size_t capacity = 2 * (record->length + n);
-    char *larger = realloc(record->bytes, capacity);
-    if (!larger)
-        return false;
-    record->bytes = larger;
-    record->capacity = capacity;
-    return true;
-}
-
-/* Appends n bytes. */
+/* Appends n bytes. Returns false if out of memory. */
 static bool write_bytes(struct cs_serialiser *record, const void *value, size_t n) {
-    if (!has_room(record, n))
+    if (n > (size_t)-1 / 4 - record->length ||
+        !CS_ARENA_GROW(record->bytes, record->capacity, record->length + n))
         return false;
     memcpy(record->bytes + record->length, value, n);
     record->length += n;

@@ -2,6 +2,8 @@
  * distance. */
 #include "base/text.h"
 
+#include "base/arena.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdint.h>
@@ -12,19 +14,9 @@
 /* Makes room for `more` bytes and the zero byte, at least doubling. Returns false if out of
  * memory. */
 static bool reserve(struct cs_text *text, size_t more) {
-    if (text->failed)
-        return false;
-    if (text->capacity - text->length > more)
-        return true;
-    const size_t capacity = (text->length + more + 1) * 2;
-    char *bytes = realloc(text->bytes, capacity);
-    if (!bytes) {
-        text->failed = true;
-        return false;
-    }
-    text->bytes = bytes;
-    text->capacity = capacity;
-    return true;
+    text->failed =
+        text->failed || !CS_ARENA_GROW(text->bytes, text->capacity, text->length + more + 1);
+    return !text->failed;
 }
 
 void cs_text_add(struct cs_text *text, const char *format, ...) {

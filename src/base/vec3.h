@@ -1,4 +1,5 @@
-/* vec3.h - products of 3-vectors. Sums run left to right. */
+/* vec3.h - products of 3-vectors and symmetric 3 x 3 matrices, whose sums run left to right;
+ * the smaller and the larger of two numbers. */
 #ifndef CS_VEC3_H
 #define CS_VEC3_H
 
@@ -6,6 +7,15 @@
 
 #include <math.h>
 #include <stdbool.h>
+
+/* By one comparison, for loops that vectorise: b if one of them is not a number. */
+CS_INLINE double cs_fmin(double a, double b) {
+    return a < b ? a : b;
+}
+
+CS_INLINE double cs_fmax(double a, double b) {
+    return a > b ? a : b;
+}
 
 CS_INLINE double cs_vec3_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -23,6 +33,17 @@ CS_INLINE void cs_vec3_normalise(double a[3]) {
     const double length = sqrt(cs_vec3_dot(a, a));
     for (int c = 0; c < 3; c++)
         a[c] /= length;
+}
+
+/* Row and column of the six numbers of a symmetric matrix: xx, xy, xz, yy, yz, zz. */
+static const int cs_sym3_row[6] = {0, 0, 0, 1, 1, 2};
+static const int cs_sym3_column[6] = {0, 1, 2, 1, 2, 2};
+
+/* out = s p for a symmetric matrix s: xx, xy, xz, yy, yz, zz; out must not be p. */
+CS_INLINE void cs_sym3_multiply(const double s[6], const double p[3], double out[3]) {
+    out[0] = s[0] * p[0] + s[1] * p[1] + s[2] * p[2];
+    out[1] = s[1] * p[0] + s[3] * p[1] + s[4] * p[2];
+    out[2] = s[2] * p[0] + s[4] * p[1] + s[5] * p[2];
 }
 
 CS_INLINE bool cs_vec3_is_zero(const double a[3]) {

@@ -1,6 +1,7 @@
 /* Writes and checks manifests. */
 #include "cli/manifest.h"
 
+#include "base/arena.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/table.h"
@@ -53,14 +54,8 @@ static bool is_swept(const char *name) {
 
 static enum cs_status add(struct list *list, const struct entry *entry,
                           struct cs_error *error) {
-    if (list->n == list->capacity) {
-        const size_t capacity = 2 * list->n + 64;
-        void *larger = realloc(list->entries, capacity * sizeof *list->entries);
-        if (!larger)
-            return cs_fail(error, CS_ERR_MEMORY, "out of memory for a manifest");
-        list->entries = larger;
-        list->capacity = capacity;
-    }
+    if (!CS_ARENA_GROW(list->entries, list->capacity, list->n + 1))
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a manifest");
     list->entries[list->n++] = *entry;
     return CS_OK;
 }

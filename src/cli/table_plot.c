@@ -35,9 +35,8 @@ enum cs_status cs_number_table_read(const char *path, struct cs_arena *arena,
         table->columns = cs_csv_cut(line, ',', table->names, CS_TABLE_COLUMNS);
     const bool grouped = table->columns && !strcmp(table->names[0], "series");
     const uint32_t verdict = grouped ? 0 : cs_number_table_find(table, "verdict");
-    table->values = cs_arena_alloc_array(arena, (size_t)rows.n * table->columns + 1,
-                                         sizeof *table->values, error);
-    table->words = cs_arena_alloc_array(arena, rows.n + 1, sizeof *table->words, error);
+    CS_ARENA_ARRAY(arena, table->values, (size_t)rows.n * table->columns + 1, error);
+    CS_ARENA_ARRAY(arena, table->words, rows.n + 1, error);
     while (!error->status && (line = cs_rows_next(&rows))) {
         double *row = table->values + (size_t)table->rows * table->columns;
         const uint32_t n = cs_csv_cut(line, ',', fields, CS_TABLE_COLUMNS);

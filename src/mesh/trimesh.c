@@ -18,8 +18,7 @@ enum cs_status cs_trimesh_init(struct cs_trimesh *mesh, uint32_t n, uint32_t n_t
                                bool uv, struct cs_arena *arena, struct cs_error *error) {
     *mesh = (struct cs_trimesh){.n = n, .n_triangles = n_triangles};
     mesh->positions = cs_arena_alloc_array(arena, 3 * (size_t)n, sizeof(double), error);
-    mesh->triangles =
-        cs_arena_alloc_array(arena, 3 * (size_t)n_triangles, sizeof(uint32_t), error);
+    CS_ARENA_ARRAY(arena, mesh->triangles, 3 * (size_t)n_triangles, error);
     if (uv)
         mesh->uv = cs_arena_alloc_array(arena, 6 * (size_t)n_triangles, sizeof(float), error);
     return error->status;
@@ -258,10 +257,8 @@ static enum cs_status take(struct work *work) {
     if (!work->sides)
         return cs_fail(work->error, CS_ERR_MEMORY, "out of memory for a mesh of %u triangles",
                        mesh->n_triangles);
-    mesh->vertex_triangles =
-        cs_arena_alloc_array(work->arena, corners, sizeof *mesh->vertex_triangles, work->error);
-    mesh->vertex_triangles_end = cs_arena_alloc_array(
-        work->arena, mesh->n, sizeof *mesh->vertex_triangles_end, work->error);
+    CS_ARENA_ARRAY(work->arena, mesh->vertex_triangles, corners, work->error);
+    CS_ARENA_ARRAY(work->arena, mesh->vertex_triangles_end, mesh->n, work->error);
     mesh->area = cs_arena_alloc_array(work->arena, mesh->n, sizeof *mesh->area, work->error);
     return work->error->status;
 }

@@ -238,8 +238,7 @@ static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
     const size_t n = system->view.n;
     uint32_t first = 0;
     system->arena.part = &system->plan.state_bytes;
-    system->bodies = cs_arena_alloc_array(&system->arena, system->scene->bodies.n,
-                                          sizeof *system->bodies, error);
+    CS_ARENA_ARRAY(&system->arena, system->bodies, system->scene->bodies.n, error);
     system->mass = take(system, n, error);
     system->inv_mass = take(system, n, error);
     system->state = take(system, 6 * n, error);

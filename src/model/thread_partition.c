@@ -168,8 +168,7 @@ enum cs_status cs_thread_partition_build(struct cs_system *system, struct cs_err
         return CS_OK;
     const struct sizes sizes = sizes_of(system->scene, threads);
     build_blocks(system, &sizes, threads, error);
-    system->springs.energies =
-        cs_arena_alloc_array(&system->arena, sizes.runs, sizeof(double), error);
+    CS_ARENA_ARRAY(&system->arena, system->springs.energies, sizes.runs, error);
     if (!error->status && sizes.listed_runs)
         build_chunks(system, &sizes, error);
     return error->status;

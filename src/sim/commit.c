@@ -45,8 +45,7 @@ static void resolve_contact(struct cs_run_host *host, double t, double dt, doubl
 
 void cs_host_pin(struct cs_run_host *host, bool held) {
     if (host->run->system->plan.rows[CS_FEATURE_CONTACT].built)
-        (held ? cs_static_friction_pin
-              : cs_static_friction_unpin)(&host->contact.static_friction);
+        cs_static_friction_pin(&host->contact.static_friction, held);
 }
 
 /* Stores the state as the start of the next step's contact, and pins the particles that
@@ -60,7 +59,8 @@ static bool store_contact(struct cs_run_host *host, double t, const double *x, c
     cs_contact_projection_store(contact, x, v, !moved);
     if (observed)
         cs_static_friction_clear(&contact->static_friction);
-    const bool others = cs_contact_projection_update_sticking(contact, t, x, v);
+    const bool others = cs_static_friction_update(&contact->static_friction, contact->colliders,
+                                                  t, x, v, contact->state_after);
     cs_host_pin(host, true);
     cs_view_pages_update(&host->pages, &host->run->system->view);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);

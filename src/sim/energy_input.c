@@ -55,8 +55,7 @@ enum cs_status cs_energy_input_init(struct cs_run_host *host, struct cs_error *e
     host->power_by_end = (host->run->integrator->traits & CS_IMPLICIT) &&
                          (system->events || cs_scene_has_key_frames(system->scene));
     if (has_powers(system))
-        host->power = cs_arena_alloc_array(&host->arena, 4 * (size_t)system->view.n,
-                                           sizeof(double), error);
+        CS_ARENA_ARRAY(&host->arena, host->power, 4 * (size_t)system->view.n, error);
     return error->status;
 }
 

@@ -123,8 +123,7 @@ enum cs_status cs_energy_ledger_open(struct cs_energy_ledger *ledger, struct cs_
     double **const arrays[] = {&ledger->state, &ledger->trial_state, &ledger->acceleration,
                                &ledger->force, &ledger->b};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
-        *arrays[k] =
-            cs_arena_alloc_array(&ledger->arena, k < 2 ? 2 * n3 : n3, sizeof(double), error);
+        CS_ARENA_ARRAY(&ledger->arena, *arrays[k], k < 2 ? 2 * n3 : n3, error);
     if (error->status)
         return error->status;
     cs_energy_ledger_resume(ledger, t);

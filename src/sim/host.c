@@ -247,8 +247,7 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
     if (!judged && !cs_spectral_bounds_depend_on_state(system) &&
         !(host->run->integrator->needs & CS_NEED_BOUNDS))
         return CS_OK;
-    host->bounds_work =
-        cs_arena_alloc_array(&host->arena, 2 * (size_t)system->view.n, sizeof(double), error);
+    CS_ARENA_ARRAY(&host->arena, host->bounds_work, 2 * (size_t)system->view.n, error);
     host->table.bounds_at = host_bounds_at;
     return error->status;
 }
@@ -363,8 +362,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .euler_setup = cs_host_euler_setup,
     };
     if (system->events && cs_events_turn_particles(system->scene))
-        host->held = cs_arena_alloc_array(&host->arena, 12 * (size_t)system->view.n,
-                                          sizeof *host->held, error);
+        CS_ARENA_ARRAY(&host->arena, host->held, 12 * (size_t)system->view.n, error);
     cs_blow_up_check_set(&host->blow_up, system, 0);
     cs_run_host_set_scales(host);
     if (error->status || add_contact(host, error) || add_rate(host, error) ||

@@ -241,8 +241,7 @@ enum cs_status cs_host_init_settling(struct cs_run_host *host, struct cs_error *
     if (system->pairs && system->scene->contact.friction_speed < SETTLED_BELOW &&
         !cs_scene_friction_sticks(system->scene) &&
         !(host->run->integrator->needs & CS_NEED_LAGGED_FRICTION))
-        host->settled = cs_arena_alloc_array(&host->arena, 3 * (size_t)system->view.n,
-                                             sizeof *host->settled, error);
+        CS_ARENA_ARRAY(&host->arena, host->settled, 3 * (size_t)system->view.n, error);
     return error->status;
 }
 

@@ -144,8 +144,8 @@ static enum cs_status add_strain_limit(struct cs_run *run, struct cs_error *erro
     struct cs_plan_row *row = run->plan.rows + CS_FEATURE_STRAIN_LIMIT;
     run->host->arena.part = &row->bytes;
     if (row->built)
-        run->strain_limit.before = cs_arena_alloc_array(
-            &run->host->arena, 6 * (size_t)run->system->view.n, sizeof(double), error);
+        CS_ARENA_ARRAY(&run->host->arena, run->strain_limit.before,
+                       6 * (size_t)run->system->view.n, error);
     run->host->arena.part = &run->method_bytes;
     return error->status;
 }

@@ -229,10 +229,8 @@ enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *comm
     args->help = asks_for_help(argc, argv);
     if (args->help)
         return CS_OK;
-    args->given = cs_arena_alloc_array(&args->arena, count_options(argc, argv) + 1,
-                                       sizeof *args->given, error);
-    args->operands =
-        cs_arena_alloc_array(&args->arena, (size_t)argc, sizeof *args->operands, error);
+    CS_ARENA_ARRAY(&args->arena, args->given, count_options(argc, argv) + 1, error);
+    CS_ARENA_ARRAY(&args->arena, args->operands, (size_t)argc, error);
     args->options = cs_arena_alloc(&args->arena, command->size, error);
     if (error->status || sort(args, argc, argv, error) || args->help)
         return error->status;

@@ -6,21 +6,17 @@
  * ends. */
 #include "draw/cpu/thick_lines.h"
 
+#include "base/arena.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* An unused item behind the last one, or NULL if out of memory. */
 static struct cs_thick_line *next(struct cs_thick_lines *strokes) {
-    if (strokes->n == strokes->capacity) {
-        const size_t capacity = strokes->capacity ? 2 * strokes->capacity : 1024;
-        void *grown = realloc(strokes->items, capacity * sizeof *strokes->items);
-        if (!grown) {
-            strokes->failed = true;
-            return NULL;
-        }
-        strokes->items = grown;
-        strokes->capacity = capacity;
+    if (!CS_ARENA_GROW(strokes->items, strokes->capacity, strokes->n + 1)) {
+        strokes->failed = true;
+        return NULL;
     }
     return strokes->items + strokes->n;
 }

@@ -16,6 +16,8 @@
  */
 #include "draw/cpu/triangle.h"
 
+#include "base/arena.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -144,17 +146,11 @@ static bool set_box(struct cs_triangle *t, int width, int height) {
     return t->left <= t->right && t->top <= t->bottom;
 }
 
-// an unused item behind the last one, or NULL if out of memory; doubling keeps growth linear
+// an unused item behind the last one, or NULL if out of memory
 static struct cs_triangle *next(struct cs_triangles *triangles) {
-    if (triangles->n == triangles->capacity) {
-        const size_t capacity = triangles->capacity ? 2 * triangles->capacity : 1024;
-        void *grown = realloc(triangles->items, capacity * sizeof *triangles->items);
-        if (!grown) {
-            triangles->failed = true;
-            return NULL;
-        }
-        triangles->items = grown;
-        triangles->capacity = capacity;
+    if (!CS_ARENA_GROW(triangles->items, triangles->capacity, triangles->n + 1)) {
+        triangles->failed = true;
+        return NULL;
     }
     return triangles->items + triangles->n;
 }

@@ -15,11 +15,9 @@ static enum cs_status take(struct cs_export_mesh *skin, bool uv, struct cs_arena
     static const char *const positions[2] = {"position", "positions"};
     const size_t corners = 3 * (size_t)skin->n_triangles, items = skin->n_items;
     skin->triangles = cs_arena_alloc_array(arena, corners, sizeof *skin->triangles, error);
-    skin->lines =
-        cs_arena_alloc_array(arena, 2 * (size_t)skin->n_lines, sizeof *skin->lines, error);
+    CS_ARENA_ARRAY(arena, skin->lines, 2 * (size_t)skin->n_lines, error);
     skin->items = cs_arena_alloc_array(arena, items, sizeof *skin->items, error);
-    skin->first_point =
-        cs_arena_alloc_array(arena, items + 1, sizeof *skin->first_point, error);
+    CS_ARENA_ARRAY(arena, skin->first_point, items + 1, error);
     skin->first_triangle = cs_arena_alloc_array(arena, items + 1, sizeof(uint32_t), error);
     skin->first_line = cs_arena_alloc_array(arena, items + 1, sizeof *skin->first_line, error);
     if (uv)

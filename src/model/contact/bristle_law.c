@@ -74,12 +74,9 @@ void cs_bristle_add_jvp(const struct cs_point_contact *contact,
                         const struct cs_point_contact_motion *move, double df[3]) {
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
     const struct trial trial = trial_of(contact, bristle);
-    const double *g = contact->g, *h = contact->h, *dp = move->dp;
-    struct turn turn = {.g = g,
-                        .dg = {h[0] * dp[0] + h[1] * dp[1] + h[2] * dp[2],
-                               h[1] * dp[0] + h[3] * dp[1] + h[4] * dp[2],
-                               h[2] * dp[0] + h[4] * dp[1] + h[5] * dp[2]},
-                        .square = trial.square};
+    const double *g = contact->g, *dp = move->dp;
+    struct turn turn = {.g = g, .square = trial.square};
+    cs_sym3_multiply(contact->h, dp, turn.dg);
     const double across = cs_vec3_dot(g, turn.dg), length = sqrt(trial.square);
     double dtrial[3] = {0};
     turn.dsquare = 2 * across;
@@ -110,7 +107,6 @@ void cs_bristle_add_jvp(const struct cs_point_contact *contact,
  * bound: leaves out e e^T too, an upper bound. */
 static void add_block(const struct cs_point_contact *contact, const struct cs_bristle *bristle,
                       const struct cs_matrix *matrix, double b[6]) {
-    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const struct trial trial = trial_of(contact, bristle);
     const double *g = contact->g, *e = trial.force;
     // along a trial that slips the force does not grow
@@ -119,7 +115,7 @@ static void add_block(const struct cs_point_contact *contact, const struct cs_br
         -(matrix->ck * bristle->stiffness + matrix->cd * bristle->damping) * trial.fraction;
     const double slip = turns ? 1 / (trial.length * trial.length) : 0;
     for (int k = 0; k < 6; k++) {
-        const int r = row[k], s = column[k];
+        const int r = cs_sym3_row[k], s = cs_sym3_column[k];
         b[k] += slope * ((r == s) - g[r] * g[s] / trial.square - slip * e[r] * e[s]);
     }
 }
@@ -187,7 +183,6 @@ static bool find_chord(const struct cs_bristle *bristle, const struct trial *tri
 void cs_bristle_add_matrix(const struct cs_point_contact *contact,
                            const struct cs_bristle *bristle, const struct cs_matrix *matrix,
                            const struct cs_contact_pull *pull, double b[6]) {
-    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const struct trial trial = trial_of(contact, bristle);
     const double *g = contact->g;
     struct chord chord;
@@ -197,7 +192,7 @@ void cs_bristle_add_matrix(const struct cs_point_contact *contact,
     }
     // cd = -h and ck = -h^2 are in c and p
     for (int k = 0; k < 6; k++) {
-        const int i = row[k], j = column[k];
+        const int i = cs_sym3_row[k], j = cs_sym3_column[k];
         const double plane = (i == j) - g[i] * g[j] / trial.square - chord.d[i] * chord.d[j];
         b[k] += pull->h * (chord.p * plane + chord.c * chord.r[i] * chord.r[j]);
     }
@@ -207,12 +202,11 @@ void cs_bristle_add_approach(const struct cs_point_contact *contact,
                              const struct cs_bristle *bristle, const struct cs_matrix *matrix,
                              double y[3]) {
     const struct cs_matrix elastic = {.ck = matrix->ck, .bound = matrix->bound};
-    const double *v = contact->v;
-    double b[6] = {0};
+    double b[6] = {0}, change[3];
     add_block(contact, bristle, &elastic, b);
-    y[0] += b[0] * v[0] + b[1] * v[1] + b[2] * v[2];
-    y[1] += b[1] * v[0] + b[3] * v[1] + b[4] * v[2];
-    y[2] += b[2] * v[0] + b[4] * v[1] + b[5] * v[2];
+    cs_sym3_multiply(b, contact->v, change);
+    for (int c = 0; c < 3; c++)
+        y[c] += change[c];
 }
 
 void cs_bristle_raise_bound(const struct cs_bristle *bristle, double *stiffness,

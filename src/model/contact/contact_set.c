@@ -2,6 +2,7 @@
 #include "model/contact/contact_set.h"
 
 #include "base/pool.h"
+#include "base/vec3.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -59,13 +60,6 @@ struct product {
     double *y;
 };
 
-/* out = s p for a symmetric block */
-static void turn(const double s[6], const double p[3], double out[3]) {
-    out[0] = s[0] * p[0] + s[1] * p[1] + s[2] * p[2];
-    out[1] = s[1] * p[0] + s[3] * p[1] + s[4] * p[2];
-    out[2] = s[2] * p[0] + s[4] * p[1] + s[5] * p[2];
-}
-
 /* Stores the product of one contact without its diagonal: w_k B (sum w_j p_j - w_k p_k). */
 static void multiply_contact(const struct cs_contact_entry *pair,
                              struct cs_contact_matrix_part *part, double p[4][3]) {
@@ -77,7 +71,7 @@ static void multiply_contact(const struct cs_contact_entry *pair,
         double others[3];
         for (int c = 0; c < 3; c++)
             others[c] = part->weights[k] * (all[c] - part->weights[k] * p[k][c]);
-        turn(part->block, others, part->product[k]);
+        cs_sym3_multiply(part->block, others, part->product[k]);
     }
 }
 
@@ -152,8 +146,7 @@ enum cs_status cs_contact_set_init(struct cs_contact_set *set, uint32_t n_partic
                                    struct cs_error *error) {
     *set = (struct cs_contact_set){.n_chunks = n_chunks, .n_particles = n_particles};
     set->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *set->chunks, error);
-    set->starts =
-        cs_arena_alloc_array(arena, n_particles + (size_t)2, sizeof *set->starts, error);
+    CS_ARENA_ARRAY(arena, set->starts, n_particles + (size_t)2, error);
     if (!error->status)
         cs_arena_adopt(arena, finish, set, error);
     return error->status;
@@ -165,21 +158,17 @@ void cs_contact_chunk_clear(struct cs_contact_chunk *chunk) {
     chunk->failed = false;
 }
 
-/* Capacity grows in steps (cs_arena_realloc); entries that were appended before are kept. */
+/* Capacity grows in steps (cs_arena_grow); entries that were appended before are kept. */
 struct cs_contact_entry *cs_contact_chunk_next(struct cs_contact_chunk *chunk) {
-    struct cs_contact_entry *pairs =
-        cs_arena_realloc(chunk->pairs, &chunk->capacity, chunk->n + 1, sizeof *pairs);
-    chunk->failed = chunk->failed || !pairs;
-    chunk->pairs = pairs ? pairs : chunk->pairs;
-    return pairs ? pairs + chunk->n++ : NULL;
+    const bool there = CS_ARENA_GROW(chunk->pairs, chunk->capacity, chunk->n + 1);
+    chunk->failed = chunk->failed || !there;
+    return there ? chunk->pairs + chunk->n++ : NULL;
 }
 
 struct cs_contact_matrix_part *cs_contact_chunk_part(struct cs_contact_chunk *chunk) {
-    struct cs_contact_matrix_part *parts =
-        cs_arena_realloc(chunk->parts, &chunk->parts_capacity, chunk->n, sizeof *parts);
-    chunk->failed = chunk->failed || !parts;
-    chunk->parts = parts ? parts : chunk->parts;
-    return parts ? parts + chunk->n - 1 : NULL;
+    const bool there = CS_ARENA_GROW(chunk->parts, chunk->parts_capacity, chunk->n);
+    chunk->failed = chunk->failed || !there;
+    return there ? chunk->parts + chunk->n - 1 : NULL;
 }
 
 /* --- by particles --- */
@@ -227,21 +216,11 @@ static void put_ends(struct cs_contact_set *set) {
     }
 }
 
-/* Reserves the lists; returns false if out of memory. */
-static bool take_ends(struct cs_contact_set *set) {
-    struct cs_contact_vertex *ends = cs_arena_realloc(
-        set->particle_vertices, &set->particle_vertices_capacity, 4 * set->n, sizeof *ends);
-    set->particle_vertices = ends ? ends : set->particle_vertices;
-    uint32_t *corners =
-        cs_arena_realloc(set->vertices, &set->vertices_capacity, 4 * set->n, sizeof *corners);
-    set->vertices = corners ? corners : set->vertices;
-    return ends && corners;
-}
-
 /* Counting sort by particle. Counts go two places on: filling then moves every start[i + 1]
  * from the begin of list i to its end, which is where the format wants it. */
 void cs_contact_set_gather(struct cs_contact_set *set) {
-    if (set->n && !take_ends(set)) {
+    if (!CS_ARENA_GROW(set->particle_vertices, set->particle_vertices_capacity, 4 * set->n) ||
+        !CS_ARENA_GROW(set->vertices, set->vertices_capacity, 4 * set->n)) {
         set->failed = true;
         set->n = 0;
     }

@@ -44,30 +44,22 @@ struct cs_contact_pull {
  * h L/(m ev) from 1e-6 to 1e12. Tested by physics friction_chord. */
 enum { CS_FRICTION_CHORD_ITERATIONS = 6 };
 
-CS_INLINE double cs_friction_chord_max(double a, double b) {
-    return a > b ? a : b;
-}
-
-CS_INLINE double cs_friction_chord_min(double a, double b) {
-    return a < b ? a : b;
-}
-
 /* u >= 0 of u + a u/s(u) = length, for a >= 0. The left side is concave, so that Newton's
  * iteration comes from below from its first step on. It starts at a lower bound, or closer: at
  * ev length/sqrt(a^2 - length^2) below the limit of friction, which is its root without the
  * first u, and near that limit at ev (a/2 ev)^(1/3), by square roots. */
 CS_INLINE double cs_friction_chord_speed(double a, double ev, double length) {
-    const double low = cs_friction_chord_max(length - a, length * ev / (ev + a));
+    const double low = cs_fmax(length - a, length * ev / (ev + a));
     const double fourth = sqrt(sqrt(0.5 * a / ev)), sixteenth = sqrt(sqrt(fourth));
     const double limit = ev * fourth * sixteenth * sqrt(sqrt(sixteenth));
-    const double inside = cs_friction_chord_max(a * a - length * length, DBL_MIN);
-    const double below = cs_friction_chord_min(ev * length / sqrt(inside), limit);
-    double u = cs_friction_chord_min(length < a ? below : limit, length);
-    u = cs_friction_chord_max(low, u);
+    const double inside = cs_fmax(a * a - length * length, DBL_MIN);
+    const double below = cs_fmin(ev * length / sqrt(inside), limit);
+    double u = cs_fmin(length < a ? below : limit, length);
+    u = cs_fmax(low, u);
     CS_UNROLLED
     for (int k = 0; k < CS_FRICTION_CHORD_ITERATIONS; k++) {
         const double s = sqrt(u * u + ev * ev), slope = 1 + a * ev * ev / (s * s * s);
-        u = cs_friction_chord_max(low, u - (u + a * u / s - length) / slope);
+        u = cs_fmax(low, u - (u + a * u / s - length) / slope);
     }
     return u;
 }
@@ -84,20 +76,19 @@ CS_INLINE double cs_friction_chord_fraction(const struct cs_contact_pull *pull,
                                             const struct cs_sliding_contact *slides) {
     const double force = slides->force < 0 ? -slides->force : slides->force;
     const double own = force * pull->inverse + DBL_MIN;
-    return own / cs_friction_chord_max(own, cs_point_contact_dot(slides->n, pull->push));
+    return own / cs_fmax(own, cs_vec3_dot(slides->n, pull->push));
 }
 
 /* b (6) += h times the block p (P - e e^T) + c e e^T of a contact. */
 CS_INLINE void cs_friction_chord_add(const struct cs_contact_pull *pull,
                                      const struct cs_sliding_contact *slides, double b[6]) {
-    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const double *n = slides->n, *v = slides->v, ev = slides->friction_speed;
     const double force = slides->force, mu = slides->friction;
-    const double approach = cs_point_contact_dot(n, v);
-    const double off = cs_point_contact_dot(n, pull->motion);
+    const double approach = cs_vec3_dot(n, v);
+    const double off = cs_vec3_dot(n, pull->motion);
     const double t[3] = {v[0] - n[0] * approach, v[1] - n[1] * approach,
                          v[2] - n[2] * approach};
-    const double speed = sqrt(cs_point_contact_dot(t, t) + ev * ev);
+    const double speed = sqrt(cs_vec3_dot(t, t) + ev * ev);
     const double load =
         mu * (force < 0 ? -force : force) / cs_friction_chord_fraction(pull, slides);
     const double a = pull->h * load * pull->inverse;
@@ -106,23 +97,23 @@ CS_INLINE void cs_friction_chord_add(const struct cs_contact_pull *pull,
     for (int c = 0; c < 3; c++)
         free[c] = t[c] + pull->h * (pull->motion[c] - n[c] * off) +
                   (pull->is_end_known ? 0 : a * t[c] / speed);
-    const double length = sqrt(cs_point_contact_dot(free, free));
+    const double length = sqrt(cs_vec3_dot(free, free));
     CS_UNROLLED
     for (int c = 0; c < 3; c++)
         e[c] = free[c] / (length + DBL_MIN);
     const double u = pull->is_end_known ? length : cs_friction_chord_speed(a, ev, length);
     const double s = sqrt(u * u + ev * ev);
-    const double along = cs_point_contact_dot(t, e), way = u - along;
+    const double along = cs_vec3_dot(t, e), way = u - along;
     const double size = 1e-9 * (s + speed);
     const bool apart = way > size || way < -size;
     const double chord = (u / s - along / speed) / (apart ? way : 1);
     // where T and e differ in direction it may be negative, or above the greatest slope
-    const double held = cs_friction_chord_min(cs_friction_chord_max(chord, 0), 1 / ev);
+    const double held = cs_fmin(cs_fmax(chord, 0), 1 / ev);
     const double c = apart ? held : ev * ev / (s * s * s);
-    const double p = cs_friction_chord_max(c, 1 / cs_friction_chord_max(s, speed));
+    const double p = cs_fmax(c, 1 / cs_fmax(s, speed));
     CS_UNROLLED
     for (int k = 0; k < 6; k++) {
-        const int r = row[k], q = column[k];
+        const int r = cs_sym3_row[k], q = cs_sym3_column[k];
         b[k] += pull->h * mu * force * (p * ((r == q) - n[r] * n[q]) - (p - c) * e[r] * e[q]);
     }
 }

@@ -78,7 +78,6 @@ static void find_force(const struct pass *pass, uint32_t chunk, size_t number) {
 /* B = -cd mu N / s (I - n n^T - T T^T / s^2), as in point_contact.h. matrix.bound leaves the
  * last part out, and matrix.psd what is subtracted. */
 static void find_block(const struct pass *pass, uint32_t chunk, size_t number) {
-    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     struct cs_contact_matrix_part *part = pass->lagged->set.chunks[chunk].parts + number;
     const struct cs_lagged_contact *contact = pass->lagged->chunks[chunk].contacts + number;
     const double *n = contact->normal;
@@ -86,9 +85,10 @@ static void find_block(const struct pass *pass, uint32_t chunk, size_t number) {
     const double load = pass->matrix->psd && contact->load < 0 ? 0 : contact->load;
     const double rub = -pass->matrix->cd * load / to.speed;
     const double turn = pass->matrix->bound ? 0 : 1 / (to.speed * to.speed);
-    for (int e = 0; e < 6; e++)
-        part->block[e] = rub * ((row[e] == column[e]) - n[row[e]] * n[column[e]] -
-                                turn * to.t[row[e]] * to.t[column[e]]);
+    for (int e = 0; e < 6; e++) {
+        const int r = cs_sym3_row[e], s = cs_sym3_column[e];
+        part->block[e] = rub * ((r == s) - n[r] * n[s] - turn * to.t[r] * to.t[s]);
+    }
 }
 
 static void do_chunk(void *arg, uint32_t chunk) {
@@ -113,23 +113,22 @@ void cs_lagged_friction_store(struct cs_lagged_friction *lagged, uint32_t chunk,
                               const uint32_t *particles, const double *weights) {
     struct cs_contact_chunk *to = lagged->set.chunks + chunk;
     struct cs_lagged_chunk *own = lagged->chunks + chunk;
-    const double length = sqrt(cs_point_contact_dot(contact->g, contact->g));
+    const double length = sqrt(cs_vec3_dot(contact->g, contact->g));
     const double load = contact->friction * length *
                         cs_barrier_at(contact->d, contact->range, contact->k).force;
     if (load == 0)
         return;
     struct cs_contact_entry *entry = cs_contact_chunk_next(to);
     struct cs_contact_matrix_part *part = entry ? cs_contact_chunk_part(to) : NULL;
-    struct cs_lagged_contact *contacts =
-        part ? cs_arena_realloc(own->contacts, &own->capacity, to->n, sizeof *contacts) : NULL;
-    to->failed = to->failed || !contacts;
-    if (!contacts)
+    if (!part || !CS_ARENA_GROW(own->contacts, own->capacity, to->n)) {
+        to->failed = true;
         return;
-    own->contacts = contacts;
-    contacts[to->n - 1].load = load;
+    }
+    struct cs_lagged_contact *last = own->contacts + to->n - 1;
+    last->load = load;
     for (int c = 0; c < 3; c++) {
-        contacts[to->n - 1].normal[c] = contact->g[c] / length;
-        contacts[to->n - 1].obstacle[c] = contact->v[c];
+        last->normal[c] = contact->g[c] / length;
+        last->obstacle[c] = contact->v[c];
     }
     *entry = (struct cs_contact_entry){.n = n};
     *part = (struct cs_contact_matrix_part){0};

@@ -15,6 +15,7 @@
 #ifndef CS_CONTACT_POINT_CONTACT_H
 #define CS_CONTACT_POINT_CONTACT_H
 
+#include "base/vec3.h"
 #include "model/contact/barrier_law.h"
 #include "model/spring/spring_runs.h"
 
@@ -33,14 +34,10 @@ struct cs_point_contact {
     double friction, friction_speed, damping;
 };
 
-CS_INLINE double cs_point_contact_dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* g.g, the divisor of projections on g. Two points that coincide have no direction, and g = 0
  * there: 1e-30 keeps quotients finite, and changes no bit where g.g is above 1e-13. */
 CS_INLINE double cs_point_contact_square(const double g[3]) {
-    return cs_point_contact_dot(g, g) + 1e-30;
+    return cs_vec3_dot(g, g) + 1e-30;
 }
 
 /* Parts of the force that are wanted, as factors 0 or 1. friction includes damping. */
@@ -53,14 +50,14 @@ CS_INLINE void cs_point_contact_force(const struct cs_point_contact *contact,
                                       struct cs_contact_force_parts parts, double f[3]) {
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
     const double square = cs_point_contact_square(contact->g);
-    const double approach = cs_point_contact_dot(contact->g, contact->v);
+    const double approach = cs_vec3_dot(contact->g, contact->v);
     const double along = parts.elastic * law.force -
                          parts.friction * contact->damping * law.stiffness * approach;
     double t[3];
     for (int c = 0; c < 3; c++)
         t[c] = contact->v[c] - contact->g[c] * (approach / square);
     const double speed =
-        sqrt(cs_point_contact_dot(t, t) + contact->friction_speed * contact->friction_speed);
+        sqrt(cs_vec3_dot(t, t) + contact->friction_speed * contact->friction_speed);
     const double rub = parts.friction * contact->friction * law.force * sqrt(square) / speed;
     for (int c = 0; c < 3; c++)
         f[c] = along * contact->g[c] - rub * t[c];
@@ -79,15 +76,14 @@ struct cs_point_contact_motion {
 CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
                                     struct cs_contact_force_parts parts,
                                     const struct cs_point_contact_motion *move, double df[3]) {
-    const double *g = contact->g, *h = contact->h, *v = contact->v, *dp = move->dp;
+    const double *g = contact->g, *v = contact->v, *dp = move->dp;
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
-    const double dg[3] = {h[0] * dp[0] + h[1] * dp[1] + h[2] * dp[2],
-                          h[1] * dp[0] + h[3] * dp[1] + h[4] * dp[2],
-                          h[2] * dp[0] + h[4] * dp[1] + h[5] * dp[2]};
-    const double dd = cs_point_contact_dot(g, dp) + move->extra_dd;
-    const double square = cs_point_contact_square(g), dsquare = 2 * cs_point_contact_dot(g, dg);
-    const double approach = cs_point_contact_dot(g, v);
-    const double dapproach = cs_point_contact_dot(dg, v) + cs_point_contact_dot(g, move->dv);
+    double dg[3];
+    cs_sym3_multiply(contact->h, dp, dg);
+    const double dd = cs_vec3_dot(g, dp) + move->extra_dd;
+    const double square = cs_point_contact_square(g), dsquare = 2 * cs_vec3_dot(g, dg);
+    const double approach = cs_vec3_dot(g, v);
+    const double dapproach = cs_vec3_dot(dg, v) + cs_vec3_dot(g, move->dv);
     const double dforce = -law.stiffness * dd;
     const double dstiffness = cs_barrier_slope(contact->d, contact->range, contact->k) * dd;
     const double along = parts.elastic * law.force -
@@ -104,8 +100,8 @@ CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
         dt[c] = move->dv[c] - dg[c] * a - g[c] * da;
     }
     const double speed =
-        sqrt(cs_point_contact_dot(t, t) + contact->friction_speed * contact->friction_speed);
-    const double dspeed = cs_point_contact_dot(t, dt) / speed;
+        sqrt(cs_vec3_dot(t, t) + contact->friction_speed * contact->friction_speed);
+    const double dspeed = cs_vec3_dot(t, dt) / speed;
     const double length = sqrt(square), dlength = 0.5 * dsquare / length;
     const double load = parts.friction * contact->friction * law.force * length;
     const double dload =
@@ -125,21 +121,20 @@ CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
  * does not overshoot (iteratively reweighted least squares). */
 CS_INLINE void cs_point_contact_add_block(const struct cs_point_contact *contact,
                                           const struct cs_matrix *matrix, double b[6]) {
-    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const double *g = contact->g;
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
     const double square = cs_point_contact_square(g);
-    const double a = cs_point_contact_dot(g, contact->v) / square;
+    const double a = cs_vec3_dot(g, contact->v) / square;
     double t[3];
     for (int c = 0; c < 3; c++)
         t[c] = contact->v[c] - g[c] * a;
     const double speed =
-        sqrt(cs_point_contact_dot(t, t) + contact->friction_speed * contact->friction_speed);
+        sqrt(cs_vec3_dot(t, t) + contact->friction_speed * contact->friction_speed);
     const double rub = -matrix->cd * contact->friction * law.force * sqrt(square) / speed;
     const double along = -(matrix->ck + matrix->cd * contact->damping) * law.stiffness;
     const double curve = matrix->psd ? 0 : matrix->ck * law.force;
     for (int e = 0; e < 6; e++) {
-        const int r = row[e], s = column[e];
+        const int r = cs_sym3_row[e], s = cs_sym3_column[e];
         // friction holds the plane at right angles to g; along T it grows less than with its
         // load
         const double plane = (r == s) - g[r] * g[s] / square -
@@ -152,13 +147,13 @@ CS_INLINE void cs_point_contact_add_block(const struct cs_point_contact *contact
  * that the point goes relative to the collider, in units of ck. */
 CS_INLINE void cs_point_contact_approach(const struct cs_point_contact *contact,
                                          const struct cs_matrix *matrix, double y[3]) {
-    const double *g = contact->g, *h = contact->h, *v = contact->v;
+    const double *g = contact->g, *v = contact->v;
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
-    const double along = -matrix->ck * law.stiffness * cs_point_contact_dot(g, v);
+    const double along = -matrix->ck * law.stiffness * cs_vec3_dot(g, v);
     const double curve = matrix->psd ? 0 : matrix->ck * law.force;
-    y[0] = along * g[0] + curve * (h[0] * v[0] + h[1] * v[1] + h[2] * v[2]);
-    y[1] = along * g[1] + curve * (h[1] * v[0] + h[3] * v[1] + h[4] * v[2]);
-    y[2] = along * g[2] + curve * (h[2] * v[0] + h[4] * v[1] + h[5] * v[2]);
+    cs_sym3_multiply(contact->h, v, y);
+    for (int c = 0; c < 3; c++)
+        y[c] = along * g[c] + curve * y[c];
 }
 
 /* Largest stiffness in N/m and damping in N s/m that the point adds in any direction: K |g|^2,
@@ -167,9 +162,8 @@ CS_INLINE void cs_point_contact_bound(const struct cs_point_contact *contact, do
                                       double *damping) {
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
     const double square = cs_point_contact_square(contact->g);
-    const double approach = cs_point_contact_dot(contact->g, contact->v);
-    const double sliding =
-        cs_point_contact_dot(contact->v, contact->v) - approach * approach / square;
+    const double approach = cs_vec3_dot(contact->g, contact->v);
+    const double sliding = cs_vec3_dot(contact->v, contact->v) - approach * approach / square;
     const double speed =
         sqrt((sliding > 0 ? sliding : 0) + contact->friction_speed * contact->friction_speed);
     *stiffness = law.stiffness * square;

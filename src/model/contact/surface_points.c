@@ -21,11 +21,6 @@ struct cs_points {
     struct pose *posed;
 };
 
-static double *take(struct cs_system *system, struct cs_error *error) {
-    return cs_arena_alloc_array(&system->arena, 3 * (size_t)system->surfaces->n_points,
-                                sizeof(double), error);
-}
-
 enum cs_status cs_surface_points_build(struct cs_system *system, struct cs_error *error) {
     if (cs_surfaces_build(system, error) || system->points ||
         system->surfaces->n_points == system->view.n)
@@ -34,10 +29,10 @@ enum cs_status cs_surface_points_build(struct cs_system *system, struct cs_error
     if (!points)
         return error->status;
     for (int k = 0; k < ARRAYS; k++)
-        points->of[k] = take(system, error);
+        CS_ARENA_ARRAY(&system->arena, points->of[k], 3 * (size_t)system->surfaces->n_points,
+                       error);
     const size_t colliders = system->surfaces->n_bodies - system->scene->bodies.n;
-    points->posed =
-        cs_arena_alloc_array(&system->arena, ARRAYS * colliders, sizeof *points->posed, error);
+    CS_ARENA_ARRAY(&system->arena, points->posed, ARRAYS * colliders, error);
     system->points = points;
     return error->status;
 }

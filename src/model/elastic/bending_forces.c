@@ -347,6 +347,7 @@ void cs_bendings_add_product(const struct cs_system *system, const double *p, do
     add_product(system, p, true, y);
 }
 
-void cs_bendings_add_approach(const struct cs_system *system, const double *v, double *y) {
-    add_product(system, v, false, y);
+void cs_bendings_add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                              double *y) {
+    add_product(system, matrix->v, false, y);
 }

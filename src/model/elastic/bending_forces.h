@@ -16,6 +16,7 @@ void cs_bendings_prepare_matrix(const struct cs_system *system, const struct cs_
 void cs_bendings_add_blocks(const struct cs_system *system, size_t begin, size_t end,
                             double *blocks);
 void cs_bendings_add_product(const struct cs_system *system, const double *p, double *y);
-void cs_bendings_add_approach(const struct cs_system *system, const double *v, double *y);
+void cs_bendings_add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                              double *y);
 
 #endif

@@ -249,10 +249,8 @@ static void fill_mesh(struct cs_bending *bending, const struct cs_trimesh *mesh)
 static enum cs_status build_mesh(struct cs_bending *bending, const struct cs_trimesh *mesh,
                                  struct cs_arena *arena, struct cs_error *error) {
     const size_t n = bending->n = mesh->n_triangles;
-    bending->points =
-        cs_arena_alloc_array(arena, CS_BENDING_POINTS * n, sizeof *bending->points, error);
-    bending->weights =
-        cs_arena_alloc_array(arena, CS_BENDING_WEIGHTS * n, sizeof(double), error);
+    CS_ARENA_ARRAY(arena, bending->points, CS_BENDING_POINTS * n, error);
+    CS_ARENA_ARRAY(arena, bending->weights, CS_BENDING_WEIGHTS * n, error);
     bending->areas = cs_arena_alloc_array(arena, n, sizeof(double), error);
     bending->moments = cs_arena_alloc_array(arena, 9 * n, sizeof(double), error);
     bending->rest = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);

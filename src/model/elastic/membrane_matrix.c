@@ -352,6 +352,7 @@ void cs_membranes_add_product(const struct cs_system *system, const double *p, d
     add_product(system, p, true, y);
 }
 
-void cs_membranes_add_approach(const struct cs_system *system, const double *v, double *y) {
-    add_product(system, v, false, y);
+void cs_membranes_add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                               double *y) {
+    add_product(system, matrix->v, false, y);
 }

@@ -24,6 +24,7 @@ void cs_membranes_prepare_matrix(const struct cs_system *system, const struct cs
 /* y += the kept matrix times p, without its diagonal blocks. All threads. */
 void cs_membranes_add_product(const struct cs_system *system, const double *p, double *y);
 /* y += the elastic part of the kept matrix times v. */
-void cs_membranes_add_approach(const struct cs_system *system, const double *v, double *y);
+void cs_membranes_add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                               double *y);
 
 #endif

@@ -83,10 +83,8 @@ static enum cs_status build_mesh(struct cs_membrane *membrane, const struct cs_t
     membrane->rest =
         cs_arena_alloc_array(arena, membrane->n, CS_MEMBRANE_REST * sizeof(double), error);
     membrane->forces = cs_arena_alloc_array(arena, membrane->n, 9 * sizeof(double), error);
-    membrane->incident_begin = cs_arena_alloc_array(arena, membrane->count + 1,
-                                                    sizeof *membrane->incident_begin, error);
-    membrane->incident =
-        cs_arena_alloc_array(arena, 3 * (size_t)membrane->n, sizeof *membrane->incident, error);
+    CS_ARENA_ARRAY(arena, membrane->incident_begin, membrane->count + 1, error);
+    CS_ARENA_ARRAY(arena, membrane->incident, 3 * (size_t)membrane->n, error);
     if (error->status)
         return error->status;
     set_mesh_rest(membrane, mesh);
@@ -135,8 +133,7 @@ static enum cs_status alloc_matrix(struct cs_membranes *all, struct cs_system *s
         return error->status;
     all->x = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
     all->kept = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
-    all->tensions =
-        cs_arena_alloc_array(arena, 3 * (size_t)all->n_triangles, sizeof(double), error);
+    CS_ARENA_ARRAY(arena, all->tensions, 3 * (size_t)all->n_triangles, error);
     return error->status;
 }
 
@@ -146,8 +143,7 @@ enum cs_status cs_membranes_build(struct cs_system *system, struct cs_error *err
     struct cs_membranes *all = cs_arena_alloc_array(arena, 1, sizeof *all, error);
     if (!all)
         return error->status;
-    all->bodies =
-        cs_arena_alloc_array(arena, system->scene->bodies.n, sizeof *all->bodies, error);
+    CS_ARENA_ARRAY(arena, all->bodies, system->scene->bodies.n, error);
     all->shortest = HUGE_VAL;
     for (uint32_t b = 0; b < system->scene->bodies.n && !error->status; b++) {
         if (!bodies[b].elastic.present)

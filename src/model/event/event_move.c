@@ -31,8 +31,7 @@ bool cs_event_moves_any(const struct cs_scene *scene) {
 enum cs_status cs_event_moves_build(struct cs_system *system, struct cs_error *error) {
     const uint32_t n = system->scene->colliders.n;
     system->motions = cs_arena_alloc_array(&system->arena, n, sizeof *system->motions, error);
-    system->collider_motion = cs_arena_alloc_array(&system->arena, 9 * (size_t)n,
-                                                   sizeof *system->collider_motion, error);
+    CS_ARENA_ARRAY(&system->arena, system->collider_motion, 9 * (size_t)n, error);
     if (error->status)
         return error->status;
     for (uint32_t k = 0; k < n; k++)

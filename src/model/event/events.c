@@ -121,10 +121,8 @@ static void alloc_arrays(struct cs_system *system, struct cs_events *events,
     *scene = *system->scene;
     copy_list(system, &scene->bodies, sizeof(struct cs_body), error);
     copy_list(system, &scene->colliders, sizeof(struct cs_collider), error);
-    events->times =
-        cs_arena_alloc_array(arena, cs_event_times_count(scene), sizeof(double), error);
-    events->states =
-        cs_arena_alloc_array(arena, scene->events.n, sizeof(struct cs_event_state), error);
+    CS_ARENA_ARRAY(arena, events->times, cs_event_times_count(scene), error);
+    CS_ARENA_ARRAY(arena, events->states, scene->events.n, error);
     events->held_by = cs_arena_alloc_array(arena, n, sizeof(uint32_t), error);
     events->work = cs_arena_alloc_array(arena, n, sizeof(bool), error);
     if (any(scene, pushes))

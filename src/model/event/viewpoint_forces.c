@@ -33,8 +33,7 @@ enum cs_status cs_viewpoint_forces_build(struct cs_system *system, struct cs_err
         cs_arena_alloc(arena, sizeof *viewpoint_forces, error);
     if (!viewpoint_forces)
         return error->status;
-    viewpoint_forces->states =
-        cs_arena_alloc_array(arena, count(scene), sizeof *viewpoint_forces->states, error);
+    CS_ARENA_ARRAY(arena, viewpoint_forces->states, count(scene), error);
     for (uint32_t e = 0; e < scene->events.n && !error->status; e++) {
         if (!viewpoint_force_of(scene, e)->present)
             continue;

@@ -33,15 +33,6 @@
  * rounding (2e-16), far below a cell. */
 #define MARGIN 1e-6
 
-/* Minimum and maximum of two numbers that are not NaN. fmin and fmax are function calls,
- * because they must treat NaN. */
-static inline double least(double a, double b) {
-    return a < b ? a : b;
-}
-static inline double most(double a, double b) {
-    return a > b ? a : b;
-}
-
 /* The image plane is at distance 1: a point (right, up, forward) has the image (right /
  * forward, up / forward). Its half height is tan(fov / 2), as a quotient of sines that have the
  * same bits everywhere; the rectangle is given from the top left in 0..1. */
@@ -68,12 +59,10 @@ void cs_visibility_query_make(struct cs_visibility_query *visibility,
 
 enum cs_status cs_visibility_scratch_init(struct cs_visibility_scratch *work, uint32_t n,
                                           struct cs_arena *arena, struct cs_error *error) {
-    work->projected =
-        cs_arena_alloc_array(arena, 3 * (size_t)n, sizeof *work->projected, error);
+    CS_ARENA_ARRAY(arena, work->projected, 3 * (size_t)n, error);
     work->cells = cs_arena_alloc_array(arena, n, sizeof *work->cells, error);
     work->order = cs_arena_alloc_array(arena, n, sizeof *work->order, error);
-    work->cell_starts =
-        cs_arena_alloc_array(arena, (size_t)n + 1, sizeof *work->cell_starts, error);
+    CS_ARENA_ARRAY(arena, work->cell_starts, (size_t)n + 1, error);
     return error->status;
 }
 
@@ -151,8 +140,8 @@ static uint32_t mark(const struct cs_visibility_query *visibility,
     for (uint32_t i = body->first; i < end; i++) {
         position_of(grid->work, grid->n, i, p);
         for (int c = 0; c < 2 && grid->seen[i]; c++) {
-            grid->low[c] = least(grid->low[c], p[c] / p[2]);
-            grid->high[c] = most(grid->high[c], p[c] / p[2]);
+            grid->low[c] = cs_fmin(grid->low[c], p[c] / p[2]);
+            grid->high[c] = cs_fmax(grid->high[c], p[c] / p[2]);
         }
         count += grid->seen[i];
     }
@@ -163,7 +152,7 @@ static uint32_t mark(const struct cs_visibility_query *visibility,
  * grid the one at its border. */
 static uint32_t line_of(const struct grid *grid, int axis, double image, double move) {
     const double at = (image - grid->low[axis]) * grid->scale[axis] + move;
-    return (uint32_t)least(most(at, 0), grid->cells - 1);
+    return (uint32_t)cs_fmin(cs_fmax(at, 0), grid->cells - 1);
 }
 
 /* Sorts the candidates by cell: a counting sort, ascending within each cell. */
@@ -211,11 +200,11 @@ static bool bound(const struct grid *grid, double p[3][3], struct face *face) {
     for (int k = 0; k < 3; k++) {
         if (!isfinite(p[k][0] + p[k][1] + p[k][2]))
             return false;
-        nearest = least(nearest, p[k][2]);
-        farthest = most(farthest, p[k][2]);
+        nearest = cs_fmin(nearest, p[k][2]);
+        farthest = cs_fmax(farthest, p[k][2]);
         for (int c = 0; c < 2; c++) {
-            low[c] = least(low[c], p[k][c] / p[k][2]);
-            high[c] = most(high[c], p[k][c] / p[k][2]);
+            low[c] = cs_fmin(low[c], p[k][c] / p[k][2]);
+            high[c] = cs_fmax(high[c], p[k][c] / p[k][2]);
         }
     }
     if (farthest <= 0)
@@ -228,8 +217,8 @@ static bool bound(const struct grid *grid, double p[3][3], struct face *face) {
         if (from > grid->high[c] + MARGIN * (grid->high[c] - grid->low[c]) ||
             to < grid->low[c] - MARGIN * (grid->high[c] - grid->low[c]))
             return false;
-        face->from[c] = line_of(grid, c, most(from, grid->low[c]), -MARGIN);
-        face->to[c] = line_of(grid, c, least(to, grid->high[c]), MARGIN);
+        face->from[c] = line_of(grid, c, cs_fmax(from, grid->low[c]), -MARGIN);
+        face->to[c] = line_of(grid, c, cs_fmin(to, grid->high[c]), MARGIN);
     }
     return true;
 }

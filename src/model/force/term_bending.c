@@ -28,11 +28,6 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
     cs_bendings_add_blocks(system, begin, end, blocks);
 }
 
-static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
-                         double *y) {
-    cs_bendings_add_approach(system, matrix->v, y);
-}
-
 static void add_bound(const struct cs_system *system, const struct cs_gershgorin *sums) {
     cs_bendings_add_bound(system, system->state, sums->stiffness, sums->damping);
 }
@@ -61,7 +56,7 @@ const struct cs_term cs_term_bending = {
     .prepare_matrix = cs_bendings_prepare_matrix,
     .add_blocks = add_blocks,
     .add_matrix_product = cs_bendings_add_product,
-    .add_approach = add_approach,
+    .add_approach = cs_bendings_add_approach,
     .add_bound = add_bound,
     .add_state_bound = add_state_bound,
 };

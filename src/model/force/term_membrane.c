@@ -27,11 +27,6 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
             blocks[c * n + i] += system->membranes->blocks[c * n + i];
 }
 
-static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
-                         double *y) {
-    cs_membranes_add_approach(system, matrix->v, y);
-}
-
 /* Sums at rest. A stretched membrane is stiffer: methods ask for the bound at a state. */
 static void add_bound(const struct cs_system *system, const struct cs_gershgorin *sums) {
     cs_membranes_add_bound(system, NULL, sums->stiffness, sums->damping);
@@ -60,7 +55,7 @@ const struct cs_term cs_term_membrane = {
     .prepare_matrix = cs_membranes_prepare_matrix,
     .add_blocks = add_blocks,
     .add_matrix_product = cs_membranes_add_product,
-    .add_approach = add_approach,
+    .add_approach = cs_membranes_add_approach,
     .add_bound = add_bound,
     .add_state_bound = add_state_bound,
 };

@@ -168,13 +168,6 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
     }
 }
 
-/* out = S d for a symmetric S. */
-static void multiply(const double s[6], const double d[3], double out[3]) {
-    out[0] = s[0] * d[0] + s[1] * d[1] + s[2] * d[2];
-    out[1] = s[1] * d[0] + s[3] * d[1] + s[4] * d[2];
-    out[2] = s[2] * d[0] + s[4] * d[1] + s[5] * d[2];
-}
-
 /* y += w_i S (sum w_j p_j), at every particle i of every stitch; without the sum's own term if
  * apart. both: S by places and velocities, else by places alone. */
 static void add_products(const struct cs_system *system, const double *p, bool both, bool apart,
@@ -193,7 +186,7 @@ static void add_products(const struct cs_system *system, const double *p, bool b
             double rest[3];
             for (size_t c = 0; c < 3; c++)
                 rest[c] = d[c] - (apart ? stitch->weight[k] * p[c * n + stitch->at[k]] : 0);
-            multiply(sum, rest, out);
+            cs_sym3_multiply(sum, rest, out);
             for (size_t c = 0; c < 3; c++)
                 y[c * n + stitch->at[k]] += stitch->weight[k] * out[c];
         }

@@ -272,12 +272,6 @@ bool cs_contact_projection_resolve(struct cs_contact_projection *contact, double
     return step.pushed > 0 || restored;
 }
 
-bool cs_contact_projection_update_sticking(struct cs_contact_projection *contact, double t,
-                                           const double *x, const double *v) {
-    return cs_static_friction_update(&contact->static_friction, contact->colliders, t, x, v,
-                                     contact->state_after);
-}
-
 void cs_contact_projection_store(struct cs_contact_projection *contact, const double *x,
                                  const double *v, bool resolved) {
     const size_t n3 = 3 * count_of(contact);
@@ -347,12 +341,10 @@ enum cs_status cs_contact_projection_init(struct cs_contact_projection *contact,
                                           struct cs_error *error) {
     const size_t n = system->view.n;
     *contact = (struct cs_contact_projection){.system = system};
-    contact->colliders = cs_arena_alloc_array(arena, system->scene->colliders.n,
-                                              sizeof *contact->colliders, error);
+    CS_ARENA_ARRAY(arena, contact->colliders, system->scene->colliders.n, error);
     contact->colliders_before = contact->colliders;
     if (system->motions)
-        contact->colliders_before = cs_arena_alloc_array(arena, system->scene->colliders.n,
-                                                         sizeof *contact->colliders, error);
+        CS_ARENA_ARRAY(arena, contact->colliders_before, system->scene->colliders.n, error);
     contact->state_before = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
     contact->state_after = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
     contact->is_pushed = cs_arena_alloc_array(arena, n, sizeof(bool), error);

@@ -64,11 +64,6 @@ void cs_contact_projection_serialise(struct cs_contact_projection *contact,
 void cs_contact_start(struct cs_contact_projection *contact, double t, const double *x,
                       const double *v);
 
-/* Decides which particles stick in the following steps (static_friction.h). Returns whether
- * others do than before. */
-bool cs_contact_projection_update_sticking(struct cs_contact_projection *contact, double t,
-                                           const double *x, const double *v);
-
 /* Corrects the state after a step of dt seconds that ended at t: steps 1 to 3 above. Returns
  * whether the state was changed. */
 bool cs_contact_projection_resolve(struct cs_contact_projection *contact, double t, double dt,

@@ -359,8 +359,7 @@ enum cs_status cs_projection_energy_init(struct cs_projection_energy *balance,
                                          struct cs_error *error) {
     *balance =
         (struct cs_projection_energy){.system = system, .energy_scale = gravity_scale(system)};
-    balance->work =
-        cs_arena_alloc_array(arena, 3 * (size_t)system->view.n, sizeof(double), error);
+    CS_ARENA_ARRAY(arena, balance->work, 3 * (size_t)system->view.n, error);
     return error->status ? error->status
                          : response_init(&balance->elastic_response, system, arena, error);
 }

@@ -25,13 +25,11 @@ enum cs_status cs_static_friction_init(struct cs_static_friction *stick,
                          : cs_temporary_pins_init(&stick->pins, system, arena, error);
 }
 
-void cs_static_friction_pin(struct cs_static_friction *stick) {
-    if (stick->n_sticking > 0)
+void cs_static_friction_pin(struct cs_static_friction *stick, bool held) {
+    if (!held)
+        cs_temporary_pins_clear(&stick->pins, stick->is_sticking);
+    else if (stick->n_sticking > 0)
         cs_temporary_pins_set(&stick->pins, stick->is_sticking);
-}
-
-void cs_static_friction_unpin(struct cs_static_friction *stick) {
-    cs_temporary_pins_clear(&stick->pins, stick->is_sticking);
 }
 
 /* The mass, not the inverse mass, is used: the latter is 0 while a particle is pinned. */

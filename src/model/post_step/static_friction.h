@@ -74,10 +74,9 @@ enum cs_status cs_static_friction_init(struct cs_static_friction *stick,
                                        struct cs_system *system, struct cs_arena *arena,
                                        struct cs_error *error);
 
-/* Pins the sticking particles before a step, and unpins them after it: they are free for the
- * rest of the commit and for all that reads the state. */
-void cs_static_friction_pin(struct cs_static_friction *stick);
-void cs_static_friction_unpin(struct cs_static_friction *stick);
+/* Pins the sticking particles before a step, if held, and unpins them after it: they are free
+ * for the rest of the commit and for all that reads the state. */
+void cs_static_friction_pin(struct cs_static_friction *stick, bool held);
 
 /* Moves the sticking particles back to their positions in `last` (3,n), at rest, and records
  * the load of the step of dt seconds. Returns whether one had moved. */

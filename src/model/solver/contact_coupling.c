@@ -41,8 +41,7 @@ static void find_children(struct cs_level *fine, const struct cs_level *coarse) 
 static void add_pair_springs(struct cs_level *fine, const struct cs_level *coarse,
                              struct cs_arena *arena, struct cs_error *error) {
     fine->children = cs_arena_alloc_array(arena, fine->n, sizeof *fine->children, error);
-    fine->children_begin =
-        cs_arena_alloc_array(arena, coarse->n + (size_t)2, sizeof *fine->children_begin, error);
+    CS_ARENA_ARRAY(arena, fine->children_begin, coarse->n + (size_t)2, error);
     if (error->status)
         return;
     find_parents(fine, coarse);
@@ -54,8 +53,7 @@ enum cs_status cs_coupling_init(struct cs_hierarchy *hierarchy, struct cs_arena 
                                 struct cs_error *error) {
     for (uint32_t k = 0; k < hierarchy->n_levels && !error->status; k++) {
         struct cs_level *level = hierarchy->levels + k;
-        level->extra_springs =
-            cs_arena_alloc_array(arena, 1, sizeof *level->extra_springs, error);
+        CS_ARENA_ARRAY(arena, level->extra_springs, 1, error);
         if (!error->status &&
             !cs_extra_springs_init(level->extra_springs, level->first, level->n, arena,
                                    error) &&
@@ -293,15 +291,11 @@ size_t cs_pair_vertices_count(const struct cs_pairs *pairs) {
 /* Makes room for all vertices and zeroes the starts. Returns false if out of memory. */
 static bool reserve(struct cs_pair_vertices *corners, const struct cs_pairs *pairs) {
     const size_t n = pairs->system->view.n + (size_t)2;
-    uint32_t *starts =
-        cs_arena_realloc(corners->starts, &corners->starts_capacity, n, sizeof *starts);
-    corners->starts = starts ? starts : corners->starts;
-    struct cs_pair_vertex *of = cs_arena_realloc(corners->items, &corners->items_capacity,
-                                                 4 * cs_pair_vertices_count(pairs), sizeof *of);
-    corners->items = of ? of : corners->items;
-    if (starts)
-        memset(starts, 0, n * sizeof *starts);
-    return starts && of;
+    if (!CS_ARENA_GROW(corners->starts, corners->starts_capacity, n))
+        return false;
+    memset(corners->starts, 0, n * sizeof *corners->starts);
+    return CS_ARENA_GROW(corners->items, corners->items_capacity,
+                         4 * cs_pair_vertices_count(pairs));
 }
 
 /* Visits all vertices: counts them at `to`, and, unless `of` is NULL, stores them where `to`

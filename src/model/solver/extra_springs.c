@@ -31,8 +31,7 @@ enum cs_status cs_extra_springs_init(struct cs_extra_springs *links, uint32_t fi
         (links->n_blocks + CS_EXTRA_SPRINGS_CHUNK - 1) / CS_EXTRA_SPRINGS_CHUNK;
     links->chunks = cs_arena_alloc_array(arena, n_pieces, sizeof *links->chunks, error);
     links->begins = cs_arena_alloc_array(arena, links->n_blocks, sizeof(uint32_t), error);
-    links->diagonal_share =
-        cs_arena_alloc_array(arena, 6 * (size_t)n_cells, sizeof(float), error);
+    CS_ARENA_ARRAY(arena, links->diagonal_share, 6 * (size_t)n_cells, error);
     links->ends = cs_arena_alloc_array(arena, links->n_blocks, sizeof(uint32_t), error);
     links->n_pieces = error->status ? 0 : n_pieces;
     if (!error->status)
@@ -47,19 +46,14 @@ static struct cs_extra_spring *link_to(struct cs_extra_springs_chunk *piece, uin
     for (size_t k = 0; k < n; k++)
         if (piece->partners[k] == to)
             return piece->list + k;
-    struct cs_extra_spring *list =
-        cs_arena_realloc(piece->list, &piece->list_capacity, n + 1, sizeof *list);
-    piece->list = list ? list : piece->list;
-    uint32_t *partners =
-        cs_arena_realloc(piece->partners, &piece->partners_capacity, n + 1, sizeof *partners);
-    piece->partners = partners ? partners : piece->partners;
-    piece->failed = piece->failed || !list || !partners;
+    piece->failed = piece->failed || !CS_ARENA_GROW(piece->list, piece->list_capacity, n + 1) ||
+                    !CS_ARENA_GROW(piece->partners, piece->partners_capacity, n + 1);
     if (piece->failed)
         return NULL;
-    partners[n] = to;
-    list[n] = (struct cs_extra_spring){0};
+    piece->partners[n] = to;
+    piece->list[n] = (struct cs_extra_spring){0};
     piece->n_list++;
-    return list + n;
+    return piece->list + n;
 }
 
 /* The sign of the trace decides. Blocks of contact pairs have eigenvalues of one sign only. */
@@ -89,18 +83,14 @@ static bool is_positive(const float block[6]) {
  * neighbour, with the block 0. Returns false if out of memory, now or before. */
 static bool open_slot(struct cs_extra_springs_chunk *piece, uint32_t first) {
     const size_t n = (size_t)piece->slots_used + 1, slot = piece->slots_used;
-    uint32_t *cells =
-        cs_arena_realloc(piece->cells, &piece->cells_capacity, LANES * n, sizeof *cells);
-    piece->cells = cells ? cells : piece->cells;
-    float *springs = cs_arena_realloc(piece->springs, &piece->springs_capacity, 6 * LANES * n,
-                                      sizeof *springs);
-    piece->springs = springs ? springs : piece->springs;
-    piece->failed = piece->failed || !cells || !springs;
+    piece->failed = piece->failed ||
+                    !CS_ARENA_GROW(piece->cells, piece->cells_capacity, LANES * n) ||
+                    !CS_ARENA_GROW(piece->springs, piece->springs_capacity, 6 * LANES * n);
     if (piece->failed)
         return false;
     for (uint32_t l = 0; l < LANES; l++)
-        cells[LANES * slot + l] = first + l;
-    memset(springs + 6 * LANES * slot, 0, 6 * LANES * sizeof *springs);
+        piece->cells[LANES * slot + l] = first + l;
+    memset(piece->springs + 6 * LANES * slot, 0, 6 * LANES * sizeof *piece->springs);
     piece->slots_used++;
     return true;
 }

@@ -87,8 +87,7 @@ static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t
 static void load_contact(struct cs_multigrid *multigrid, struct cs_hierarchy *hierarchy,
                          struct cs_arena *arena, struct cs_error *error) {
     if (!multigrid->internal_blocks) {
-        multigrid->internal_blocks =
-            cs_arena_alloc_array(arena, 6 * multigrid->system->view.n, sizeof(double), error);
+        CS_ARENA_ARRAY(arena, multigrid->internal_blocks, 6 * multigrid->system->view.n, error);
         if (!error->status)
             cs_pair_vertices_init(&multigrid->pair_vertices, arena, error);
     }
@@ -102,8 +101,7 @@ static void join_levels(struct cs_multigrid *multigrid, struct cs_arena *arena,
     const uint32_t n = multigrid->n;
     cs_hierarchies_make_equally_deep(multigrid->hierarchies, n, arena, error);
     const uint32_t n_levels = multigrid->hierarchies->n_levels;
-    multigrid->joint_levels = cs_arena_alloc_array(arena, (size_t)n_levels * n,
-                                                   sizeof *multigrid->joint_levels, error);
+    CS_ARENA_ARRAY(arena, multigrid->joint_levels, (size_t)n_levels * n, error);
     for (uint32_t k = 0; k < n_levels && !error->status; k++) {
         struct cs_level **levels = multigrid->joint_levels + (size_t)k * n;
         for (uint32_t b = 0; b < n; b++)
@@ -143,8 +141,7 @@ enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs
     if (!cs_multigrid_is_used(system->scene) && !cs_multigrid_is_in_reserve(system->scene))
         return CS_OK;
     const uint32_t n = system->scene->bodies.n;
-    multigrid->hierarchies =
-        cs_arena_alloc_array(arena, n, sizeof *multigrid->hierarchies, error);
+    CS_ARENA_ARRAY(arena, multigrid->hierarchies, n, error);
     for (uint32_t b = 0; b < n && !error->status; b++) {
         struct cs_hierarchy *hierarchy = multigrid->hierarchies + multigrid->n++;
         *hierarchy = hierarchy_of(system, b);

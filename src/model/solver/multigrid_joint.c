@@ -50,10 +50,8 @@ enum cs_status cs_level_alloc_vectors(const struct cs_level_group *group,
 enum cs_status cs_coarsest_init(struct cs_coarsest *coarsest, struct cs_arena *arena,
                                 struct cs_error *error) {
     *coarsest = (struct cs_coarsest){0};
-    coarsest->cells =
-        cs_arena_alloc_array(arena, CS_COARSEST_CELLS, sizeof *coarsest->cells, error);
-    coarsest->factors =
-        cs_arena_alloc_array(arena, (size_t)ROWS * ROWS, sizeof *coarsest->factors, error);
+    CS_ARENA_ARRAY(arena, coarsest->cells, CS_COARSEST_CELLS, error);
+    CS_ARENA_ARRAY(arena, coarsest->factors, (size_t)ROWS * ROWS, error);
     return error->status;
 }
 

@@ -114,8 +114,7 @@ enum cs_status cs_graph_match(const struct cs_graph *fine, struct cs_graph *coar
     *coarse = (struct cs_graph){0};
     double *sums = cs_arena_alloc_array(work, fine->n, sizeof *sums, error);
     uint32_t *known = cs_arena_alloc_array(work, fine->n, sizeof *known, error);
-    coarse->ends =
-        cs_arena_alloc_array(work, 2 * (size_t)fine->n_edges, sizeof(uint32_t), error);
+    CS_ARENA_ARRAY(work, coarse->ends, 2 * (size_t)fine->n_edges, error);
     coarse->weights = cs_arena_alloc_array(work, fine->n_edges, sizeof(double), error);
     if (sort_edges(fine->n, 2 * fine->n_edges, fine->ends, &stars, work, error))
         return error->status;
@@ -145,8 +144,7 @@ static enum cs_status body_graph(const struct cs_hierarchy *hierarchy, struct cs
     graph->n = hierarchy->count;
     for (uint32_t r = 0; r < hierarchy->n_runs; r++)
         graph->n_edges += hierarchy->runs[r].count;
-    graph->ends =
-        cs_arena_alloc_array(work, 2 * (size_t)graph->n_edges, sizeof(uint32_t), error);
+    CS_ARENA_ARRAY(work, graph->ends, 2 * (size_t)graph->n_edges, error);
     graph->weights = cs_arena_alloc_array(work, graph->n_edges, sizeof(double), error);
     if (error->status)
         return error->status;
@@ -201,22 +199,17 @@ static enum cs_status level_of(const struct cs_graph *graph, uint32_t pitch,
         (struct cs_level){.form = CS_LEVEL_MESH, .pitch = pitch, .n_springs = graph->n_edges};
     level->n = level->end = (graph->n + CS_LANES - 1) / CS_LANES * CS_LANES;
     uint32_t *count = cs_arena_alloc_array(work, level->n, sizeof *count, error);
-    level->starts =
-        cs_arena_alloc_array(arena, level->n / CS_LANES + 1, sizeof(uint32_t), error);
-    level->ends =
-        cs_arena_alloc_array(arena, 2 * (size_t)graph->n_edges, sizeof(uint32_t), error);
-    level->blocks =
-        cs_arena_alloc_array(arena, 6 * (size_t)graph->n_edges, sizeof(float), error);
+    CS_ARENA_ARRAY(arena, level->starts, level->n / CS_LANES + 1, error);
+    CS_ARENA_ARRAY(arena, level->ends, 2 * (size_t)graph->n_edges, error);
+    CS_ARENA_ARRAY(arena, level->blocks, 6 * (size_t)graph->n_edges, error);
     if (error->status)
         return error->status;
     memcpy(level->ends, graph->ends, 2 * sizeof(uint32_t) * graph->n_edges);
     /* the number of slots is known only now */
     count_slots(graph, level, count);
     const size_t n_slots = level->starts[level->n / CS_LANES];
-    level->neighbours =
-        cs_arena_alloc_array(arena, n_slots * CS_LANES, sizeof(uint32_t), error);
-    level->spring_ids =
-        cs_arena_alloc_array(arena, n_slots * CS_LANES, sizeof(uint32_t), error);
+    CS_ARENA_ARRAY(arena, level->neighbours, n_slots * CS_LANES, error);
+    CS_ARENA_ARRAY(arena, level->spring_ids, n_slots * CS_LANES, error);
     if (error->status)
         return error->status;
     fill_slots(graph, level, count);
@@ -318,8 +311,7 @@ static void aggregate(struct cs_graph *graph, struct cs_level *level, struct cs_
                       struct cs_arena *work, struct cs_error *error) {
     struct cs_graph pairs, fours = {0};
     level->parents = cs_arena_alloc_array(arena, level->n, sizeof(uint32_t), error);
-    level->coarse_springs =
-        cs_arena_alloc_array(arena, graph->n_edges, sizeof(uint32_t), error);
+    CS_ARENA_ARRAY(arena, level->coarse_springs, graph->n_edges, error);
     uint32_t *parents = cs_arena_alloc_array(work, graph->n, sizeof *parents, error);
     uint32_t *targets = cs_arena_alloc_array(work, graph->n_edges, sizeof *targets, error);
     if (!error->status &&

@@ -97,10 +97,8 @@ static enum cs_status list_ends(struct cs_system *system, struct cs_error *error
     struct cs_seams *seams = system->seams;
     for (uint32_t s = 0; s < seams->n; s++)
         seams->n_ends += seams->stitches[s].n;
-    seams->ends =
-        cs_arena_alloc_array(&system->arena, seams->n_ends, sizeof *seams->ends, error);
-    seams->merged =
-        cs_arena_alloc_array(&system->arena, system->view.n, sizeof *seams->merged, error);
+    CS_ARENA_ARRAY(&system->arena, seams->ends, seams->n_ends, error);
+    CS_ARENA_ARRAY(&system->arena, seams->merged, system->view.n, error);
     if (error->status)
         return error->status;
     for (uint32_t i = 0; i < system->view.n; i++)

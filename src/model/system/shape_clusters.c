@@ -138,8 +138,7 @@ enum cs_status cs_shape_clusters_make(const struct cs_body *body,
     uint32_t *part_of = calloc(count, sizeof *part_of);
     struct box *boxes = calloc(parts, sizeof *boxes);
     clusters->n = parts;
-    clusters->begin =
-        cs_arena_alloc_array(arena, (size_t)parts + 1, sizeof *clusters->begin, error);
+    CS_ARENA_ARRAY(arena, clusters->begin, (size_t)parts + 1, error);
     if (!keys || !part_of || !boxes)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the clusters of %u particles", count);
     if (!error->status) {
@@ -149,8 +148,7 @@ enum cs_status cs_shape_clusters_make(const struct cs_body *body,
         find_boxes(body, count, part_of, boxes);
         /* the first pass counts, the second writes */
         fill(body, count, boxes, clusters->begin, NULL);
-        clusters->items =
-            cs_arena_alloc_array(arena, clusters->begin[parts], sizeof *clusters->items, error);
+        CS_ARENA_ARRAY(arena, clusters->items, clusters->begin[parts], error);
     }
     if (!error->status)
         fill(body, count, boxes, clusters->begin, clusters->items);

@@ -51,8 +51,7 @@ static enum cs_status make_level(struct cs_mesh_study *study, struct cs_mesh_lev
     const size_t n = study->n_bodies;
     level->error = level->bar = (double)NAN;
     level->n_overrides = session->n_overrides;
-    level->overrides = cs_arena_alloc_array(&study->arena, n + session->n_overrides,
-                                            sizeof *level->overrides, error);
+    CS_ARENA_ARRAY(&study->arena, level->overrides, n + session->n_overrides, error);
     level->grids = cs_arena_alloc_array(&study->arena, 2 * n, sizeof *level->grids, error);
     if (error->status)
         return error->status;
@@ -112,8 +111,7 @@ enum cs_status cs_mesh_level_store(struct cs_mesh_study *study, struct cs_mesh_l
                                    const struct cs_compare *compare, struct cs_error *error) {
     const struct cs_compare_reference *reference = &compare->reference;
     const struct cs_trajectory *track = &reference->trajectory;
-    level->rows =
-        cs_arena_alloc_array(&study->arena, compare->cells.n, sizeof *level->rows, error);
+    CS_ARENA_ARRAY(&study->arena, level->rows, compare->cells.n, error);
     for (uint32_t k = 0; k < compare->cells.n && !error->status; k++)
         if (cs_cell_is_finished(compare->cells.cells + k))
             level->rows[level->n_rows++] = compare->cells.cells[k];
@@ -121,8 +119,7 @@ enum cs_status cs_mesh_level_store(struct cs_mesh_study *study, struct cs_mesh_l
     if (error->status || !reference->families_agree || !reference->pointwise)
         return error->status;
     level->bar = reference->error_bar;
-    level->x =
-        cs_arena_alloc_array(&study->arena, 3 * (size_t)track->n, sizeof *level->x, error);
+    CS_ARENA_ARRAY(&study->arena, level->x, 3 * (size_t)track->n, error);
     if (level->x)
         memcpy(level->x, cs_trajectory_state(track, track->frames),
                3 * (size_t)track->n * sizeof *level->x);

@@ -28,8 +28,7 @@ enum cs_status cs_stiffest_modes_init(struct cs_stiffest_modes *modes, struct cs
     const size_t n = system->view.n;
     *modes = (struct cs_stiffest_modes){.system = system};
     double **arrays[] = {&modes->dx, &modes->dv, &modes->zeros, &modes->last_vector};
-    modes->basis = cs_arena_alloc_array(&modes->arena, (CS_STIFFEST_MODES_BASIS + 1) * 3 * n,
-                                        sizeof(double), error);
+    CS_ARENA_ARRAY(&modes->arena, modes->basis, (CS_STIFFEST_MODES_BASIS + 1) * 3 * n, error);
     modes->root = cs_arena_alloc_array(&modes->arena, n, sizeof(double), error);
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         *arrays[k] = cs_arena_alloc_array(&modes->arena, 3 * n, sizeof(double), error);

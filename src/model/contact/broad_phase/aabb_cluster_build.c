@@ -97,8 +97,7 @@ static void count(const struct cs_cluster_input *order, size_t *clusters, size_t
 
 static enum cs_status take(struct cs_aabb_clusters *clusters, size_t most,
                            struct cs_arena *arena, struct cs_error *error) {
-    clusters->items =
-        cs_arena_alloc_array(arena, CS_AABB_CLUSTER * most, sizeof(uint32_t), error);
+    CS_ARENA_ARRAY(arena, clusters->items, CS_AABB_CLUSTER * most, error);
     clusters->max_item = cs_arena_alloc_array(arena, most, sizeof *clusters->max_item, error);
     clusters->body = cs_arena_alloc_array(arena, most, sizeof *clusters->body, error);
     return error->status;

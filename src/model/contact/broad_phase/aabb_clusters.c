@@ -122,13 +122,10 @@ static size_t visit(struct cs_uniform_grid *cells, const struct cs_aabb *box, ui
 /* Counts the entries of all cells; stops early at too many. Returns false if out of memory. */
 static bool count_all(struct cs_uniform_grid *cells, const struct set *boxes, size_t *places) {
     const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
-    uint32_t *starts =
-        cs_arena_realloc(cells->cell_starts, &cells->starts_capacity, all + 1, sizeof *starts);
     *places = 0;
-    if (!starts)
+    if (!CS_ARENA_GROW(cells->cell_starts, cells->starts_capacity, all + 1))
         return false;
-    cells->cell_starts = starts;
-    memset(starts, 0, (all + 1) * sizeof *starts);
+    memset(cells->cell_starts, 0, (all + 1) * sizeof *cells->cell_starts);
     for (uint32_t i = 0; i < boxes->n && *places <= (size_t)PLACES_EACH * boxes->n + FEW; i++)
         if (!is_out(boxes, i))
             *places += visit(cells, boxes->boxes + i, i, false);
@@ -139,11 +136,8 @@ static bool count_all(struct cs_uniform_grid *cells, const struct set *boxes, si
  * to the first brings it down to the begin, with items in ascending order. */
 static bool fill_all(struct cs_uniform_grid *cells, const struct set *boxes, size_t places) {
     const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
-    uint32_t *items =
-        cs_arena_realloc(cells->items, &cells->items_capacity, places, sizeof *items);
-    if (!items && places)
+    if (!CS_ARENA_GROW(cells->items, cells->items_capacity, places))
         return false;
-    cells->items = items;
     for (size_t c = 1; c < all; c++)
         cells->cell_starts[c] += cells->cell_starts[c - 1];
     cells->cell_starts[all] = (uint32_t)places;
@@ -214,19 +208,15 @@ static bool is_first_cell(const struct cs_uniform_grid *cells, const struct cs_a
 
 /* Appends a cluster to the result; returns false if out of memory. */
 static bool add(struct cs_nearby_clusters *near, uint32_t cluster, const struct cs_aabb *box) {
-    uint32_t *clusters = cs_arena_realloc(near->clusters, &near->clusters_capacity, near->n + 1,
-                                          sizeof *clusters);
-    near->clusters = clusters ? clusters : near->clusters;
-    struct cs_aabb_cluster *boxes = cs_arena_realloc(
-        near->boxes, &near->boxes_capacity, near->n / CS_AABB_CLUSTER + 1, sizeof *boxes);
-    near->boxes = boxes ? boxes : near->boxes;
-    if (!clusters || !boxes)
-        return false;
     static const struct cs_aabb none = {{1, 1, 1}, {0, 0, 0}};
+    const size_t group = near->n / CS_AABB_CLUSTER;
+    if (!CS_ARENA_GROW(near->clusters, near->clusters_capacity, near->n + 1) ||
+        !CS_ARENA_GROW(near->boxes, near->boxes_capacity, group + 1))
+        return false;
     for (uint32_t l = 0; l < CS_AABB_CLUSTER && near->n % CS_AABB_CLUSTER == 0; l++)
-        cs_aabb_cluster_set(boxes + near->n / CS_AABB_CLUSTER, l, &none);
-    cs_aabb_cluster_set(boxes + near->n / CS_AABB_CLUSTER, near->n % CS_AABB_CLUSTER, box);
-    clusters[near->n++] = cluster;
+        cs_aabb_cluster_set(near->boxes + group, l, &none);
+    cs_aabb_cluster_set(near->boxes + group, near->n % CS_AABB_CLUSTER, box);
+    near->clusters[near->n++] = cluster;
     return true;
 }
 
@@ -314,10 +304,7 @@ bool cs_nearby_clusters_find(struct cs_nearby_clusters *near,
         struct looking looking = {clusters, clusters->cells + k, box, {0}};
         there = there && add_cells(near, &looking);
     }
-    uint32_t *items = cs_arena_realloc(near->items, &near->items_capacity,
-                                       CS_AABB_CLUSTER * near->n, sizeof *items);
-    near->items = items ? items : near->items;
-    return there && (items || !near->n);
+    return there && CS_ARENA_GROW(near->items, near->items_capacity, CS_AABB_CLUSTER * near->n);
 }
 
 /* Bit mask of the lanes whose boxes overlap a box. Comparisons with NaN are false, so that

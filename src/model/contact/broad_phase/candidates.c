@@ -47,18 +47,12 @@ enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_sy
                                          .inverse_unit = 1 / meetings->range_max,
                                          .n_chunks = point_chunks + edge_chunks};
     candidates->body = cs_arena_alloc_array(arena, n, sizeof *candidates->body, error);
-    candidates->x_at_build =
-        cs_arena_alloc_array(arena, 3 * (size_t)n, sizeof *candidates->x_at_build, error);
-    candidates->x_at_close =
-        cs_arena_alloc_array(arena, 3 * (size_t)n, sizeof *candidates->x_at_build, error);
-    candidates->x_at_nearby =
-        cs_arena_alloc_array(arena, 3 * (size_t)n, sizeof *candidates->x_at_build, error);
-    candidates->scaled_points =
-        cs_arena_alloc_array(arena, n, sizeof *candidates->scaled_points, error);
-    candidates->chunks =
-        cs_arena_alloc_array(arena, candidates->n_chunks, sizeof *candidates->chunks, error);
-    candidates->body_motion = cs_arena_alloc_array(arena, 4 * (size_t)meetings->n_bodies,
-                                                   sizeof *candidates->body_motion, error);
+    CS_ARENA_ARRAY(arena, candidates->x_at_build, 3 * (size_t)n, error);
+    CS_ARENA_ARRAY(arena, candidates->x_at_close, 3 * (size_t)n, error);
+    CS_ARENA_ARRAY(arena, candidates->x_at_nearby, 3 * (size_t)n, error);
+    CS_ARENA_ARRAY(arena, candidates->scaled_points, n, error);
+    CS_ARENA_ARRAY(arena, candidates->chunks, candidates->n_chunks, error);
+    CS_ARENA_ARRAY(arena, candidates->body_motion, 4 * (size_t)meetings->n_bodies, error);
     if (error->status || cs_candidates_find_init(candidates, arena, error))
         return error->status;
     for (uint32_t b = 0; b < meetings->n_bodies; b++)
@@ -224,13 +218,6 @@ static double largest_move(const struct cs_candidates *candidates, const double 
     return most;
 }
 
-/* Returns whether the list is valid at both ends. It is then valid on the straight way too,
- * because each relative displacement is a convex function along it. */
-static bool is_covered(const struct cs_candidates *candidates, const double *x0,
-                       const double *x1) {
-    return is_good(candidates, x0) && is_good(candidates, x1);
-}
-
 /* Largest multiple of the step by which the state of a new list lies ahead of its start. */
 #define AHEAD 2
 
@@ -251,11 +238,13 @@ static double margin_for(const struct cs_candidates *candidates, double move, do
                : least;
 }
 
-/* The factor 1 + 1e-9 exceeds the rounding of motions. */
+/* A list that is valid at both ends is valid on the straight way too, because each relative
+ * displacement is a convex function along it. The factor 1 + 1e-9 exceeds the rounding of
+ * motions. */
 bool cs_candidates_cover_step(struct cs_candidates *candidates, const double *x0,
                               const double *x1) {
     const size_t n = candidates->system->surfaces->n_points;
-    if (is_covered(candidates, x0, x1))
+    if (is_good(candidates, x0) && is_good(candidates, x1))
         return true;
     double within;
     const double move = largest_move(candidates, x0, x1, &within) * (1 + 1e-9);

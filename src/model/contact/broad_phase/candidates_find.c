@@ -18,12 +18,9 @@ enum cs_status cs_candidates_find_init(struct cs_candidates *candidates, struct 
     struct cs_primitive_search *search = &candidates->search;
     if (cs_primitive_search_init(search, candidates->system, arena, error))
         return error->status;
-    candidates->batches =
-        cs_arena_alloc_array(arena, search->n_batches, sizeof *candidates->batches, error);
-    candidates->rows[0] =
-        cs_arena_alloc_array(arena, surfaces->n_points, sizeof **candidates->rows, error);
-    candidates->rows[1] =
-        cs_arena_alloc_array(arena, surfaces->n_edges, sizeof **candidates->rows, error);
+    CS_ARENA_ARRAY(arena, candidates->batches, search->n_batches, error);
+    CS_ARENA_ARRAY(arena, candidates->rows[0], surfaces->n_points, error);
+    CS_ARENA_ARRAY(arena, candidates->rows[1], surfaces->n_edges, error);
     return error->status;
 }
 
@@ -48,13 +45,11 @@ static void store_pairs(struct cs_candidates *candidates, uint32_t number,
     struct cs_candidate_batch *batch = candidates->batches + number;
     struct cs_primitive_batch *of = candidates->search.batches + number;
     const uint32_t n = cs_distance_filter_run(filter, of->edges);
-    uint32_t *pairs =
-        cs_arena_realloc(batch->pairs, &batch->capacity, batch->n + n, 2 * sizeof *pairs);
-    of->failed = of->failed || (n && !pairs);
-    if (!n || !pairs)
+    of->failed =
+        of->failed || !CS_ARENA_GROW(batch->pairs, batch->capacity, 2 * (batch->n + n));
+    if (!n || of->failed)
         return;
-    batch->pairs = pairs;
-    memcpy(pairs + 2 * batch->n, filter->pairs, 2 * n * sizeof *pairs);
+    memcpy(batch->pairs + 2 * batch->n, filter->pairs, n * sizeof *filter->pairs);
     batch->n += n;
 }
 
@@ -88,10 +83,8 @@ static void sort_batch(void *arg, uint32_t number) {
         (of->edges ? &candidates->search.edges : &candidates->search.points)->items;
     const size_t first = CS_AABB_CLUSTER * (size_t)of->begin,
                  end = CS_AABB_CLUSTER * (size_t)of->end;
-    uint32_t *seconds =
-        cs_arena_realloc(batch->seconds, &batch->seconds_capacity, batch->n, sizeof *seconds);
-    batch->seconds = seconds ? seconds : batch->seconds;
-    of->failed = of->failed || (batch->n && !seconds);
+    of->failed =
+        of->failed || !CS_ARENA_GROW(batch->seconds, batch->seconds_capacity, batch->n);
     for (size_t k = first; k < end; k++)
         if (items[k] != CS_NO_ITEM)
             rows[items[k]] = (struct cs_candidate_range){number, 0, 0};
@@ -108,7 +101,7 @@ static void sort_batch(void *arg, uint32_t number) {
         }
     for (size_t p = 0; p < batch->n; p++) {
         struct cs_candidate_range *row = rows + batch->pairs[2 * p];
-        seconds[row->begin + row->n++] = batch->pairs[2 * p + 1];
+        batch->seconds[row->begin + row->n++] = batch->pairs[2 * p + 1];
     }
 }
 
@@ -133,17 +126,13 @@ static void list_chunk(void *arg, uint32_t number) {
     size_t n = 0;
     for (uint32_t i = chunk->begin; i < chunk->end; i++)
         n += rows[i].n;
-    uint32_t *pairs = cs_arena_realloc(chunk->pairs, &chunk->capacity, n, 2 * sizeof *pairs);
     chunk->n = 0;
-    chunk->failed = n && !pairs;
-    if (!n || !pairs)
-        return;
-    chunk->pairs = pairs;
-    for (uint32_t i = chunk->begin; i < chunk->end; i++) {
+    chunk->failed = !CS_ARENA_GROW(chunk->pairs, chunk->capacity, 2 * n);
+    for (uint32_t i = chunk->begin; i < chunk->end && !chunk->failed; i++) {
         if (!rows[i].n)
             continue;
         put_row(i, candidates->batches[rows[i].batch].seconds + rows[i].begin, rows[i].n,
-                pairs + 2 * chunk->n);
+                chunk->pairs + 2 * chunk->n);
         chunk->n += rows[i].n;
     }
 }

@@ -40,10 +40,8 @@ static void finish(void *object) {
 
 static enum cs_status alloc_boxes(struct cs_aabb_clusters *clusters, struct cs_arena *arena,
                                   struct cs_error *error) {
-    clusters->clusters =
-        cs_arena_alloc_array(arena, clusters->n, sizeof *clusters->clusters, error);
-    clusters->cluster_boxes =
-        cs_arena_alloc_array(arena, clusters->n, sizeof *clusters->cluster_boxes, error);
+    CS_ARENA_ARRAY(arena, clusters->clusters, clusters->n, error);
+    CS_ARENA_ARRAY(arena, clusters->cluster_boxes, clusters->n, error);
     return error->status;
 }
 
@@ -56,8 +54,7 @@ static enum cs_status alloc_batches(struct cs_primitive_search *search, struct c
                                     struct cs_error *error) {
     search->n_point_batches = count_batches(search->points.n);
     search->n_batches = search->n_point_batches + count_batches(search->edges.n);
-    search->batches =
-        cs_arena_alloc_array(arena, search->n_batches, sizeof *search->batches, error);
+    CS_ARENA_ARRAY(arena, search->batches, search->n_batches, error);
     for (uint32_t b = 0; b < search->n_batches && !error->status; b++) {
         const bool edges = b >= search->n_point_batches;
         const uint32_t n = edges ? search->edges.n : search->points.n;

@@ -21,8 +21,7 @@ enum cs_status cs_blocked_step_init(struct cs_blocked_step *blocked,
                                     struct cs_error *error) {
     *blocked = (struct cs_blocked_step){0};
     if (cs_step_limit_applies(system))
-        blocked->x =
-            cs_arena_alloc_array(arena, 6 * (size_t)system->view.n, sizeof(double), error);
+        CS_ARENA_ARRAY(arena, blocked->x, 6 * (size_t)system->view.n, error);
     return error->status;
 }
 

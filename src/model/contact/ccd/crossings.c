@@ -56,8 +56,7 @@ static enum cs_status find_search(struct cs_system *system, struct cs_crossings 
         crossings->motion = system->pairs->point_motion;
         return CS_OK;
     }
-    crossings->motion = cs_arena_alloc_array(arena, system->surfaces->n_points,
-                                             sizeof *crossings->motion, error);
+    CS_ARENA_ARRAY(arena, crossings->motion, system->surfaces->n_points, error);
     crossings->search = cs_arena_alloc(arena, sizeof *crossings->search, error);
     return error->status ? error->status
                          : cs_primitive_search_init(crossings->search, system, arena, error);
@@ -71,10 +70,9 @@ enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *err
     if (!crossings || find_search(system, crossings, error))
         return error->status;
     const size_t n = cs_scene_surfaces(system->scene);
-    crossings->found = cs_arena_alloc_array(arena, crossings->search->n_batches,
-                                            sizeof *crossings->found, error);
+    CS_ARENA_ARRAY(arena, crossings->found, crossings->search->n_batches, error);
     if (cs_scene_crossings_by_pairs(system->scene) &&
-        (crossings->apart = cs_arena_alloc_array(arena, n * n, sizeof(bool), error)))
+        CS_ARENA_ARRAY(arena, crossings->apart, n * n, error))
         list_apart(system->scene, crossings->apart);
     if (!error->status)
         system->crossings = crossings;

@@ -10,20 +10,12 @@
 
 #include <float.h>
 
-static double larger(double a, double b) {
-    return a > b ? a : b;
-}
-
-static double min_of(double a, double b) {
-    return a < b ? a : b;
-}
-
 /* Returns whether the axis-aligned boxes are disjoint. Comparisons are exact. */
 static bool has_gap(const double edge[2][3], const double triangle[3][3]) {
     for (int c = 0; c < 3; c++) {
         const double a = triangle[0][c], b = triangle[1][c], d = triangle[2][c];
-        if (larger(edge[0][c], edge[1][c]) < min_of(min_of(a, b), d) ||
-            min_of(edge[0][c], edge[1][c]) > larger(larger(a, b), d))
+        if (cs_fmax(edge[0][c], edge[1][c]) < cs_fmin(cs_fmin(a, b), d) ||
+            cs_fmin(edge[0][c], edge[1][c]) > cs_fmax(cs_fmax(a, b), d))
             return true;
     }
     return false;
@@ -40,11 +32,11 @@ static bool are_separated(const double edge[2][3], const double triangle[3][3],
         const double x = axis[0] * (p[0] - from[0]), y = axis[1] * (p[1] - from[1]);
         const double z = axis[2] * (p[2] - from[2]);
         at[k] = x + y + z;
-        size = larger(size, fabs(x) + fabs(y) + fabs(z));
+        size = cs_fmax(size, fabs(x) + fabs(y) + fabs(z));
     }
     const double margin = 8 * DBL_EPSILON * size;
-    return min_of(at[0], at[1]) > larger(larger(at[2], at[3]), at[4]) + margin ||
-           larger(at[0], at[1]) < min_of(min_of(at[2], at[3]), at[4]) - margin;
+    return cs_fmin(at[0], at[1]) > cs_fmax(cs_fmax(at[2], at[3]), at[4]) + margin ||
+           cs_fmax(at[0], at[1]) < cs_fmin(cs_fmin(at[2], at[3]), at[4]) - margin;
 }
 
 /* Tests the axes at right angles to the triangle's sides and to the edge, within the plane. In

@@ -22,8 +22,7 @@ enum cs_status cs_active_contacts_init(struct cs_active_contacts *active,
                                        const struct cs_feature_weights *facets,
                                        struct cs_arena *arena, struct cs_error *error) {
     *active = (struct cs_active_contacts){.candidates = search, .feature_weights = facets};
-    active->chunks =
-        cs_arena_alloc_array(arena, search->n_chunks, sizeof *active->chunks, error);
+    CS_ARENA_ARRAY(arena, active->chunks, search->n_chunks, error);
     if (!error->status)
         cs_arena_adopt(arena, finish, active, error);
     return error->status ? error->status
@@ -50,14 +49,10 @@ static struct cs_body_pair_params meeting_of(const struct cs_candidates *search,
 /* Makes room for one pair more; NULL if out of memory. */
 static struct cs_active_lanes *next(struct cs_active_chunk *chunk) {
     const size_t n_blocks = chunk->n / CS_PAIR_LANES + 1;
-    struct cs_active_lanes *blocks =
-        cs_arena_realloc(chunk->blocks, &chunk->capacity, n_blocks, sizeof *blocks);
-    chunk->blocks = blocks ? blocks : chunk->blocks;
-    uint32_t(*at)[4] =
-        cs_arena_realloc(chunk->points, &chunk->points_capacity, chunk->n + 1, sizeof *at);
-    chunk->points = at ? at : chunk->points;
-    chunk->failed = chunk->failed || !blocks || !at;
-    return blocks && at ? blocks + chunk->n / CS_PAIR_LANES : NULL;
+    const bool there = CS_ARENA_GROW(chunk->blocks, chunk->capacity, n_blocks) &&
+                       CS_ARENA_GROW(chunk->points, chunk->points_capacity, chunk->n + 1);
+    chunk->failed = chunk->failed || !there;
+    return there ? chunk->blocks + chunk->n / CS_PAIR_LANES : NULL;
 }
 
 /* Appends a feature or edge pair. */
@@ -98,14 +93,12 @@ static void add_features(struct work *work, const struct cs_weighted_feature *us
     struct cs_active_chunk *chunk = work->chunk;
     if (work->n_felt && chunk->features->points[0] != uses->points[0])
         finish_point(work);
-    struct cs_weighted_feature *felt = cs_arena_realloc(
-        chunk->features, &chunk->features_capacity, (size_t)work->n_felt + n, sizeof *felt);
-    chunk->failed = chunk->failed || !felt;
-    if (!felt)
+    if (!CS_ARENA_GROW(chunk->features, chunk->features_capacity, (size_t)work->n_felt + n)) {
+        chunk->failed = true;
         return;
-    chunk->features = felt;
-    memcpy(felt + work->n_felt, uses, n * sizeof *uses);
-    work->n_felt = cs_feature_weights_join(felt, work->n_felt, n);
+    }
+    memcpy(chunk->features + work->n_felt, uses, n * sizeof *uses);
+    work->n_felt = cs_feature_weights_join(chunk->features, work->n_felt, n);
 }
 
 /* Finds the features of the waiting queries, and hands them on point by point. */
@@ -211,11 +204,9 @@ static void number_chunk(void *arg, uint32_t number) {
     struct cs_active_contacts *active = arg;
     struct cs_active_chunk *chunk = active->chunks + number;
     struct cs_gather_chunk *rows = active->force_gather.chunks + number;
-    uint32_t(*to)[4] =
-        cs_arena_realloc(chunk->rows, &chunk->rows_capacity, chunk->n, sizeof *to);
     cs_gather_clear(rows);
-    rows->failed = chunk->n && !to;
-    chunk->rows = to ? to : chunk->rows;
+    rows->failed = !CS_ARENA_GROW(chunk->rows, chunk->rows_capacity, chunk->n);
+    uint32_t(*to)[4] = chunk->rows;
     // neighbours in the list have points in common
     for (size_t p = 0; p < chunk->n && !rows->failed; p++)
         for (int k = 0; k < 4; k++)

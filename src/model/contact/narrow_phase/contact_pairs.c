@@ -74,8 +74,7 @@ static enum cs_status build(struct cs_system *system, struct cs_error *error) {
                                 error))
         return error->status;
     pairs->system = system;
-    pairs->point_motion = cs_arena_alloc_array(&system->arena, system->surfaces->n_points,
-                                               sizeof *pairs->point_motion, error);
+    CS_ARENA_ARRAY(&system->arena, pairs->point_motion, system->surfaces->n_points, error);
     pairs->current_contacts = pairs->lists;
     if (init_answers(pairs, &system->arena, error))
         return error->status;
@@ -299,14 +298,6 @@ void cs_point_motion_set(const struct cs_system *system, const double *x0, const
     cs_vector_parallel_for(system->surfaces->n_points, set_some, &setting);
 }
 
-CS_INLINE double min_of(double a, double b) {
-    return a < b ? a : b;
-}
-
-CS_INLINE double max_of(double a, double b) {
-    return a > b ? a : b;
-}
-
 /* 1 if the swept boxes of both primitives may come within reach. Differences of the bounds of
  * both sides are taken for positions and displacements alike; point p[1] belongs to the first
  * side of two edges, else to the triangle. */
@@ -314,10 +305,10 @@ CS_INLINE uint32_t boxes_may_overlap(bool edges, const double *restrict p[4], do
     double below[CS_POINT_MOVE_NUMBERS], above[CS_POINT_MOVE_NUMBERS];
     for (int k = 0; k < CS_POINT_MOVE_NUMBERS; k++) {
         const double a = p[0][k], b = p[1][k], c = p[2][k], d = p[3][k];
-        const double low = min_of(c, d), high = max_of(c, d);
-        const double least = edges ? min_of(a, b) : a, most = edges ? max_of(a, b) : a;
-        below[k] = least - (edges ? high : max_of(b, high));
-        above[k] = most - (edges ? low : min_of(b, low));
+        const double low = cs_fmin(c, d), high = cs_fmax(c, d);
+        const double least = edges ? cs_fmin(a, b) : a, most = edges ? cs_fmax(a, b) : a;
+        below[k] = least - (edges ? high : cs_fmax(b, high));
+        above[k] = most - (edges ? low : cs_fmin(b, low));
     }
     uint32_t meet = 1;
     for (int c = 0; c < 3; c++) {

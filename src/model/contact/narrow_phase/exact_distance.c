@@ -10,10 +10,6 @@
 
 #include <string.h>
 
-CS_INLINE double min_of(double a, double b) {
-    return a < b ? a : b;
-}
-
 /* Squared distance of p from segment a b; selected without branches, so that loops over lanes
  * vectorise. An edge without length has t = 0. */
 CS_INLINE double from_segment(const double p[3], const double a[3], const double b[3]) {
@@ -51,18 +47,18 @@ CS_INLINE struct crossing cross_at(enum cs_pair_kind kind, double p[4][3]) {
 /* Least of the barycentric coordinates times whole: negative if the perpendicular misses the
  * inside of a primitive. */
 CS_INLINE double room_of(enum cs_pair_kind kind, struct crossing at) {
-    const double left = kind == CS_PAIR_EDGE_EDGE ? min_of(at.whole - at.l, at.whole - at.m)
+    const double left = kind == CS_PAIR_EDGE_EDGE ? cs_fmin(at.whole - at.l, at.whole - at.m)
                                                   : at.whole - (at.l + at.m);
-    return min_of(min_of(at.l, at.m), min_of(left, at.whole));
+    return cs_fmin(cs_fmin(at.l, at.m), cs_fmin(left, at.whole));
 }
 
 /* Least squared distance that involves an end of an edge, or an edge of the triangle. */
 CS_INLINE double from_rims(enum cs_pair_kind kind, double p[4][3]) {
     if (kind == CS_PAIR_EDGE_EDGE)
-        return min_of(min_of(from_segment(p[0], p[2], p[3]), from_segment(p[1], p[2], p[3])),
-                      min_of(from_segment(p[2], p[0], p[1]), from_segment(p[3], p[0], p[1])));
-    return min_of(min_of(from_segment(p[0], p[1], p[2]), from_segment(p[0], p[2], p[3])),
-                  from_segment(p[0], p[3], p[1]));
+        return cs_fmin(cs_fmin(from_segment(p[0], p[2], p[3]), from_segment(p[1], p[2], p[3])),
+                       cs_fmin(from_segment(p[2], p[0], p[1]), from_segment(p[3], p[0], p[1])));
+    return cs_fmin(cs_fmin(from_segment(p[0], p[1], p[2]), from_segment(p[0], p[2], p[3])),
+                   from_segment(p[0], p[3], p[1]));
 }
 
 CS_INLINE void measure(enum cs_pair_kind kind, struct cs_exact_distance_lanes *restrict lanes) {
@@ -211,17 +207,6 @@ static void begin_work(struct work *work) {
     work->sieve.n = 0;
 }
 
-/* Makes room for all pairs of a chunk in its results; sets `failed` if out of memory. */
-static void reserve(struct cs_candidate_chunk *chunk, bool collects) {
-    uint32_t *close = cs_arena_realloc(chunk->in_range, &chunk->close_capacity, chunk->n,
-                                       2 * sizeof *chunk->in_range);
-    chunk->in_range = close ? close : chunk->in_range;
-    uint32_t *nearby = cs_arena_realloc(chunk->nearby, &chunk->nearby_capacity,
-                                        collects ? chunk->n : 0, 2 * sizeof *chunk->nearby);
-    chunk->nearby = nearby ? nearby : chunk->nearby;
-    chunk->failed = chunk->n && (!close || (collects && !nearby));
-}
-
 /* One search of all chunks: of the pairs nearby, or of the whole list. */
 struct job {
     const struct cs_candidates *candidates;
@@ -236,7 +221,10 @@ static void find_chunk(void *arg, uint32_t number) {
     work.chunk = chunk;
     const uint32_t *pairs = job->searches_nearby ? chunk->nearby : chunk->pairs;
     const size_t n = job->searches_nearby ? chunk->n_nearby : chunk->n;
-    reserve(chunk, job->collects);
+    // room for all pairs
+    chunk->failed =
+        !CS_ARENA_GROW(chunk->in_range, chunk->close_capacity, 2 * chunk->n) ||
+        !CS_ARENA_GROW(chunk->nearby, chunk->nearby_capacity, job->collects ? 2 * chunk->n : 0);
     chunk->n_in_range = 0;
     chunk->n_nearby = job->collects ? 0 : chunk->n_nearby;
     if (chunk->failed || !n)

@@ -383,12 +383,9 @@ enum cs_status cs_feature_weights_init(struct cs_feature_weights *features,
                                        struct cs_arena *arena, struct cs_error *error) {
     const size_t corners = 3 * (size_t)surfaces->n_triangles, n = surfaces->n_points;
     *features = (struct cs_feature_weights){.surfaces = surfaces};
-    features->opposite_vertex =
-        cs_arena_alloc_array(arena, corners, sizeof *features->opposite_vertex, error);
-    features->vertex_share =
-        cs_arena_alloc_array(arena, n, sizeof *features->vertex_share, error);
-    features->vertex_edges =
-        cs_arena_alloc_array(arena, n + 1, sizeof *features->vertex_edges, error);
+    CS_ARENA_ARRAY(arena, features->opposite_vertex, corners, error);
+    CS_ARENA_ARRAY(arena, features->vertex_share, n, error);
+    CS_ARENA_ARRAY(arena, features->vertex_edges, n + 1, error);
     uint32_t *inner = cs_arena_alloc_array(arena, n, sizeof *inner, error);
     if (error->status)
         return error->status;

@@ -20,8 +20,7 @@ enum cs_status cs_gather_init(struct cs_gather *gather, uint32_t n_chunks, uint3
                               struct cs_arena *arena, struct cs_error *error) {
     *gather = (struct cs_gather){.n_chunks = n_chunks, .n_particles = n_particles};
     gather->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *gather->chunks, error);
-    gather->starts =
-        cs_arena_alloc_array(arena, n_particles + (size_t)2, sizeof *gather->starts, error);
+    CS_ARENA_ARRAY(arena, gather->starts, n_particles + (size_t)2, error);
     if (!error->status)
         cs_arena_adopt(arena, finish, gather, error);
     return error->status;
@@ -41,13 +40,10 @@ static uint32_t *slot_of(const struct cs_gather_chunk *chunk, uint32_t point) {
 
 /* Builds a table of 2^bits slots with the points so far; returns false if out of memory. */
 static bool grow_table(struct cs_gather_chunk *chunk, uint32_t bits) {
-    uint32_t *slots = cs_arena_realloc(chunk->slots, &chunk->slots_capacity, (size_t)1 << bits,
-                                       sizeof *slots);
-    if (!slots)
+    if (!CS_ARENA_GROW(chunk->slots, chunk->slots_capacity, (size_t)1 << bits))
         return false;
-    chunk->slots = slots;
     chunk->bits = bits;
-    memset(slots, 0, sizeof *slots << bits);
+    memset(chunk->slots, 0, sizeof *chunk->slots << bits);
     for (uint32_t row = 0; row < chunk->n; row++)
         *slot_of(chunk, chunk->points[row]) = row + 1;
     return true;
@@ -61,11 +57,8 @@ void cs_gather_clear(struct cs_gather_chunk *chunk) {
 
 /* Makes room for one row more, with the table at most half full; false if out of memory. */
 static bool make_room(struct cs_gather_chunk *chunk) {
-    uint32_t *points = cs_arena_realloc(chunk->points, &chunk->points_capacity,
-                                        (size_t)chunk->n + 1, sizeof *points);
-    if (!points)
+    if (!CS_ARENA_GROW(chunk->points, chunk->points_capacity, (size_t)chunk->n + 1))
         return false;
-    chunk->points = points;
     if (!chunk->bits)
         return grow_table(chunk, BITS_MIN);
     return 2 * chunk->n < 1u << chunk->bits || grow_table(chunk, chunk->bits + 1);
@@ -99,56 +92,42 @@ static bool count_rows(struct cs_gather *gather) {
     return !failed;
 }
 
-/* Reserves rows and sums; returns false if out of memory. */
-static bool take_rows(struct cs_gather *gather) {
-    uint32_t *rows =
-        cs_arena_realloc(gather->rows, &gather->rows_capacity, gather->n_rows, sizeof *rows);
-    gather->rows = rows ? rows : gather->rows;
-    double *sums = cs_arena_realloc(gather->row_sums, &gather->sums_capacity,
-                                    3 * (size_t)gather->n_rows, sizeof *sums);
-    gather->row_sums = sums ? sums : gather->row_sums;
-    return rows && sums;
-}
-
-static void count_points(const struct cs_gather *gather, uint32_t *starts) {
+/* Counts the rows of each particle at the place after its own in starts, or stores them where
+ * starts points. */
+static void visit_rows(const struct cs_gather *gather, uint32_t *starts, bool put) {
     for (uint32_t l = 0; l < gather->n_chunks; l++)
-        for (uint32_t row = 0; row < gather->chunks[l].n; row++)
-            if (gather->chunks[l].points[row] < gather->n_particles)
-                starts[gather->chunks[l].points[row] + 1]++;
-}
-
-static void put_points(const struct cs_gather *gather, uint32_t *starts) {
-    for (uint32_t l = 0; l < gather->n_chunks; l++)
-        for (uint32_t row = 0; row < gather->chunks[l].n; row++)
-            if (gather->chunks[l].points[row] < gather->n_particles)
-                gather->rows[starts[gather->chunks[l].points[row]]++] =
-                    gather->chunks[l].row_offset + row;
+        for (uint32_t row = 0; row < gather->chunks[l].n; row++) {
+            const uint32_t point = gather->chunks[l].points[row];
+            if (point < gather->n_particles && put)
+                gather->rows[starts[point]++] = gather->chunks[l].row_offset + row;
+            else if (point < gather->n_particles)
+                starts[point + 1]++;
+        }
 }
 
 /* Counting sort by particle. Counts go two places on, so that filling moves each start to where
  * it belongs. */
 bool cs_gather_set(struct cs_gather *gather) {
     uint32_t *starts = gather->starts + 1;
-    if (!count_rows(gather) || (gather->n_rows && !take_rows(gather)))
+    if (!count_rows(gather) ||
+        !CS_ARENA_GROW(gather->rows, gather->rows_capacity, gather->n_rows) ||
+        !CS_ARENA_GROW(gather->row_sums, gather->sums_capacity, 3 * (size_t)gather->n_rows))
         return false;
     if (!gather->n_rows)
         return true;
     memset(gather->starts, 0, (gather->n_particles + (size_t)2) * sizeof *starts);
-    count_points(gather, starts);
+    visit_rows(gather, starts, false);
     for (uint32_t i = 0; i < gather->n_particles; i++)
         starts[i + 1] += starts[i];
-    put_points(gather, starts);
+    visit_rows(gather, starts, true);
     return true;
 }
 
 /* --- data of rows --- */
 
 bool cs_gather_reserve(struct cs_gather *gather, size_t width) {
-    double *read = cs_arena_realloc(gather->gathered, &gather->gathered_capacity,
-                                    width * gather->n_rows, sizeof *read);
-    gather->gathered = read ? read : gather->gathered;
     gather->width = width;
-    return read || !gather->n_rows;
+    return CS_ARENA_GROW(gather->gathered, gather->gathered_capacity, width * gather->n_rows);
 }
 
 double *cs_gather_read(const struct cs_gather *gather, uint32_t number, size_t column,

@@ -46,7 +46,7 @@ CS_INLINE void add_chord(enum cs_pair_kind kind, const struct cs_pair_lanes *res
         for (int k = 0; k < 4; k++)
             add_vertex(lanes, pulls, k, l, weight[k], &at);
         // the same n and F as in the pair's force
-        const double length = sqrt(cs_point_contact_dot(at.r, at.r) + DBL_MIN);
+        const double length = sqrt(cs_vec3_dot(at.r, at.r) + DBL_MIN);
         const double d = kind == CS_PAIR_EDGE_EDGE ? length : lanes->d[l];
         CS_UNROLLED
         for (int c = 0; c < 3; c++)

@@ -108,14 +108,6 @@ CS_INLINE void cs_pair_contact_set(struct cs_pair_contact *reaction,
             reaction->contact.v[c] += reaction->weight[k] * v[k][c];
 }
 
-/* Parts of the contact points alone: the elastic force acts along g, which is not their
- * direction n. */
-CS_INLINE struct cs_contact_force_parts
-/* Parts of `contact` alone: the elastic force acts along g and not along n. */
-cs_pair_contact_friction_parts(struct cs_contact_force_parts parts) {
-    return (struct cs_contact_force_parts){.elastic = 0, .friction = parts.friction};
-}
-
 /* Returns whether friction or damping act and are wanted. */
 CS_INLINE bool cs_pair_contact_has_friction(const struct cs_point_contact *touch,
                                             struct cs_contact_force_parts parts) {
@@ -128,8 +120,10 @@ CS_INLINE void cs_pair_contact_force(const struct cs_pair_contact *reaction,
     const struct cs_point_contact *touch = &reaction->contact;
     const double push = parts.elastic * cs_barrier_at(touch->d, touch->range, touch->k).force;
     double rub[3] = {0};
+    // the elastic force acts along g, not along n
+    parts.elastic = 0;
     if (cs_pair_contact_has_friction(touch, parts))
-        cs_point_contact_force(touch, cs_pair_contact_friction_parts(parts), rub);
+        cs_point_contact_force(touch, parts, rub);
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < 3; c++)
             f[k][c] = push * reaction->g[k][c] + reaction->weight[k] * rub[c];
@@ -167,13 +161,14 @@ CS_INLINE void cs_pair_contact_jvp(const struct cs_pair_contact *reaction,
     }
     // a bent distance changes otherwise than that of the contact points
     point.extra_dd = along - cs_vec3_dot(touch->g, point.dp);
-    if (cs_pair_contact_has_friction(touch, parts)) {
-        cs_point_contact_force(touch, cs_pair_contact_friction_parts(parts), rub);
-        cs_point_contact_jvp(touch, cs_pair_contact_friction_parts(parts), &point, drub);
-    }
     const struct cs_barrier law = cs_barrier_at(touch->d, touch->range, touch->k);
     const double push = parts.elastic * law.force;
     const double dpush = -parts.elastic * law.stiffness * along;
+    parts.elastic = 0;
+    if (cs_pair_contact_has_friction(touch, parts)) {
+        cs_point_contact_force(touch, parts, rub);
+        cs_point_contact_jvp(touch, parts, &point, drub);
+    }
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < 3; c++)
             df[k][c] =

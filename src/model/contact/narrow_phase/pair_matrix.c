@@ -54,25 +54,16 @@ bool cs_pair_matrix_begin(struct cs_pair_matrix *product, struct cs_active_conta
     product->contacts = active;
     product->exact = exact;
     product->diagonal_bound = alone;
-    double *own = cs_arena_realloc(product->diagonal, &product->diagonal_capacity,
-                                   6 * (size_t)active->force_gather.n_rows, sizeof *own);
-    product->diagonal = own ? own : product->diagonal;
-    return own || !active->force_gather.n_rows;
+    return CS_ARENA_GROW(product->diagonal, product->diagonal_capacity,
+                         6 * (size_t)active->force_gather.n_rows);
 }
 
 bool cs_pair_matrix_chunk_begin(struct cs_pair_matrix *product, uint32_t number) {
     struct cs_pair_matrix_chunk *chunk = product->chunks + number;
     const struct cs_active_chunk *pairs = product->contacts->chunks + number;
-    struct cs_pair_factors *factors =
-        cs_arena_realloc(chunk->factors, &chunk->capacity, blocks_of(pairs), sizeof *factors);
-    chunk->factors = factors ? factors : chunk->factors;
-    chunk->failed = !factors;
-    if (!product->exact)
-        return factors;
-    struct cs_pair_hessian *hessians = cs_arena_realloc(
-        chunk->hessians, &chunk->hessians_capacity, pairs->n, sizeof *hessians);
-    chunk->hessians = hessians ? hessians : chunk->hessians;
-    chunk->failed = !factors || !hessians;
+    chunk->failed = !CS_ARENA_GROW(chunk->factors, chunk->capacity, blocks_of(pairs)) ||
+                    !CS_ARENA_GROW(chunk->hessians, chunk->hessians_capacity,
+                                   product->exact ? pairs->n : 0);
     return !chunk->failed;
 }
 
@@ -98,7 +89,6 @@ static void add_own(struct cs_pair_matrix *product, uint32_t number, size_t bloc
     uint32_t(*to)[4] = chunk->rows + block * CS_PAIR_LANES;
     const struct cs_pair_hessian *full =
         product->exact ? product->chunks[number].hessians + block * CS_PAIR_LANES : NULL;
-    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const uint32_t n = count_at(chunk, block);
     double own[4][6][CS_PAIR_LANES];
     cs_pair_lanes_diagonal(chunk->kind, product->chunks[number].factors + block,
@@ -107,7 +97,8 @@ static void add_own(struct cs_pair_matrix *product, uint32_t number, size_t bloc
         for (int k = 0; k < 4; k++)
             for (int e = 0; e < 6; e++)
                 rows[6 * (size_t)to[l][k] + (size_t)e] +=
-                    own[k][e][l] + (full ? full[l].m[3 * k + row[e]][3 * k + column[e]] : 0);
+                    own[k][e][l] +
+                    (full ? full[l].m[3 * k + cs_sym3_row[e]][3 * k + cs_sym3_column[e]] : 0);
 }
 
 void cs_pair_matrix_chunk_end(struct cs_pair_matrix *product, uint32_t number) {

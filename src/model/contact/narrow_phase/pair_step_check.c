@@ -38,20 +38,16 @@ CS_INLINE double pair_motion_relative_squared(struct cs_pair_motion *way, int i,
     return cs_vec3_dot(r, r);
 }
 
-CS_INLINE double pair_motion_max(double most, double squared) {
-    return squared > most ? squared : most;
-}
-
 /* m, largest relative displacement of a point of one side and a point of the other. Contact
  * points are convex combinations of the points, so none moves further relative to the other
  * side. */
 CS_INLINE double pair_motion_longest(struct cs_pair_motion *way) {
     const bool edges = way->kind == CS_PAIR_EDGE_EDGE;
-    double most = edges ? 0 : pair_motion_max(0, pair_motion_relative_squared(way, 0, 1));
-    most = pair_motion_max(most, pair_motion_relative_squared(way, 0, 2));
-    most = pair_motion_max(most, pair_motion_relative_squared(way, 0, 3));
-    most = edges ? pair_motion_max(most, pair_motion_relative_squared(way, 1, 2)) : most;
-    most = edges ? pair_motion_max(most, pair_motion_relative_squared(way, 1, 3)) : most;
+    double most = edges ? 0 : cs_fmax(pair_motion_relative_squared(way, 0, 1), 0);
+    most = cs_fmax(pair_motion_relative_squared(way, 0, 2), most);
+    most = cs_fmax(pair_motion_relative_squared(way, 0, 3), most);
+    most = edges ? cs_fmax(pair_motion_relative_squared(way, 1, 2), most) : most;
+    most = edges ? cs_fmax(pair_motion_relative_squared(way, 1, 3), most) : most;
     return sqrt(most);
 }
 
@@ -178,7 +174,7 @@ static void sample_steps(enum cs_pair_kind kind, struct lanes *lanes, uint32_t n
     double parts = 1;
     begin_lanes(kind, lanes, h);
     for (uint32_t l = 0; l < n; l++)
-        parts = pair_motion_max(parts, lanes->parts[l]);
+        parts = cs_fmax(lanes->parts[l], parts);
     for (double j = 1; j <= parts; j++)
         sample_lanes(kind, lanes, j);
 }
