@@ -17,7 +17,7 @@
 
 /* Halvings of a step before the run fails: to 1/4096. Chosen by trial: contact by force needs
  * that, and newmark for particles of 1e-9 kg, whose period is below 1e-5 s. */
-#define STEP_HALVINGS_MAX 12
+#define STEP_HALVINGS_MAX 16
 
 /* A method's own struct starts with this. */
 struct step_halving {

@@ -227,22 +227,11 @@ static const char *what_is_not_smooth(const struct cs_scene *scene) {
     return NULL;
 }
 
-/* Returns the first collider that moves, or -1. */
-static int64_t first_moved(const struct cs_scene *scene) {
-    for (uint32_t e = 0; e < scene->events.n; e++)
-        if (cs_scene_events(scene)[e].move.present)
-            return cs_scene_events(scene)[e].move.collider;
-    for (uint32_t c = 0; c < scene->colliders.n; c++)
-        if (cs_scene_colliders(scene)[c].mesh.paths)
-            return c;
-    return -1;
-}
-
 void cs_plan_choose_contact_law(struct cs_scene *scene, const struct cs_integrator *method) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
     const bool follows =
         !(method->traits & CS_EXPLICIT_OUTER || method->needs & CS_NEED_CLUSTERS) &&
-        !(method->traits & CS_NOT_GALILEAN && first_moved(scene) >= 0);
+        !(method->traits & CS_NOT_GALILEAN && cs_event_moves_any(scene));
     bool elastic = !isnan(scene->contact.stiffness);
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         elastic |= bodies[b].elastic.present ||
@@ -274,13 +263,12 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
                        "contact explicitly; use %sanother integrator",
                        method->name, cs_scene_has_body_contact(scene) ? "" : "project, or ");
     if (scene->contact.law == CS_CONTACT_FORCE && method->traits & CS_NOT_GALILEAN &&
-        first_moved(scene) >= 0)
+        cs_event_moves_any(scene))
         return cs_fail(
             error, CS_ERR_SCENE,
-            "contact.law: force makes energy at colliders[%d], which moves: integrator "
-            "\"%s\" drags as if all stood still; use %sanother integrator",
-            (int)first_moved(scene), method->name,
-            cs_scene_has_body_contact(scene) ? "" : "project, or ");
+            "contact.law: force makes energy where colliders move: integrator \"%s\" "
+            "drags as if all stood still; use %sanother integrator",
+            method->name, cs_scene_has_body_contact(scene) ? "" : "project, or ");
     const uint32_t elastic = cs_scene_first_elastic(scene);
     if (elastic < scene->bodies.n && cs_plan_has_own_springs(method))
         return cs_fail(

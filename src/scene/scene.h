@@ -166,8 +166,11 @@ struct cs_contact_keys {
     bool damping_is_default; /* nor a damping: cs_session_build sets it */
     int32_t start; /* enum cs_contact_start_policy, of what starts inside or within range */
     /* of the law force: */
-    double stiffness;      /* N/m per particle; NAN: from what may come (contact/approach.h) */
-    double damping;        /* s, times the stiffness of the contact: N s/m */
+    double stiffness;   /* N/m per particle; NAN: from what may come (contact/approach.h) */
+    double damping;     /* s, times the stiffness of the contact: N s/m */
+    double restitution; /* (1) speed after an impact over that before; NAN: not asked */
+    /* not in the tables, set by cs_session_build: the factor alpha of the loss, and kg, M */
+    double loss, mass;
     double friction_speed; /* m/s at which friction is 0.7 of its limit */
     int32_t friction_law;  /* enum cs_friction_law */
 };

@@ -266,6 +266,12 @@ static const struct cs_option contact_rows[] = {
     REAL(struct cs_contact_keys, damping, "s", 0, 0, BIG,
          "for force: normal damping over contact stiffness; where law is not given either: "
          "sqrt(m/k) of the heaviest particle m and the stiffest collider k"),
+    REAL(
+        struct cs_contact_keys, restitution, "", ABSENT, 0, 1,
+        "for force: speed after an impact over that before, at any speed and stiffness, with "
+        "all "
+        "methods, whose steps then resolve impacts; absent: damping alone, and what the method "
+        "loses itself"),
     REAL(struct cs_contact_keys, friction_speed, "m/s", 1e-3, 1e-9, BIG,
          "for force, smooth: sliding speed at which friction reaches 0.7 of its limit"),
     CHOICE(struct cs_contact_keys, friction_law, friction_names, CS_FRICTION_SMOOTH,

@@ -175,7 +175,7 @@ static const struct {
     {"bodies[].material.shininess", shines, "material.specular is 0"},
     {"bodies[].material", NULL, NULL},
     {"colliders[].absorption", is_projected,
-     "it belongs to contact.law project; contact.damping slows a contact by force"},
+     "it belongs to contact.law project; contact.restitution acts in a contact by force"},
     {"colliders[].colour", is_drawn, "visible is false"},
     {"colliders[]", NULL, NULL},
     {"contact.start", has_contact, "nothing is in contact, expected colliders or pairs"},

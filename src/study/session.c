@@ -5,6 +5,7 @@
 #include "base/install_paths.h"
 #include "base/options.h"
 #include "base/pool.h"
+#include "model/contact/collider_params.h"
 #include "model/plan.h"
 #include "scene/body_pairs.h"
 #include "scene/shape.h"
@@ -338,8 +339,7 @@ enum cs_status cs_session_build(struct cs_session *session, struct cs_error *err
     if (cs_system_build(&session->system, &session->scene, &session->plan, &said))
         return said.status == CS_ERR_SCENE ? refuse(session, said.status, said.message, error)
                                            : cs_fail(error, said.status, "%s", said.message);
-    if (session->scene.contact.damping_is_default)
-        session->scene.contact.damping = session->system.default_damping;
+    cs_contact_keys_complete(&session->scene.contact, &session->system);
     if (cs_initial_penetration_resolve(&session->system, &session->initial_penetration, error))
         return error->status;
     if (session->settings.perturbation > 0)

@@ -193,9 +193,9 @@ TEST(failure_is_told) {
         fixture_start(&chain);
         const char *reason = fixture_reason(&chain);
         ck_assert_msg(strstr(reason, "Newton's iteration fails") &&
-                          strstr(reason, "after 12 halvings: the residual is"),
+                          strstr(reason, "after 16 halvings: the residual is"),
                       "%s: %s", methods[i], reason);
-        ck_assert_uint_eq(chain.session.run.counts.method.rejected, 13);
+        ck_assert_uint_eq(chain.session.run.counts.method.rejected, 17);
         ck_assert_uint_eq(chain.session.run.counts.steps, 0);
         fixture_close(&chain);
     }

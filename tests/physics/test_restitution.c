@@ -292,3 +292,80 @@ TEST(impacts_lose_what_friction_takes) {
                               mean[1]);
             }
 }
+
+/* A sheet of 5 x 5, or one particle, that comes down on a floor, and maybe another from below,
+ * with contact.restitution. */
+#define GIVEN                                                                                  \
+    "{\"bodies\": [%s], \"contact\": {\"law\": \"force\", \"restitution\": %g%s}, "            \
+    "\"forces\": "                                                                             \
+    "{\"gravity\": [0, 0, 0]}, \"pairs\": \"all\", \"colliders\": [{\"floor\": {\"height\": "  \
+    "%g}, "                                                                                    \
+    "\"thickness\": 0.002}]}"
+#define GIVEN_SHEET                                                                            \
+    "{\"cloth\": {\"grid\": [%d, %d], \"size\": [0.4, 0.4], \"start\": \"flat\", \"place\": "  \
+    "{\"translate\": [%g, %.15g, 0]}, \"velocity\": [0, %g, 0]}, \"mass\": "                   \
+    "{\"areal_density\": "                                                                     \
+    "0.2}, \"thickness\": 0.002}"
+struct given {
+    int side;            /* particles of a sheet's edge */
+    bool clash;          /* two sheets far above the floor */
+    double speed;        /* m/s of each */
+    const char *further; /* keys of contact */
+};
+
+/* Velocity apart after the impact over that together before. */
+static double comes_back(const char *method, const struct given *given, double restitution) {
+    const double way = given->speed * 1.37 / 60,
+                 height = given->clash ? 0.001 + way : way + 0.002;
+    char bodies[800];
+    struct fixture sheets;
+    int used = snprintf(bodies, sizeof bodies, GIVEN_SHEET, given->side, given->side, 0.0,
+                        height, -given->speed);
+    if (given->clash)
+        snprintf(bodies + used, sizeof bodies - (size_t)used, ", " GIVEN_SHEET, given->side,
+                 given->side, 0.013, -height, given->speed);
+    fixture_open(&sheets, method, GIVEN, bodies, restitution, given->further,
+                 given->clash ? -100.0 : 0.0);
+    fixture_start(&sheets);
+    fixture_frames(&sheets, 6);
+    const size_t upper = (size_t)(given->side * given->side);
+    double up = 0, down = 0;
+    for (size_t i = 0; i < upper; i++)
+        up += sheets.v[sheets.n + i] / (double)upper;
+    for (size_t i = upper; i < sheets.n; i++)
+        down -= sheets.v[sheets.n + i] / (double)upper;
+    fixture_close(&sheets);
+    return (up + down) / (given->clash ? 2 * given->speed : given->speed);
+}
+
+/* The loss is the only law of one particle: its closed form against the motion. */
+TEST(restitution_of_one_particle_is_exact) {
+    static const double restitutions[] = {0, 0.1, 0.3, 0.5, 0.8, 0.95, 1};
+    static const struct given throws[] = {{1, false, 0.3, ", \"stiffness\": 100"},
+                                          {1, false, 3, ", \"stiffness\": 1e3"},
+                                          {1, false, 20, ", \"stiffness\": 1e7"}};
+    for (size_t e = 0; e < LENGTH(restitutions); e++)
+        for (size_t k = 0; k < LENGTH(throws); k++)
+            ck_assert_double_eq_tol(comes_back("dopri5:rtol=1e-7", throws + k, restitutions[e]),
+                                    restitutions[e], restitutions[e] > 0 ? 0.003 : 0.03);
+}
+
+/* Methods of order 1 lose most of an impact in steps of their own choice, but not where the
+ * restitution is given. */
+TEST(restitution_is_that_of_the_key) {
+    static const char *const more[] = {"implicit-linearised:dt=frame",
+                                       "backward-euler:dt=frame", "newmark:dt=frame", NULL};
+    static const struct given impacts[] = {{5, false, 1, ""},
+                                           {5, false, 10, ", \"stiffness\": 1e5"},
+                                           {5, true, 2, ""},
+                                           {5, true, 7, ", \"stiffness\": 1e6"}};
+    const struct methods methods = methods_find(&(struct methods_query){
+        .test = "bounce", .without = CS_EXPLICIT_OUTER | CS_NOT_GALILEAN, .more = more});
+    for (size_t m = 0; m < methods.n; m++)
+        for (size_t k = 0; k < LENGTH(impacts); k++)
+            for (double e = 0.5; e <= 1; e += 0.5) {
+                const double found = comes_back(methods.list[m].text, impacts + k, e);
+                ck_assert_msg(fabs(found - e) < 0.1, "%s, impact %zu: %.4f, expected %g",
+                              methods.list[m].text, k, found, e);
+            }
+}

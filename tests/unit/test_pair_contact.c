@@ -10,7 +10,8 @@ static int n_pairs(void) {
     return suite_all ? 100000 : 10000;
 }
 
-static const struct cs_contact_keys keys = {.damping = 0.05, .friction_speed = 0.5};
+static const struct cs_contact_keys keys = {
+    .damping = 0.05, .friction_speed = 0.5, .loss = 0.6};
 static const struct cs_feature_kind forms[] = {{1, 1, 0.2}, {0, 1, 0.2}, {0, 0, 0.2}};
 
 /* A pair at one state and a direction to move in. */
@@ -25,6 +26,7 @@ static void react(const struct place *place, double p[4][3], double v[4][3],
                   struct cs_pair_contact *reaction) {
     cs_pair_contact_measure(reaction, place->kind, place->form, place->meeting.range, p);
     cs_pair_contact_set(reaction, &place->meeting, &keys, v);
+    reaction->contact.rate = 15;
 }
 
 static void draw_four(uint64_t *state, double to[4][3]) {

@@ -33,6 +33,11 @@ enum cs_status cs_collider_params_softest(struct cs_system *system, double *k,
  * CS_ERR_SCENE if a value is neither given nor to be derived; CS_ERR_MEMORY. */
 enum cs_status cs_collider_params_table_build(struct cs_system *system, struct cs_error *error);
 
+/* Sets what the built system decides: damping where the scene gives none, and loss and mass of
+ * contact.restitution (point_contact.h): alpha, 0 without it to 2.6 of 0, and the mean mass in
+ * kg of free particles. */
+void cs_contact_keys_complete(struct cs_contact_keys *keys, const struct cs_system *system);
+
 /* A posed collider with its contact parameters, ready to be evaluated at
  * points. */
 
@@ -41,6 +46,7 @@ struct cs_posed_collider_law {
     struct cs_posed_collider collider;
     struct cs_collider_params params;
     double friction, friction_speed, damping; /* mu (1), ev (m/s), tau (s) */
+    double loss, rate;                        /* alpha (1), k/M (1/s2) */
     /* mu of contact.friction_law "stick"; friction is then 0, and the other way round */
     double sticking_friction;
 };

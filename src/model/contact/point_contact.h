@@ -6,7 +6,14 @@
  *
  *   elastic    F g                               F = -psi'(d), barrier_law.h
  *   damping   -tau K (g.V) g                     K = psi''(d): vanishes with the contact
+ *   loss      -alpha F (g.V)/s g                 s^2 = (g.V)^2 + 2 psi/M
  *   friction  -mu N T / sqrt(T.T + ev^2)         N = F |g|
+ *
+ * The loss gives an impact its restitution: scaling the speed scales s, whatever k, M and D
+ * are, so that the fraction of the energy that comes back depends on alpha alone
+ * (cs_restitution_loss). M is the mean mass of free particles, a quarter of it where bodies
+ * meet: two particles of mass m have m/2 against each other, and are pushed from both sides.
+ * Particles lighter than M lose more: at e = 1/2, M/4 comes back with 0.37.
  *
  * ev is the speed at which friction has 1/sqrt(2) = 0.71 of mu N. All are functions of position
  * and velocity alone. Friction is Coulomb's law made smooth and has no memory: below the angle
@@ -32,7 +39,24 @@ struct cs_point_contact {
     double k;
     /* mu (1), ev (m/s), tau (s) */
     double friction, friction_speed, damping;
+    double loss, rate; /* alpha (1), k/M (1/s2): of restitution */
 };
+
+/* m2/s2, s^2: w^2 + 2 psi/M for the approach w, where psi/M is that of one contact, whatever
+ * features are added or subtracted. Above 0, so that quotients are finite. */
+CS_INLINE double cs_restitution_square(double d, double range, double rate, double approach) {
+    double beyond;
+    const double y = cs_barrier_core(d / range, &beyond), a = 1 - y, square = a * a;
+    return approach * approach + rate * range * range / 6 * (square * square / y) + 1e-30;
+}
+
+/* N s/m, alpha F/s: beside tau K. */
+CS_INLINE double cs_point_contact_loss(const struct cs_point_contact *contact,
+                                       const struct cs_barrier *law, double approach) {
+    const double square =
+        cs_restitution_square(contact->d, contact->range, contact->rate, approach);
+    return contact->loss > 0 ? contact->loss * law->force / sqrt(square) : 0;
+}
 
 /* g.g, the divisor of projections on g. Two points that coincide have no direction, and g = 0
  * there: 1e-30 keeps quotients finite, and changes no bit where g.g is above 1e-13. */
@@ -51,8 +75,10 @@ CS_INLINE void cs_point_contact_force(const struct cs_point_contact *contact,
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
     const double square = cs_point_contact_square(contact->g);
     const double approach = cs_vec3_dot(contact->g, contact->v);
-    const double along = parts.elastic * law.force -
-                         parts.friction * contact->damping * law.stiffness * approach;
+    const double along =
+        parts.elastic * law.force -
+        parts.friction * contact->damping * law.stiffness * approach -
+        parts.friction * cs_point_contact_loss(contact, &law, approach) * approach;
     double t[3];
     for (int c = 0; c < 3; c++)
         t[c] = contact->v[c] - contact->g[c] * (approach / square);
@@ -71,6 +97,18 @@ struct cs_point_contact_motion {
     double extra_dd;
 };
 
+/* N s/m, change of alpha F/s with d and the approach: d(s^2)/2 = w dw - (F/M) dd. */
+CS_INLINE double cs_point_contact_loss_change(const struct cs_point_contact *contact,
+                                              const struct cs_barrier *law, double approach,
+                                              double dd, double dapproach) {
+    if (!(contact->loss > 0))
+        return 0;
+    const double square =
+        cs_restitution_square(contact->d, contact->range, contact->rate, approach);
+    const double half = approach * dapproach - contact->rate / contact->k * law->force * dd;
+    return contact->loss / sqrt(square) * (-law->stiffness * dd - law->force * half / square);
+}
+
 /* df = exact change of the force along a motion, in N. By the product rule, with dg = H dp, dd
  * = g.dp + extra_dd, dF = -K dd and dK = K' dd. */
 CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
@@ -86,11 +124,15 @@ CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
     const double dapproach = cs_vec3_dot(dg, v) + cs_vec3_dot(g, move->dv);
     const double dforce = -law.stiffness * dd;
     const double dstiffness = cs_barrier_slope(contact->d, contact->range, contact->k) * dd;
+    const double loss = cs_point_contact_loss(contact, &law, approach);
+    const double dloss = cs_point_contact_loss_change(contact, &law, approach, dd, dapproach);
     const double along = parts.elastic * law.force -
-                         parts.friction * contact->damping * law.stiffness * approach;
-    const double dalong =
-        parts.elastic * dforce -
-        parts.friction * contact->damping * (dstiffness * approach + law.stiffness * dapproach);
+                         parts.friction * contact->damping * law.stiffness * approach -
+                         parts.friction * loss * approach;
+    const double dalong = parts.elastic * dforce -
+                          parts.friction * contact->damping *
+                              (dstiffness * approach + law.stiffness * dapproach) -
+                          parts.friction * (dloss * approach + loss * dapproach);
 
     // T = V - g a with a = (g.V)/g.g, and the slope of friction
     const double a = approach / square, da = (dapproach - a * dsquare) / square;
@@ -113,7 +155,8 @@ CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
 
 /* b (6) += the symmetric part cd df/dv + ck df/dx that the solver uses:
  *
- *   -(ck + cd tau) K g g^T - cd mu N / s (I - n n^T - T T^T / s^2) + ck F H,  s^2 = T.T + ev^2
+ *   -(ck K + cd (tau K + alpha F/s)) g g^T - cd mu N / s (I - n n^T - T T^T / s^2) + ck F H,
+ * s^2 = T.T + ev^2
  *
  * Left out: the change of the directions of damping and friction with the position. psd: leaves
  * out F H too, whose curvature has the wrong sign in front of a convex collider. bound: leaves
@@ -131,7 +174,9 @@ CS_INLINE void cs_point_contact_add_block(const struct cs_point_contact *contact
     const double speed =
         sqrt(cs_vec3_dot(t, t) + contact->friction_speed * contact->friction_speed);
     const double rub = -matrix->cd * contact->friction * law.force * sqrt(square) / speed;
-    const double along = -(matrix->ck + matrix->cd * contact->damping) * law.stiffness;
+    const double loss = cs_point_contact_loss(contact, &law, cs_vec3_dot(g, contact->v));
+    const double along =
+        -(matrix->ck + matrix->cd * contact->damping) * law.stiffness - matrix->cd * loss;
     const double curve = matrix->psd ? 0 : matrix->ck * law.force;
     for (int e = 0; e < 6; e++) {
         const int r = cs_sym3_row[e], s = cs_sym3_column[e];
@@ -168,6 +213,7 @@ CS_INLINE void cs_point_contact_bound(const struct cs_point_contact *contact, do
         sqrt((sliding > 0 ? sliding : 0) + contact->friction_speed * contact->friction_speed);
     *stiffness = law.stiffness * square;
     *damping = contact->damping * law.stiffness * square +
+               cs_point_contact_loss(contact, &law, approach) * square +
                contact->friction * law.force * sqrt(square) / speed;
 }
 

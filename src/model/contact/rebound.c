@@ -45,6 +45,7 @@ enum cs_status cs_rebounds_init(struct cs_system *system, struct cs_arena *arena
 struct flight {
     double mass, h;           /* kg, s */
     double range, k, damping; /* m, N/m, s: the law */
+    double loss, rate;        /* 1, 1/s2: of restitution */
     double other;             /* N, f0 */
     double d, u;              /* m, m/s: at the begin */
     double d1, w1;            /* at the end */
@@ -73,12 +74,19 @@ static double flight_step(const struct flight *flight, double d, double w, doubl
     return fmin(step, FLIGHT_PHASE * sqrt(flight->mass / fmax(stiffness, 1e-300)));
 }
 
+/* N s/m, of the approach */
+static double drag_of(const struct flight *flight, const struct cs_barrier *law, double d,
+                      double w) {
+    const double square = cs_restitution_square(d, flight->range, flight->rate, w);
+    return flight->damping * law->stiffness + flight->loss * law->force / sqrt(square);
+}
+
 /* Sets d1 and w1. Returns false if it takes too many steps. */
 static bool fly(struct flight *flight) {
     const double m = flight->mass;
     double d = flight->d, w = flight->u, t = 0;
     struct cs_barrier law = cs_barrier_at(d, flight->range, flight->k);
-    double a = (law.force - flight->damping * law.stiffness * w + flight->other) / m;
+    double a = (law.force - drag_of(flight, &law, d, w) * w + flight->other) / m;
     for (int step = 0; t < flight->h; step++) {
         if (step == FLIGHT_STEPS_MAX)
             return false;
@@ -88,7 +96,7 @@ static bool fly(struct flight *flight) {
         t = dt < flight->h - t ? t + dt : flight->h;
         law = cs_barrier_at(d, flight->range, flight->k);
         // the damper's half of the second kick is implicit, so that a stiff one stays stable
-        const double drag = flight->damping * law.stiffness / m;
+        const double drag = drag_of(flight, &law, d, w) / m;
         a = (law.force + flight->other) / m;
         w = (w + 0.5 * dt * a) / (1 + 0.5 * dt * drag);
         a -= drag * w;
@@ -194,8 +202,12 @@ static bool approach(const struct search *search, size_t i, struct start *start,
     cs_posed_collider_velocity(&near->collider, p, w);
     for (int c = 0; c < 3; c++)
         start->v[c] = v[c] - w[c];
-    *flight = (struct flight){
-        .h = h, .range = near->params.range, .k = near->params.k, .damping = near->damping};
+    *flight = (struct flight){.h = h,
+                              .range = near->params.range,
+                              .k = near->params.k,
+                              .damping = near->damping,
+                              .loss = near->loss,
+                              .rate = near->rate};
     flight->d = cs_posed_collider_smooth_distance(&near->collider, p, start->g, hessian);
     start->square = squared_gradient(start->g);
     if (!(start->square > 0))

@@ -38,7 +38,8 @@ bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, dou
     const double d = distance_at(passing, from, to, 0);
     if (!(d - move < range))
         return false;
-    const struct cs_barrier law = cs_barrier_at(d, range, k);
+    const struct cs_barrier law =
+        passing->impacts ? (struct cs_barrier){0} : cs_barrier_at(d, range, k);
     const double held = cs_barrier_energy(d, range, k);
     const double has =
         0.5 * mass * squared / (passing->h * passing->h) + held + passing->spare_energy;
@@ -115,7 +116,7 @@ bool cs_collider_step_is_far(const struct cs_collider_step *passing, size_t begi
 static bool row_is_resolved(const struct cs_collider_step *passing, size_t begin,
                             size_t count) {
     const enum cs_shape_bounds bounds = passing->at_t1.shape->bounds;
-    return bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE
+    return !passing->impacts && (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE)
                ? count_suspect(passing, begin, count) == 0
                : cs_collider_step_is_far(passing, begin, count);
 }
@@ -152,7 +153,9 @@ void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_syst
                           uint32_t collider, double t0, double t1) {
     passing->system = system;
     passing->collider = collider;
-    passing->unresolved_max = CS_UNRESOLVED_ENERGY_MAX;
+    passing->impacts = cs_impacts_are_resolved(system);
+    passing->unresolved_max =
+        passing->impacts ? CS_IMPACT_CHANGE_MAX : CS_UNRESOLVED_ENERGY_MAX;
     passing->spare_energy = 0;
     passing->h = t1 - t0;
     passing->params = system->collider_params[collider];
@@ -185,7 +188,7 @@ static double most_energy(const struct cs_collider_step *passing) {
 
 void cs_collider_step_set_beside_rebounds(struct cs_collider_step *passing) {
     const struct cs_collider_params *params = &passing->params;
-    if (!passing->system->rebounds)
+    if (!passing->system->rebounds || passing->impacts)
         return;
     passing->unresolved_max = CS_UNRESOLVED_BESIDE_REBOUNDS;
     passing->spare_energy =

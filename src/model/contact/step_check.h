@@ -49,6 +49,17 @@ struct cs_rebounds {
  * cs_rebounds_resolve_step; others are then judged as cs_collider_step_set_beside_rebounds
  * says. */
 #define CS_UNRESOLVED_ENERGY_MAX 0.02
+
+/* Where the scene gives contact.restitution, psi may change by this fraction of the energy in a
+ * step, instead of e: methods of order 1 then lose a tenth of the energy of an impact, and not
+ * most of it. A step at rest changes nothing, whatever its length. */
+#define CS_IMPACT_CHANGE_MAX 0.03
+
+/* Returns whether the scene gives contact.restitution. */
+static inline bool cs_impacts_are_resolved(const struct cs_system *system) {
+    return system->scene->contact.restitution >= 0;
+}
+
 bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0,
                                        const double *x0, double t1, const double *x1);
 
@@ -60,6 +71,7 @@ struct cs_collider_step {
     double h;
     struct cs_posed_collider at_t0, at_t1;
     struct cs_collider_params params;
+    bool impacts;          /* e is the change of psi: cs_impacts_are_resolved */
     double unresolved_max; /* of a particle's energy */
     double spare_energy;   /* J, added to a particle's energy */
 };

@@ -51,6 +51,7 @@ CS_INLINE void push(const struct cs_posed_collider_law *near, size_t n, const do
     const double *normal = near->collider.axes[1], *u = near->collider.velocity;
     const double k = near->params.k, range = near->params.range;
     const double mu = parts.friction * near->friction, tau = parts.friction * near->damping;
+    const double loss = parts.friction * near->loss;
     const double least = near->friction_speed * near->friction_speed;
     for (size_t i = 0; i < count; i++) {
         const double gx = sphere ? row->x[i] : normal[0];
@@ -66,6 +67,9 @@ CS_INLINE void push(const struct cs_posed_collider_law *near, size_t n, const do
             const double tz = vz - gz * approach;
             const double rub = mu * law.force / sqrt(tx * tx + ty * ty + tz * tz + least);
             along -= tau * law.stiffness * approach;
+            if (loss > 0)
+                along -= loss * law.force * approach /
+                         sqrt(cs_restitution_square(row->d[i], range, near->rate, approach));
             fx = rub * tx, fy = rub * ty, fz = rub * tz;
         }
         f[i] += along * gx - fx;
@@ -77,7 +81,7 @@ CS_INLINE void push(const struct cs_posed_collider_law *near, size_t n, const do
 /* Adds the forces of all rows of a block. */
 CS_INLINE void add(const struct cs_posed_collider_law *near, size_t n, const struct cs_eval *at,
                    struct cs_contact_force_parts parts, const bool sphere, double *f) {
-    const bool rubs = parts.friction * (near->friction + near->damping) > 0;
+    const bool rubs = parts.friction * (near->friction + near->damping + near->loss) > 0;
     for (size_t start = at->block->begin; start < at->block->end; start += ROW) {
         const size_t left = at->block->end - start, count = left < ROW ? left : ROW;
         struct row row;
@@ -120,6 +124,9 @@ CS_INLINE void bound(const struct cs_posed_collider_law *near, const struct cs_e
         const double approach = gx * vx + gy * vy + gz * vz;
         const double tx = vx - gx * approach, ty = vy - gy * approach, tz = vz - gz * approach;
         stiffness[i] += law.stiffness;
+        if (near->loss > 0)
+            damping[i] += near->loss * law.force /
+                          sqrt(cs_restitution_square(row->d[i], range, near->rate, approach));
         damping[i] += near->damping * law.stiffness +
                       near->friction * law.force / sqrt(tx * tx + ty * ty + tz * tz + least);
     }

@@ -81,7 +81,7 @@ static const struct {
     {"", "repulsion_thickness", "bodies.thickness"}, {"", "distance_min", "bodies.thickness"},
     {"", "margin", "bodies.thickness"}, {"", "skin_offset", "colliders.thickness"},
     {"", "obs_friction", "colliders.friction"}, {"", "friction_coefficient", "friction"},
-    {"", "collision_stiffness", "contact.stiffness"}, {"", "restitution", "colliders.absorption"},
+    {"", "collision_stiffness", "contact.stiffness"}, {"", "restitution", "contact.restitution"},
     {"", "bounce", "colliders.absorption"}, {"", "collision", "contact"}, {"", "collisions", "contact"},
     {"", "obstacles", "colliders"}, {"", "objects", "bodies"}, {"", "cloths", "bodies"},
     {"", "garments", "bodies"}, {"", "motions", "events"}, {"forces", "pressure", "wind.strength"},

@@ -221,7 +221,8 @@ static void find_contact_law(const struct cs_json *root, struct cs_scene *scene)
     scene->contact.law_is_default = !contact || (cs_json_kind_of(contact) == CS_JSON_OBJECT &&
                                                  !cs_json_find(contact, "law"));
     scene->contact.damping_is_default =
-        scene->contact.law_is_default && !(contact && cs_json_find(contact, "damping"));
+        scene->contact.law_is_default && !(contact && (cs_json_find(contact, "damping") ||
+                                                       cs_json_find(contact, "restitution")));
 }
 
 /* Chooses the camera where the scene says of none where it stands. */

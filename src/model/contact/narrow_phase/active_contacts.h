@@ -17,7 +17,8 @@ struct cs_active_lanes {
     double weight[CS_PAIR_LANES],
         psd_weight[CS_PAIR_LANES]; /* as in struct cs_weighted_feature */
     double is_edge[CS_PAIR_LANES], is_off_plane[CS_PAIR_LANES], blend_radius[CS_PAIR_LANES];
-    double d[CS_PAIR_LANES]; /* m, of features */
+    double d[CS_PAIR_LANES];    /* m, of features */
+    double rate[CS_PAIR_LANES]; /* 1/s2, as in struct cs_pair_lanes */
 };
 
 /* Active contacts of one candidate chunk. */

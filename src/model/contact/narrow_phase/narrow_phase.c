@@ -204,9 +204,10 @@ static void evaluate_block(const struct work *work, struct cs_pair_lanes *lanes,
 static void psd_stiffness(const struct cs_narrow_phase *narrow,
                           const struct cs_active_lanes *from, uint32_t l,
                           struct cs_pair_lanes *lanes) {
-    const double tau = narrow->contacts->candidates->system->scene->contact.damping;
+    const struct cs_contact_keys *keys = &narrow->contacts->candidates->system->scene->contact;
     const bool positive = narrow->query == CS_CONTACT_QUERY_MATRIX && narrow->matrix->psd;
-    const bool rubs = lanes->friction[l] + tau > 0 && !(positive && narrow->matrix->bound);
+    const bool rubs = lanes->friction[l] + keys->damping + keys->loss > 0 &&
+                      !(positive && narrow->matrix->bound);
     const double count = positive && !rubs ? from->psd_weight[l] : from->weight[l];
     lanes->k[l] = count * from->k[l];
     lanes->psd_stiffness[l] = (positive ? from->psd_weight[l] : count) * from->k[l];
@@ -224,6 +225,7 @@ static void fill(const struct cs_narrow_phase *narrow, const struct cs_active_la
     memcpy(lanes->is_off_plane, from->is_off_plane, sizeof lanes->is_off_plane);
     memcpy(lanes->blend_radius, from->blend_radius, sizeof lanes->blend_radius);
     memcpy(lanes->d, from->d, sizeof lanes->d);
+    memcpy(lanes->rate, from->rate, sizeof lanes->rate);
     for (uint32_t l = 0; l < lanes->n; l++)
         psd_stiffness(narrow, from, l, lanes);
 }

@@ -102,7 +102,8 @@ CS_INLINE void cs_pair_contact_set(struct cs_pair_contact *reaction,
         .k = params->k,
         .friction = params->friction,
         .friction_speed = keys->friction_speed,
-        .damping = keys->damping};
+        .damping = keys->damping,
+        .loss = keys->loss};
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < 3; c++)
             reaction->contact.v[c] += reaction->weight[k] * v[k][c];
@@ -111,7 +112,7 @@ CS_INLINE void cs_pair_contact_set(struct cs_pair_contact *reaction,
 /* Returns whether friction or damping act and are wanted. */
 CS_INLINE bool cs_pair_contact_has_friction(const struct cs_point_contact *touch,
                                             struct cs_contact_force_parts parts) {
-    return parts.friction * (touch->friction + touch->damping) > 0;
+    return parts.friction * (touch->friction + touch->damping + touch->loss) > 0;
 }
 
 /* f_k = F g_k + w_k R in N, with R friction and damping of the contact points. */

@@ -56,6 +56,7 @@ CS_INLINE void lane_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, i
                                          lanes->blend_radius[lane]};
     cs_pair_contact_measure(reaction, kind, form, params.range, p);
     cs_pair_contact_set(reaction, &params, &law->keys, v);
+    reaction->contact.rate = lanes->rate[lane];
 }
 
 /* out = f_k of every lane: cs_pair_contact_force */

@@ -23,6 +23,7 @@ struct cs_pair_lanes {
     /* parameters of the barrier law: range D in m, stiffness k in N/m (times the weight of the
      * feature, so it may be negative), friction coefficient */
     double range[CS_PAIR_LANES], k[CS_PAIR_LANES], friction[CS_PAIR_LANES];
+    double rate[CS_PAIR_LANES]; /* 1/s2, k/M without weights, of restitution */
     /* direction of a Jacobian product: changes of p and v */
     double dp[4][3][CS_PAIR_LANES], dv[4][3][CS_PAIR_LANES];
     /* distance in m; cs_pair_lanes_measure_edges sets it */

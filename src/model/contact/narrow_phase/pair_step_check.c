@@ -169,12 +169,31 @@ CS_PAIR_KERNEL(static, begin_lanes, begin_all, (struct lanes *restrict lanes, do
 CS_PAIR_KERNEL(static, sample_lanes, sample_all, (struct lanes *restrict lanes, double j),
                (lanes, j))
 
-/* Samples the steps of the first n lanes, of h seconds, at the ends of all their parts. */
-static void sample_steps(enum cs_pair_kind kind, struct lanes *lanes, uint32_t n, double h) {
+struct job {
+    struct cs_pairs *pairs;
+    const double *from, *to; /* (3,n_points) m, both ends of the step */
+    double h;                /* s */
+    bool nearby;             /* the pairs nearby suffice */
+    bool impacts;            /* cs_impacts_are_resolved */
+    double missed_max;       /* of the energy of a pair */
+    uint32_t n_checked;      /* chunks that are resolved, from the last rejected one on */
+    /* a chunk with an unresolved pair; NONE */
+    uint32_t unseen;
+};
+
+/* Samples the steps of the first n lanes at the ends of all their parts. Where impacts are
+ * resolved, a constant replaces the second-order model: e is then the change of psi. */
+static void sample_steps(enum cs_pair_kind kind, struct lanes *lanes, uint32_t n,
+                         const struct job *job) {
     double parts = 1;
-    begin_lanes(kind, lanes, h);
-    for (uint32_t l = 0; l < n; l++)
-        parts = cs_fmax(lanes->parts[l], parts);
+    begin_lanes(kind, lanes, job->h);
+    for (uint32_t l = 0; l < n; l++) {
+        const double range = lanes->range[l];
+        parts = cs_fmax(parts, lanes->parts[l]);
+        lanes->approach[l] = job->impacts ? 0 : lanes->approach[l];
+        lanes->total_energy[l] -=
+            job->impacts ? cs_barrier_energy(0.5 * range, range, lanes->k[l]) : 0;
+    }
     for (double j = 1; j <= parts; j++)
         sample_lanes(kind, lanes, j);
 }
@@ -183,16 +202,6 @@ static void sample_steps(enum cs_pair_kind kind, struct lanes *lanes, uint32_t n
 enum { SOME = 256 };
 
 #define NONE UINT32_MAX
-
-struct job {
-    struct cs_pairs *pairs;
-    const double *from, *to; /* (3,n_points) m, both ends of the step */
-    double h;                /* s */
-    bool nearby;             /* the pairs nearby suffice */
-    uint32_t n_checked;      /* chunks that are resolved, from the last rejected one on */
-    /* a chunk with an unresolved pair; NONE */
-    uint32_t unseen;
-};
 
 /* One chunk at work; pairs are collected until a block of lanes is full. */
 struct work {
@@ -224,11 +233,12 @@ static bool is_point_unresolved(struct work *work, uint32_t l) {
         lanes->total_energy[l] - lanes->contact_energy[l] + fmax(sum.energy, 0);
     for (double j = 1; j <= lanes->parts[l] && !unresolved; j++) {
         const double share = j / lanes->parts[l];
-        const double seen = sum.energy + share * (sum.first + share * sum.second);
+        const double seen =
+            sum.energy + (work->job->impacts ? 0 : share * (sum.first + share * sum.second));
         x.fraction = share;
         const struct cs_point_energy at = cs_point_energy_find(
             &work->job->pairs->feature_weights, candidates, work->chunk, point, &x);
-        unresolved = fabs(at.energy - seen) > CS_UNRESOLVED_ENERGY_MAX * total;
+        unresolved = fabs(at.energy - seen) > work->job->missed_max * total;
     }
     work->resolved_point = unresolved ? NONE : point;
     return unresolved;
@@ -239,14 +249,14 @@ static bool is_point_unresolved(struct work *work, uint32_t l) {
 static bool is_lane_unresolved(struct work *work, uint32_t l) {
     const struct lanes *lanes = &work->lanes;
     return lanes->nearest[l] < lanes->range[l] &&
-           lanes->missed[l] > CS_UNRESOLVED_ENERGY_MAX * lanes->total_energy[l] &&
+           lanes->missed[l] > work->job->missed_max * lanes->total_energy[l] &&
            (work->kind == CS_PAIR_EDGE_EDGE || is_point_unresolved(work, l));
 }
 
 /* Checks the collected pairs. */
 static void ask(struct work *work) {
     if (work->waiting)
-        sample_steps(work->kind, &work->lanes, work->waiting, work->job->h);
+        sample_steps(work->kind, &work->lanes, work->waiting, work->job);
     for (uint32_t l = 0; l < work->waiting && !work->unseen; l++)
         work->unseen = is_lane_unresolved(work, l);
     work->waiting = 0;
@@ -333,6 +343,8 @@ bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const doub
     const double *to = cs_surface_points_positions(pairs->system, CS_POINTS_END, t1, x1);
     struct job job = {.pairs = pairs, .from = from, .to = to, .h = t1 - t0, .unseen = NONE};
     const uint64_t build = search->n_builds;
+    job.impacts = cs_impacts_are_resolved(pairs->system);
+    job.missed_max = job.impacts ? CS_IMPACT_CHANGE_MAX : CS_UNRESOLVED_ENERGY_MAX;
     cs_point_motion_set(pairs->system, from, to, pairs->point_motion);
     // Pairs in range anywhere on the way are nearby, because the motion from where these were
     // collected is largest at one of its ends. A pair that rejects the step again makes a list
