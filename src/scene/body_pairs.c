@@ -13,6 +13,19 @@ uint32_t cs_scene_surfaces(const struct cs_scene *scene) {
     return scene->bodies.n;
 }
 
+bool cs_scene_carries_pins(const struct cs_scene *scene, bool by_key_frames) {
+    const struct cs_collider *colliders = cs_scene_colliders(scene);
+    for (uint32_t b = 0; b < scene->bodies.n; b++) {
+        const struct cs_list *list = &cs_scene_bodies(scene)[b].pins;
+        const struct cs_pin *pins = list->items;
+        for (uint32_t p = 0; p < list->n; p++)
+            if (pins[p].to.present &&
+                (!by_key_frames || colliders[pins[p].to.collider].mesh.key_frames.present))
+                return true;
+    }
+    return false;
+}
+
 bool cs_scene_has_key_frames(const struct cs_scene *scene) {
     bool any = false;
     for (uint32_t c = 0; c < scene->colliders.n; c++)

@@ -16,6 +16,10 @@ const struct cs_collider *cs_scene_collider_at(const struct cs_scene *scene, uin
 /* Returns true if a collider has key frames, and the largest speed in m/s of a vertex on any of
  * them; 0 if none has. */
 bool cs_scene_has_key_frames(const struct cs_scene *scene);
+
+/* Returns true if a pin of a body of a checked scene holds to a collider; by_key_frames: to one
+ * that has some. */
+bool cs_scene_carries_pins(const struct cs_scene *scene, bool by_key_frames);
 double cs_scene_key_frame_speed(const struct cs_scene *scene);
 
 /* Returns true if two surfaces, or one with itself, may be in contact; *friction is then the

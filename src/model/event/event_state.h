@@ -99,6 +99,8 @@ struct cs_events {
     /* (3,n) m, of each particle that is grabbed or carried in its holder's frame
      * (held_particles.c); NULL: none ever is */
     double *offsets;
+    /* (n) triangle that carries it, of a holder with key frames; NULL without key frames */
+    uint32_t *triangles;
     /* NULL without viewpoint forces */
     struct cs_viewpoint_forces *viewpoint_forces;
     double next_test;          /* s, of the next visibility test; HUGE_VAL: none */
@@ -138,9 +140,6 @@ void cs_events_apply_arcs(const struct cs_system *system, double t, double *x, d
  * ones turn, whose holder may change it within a segment; else 0. */
 double cs_events_turning_work(const struct cs_system *system, const double *v0,
                               const double *v1);
-
-/* True if a pin of a body holds to a collider. */
-bool cs_event_attaches_any(const struct cs_scene *scene);
 
 /* Lets colliders carry the particles of such pins, at time 0. Fails with CS_ERR_SCENE if two
  * pins hold a particle to different things. */

@@ -5,6 +5,7 @@
 #include "model/contact/posed_collider.h"
 #include "model/event/event_state.h"
 #include "model/force/diagnostics.h"
+#include "scene/body_pairs.h"
 #include "scene/event_key.h"
 
 #include <math.h>
@@ -58,6 +59,8 @@ void cs_events_serialise(struct cs_system *system, struct cs_serialiser *record)
     cs_serialiser_bytes(record, events->held_by, n * sizeof *events->held_by);
     if (events->offsets)
         cs_serialiser_bytes(record, events->offsets, 3 * n * sizeof *events->offsets);
+    if (events->triangles)
+        cs_serialiser_bytes(record, events->triangles, n * sizeof *events->triangles);
     if (events->viewpoint_forces)
         record_viewpoint_forces(events->viewpoint_forces, system->view.n, record);
     if (system->event_force)
@@ -127,8 +130,10 @@ static void alloc_arrays(struct cs_system *system, struct cs_events *events,
     events->work = cs_arena_alloc_array(arena, n, sizeof(bool), error);
     if (any(scene, pushes))
         system->event_force = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
-    if (any(scene, grabs) || (cs_event_moves_any(scene) && cs_event_attaches_any(scene)))
+    if (any(scene, grabs) || (cs_event_moves_any(scene) && cs_scene_carries_pins(scene, false)))
         events->offsets = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
+    if (events->offsets && cs_scene_has_key_frames(scene))
+        events->triangles = cs_arena_alloc_array(arena, n, sizeof(uint32_t), error);
     if (cs_event_moves_any(scene))
         cs_event_moves_build(system, error);
 }
@@ -160,12 +165,12 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
     if (error->status)
         return error->status;
     cs_event_times_fill(events);
-    events->end = events->times[0];
+    events->end = events->n_times ? events->times[0] : HUGE_VAL;
     events->next_test = HUGE_VAL;
     system->events = events;
     system->scene = &events->scene;
     // pins to colliders that all rest are pins
-    if (system->motions && cs_event_attaches_any(system->scene) &&
+    if (system->motions && cs_scene_carries_pins(system->scene, false) &&
         cs_event_attach_pins(system, error))
         return error->status;
     return cs_viewpoint_forces_any(system->scene) ? cs_viewpoint_forces_build(system, error)

@@ -7,11 +7,17 @@
  * events; where w is 0, x is so too, and
  * methods move such particles exactly by x + h v. Where w is not 0 the host sets them to x(t)
  * at every time that a method asks about (cs_host_state_at in sim/run_host.h): forces then
- * depend on t, and the order of a method stays. */
+ * depend on t, and the order of a method stays.
+ *
+ * A collider with key frames has no R. The triangle nearest to a particle when it is taken
+ * carries it: x = p0 + a (p1 - p0) + b (p2 - p0) + h n with the unit normal n, and (a, b, h)
+ * constant. */
+#include "model/event/carrier.h"
 #include "model/event/event_state.h"
 
 #include "base/vec3.h"
 #include "model/contact/posed_collider.h"
+#include "scene/body_pairs.h"
 #include "scene/shape.h"
 
 #include <math.h>
@@ -22,6 +28,8 @@ struct frame {
     double point[3], rate[3], turn[9], spin[3];
     double lever[3]; /* m, from the point of rotation, whose rate it is, to p */
     bool is_turned;  /* R is not the identity, or will not be */
+    bool deforms;    /* it is `surface`, with key frames, and the above does not count */
+    struct cs_posed_collider surface;
 };
 
 static const double no_turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -46,6 +54,8 @@ static void collider_frame(const struct cs_system *system, uint32_t k, double t,
                            struct frame *out) {
     struct cs_posed_collider at;
     cs_posed_collider_at(system, k, t, &at);
+    out->deforms = at.collider->mesh.paths;
+    out->surface = at;
     memcpy(out->point, at.centre, sizeof out->point);
     memcpy(out->rate, at.velocity, sizeof out->rate);
     memcpy(out->spin, at.spin, sizeof out->spin);
@@ -90,6 +100,42 @@ static struct frame frame_at(const struct cs_system *system, uint32_t holder, do
     return out;
 }
 
+/* Position and velocity of particle i, which such a surface carries. */
+static void deformed_at(const struct cs_system *system, const struct frame *frame, size_t i,
+                        double x[3], double v[3]) {
+    const size_t n = system->view.n;
+    const double *own = system->events->offsets + i;
+    struct cs_carrier at;
+    cs_carrier_at(&frame->surface, system->events->triangles[i], &at);
+    for (int c = 0; c < 3; c++) {
+        x[c] = at.place[0][c];
+        v[c] = at.rate[0][c];
+        for (size_t k = 0; k < 3; k++) {
+            x[c] += own[k * n] * at.place[k + 1][c];
+            v[c] += own[k * n] * at.rate[k + 1][c];
+        }
+    }
+}
+
+/* Gives particle i at p to the nearest triangle. */
+static void take_triangle(struct cs_system *system, const struct frame *frame, size_t i,
+                          const double p[3]) {
+    const struct cs_trimesh *mesh = frame->surface.collider->mesh.geometry;
+    double least = HUGE_VAL;
+    for (uint32_t k = 0; k < mesh->n_triangles; k++) {
+        struct cs_carrier at;
+        double own[3];
+        cs_carrier_at(&frame->surface, k, &at);
+        const double squared = cs_carrier_find(&at, p, own);
+        if (!(squared < least))
+            continue;
+        least = squared;
+        system->events->triangles[i] = k;
+        for (size_t c = 0; c < 3; c++)
+            system->events->offsets[c * system->view.n + i] = own[c];
+    }
+}
+
 /* arm = R r of particle i, in m. */
 static void arm_of(const struct cs_system *system, const struct frame *frame, size_t i,
                    double arm[3]) {
@@ -101,6 +147,25 @@ static void arm_of(const struct cs_system *system, const struct frame *frame, si
         arm[c] = cs_vec3_dot(frame->turn + 3 * c, r);
 }
 
+/* Position and velocity of particle i, which a holder carries. */
+static void carried_at(const struct cs_system *system, const struct frame *frame, size_t i,
+                       double x[3], double v[3]) {
+    double arm[3], turning[3] = {0};
+    if (frame->deforms) {
+        deformed_at(system, frame, i, x, v);
+        return;
+    }
+    arm_of(system, frame, i, arm);
+    const double lever[3] = {arm[0] + frame->lever[0], arm[1] + frame->lever[1],
+                             arm[2] + frame->lever[2]};
+    if (frame->is_turned)
+        cs_vec3_cross(frame->spin, lever, turning);
+    for (int c = 0; c < 3; c++) {
+        x[c] = arm[c] + frame->point[c];
+        v[c] = frame->rate[c] + turning[c];
+    }
+}
+
 void cs_events_apply_paths(const struct cs_system *system, double t, double *x, double *v) {
     const struct cs_events *events = system->events;
     const size_t n = system->view.n;
@@ -109,20 +174,16 @@ void cs_events_apply_paths(const struct cs_system *system, double t, double *x, 
     for (uint32_t p = 0; events->has_grabs && p < system->n_pinned; p++) {
         const size_t i = system->pinned[p];
         const uint32_t holder = events->held_by[i];
-        double arm[3], turning[3] = {0};
+        double place[3], rate[3];
         if (!leads(events, holder))
             continue;
         // neighbours mostly have one holder
         if (holder != last)
             frame = frame_at(system, last = holder, t);
-        arm_of(system, &frame, i, arm);
-        const double lever[3] = {arm[0] + frame.lever[0], arm[1] + frame.lever[1],
-                                 arm[2] + frame.lever[2]};
-        if (frame.is_turned)
-            cs_vec3_cross(frame.spin, lever, turning);
+        carried_at(system, &frame, i, place, rate);
         for (size_t c = 0; c < 3; c++) {
-            x[c * n + i] = arm[c] + frame.point[c];
-            v[c * n + i] = frame.rate[c] + turning[c];
+            x[c * n + i] = place[c];
+            v[c * n + i] = rate[c];
         }
     }
 }
@@ -150,10 +211,15 @@ static void store_offsets(struct cs_system *system, uint32_t holder, const bool 
     const struct frame frame = frame_at(system, holder, t);
     const double *m = frame.turn;
     for (size_t i = 0; i < n; i++) {
+        const double *x = system->state + i;
         double arm[3];
-        for (size_t c = 0; c < 3 && marks[i]; c++)
-            arm[c] = system->state[c * n + i] - frame.point[c];
-        for (size_t c = 0; c < 3 && marks[i]; c++)
+        if (!marks[i])
+            continue;
+        for (size_t c = 0; c < 3; c++)
+            arm[c] = x[c * n] - frame.point[c];
+        if (frame.deforms)
+            take_triangle(system, &frame, i, (const double[3]){x[0], x[n], x[2 * n]});
+        for (size_t c = 0; c < 3 && !frame.deforms; c++)
             system->events->offsets[c * n + i] =
                 frame.is_turned ? m[c] * arm[0] + m[3 + c] * arm[1] + m[6 + c] * arm[2]
                                 : arm[c];
@@ -231,22 +297,16 @@ enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *e
             events->work[i] = events->held_by[i] == first + k;
         store_offsets(system, first + k, events->work, 0);
     }
+    // key frames move from the start, before any event
+    if (cs_scene_carries_pins(system->scene, true)) {
+        cs_event_find_held(system, 0);
+        cs_events_apply_paths(system, 0, system->state, system->state + 3 * (size_t)n);
+    }
     return CS_OK;
 }
 
-/* True if a body's pin holds to a collider. */
-bool cs_event_attaches_any(const struct cs_scene *scene) {
-    for (uint32_t b = 0; b < scene->bodies.n; b++) {
-        const struct cs_list *list = &cs_scene_bodies(scene)[b].pins;
-        for (uint32_t p = 0; p < list->n; p++)
-            if (((const struct cs_pin *)list->items)[p].to.present)
-                return true;
-    }
-    return false;
-}
-
 bool cs_events_turn_particles(const struct cs_scene *scene) {
-    bool turns = false, carries = cs_event_attaches_any(scene), spins = false;
+    bool turns = false, carries = cs_scene_carries_pins(scene, false), spins = false;
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_grab *grab = &cs_scene_events(scene)[e].grab;
         const struct cs_move *move = &cs_scene_events(scene)[e].move;
@@ -254,7 +314,16 @@ bool cs_events_turn_particles(const struct cs_scene *scene) {
         turns |= grab->present && cs_vec3_dot(grab->spin, grab->spin) > 0;
         spins |= move->present && cs_vec3_dot(move->spin, move->spin) > 0;
     }
-    return turns || (carries && spins);
+    return turns || (carries && (spins || cs_scene_has_key_frames(scene)));
+}
+
+/* m/s, a bound for a particle that key frames carry: that of the vertices by their weights. */
+static double deformed_speed(const struct cs_system *system, const struct frame *frame,
+                             size_t i) {
+    const double *own = system->events->offsets + i;
+    const double weights = 1 + 2 * (fabs(own[0]) + fabs(own[system->view.n]));
+    return weights *
+           (frame->surface.collider->mesh.paths->speed + cs_event_angular_speed(system));
 }
 
 void cs_event_find_held(struct cs_system *system, double t) {
@@ -276,7 +345,9 @@ void cs_event_find_held(struct cs_system *system, double t) {
             arm[c] += frame.lever[c];
         // of the turning alone: the rates of paths are bounded elsewhere
         events->has_grabs = true;
-        events->has_turns |= spin > 0;
-        events->held_speed = fmax(events->held_speed, spin * sqrt(cs_vec3_dot(arm, arm)));
+        events->has_turns |= spin > 0 || frame.deforms;
+        events->held_speed =
+            fmax(events->held_speed, frame.deforms ? deformed_speed(system, &frame, i)
+                                                   : spin * sqrt(cs_vec3_dot(arm, arm)));
     }
 }
