@@ -45,7 +45,7 @@ small = [
     '{"bodies": [{%s}], "events": [{"at": 1}]}' % body,
     '{"bodies": [{%s}], "events": [{"at": 1, "pin": {}, "release": {}}]}' % body,
     '{"bodies": [{%s}], "events": [{"at": 1, "impact": {"impulse": 1}}]}' % body,
-    '{"bodies": [{%s}], "forces": {"wind": {"strength": 1}}}' % body,
+    '{"bodies": [{%s}], "forces": {"wind": {"velocity": [1, 0]}}}' % body,
     '{"bodies": [{%s}], "render": {"look": "pretty"}}' % body,
 ]
 cases = [(os.path.basename(p), p) for p in sorted(glob.glob(scenes + "/*.json"))]

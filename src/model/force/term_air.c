@@ -258,6 +258,7 @@ const struct cs_term cs_term_pressure = {
     .uses = pressure_uses,
     .build = find_outwards,
     .rampable_keys = pressure_ramps,
+    .work_column = "wind",
     .add_force = add_pressure,
     .add_jvp = pressure_jvp,
     .max_acceleration = max_pressure,
