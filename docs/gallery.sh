@@ -75,6 +75,7 @@ make() {
         bag) run $1 bag -n 90 && film $1.webm $1 ;;
         hammock) run $1 hard/hammock -n 90 -s 'bodies[0].cloth.grid=[20,20]' && film $1.webm $1 ;;
         curtain) run $1 curtain_rail -n 240 --every 2 && film $1.webm $1 ;;
+        skirt | sail | tent | parachute | balloon | clothes_line) run $1 $1 -n 240 && film $1.webm $1 ;;
         bears) run $1 bear_heap -n 90 && film $1.webm $1 ;;
         instability)
             run local explosion -n 226 --every 2 --mark-instability -s 'render.look=wireframe'
