@@ -253,12 +253,9 @@ static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
     system->view.start = system->start;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_body *body = cs_scene_bodies(system->scene) + b;
-        system->bodies[b] = (struct cs_body_range){first,
-                                                   (uint32_t)cs_shape_count(body),
-                                                   (uint32_t)body->cloth.grid[0],
-                                                   (uint32_t)body->cloth.grid[1],
-                                                   body->mesh.geometry,
-                                                   1};
+        system->bodies[b] = (struct cs_body_range){
+            first, (uint32_t)cs_shape_count(body), (uint32_t)body->cloth.grid[0],
+            (uint32_t)body->cloth.grid[1], body->mesh.geometry};
         first += system->bodies[b].count;
     }
 }

@@ -242,7 +242,7 @@ static enum cs_status check_there(const struct walk *walk, const struct cs_scene
                        "%.120s cannot change: the scene has no forces.wind", walk->path);
     if (!strcmp(walk->plain, "bodies.pressure") && !cs_shape_is_closed(body_of(walk, scene)))
         return cs_fail(walk->error, CS_ERR_SCENE,
-                       "%.120s cannot change: the body is open, expected a closed mesh",
+                       "%.120s cannot change: expected a closed mesh whose faces look outwards",
                        walk->path);
     return strncmp(walk->plain, "bodies.springs.", 15)
                ? CS_OK

@@ -121,7 +121,7 @@ static enum cs_status check_pressure(const struct cs_check *at, const char *body
     char path[128];
     snprintf(path, sizeof path, "%s.pressure", body);
     if (of->pressure > 0 && !cs_shape_is_closed(of))
-        return cs_check_refuse(at, path, "the body is open, expected a closed mesh");
+        return cs_check_refuse(at, path, "expected a closed mesh whose faces look outwards");
     return CS_OK;
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/portable_sine.h"
 #include "base/text.h"
+#include "base/vec3.h"
 #include "mesh/trimesh.h"
 
 #include <math.h>
@@ -174,7 +175,17 @@ void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const 
 }
 
 bool cs_shape_is_closed(const struct cs_body *body) {
-    return body->mesh.present && !body->mesh.geometry->n_open;
+    const struct cs_trimesh *mesh = body->mesh.geometry;
+    double volume = 0;
+    for (uint32_t t = 0; body->mesh.present && t < mesh->n_triangles; t++) {
+        double at[3][3], normal[3];
+        for (size_t k = 0; k < 9; k++)
+            at[k / 3][k % 3] =
+                mesh->positions[k % 3 * mesh->n + mesh->triangles[3 * (size_t)t + k / 3]];
+        cs_vec3_cross(at[1], at[2], normal);
+        volume += cs_vec3_dot(at[0], normal);
+    }
+    return body->mesh.present && !mesh->n_open && volume > 0;
 }
 
 bool cs_holder_fault(const struct cs_scene *scene, const struct cs_holder *holder, char *text,

@@ -26,7 +26,7 @@ double cs_shape_area(const struct cs_body *body, uint32_t i);
 bool cs_shape_pin_selects(const struct cs_body *body, const struct cs_pin *pin, uint32_t n,
                           uint32_t first, uint32_t i, const double *x);
 
-/* Returns true if a body is a closed mesh. */
+/* Returns true if a body is a closed mesh whose faces look outwards. */
 bool cs_shape_is_closed(const struct cs_body *body);
 
 /* Returns true if a holder names no collider of the scene. text (size bytes) then says so. */

@@ -19,7 +19,7 @@ static void bend(double r, double x[3 * N]) {
 static void update(struct cs_mesh *mesh, const double *x, struct cs_arena *arena) {
     static struct cs_body body = {.cloth = {.present = true, .grid = {SIDE, SIDE}}};
     static struct cs_scene scene = {.bodies = {&body, 1}};
-    static struct cs_body_range range = {0, N, SIDE, SIDE, NULL, 1};
+    static struct cs_body_range range = {0, N, SIDE, SIDE, NULL};
     static double start[3 * N];
     struct cs_error error = {0};
     bend(0, start);

@@ -87,8 +87,8 @@ TEST(bad_overrides_are_refused) {
          "--set bodies[0].sprngs: unknown key; did you mean \"springs\"?"},
         {{"forces.wind.strength", "1"},
          CS_ERR_SCENE,
-         "--set forces.wind.direction: missing, expected a list of 3 numbers "
-         "(-1e+09..1e+09)"},
+         "--set forces.wind.direction: missing, expected a list of 3 "
+         "numbers, or velocity in m/s"},
         {{"bodies[0].mass.particle", "1"},
          CS_ERR_SCENE,
          "s.json:1:49: bodies[0].mass: found particle and total, expected exactly one of "

@@ -195,24 +195,6 @@ static struct cs_plan_row pressure_plan(const struct cs_scene *scene) {
                                 .reason = acts ? "a body has an inner pressure" : NULL};
 }
 
-/* Closed meshes may have their faces inwards: V < 0 then, by 18 V = sum x.N. */
-static enum cs_status find_outwards(struct cs_system *system, struct cs_error *error) {
-    const size_t n = system->view.n;
-    const struct cs_eval at = {.x = system->state};
-    (void)error;
-    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
-        struct cs_body_range *body = system->bodies + b;
-        double volume = 0, product[3];
-        for (uint32_t i = body->first; body->mesh && i < body->first + body->count; i++) {
-            cs_normal_product(system, body, i, &at, product);
-            for (size_t c = 0; c < 3; c++)
-                volume += system->state[c * n + i] * product[c];
-        }
-        body->outwards = volume < 0 ? -1 : 1;
-    }
-    return CS_OK;
-}
-
 static uint32_t pressure_uses(const struct cs_scene *scene) {
     (void)scene;
     return CS_USE_AREA;
@@ -223,7 +205,7 @@ static void add_pressure(const struct cs_system *system, const struct cs_eval *a
     const size_t n = system->view.n;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_body_range *body = system->bodies + b;
-        const double p = pressure_of(system, b) * body->outwards;
+        const double p = pressure_of(system, b);
         const uint32_t begin = at->block->begin > body->first ? at->block->begin : body->first;
         for (uint32_t i = begin; p != 0 && i < at->block->end && i < body->first + body->count;
              i++) {
@@ -256,7 +238,6 @@ const struct cs_term cs_term_pressure = {
     .part_bits = CS_PART_WIND,
     .plan = pressure_plan,
     .uses = pressure_uses,
-    .build = find_outwards,
     .rampable_keys = pressure_ramps,
     .work_column = "wind",
     .add_force = add_pressure,

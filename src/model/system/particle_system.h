@@ -72,8 +72,6 @@ struct cs_trimesh;
 struct cs_body_range {
     uint32_t first, count, columns, rows;
     const struct cs_trimesh *mesh; /* borrowed from the scene; NULL: a grid */
-    double outwards; /* 1 or -1: the side of a closed mesh to which its faces look; with
-                        pressure */
 };
 
 struct cs_approach;
