@@ -250,15 +250,23 @@ static enum cs_status print_diagram(struct screen *screen, struct cs_error *erro
     return error->status ? error->status : cs_print_raw(stdout, &text, error);
 }
 
-/* For --strict: fails if a cell blew up or failed. */
-static enum cs_status check_cells(const struct cs_compare *compare, struct cs_error *error) {
-    uint32_t bad = 0;
-    for (uint32_t k = 0; k < compare->cells.n; k++)
-        bad += cs_cell_has_failed(compare->cells.cells + k) ||
-               !strncmp(compare->cells.cells[k].outcome, "blew up", 7);
-    return bad ? cs_fail(error, CS_ERR_UNSTABLE, "%u of %u cells blew up or failed", bad,
-                         compare->cells.n)
-               : CS_OK;
+/* Fails if there are cells and none finished: that is no answer. strict: if one blew up or
+ * failed, too. */
+static enum cs_status check_cells(const struct cs_compare *compare, bool strict,
+                                  struct cs_error *error) {
+    const struct cs_cell *cells = compare->cells.cells;
+    uint32_t bad = 0, good = 0;
+    for (uint32_t k = 0; k < compare->cells.n; k++) {
+        bad += cs_cell_has_failed(cells + k) || !strncmp(cells[k].outcome, "blew up", 7);
+        good += cs_cell_is_finished(cells + k);
+    }
+    if (strict && bad)
+        return cs_fail(error, CS_ERR_UNSTABLE, "%u of %u cells blew up or failed", bad,
+                       compare->cells.n);
+    return good || !compare->cells.n
+               ? CS_OK
+               : cs_fail(error, CS_ERR_UNSTABLE, "no answer: no cell finished; %s: %s",
+                         cells->series, cells->outcome);
 }
 
 /* Makes and prints one comparison; takes its results for a level of a mesh unless it is NULL.
@@ -284,8 +292,9 @@ static enum cs_status compare_once(struct options *options, struct cs_mesh_study
             print_diagram(&screen, error);
         if (!error->status && level)
             cs_mesh_level_store(study, level, &screen.compare, error);
-        if (!error->status && options->strict)
-            check_cells(&screen.compare, error);
+        /* a mesh study goes on to its other levels */
+        if (!error->status && (options->strict || !level))
+            check_cells(&screen.compare, options->strict, error);
     }
     if (error->status == CS_ERR_INTERRUPT)
         cs_manifest_write_study(settings->folder, error);

@@ -173,7 +173,7 @@ void cs_cairo_keys(cairo_t *cairo, const struct cs_diagram *diagram, double widt
 
 /* --- titles --- */
 
-/* of the text that gathers the titles of a context */
+/* key of the text with the titles of a context */
 static const cairo_user_data_key_t titles_key;
 
 void cs_cairo_gather_titles(cairo_t *cairo, struct cs_text *titles) {
