@@ -2,8 +2,7 @@
  *
  *   options -> cs_compare_settings -> cs_compare_run (rows are printed as they finish)
  *   -> report files -> summary of series, ledger, verdict, warnings -> contact sheets
- * Modules from outside run in a child process with a time limit per call. Files are written
- * before the verdict is printed, so a closed output loses no result. */
+ * Files are written before the verdict is printed, so a closed output loses no result. */
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
@@ -73,16 +72,15 @@ static const struct cs_arg rows[] = {
      "its own, and print the error of each mesh, against the finest, beside that of the step",
      CS_ARG_INTO(struct options, mesh)},
     {"reference-budget", 0, "SECONDS",
-     "maximum work of explicit methods of the reference in nominal seconds; beyond it implicit "
-     "ones take their place (default: 20)",
+     "maximum work of explicit methods of the reference in nominal seconds; then implicit ones "
+     "follow (default: 20)",
      CS_ARG_INTO(struct options, compare.reference_budget)},
     {"cache", 0, "DIR", "folder of stored references (default: DIR of -o)",
      CS_ARG_INTO(struct options, compare.cache)},
     {"overwrite", 'y', NULL, "replace an existing compare.csv",
      CS_ARG_INTO(struct options, compare.overwrite), .old_name = "fresh"},
     {"pictures", 0, NULL,
-     "draw the last frame of the methods at equal step and at equal cost, coloured by their "
-     "error",
+     "draw the last frames at equal step and at equal cost, coloured by their error",
      CS_ARG_INTO(struct options, compare.pictures)},
     {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)",
      CS_ARG_INTO(struct options, renderer), .names = cs_renderer_names},
@@ -112,8 +110,7 @@ struct screen {
     struct cs_error error; /* of printing */
 };
 
-/* Prints a text in place of the progress line. Errors are kept for the end: callbacks return
- * nothing. */
+/* Prints a text in place of the progress line. Errors are kept for the end. */
 static void show(struct screen *screen, struct cs_text *text) {
     cs_progress_end(&screen->progress);
     cs_print_out(stdout, text, &screen->error);
@@ -121,9 +118,8 @@ static void show(struct screen *screen, struct cs_text *text) {
 
 /* Prints a remark; a closed standard error hides no result. */
 static void remark(struct screen *screen, struct cs_text *text) {
-    struct cs_error ignored = {0};
     cs_progress_end(&screen->progress);
-    cs_print_out(stderr, text, &ignored);
+    cs_print_out(stderr, text, &(struct cs_error){0});
 }
 
 static void show_reference(void *ctx, uint32_t done, uint32_t total, const char *what) {
@@ -154,8 +150,7 @@ static void show_row(void *ctx, const struct cs_cell *cell, bool taken) {
     if (screen->quiet)
         return;
     cs_table_add_row(&screen->compare, cell, &text);
-    show(screen, &text);
-    // how many cells equal errors need is not known
+    show(screen, &text); // how many cells equal errors need is not known
     if (!taken && screen->compare.n_done <= screen->compare.cells.n)
         cs_progress_show(&screen->progress, screen->compare.n_done, screen->compare.cells.n);
 }
@@ -170,7 +165,7 @@ static void show_round(void *ctx, uint32_t done, uint32_t most) {
     cs_progress_show(&screen->progress, done, most);
 }
 
-/* Takes none or two methods; their families are not compared here. */
+/* Takes none or two methods. */
 static enum cs_status set_reference(struct options *options, struct cs_error *error) {
     if (options->n_references != 0 && options->n_references != 2)
         return cs_fail(error, CS_ERR_USAGE,
@@ -250,27 +245,25 @@ static enum cs_status print_diagram(struct screen *screen, struct cs_error *erro
     return error->status ? error->status : cs_print_raw(stdout, &text, error);
 }
 
-/* Fails if there are cells and none finished: that is no answer. strict: if one blew up or
- * failed, too. */
+/* Fails if no cell finished, which is no answer; strict: if one blew up or failed. */
 static enum cs_status check_cells(const struct cs_compare *compare, bool strict,
                                   struct cs_error *error) {
     const struct cs_cell *cells = compare->cells.cells;
+    const uint32_t n = compare->cells.n;
     uint32_t bad = 0, good = 0;
-    for (uint32_t k = 0; k < compare->cells.n; k++) {
+    for (uint32_t k = 0; k < n; k++) {
         bad += cs_cell_has_failed(cells + k) || !strncmp(cells[k].outcome, "blew up", 7);
         good += cs_cell_is_finished(cells + k);
     }
     if (strict && bad)
-        return cs_fail(error, CS_ERR_UNSTABLE, "%u of %u cells blew up or failed", bad,
-                       compare->cells.n);
-    return good || !compare->cells.n
-               ? CS_OK
-               : cs_fail(error, CS_ERR_UNSTABLE, "no answer: no cell finished; %s: %s",
-                         cells->series, cells->outcome);
+        cs_fail(error, CS_ERR_UNSTABLE, "%u of %u cells blew up or failed", bad, n);
+    else if (n && !good)
+        cs_fail(error, CS_ERR_UNSTABLE, "no answer: no cell finished; %s: %s", cells->series,
+                cells->outcome);
+    return error->status;
 }
 
-/* Makes and prints one comparison; takes its results for a level of a mesh unless it is NULL.
- */
+/* Makes and prints one comparison; takes its results for a level of a mesh, or NULL. */
 static enum cs_status compare_once(struct options *options, struct cs_mesh_study *study,
                                    struct cs_mesh_level *level, struct cs_error *error) {
     struct cs_compare_settings *settings = &options->compare;
@@ -292,7 +285,6 @@ static enum cs_status compare_once(struct options *options, struct cs_mesh_study
             print_diagram(&screen, error);
         if (!error->status && level)
             cs_mesh_level_store(study, level, &screen.compare, error);
-        /* a mesh study goes on to its other levels */
         if (!error->status && (options->strict || !level))
             check_cells(&screen.compare, options->strict, error);
     }
@@ -301,10 +293,9 @@ static enum cs_status compare_once(struct options *options, struct cs_mesh_study
     cs_progress_end(&screen.progress);
     cs_compare_finish(&screen.compare);
     /* callbacks return nothing: errors of their printing are reported here */
-    return error->status ? error->status
-           : screen.error.status
-               ? cs_fail(error, screen.error.status, "%s", screen.error.message)
-               : CS_OK;
+    if (!error->status)
+        *error = screen.error;
+    return error->status;
 }
 
 /* Compares on each mesh of a scene, in FOLDER/SCENE-CELLS. */

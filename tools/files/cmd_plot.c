@@ -120,6 +120,7 @@ static void find_name(const struct cs_args *args, const struct cs_plot_settings 
         snprintf(name, 4096, "%.*s%s_%s%s%s", folder, file, settings->y->name,
                  settings->x->name, options->family ? "_" : "",
                  options->family ? options->family : "");
+        /* families have blanks */
         for (char *c = name + folder; *c; c++)
             *c = *c == ' ' ? '-' : *c;
     } else
@@ -189,6 +190,7 @@ static enum cs_status finish(struct cs_args *args, const struct cs_diagram *diag
     const char *slash = strrchr(name, '/');
     if (!*name || (slash && !slash[1]))
         return cs_fail(error, CS_ERR_USAGE, "--out: expected a file name without extension");
+    /* nothing is written over the table */
     if (read_formats(options->format, &formats, error) ||
         check_names(args->operands[0], name, formats, error) ||
         (computed && write_table(computed, args->operands[0], name, error)) ||
@@ -304,6 +306,7 @@ static enum cs_status plot_table(struct cs_args *args, struct cs_error *error) {
     const struct cs_line_settings lines = {options->x, options->y, options->log_axes};
     struct cs_table_plot plot;
     if (!open_table(args, options->title ? options->title : args->operands[0], &plot, error)) {
+        /* a map has its panel already */
         if (plot.diagram.n_panels && options->spectrum)
             cs_fail(error, CS_ERR_USAGE, "--spectrum: a stability map has none");
         else if (!plot.diagram.n_panels && options->spectrum)

@@ -9,12 +9,15 @@
 
 enum { ROWS = 101 };
 
-/* Sum along x of the forces on the half of the body that lies below the middle. */
+/* Sum along x of the forces on the half of the body that lies below the middle. arrays: x
+ * (3,n), then velocities of 0, then the forces. */
 static double pull(const struct cs_system *system, const double *start, double middle,
-                   double *x, const double *at_rest, double *f, double stretch) {
+                   double *arrays, double stretch) {
     const struct cs_body_range *body = system->bodies;
+    const size_t n = 3 * (size_t)system->view.n;
+    double *x = arrays, *f = arrays + 2 * n;
     const struct cs_eval at = {
-        .x = x, .v = at_rest, .parts = CS_PART_SPRINGS | CS_PART_ELASTIC};
+        .x = x, .v = arrays + n, .parts = CS_PART_SPRINGS | CS_PART_ELASTIC};
     double sum = 0;
     for (uint32_t i = body->first; i < body->first + body->count; i++)
         x[i] = middle + stretch * (start[i] - middle);
@@ -45,12 +48,12 @@ static enum cs_status measure(const struct cs_system *system, double low, double
     table->values = cs_arena_alloc_array(arena, 2 * (size_t)ROWS, sizeof(double), error);
     if (error->status)
         return error->status;
-    double *x = arrays, *at_rest = arrays + n, *f = arrays + 2 * n;
-    memcpy(x, start, n * sizeof *x);
+    /* other bodies stay where they are */
+    memcpy(arrays, start, n * sizeof *arrays);
     for (uint32_t r = 0; r < ROWS; r++) {
         double *row = table->values + (size_t)2 * r;
         row[0] = low + (high - low) * r / (ROWS - 1);
-        row[1] = pull(system, start, middle, x, at_rest, f, row[0]);
+        row[1] = pull(system, start, middle, arrays, row[0]);
     }
     return CS_OK;
 }

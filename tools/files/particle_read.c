@@ -10,6 +10,13 @@
 
 enum { HEADER = 30, FILE_BYTES_MAX = 1 << 30 };
 
+/* The file, whole. */
+struct archive {
+    const char *path; /* borrowed */
+    char *bytes;
+    size_t length;
+};
+
 /* An array in the bytes of the archive. */
 struct array {
     const char *numbers; /* little-endian */
@@ -29,10 +36,10 @@ static double real_at(const char *at) {
 }
 
 /* Moves *at past the member there; false: it is not whole, or not stored. */
-static bool next_member(const char *bytes, size_t length, size_t *at, const char **name,
+static bool next_member(const struct archive *archive, size_t *at, const char **name,
                         size_t *name_bytes, struct array *data) {
-    const char *header = bytes + *at;
-    const size_t rest = length - *at;
+    const char *header = archive->bytes + *at;
+    const size_t rest = archive->length - *at;
     if (rest < HEADER || number_at(header, 4) != 0x04034b50 || number_at(header + 8, 2) != 0)
         return false;
     *name = header + HEADER;
@@ -70,21 +77,20 @@ static bool read_header(struct array *array, unsigned axes) {
     return array->bytes == at[0] * at[1] * at[2] * sizeof(double);
 }
 
-static enum cs_status find_array(const char *path, const char *bytes, size_t length,
-                                 const char *name, unsigned axes, struct array *array,
-                                 struct cs_error *error) {
+static enum cs_status find_array(const struct archive *archive, const char *name, unsigned axes,
+                                 struct array *array, struct cs_error *error) {
     const char *found;
     size_t at = 0, n;
-    while (next_member(bytes, length, &at, &found, &n, array))
+    while (next_member(archive, &at, &found, &n, array))
         if (n == strlen(name) && !memcmp(found, name, n))
             return read_header(array, axes)
                        ? CS_OK
                        : cs_fail(error, CS_ERR_FILE,
-                                 "%s: %s is no whole array of float64 in %u dimensions", path,
-                                 name, axes);
+                                 "%s: %s is no whole array of float64 in %u dimensions",
+                                 archive->path, name, axes);
     return cs_fail(error, CS_ERR_FILE,
                    "%s: found no stored %s, expected an archive of clothsim run --export npz",
-                   path, name);
+                   archive->path, name);
 }
 
 /* The table of t, x, y and z from both arrays. */
@@ -108,12 +114,12 @@ static enum cs_status fill(struct cs_number_table *table, const struct array *ti
 enum cs_status cs_particle_read(const char *path, uint32_t particle, struct cs_arena *arena,
                                 struct cs_number_table *table, struct cs_error *error) {
     struct array times, positions;
-    char *bytes;
-    size_t length;
-    if (cs_file_read(path, FILE_BYTES_MAX, &bytes, &length, error))
+    struct archive archive = {.path = path};
+    if (cs_file_read(path, FILE_BYTES_MAX, &archive.bytes, &archive.length, error))
         return error->status;
-    if (!find_array(path, bytes, length, "times.npy", 1, &times, error) &&
-        !find_array(path, bytes, length, "positions.npy", 3, &positions, error)) {
+    if (!find_array(&archive, "times.npy", 1, &times, error) &&
+        !find_array(&archive, "positions.npy", 3, &positions, error)) {
+        /* one position for each time */
         if (positions.shape[2] != 3 || positions.shape[0] != times.shape[0])
             cs_fail(error, CS_ERR_FILE, "%s: positions.npy is not (samples, particles, 3)",
                     path);
@@ -123,6 +129,6 @@ enum cs_status cs_particle_read(const char *path, uint32_t particle, struct cs_a
         else
             fill(table, &times, &positions, particle, arena, error);
     }
-    free(bytes);
+    free(archive.bytes);
     return error->status;
 }

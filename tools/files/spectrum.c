@@ -23,6 +23,7 @@ static void transform(double complex *a, size_t n) {
             a[i] = a[j];
             a[j] = other;
         }
+        /* adds 1 to the reversed index */
         size_t bit = n >> 1;
         for (; bit && j & bit; bit >>= 1)
             j ^= bit;

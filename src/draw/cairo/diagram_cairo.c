@@ -354,6 +354,7 @@ static enum cs_status draw(const struct cs_diagram *diagram, enum cs_format form
     const bool pixels = format == CS_FORMAT_PNG;
     const bool is_svg = format == CS_FORMAT_SVG;
     struct cs_text out = {0}, titles = {0};
+    /* a first pass finds the height */
     cairo_surface_t *empty = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 1, 1);
     cairo_surface_t *surface =
         make_surface(format, width, draw_on(empty, 1, diagram, NULL), &out);
