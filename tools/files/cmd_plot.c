@@ -303,7 +303,8 @@ static enum cs_status open_table(const struct cs_args *args, const char *title,
 static enum cs_status plot_table(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
     const bool computed = options->spectrum || options->stretch || is_of_particle(options);
-    const struct cs_line_settings lines = {options->x, options->y, options->log_axes};
+    const struct cs_line_settings lines = {options->x, options->y, options->log_axes,
+                                           args->operands[0]};
     struct cs_table_plot plot;
     if (!open_table(args, options->title ? options->title : args->operands[0], &plot, error)) {
         /* a map has its panel already */
@@ -337,6 +338,7 @@ static enum cs_status find_kind(const char *path, bool *comparison, struct cs_er
 
 static enum cs_status plot(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
+    const char *ending = strrchr(args->operands[0], '.');
     bool comparison = false;
     if (options->show && options->out)
         return cs_fail(error, CS_ERR_USAGE, "--show writes no files: remove --show or --out");
@@ -347,6 +349,9 @@ static enum cs_status plot(struct cs_args *args, struct cs_error *error) {
         return cs_fail(error, CS_ERR_USAGE, "--log: expected x, y or xy, found \"%.60s\"",
                        options->log_axes);
     const bool computed = options->stretch || is_of_particle(options);
+    if (!computed && ending && !strcmp(ending, ".npz"))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--particle: an archive of a run needs the number of one");
     if (cs_args_refuse_both(args, "stretch", "particle", error) ||
         cs_args_refuse_both(args, "stretch", "spectrum", error) ||
         (!computed && find_kind(args->operands[0], &comparison, error)))

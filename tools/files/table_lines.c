@@ -119,5 +119,6 @@ enum cs_status cs_table_lines_add(struct cs_table_plot *plot,
         return error->status;
     return plot->diagram.n_panels
                ? CS_OK
-               : cs_fail(error, CS_ERR_FILE, "found no column with numbers to draw");
+               : cs_fail(error, CS_ERR_FILE, "%s: found no column with numbers to draw",
+                         settings->path);
 }

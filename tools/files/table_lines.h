@@ -8,6 +8,7 @@
 struct cs_line_settings {
     const char *x, *y;    /* NULL: see below; y: "NAME,NAME" */
     const char *log_axes; /* "", "x", "y" or "xy" */
+    const char *path;     /* for messages */
 };
 
 /* Adds lines over x ("t", or the first column), a panel per unit: of all columns that are not
