@@ -222,7 +222,7 @@ TEST(friction_beside_dampers_limits_no_step) {
         ", \"pins\": [\"edges\"]}, {\"cloth\": {\"grid\": [4, 4], \"size\": 0.15, \"start\": "
         "\"flat\", \"velocity\": [0.5, 0, 0], \"place\": {\"translate\": [0, 0.02, "
         "0]}}, " SPRINGS "}], \"pairs\": {\"among\": \"all\", \"friction\": %s}, \"contact\": "
-                         "{\"damping\": 2e-3}}"};
+        "{\"damping\": 2e-3}}"};
 #undef SPRINGS
     for (int k = 0; k < 2; k++) {
         double safe[2], border[2];

@@ -228,22 +228,22 @@ static bool make_point(const struct filling *at, uint32_t k, struct cs_point *po
     *point = (struct cs_point){.mark = is_probe(cell) ? CS_MARK_HOLLOW : CS_MARK_FULL,
                                .joined = !is_probe(cell),
                                .ring = cs_cell_has_crossings(cell),
-                               .front = at->spread[k].front, .note = cell->options};
+                               .front = at->spread[k].front,
+                               .note = cell->options};
     if (cs_curves_point(&at->settings, cell, &point->x, &point->y)) {
         point->low = timed ? cell->cpu_low : (double)NAN;
         point->high = timed ? cell->cpu_high : (double)NAN;
         point->y = is_probe(cell) ? at->spread[k].own : point->y;
         return true;
     }
-    /* a run that did not finish has a cost, and no error */
     const double cost = log10(cs_cell_number(cell, at->settings.x));
     if (cs_cell_is_finished(cell) || !isfinite(cost))
         return false;
     const double margin = 0.01 * (x->range[1] - x->range[0]);
-    *point = (struct cs_point){
-        .x = pow(10, fmin(fmax(cost, x->range[0] + margin), x->range[1] - margin)),
-        .y = pow(10, y->range[1] - 0.02 * (y->range[1] - y->range[0])),
-        .mark = CS_MARK_CROSS, .note = cell->options};
+    point->x = pow(10, fmin(fmax(cost, x->range[0] + margin), x->range[1] - margin));
+    point->y = pow(10, y->range[1] - 0.02 * (y->range[1] - y->range[0]));
+    point->mark = CS_MARK_CROSS;
+    point->joined = point->ring = point->front = false;
     return true;
 }
 
@@ -265,13 +265,14 @@ static void add_bar(struct filling *at, struct cs_diagram_rect *bar) {
     for (uint32_t k = 0; k < settings->n && is_position_error(settings->y); k++)
         error = fmax(error, settings->cells[k].bar);
     *bar = (struct cs_diagram_rect){pow(10, x->range[0]), pow(10, x->range[1]),
-                                pow(10, y->range[0]), error,
-                                CS_BAR_COLOUR,        ' '};
+                                    pow(10, y->range[0]), error,
+                                    CS_BAR_COLOUR,        ' '};
     at->panel->boxes = bar;
     at->panel->n_boxes = error > bar->bottom;
 }
 
-static void fill_panel(struct filling *at, const struct cs_column *x, struct cs_diagram_rect *bar) {
+static void fill_panel(struct filling *at, const struct cs_column *x,
+                       struct cs_diagram_rect *bar) {
     const struct cs_column *columns[2] = {x, at->settings.y};
     struct cs_plot_axis *axes[2] = {&at->panel->x, &at->panel->y};
     at->settings.x = x;
@@ -332,7 +333,6 @@ static void add_keys(struct cs_diagram *diagram, const struct cs_curves *curves)
          "below the reference's own error",
          NULL},
     };
-    /* both panels have the same series */
     const struct cs_panel *panel = diagram->panels;
     bool there[KEYS] = {[BAR] = panel->n_boxes};
     char more[80];
