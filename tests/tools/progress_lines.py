@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""progress_lines.py ROOT - what tests/progress.py makes of a meson that prints known lines: lines of tests
+that pass are left out, all others stay, the time left follows from the pace, and the status is meson's.
+"""
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import sources
+
+MESON = """#!/bin/sh
+case "$1 $4" in
+    introspect*) echo '[{"name": "a", "priority": 300}, {"name": "b", "priority": 100}, {"name": "c d", "priority": 0},
+                        {"name": "other", "priority": 1000}]' ;;
+    *--list*) printf 'x:cli / a\\nx:cli / b\\nx:unit / c d\\n' ;;
+    *) echo "ninja: no work to do."
+       echo " 1/3 x:cli / b      OK               40.00s   2 subtests passed"
+       echo " 2/3 x:unit / c d   FAIL              2.50s   exit status 1"
+       echo "what it said"
+       echo " 3/3 x:cli / a      EXPECTEDFAIL    120.00s"
+       echo "Ok:  1"
+       exit 3 ;;
+esac
+"""
+
+
+def main():
+    root, checks = Path(sys.argv[1]).resolve(), sources.Checks()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "meson")
+        path.write_text(MESON)
+        path.chmod(0o755)
+        ran = subprocess.run([root / "tests/progress.py", "build", "--suite", "cli"], capture_output=True, text=True,
+                             env={**os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "PROGRESS_SECONDS": "0",
+                                  "MESON_TESTTHREADS": "2"})
+    checks.check(ran.returncode == 3, f"exit status {ran.returncode}, expected 3")
+    out = ran.stdout.splitlines()
+    checks.check([line.split()[0] for line in out] == ["ninja:", "2/3", "what", "Ok:"], f"printed {out}")
+    # 400.5 s of work at 40 s for 100, by two processors; then at 42.5 s for 100.5
+    told = [line.replace(",", "").split() for line in ran.stderr.splitlines()]
+    checks.check([(words[0], words[4]) for words in told] == [("1", "0"), ("2", "1"), ("3", "1")], f"progress {told}")
+    checks.check(all(abs(float(words[7]) - left) < 20 for words, left in zip(told, (80, 85))), f"time left {told}")
+    checks.check("after" in told[-1], f"end {told[-1]}")
+    return checks.end()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
