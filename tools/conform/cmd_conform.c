@@ -27,13 +27,15 @@ enum { PATIENCE_SECONDS = 60, SECOND_PATIENCE_SECONDS = 10, STOP_SECONDS = 1 };
 struct options {
     const char *json, *only;
     double isolate; /* s; 0: PATIENCE_SECONDS, and only for foreign modules */
-    bool list, quiet;
+    bool list, quiet, fail_fast;
     const char *const *plugins; /* (n_plugins) */
     uint32_t n_plugins;
 };
 static const struct options defaults = {.json = NULL};
 
 static const struct cs_arg rows[] = {
+    {"fail-fast", 0, NULL, "end a card at its first failed claim",
+     CS_ARG_INTO(struct options, fail_fast)},
     {"isolate", 0, "SECONDS",
      "run in a separate process, and end it if one call of the method takes longer (default: "
      "60, for modules that were not installed with the program)",
@@ -194,6 +196,7 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
         .options = options,
         .implicit_euler = euler ? euler->integrator : NULL,
         .only_checks = output->options->only,
+        .fail_fast = output->options->fail_fast,
         .cache = &output->cache,
         .stop = cs_interrupt_catch(),
         .begin = begin,

@@ -102,6 +102,9 @@ enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error)
         apply_expected_failures(card->method, &row);
         if (!error->status)
             card->report(card->ctx, &row);
+        if (card->fail_fast &&
+            (row.verdict == CS_VERDICT_FAIL || row.verdict == CS_VERDICT_STALE))
+            break;
     }
     card->refused = NULL;
     return error->status;

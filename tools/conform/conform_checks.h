@@ -65,6 +65,7 @@ struct cs_conform {
     /* the method that CS_FIDELITY_IMPLICIT_EULER is compared with; NULL: none */
     const struct cs_integrator *implicit_euler;
     const char *only_checks; /* names with commas between them; NULL: all */
+    bool fail_fast;          /* the first failed claim ends the card */
     /* references that earlier cards have run, and where this one's go; NULL: none are kept */
     struct cs_conform_cache *cache;
     /* set where the method refuses a check's scene by CS_SMOOTH_ONLY; set by check */

@@ -57,39 +57,57 @@ void cs_check_copies(const struct cs_conform *card, struct cs_conform_row *row) 
     cs_probe_close(&sheets);
 }
 
-/* Masses, springs, dampers and forces in some unit: gravity does not depend on it. */
-#define HEAVY                                                                                  \
-    "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5], \"bump\": 0.1, \"stretch\": [1.05, 1.02], "  \
-    "\"velocity\": [0.1, 0.2, 0.3]}, \"mass\": {\"particle\": %.17g}, \"springs\": "           \
-    "{\"stretch\": %.17g, \"shear\": %.17g, \"bend\": %.17g, \"damping\": %.17g}, \"pins\": "  \
-    "[\"top-left\"]}], \"forces\": {\"drag\": %.17g}, \"time\": {\"fps\": 60}}"
-enum { HEAVY_PARTICLES = 25, HEAVY_VALUES = 6 * HEAVY_PARTICLES, HEAVY_FRAMES = 6 };
+/* A sheet whose masses, lengths and times are in some units. */
+#define SCALED                                                                                 \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5], \"size\": [%.17g, %.17g], \"bump\": %.17g, " \
+    "\"stretch\": [1.05, 1.02], \"velocity\": [%.17g, %.17g, %.17g]}, \"mass\": "              \
+    "{\"particle\": "                                                                          \
+    "%.17g}, \"springs\": {\"stretch\": %.17g, \"shear\": %.17g, \"bend\": %.17g, "            \
+    "\"damping\": "                                                                            \
+    "%.17g}, \"pins\": [\"top-left\"]}], \"forces\": {\"gravity\": [0, %.17g, 0], \"drag\": "  \
+    "%.17g}, \"time\": {\"fps\": %.17g}}"
+enum { SCALED_PARTICLES = 25, SCALED_VALUES = 6 * SCALED_PARTICLES, SCALED_FRAMES = 6 };
 
-/* The state (6,n) with all masses and forces `unit` times as large, a power of two. */
-static bool run_heavy(const struct cs_conform *card, struct cs_conform_row *row, double unit,
-                      double *state, double *move) {
+/* Powers of two, so that no number is rounded. */
+struct units {
+    const char *text;
+    double mass, length, time;
+};
+
+/* State (6,n) and mean displacement, both in these units. Returns false if the run ended. */
+static bool run_scaled(const struct cs_conform *card, struct cs_conform_row *row,
+                       const struct units *units, double *state, double *move) {
+    const double m = units->mass, l = units->length, t = units->time, rate = m / t;
     struct cs_probe sheet;
-    cs_probe_open(&sheet, card, card->method, HEAVY, unit / 16, 32 * unit, 16 * unit, 4 * unit,
-                  unit / 32, unit / 64);
-    cs_probe_set_level(&sheet, 0.1 / RATE, RATE, 1, 0);
-    const bool done = cs_probe_run(&sheet, HEAVY_FRAMES);
+    cs_probe_open(&sheet, card, card->method, SCALED, l, l, l / 16, l / t / 8, l / t / 4,
+                  l / t / 2, m / 16, 32 * rate / t, 16 * rate / t, 4 * rate / t, rate / 32,
+                  -8 * l / t / t, rate / 64, 64 / t);
+    cs_probe_set_level(&sheet, t / 512, RATE / t, 1, 0);
+    const bool done = cs_probe_run(&sheet, SCALED_FRAMES);
     if (done) {
-        memcpy(state, sheet.x, HEAVY_VALUES * sizeof *state);
-        *move = cs_rms_difference(sheet.x, sheet.session.system.start, 3 * sheet.n);
+        for (size_t i = 0; i < SCALED_VALUES; i++)
+            state[i] = sheet.x[i] / (i < SCALED_VALUES / 2 ? l : l / t);
+        *move = cs_rms_difference(sheet.x, sheet.session.system.start, 3 * sheet.n) / l;
     } else
-        cs_row_fail(row, "%s", sheet.error.message);
+        cs_row_fail(row, "in units of %s: %s", units->text, sheet.error.message);
     cs_probe_close(&sheet);
     return done;
 }
 
-/* A force that is clamped, or compared with a constant in N, does not scale. */
+/* A force or speed that is clamped, or compared with a constant, does not scale. */
 void cs_check_units(const struct cs_conform *card, struct cs_conform_row *row) {
-    static const double units[] = {1048576, 1 / 1048576.0};
-    double plain[HEAVY_VALUES], scaled[HEAVY_VALUES], move;
-    if (!run_heavy(card, row, 1, plain, &move))
+    static const struct units all[] = {{"1 kg, 1 m, 1 s", 1, 1, 1},
+                                       {"2^20 kg", 1048576, 1, 1},
+                                       {"2^-20 kg", 1 / 1048576.0, 1, 1},
+                                       {"2^-10 s", 1, 1, 1 / 1024.0}};
+    /* the steps of methods that choose them, and those of shape matching, know the second */
+    const bool any_time =
+        !(card->method->traits & CS_ADAPTIVE) && card->method->fidelity != CS_FIDELITY_OTHER;
+    double plain[SCALED_VALUES], scaled[SCALED_VALUES], move;
+    if (!run_scaled(card, row, all, plain, &move))
         return;
-    for (size_t k = 0; k < 2 && run_heavy(card, row, units[k], scaled, &move); k++)
-        cs_row_state(row, cs_rms_difference(plain, scaled, HEAVY_VALUES / 2) / move, SMALL,
-                     "of the motion changed with all masses and forces %s",
-                     k ? "a millionth" : "a million times");
+    for (size_t k = 1; k < sizeof all / sizeof *all; k++)
+        if ((all[k].time == 1 || any_time) && run_scaled(card, row, all + k, scaled, &move))
+            cs_row_state(row, cs_rms_difference(plain, scaled, SCALED_VALUES) / move, SMALL,
+                         "of the motion changed in units of %s", all[k].text);
 }

@@ -172,10 +172,16 @@ static void translate(const struct cs_conform *card, struct cs_conform_row *row,
     cs_probe_set_level(&sheet, 1.0 / 60, 1, 1, 0);
     if (!cs_probe_run(&sheet, 60))
         cs_row_fail(row, "%s", sheet.error.message);
-    else
+    else {
+        const double length = hypot(hypot(speed[0], speed[1]), speed[2]);
+        double off = 0;
+        for (size_t i = 0; i < 3 * sheet.n; i++)
+            off = fmax(off, fabs(sheet.v[i] - speed[i / sheet.n]));
         cs_row_state(row, deformation(&sheet, speed), 1e-8,
-                     "m off the straight path after a second at %.1f m/s",
-                     hypot(hypot(speed[0], speed[1]), speed[2]));
+                     "m off the straight path after a second at %.1f m/s", length);
+        cs_row_state(row, off / length, 1e-8, "of the velocity lost or gained at %.1f m/s",
+                     length);
+    }
     cs_probe_close(&sheet);
 }
 

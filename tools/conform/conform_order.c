@@ -217,13 +217,16 @@ void cs_check_tolerance(const struct cs_conform *card, struct cs_conform_row *ro
 /* On the drum whose velocities jump at the end of the first frame. A multistep method must
  * discard its history there. */
 void cs_check_event(const struct cs_conform *card, struct cs_conform_row *row) {
-    const struct cs_drum kicked = {.has_velocity_jump = true};
+    const uint32_t order = cs_method_order(card->method, card->options, false);
+    /* damped, where that keeps the order: a force that is kept is then another one */
+    const bool damped = cs_method_order(card->method, card->options, true) == order;
+    const struct cs_drum kicked = {.damping = damped ? 0.05 : 0, .has_velocity_jump = true};
     if (!cs_probe_can_be_set(card, row))
         return;
     if (card->method->traits & CS_ADAPTIVE)
         measure_tolerance(card, row, &kicked);
     else
-        measure_order(card, row, cs_method_order(card->method, card->options, false), &kicked);
+        measure_order(card, row, order, &kicked);
 }
 
 /* The contact law is smooth in range: contact must cost neither order nor tolerance. Friction
