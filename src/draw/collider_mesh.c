@@ -15,6 +15,26 @@ static bool is_ball(const struct cs_posed_collider *obstacle) {
     return obstacle->shape->bounds == CS_BOUNDS_SPHERE;
 }
 
+// the collider at this time; the last one may be the ground
+static const struct cs_posed_collider *pose_of(const struct cs_collider_geometry *solids,
+                                               const struct cs_posed_collider *obstacles,
+                                               uint32_t i) {
+    return solids->ground->present && i + 1 == solids->n ? &solids->ground->pose
+                                                         : obstacles + i;
+}
+
+/* Enlarges the square of a floor until haze hides its edges; a tilted one lies over less. */
+static void extend(struct cs_solid *solid, const struct cs_ground *ground) {
+    const struct cs_ground_style *style = &ground->style;
+    const double *centre = solid->at.centre;
+    const double aside = fmax(fabs(centre[0] - (double)style->centre[0]),
+                              fabs(centre[2] - (double)style->centre[1]));
+    const double half = ((double)style->radius + aside) / solid->at.axes[1][1];
+    const double factor = half / fabs(solid->mesh.positions[0]);
+    for (uint32_t k = 0; cs_ground_is(ground, &solid->at) && k < 3 * solid->mesh.n; k++)
+        solid->mesh.positions[k] *= factor;
+}
+
 /* Counts the vertices of a collider, and makes its triangles if they are drawn. */
 static enum cs_status make(struct cs_solid *solid, struct cs_arena *arena,
                            struct cs_error *error) {
@@ -33,18 +53,35 @@ static enum cs_status make(struct cs_solid *solid, struct cs_arena *arena,
 enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *solids,
                                          const struct cs_system *system,
                                          const struct cs_posed_collider *obstacles,
-                                         struct cs_arena *arena, struct cs_error *error) {
+                                         const struct cs_ground *ground, struct cs_arena *arena,
+                                         struct cs_error *error) {
     uint32_t most = 0;
-    solids->n = system->scene->colliders.n;
+    solids->n = system->scene->colliders.n + ground->present;
+    solids->ground = ground;
     solids->cell = cs_scene_extent_cell(system);
     solids->of = cs_arena_alloc_array(arena, solids->n, sizeof *solids->of, error);
     for (uint32_t i = 0; i < solids->n && !error->status; i++) {
-        solids->of[i].at = obstacles[i];
-        make(solids->of + i, arena, error);
+        solids->of[i].at = *pose_of(solids, obstacles, i);
+        if (!make(solids->of + i, arena, error) && solids->of[i].mesh.n)
+            extend(solids->of + i, ground);
         most = solids->of[i].n > most ? solids->of[i].n : most;
     }
     solids->vertices = cs_arena_alloc_array(arena, most, sizeof *solids->vertices, error);
     return error->status;
+}
+
+bool cs_collider_geometry_move(struct cs_collider_geometry *solids,
+                               const struct cs_posed_collider *now) {
+    bool moved = false;
+    for (uint32_t i = 0; i < solids->n; i++)
+        moved = cs_solid_move(solids->of + i, pose_of(solids, now, i)) || moved;
+    return moved;
+}
+
+void cs_collider_geometry_style(const struct cs_collider_geometry *solids, uint32_t i,
+                                struct cs_surface_style *style) {
+    cs_style_solid(style, &solids->of[i].at, solids->cell);
+    cs_ground_style_of(solids->ground, &solids->of[i].at, style);
 }
 
 bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now) {
@@ -138,6 +175,10 @@ void cs_solids_fill(const struct cs_collider_geometry *solids, uint32_t i, const
         fill_core(at, solids->vertices);
     for (uint32_t t = 0; t < solid->mesh.n_triangles; t++)
         fill_triangle(solid, t, sink, solids->vertices + 3 * (size_t)t);
+    // the ground hides nothing from an eye below it
+    if (at->collider == &solids->ground->collider &&
+        (double)eye[1] <= (eye[3] > 0 ? at->centre[1] : 0))
+        memset(solids->vertices, 0, solid->n * sizeof *solids->vertices);
 }
 
 /* Makes the visible side of a sphere: rings about the line of sight, the last on

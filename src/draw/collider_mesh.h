@@ -2,6 +2,7 @@
 #ifndef CS_DRAW_COLLIDER_MESH_H
 #define CS_DRAW_COLLIDER_MESH_H
 
+#include "draw/ground.h"
 #include "draw/mesh.h"
 #include "model/contact/posed_collider.h"
 
@@ -14,17 +15,28 @@ struct cs_solid {
 
 /* All colliders of a scene. */
 struct cs_collider_geometry {
-    uint32_t n;                 /* colliders of the scene */
-    double cell;                /* m: largest cell of the cloth that lies on them */
-    struct cs_solid *of;        /* (n), owned by the arena */
-    struct cs_vertex *vertices; /* output of cs_solids_fill, room for the largest of them */
+    uint32_t n; /* colliders of the scene, and the ground behind them if it is drawn */
+    const struct cs_ground *ground; /* borrowed */
+    double cell;                    /* m: largest cell of the cloth that lies on them */
+    struct cs_solid *of;            /* (n), owned by the arena */
+    struct cs_vertex *vertices;     /* output of cs_solids_fill, room for the largest of them */
 };
 
-/* Allocates for the colliders at the start (scene->colliders.n). CS_ERR_MEMORY. */
+/* Allocates for the colliders at the start (scene->colliders.n) and a ground. CS_ERR_MEMORY.
+ */
 enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *solids,
                                          const struct cs_system *system,
                                          const struct cs_posed_collider *colliders,
-                                         struct cs_arena *arena, struct cs_error *error);
+                                         const struct cs_ground *ground, struct cs_arena *arena,
+                                         struct cs_error *error);
+
+/* Takes poses of all colliders and the ground; returns true if any has moved. */
+bool cs_collider_geometry_move(struct cs_collider_geometry *solids,
+                               const struct cs_posed_collider *now);
+
+/* Fills the style of a collider or the ground. */
+void cs_collider_geometry_style(const struct cs_collider_geometry *solids, uint32_t i,
+                                struct cs_surface_style *style);
 
 /* Takes a collider's pose and key frame; returns true if it has moved, turned, grown or
  * deformed. */

@@ -8,6 +8,7 @@
 #include "model/system/particle_system.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Lower bound of the height that the bodies of a scene can reach. */
 
@@ -101,14 +102,14 @@ static double lowest_point(const struct cs_system *system,
     return lowest;
 }
 
-// the largest power of ten that is at most length
-static double power_of_ten(double length) {
+// the largest power of ten that is at most length, or of its 1, 2 and 5 fold
+static double round_length(double length, bool powers) {
     double power = 1;
     while (power > length)
         power /= 10;
     while (power * 10 <= length)
         power *= 10;
-    return power;
+    return powers || 2 * power > length ? power : (5 * power > length ? 2 : 5) * power;
 }
 
 /* the visible floor, or plane that serves as one; NULL: there is none */
@@ -121,95 +122,92 @@ static const struct cs_posed_collider *floor_of(const struct cs_scene *scene,
     return NULL;
 }
 
-/* Height in m: given by the scene, that of a floor, or a little below the lowest point. */
-static double height_of(const struct cs_system *system,
-                        const struct cs_posed_collider *obstacles,
-                        const struct cs_bounding_sphere *extent) {
-    const struct cs_posed_collider *floor = floor_of(system->scene, obstacles);
-    if (!isnan(system->scene->render.ground_height))
-        return system->scene->render.ground_height;
-    // a little below what hangs, so that it does not touch
-    return floor ? floor->centre[1] : lowest_point(system, obstacles) - 0.05 * extent->radius;
+/* Sets pattern and haze, and the colours of a ground of its own: those of the background, a
+ * little darker, or nothing but shadows. */
+static void set_style(struct cs_ground *ground, const struct cs_render *render,
+                      const struct cs_bounding_sphere *extent) {
+    struct cs_ground_style *style = &ground->style;
+    const bool clear = render->background.kind == CS_BACKGROUND_NONE;
+    style->centre[0] = (float)extent->centre[0];
+    style->centre[1] = (float)extent->centre[2];
+    style->radius = (float)cs_view_haze(extent);
+    style->lines = render->ground == CS_GROUND_GRID;
+    if (style->lines || (render->ground == CS_GROUND_AUTO && !clear))
+        style->tile = (float)round_length(0.3 * extent->radius, style->lines);
+    cs_colour_ink(render->background.colour, style->ink);
+    ground->shadow = render->ground == CS_GROUND_SHADOW || clear ? 0.4f : 0;
+    for (int i = 0; i < 3; i++)
+        ground->collider.colour[i] = 0.02 + 0.68 * render->background.colour[i];
 }
+
+/* Makes a square of half side 1 m, which is then extended to the haze. */
+static enum cs_status make_square(const struct cs_posed_collider *at, struct cs_trimesh *mesh,
+                                  struct cs_arena *arena, struct cs_error *error) {
+    static const double corners[12] = {-1, -1, 1, 1, 0, 0, 0, 0, -1, 1, 1, -1};
+    static const uint32_t triangles[6] = {0, 1, 2, 0, 2, 3};
+    (void)at;
+    mesh->positions = cs_arena_alloc_array(arena, 12, sizeof *corners, error);
+    mesh->triangles = cs_arena_alloc_array(arena, 6, sizeof *triangles, error);
+    if (error->status)
+        return error->status;
+    memcpy(mesh->positions, corners, sizeof corners);
+    memcpy(mesh->triangles, triangles, sizeof triangles);
+    mesh->n = 4;
+    mesh->n_triangles = 2;
+    return CS_OK;
+}
+
+static const struct cs_shape square = {.bounds = CS_BOUNDS_HALF_SPACE,
+                                       .triangles = make_square};
 
 void cs_ground_make(struct cs_ground *ground, const struct cs_system *system,
                     const struct cs_posed_collider *obstacles,
                     const struct cs_bounding_sphere *extent) {
     const struct cs_render *render = &system->scene->render;
-    const bool has_floor = floor_of(system->scene, obstacles);
-    if (render->ground == CS_GROUND_NONE || (render->ground == CS_GROUND_AUTO && has_floor))
-        return;
-    ground->height = height_of(system, obstacles, extent);
-    ground->follows_lowest = isnan(render->ground_height) && !has_floor;
-    ground->present = render->ground != CS_GROUND_AUTO || !isnan(ground->height);
+    const struct cs_posed_collider *floor = floor_of(system->scene, obstacles);
+    const bool given = !isnan(render->ground_height);
+    set_style(ground, render, extent);
+    ground->floor = floor ? floor->collider : NULL;
+    ground->collider.visible = true;
+    ground->pose.collider = &ground->collider;
+    ground->pose.shape = &square;
+    for (int i = 0; i < 3; i++)
+        ground->pose.axes[i][i] = 1;
+    // a little below what hangs, so that it does not touch
+    ground->height =
+        given ? render->ground_height : lowest_point(system, obstacles) - 0.05 * extent->radius;
+    ground->follows_lowest = !given;
+    ground->present = render->ground != CS_GROUND_NONE && (given || !floor) &&
+                      (render->ground != CS_GROUND_AUTO || (!floor && !isnan(ground->height)));
     // what falls without end is followed by it
     if (isnan(ground->height))
         ground->height = extent->low[1];
-    ground->fade_disc[0] = (float)extent->centre[0];
-    ground->fade_disc[2] = (float)extent->centre[2];
-    ground->fade_disc[3] = (float)(6 * extent->radius);
-    if (render->ground == CS_GROUND_GRID)
-        ground->line_spacing = (float)power_of_ten(0.3 * extent->radius);
-    cs_colour_ink(render->background.colour, ground->line_colour);
-    // a floor shows the shadow itself
-    ground->shadow = has_floor ? 0.0f : 0.4f;
+    cs_ground_aim(ground, extent);
 }
 
-/* Extends a rectangle by a point. */
-static void grow(float box[4], const double place[2]) {
-    for (int c = 0; c < 2; c++) {
-        box[c] = fminf(box[c], (float)place[c]);
-        box[c + 2] = fmaxf(box[c + 2], (float)place[c]);
-    }
-}
-
-/* Extends the rectangle by the shadow of the box around `solid`: the ray from the light through
- * a corner p goes on along d and meets the ground at p + d (height - p_y) / d_y. Returns false
- * if a corner is not below the light, whose shadow has no end. */
-static bool cast(const struct cs_bounding_sphere *solid, const float light[4], double height,
-                 float box[4]) {
-    const bool is_lamp = light[3] > 0;
-    for (int corner = 0; corner < 8; corner++) {
-        double p[3], down[3];
-        for (int c = 0; c < 3; c++) {
-            p[c] = corner >> c & 1 ? solid->high[c] : solid->low[c];
-            down[c] = is_lamp ? p[c] - (double)light[c] : -(double)light[c];
-        }
-        if (!(down[1] < 0))
-            return false;
-        const double way = fmax((height - p[1]) / down[1], 0);
-        grow(box, (double[2]){p[0] + way * down[0], p[2] + way * down[2]});
-    }
-    return true;
-}
-
-void cs_ground_aim(struct cs_ground *ground, const struct cs_view_block *block,
-                   const struct cs_bounding_sphere *solid) {
-    const float *span = ground->fade_disc;
+void cs_ground_aim(struct cs_ground *ground, const struct cs_bounding_sphere *solid) {
     const double below = solid->low[1] - 0.02 * solid->radius;
-    const double height = ground->follows_lowest ? fmin(ground->height, below) : ground->height;
-    const float whole[4] = {span[0] - span[3], span[2] - span[3], span[0] + span[3],
-                            span[2] + span[3]};
-    float box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    ground->fade_disc[1] = (float)height;
-    bool bounded = ground->line_spacing <= 0, lit = false;
-    for (int k = 0; k < (int)block->size[3]; k++) {
-        const float *light = block->lights[k].place;
-        // shadows are not made by light from below
-        if (!((double)light[1] > (light[3] > 0 ? height : 0.0)))
-            continue;
-        lit = true;
-        bounded = cast(solid, light, height, box) && bounded;
-    }
-    // edges are blurred by some texels
-    const float soft = (float)(0.08 * solid->radius);
-    for (int c = 0; c < 4; c++) {
-        const float inside =
-            c < 2 ? fmaxf(box[c] - soft, whole[c]) : fminf(box[c] + soft, whole[c]);
-        ground->box[c] = bounded ? inside : whole[c];
-    }
-    // nor are they seen from there
-    const bool seen = lit && (double)block->eye[1] > (block->eye[3] > 0 ? height : 0.0);
-    if (ground->line_spacing <= 0 && !seen)
-        ground->box[2] = ground->box[0];
+    ground->pose.centre[1] =
+        ground->follows_lowest ? fmin(ground->height, below) : ground->height;
+}
+
+void cs_ground_style_of(const struct cs_ground *ground, const struct cs_posed_collider *at,
+                        struct cs_surface_style *style) {
+    if (!cs_ground_is(ground, at))
+        return;
+    style->ground = ground->style;
+    for (int i = 0; i < 3; i++)
+        style->ground.normal[i] = (float)at->axes[1][i];
+    style->ground.shadow = at->collider == &ground->collider ? ground->shadow : 0;
+    style->specular = 0;
+    if (at->collider != &ground->collider)
+        return;
+    // pale shadows: the ground is no part of what is simulated
+    style->ambient = 2.2;
+    style->diffuse = 0.65;
+}
+
+bool cs_ground_is(const struct cs_ground *ground, const struct cs_posed_collider *at) {
+    return at->collider == ground->floor ||
+           (cs_shape_is_endless(at->shape) && at->axes[1][1] > 0.9999);
 }

@@ -83,6 +83,5 @@ void cs_style_solid(struct cs_surface_style *style, const struct cs_posed_collid
                                        .shininess = flat ? 12 : 40};
     memcpy(style->front_colour, collider->colour, sizeof style->front_colour);
     memcpy(style->back_colour, collider->colour, sizeof style->back_colour);
-    style->fade_radius = collider->floor.present ? collider->floor.extent : 0;
     style->depth_bias = shape->chord_depth ? shape->chord_depth(obstacle, cell) : 0;
 }

@@ -40,6 +40,16 @@ enum cs_surface_mode {
     CS_SURFACE_FAINT
 };
 
+/* Pattern and haze of the ground (formulas: cpu/shade.c). Zeroed: the surface is no ground. */
+struct cs_ground_style {
+    float centre[2], radius; /* m: x and z of the middle; distance where the haze hides all */
+    float normal[3];
+    float tile;   /* m: side of a square, or between lines; 0: plain */
+    bool lines;   /* thin lines instead of light and dark squares */
+    float ink[3]; /* linear RGB of lines, and of shadows on a ground of nothing else */
+    float shadow; /* opacity of these shadows; 0: a lit surface */
+};
+
 /* Style of a body or a collider (formulas: cpu/shade.c). */
 struct cs_surface_style {
     enum cs_surface_mode mode;
@@ -48,7 +58,7 @@ struct cs_surface_style {
     double ambient, diffuse, specular, shininess; /* Blinn-Phong */
     double depth_bias;                            /* m by which the depth is moved away */
     bool has_ambient_occlusion;                   /* values darken ambient light (mesh.h) */
-    double fade_radius; /* m from the y axis where it has faded out; 0: never */
+    struct cs_ground_style ground;
 };
 
 /* Fills the style of a body for a look, but for its texture. */

@@ -46,7 +46,8 @@ static void set_depth(struct cs_view_state *view, const struct cs_bounding_spher
     const double far = 4 * fmax(distance, cs_length(to_centre) + extent->radius);
     const bool parallel = camera->projection == CS_PROJECTION_ORTHOGRAPHIC;
     view->depth[0] = parallel ? -far : fmin(far / 1000, distance / 20);
-    view->depth[1] = far;
+    // haze hides the ground before the far plane cuts it
+    view->depth[1] = fmax(far, cs_length(to_centre) + extent->radius + 1.1 * view->haze);
 }
 
 /* Fills matrix, eye and picture size from the camera. */
@@ -168,6 +169,7 @@ void cs_view_init(struct cs_view_state *view, const struct cs_system *system,
                   const struct cs_bounding_sphere *extent) {
     const struct cs_scene *scene = system->scene;
     memset(view, 0, sizeof *view);
+    view->haze = cs_view_haze(extent);
     view->camera = camera_at(&scene->camera, 0);
     if (scene->camera.frame == CS_FRAME_START) {
         cs_camera_fit_start(&view->fit, system, colliders, extent->low, extent->high);

@@ -42,6 +42,7 @@ struct cs_view_state {
     double pixels_per_m;      /* at the camera's target */
     struct cs_camera camera;  /* of this frame */
     double depth[2];          /* m along the view of the near and the far plane */
+    double haze;              /* m: cs_view_haze at the start */
     struct cs_camera_fit fit; /* of CS_FRAME_START */
 };
 
@@ -92,6 +93,11 @@ void cs_light_frusta_fit(const struct cs_bounding_sphere *solid, struct cs_view_
  */
 struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, const double *x,
                                                 const struct cs_posed_collider *colliders);
+
+/* Distance in m from the centre of a scene at which haze hides the ground. */
+static inline double cs_view_haze(const struct cs_bounding_sphere *extent) {
+    return 12 * extent->radius;
+}
 
 /* The largest distance of neighbours in the bodies at rest, in m; 0 for lone particles. */
 double cs_scene_extent_cell(const struct cs_system *system);

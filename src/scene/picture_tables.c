@@ -97,8 +97,9 @@ static const struct cs_option render_rows[] = {
          "eyes"),
     CHOICE(
         struct cs_render, ground, ground_names, CS_GROUND_AUTO,
-        "shadow: a ground that receives shadows; grid: the same with grid lines; auto: shadow "
-        "if the scene has no visible floor and nothing can fall without end, else none"),
+        "auto: squares on a visible floor, or on a ground below what cannot fall without end, "
+        "shadows alone where the background is none; grid: lines instead of squares; shadow: a "
+        "ground of shadows alone; none: no ground, and plain floors"),
     REAL(struct cs_render, ground_height, "m", ABSENT, -BIG, BIG,
          "y of the ground; absent: the floor's y, or below everything that moves"),
     TABLE(struct cs_render, marks, mark_table,

@@ -17,14 +17,14 @@ static const struct cs_option plane_rows[] = {
     VECTOR(struct cs_plane, normal, 3, "", up3, -BIG, BIG,
            "points to the free side; of any non-zero length"),
     REAL(struct cs_plane, extent, "m", 1, 1e-6, 1e6,
-         "half the side of the square that is drawn"),
+         "half the side of the square in exports and, unless it is a floor, in pictures"),
 };
 const struct cs_table cs_plane_keys = {ROWS(plane_rows), .size = sizeof(struct cs_plane),
                                        .optional = true};
 static const struct cs_option floor_rows[] = {
     REAL(struct cs_floor, height, "m", 0, -BIG, BIG, "the plane y = height"),
     REAL(struct cs_floor, extent, "m", 3, 1e-6, 1e6,
-         "half the side of the square that is drawn"),
+         "half the side of the square in exports; pictures show it to the horizon"),
 };
 const struct cs_table cs_floor_keys = {ROWS(floor_rows), .size = sizeof(struct cs_floor),
                                        .optional = true};

@@ -266,29 +266,3 @@ TEST(sides_are_told_apart) {
     ck_assert_uint_eq(triangles.n, 2);
     cs_triangles_finish(&triangles);
 }
-
-/* samples of a pixel one by one are those that filling finds */
-TEST(one_pixel_is_as_in_a_row) {
-    uint32_t wrong = 0;
-    const struct cs_clip_transform clip = parallel();
-    struct cs_triangles triangles = {0};
-    for (int trial = 0; trial < 40; trial++) {
-        float p[3][3];
-        for (int i = 0; i < 9; i++)
-            p[i / 3][i % 3] = between(-1, 1) * (i % 3 == 2 ? 0.5f : trial % 2 ? 1 : 9);
-        triangles.n = 0;
-        add(&triangles, &clip, p, false);
-        if (triangles.n == 0)
-            continue;
-        covered(&triangles, 0, 1);
-        for (int i = 0; i < PIXELS; i++) {
-            cs_f4 depth;
-            const unsigned mask = cs_raster_covers(triangles.items, &cs_sample_pattern_four,
-                                                   i % SIZE, i / SIZE, &depth);
-            for (int s = 0; s < 4; s++)
-                wrong += (mask >> s & 1) != (field.shown[i][s] != CS_NOTHING);
-        }
-    }
-    ck_assert_uint_eq(wrong, 0);
-    cs_triangles_finish(&triangles);
-}

@@ -78,8 +78,13 @@ static float along_of(const struct cs_band_pass *drawing, const struct cs_triang
 struct spot {
     int x, y, n;
     size_t pixel; // index of the first in the tile buffer
-    uint32_t sky; // index of the colour of the sky in their row
+    uint32_t sky; // index of the colours of the sky in their row
 };
+
+// index of the colour of the sky at pixel i of the spot
+CS_INLINE uint32_t sky_of(const struct spot *spot, int i) {
+    return spot->sky + (uint32_t)(spot->x + i) % CS_SKY_COLOURS;
+}
 
 /* Adds the fragments of a triangle at a spot; shading writes their colours to colours[out] and
  * those after it later. */
@@ -117,46 +122,6 @@ static void add_fragments(const struct cs_band_pass *drawing, const struct cs_tr
     }
 }
 
-/* The square behind square `id` at a sample: the last one drawn before it that was nearest
- * then; CS_NOTHING: the sky. */
-static int32_t find_behind(const struct cs_band_pass *drawing, int32_t id, int x, int y,
-                           int sample) {
-    const uint16_t surface = drawing->triangles.items[id].surface;
-    float depth = 0;
-    int32_t behind = CS_NOTHING;
-    for (size_t i = 0; i < drawing->n_ground_squares; i++) {
-        const struct cs_triangle *t = drawing->triangles.items + i;
-        cs_f4 z;
-        if (t->surface == surface)
-            break;
-        if (!(cs_raster_covers(t, drawing->sample_pattern, x, y, &z) >> sample & 1) ||
-            !(z[sample] >= depth))
-            continue;
-        depth = z[sample];
-        behind = (int32_t)i;
-    }
-    return behind;
-}
-
-/* Adds the fragments of triangle `id`. A fading one, at one pixel, also needs the colour behind
- * it: another fragment, found recursively, or the sky. Pairs are listed from back to front. */
-static void add_shown(const struct cs_band_pass *drawing, int32_t id, const struct spot *spot,
-                      int sample, uint32_t out, struct cs_tile_buffer *tiles) {
-    const struct cs_triangle *t = drawing->triangles.items + id;
-    if (drawing->materials[t->surface].fade_radius > 0) {
-        const size_t most = 4 * (size_t)tiles->samples.width * CS_ROWS;
-        const int32_t behind = find_behind(drawing, id, spot->x, spot->y, sample);
-        uint32_t under = spot->sky;
-        if (behind != CS_NOTHING && tiles->n_hidden < most) {
-            tiles->n_hidden++;
-            under = tiles->n_colours++;
-            add_shown(drawing, behind, spot, sample, under, tiles);
-        }
-        tiles->blend_pairs[tiles->n_blend_pairs++] = (struct cs_blend_pair){out, under};
-    }
-    add_fragments(drawing, t, spot, out, tiles);
-}
-
 // a pixel whose samples show several triangles: one fragment of each, colours in a row
 static void add_mixed(const struct cs_band_pass *drawing, cs_i4 shown, const struct spot *spot,
                       struct cs_tile_buffer *tiles) {
@@ -176,9 +141,10 @@ static void add_mixed(const struct cs_band_pass *drawing, cs_i4 shown, const str
     tiles->n_colours += n;
     for (uint32_t k = 0; k < n; k++)
         if (shown[samples[k]] == CS_NOTHING)
-            tiles->colours[first + k] = tiles->colours[spot->sky];
+            tiles->colours[first + k] = tiles->colours[sky_of(spot, 0)];
         else
-            add_shown(drawing, shown[samples[k]], spot, samples[k], first + k, tiles);
+            add_fragments(drawing, drawing->triangles.items + shown[samples[k]], spot,
+                          first + k, tiles);
 }
 
 static bool shows_only(cs_i4 shown, int32_t id) {
@@ -198,30 +164,32 @@ static void add_pixels(const struct cs_band_pass *drawing, struct spot *spot,
         add_mixed(drawing, *shown, spot, tiles);
         return;
     }
-    // what fades asks for the surface behind each of its pixels
-    if (is_sky || !(drawing->materials[drawing->triangles.items[id].surface].fade_radius > 0))
-        while (spot->n < tiles->samples.width - spot->x && shows_only(shown[spot->n], id))
-            spot->n++;
+    while (spot->n < tiles->samples.width - spot->x && shows_only(shown[spot->n], id))
+        spot->n++;
     memset(tiles->sample_codes + spot->pixel, 0, (size_t)spot->n);
     for (int i = 0; i < spot->n; i++)
-        first[i] = is_sky ? spot->sky : tiles->n_colours + (uint32_t)i;
+        first[i] = is_sky ? sky_of(spot, i) : tiles->n_colours + (uint32_t)i;
     if (is_sky)
         return;
     tiles->n_colours += (uint32_t)spot->n;
-    add_shown(drawing, id, spot, 0, *first, tiles);
+    add_fragments(drawing, drawing->triangles.items + id, spot, *first, tiles);
 }
 
-// colour of the sky in a row: linear from top to bottom, or transparent without background
-static uint32_t sky_colour(const struct cs_band_pass *drawing, int y) {
-    const struct cs_view_block *view = drawing->shading.view;
-    const float down = ((float)y + 0.5f) / (float)drawing->shading.height;
+// adds the colours of the sky in a row; transparent without background
+static uint32_t add_sky(const struct cs_band_pass *drawing, int y,
+                        struct cs_tile_buffer *tiles) {
+    const uint32_t first = tiles->n_colours;
     float c[3];
-    if (view->top_colour[3] < 1)
-        return 0xff000000;
-    for (int i = 0; i < 3; i++)
-        c[i] = cs_clamp(
-            view->top_colour[i] + down * (view->bottom_colour[i] - view->top_colour[i]), 0, 1);
-    return cs_srgb_pack(drawing->shading.srgb, c[0], c[1], c[2]);
+    for (int x = 0; x < CS_SKY_COLOURS; x++) {
+        cs_sky_colour(&drawing->shading, (float)y, c);
+        for (int k = 0; k < 3; k++)
+            c[k] = cs_srgb_dithered(c[k], cs_srgb_dither(x, y));
+        tiles->colours[tiles->n_colours++] =
+            drawing->shading.view->top_colour[3] < 1
+                ? 0xff000000
+                : cs_srgb_pack(drawing->shading.srgb, c[0], c[1], c[2]);
+    }
+    return first;
 }
 
 // visibility, fragments and shading of a band
@@ -234,20 +202,13 @@ static void show(const struct cs_band_pass *drawing, uint32_t band,
         cs_raster_fill(drawing->triangles.items + list[i], (int32_t)list[i],
                        drawing->sample_pattern, on);
     for (int row = 0; row < on->rows; row++) {
-        const uint32_t sky = tiles->n_colours++;
-        tiles->colours[sky] = sky_colour(drawing, on->top + row);
+        const uint32_t sky = add_sky(drawing, on->top + row, tiles);
         struct spot spot = {0, on->top + row, 1, (size_t)row * (size_t)on->width, sky};
         for (; spot.x < on->width; spot.x += spot.n, spot.pixel += (size_t)spot.n)
             add_pixels(drawing, &spot, tiles);
     }
     for (int i = 0; i < CS_FRAGMENT_SLOTS; i++)
         cs_shade(&drawing->shading, tiles->slots + i, tiles->colours);
-    // pairs from back to front: the colour behind is final when it is used
-    for (uint32_t i = 0; i < tiles->n_blend_pairs; i++) {
-        uint32_t *over = tiles->colours + tiles->blend_pairs[i].front;
-        *over = cs_srgb_blend(tiles->colours[tiles->blend_pairs[i].behind], *over,
-                              255 - (*over >> 24));
-    }
 }
 
 void cs_band_pass_draw(const struct cs_band_pass *drawing, uint32_t band,
@@ -255,8 +216,6 @@ void cs_band_pass_draw(const struct cs_band_pass *drawing, uint32_t band,
     const int top = (int)band * CS_ROWS;
     cs_tile_buffer_clear(tiles, top, cs_min(CS_ROWS, drawing->shading.height - top));
     show(drawing, band, tiles);
-    if (drawing->grid.square.n)
-        cs_grid_draw(&drawing->grid, (int32_t)drawing->n_fixed, drawing->sample_pattern, tiles);
     cs_thick_lines_draw(&drawing->thick_lines, band, drawing->sample_pattern, tiles);
     cs_tile_buffer_resolve(tiles, drawing->shading.srgb, drawing->image);
 }

@@ -10,11 +10,10 @@ struct cs_band_pass {
     const struct cs_sample_pattern *sample_pattern;
     struct cs_shading_material *materials; /* (surfaces), owned by an arena */
 
-    struct cs_triangles triangles;    /* squares of planes, other colliders, bodies */
-    size_t n_ground_squares, n_fixed; /* of squares; of all colliders */
+    struct cs_triangles triangles; /* colliders and the ground, then bodies */
+    size_t n_fixed;                /* of colliders and the ground */
     struct cs_bins bins;
 
-    struct cs_grid grid;
     struct cs_thick_lines thick_lines;
     struct cs_image *image; /* borrowed */
 };

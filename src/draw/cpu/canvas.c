@@ -27,8 +27,9 @@ struct cs_canvas {
     struct cs_triangles light_fixed[CS_LIGHTS]; /* casters: colliders */
     struct cs_triangles light_moving;           /* bodies, for one light after the other */
     uint32_t light;                             /* that one */
-    struct cs_collider_geometry solids;
-    struct cs_body_geometry *bodies; /* (scene->bodies.n) */
+    struct cs_ground ground;
+    struct cs_collider_geometry solids; /* colliders and the ground */
+    struct cs_body_geometry *bodies;    /* (scene->bodies.n) */
     struct cs_band_pass drawing;
     struct cs_overlay overlay;
     struct cs_tile_buffer *boards; /* (threads) one per thread */
@@ -67,15 +68,6 @@ static void aim_camera(struct cs_canvas *canvas) {
     aim_rays(&canvas->drawing.shading.rays, &canvas->view, render);
 }
 
-/* Places the ground at the start, and packs the colour of its lines. */
-static void init_ground(struct cs_canvas *canvas, const struct cs_bounding_sphere *extent) {
-    struct cs_grid *grid = &canvas->drawing.grid;
-    cs_ground_make(&grid->ground, canvas->settings.system, canvas->settings.colliders, extent);
-    grid->shading = &canvas->drawing.shading;
-    const float *ink = grid->ground.line_colour;
-    grid->ink = cs_srgb_pack(&canvas->tone, ink[0], ink[1], ink[2]);
-}
-
 /* Sets view, tables and the constant inputs of shading. */
 static void init_view(struct cs_canvas *canvas) {
     const struct cs_scene *scene = canvas->settings.scene;
@@ -94,26 +86,27 @@ static void init_view(struct cs_canvas *canvas) {
     drawing->shading.srgb = &canvas->tone;
     drawing->sample_pattern =
         scene->render.samples > 1 ? &cs_sample_pattern_four : &cs_sample_pattern_one;
-    init_ground(canvas, &extent);
+    cs_ground_make(&canvas->ground, system, canvas->settings.colliders, &extent);
 }
 
-/* Makes the triangles of all colliders again; they come first in the list, squares of planes
- * before all others. */
+/* Makes the triangles of all colliders again; they come first in the list. */
 static void add_solids(struct cs_canvas *canvas) {
     struct cs_band_pass *drawing = &canvas->drawing;
     drawing->triangles.n = 0;
     cs_collider_geometry_add(&canvas->solids, &canvas->lens, canvas->view.block.eye,
-                             drawing->materials, &drawing->triangles,
-                             &drawing->n_ground_squares);
+                             drawing->materials, &drawing->triangles);
     drawing->n_fixed = drawing->triangles.n;
 }
 
-/* Makes materials and geometry of colliders, then of bodies: surface number = collider, or
- * number of colliders + body. */
+/* Makes materials and geometry of colliders, the ground, then bodies: surface number =
+ * collider, or number of solids + body. */
 static enum cs_status init_surfaces(struct cs_canvas *canvas, struct cs_error *error) {
     const struct cs_canvas_settings *settings = &canvas->settings;
-    const uint32_t n = settings->scene->bodies.n, solids = settings->scene->colliders.n;
     struct cs_band_pass *drawing = &canvas->drawing;
+    if (cs_collider_geometry_init(&canvas->solids, settings->system, settings->colliders,
+                                  &canvas->ground, &canvas->arena, error))
+        return error->status;
+    const uint32_t n = settings->scene->bodies.n, solids = canvas->solids.n;
     if (n + solids > UINT16_MAX)
         return cs_fail(error, CS_ERR_MODULE,
                        "renderer cpu draws at most %d bodies and colliders, not %u", UINT16_MAX,
@@ -126,18 +119,10 @@ static enum cs_status init_surfaces(struct cs_canvas *canvas, struct cs_error *e
         cs_body_geometry_init(canvas->bodies + b, settings, b, drawing->materials + solids + b,
                               &canvas->arena, error);
     }
-    if (error->status || cs_collider_geometry_init(&canvas->solids, settings->system,
-                                                   settings->colliders, &canvas->arena, error))
+    if (error->status)
         return error->status;
     add_solids(canvas);
     return CS_OK;
-}
-
-static bool has_fading_surface(const struct cs_canvas *canvas) {
-    for (uint32_t i = 0; i < canvas->settings.scene->colliders.n; i++)
-        if (canvas->drawing.materials[i].fade_radius > 0)
-            return true;
-    return false;
 }
 
 /* Allocates a tile buffer per thread. */
@@ -145,9 +130,8 @@ static enum cs_status init_boards(struct cs_canvas *canvas, struct cs_error *err
     const uint32_t n = canvas->settings.threads;
     canvas->boards = cs_arena_alloc_array(&canvas->arena, n, sizeof *canvas->boards, error);
     for (uint32_t i = 0; i < n && error->status == CS_OK; i++)
-        cs_tile_buffer_init(canvas->boards + i, canvas->drawing.shading.width,
-                            has_fading_surface(canvas), canvas->drawing.grid.ground.present,
-                            &canvas->arena, error);
+        cs_tile_buffer_init(canvas->boards + i, canvas->drawing.shading.width, &canvas->arena,
+                            error);
     return error->status;
 }
 
@@ -175,7 +159,6 @@ static void destroy(struct cs_canvas *canvas) {
         cs_triangles_finish(canvas->light_fixed + l);
     cs_triangles_finish(&canvas->light_moving);
     cs_triangles_finish(&canvas->drawing.triangles);
-    cs_triangles_finish(&canvas->drawing.grid.square);
     cs_bins_finish(&canvas->drawing.bins);
     cs_thick_lines_finish(&canvas->drawing.thick_lines);
     cs_arena_finish(&canvas->arena);
@@ -211,16 +194,6 @@ static void draw_stripe(void *arg, uint32_t stripe) {
     struct cs_canvas *canvas = arg;
     cs_shadow_map_draw(canvas->lightmaps + canvas->light, stripe,
                        canvas->light_fixed + canvas->light, &canvas->light_moving);
-}
-
-/* Places the ground below this frame and makes its triangles. */
-static void blend_ground(struct cs_canvas *canvas, const struct cs_bounding_sphere *solid) {
-    struct cs_grid *grid = &canvas->drawing.grid;
-    grid->square.n = 0;
-    if (!grid->ground.present)
-        return;
-    cs_ground_aim(&grid->ground, &canvas->view.block, solid);
-    cs_ground_add(&grid->ground, &canvas->lens, &grid->square);
 }
 
 /* Moves a camera that follows a path or fits the bodies. */
@@ -261,9 +234,9 @@ static void add_bodies(struct cs_canvas *canvas) {
     drawing->triangles.n = drawing->n_fixed;
     for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++) {
         struct cs_body_geometry *body = canvas->bodies + b;
-        const struct cs_triangle_kind kind = {
-            .surface = (uint16_t)(canvas->settings.scene->colliders.n + b),
-            .attributes = (uint8_t)body->material->attributes};
+        const struct cs_triangle_kind kind = {.surface = (uint16_t)(canvas->solids.n + b),
+                                              .attributes =
+                                                  (uint8_t)body->material->attributes};
         if (!body->hidden)
             cs_body_geometry_add(body, &canvas->lens, &kind, &drawing->triangles);
     }
@@ -287,9 +260,8 @@ static bool out_of_memory(const struct cs_canvas *canvas) {
     for (int l = 0; l < CS_LIGHTS; l++)
         if (canvas->light_fixed[l].failed)
             return true;
-    return canvas->light_moving.failed || drawing->triangles.failed ||
-           drawing->grid.square.failed || drawing->bins.failed || drawing->thick_lines.failed ||
-           drawing->thick_lines.bins.failed;
+    return canvas->light_moving.failed || drawing->triangles.failed || drawing->bins.failed ||
+           drawing->thick_lines.failed || drawing->thick_lines.bins.failed;
 }
 
 /* Takes lights, background and materials of bodies from a scene whose values change; those of
@@ -314,14 +286,12 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
     const struct cs_bounding_sphere solid =
         cs_scene_extent_solid(canvas->settings.system, frame->x, frame->colliders);
     const bool varies = canvas->settings.scene_varies || cs_view_varies(canvas->settings.scene);
-    bool moved = false;
-    for (uint32_t i = 0; i < canvas->solids.n; i++)
-        moved = cs_solid_move(canvas->solids.of + i, frame->colliders + i) || moved;
+    cs_ground_aim(&canvas->ground, &solid);
+    const bool moved = cs_collider_geometry_move(&canvas->solids, frame->colliders);
     if (varies)
         move_camera(canvas, frame, &solid);
     if (moved || varies)
         add_solids(canvas);
-    blend_ground(canvas, &solid);
     cs_light_frusta_fit(&solid, &canvas->view);
     for (uint32_t l = 0; l < canvas->view.n_lights; l++)
         draw_shadow(canvas, l, moved);
@@ -337,7 +307,7 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
 
 static const char *description(const struct cs_canvas *canvas) {
     (void)canvas;
-    return "cpu 1 | the same pixels on every machine";
+    return "cpu 2 | the same pixels on every machine";
 }
 
 #define EXPORT __attribute__((visibility("default")))

@@ -1,4 +1,4 @@
-/* collider_geometry.c - colliders and the ground's rectangle become triangles of a picture. */
+/* collider_geometry.c - colliders, the ground and bodies become triangles of a picture. */
 #include "draw/cpu/collider_geometry.h"
 
 #include "draw/overlay.h"
@@ -59,22 +59,16 @@ static void add_obstacle(const struct cs_collider_geometry *solids, uint32_t i,
 
 void cs_collider_geometry_add(const struct cs_collider_geometry *solids,
                               const struct cs_clip_transform *clip, const float eye[4],
-                              struct cs_shading_material *coats, struct cs_triangles *triangles,
-                              size_t *n_squares) {
+                              struct cs_shading_material *coats,
+                              struct cs_triangles *triangles) {
     const struct projection projection = {clip, eye, true, triangles};
-    for (int pass = 0; pass < 2; pass++) {
-        for (uint32_t i = 0; i < solids->n; i++) {
-            const struct cs_posed_collider *obstacle = &solids->of[i].at;
-            const struct cs_triangle_kind kind = {.surface = (uint16_t)i, .attributes = 3};
-            const bool square = cs_shape_is_endless(obstacle->shape);
-            struct cs_surface_style style;
-            cs_style_solid(&style, obstacle, solids->cell);
-            cs_shading_material_make(coats + i, &style);
-            if (obstacle->collider->visible && square == (pass == 0))
-                add_obstacle(solids, i, &style, &kind, &projection);
-        }
-        if (pass == 0)
-            *n_squares = triangles->n;
+    for (uint32_t i = 0; i < solids->n; i++) {
+        const struct cs_triangle_kind kind = {.surface = (uint16_t)i, .attributes = 3};
+        struct cs_surface_style style;
+        cs_collider_geometry_style(solids, i, &style);
+        cs_shading_material_make(coats + i, &style);
+        if (solids->of[i].at.collider->visible)
+            add_obstacle(solids, i, &style, &kind, &projection);
     }
 }
 
@@ -91,24 +85,6 @@ void cs_collider_geometry_add_shadow(const struct cs_collider_geometry *solids,
         cs_style_solid(&style, obstacle, solids->cell);
         add_obstacle(solids, i, &style, &kind, &projection);
     }
-}
-
-void cs_ground_add(const struct cs_ground *ground, const struct cs_clip_transform *clip,
-                   struct cs_triangles *triangles) {
-    static const unsigned char sides[6][2] = {{0, 0}, {2, 0}, {0, 2}, {2, 0}, {2, 2}, {0, 2}};
-    const struct cs_triangle_kind kind = {.attributes = 0};
-    const struct projection projection = {clip, NULL, false, triangles};
-    const float *box = ground->box;
-    const struct cs_surface_style style = {.depth_bias = 0};
-    struct cs_vertex square[6] = {{.value = 0}};
-    if (!(box[0] < box[2] && box[1] < box[3]))
-        return;
-    for (int i = 0; i < 6; i++) {
-        square[i].position[0] = box[sides[i][0]];
-        square[i].position[1] = ground->fade_disc[1];
-        square[i].position[2] = box[sides[i][1] + 1];
-    }
-    add_vertices(square, 6, &style, &kind, &projection);
 }
 
 /* Projects the vertices of bodies, and adds their faces as triangles. */

@@ -166,25 +166,6 @@ CS_CLONES void cs_raster_fill(const struct cs_triangle *t, int32_t id,
     }
 }
 
-unsigned cs_raster_covers(const struct cs_triangle *t, const struct cs_sample_pattern *pattern,
-                          int x, int y, cs_f4 *depth) {
-    const struct edges e = edges_of(t);
-    unsigned mask = 0;
-    if (x < t->left || x > t->right || y < t->top || y > t->bottom)
-        return 0;
-    for (int s = 0; s < 4; s++) {
-        bool in = true;
-        for (int k = 0; k < 3; k++)
-            in = in && (int64_t)e.dx[k] * (pattern->y[s] + y * 256 - t->y[k]) -
-                               (int64_t)e.dy[k] * (pattern->x[s] + x * 256 - t->x[k]) +
-                               e.bias[k] >=
-                           0;
-        mask |= (unsigned)in << s;
-    }
-    *depth = nearness_at(t, across_at(pattern) + (float)x, row_depth(t, pattern, y));
-    return mask;
-}
-
 // maximum of four neighbours of a map and z, in the lanes of the mask
 CS_INLINE void raise_four(float *map, cs_i4 mask, cs_f4 z) {
     cs_f4_unaligned *at = (cs_f4_unaligned *)map;

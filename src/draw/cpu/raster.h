@@ -29,11 +29,6 @@ extern const struct cs_sample_pattern cs_sample_pattern_four, cs_sample_pattern_
 void cs_raster_fill(const struct cs_triangle *triangle, int32_t id,
                     const struct cs_sample_pattern *pattern, const struct cs_samples *samples);
 
-/* Returns the samples of pixel (x, y) inside the triangle as bits 0..3. *depth is their
- * reversed depth; it is not written if the pixel is outside the triangle's box. */
-unsigned cs_raster_covers(const struct cs_triangle *triangle,
-                          const struct cs_sample_pattern *pattern, int x, int y, cs_f4 *depth);
-
 /* Raises a map of one sample per pixel, in the middle, to the reversed depth of a triangle: the
  * map becomes the maximum of both. Touches rows top to top + rows - 1; `stride` floats per row;
  * map points at pixel (0, 0). Up to 3 floats beyond the picture's right edge are rewritten with

@@ -20,13 +20,8 @@
 
 enum { N = CS_FRAGMENTS };
 
-/* Intermediate results of one call, 22 KiB. Some arrays serve twice: facing holds |n|^2 before
- * n.l, share holds the visibility or |n.v|, cover the roots of the highlight before the
- * opacity. */
-struct work {
-    float place[3][N], view[3][N], normal[3][N], light[3][N];
-    float facing[N], share[N], shine[N], base[3][N], colour[3][N], cover[N];
-};
+/* Light above which highlights bend, chosen by trial; also in gl/shader_sources.c. */
+#define CS_KNEE 0.6f
 
 // shininess is rounded to 1/256; attributes are computed only as far as the mode reads them
 
@@ -38,7 +33,9 @@ void cs_shading_material_make(struct cs_shading_material *coat,
     }
     coat->mode = style->mode;
     coat->has_ambient_occlusion = style->has_ambient_occlusion;
-    coat->attributes = style->mode == CS_SURFACE_TEXTURED ? CS_ATTRIBUTES
+    // the ground has one normal, which is in its style
+    coat->attributes = style->ground.radius > 0             ? 0
+                       : style->mode == CS_SURFACE_TEXTURED ? CS_ATTRIBUTES
                        : style->mode == CS_SURFACE_VALUE || style->has_ambient_occlusion ? 4
                                                                                          : 3;
     coat->ambient = (float)style->ambient;
@@ -47,13 +44,13 @@ void cs_shading_material_make(struct cs_shading_material *coat,
     const int parts = (int)(style->shininess * 256 + 0.5);
     coat->shininess_int = parts / 256;
     coat->shininess_fraction = parts % 256;
-    coat->fade_radius = (float)style->fade_radius;
+    coat->ground = style->ground;
     coat->depth_bias = (float)style->depth_bias;
 }
 
 // positions and view directions of parallel rays, whose view depth is stored
 static void find_parallel_places(const struct cs_shading_context *shading,
-                                 const struct cs_fragments *f, struct work *w) {
+                                 const struct cs_fragments *f, struct cs_shading_work *w) {
     for (int i = 0; i < N; i++) {
         float place[3];
         cs_ray_point(shading, f->x[i], f->y[i], f->view_depth[i], place);
@@ -66,7 +63,7 @@ static void find_parallel_places(const struct cs_shading_context *shading,
 
 // positions and view directions of a perspective, from 1/w
 CS_INLINE void find_positions(const struct cs_shading_context *shading,
-                              const struct cs_fragments *f, struct work *w) {
+                              const struct cs_fragments *f, struct cs_shading_work *w) {
     for (int i = 0; i < N; i++) {
         const float t = 1 / f->inverse[i];
         float d[3];
@@ -80,7 +77,13 @@ CS_INLINE void find_positions(const struct cs_shading_context *shading,
 }
 
 // unit normals; a normal of length 0 stays 0 instead of becoming NaN
-CS_INLINE void find_normals(const struct cs_fragments *f, struct work *w) {
+CS_INLINE void find_normals(const struct cs_fragments *f, struct cs_shading_work *w) {
+    const struct cs_ground_style *ground = &f->material->ground;
+    for (int k = 0; k < 3 && ground->radius > 0; k++)
+        for (int i = 0; i < N; i++)
+            w->normal[k][i] = f->side ? -ground->normal[k] : ground->normal[k];
+    if (ground->radius > 0)
+        return;
     for (int i = 0; i < N; i++) {
         const float x = f->attributes[0][i], y = f->attributes[1][i], z = f->attributes[2][i];
         const float square = x * x + y * y + z * z;
@@ -94,7 +97,7 @@ CS_INLINE void find_normals(const struct cs_fragments *f, struct work *w) {
 }
 
 // directions to the light and n.l; light[3] is 1 for a lamp at a place, 0 for one at infinity
-CS_INLINE void find_light(const float lamp[4], struct work *w) {
+CS_INLINE void find_light(const float lamp[4], struct cs_shading_work *w) {
     const float x = lamp[0], y = lamp[1], z = lamp[2], near = lamp[3];
     for (int i = 0; i < N; i++) {
         const float a = x - near * w->place[0][i], b = y - near * w->place[1][i];
@@ -112,7 +115,7 @@ CS_INLINE void find_light(const float lamp[4], struct work *w) {
  * of the roots x^(1/2), x^(1/4), ... x^(1/256) of its bits; rounding to 1/256 is an error of
  * the exponent of at most 1/512. Powers below 1e-18 become 0 before their squares are denormal,
  * because arithmetic on denormals is slow. */
-CS_INLINE void find_shine(const struct cs_shading_material *coat, struct work *w) {
+CS_INLINE void find_shine(const struct cs_shading_material *coat, struct cs_shading_work *w) {
     float power[N];
     for (int i = 0; i < N; i++) {
         float h[3], square = 0, along = 0;
@@ -150,7 +153,7 @@ CS_INLINE void find_shine(const struct cs_shading_material *coat, struct work *w
 }
 
 // multiplies the base colour by the texture
-static void paint_base(const struct cs_fragments *f, struct work *w) {
+static void paint_base(const struct cs_fragments *f, struct cs_shading_work *w) {
     for (int i = 0; i < f->n; i++) {
         const float t = 1 / f->inverse[i];
         float rgb[3];
@@ -181,7 +184,7 @@ CS_INLINE void find_folds(const struct cs_fragments *f, float folds[N]) {
 
 /* Adds the light number l of the view. */
 CS_INLINE void add_light(const struct cs_shading_context *shading, int l,
-                         const struct cs_fragments *f, struct work *w) {
+                         const struct cs_fragments *f, struct cs_shading_work *w) {
     const struct cs_shading_material *coat = f->material;
     const struct cs_view_light *light = shading->view->lights + l;
     find_light(light->place, w);
@@ -193,7 +196,10 @@ CS_INLINE void add_light(const struct cs_shading_context *shading, int l,
     cs_shadow_map_sample(shading->shadow_maps + l, &lit);
     for (int i = f->n; i < N; i++)
         w->share[i] = 0;
-    find_shine(coat, w);
+    if (coat->specular > 0)
+        find_shine(coat, w);
+    for (int i = 0; i < N && !(coat->specular > 0); i++)
+        w->shine[i] = 0;
     for (int k = 0; k < 3; k++) {
         const float diffuse = light->diffuse[k], specular = light->specular[k];
         for (int i = 0; i < N; i++) {
@@ -204,8 +210,19 @@ CS_INLINE void add_light(const struct cs_shading_context *shading, int l,
     }
 }
 
+/* Bends light above the knee k towards 1 instead of cutting it off there: with o = (c - k) /
+ * (1 - k), k + (1 - k) o / (1 + o), of slope 1 at the knee (after Reinhard et al. 2002). */
+CS_INLINE void bend_highlights(struct cs_shading_work *w) {
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < N; i++) {
+            const float c = w->colour[k][i];
+            const float over = c > CS_KNEE ? c - CS_KNEE : 0;
+            w->colour[k][i] = c - over + over / (1 + over * (1 / (1 - CS_KNEE)));
+        }
+}
+
 CS_INLINE void shade_lit(const struct cs_shading_context *shading, const struct cs_fragments *f,
-                         struct work *w) {
+                         struct cs_shading_work *w) {
     float folds[N];
     find_folds(f, folds);
     for (int k = 0; k < 3; k++) {
@@ -223,10 +240,11 @@ CS_INLINE void shade_lit(const struct cs_shading_context *shading, const struct 
     }
     for (int l = 0; l < (int)shading->view->size[3]; l++)
         add_light(shading, l, f, w);
+    bend_highlights(w);
 }
 
 // |n.v|: 1 seen straight on, 0 at the outline
-CS_INLINE void n_dot_view(struct work *w) {
+CS_INLINE void n_dot_view(struct cs_shading_work *w) {
     for (int i = 0; i < N; i++) {
         const float across = w->normal[0][i] * w->view[0][i] + w->normal[1][i] * w->view[1][i] +
                              w->normal[2][i] * w->view[2][i];
@@ -237,7 +255,7 @@ CS_INLINE void n_dot_view(struct work *w) {
 // colour of a value 0..1: linear between six stops, darker towards the outline to show the
 // shape
 static void shade_value(const struct cs_shading_context *shading, const struct cs_fragments *f,
-                        struct work *w) {
+                        struct cs_shading_work *w) {
     n_dot_view(w);
     for (int i = 0; i < N; i++) {
         const float at = cs_clamp(f->attributes[3][i] / f->inverse[i], 0, 1) * 5;
@@ -251,7 +269,8 @@ static void shade_value(const struct cs_shading_context *shading, const struct c
 }
 
 // a pale colour between the sky's and white, without light or shadow
-CS_INLINE void shade_faint(const struct cs_shading_context *shading, struct work *w) {
+CS_INLINE void shade_faint(const struct cs_shading_context *shading,
+                           struct cs_shading_work *w) {
     n_dot_view(w);
     for (int k = 0; k < 3; k++) {
         const float pale = shading->view->sky[k] * 0.55f + 0.45f;
@@ -260,24 +279,8 @@ CS_INLINE void shade_faint(const struct cs_shading_context *shading, struct work
     }
 }
 
-/* Opacity 1 - t^2 (3 - 2t), smooth at both ends, with t from 0 at 0.35 of the fade radius to 1
- * at the radius: a floor has no end, so its square fades into the background. */
-CS_INLINE void find_cover(const struct cs_shading_material *coat, struct work *w) {
-    if (!(coat->fade_radius > 0)) {
-        for (int i = 0; i < N; i++)
-            w->cover[i] = 1;
-        return;
-    }
-    for (int i = 0; i < N; i++) {
-        const float x = w->place[0][i], z = w->place[2][i];
-        const float far = sqrtf(x * x + z * z) / coat->fade_radius;
-        const float t = cs_clamp((far - 0.35f) / 0.65f, 0, 1);
-        w->cover[i] = 1 - t * t * (3 - 2 * t);
-    }
-}
-
 CS_CLONES static void shade(const struct cs_shading_context *shading, struct cs_fragments *f,
-                            struct work *w) {
+                            struct cs_shading_work *w) {
     // unused fragments up to N are shaded too, with harmless values, for whole vectors
     for (int i = f->n; i < N; i++) {
         f->x[i] = f->y[i] = 0;
@@ -296,13 +299,19 @@ CS_CLONES static void shade(const struct cs_shading_context *shading, struct cs_
             w->base[k][i] = f->material->base[f->side][k];
     if (f->material->mode == CS_SURFACE_TEXTURED)
         paint_base(f, w);
-    if (f->material->mode <= CS_SURFACE_TEXTURED)
+    const struct cs_ground_style *ground = &f->material->ground;
+    if (ground->radius > 0)
+        cs_shade_pattern(shading, f, w);
+    if (ground->radius > 0 && ground->shadow > 0)
+        cs_shade_shadows(shading, f, w);
+    else if (f->material->mode <= CS_SURFACE_TEXTURED)
         shade_lit(shading, f, w);
     else if (f->material->mode == CS_SURFACE_VALUE)
         shade_value(shading, f, w);
     else
         shade_faint(shading, w);
-    find_cover(f->material, w);
+    if (ground->radius > 0)
+        cs_shade_haze(shading, f, w);
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < N; i++)
             w->colour[k][i] = cs_clamp(w->colour[k][i], 0, 1);
@@ -310,28 +319,17 @@ CS_CLONES static void shade(const struct cs_shading_context *shading, struct cs_
 
 void cs_shade(const struct cs_shading_context *shading, struct cs_fragments *f,
               uint32_t *colours) {
-    struct work w;
+    struct cs_shading_work w;
     if (f->n == 0)
         return;
     shade(shading, f, &w);
     for (int i = 0; i < f->n; i++) {
-        const uint32_t cover = (uint32_t)(w.cover[i] * 255 + 0.5f);
+        // of all surfaces, the ground alone may let light through
+        const uint32_t clear =
+            f->material->ground.radius > 0 ? 255 - (uint32_t)(w.cover[i] * 255 + 0.5f) : 0;
         colours[f->colour_index[i]] =
             cs_srgb_pack(shading->srgb, w.colour[0][i], w.colour[1][i], w.colour[2][i]) |
-            (255 - cover) << 24;
+            clear << 24;
     }
     f->n = 0;
-}
-
-void cs_shade_lit_fraction(const struct cs_shading_context *shading,
-                           const struct cs_shadow_query *lit) {
-    float one[N];
-    struct cs_shadow_query query = *lit;
-    query.visibility = one;
-    for (int l = 0; l < (int)shading->view->size[3]; l++) {
-        const float fraction = shading->view->lights[l].shadow_params[3];
-        cs_shadow_map_sample(shading->shadow_maps + l, &query);
-        for (int i = 0; i < lit->n; i++)
-            lit->visibility[i] = (l ? lit->visibility[i] : 0) + fraction * one[i];
-    }
 }

@@ -1,84 +1,16 @@
-/* shade.h - shading: the colour of fragments, one per pixel and visible triangle. */
+/* shade.h - shading: the colour of fragments. */
 #ifndef CS_DRAW_SHADE_H
 #define CS_DRAW_SHADE_H
 
-#include "draw/cpu/shadow_map.h"
-#include "draw/look.h"
-#include "draw/mipmap.h"
-#include "draw/srgb.h"
-
-enum { CS_FRAGMENTS = 256, CS_FRAGMENTS_PADDED = CS_FRAGMENTS + 4 };
-
-/* A surface style (surface_style.h) in the form and precision that shading needs. */
-struct cs_shading_material {
-    enum cs_surface_mode mode;
-    int attributes;                   /* that shading wants: see triangle.h */
-    bool has_ambient_occlusion;       /* attribute 3 is the depth of a fold (mesh.h) */
-    float base[2][3];                 /* linear colour of front, back */
-    float ambient, diffuse, specular; /* reflection coefficients */
-    int shininess_int;                /* exponent of highlights: whole part */
-    int shininess_fraction;           /* and the rest in 1/256 */
-    float fade_radius;      /* m from the world's y axis where it has faded out; 0: never */
-    float depth_bias;       /* m by which the depth is moved away */
-    struct cs_mipmap *mips; /* borrowed; NULL without a texture */
-};
+#include "draw/cpu/fragments.h"
 
 /* Fills all but mips from a style. */
 void cs_shading_material_make(struct cs_shading_material *coat,
                               const struct cs_surface_style *style);
 
-/* Inputs of shading that are the same for a whole picture; all pointers are borrowed. */
-struct cs_shading_context {
-    struct cs_rays rays;
-    int width, height;
-    const struct cs_view_block *view;
-    const struct cs_shadow_map *shadow_maps; /* one for each light of the view */
-    const struct cs_srgb *srgb;
-};
-
-/* Fragments of one side of one surface, collected to be shaded together (structure of
- * arrays). */
-struct cs_fragments {
-    const struct cs_shading_material *material;
-    uint32_t key; /* of the surface and side, to find the slot */
-    int n, side;  /* fragments; 0: front, 1: back */
-    float x[CS_FRAGMENTS_PADDED], y[CS_FRAGMENTS_PADDED]; /* pixels from the top left */
-    float inverse[CS_FRAGMENTS_PADDED];                   /* 1/w */
-    float view_depth[CS_FRAGMENTS]; /* m along the view, of parallel rays: they have no w */
-    float attributes[CS_ATTRIBUTES][CS_FRAGMENTS_PADDED]; /* divided by w */
-    float texels[CS_FRAGMENTS];          /* squared texels per pixel, of textured surfaces */
-    uint32_t colour_index[CS_FRAGMENTS]; /* index in `colours` of the result */
-};
-
 /* Shades the fragments into colours[colour_index[i]], then sets n to 0. Colours are packed:
  * red, green, blue as sRGB bytes from the lowest on, and 255 - opacity in the highest. */
 void cs_shade(const struct cs_shading_context *shading, struct cs_fragments *fragments,
               uint32_t *colours);
-
-/* Fills lit->visibility with the fraction of the diffuse light of all lights that comes
- * through; at most CS_FRAGMENTS positions. */
-void cs_shade_lit_fraction(const struct cs_shading_context *shading,
-                           const struct cs_shadow_query *lit);
-
-/* Direction of the ray through the middle of pixel (x, y): 1 m along it is 1 m along the view.
- * For parallel rays this is the offset of the origin from the eye. */
-CS_INLINE void cs_ray_direction(const struct cs_shading_context *shading, float x, float y,
-                                float d[3]) {
-    const struct cs_rays *r = &shading->rays;
-    const float right = ((x + 0.5f) * (2 / (float)shading->width) - 1) * r->slope_x;
-    const float up = (1 - (y + 0.5f) * (2 / (float)shading->height)) * r->slope_y;
-    for (int i = 0; i < 3; i++)
-        d[i] = right * r->right[i] + up * r->up[i] - (r->parallel ? 0 : r->back[i]);
-}
-
-/* The point t m along the view on the ray through the middle of a pixel. */
-CS_INLINE void cs_ray_point(const struct cs_shading_context *shading, float x, float y, float t,
-                            float place[3]) {
-    const struct cs_rays *r = &shading->rays;
-    float d[3];
-    cs_ray_direction(shading, x, y, d);
-    for (int i = 0; i < 3; i++)
-        place[i] = r->parallel ? r->eye[i] + d[i] - t * r->back[i] : r->eye[i] + t * d[i];
-}
 
 #endif

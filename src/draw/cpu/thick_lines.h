@@ -1,5 +1,5 @@
-/* thick_lines.h - a band of pixels, and lines with round ends, the colour bar and the ground
- * over its surfaces. */
+/* thick_lines.h - a band of pixels, and lines with round ends and the colour bar over its
+ * surfaces. */
 #ifndef CS_CPU_THICK_LINES_H
 #define CS_CPU_THICK_LINES_H
 
@@ -7,47 +7,36 @@
 #include "draw/cpu/raster.h"
 #include "draw/cpu/shade.h"
 #include "draw/glyph.h"
-#include "draw/ground.h"
 
-/* Pixels of a band of rows while it is drawn: visible fragments first, then lines and fading
- * surfaces over them, at last the mean of the samples. Most pixels show one fragment in all
+/* Pixels of a band of rows while it is drawn: visible fragments first, then lines over them, at
+ * last the mean of the samples. Most pixels show one fragment in all
  * four samples and store one colour; four only if an edge or a blend distinguishes the samples.
  */
 
 enum {
-    CS_FRAGMENT_SLOTS = 16,    /* surfaces' sides whose fragments are collected at a time */
-    CS_COLOURS_PER_PIXEL = 12, /* four shown, four behind those that fade, four laid over */
-    CS_PIXEL_SPLIT = 0xe4,     /* codes: a colour for each sample, in their order */
-};
-
-/* A fragment that lets light through, and the one behind it. */
-struct cs_blend_pair {
-    uint32_t front, behind; /* indices into `colours` */
+    CS_FRAGMENT_SLOTS = 16,   /* surfaces' sides whose fragments are collected at a time */
+    CS_COLOURS_PER_PIXEL = 8, /* four shown, four laid over */
+    CS_SKY_COLOURS = 8,       /* of a row: those that dither gives neighbours */
+    CS_PIXEL_SPLIT = 0xe4,    /* codes: a colour for each sample, in their order */
 };
 
 /* Sample s of pixel i has colours[first_colour[i] + (sample_codes[i] >> 2 s & 3)]. Colours are
  * packed sRGB (srgb.h). All arrays are of the arena, and are reused from band to band. */
 struct cs_tile_buffer {
     struct cs_samples samples; /* visible surfaces */
-    struct cs_samples ground;  /* of the ground alone; depth NULL: not wanted */
     uint32_t *first_colour;    /* (rows, width) index of a pixel's first colour */
     uint8_t *sample_codes;     /* (rows, width) four offsets of 2 bits; 0: one colour for all */
     uint32_t *colours;         /* (colours_capacity) */
     uint32_t n_colours, colours_capacity;
-    struct cs_blend_pair *blend_pairs; /* NULL: nothing fades */
-    uint32_t n_blend_pairs, n_hidden;
     struct cs_fragments *slots; /* (CS_FRAGMENT_SLOTS) fragments not yet shaded */
 };
 
-/* Allocates a band of CS_ROWS rows from the arena. fades: some surface lets light through;
- * ground: keep samples of the ground. Returns CS_ERR_MEMORY through error. */
-enum cs_status cs_tile_buffer_init(struct cs_tile_buffer *tiles, int width, bool fades,
-                                   bool ground, struct cs_arena *arena, struct cs_error *error);
+/* Allocates a band of CS_ROWS rows from the arena. Returns CS_ERR_MEMORY through error. */
+enum cs_status cs_tile_buffer_init(struct cs_tile_buffer *tiles, int width,
+                                   struct cs_arena *arena, struct cs_error *error);
 
 /* Starts a band: no sample shows anything. */
 void cs_tile_buffer_clear(struct cs_tile_buffer *tiles, int top, int rows);
-/* Clears the samples of the ground likewise, for the rows of the last cs_tile_buffer_clear. */
-void cs_tile_buffer_clear_ground(struct cs_tile_buffer *tiles);
 
 /* Returns the four colours of a pixel, one per sample; copies them apart if they are shared. */
 CS_INLINE uint32_t *cs_tile_buffer_split_pixel(struct cs_tile_buffer *tiles, size_t pixel) {
@@ -162,20 +151,5 @@ void cs_thick_lines_draw(const struct cs_thick_lines *strokes, uint32_t band,
 
 /* Frees the memory. */
 void cs_thick_lines_finish(struct cs_thick_lines *strokes);
-
-/* Blends the ground over a band: shadows, and lines of a grid. */
-
-/* The ground in one picture. */
-struct cs_grid {
-    struct cs_ground ground;
-    uint32_t ink;                             /* packed colour of lines and shadows */
-    struct cs_triangles square;               /* its rectangle as the camera sees it */
-    const struct cs_shading_context *shading; /* borrowed */
-};
-
-/* Blends the ground over the samples of a band, but not over triangles from index `moving` on:
- * those are bodies, which stand on it. The tile buffer has samples of the ground. */
-void cs_grid_draw(const struct cs_grid *grid, int32_t moving,
-                  const struct cs_sample_pattern *pattern, struct cs_tile_buffer *tiles);
 
 #endif

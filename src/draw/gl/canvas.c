@@ -21,9 +21,9 @@
 /* Geometry and buffers of all colliders. */
 struct cs_gl_colliders {
     struct cs_collider_geometry solids;
-    struct cs_surface *surfaces; /* (n) as seen from the camera */
-    struct cs_surface *shadows;  /* (n_lights, n) as seen from each light */
-    const struct cs_view_state *view;
+    struct cs_surface *surfaces;      /* (n) as seen from the camera */
+    struct cs_surface *shadows;       /* (n_lights, n) as seen from each light */
+    const struct cs_view_state *view; /* borrowed, for camera and lights */
 };
 
 /* Fills and uploads a collider for the camera, and for the lights unless it is a plane. */
@@ -42,19 +42,21 @@ static void upload(struct cs_gl_colliders *colliders, uint32_t i) {
     }
 }
 
-/* Makes the buffers from the colliders' poses at the start (scene->colliders.n). view is
- * borrowed, for camera and lights. CS_ERR_MEMORY. */
+/* Makes the buffers from the colliders' poses at the start (scene->colliders.n) and a ground.
+ * `view` is set before. CS_ERR_MEMORY. */
 static enum cs_status gl_colliders_init(struct cs_gl_colliders *colliders,
                                         const struct cs_system *system,
-                                        const struct cs_view_state *view,
                                         const struct cs_posed_collider *obstacles,
-                                        struct cs_arena *arena, struct cs_error *error) {
-    const uint32_t n = system->scene->colliders.n;
-    colliders->view = view;
+                                        const struct cs_ground *ground, struct cs_arena *arena,
+                                        struct cs_error *error) {
+    if (cs_collider_geometry_init(&colliders->solids, system, obstacles, ground, arena, error))
+        return error->status;
+    const struct cs_view_state *view = colliders->view;
+    const uint32_t n = colliders->solids.n;
     colliders->surfaces = cs_arena_alloc_array(arena, n, sizeof *colliders->surfaces, error);
     colliders->shadows = cs_arena_alloc_array(arena, (size_t)n * view->n_lights,
                                               sizeof *colliders->shadows, error);
-    if (cs_collider_geometry_init(&colliders->solids, system, obstacles, arena, error))
+    if (error->status)
         return error->status;
     for (uint32_t k = 0; k < n * view->n_lights; k++)
         cs_surface_init(colliders->shadows + k, NULL, 0);
@@ -65,32 +67,25 @@ static enum cs_status gl_colliders_init(struct cs_gl_colliders *colliders,
     return CS_OK;
 }
 
-/* Uploads those that have moved; seen_anew: the camera has moved, and all are uploaded. */
+/* Uploads them again if one has moved, or the camera (seen_anew). */
 static void gl_colliders_move(struct cs_gl_colliders *colliders,
                               const struct cs_posed_collider *obstacles, bool seen_anew) {
-    for (uint32_t i = 0; i < colliders->solids.n; i++)
-        if (cs_solid_move(colliders->solids.of + i, obstacles + i) || seen_anew)
+    if (cs_collider_geometry_move(&colliders->solids, obstacles) || seen_anew)
+        for (uint32_t i = 0; i < colliders->solids.n; i++)
             upload(colliders, i);
 }
 
 /* Draws the visible ones with the given program. */
 static void gl_colliders_draw(const struct cs_gl_colliders *colliders,
                               const struct cs_surface_program *program) {
-    // squares first, because they may be blended
-    for (int pass = 0; pass < 2; pass++)
-        for (uint32_t i = 0; i < colliders->solids.n; i++) {
-            const struct cs_posed_collider *obstacle = &colliders->solids.of[i].at;
-            const bool square = cs_shape_is_endless(obstacle->shape);
-            struct cs_surface_style style;
-            if (!obstacle->collider->visible || square != (pass == 0))
-                continue;
-            cs_style_solid(&style, obstacle, colliders->solids.cell);
-            cs_surface_program_use(program, &style);
-            if (square)
-                gl.Enable(GL_BLEND);
-            cs_surface_draw(colliders->surfaces + i);
-            gl.Disable(GL_BLEND);
-        }
+    for (uint32_t i = 0; i < colliders->solids.n; i++) {
+        struct cs_surface_style style;
+        if (!colliders->solids.of[i].at.collider->visible)
+            continue;
+        cs_collider_geometry_style(&colliders->solids, i, &style);
+        cs_surface_program_use(program, &style);
+        cs_surface_draw(colliders->surfaces + i);
+    }
 }
 
 /* Draws all but planes into the shadow map of light l, whose program is in use. */
@@ -147,7 +142,8 @@ struct cs_canvas {
     struct cs_arena arena;      /* owns all other memory */
     struct cs_framebuffer target;
     struct cs_view_state view;
-    struct cs_sky_and_ground backdrop;
+    struct cs_sky sky;
+    struct cs_ground ground;
     struct cs_surface_program program;
     struct cs_shadow shadow;
     struct cs_gl_colliders colliders;
@@ -218,15 +214,15 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
     /* by the start alone, so that the view is the same in every frame */
     const struct cs_bounding_sphere extent =
         cs_scene_extent_solid(canvas->system, canvas->system->view.start, settings->colliders);
-    struct cs_ground ground = {.present = false};
     cs_view_init(&canvas->view, canvas->system, settings->colliders, &extent);
-    cs_ground_make(&ground, canvas->system, settings->colliders, &extent);
+    canvas->colliders.view = &canvas->view;
+    cs_ground_make(&canvas->ground, canvas->system, settings->colliders, &extent);
     if (cs_framebuffer_init(&canvas->target, render, &canvas->arena, error) != CS_OK ||
-        cs_sky_and_ground_init(&canvas->backdrop, &ground, error) != CS_OK ||
+        cs_sky_init(&canvas->sky, error) != CS_OK ||
         cs_surface_program_init(&canvas->program, error) != CS_OK ||
         cs_shadow_init(&canvas->shadow, canvas->view.n_lights, error) != CS_OK ||
-        gl_colliders_init(&canvas->colliders, canvas->system, &canvas->view,
-                          settings->colliders, &canvas->arena, error) != CS_OK ||
+        gl_colliders_init(&canvas->colliders, canvas->system, settings->colliders,
+                          &canvas->ground, &canvas->arena, error) != CS_OK ||
         init_cloths(canvas, settings->textures, error) != CS_OK ||
         cs_gl_lines_init(&canvas->lines, error) != CS_OK ||
         cs_overlay_init(&canvas->overlay, canvas->system, canvas->view.pixels_per_m,
@@ -268,10 +264,8 @@ static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
     cs_overlay_aim(&canvas->overlay, canvas->view.pixels_per_m);
 }
 
-/* Places ground and lights for the frame, uploads the view, and draws the shadow maps. */
+/* Places lights for the frame, uploads the view, and draws the shadow maps. */
 static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_sphere *solid) {
-    if (canvas->backdrop.ground.present)
-        cs_ground_aim(&canvas->backdrop.ground, &canvas->view.block, solid);
     cs_light_frusta_fit(solid, &canvas->view);
     cs_view_upload(&canvas->view);
     for (uint32_t l = 0; l < canvas->view.n_lights; l++) {
@@ -284,14 +278,12 @@ static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_spher
     }
 }
 
-/* Draws everything from back to front of what blends: ground over colliders, lines over all. */
+/* Draws all surfaces, then lines, which blend, over them. */
 static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
     cs_shadow_bind(&canvas->shadow);
     cs_framebuffer_begin(&canvas->target);
-    cs_sky_and_ground_draw_sky(&canvas->backdrop);
+    cs_sky_draw(&canvas->sky);
     gl_colliders_draw(&canvas->colliders, &canvas->program);
-    if (canvas->backdrop.ground.present)
-        cs_sky_and_ground_draw_ground(&canvas->backdrop);
     for (uint32_t b = 0; b < canvas->scene->bodies.n; b++) {
         if (cs_overlay_hides(canvas->scene, b))
             continue;
@@ -329,6 +321,7 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
         restyle(canvas);
     if (varies)
         move_camera(canvas, frame, &solid);
+    cs_ground_aim(&canvas->ground, &solid);
     gl_colliders_move(&canvas->colliders, frame->colliders, varies);
     draw_shadow(canvas, &solid);
     draw_scene(canvas, frame);

@@ -135,7 +135,6 @@ struct cs_shader_text {
 extern const struct cs_shader_text cs_shader_sky;     /* background with a vertical gradient */
 extern const struct cs_shader_text cs_shader_surface; /* cloth and colliders */
 extern const struct cs_shader_text cs_shader_shadow;  /* depth seen from the light */
-extern const struct cs_shader_text cs_shader_ground;  /* grid of lines on the ground */
 extern const struct cs_shader_text cs_shader_line;    /* lines and dots of any width */
 extern const struct cs_shader_text cs_shader_bar;     /* rectangle in colours of the map */
 extern const struct cs_shader_text cs_shader_sample;  /* one sample of every pixel */
@@ -146,24 +145,18 @@ extern const struct cs_shader_text cs_shader_sample;  /* one sample of every pix
 enum cs_status cs_shader_make(const struct cs_shader_text *text, unsigned *program,
                               struct cs_error *error);
 
-/* Background through OpenGL: the sky, and the ground with its grid. */
+/* Background through OpenGL. */
 
-/* OpenGL names and uniform locations. */
-struct cs_sky_and_ground {
-    unsigned object, sky, program;
-    int fade_disc, box; /* uniforms of the ground's program */
-    struct cs_ground ground;
+/* OpenGL names. */
+struct cs_sky {
+    unsigned object, program;
 };
 
-/* Builds the programs for a ground (cs_ground_make), which is copied. CS_ERR_MODULE. */
-enum cs_status cs_sky_and_ground_init(struct cs_sky_and_ground *backdrop,
-                                      const struct cs_ground *ground, struct cs_error *error);
+/* Builds the program. CS_ERR_MODULE. */
+enum cs_status cs_sky_init(struct cs_sky *sky, struct cs_error *error);
 
 /* Draws the sky over every pixel; leaves the depth alone. */
-void cs_sky_and_ground_draw_sky(const struct cs_sky_and_ground *backdrop);
-
-/* Draws the ground in its rectangle of this frame (cs_ground_aim). */
-void cs_sky_and_ground_draw_ground(const struct cs_sky_and_ground *backdrop);
+void cs_sky_draw(const struct cs_sky *sky);
 
 /* Triangles on the graphics side, and the program that shades them. */
 
@@ -193,7 +186,8 @@ void cs_surface_draw(const struct cs_surface *surface);
 /* The shading program and the locations of its uniforms. */
 struct cs_surface_program {
     unsigned name;
-    int mode, front_location, back_location, coefficients, depth_bias_location, fade_location;
+    int mode, front_location, back_location, coefficients, depth_bias_location;
+    int span, ink, has_lines; /* of the ground */
 };
 
 /* Builds the program. CS_ERR_MODULE with the compiler's log. */

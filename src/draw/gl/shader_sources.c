@@ -22,7 +22,7 @@ static const char sky_fragment[] = OVERLAY_GLSL(
     out vec4 colour;
     void main() {
         vec4 c = clamp(mix(below, above, up), 0.0, 1.0);
-        colour = vec4(encode(c.rgb), c.a);
+        colour = vec4(encode(c.rgb) + dither(), c.a);
     }
 );
 
@@ -33,51 +33,6 @@ static const char sample_fragment[] = OVERLAY_GLSL(
     out vec4 colour;
     void main() {
         colour = texelFetch(picture, ivec2(gl_FragCoord.xy), number);
-    }
-);
-
-/* span: centre x, height, centre z, half side; box: least and greatest x and z; a line every
- * `pitch` m, every tenth one stronger, 0: none */
-static const char ground_vertex[] = OVERLAY_GLSL(
-    uniform vec4 span;
-    uniform vec4 box;
-    out vec3 place;
-    void main() {
-        place = vec3(gl_VertexID % 2 == 0 ? box.x : box.z, span.y,
-                     gl_VertexID / 2 == 0 ? box.y : box.w);
-        gl_Position = world_to_clip * vec4(place, 1.0);
-    }
-);
-
-static const char ground_fragment[] = OVERLAY_GLSL(
-    in vec3 place;
-    uniform vec4 span;
-    uniform float pitch;
-    uniform vec3 ink;
-    uniform float shadow_ink;
-    out vec4 colour;
-    float lines(float step, float half_width) {
-        vec2 at = place.xz / step;
-        vec2 pixel = max(fwidth(at), 1e-6);
-        vec2 off = abs(at - floor(at + 0.5)) / pixel;
-        vec2 cover = clamp(half_width + 0.5 - off, 0.0, 1.0);
-        // where lines come close they melt into a tint instead of a moire pattern
-        cover *= clamp(0.5 / pixel - 0.6, 0.0, 1.0);
-        return max(cover.x, cover.y);
-    }
-    void main() {
-        float far = length(place.xz - span.xz) / span.w;
-        float fade = clamp(1.0 - far, 0.0, 1.0);
-        fade = fade * fade;
-        float cover = 0.0;
-        if (pitch > 0.0)
-            cover = max(0.5 * lines(pitch, 0.45), lines(10.0 * pitch, 0.7));
-        // what lies in shadow is inked too, so that things stand on the ground
-        float lit = 0.0;
-        for (int k = 0; k < int(size.w); k++)
-            lit += lights[k].shade.w * lit_share(k, place, vec3(0.0, 1.0, 0.0), 1.0);
-        float dark = shadow_ink * (1.0 - lit);
-        colour = vec4(encode(ink), fade * (dark + (1.0 - dark) * 0.55 * cover));
     }
 );
 
@@ -177,8 +132,6 @@ const struct cs_shader_text cs_shader_sample = {"samples", sky_vertex, sample_fr
 
 const struct cs_shader_text cs_shader_sky = {"sky", sky_vertex, sky_fragment};
 
-const struct cs_shader_text cs_shader_ground = {"ground", ground_vertex, ground_fragment};
-
 const struct cs_shader_text cs_shader_line = {"line", line_vertex, line_fragment};
 
 const struct cs_shader_text cs_shader_bar = {"bar", bar_vertex, bar_fragment};
@@ -222,9 +175,47 @@ static const char surface_fragment[] = GLSL(
     uniform vec3 back;
     uniform vec4 coefficients;
     uniform sampler2D picture;
-    uniform float fade;
+    // of the ground, as struct cs_ground_style: centre, radius and tile; ink and shadow
+    uniform vec4 span;
+    uniform vec4 ink;
+    uniform int has_lines;
     out vec4 colour;
 
+    vec2 wave_integral(vec2 u) {
+        return 1.0 - abs(2.0 * fract(0.5 * u) - 1.0);
+    }
+    float lines(vec2 wide, float step, float half_width) {
+        vec2 at = place.xz / step;
+        vec2 pixel = max(wide / step, 1e-6);
+        vec2 off = abs(at - floor(at + 0.5)) / pixel;
+        vec2 cover = clamp(half_width + 0.5 - off, 0.0, 1.0);
+        // where lines come close they melt into a tint instead of a moire pattern
+        cover *= clamp(0.5 / pixel - 0.6, 0.0, 1.0);
+        return max(cover.x, cover.y);
+    }
+    float pattern() {
+        vec2 wide = fwidth(place.xz);
+        float tile = span.w;
+        if (has_lines == 1)
+            return 0.55 * max(0.5 * lines(wide, tile, 0.45), lines(wide, 10.0 * tile, 0.7));
+        vec2 width = max(wide / tile, 0.01);
+        vec2 u = place.xz / tile;
+        vec2 mean = (wave_integral(u + 0.5 * width) - wave_integral(u - 0.5 * width)) / width;
+        return mean.x * mean.y;
+    }
+    // a ground of shadows and lines alone: its opacity
+    float shadow_cover() {
+        float lit = 0.0;
+        for (int k = 0; k < int(size.w); k++)
+            lit += lights[k].shade.w * lit_share(k, place, vec3(0.0, 1.0, 0.0), 1.0);
+        float dark = ink.w * (1.0 - lit);
+        return dark + (1.0 - dark) * (span.w > 0.0 ? pattern() : 0.0);
+    }
+    // bends light above the knee towards 1
+    vec3 bend(vec3 c) {
+        vec3 over = max(c - 0.6, 0.0);
+        return c - over + over / (1.0 + over / 0.4);
+    }
     vec3 blinn_phong(vec3 base, vec3 n, vec3 v) {
         // ambient light is 1 on an upright surface seen straight on; more from above and less
         // towards the outline, or folds without direct light would be one flat patch
@@ -253,16 +244,30 @@ static const char surface_fragment[] = GLSL(
         float towards = abs(dot(n, v));
         if (mode == 1)
             base *= texture(picture, uv).rgb;
+        if (span.z > 0.0 && ink.w <= 0.0 && span.w > 0.0)
+            base += pattern() * (has_lines == 1 ? ink.rgb - base : 0.06 * base);
         vec3 c;
-        if (mode < 2)
-            c = blinn_phong(base, n, v);
+        float whole = 1.0;
+        if (span.z > 0.0 && ink.w > 0.0)
+            c = ink.rgb;
+        else if (mode < 2)
+            c = bend(blinn_phong(base, n, v));
         else if (mode == 2)
             c = map_colour(value) * (0.5 + 0.5 * towards);
         else
             c = mix(sky.rgb, vec3(1.0), 0.45) * (0.62 + 0.38 * towards);
-        // a floor has no end: its square melts into the background
-        float whole = fade > 0.0 ? 1.0 - smoothstep(0.35, 1.0, length(place.xz) / fade) : 1.0;
-        colour = vec4(encode(clamp(c, 0.0, 1.0)), whole);
+        if (span.z > 0.0) {
+            // haze: the ground fades into the background, or into nothing without one
+            vec2 d = (place.xz - span.xy) / span.z;
+            float left = clamp(1.0 - dot(d, d), 0.0, 1.0);
+            left *= left * (ink.w > 0.0 ? shadow_cover() : 1.0);
+            if (above.w > 0.0)
+                c = mix(clamp(mix(below, above, gl_FragCoord.y / size.y), 0.0, 1.0).rgb, c, left);
+            else
+                whole = left;
+        }
+        vec3 byte = encode(clamp(c, 0.0, 1.0)) + (span.z > 0.0 ? dither() : 0.0);
+        colour = vec4(byte * whole, whole);
     }
 );
 

@@ -1,4 +1,4 @@
-/* Draws triangles, sky and ground, then lines through OpenGL, each with its shader. */
+/* Draws triangles, sky and lines through OpenGL, each with its shader. */
 #include "draw/gl/gl.h"
 #include "draw/mesh.h"
 #include "draw/view.h"
@@ -73,13 +73,16 @@ enum cs_status cs_surface_program_init(struct cs_surface_program *program,
     program->front_location = gl.GetUniformLocation(program->name, "front");
     program->back_location = gl.GetUniformLocation(program->name, "back");
     program->coefficients = gl.GetUniformLocation(program->name, "coefficients");
-    program->fade_location = gl.GetUniformLocation(program->name, "fade");
+    program->span = gl.GetUniformLocation(program->name, "span");
+    program->ink = gl.GetUniformLocation(program->name, "ink");
+    program->has_lines = gl.GetUniformLocation(program->name, "has_lines");
     program->depth_bias_location = gl.GetUniformLocation(program->name, "sink");
     return CS_OK;
 }
 
 void cs_surface_program_use(const struct cs_surface_program *program,
                             const struct cs_surface_style *style) {
+    const struct cs_ground_style *ground = &style->ground;
     gl.UseProgram(program->name);
     gl.Uniform1i(program->mode, (GLint)style->mode);
     gl.Uniform3f(program->front_location, (float)style->front_colour[0],
@@ -88,7 +91,10 @@ void cs_surface_program_use(const struct cs_surface_program *program,
                  (float)style->back_colour[1], (float)style->back_colour[2]);
     gl.Uniform4f(program->coefficients, (float)style->ambient, (float)style->diffuse,
                  (float)style->specular, (float)style->shininess);
-    gl.Uniform1f(program->fade_location, (float)style->fade_radius);
+    gl.Uniform4f(program->span, ground->centre[0], ground->centre[1], ground->radius,
+                 ground->tile);
+    gl.Uniform4f(program->ink, ground->ink[0], ground->ink[1], ground->ink[2], ground->shadow);
+    gl.Uniform1i(program->has_lines, ground->lines);
     gl.Uniform1f(program->depth_bias_location, (float)style->depth_bias);
     if (style->mode == CS_SURFACE_TEXTURED) {
         gl.ActiveTexture(GL_TEXTURE0);
@@ -115,51 +121,17 @@ unsigned cs_texture_make(const struct cs_mipmap *mips) {
     return name;
 }
 
-static enum cs_status init_ground(struct cs_sky_and_ground *backdrop, struct cs_error *error) {
-    const struct cs_ground *ground = &backdrop->ground;
-    if (cs_shader_make(&cs_shader_ground, &backdrop->program, error) != CS_OK)
-        return error->status;
-    const GLuint program = backdrop->program;
-    backdrop->fade_disc = gl.GetUniformLocation(program, "span");
-    backdrop->box = gl.GetUniformLocation(program, "box");
-    gl.UseProgram(program);
-    gl.Uniform1f(gl.GetUniformLocation(program, "pitch"), ground->line_spacing);
-    gl.Uniform3f(gl.GetUniformLocation(program, "ink"), ground->line_colour[0],
-                 ground->line_colour[1], ground->line_colour[2]);
-    gl.Uniform1f(gl.GetUniformLocation(program, "shadow_ink"), ground->shadow);
-    return CS_OK;
+enum cs_status cs_sky_init(struct cs_sky *sky, struct cs_error *error) {
+    gl.GenVertexArrays(1, &sky->object);
+    return cs_shader_make(&cs_shader_sky, &sky->program, error);
 }
 
-enum cs_status cs_sky_and_ground_init(struct cs_sky_and_ground *backdrop,
-                                      const struct cs_ground *ground, struct cs_error *error) {
-    backdrop->ground = *ground;
-    gl.GenVertexArrays(1, &backdrop->object);
-    if (cs_shader_make(&cs_shader_sky, &backdrop->sky, error) != CS_OK)
-        return error->status;
-    return ground->present ? init_ground(backdrop, error) : CS_OK;
-}
-
-void cs_sky_and_ground_draw_sky(const struct cs_sky_and_ground *backdrop) {
+void cs_sky_draw(const struct cs_sky *sky) {
     gl.Disable(GL_DEPTH_TEST);
-    gl.UseProgram(backdrop->sky);
-    gl.BindVertexArray(backdrop->object);
+    gl.UseProgram(sky->program);
+    gl.BindVertexArray(sky->object);
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
     gl.Enable(GL_DEPTH_TEST);
-}
-
-void cs_sky_and_ground_draw_ground(const struct cs_sky_and_ground *backdrop) {
-    const float *span = backdrop->ground.fade_disc, *box = backdrop->ground.box;
-    if (!(box[0] < box[2] && box[1] < box[3]))
-        return;
-    gl.UseProgram(backdrop->program);
-    gl.Uniform4f(backdrop->fade_disc, span[0], span[1], span[2], span[3]);
-    gl.Uniform4f(backdrop->box, box[0], box[1], box[2], box[3]);
-    gl.BindVertexArray(backdrop->object);
-    gl.Enable(GL_BLEND);
-    gl.DepthMask(GL_FALSE);
-    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    gl.DepthMask(GL_TRUE);
-    gl.Disable(GL_BLEND);
 }
 
 /* Draws the collected lines; the shader widens each into a quad. */
