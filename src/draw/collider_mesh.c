@@ -1,6 +1,5 @@
 /* Makes the drawn triangles of colliders: caps of spheres, smooth lattices of shapes with a
- * core. All others keep their triangles with one normal each, which shows the edges of a mesh.
- */
+ * core, meshes with interpolated normals but for creases. Planes keep one normal. */
 #include "draw/collider_mesh.h"
 
 #include "draw/matrix.h"
@@ -35,6 +34,30 @@ static void extend(struct cs_solid *solid, const struct cs_ground *ground) {
         solid->mesh.positions[k] *= factor;
 }
 
+/* Fills the unit normals of a mesh's corners: of each the sum of the normals, by area, of the
+ * triangles at its vertex that lean by less than 40 degrees from its own. */
+static void fill_normals(struct cs_solid *solid) {
+    const double crease = 0.77; // cosine of 40 degrees
+    const struct cs_trimesh *mesh = &solid->mesh;
+    for (uint32_t c = 0; solid->normals && c < 3 * mesh->n_triangles; c++) {
+        const uint32_t i = mesh->triangles[c];
+        double own[3], *sum = solid->normals + 3 * (size_t)c;
+        cs_trimesh_normal(mesh, c / 3, mesh->positions, mesh->n, 0, own);
+        memcpy(sum, own, sizeof own);
+        for (uint32_t k = cs_trimesh_around_begin(mesh, i); k < mesh->vertex_triangles_end[i];
+             k++) {
+            const uint32_t t = mesh->vertex_triangles[k];
+            double other[3];
+            cs_trimesh_normal(mesh, t, mesh->positions, mesh->n, 0, other);
+            const bool smooth =
+                cs_dot(own, other) > crease * cs_length(own) * cs_length(other);
+            for (int a = 0; a < 3 && smooth && t != c / 3; a++)
+                sum[a] += other[a];
+        }
+        cs_normalise(sum);
+    }
+}
+
 /* Counts the vertices of a collider, and makes its triangles if they are drawn. */
 static enum cs_status make(struct cs_solid *solid, struct cs_arena *arena,
                            struct cs_error *error) {
@@ -47,6 +70,10 @@ static enum cs_status make(struct cs_solid *solid, struct cs_arena *arena,
         solid->n = 6 * 6 * (LINES - 1) * (LINES - 1);
     else if (!at->shape->triangles(at, &solid->mesh, arena, error))
         solid->n = 3 * solid->mesh.n_triangles;
+    if (solid->mesh.vertex_triangles)
+        solid->normals =
+            cs_arena_alloc_array(arena, 3 * (size_t)solid->n, sizeof *solid->normals, error);
+    fill_normals(solid);
     return error->status;
 }
 
@@ -91,8 +118,10 @@ bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now) 
                        memcmp(at->axes, now->axes, sizeof at->axes) ||
                        at->radius != now->radius;
     solid->at = *now;
-    if (deformed && solid->n > 0)
+    if (deformed && solid->n > 0) {
         cs_collider_mesh_vertices(now, solid->mesh.positions);
+        fill_normals(solid);
+    }
     return moved;
 }
 
@@ -149,7 +178,7 @@ static void fill_core(const struct cs_posed_collider *at, struct cs_vertex *out)
             out = fill_face(at, lines, axis, side, out);
 }
 
-/* Fills a triangle with its own normal, moved back along it by `sink` m. */
+/* Fills a triangle with its own normal or those of its corners, moved back by `sink` m. */
 static void fill_triangle(const struct cs_solid *solid, uint32_t t, double sink,
                           struct cs_vertex out[3]) {
     const struct cs_trimesh *mesh = &solid->mesh;
@@ -161,7 +190,8 @@ static void fill_triangle(const struct cs_solid *solid, uint32_t t, double sink,
         double own[3];
         for (size_t a = 0; a < 3; a++)
             own[a] = from[a * mesh->n] - sink * normal[a];
-        set_vertex(&solid->at, own, normal, out + k);
+        set_vertex(&solid->at, own,
+                   solid->normals ? solid->normals + 3 * (3 * (size_t)t + k) : normal, out + k);
     }
 }
 

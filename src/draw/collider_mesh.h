@@ -10,6 +10,7 @@
 struct cs_solid {
     struct cs_posed_collider at; /* pose of the last frame */
     struct cs_trimesh mesh;      /* in its own frame; of shapes without a core */
+    double *normals;             /* (n_triangles, 3, 3) of the corners; NULL: flat triangles */
     uint32_t n;                  /* vertices, three per triangle, none shared; 0: not visible */
 };
 

@@ -46,14 +46,18 @@ const struct cs_look_kind *cs_look_of(int32_t look) {
 void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *material,
                     bool textured, int32_t look) {
     const enum cs_look_colours colours = cs_look_of(look)->colours;
+    static const double red[3] = CS_CLOTH_RED, white[3] = {1, 1, 1};
     const bool has_back = !isnan(material->back_colour[0]);
     *style = (struct cs_surface_style){.ambient = material->ambient,
                                        .diffuse = material->diffuse,
                                        .specular = material->specular,
                                        .shininess = material->shininess,
                                        .has_ambient_occlusion = colours == CS_COLOURS_MATERIAL};
-    memcpy(style->front_colour, material->colour, sizeof style->front_colour);
-    memcpy(style->back_colour, has_back ? material->back_colour : material->colour,
+    // the default colour would hide those of a texture
+    const double *colour =
+        textured && !memcmp(material->colour, red, sizeof red) ? white : material->colour;
+    memcpy(style->front_colour, colour, sizeof style->front_colour);
+    memcpy(style->back_colour, has_back ? material->back_colour : colour,
            sizeof style->back_colour);
     switch (colours) {
     case CS_COLOURS_MATERIAL:

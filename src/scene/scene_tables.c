@@ -180,9 +180,10 @@ const struct cs_table cs_spring_table = {ROWS(spring_rows),
                                          .size = sizeof(struct cs_spring_law)};
 
 static const char *const shading_names[] = {"smooth", "flat", NULL};
-static const double red_cloth[3] = {0.60, 0.06, 0.07};
+static const double red_cloth[3] = CS_CLOTH_RED;
 static const struct cs_option material_rows[] = {
-    VECTOR(struct cs_material, colour, 3, "", red_cloth, 0, 1, "of the front, linear RGB"),
+    VECTOR(struct cs_material, colour, 3, "", red_cloth, 0, 1,
+           "of the front, linear RGB; it multiplies a texture, whose default is white"),
     VECTOR(struct cs_material, back_colour, 3, "", absent9, 0, 1, "of the back; as the front"),
     REAL(struct cs_material, ambient, "", 1, 0, 10, "coefficient ka of the ambient light"),
     REAL(struct cs_material, diffuse, "", 1, 0, 10, "coefficient kd of the diffuse light"),

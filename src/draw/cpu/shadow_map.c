@@ -1,22 +1,23 @@
-/* shadow_map.c - shadow map (Williams 1978) with 3 x 3 taps 1.4 texels apart, each blended from
+/* shadow_map.c - shadow map (Williams 1978) with 5 x 5 taps a texel apart, each blended from
  * four comparisons (percentage closer filtering, Reeves 1987).
  *
- * A tap at t weights the texels of a row by max(0, 1 - |k - t|). The weights of three taps
- * along a row sum to 3; those of all nine are products of a row's and a column's, with sum 9:
- *   V = (1/9) sum_kl a_k b_l [depth_kl <= nearness]
- * The taps reach from x - 1.4 to x + 1.4. They touch the texels floor(x - 1.4) to at most
- * floor(x - 1.4) + 4, so a window of 5 x 5 suffices.
+ * The taps of a row weigh 1, 2, 3, 2 and 1. A tap at t of weight w adds w max(0, 1 - |k - t|)
+ * to the weight of texel k; both are tents, so the border of a shadow is a smooth curve without
+ * steps. The weights of all 25 are products of a row's and a column's, with sum 81:
+ *   V = (1/81) sum_kl a_k b_l [depth_kl <= nearness]
+ * The taps reach from x - 2 to x + 2. They touch the texels floor(x) - 2 to floor(x) + 3, a
+ * window of 6 x 6.
  *
  * Min/max bounds decide most queries: if the window's maximum is no nearer than the position, V
- * is 1; if its minimum is nearer, V is 0. A 5 x 5 window starts at an even or an odd texel;
- * blocks of 6 x 6 texels from each even one contain both, at a quarter of the memory.
+ * is 1; if its minimum is nearer, V is 0. A 6 x 6 window starts at an even or an odd texel;
+ * blocks of 8 x 8 texels from each even one contain both, at a quarter of the memory.
  *
  * Self-shadowing: a plane whose normal makes the angle a with the light rises by d tan a over d
  * texels. A position moved by o along the normal is o / cos a above its plane, as measured
- * along the light. It clears texels up to d = o / sin a, and a window reaches d = 1.4 + 1 along
- * a row, 3.4 along a diagonal. The normal is interpolated: if it leans by b from that of the
- * triangle, d = o cos b / sin(a + b). project() moves by (1.5 + 4 sin a) texels, which clears
- * the diagonal for b up to 23 degrees at a = 0 and 31 degrees from a = 30 degrees on.
+ * along the light. It clears texels up to d = o / sin a, and a window reaches d = 2 + 1 along
+ * a row, 4.2 along a diagonal. The normal is interpolated: if it leans by b from that of the
+ * triangle, d = o cos b / sin(a + b). project() moves by (1.9 + 5 sin a) texels, which clears
+ * the diagonal for b up to 24 degrees at a = 0 and 31 degrees from a = 30 degrees on.
  */
 #include "draw/cpu/shadow_map.h"
 
@@ -27,8 +28,6 @@
 #include <string.h>
 
 enum { HALF = CS_SHADOW_MAP_STRIDE / 2, BLOCK = 64 };
-
-static const float reach = 1.4f; // texels from one tap to the next
 
 enum cs_status cs_shadow_map_init(struct cs_shadow_map *map, struct cs_arena *arena,
                                   struct cs_error *error) {
@@ -41,8 +40,8 @@ enum cs_status cs_shadow_map_init(struct cs_shadow_map *map, struct cs_arena *ar
     map->depth = memory;
     map->min_max_2x2[0] = memory + all;
     map->min_max_2x2[1] = map->min_max_2x2[0] + half;
-    map->min_6x6 = map->min_max_2x2[1] + half;
-    map->max_6x6 = map->min_6x6 + half;
+    map->min_8x8 = map->min_max_2x2[1] + half;
+    map->max_8x8 = map->min_8x8 + half;
     return CS_OK;
 }
 
@@ -76,7 +75,7 @@ void cs_shadow_map_draw(struct cs_shadow_map *map, uint32_t stripe,
         }
 }
 
-/* Minimum and maximum of each 2 x 2 block: the first level that the 6 x 6 bounds are made of.
+/* Minimum and maximum of each 2 x 2 block: the first level that the 8 x 8 bounds are made of.
  */
 CS_CLONES static void bound_pairs(struct cs_shadow_map *map) {
     for (size_t y = 0; y < HALF; y++) {
@@ -94,22 +93,22 @@ CS_CLONES static void bound_pairs(struct cs_shadow_map *map) {
     }
 }
 
-// a 6 x 6 block is 3 x 3 blocks of 2 x 2; the last two of each row and column have none
+// an 8 x 8 block is 4 x 4 blocks of 2 x 2; the last three of each row and column have none
 CS_CLONES void cs_shadow_map_bound(struct cs_shadow_map *map) {
     bound_pairs(map);
-    for (size_t y = 0; y + 2 < HALF; y++)
-        for (size_t x = 0; x + 2 < HALF; x++) {
+    for (size_t y = 0; y + 3 < HALF; y++)
+        for (size_t x = 0; x + 3 < HALF; x++) {
             const size_t at = y * HALF + x;
             float least = map->min_max_2x2[0][at], largest = map->min_max_2x2[1][at];
-            for (size_t k = 1; k < 9; k++) {
-                const size_t beside = at + k / 3 * HALF + k % 3;
+            for (size_t k = 1; k < 16; k++) {
+                const size_t beside = at + k / 4 * HALF + k % 4;
                 const float low = map->min_max_2x2[0][beside],
                             high = map->min_max_2x2[1][beside];
                 least = low < least ? low : least;
                 largest = high > largest ? high : largest;
             }
-            map->min_6x6[at] = least;
-            map->max_6x6[at] = largest;
+            map->min_8x8[at] = least;
+            map->max_8x8[at] = largest;
         }
 }
 
@@ -117,16 +116,16 @@ CS_CLONES void cs_shadow_map_bound(struct cs_shadow_map *map) {
 CS_INLINE cs_f4 weights(cs_f4 k, float at) {
     const cs_i4 no_sign = {0x7fffffff, 0x7fffffff, 0x7fffffff, 0x7fffffff};
     cs_f4 sum = {0};
-    for (int tap = -1; tap <= 1; tap++) {
-        const cs_f4 far = (cs_f4)((cs_i4)(k - (at + reach * (float)tap)) & no_sign);
+    for (int tap = -2; tap <= 2; tap++) {
+        const cs_f4 far = (cs_f4)((cs_i4)(k - (at + (float)tap)) & no_sign);
         const cs_f4 near = 1 - far;
-        sum += (cs_f4)((near > 0) & (cs_i4)near);
+        sum += (cs_f4)((near > 0) & (cs_i4)near) * (float)(3 - (tap < 0 ? -tap : tap));
     }
     return sum;
 }
 
 /* The weighted fraction of lit texels. x, y: texels from the middle of the map's first; (bx,
- * by): first texel of the window. Four columns are lanes, the fifth is a scalar. */
+ * by): first texel of the window. Four columns and two more are lanes; two lanes weigh 0. */
 CS_INLINE float window(const struct cs_shadow_map *map, float x, float y, float nearness,
                        int bx, int by) {
     const cs_f4 first = {0, 1, 2, 3}, then = {4, 5, 6, 7};
@@ -136,14 +135,14 @@ CS_INLINE float window(const struct cs_shadow_map *map, float x, float y, float 
     const float *row = map->depth + (size_t)(by + CS_SHADOW_MAP_BORDER) * CS_SHADOW_MAP_STRIDE +
                        (size_t)(bx + CS_SHADOW_MAP_BORDER);
     cs_f4 sum = {0};
-    float last = 0;
-    for (int r = 0; r < 5; r++, row += CS_SHADOW_MAP_STRIDE) {
-        const float weight = r < 4 ? down[r] : down_last[0];
-        const cs_f4 z = *(const cs_f4_unaligned *)row;
+    for (int r = 0; r < 6; r++, row += CS_SHADOW_MAP_STRIDE) {
+        const float weight = r < 4 ? down[r] : down_last[r - 4];
+        const cs_f4 z = *(const cs_f4_unaligned *)row,
+                    last = *(const cs_f4_unaligned *)(row + 4);
         sum += (cs_f4)((z <= nearness) & (cs_i4)across) * weight;
-        last += row[4] <= nearness ? across_last[0] * weight : 0;
+        sum += (cs_f4)((last <= nearness) & (cs_i4)across_last) * weight;
     }
-    return (((sum[0] + sum[1]) + (sum[2] + sum[3])) + last) / 9;
+    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) / 81;
 }
 
 /* The lit fraction at a texel position; beyond the map all is lit. */
@@ -153,12 +152,12 @@ CS_INLINE float sample_block(const struct cs_shadow_map *map, float x, float y,
     if (!(x >= -0.5f && y >= -0.5f && x <= side - 0.5f && y <= side - 0.5f))
         return 1;
     // rounded down: 4 texels are added so that the number is positive
-    const int bx = (int)(x - reach + 4) - 4, by = (int)(y - reach + 4) - 4;
+    const int bx = (int)(x - 2 + 4) - 4, by = (int)(y - 2 + 4) - 4;
     const size_t block = (size_t)((by + CS_SHADOW_MAP_BORDER) >> 1) * HALF +
                          (size_t)((bx + CS_SHADOW_MAP_BORDER) >> 1);
-    if (map->max_6x6[block] <= nearness)
+    if (map->max_8x8[block] <= nearness)
         return 1;
-    if (map->min_6x6[block] > nearness)
+    if (map->min_8x8[block] > nearness)
         return 0;
     return window(map, x, y, nearness, bx, by);
 }
@@ -177,7 +176,7 @@ CS_INLINE void project(const struct cs_shadow_map *map, const struct cs_shadow_q
     }
     for (int i = 0; i < n; i++) {
         // off the surface by as much as a slope rises under the texels that are read
-        const float off = (1.5f + 4 * sqrtf(slant[i])) * texel;
+        const float off = (1.9f + 5 * sqrtf(slant[i])) * texel;
         const float a = lit->positions[0][from + i] + off * lit->normals[0][from + i];
         const float b = lit->positions[1][from + i] + off * lit->normals[1][from + i];
         const float c = lit->positions[2][from + i] + off * lit->normals[2][from + i];

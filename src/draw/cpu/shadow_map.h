@@ -20,7 +20,7 @@ struct cs_shadow_map {
     bool enabled;             /* false: no shadow, all surfaces that face the light are lit */
     float *depth;             /* (CS_SHADOW_MAP_STRIDE, CS_SHADOW_MAP_STRIDE) */
     float *min_max_2x2[2];    /* minimum, maximum of 2 x 2 texels; rows of STRIDE / 2 */
-    float *min_6x6, *max_6x6; /* of 6 x 6 texels whose first row and column are even */
+    float *min_8x8, *max_8x8; /* of 8 x 8 texels whose first row and column are even */
 };
 
 /* Allocates the arrays from the arena. Fails with CS_ERR_MEMORY. */

@@ -69,7 +69,7 @@ static const char shadow[] = GLSL(
     float lit_share(int k, vec3 p, vec3 n, float facing) {
         vec4 shade = lights[k].shade;
         // off the surface by as much as a slope rises under the texels that are read
-        float off = 1.5 + 4.0 * sqrt(max(1.0 - facing * facing, 0.0));
+        float off = 1.9 + 5.0 * sqrt(max(1.0 - facing * facing, 0.0));
         vec4 at = lights[k].to_clip * vec4(p + off * shade.y * n, 1.0);
         vec3 q = at.xyz / at.w * 0.5 + 0.5;
         bool outside = any(lessThan(q, vec3(0.0))) || any(greaterThan(q.xy, vec2(1.0)));
@@ -78,10 +78,11 @@ static const char shadow[] = GLSL(
         // what lies farther away than all that casts shadow still catches it
         q.z = min(q.z, 1.0);
         float sum = 0.0;
-        for (int i = -1; i <= 1; i++)
-            for (int j = -1; j <= 1; j++)
-                sum += tap(k, vec3(q.xy + 1.4 * shade.x * vec2(i, j), q.z));
-        return sum / 9.0;
+        for (int i = -2; i <= 2; i++)
+            for (int j = -2; j <= 2; j++)
+                sum += float((3 - abs(i)) * (3 - abs(j))) *
+                       tap(k, vec3(q.xy + shade.x * vec2(i, j), q.z));
+        return sum / 81.0;
     }
 );
 /* clang-format on */
