@@ -49,8 +49,7 @@ static void fill_normals(struct cs_solid *solid) {
             const uint32_t t = mesh->vertex_triangles[k];
             double other[3];
             cs_trimesh_normal(mesh, t, mesh->positions, mesh->n, 0, other);
-            const bool smooth =
-                cs_dot(own, other) > crease * cs_length(own) * cs_length(other);
+            const bool smooth = cs_dot(own, other) > crease * cs_length(own) * cs_length(other);
             for (int a = 0; a < 3 && smooth && t != c / 3; a++)
                 sum[a] += other[a];
         }

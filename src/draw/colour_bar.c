@@ -17,6 +17,8 @@ void cs_colour_bar_init(struct cs_colour_bar *bar, const struct cs_render *rende
     bar->width = (double)render->size[0];
     bar->height = (double)render->size[1];
     cs_colour_ink(render->background.colour, bar->ink);
+    for (int i = 0; i < 3; i++)
+        bar->paper[i] = (float)render->background.colour[i];
 }
 
 // the smallest of 1, 2 and 5 times a power of ten of which `steps` span the width
@@ -58,6 +60,23 @@ static void add_frame(struct cs_lines *lines, const double box[4]) {
     add_line(lines, right, box[1], right, bottom);
     add_line(lines, right, bottom, box[0], bottom);
     add_line(lines, box[0], bottom, box[0], box[1]);
+}
+
+/* Draws the panel, with round corners of radius r: lines so thick and close that they fill it.
+ */
+static void draw_panel(const struct cs_colour_bar *bar, const struct place *place,
+                       struct cs_lines *lines) {
+    const double u = place->unit, r = 6 * u, *box = place->box;
+    const double left = box[0] - 58 * u + r, right = box[0] + box[2] + 10 * u - r;
+    const double top = box[1] - 28 * u + r, bottom = box[1] + box[3] + 10 * u - r;
+    const struct cs_line_style style = {.colour = {bar->paper[0], bar->paper[1], bar->paper[2]},
+                                        .alpha = 1,
+                                        .half_width = r,
+                                        .flat = true};
+    for (double y = top; y < bottom; y += r)
+        add_line(lines, left, y, right, y);
+    add_line(lines, left, bottom, right, bottom);
+    cs_lines_draw(lines, &style);
 }
 
 /* Height of a value in the bar, in pixels from the top: the highest value is on top. */
@@ -102,6 +121,7 @@ void cs_colour_bar_draw(const struct cs_colour_bar *bar, struct cs_lines *lines,
                                   .alpha = 0.85,
                                   .half_width = 0.5 * unit,
                                   .flat = true};
+    draw_panel(bar, &place, lines);
     lines->ramp(lines, place.box);
     add_frame(lines, place.box);
     add_ticks(&place, lines, range, ticks, n);

@@ -9,6 +9,7 @@
 /* Colour and place of the bar. */
 struct cs_colour_bar {
     float ink[3];         /* linear RGB of lines and labels */
+    float paper[3];       /* of the panel below them */
     double width, height; /* pixels of the picture */
 };
 
@@ -20,7 +21,7 @@ enum {
 /* Sets the bar for pictures of the scene. */
 void cs_colour_bar_init(struct cs_colour_bar *bar, const struct cs_render *render);
 
-/* Draws the bar of a frame whose look has a title: colours, ticks, labels. */
+/* Draws the bar of a frame whose look has a title: colours, ticks, labels, on a panel. */
 void cs_colour_bar_draw(const struct cs_colour_bar *bar, struct cs_lines *lines,
                         const struct cs_frame *frame);
 

@@ -32,6 +32,8 @@ static const struct cs_look_kind stress = {.colours = CS_COLOURS_STRESS,
                                            .unit = "N/m",
                                            .factor = 1,
                                            .has_sign = true};
+static const struct cs_look_kind normals = {.colours = CS_COLOURS_NORMALS};
+static const struct cs_look_kind uv = {.colours = CS_COLOURS_UV};
 static const struct cs_look_kind goals = {.colours = CS_COLOURS_FAINT, .goals = true};
 static const struct cs_look_kind crossings = {.colours = CS_COLOURS_CROSSINGS,
                                               .stops = mark_stops};
@@ -41,6 +43,15 @@ const struct cs_look_kind *cs_look_of(int32_t look) {
     static const struct cs_look_kind *const kinds[] = {CS_LOOK_LIST(X)};
 #undef X
     return kinds[look];
+}
+
+bool cs_look_needs_uv(int32_t look, bool textured) {
+    return textured || cs_look_of(look)->colours == CS_COLOURS_UV;
+}
+
+const double *cs_look_repeat(int32_t look, const struct cs_material *material) {
+    static const double once[2] = {1, 1};
+    return cs_look_of(look)->colours == CS_COLOURS_UV ? once : material->texture_repeat;
 }
 
 void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *material,
@@ -65,6 +76,12 @@ void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *ma
         break;
     case CS_COLOURS_FAINT:
         style->mode = CS_SURFACE_FAINT;
+        break;
+    case CS_COLOURS_NORMALS:
+        style->mode = CS_SURFACE_NORMALS;
+        break;
+    case CS_COLOURS_UV:
+        style->mode = CS_SURFACE_UV;
         break;
     case CS_COLOURS_FORCE:
     case CS_COLOURS_STRAIN:

@@ -11,12 +11,14 @@
 
 /* Source of the colours of bodies. */
 enum cs_look_colours {
-    CS_COLOURS_MATERIAL, /* lit, with textures and folds */
-    CS_COLOURS_FAINT,    /* pale, behind lines */
-    CS_COLOURS_FORCE,    /* N */
-    CS_COLOURS_STRAIN,   /* 1 */
-    CS_COLOURS_STRESS,   /* N/m */
-    CS_COLOURS_CROSSINGS /* marks of triangles: 0 or 1 */
+    CS_COLOURS_MATERIAL,  /* lit, with textures and folds */
+    CS_COLOURS_FAINT,     /* pale, behind lines */
+    CS_COLOURS_FORCE,     /* N */
+    CS_COLOURS_STRAIN,    /* 1 */
+    CS_COLOURS_STRESS,    /* N/m */
+    CS_COLOURS_CROSSINGS, /* marks of triangles: 0 or 1 */
+    CS_COLOURS_NORMALS,   /* x, y and z of the normal as red, green and blue */
+    CS_COLOURS_UV         /* texture coordinates as red and green */
 };
 
 /* One look. */
@@ -37,7 +39,9 @@ enum cs_surface_mode {
     CS_SURFACE_PLAIN,
     CS_SURFACE_TEXTURED,
     CS_SURFACE_VALUE,
-    CS_SURFACE_FAINT
+    CS_SURFACE_FAINT,
+    CS_SURFACE_NORMALS,
+    CS_SURFACE_UV
 };
 
 /* Pattern and haze of the ground (formulas: cpu/shade.c). Zeroed: the surface is no ground. */
@@ -60,6 +64,13 @@ struct cs_surface_style {
     bool has_ambient_occlusion;                   /* values darken ambient light (mesh.h) */
     struct cs_ground_style ground;
 };
+
+/* Returns whether a body's vertices need texture coordinates: for its texture, or the look uv.
+ */
+bool cs_look_needs_uv(int32_t look, bool textured);
+
+/* Returns how often they repeat over a body (2): once in the look uv. */
+const double *cs_look_repeat(int32_t look, const struct cs_material *material);
 
 /* Fills the style of a body for a look, but for its texture. */
 void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *material,

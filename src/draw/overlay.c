@@ -12,6 +12,7 @@
 #include "model/system/seams.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Viewpoint forces drawn over a picture: viewpoint, rectangle, particles
  * affected.
@@ -101,7 +102,10 @@ enum cs_status cs_overlay_init(struct cs_overlay *overlay, const struct cs_syste
     overlay->wireframe =
         (struct cs_wireframe){.system = system,
                               .line_unit = fmax((double)render->size[1] / 480, 0.5),
-                              .depth_offset = 0.12 * cell};
+                              .depth_offset = 0.12 * cell,
+                              .rim = cs_arena_alloc_array(arena, system->view.n, 1, error)};
+    if (error->status)
+        return error->status;
     cs_overlay_aim(overlay, pixels_per_m);
     cs_colour_bar_init(&overlay->colour_bar, render);
     return cs_lines_init(lines, most > CS_COLOUR_BAR_LINES ? most : CS_COLOUR_BAR_LINES, arena,
@@ -150,6 +154,8 @@ void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *fr
         cs_wireframe_draw_seams(net, lines, frame->x);
         cs_wireframe_draw_pins(net, lines, frame->x, frame->inv_mass);
     }
+    if (render->pins && !look->springs && frame->inv_mass)
+        cs_wireframe_draw_pegs(net, lines, frame->x, frame->inv_mass);
     if (look->goals && frame->goals)
         cs_wireframe_draw_goals(net, lines, frame->x, frame->goals);
     if (render->viewpoint_forces)
@@ -187,20 +193,42 @@ static void add(const struct cs_wireframe *net, struct cs_lines *lines, const do
     cs_lines_add(lines, from, to);
 }
 
-/* Adds the edges of a body, in the number that edges_of counts. */
+/* Which edges are added: all, or with `rim` those between two of its particles. While
+ * `free_from` is set, none: held particles with a free neighbour are marked in the rim instead.
+ */
+struct choice {
+    uint8_t *rim;            /* (n) */
+    const double *free_from; /* (n) 1/kg, 0: held; NULL: the rim is marked */
+};
+
+static const struct choice all = {NULL, NULL};
+
+static void add_edge(const struct cs_wireframe *net, struct cs_lines *lines, const double *x,
+                     const struct choice *choice, const uint32_t ends[2]) {
+    const uint32_t a = ends[0], b = ends[1];
+    const double *inv_mass = choice->free_from;
+    if (inv_mass && (inv_mass[a] == 0) != (inv_mass[b] == 0))
+        choice->rim[inv_mass[a] == 0 ? a : b] = 1;
+    if (!inv_mass && (!choice->rim || (choice->rim[a] && choice->rim[b])))
+        add(net, lines, x, a, b);
+}
+
+/* Adds the edges of body b that are chosen, at most as many as edges_of counts. */
 static void add_edges(const struct cs_wireframe *net, struct cs_lines *lines, const double *x,
-                      const struct cs_body_range *body) {
+                      uint32_t b, const struct choice *choice) {
+    const struct cs_body_range *body = net->system->bodies + b;
     for (uint32_t e = 0; body->mesh && e < body->mesh->n_edges; e++) {
-        const uint32_t *ends = body->mesh->edges + 2 * (size_t)e;
-        add(net, lines, x, body->first + ends[0], body->first + ends[1]);
+        const uint32_t *own = body->mesh->edges + 2 * (size_t)e;
+        add_edge(net, lines, x, choice,
+                 (uint32_t[2]){body->first + own[0], body->first + own[1]});
     }
     for (uint32_t row = 0; row < body->rows; row++)
         for (uint32_t column = 0; column < body->columns; column++) {
             const uint32_t i = body->first + row * body->columns + column;
             if (column + 1 < body->columns)
-                add(net, lines, x, i, i + 1);
+                add_edge(net, lines, x, choice, (uint32_t[2]){i, i + 1});
             if (row + 1 < body->rows)
-                add(net, lines, x, i, i + body->columns);
+                add_edge(net, lines, x, choice, (uint32_t[2]){i, i + body->columns});
         }
 }
 
@@ -218,7 +246,7 @@ void cs_wireframe_draw_edges(const struct cs_wireframe *net, struct cs_lines *li
         for (int i = 0; i < 3; i++)
             style.colour[i] = (float)(0.012 + 0.45 * colour[i]);
         style.half_width = cs_wireframe_width(net, 0.07, 0.35, 0.8);
-        add_edges(net, lines, x, net->system->bodies + b);
+        add_edges(net, lines, x, b, &all);
         cs_lines_draw(lines, &style);
     }
 }
@@ -286,6 +314,28 @@ void cs_wireframe_draw_pins(const struct cs_wireframe *net, struct cs_lines *lin
     }
 }
 
+void cs_wireframe_draw_pegs(const struct cs_wireframe *net, struct cs_lines *lines,
+                            const double *x, const double *inv_mass) {
+    struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * net->depth_offset};
+    struct choice choice = {net->rim, inv_mass};
+    const uint32_t bodies = net->system->scene->bodies.n;
+    cs_colour_linear(0x3b444f, style.colour);
+    memset(net->rim, 0, net->system->view.n);
+    for (uint32_t b = 0; b < bodies; b++)
+        add_edges(net, lines, x, b, &choice);
+    // rods, then pegs
+    choice.free_from = NULL;
+    style.half_width = 1.1 * net->line_unit;
+    for (uint32_t b = 0; b < bodies; b++)
+        add_edges(net, lines, x, b, &choice);
+    cs_lines_draw(lines, &style);
+    style.half_width = 1.9 * net->line_unit;
+    for (uint32_t i = 0; i < net->system->view.n; i++)
+        if (net->rim[i])
+            add(net, lines, x, i, i);
+    cs_lines_draw(lines, &style);
+}
+
 void cs_wireframe_draw_goals(const struct cs_wireframe *net, struct cs_lines *lines,
                              const double *x, const double *goals) {
     static const uint32_t colours[2] = {0x2b5fa8, 0xc8321f};
@@ -323,7 +373,7 @@ void cs_wireframe_draw_threads(const struct cs_wireframe *net, struct cs_lines *
             continue;
         for (int i = 0; i < 3; i++)
             style.colour[i] = (float)colour[i];
-        add_edges(net, lines, x, body);
+        add_edges(net, lines, x, b, &all);
         cs_lines_draw(lines, &style);
         for (uint32_t i = 0; i < body->count; i++)
             add(net, lines, x, body->first + i, body->first + i);

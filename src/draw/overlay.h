@@ -15,6 +15,7 @@ struct cs_wireframe {
     double line_unit;    /* pixels of a line of width 1: 1/480 of the height */
     double cell;         /* pixels between neighbours at the camera's target */
     double depth_offset; /* m by which lines are moved towards the eye */
+    uint8_t *rim;        /* (n) held particles with a free neighbour, of the last picture */
 };
 
 /* Half a line's width in pixels: the fraction `share` of the cell, so that fine grids keep
@@ -37,6 +38,9 @@ void cs_wireframe_draw_pins(const struct cs_wireframe *net, struct cs_lines *lin
 
 /* Draws a line from each particle to its goal, and a dot there; goals (3,n). A particle at its
  * goal has the dot alone. */
+void cs_wireframe_draw_pegs(const struct cs_wireframe *net, struct cs_lines *lines,
+                            const double *x,
+                            const double *inv_mass); /* and rods, where held meets free */
 void cs_wireframe_draw_goals(const struct cs_wireframe *net, struct cs_lines *lines,
                              const double *x, const double *goals);
 

@@ -117,8 +117,11 @@ void cs_colour_linear(uint32_t hex, float linear[3]) {
     }
 }
 
-void cs_colour_stops(int32_t look, float stops[6][4]) {
-    const uint32_t *table = cs_look_of(look)->stops;
+void cs_colour_stops(int32_t look, bool green_red, float stops[6][4]) {
+    static const uint32_t from_green[6] = {0x1a9641, 0x77c35c, 0xc4e687,
+                                           0xfecf7a, 0xf07c4a, 0xd7191c};
+    const struct cs_look_kind *kind = cs_look_of(look);
+    const uint32_t *table = green_red && kind->title ? from_green : kind->stops;
     for (int i = 0; i < 6; i++) {
         cs_colour_linear(table ? table[i] : 0, stops[i]);
         stops[i][3] = 1;

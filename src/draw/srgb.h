@@ -15,6 +15,7 @@
 
 #include <clothsim/clones.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -129,8 +130,9 @@ void cs_srgb_shrink(const struct cs_srgb *tone, const struct cs_image *picture,
 /* Sets six evenly spaced stops in linear RGB for the look's values, lowest first. Force runs
  * from dark violet over green to bright yellow. Strain, which has a sign, is blue where springs
  * are short, pale at 0 and red where they are long. Marks are red at the end. Neighbouring
- * stops differ for readers who see no green, and by lightness in grey. */
-void cs_colour_stops(int32_t look, float stops[6][4]);
+ * stops differ for readers who see no green, and by lightness in grey. green_red: from green
+ * over yellow to red instead. */
+void cs_colour_stops(int32_t look, bool green_red, float stops[6][4]);
 
 /* Converts 0xRRGGBB in sRGB to linear RGB, within 0.002 (srgb.c). */
 void cs_colour_linear(uint32_t hex, float linear[3]);

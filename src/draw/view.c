@@ -177,7 +177,8 @@ void cs_view_init(struct cs_view_state *view, const struct cs_system *system,
     }
     set_camera(view, &scene->render, extent);
     cs_view_set_colours(view, scene);
-    cs_colour_stops(scene->render.look, view->block.colour_stops);
+    cs_colour_stops(scene->render.look, scene->render.palette == CS_PALETTE_GREEN_RED,
+                    view->block.colour_stops);
 }
 
 /* Fits a cone (lamp) or a box (sun) of light to everything that casts a

@@ -34,7 +34,9 @@ struct cs_light {
     X(LIT, lit)                                                                                \
     X(WIREFRAME, wireframe)                                                                    \
     X(SPRINGS, springs)                                                                        \
-    X(FORCE, force) X(STRAIN, strain) X(GOALS, goals) X(CROSSINGS, crossings) X(STRESS, stress)
+    X(FORCE, force)                                                                            \
+    X(STRAIN, strain) X(GOALS, goals) X(CROSSINGS, crossings) X(STRESS, stress)                \
+        X(NORMALS, normals) X(UV, uv)
 
 enum cs_look {
 #define X(NAME, name) CS_LOOK_##NAME,
@@ -55,6 +57,7 @@ struct cs_marks {
     struct cs_list particles; /* struct cs_pin; empty: none */
 };
 
+enum cs_palette { CS_PALETTE_AUTO, CS_PALETTE_GREEN_RED };
 enum cs_ground_kind { CS_GROUND_AUTO, CS_GROUND_NONE, CS_GROUND_SHADOW, CS_GROUND_GRID };
 
 struct cs_render {
@@ -64,6 +67,8 @@ struct cs_render {
     double range[2]; /* of the colours of looks force [N], strain and stress [N/m]; NAN: from
                         the frame */
     struct cs_background background;
+    int32_t palette;       /* enum cs_palette: colours of the looks force, strain and stress */
+    bool pins;             /* show what is held */
     bool viewpoint_forces; /* show what viewpoint forces see, and from where */
     int32_t ground;        /* enum cs_ground_kind: what is drawn on a plane y = ground_height */
     double ground_height;  /* m; NAN: below all that moves */

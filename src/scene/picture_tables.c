@@ -78,6 +78,7 @@ static const struct cs_option background_rows[] = {
 static const struct cs_table background_table = {
     ROWS(background_rows), .size = sizeof(struct cs_background), .shorthand_text = "kind",
     .shorthand_list = "colour"};
+static const char *const palette_names[] = {"auto", "green-red", NULL};
 static const char *const ground_names[] = {"auto", "none", "shadow", "grid", NULL};
 static const struct cs_option mark_rows[] = {
     INT(struct cs_marks, body, "", 0, 0, 4294967295.0, "number of the body from 0"),
@@ -91,6 +92,10 @@ static const struct cs_option render_rows[] = {
     VECTOR(struct cs_render, range, 2, "N or 1", absent3, -BIG, BIG,
            "force or strain at the ends of the colours; absent: the range of each frame, from "
            "0 or symmetric about 0, without the hundredth of the particles farthest from 0"),
+    CHOICE(struct cs_render, palette, palette_names, CS_PALETTE_AUTO,
+           "colours of force, strain and stress; green-red: from green over yellow to red"),
+    BOOL(struct cs_render, pins, 1,
+         "draw pegs at pinned particles with a free neighbour, and rods between them"),
     TABLE(struct cs_render, background, background_table, "background behind everything"),
     BOOL(struct cs_render, viewpoint_forces, 0,
          "draw the particles that active viewpoint forces see, and their rectangles from their "

@@ -137,7 +137,7 @@ TEST(what_viewpoint_forces_see_is_drawn_at_once) {
     "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"total\": 0.2}, \"pins\": "     \
     "[\"edges\"]}], \"colliders\": [{\"box\": {\"centre\": [0.4, 0.3, -0.5], \"size\": "       \
     "[0.3, 0.2, 0.1]}}], \"render\": {\"size\": [160, 120], \"ground\": \"none\", "            \
-    "\"background\": %s}}"
+    "\"pins\": false, \"background\": %s}}"
 
 static void draw_backed(const char *background, struct cs_image *image) {
     struct fixture cloth;
@@ -266,6 +266,48 @@ TEST(sides_of_a_box_are_flat) {
         ck_assert_uint_gt(covered, 1000);
         ck_assert_msg(k == 0 ? others == 0 : others > 500, "%zu of %zu", others, covered);
     }
+}
+
+/* a sheet of 0.8 m seen straight on from 3 m, held by two corners; %s: keys of the picture */
+#define SHEET                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5], \"size\": [0.8, 0.8]}, \"mass\": "           \
+    "{\"total\": 1}, \"pins\": [\"top\"]}], \"camera\": {\"eye\": [0, 0, 3], \"projection\": " \
+    "\"orthographic\"}, \"render\": {\"size\": [160, 120], \"background\": \"none\", "         \
+    "\"ground\": \"none\", %s}}"
+
+static void draw_sheet(const char *keys, struct cs_image *image) {
+    struct fixture sheet;
+    fixture_open(&sheet, "symplectic-euler", SHEET, keys);
+    fixture_draw(&sheet, 0, image);
+}
+
+/* A normal (0, 0, 1) is (0.5, 0.5, 1) squared as light; texture coordinates run from 0 to 1 to
+ * the right and up or down; pegs and the rod between them are the pixels that pins adds. */
+TEST(looks_show_normals_coordinates_and_pins) {
+    static uint8_t rgb[4][3 * WIDTH * HEIGHT], alpha[4][WIDTH * HEIGHT];
+    static const char *const keys[] = {"\"look\": \"normals\", \"pins\": false",
+                                       "\"look\": \"uv\", \"pins\": false", "\"pins\": false",
+                                       "\"look\": \"lit\""};
+    const size_t middle = HEIGHT / 2 * WIDTH + WIDTH / 2;
+    size_t differ = 0, rows = 0;
+    for (size_t k = 0; k < 4; k++) {
+        struct cs_image image = {WIDTH, HEIGHT, rgb[k], alpha[k]};
+        draw_sheet(keys[k], &image);
+        ck_assert_uint_eq(alpha[k][middle], 255);
+    }
+    const uint8_t *normal = rgb[0] + 3 * middle, *uv = rgb[1] + 3 * middle;
+    ck_assert(normal[0] == 137 && normal[1] == 137 && normal[2] == 255);
+    ck_assert_int_le(abs(uv[0] - 137), 3);
+    ck_assert_int_le(abs(uv[1] - 137), 3);
+    ck_assert_int_gt(uv[30] - uv[0], 10);
+    ck_assert_int_gt(abs(uv[3 * 10 * WIDTH + 1] - uv[1]), 10);
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++)
+        if (alpha[2][i] != alpha[3][i] || memcmp(rgb[2] + 3 * i, rgb[3] + 3 * i, 3)) {
+            differ++;
+            rows += i / WIDTH > HEIGHT / 2;
+        }
+    ck_assert_uint_gt(differ, 20);
+    ck_assert_uint_eq(rows, 0);
 }
 
 static enum cs_status fail_to_paint(struct cs_canvas *canvas, const struct cs_frame *frame,

@@ -90,7 +90,7 @@ TEST(colours_are_told_apart_without_green) {
     for (int k = 0; k < 2; k++) {
         float stops[6][4];
         double lab[6][3];
-        cs_colour_stops(looks[k], stops);
+        cs_colour_stops(looks[k], false, stops);
         for (int i = 0; i < 6; i++)
             lab_without_green(stops[i], lab[i]);
         for (int i = 1; i < 6; i++) {

@@ -201,7 +201,7 @@ TEST(schema_says_what_the_tables_say) {
     ck_assert_str_eq(cs_json_text(FIND(grid, "items", "type")), "integer");
     ck_assert_ptr_nonnull(FIND(root, "properties", "integrator", "anyOf"));
     ck_assert_uint_eq(
-        cs_json_count(FIND(root, "properties", "render", "properties", "look", "enum")), 8);
+        cs_json_count(FIND(root, "properties", "render", "properties", "look", "enum")), 10);
     cs_json_destroy(root);
     cs_text_finish(&text);
 }

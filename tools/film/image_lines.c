@@ -54,7 +54,7 @@ static void draw(struct cs_lines *lines, const struct cs_line_style *style) {
 /* the colour at a share of the map, from 0 at its lowest stop */
 static uint32_t colour_at(const struct cs_image_lines *pen, double share) {
     float stops[6][4], mixed[3];
-    cs_colour_stops(pen->look, stops);
+    cs_colour_stops(pen->look, false, stops);
     const double at = 5 * fmin(fmax(share, 0), 1);
     const int stop = at < 4 ? (int)at : 4;
     const float t = (float)(at - stop);

@@ -89,16 +89,20 @@ void cs_collider_geometry_add_shadow(const struct cs_collider_geometry *solids,
 
 /* Projects the vertices of bodies, and adds their faces as triangles. */
 
-/* Makes mipmaps and texture coordinates. */
+/* Makes texture coordinates, and mipmaps of a texture. */
 static enum cs_status init_texture(struct cs_body_geometry *body, const struct cs_image *image,
                                    const double repeat[2], struct cs_arena *arena,
                                    struct cs_error *error) {
-    body->material->mips = cs_arena_alloc(arena, sizeof *body->material->mips, error);
     body->uv = cs_arena_alloc_array(arena, body->mesh.n_vertices, 2 * sizeof *body->uv, error);
-    if (error->status || cs_mipmap_make(body->material->mips, image, body->srgb, arena, error))
+    if (error->status)
         return error->status;
     cs_mesh_uv(&body->mesh, repeat, body->uv);
-    return CS_OK;
+    if (body->material->mode != CS_SURFACE_TEXTURED)
+        return CS_OK;
+    body->material->mips = cs_arena_alloc(arena, sizeof *body->material->mips, error);
+    return error->status
+               ? error->status
+               : cs_mipmap_make(body->material->mips, image, body->srgb, arena, error);
 }
 
 enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
@@ -109,7 +113,8 @@ enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
     const struct cs_image *image = settings->textures ? settings->textures + b : &none;
     const struct cs_material *material = &cs_scene_bodies(settings->scene)[b].material;
     const bool textured = image->width > 0;
-    if (cs_mesh_init(&body->mesh, settings->system, b, textured, arena, error))
+    const bool has_uv = cs_look_needs_uv(settings->scene->render.look, textured);
+    if (cs_mesh_init(&body->mesh, settings->system, b, has_uv, arena, error))
         return error->status;
     body->clip_vertices =
         cs_arena_alloc_array(arena, body->mesh.n_vertices, sizeof *body->clip_vertices, error);
@@ -117,8 +122,9 @@ enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
     body->material = coat;
     body->textured = textured;
     cs_body_geometry_restyle(body, settings->scene, b);
-    if (error->status == CS_OK && coat->mode == CS_SURFACE_TEXTURED)
-        init_texture(body, image, material->texture_repeat, arena, error);
+    if (error->status == CS_OK && has_uv)
+        init_texture(body, image, cs_look_repeat(settings->scene->render.look, material), arena,
+                     error);
     return error->status;
 }
 

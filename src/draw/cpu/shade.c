@@ -34,8 +34,9 @@ void cs_shading_material_make(struct cs_shading_material *coat,
     coat->mode = style->mode;
     coat->has_ambient_occlusion = style->has_ambient_occlusion;
     // the ground has one normal, which is in its style
-    coat->attributes = style->ground.radius > 0             ? 0
-                       : style->mode == CS_SURFACE_TEXTURED ? CS_ATTRIBUTES
+    coat->attributes = style->ground.radius > 0 ? 0
+                       : style->mode == CS_SURFACE_TEXTURED || style->mode == CS_SURFACE_UV
+                           ? CS_ATTRIBUTES
                        : style->mode == CS_SURFACE_VALUE || style->has_ambient_occlusion ? 4
                                                                                          : 3;
     coat->ambient = (float)style->ambient;
@@ -268,6 +269,17 @@ static void shade_value(const struct cs_shading_context *shading, const struct c
     }
 }
 
+// components of the normal towards the eye, or texture coordinates, as colours
+static void shade_coordinates(const struct cs_fragments *f, struct cs_shading_work *w) {
+    for (int i = 0; i < f->n; i++)
+        for (int k = 0; k < 3; k++) {
+            const float at = k < 2 ? f->attributes[4 + k][i] / f->inverse[i] : 0.25f;
+            const float c = f->material->mode == CS_SURFACE_UV ? at - floorf(at)
+                                                               : 0.5f + 0.5f * w->normal[k][i];
+            w->colour[k][i] = c * c; // so that bytes are about linear
+        }
+}
+
 // a pale colour between the sky's and white, without light or shadow
 CS_INLINE void shade_faint(const struct cs_shading_context *shading,
                            struct cs_shading_work *w) {
@@ -308,6 +320,8 @@ CS_CLONES static void shade(const struct cs_shading_context *shading, struct cs_
         shade_lit(shading, f, w);
     else if (f->material->mode == CS_SURFACE_VALUE)
         shade_value(shading, f, w);
+    else if (f->material->mode != CS_SURFACE_FAINT)
+        shade_coordinates(f, w);
     else
         shade_faint(shading, w);
     if (ground->radius > 0)

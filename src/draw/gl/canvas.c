@@ -169,22 +169,24 @@ static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
                                  const struct cs_image *texture, struct cs_error *error) {
     struct cs_cloth_picture *cloth = canvas->cloths + b;
     const struct cs_material *material = &cs_scene_bodies(canvas->scene)[b].material;
-    if (cs_mesh_init(&cloth->mesh, canvas->system, b, texture->width > 0, &canvas->arena,
-                     error) != CS_OK)
+    const int32_t look = canvas->scene->render.look;
+    const bool has_uv = cs_look_needs_uv(look, texture->width > 0);
+    if (cs_mesh_init(&cloth->mesh, canvas->system, b, has_uv, &canvas->arena, error) != CS_OK)
         return error->status;
     /* split vertices stand in the order in which they are drawn, without indices */
     cs_surface_init(&cloth->surface, cloth->mesh.split_vertices ? NULL : cloth->mesh.indices,
                     cloth->mesh.n_indices);
-    cs_style_cloth(&cloth->style, material, texture->width > 0, canvas->scene->render.look);
-    if (cloth->style.mode != CS_SURFACE_TEXTURED)
+    cs_style_cloth(&cloth->style, material, texture->width > 0, look);
+    if (!has_uv)
         return CS_OK;
-    if (init_texture(canvas, texture, &cloth->style.texture, error))
+    if (cloth->style.mode == CS_SURFACE_TEXTURED &&
+        init_texture(canvas, texture, &cloth->style.texture, error))
         return error->status;
     float *uv =
         cs_arena_alloc_array(&canvas->arena, cloth->mesh.n_vertices, 2 * sizeof *uv, error);
     if (!uv)
         return error->status;
-    cs_mesh_uv(&cloth->mesh, material->texture_repeat, uv);
+    cs_mesh_uv(&cloth->mesh, cs_look_repeat(look, material), uv);
     cs_surface_set_uv(&cloth->surface, uv, cloth->mesh.n_vertices);
     return CS_OK;
 }

@@ -164,7 +164,7 @@ static const char surface_vertex[] = GLSL(
     }
 );
 
-// mode: 0 plain, 1 textured, 2 by value, 3 faint
+// mode: 0 plain, 1 textured, 2 by value, 3 faint, 4 normals, 5 texture coordinates
 static const char surface_fragment[] = GLSL(
     in vec3 place;
     in vec3 normal;
@@ -254,8 +254,12 @@ static const char surface_fragment[] = GLSL(
             c = bend(blinn_phong(base, n, v));
         else if (mode == 2)
             c = map_colour(value) * (0.5 + 0.5 * towards);
-        else
+        else if (mode == 3)
             c = mix(sky.rgb, vec3(1.0), 0.45) * (0.62 + 0.38 * towards);
+        else
+            c = mode == 4 ? 0.5 + 0.5 * n : vec3(fract(uv), 0.25);
+        if (mode > 3)
+            c *= c;
         if (span.z > 0.0) {
             // haze: the ground fades into the background, or into nothing without one
             vec2 d = (place.xz - span.xy) / span.z;
