@@ -44,17 +44,17 @@ CS_INLINE uint32_t cs_srgb_pack(const struct cs_srgb *tone, float red, float gre
            cs_srgb_encode(tone, blue) << 16;
 }
 
-/* Threshold 0..1 of pixel (x, y) in an ordered dither of 8 x 8 (Bayer 1973): the bits of x ^ y
- * and y in turns, the lowest first. */
-CS_INLINE float cs_srgb_dither(int x, int y) {
+/* Threshold 0..1 of row y in an ordered dither (Bayer 1973) of 16 rows: the bits of y, the
+ * lowest first. Rows stay smooth, because noise along them makes files five times as large. */
+CS_INLINE float cs_srgb_dither(int y) {
     int v = 0;
-    for (int k = 0; k < 3; k++)
-        v = 4 * v + 2 * ((x ^ y) >> k & 1) + (y >> k & 1);
-    return ((float)v + 0.5f) / 64;
+    for (int k = 0; k < 4; k++)
+        v = 2 * v + (y >> k & 1);
+    return ((float)v + 0.5f) / 16;
 }
 
 /* Light c in 0..1 plus the part of a byte that a threshold asks for: encoded, colours that vary
- * slowly are rounded up or down by the pixel, and show no bands. A byte is dc = 2.4 / 1.055
+ * slowly are rounded up or down by the row, and show no bands. A byte is dc = 2.4 / 1.055
  * c^(1.4 / 2.4) / 255 of light wide; the power is 0.78 sqrt(c) + 0.22 c within 6 % from 0.05 on
  * and larger below. */
 CS_INLINE float cs_srgb_dithered(float c, float threshold) {

@@ -78,13 +78,8 @@ static float along_of(const struct cs_band_pass *drawing, const struct cs_triang
 struct spot {
     int x, y, n;
     size_t pixel; // index of the first in the tile buffer
-    uint32_t sky; // index of the colours of the sky in their row
+    uint32_t sky; // index of the colour of the sky in their row
 };
-
-// index of the colour of the sky at pixel i of the spot
-CS_INLINE uint32_t sky_of(const struct spot *spot, int i) {
-    return spot->sky + (uint32_t)(spot->x + i) % CS_SKY_COLOURS;
-}
 
 /* Adds the fragments of a triangle at a spot; shading writes their colours to colours[out] and
  * those after it later. */
@@ -141,7 +136,7 @@ static void add_mixed(const struct cs_band_pass *drawing, cs_i4 shown, const str
     tiles->n_colours += n;
     for (uint32_t k = 0; k < n; k++)
         if (shown[samples[k]] == CS_NOTHING)
-            tiles->colours[first + k] = tiles->colours[sky_of(spot, 0)];
+            tiles->colours[first + k] = tiles->colours[spot->sky];
         else
             add_fragments(drawing, drawing->triangles.items + shown[samples[k]], spot,
                           first + k, tiles);
@@ -168,28 +163,22 @@ static void add_pixels(const struct cs_band_pass *drawing, struct spot *spot,
         spot->n++;
     memset(tiles->sample_codes + spot->pixel, 0, (size_t)spot->n);
     for (int i = 0; i < spot->n; i++)
-        first[i] = is_sky ? sky_of(spot, i) : tiles->n_colours + (uint32_t)i;
+        first[i] = is_sky ? spot->sky : tiles->n_colours + (uint32_t)i;
     if (is_sky)
         return;
     tiles->n_colours += (uint32_t)spot->n;
     add_fragments(drawing, drawing->triangles.items + id, spot, *first, tiles);
 }
 
-// adds the colours of the sky in a row; transparent without background
-static uint32_t add_sky(const struct cs_band_pass *drawing, int y,
-                        struct cs_tile_buffer *tiles) {
-    const uint32_t first = tiles->n_colours;
+// colour of the sky in a row, dithered; transparent without background
+static uint32_t sky_colour(const struct cs_band_pass *drawing, int y) {
     float c[3];
-    for (int x = 0; x < CS_SKY_COLOURS; x++) {
-        cs_sky_colour(&drawing->shading, (float)y, c);
-        for (int k = 0; k < 3; k++)
-            c[k] = cs_srgb_dithered(c[k], cs_srgb_dither(x, y));
-        tiles->colours[tiles->n_colours++] =
-            drawing->shading.view->top_colour[3] < 1
-                ? 0xff000000
-                : cs_srgb_pack(drawing->shading.srgb, c[0], c[1], c[2]);
-    }
-    return first;
+    if (drawing->shading.view->top_colour[3] < 1)
+        return 0xff000000;
+    cs_sky_colour(&drawing->shading, (float)y, c);
+    for (int k = 0; k < 3; k++)
+        c[k] = cs_srgb_dithered(c[k], cs_srgb_dither(y));
+    return cs_srgb_pack(drawing->shading.srgb, c[0], c[1], c[2]);
 }
 
 // visibility, fragments and shading of a band
@@ -202,7 +191,8 @@ static void show(const struct cs_band_pass *drawing, uint32_t band,
         cs_raster_fill(drawing->triangles.items + list[i], (int32_t)list[i],
                        drawing->sample_pattern, on);
     for (int row = 0; row < on->rows; row++) {
-        const uint32_t sky = add_sky(drawing, on->top + row, tiles);
+        const uint32_t sky = tiles->n_colours++;
+        tiles->colours[sky] = sky_colour(drawing, on->top + row);
         struct spot spot = {0, on->top + row, 1, (size_t)row * (size_t)on->width, sky};
         for (; spot.x < on->width; spot.x += spot.n, spot.pixel += (size_t)spot.n)
             add_pixels(drawing, &spot, tiles);

@@ -166,7 +166,7 @@ enum cs_status cs_tile_buffer_init(struct cs_tile_buffer *tiles, int width,
     const size_t n = (size_t)width * CS_ROWS;
     if (take_samples(&tiles->samples, width, arena, error) != CS_OK)
         return error->status;
-    tiles->colours_capacity = (uint32_t)(CS_COLOURS_PER_PIXEL * n + CS_SKY_COLOURS * CS_ROWS);
+    tiles->colours_capacity = (uint32_t)(CS_COLOURS_PER_PIXEL * n + CS_ROWS);
     tiles->first_colour = cs_arena_alloc_array(arena, n, sizeof *tiles->first_colour, error);
     tiles->sample_codes = cs_arena_alloc_array(arena, n, sizeof *tiles->sample_codes, error);
     tiles->colours =

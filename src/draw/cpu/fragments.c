@@ -160,7 +160,7 @@ CS_CLONES void cs_shade_haze(const struct cs_shading_context *shading,
         const float cover = whole ? 1 : w->cover[i];
         w->shine[i] = left * left * cover;
         w->cover[i] = opaque ? 1 : w->shine[i];
-        w->share[i] = cs_srgb_dither((int)f->x[i], (int)f->y[i]);
+        w->share[i] = cs_srgb_dither((int)f->y[i]);
     }
     for (int k = 0; k < 3; k++) {
         const float top = shading->view->top_colour[k];

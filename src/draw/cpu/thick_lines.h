@@ -16,7 +16,6 @@
 enum {
     CS_FRAGMENT_SLOTS = 16,   /* surfaces' sides whose fragments are collected at a time */
     CS_COLOURS_PER_PIXEL = 8, /* four shown, four laid over */
-    CS_SKY_COLOURS = 8,       /* of a row: those that dither gives neighbours */
     CS_PIXEL_SPLIT = 0xe4,    /* codes: a colour for each sample, in their order */
 };
 

@@ -50,14 +50,13 @@ static const char shadow[] = GLSL(
     uniform sampler2DShadow depth1;
     uniform sampler2DShadow depth2;
     uniform sampler2DShadow depth3;
-    // what an ordered dither of 8 x 8 adds to a channel (srgb.h: cs_srgb_dither)
+    // what an ordered dither of 16 rows adds to a channel (srgb.h: cs_srgb_dither)
     float dither() {
-        int x = int(gl_FragCoord.x);
         int y = int(size.y - gl_FragCoord.y);
         int v = 0;
-        for (int k = 0; k < 3; k++)
-            v = 4 * v + 2 * (((x ^ y) >> k) & 1) + ((y >> k) & 1);
-        return ((float(v) + 0.5) / 64.0 - 0.5) / 255.0;
+        for (int k = 0; k < 4; k++)
+            v = 2 * v + ((y >> k) & 1);
+        return ((float(v) + 0.5) / 16.0 - 0.5) / 255.0;
     }
     float tap(int k, vec3 q) {
         if (k == 0)
