@@ -1,0 +1,268 @@
+#!/usr/bin/env python3
+"""mutants.py CLOTHSIM ROOT [--all] [--write] [--list] - the card on modules with one fault each.
+
+Each mutant is a module: faulty.c with a fault of FAULTS, or the sources of a shipped method with one
+line changed by a rule of RULES. The card must find it, which is a claim that fails. Without --all 30
+of them, spread over kinds and methods, meet the check alone that found them, named in mutants.tsv;
+with --all every mutant meets the whole card, the rate must reach FLOOR, and mutants.tsv must hold what
+was found: run with --write to write it anew. Survivors stand there with the reason.
+"""
+import hashlib
+import itertools
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+TABLE = HERE / "mutants.tsv"
+FLOOR = 0.90
+QUICK = 30
+# of each rule in each file at most
+SITES = 3
+FLAGS = "-std=gnu17 -O1 -w -ffp-contract=off -fno-math-errno -fPIC -fvisibility=hidden".split()
+
+# fault of faulty.c: its methods (M H V A), its sizes, its parts
+ALL = "MHVA"
+PARTS = ("STRETCH SHEAR BEND DAMPING GRAVITY DRAG WIND POTENTIAL DISSIPATIVE EXTERNAL ELASTIC "
+         "ELASTIC_DAMPING").split()
+FAULTS = (
+    ("STAGE_TIME", "MHV", (1, 1e-3, 1e-5), ()),
+    ("STALE_MASS", ALL, (0,), ()),
+    ("OTHER_MASS", "MA", (0,), ()),
+    ("FROM_INDEX", "MH", (128, 256, 500, 1000), ()),
+    ("LAST_PARTICLE", "MV", (0,), ()),
+    ("EVERY_64TH", "HA", (1e-3, 1e-6, 1e-9), ()),
+    ("CLAMP_SPEED", "MV", (5, 50, 150), ()),
+    ("CLAMP_BACK", "HA", (50, 100), ()),
+    ("CLAMP_FORCE", "MH", (1e2, 1e4), ()),
+    ("FLOAT_PLACE", "MV", (0,), ()),
+    ("FLOAT_FORCE", ALL, (0,), ()),
+    ("FLOAT_SPEED", "MH", (0,), ()),
+    ("PART_WEAK", "M", (1e-3, 1e-5, 1e-6), PARTS),
+    ("PART_LAGS", "H", (1e-3,), PARTS),
+    ("HELD_STAY", "MHV", (0,), ()),
+    ("FIRST_WEIGHT", "HVA", (1e-3, 1e-6), ()),
+    ("SECOND_WEIGHT", ALL, (1e-3, 1e-6, 1e-9), ()),
+    ("STAGE_STEP", "MH", (1e-3, 1e-5), ()),
+    ("DRIFT", "MA", (1e-6,), ()),
+    ("NO_RESTART", "VA", (0,), ()),
+    ("NO_RESTART_SET", "VA", (0,), ()),
+    ("SAVES_LESS", "VA", (0,), ()),
+    ("SUM_ORDER", "H", (1e-6,), ()),
+    ("Z_ONLY", "MV", (1e-6,), ()),
+)
+BASES = {"M": "MIDPOINT", "H": "HEUN", "V": "VERLET", "A": "ADAMS"}
+
+# module: the file with its list of methods, and its other files
+MODULES = {
+    "explicit": ("explicit.c", "explicit_steps.c fixed_step.c"),
+    "composition": ("composition.c", "quadrature_weights.c fixed_step.c"),
+    "dop853": ("high_order_module.c", "dop853.c dopri5.c symmetric_multistep.c nystrom.c adaptive_step.c "
+               "hermite.c fixed_step.c"),
+    "newton": ("newton_module.c", "newton.c fixed_step.c step_halving.c one_stage_implicit.c bdf2.c tr_bdf2.c "
+               "sdirk2.c ros2.c newmark.c gauss.c collocation.c esdirk.c nystrom.c adaptive_step.c hermite.c"),
+    "implicit": ("implicit.c", "fixed_step.c"),
+    "r-respa": ("r_respa.c", "fixed_step.c"),
+    "rkc2": ("rkc2.c", "chebyshev_step.c spectral_radius.c adaptive_step.c hermite.c"),
+}
+# module, changed file, method; a function's name begins with the words behind it, if there are some
+TARGETS = (
+    ("explicit", "explicit_steps.c", "rk4", "rk4 step_rk4"),
+    ("explicit", "explicit_steps.c", "velocity_verlet", "drift_row kick_row step_velocity accelerate"),
+    ("explicit", "explicit_steps.c", "position_verlet", "position last_half step_position restart_position"),
+    ("explicit", "explicit_steps.c", "symplectic_euler", "symplectic step_symplectic"),
+    ("explicit", "explicit_steps.c", "averaged_euler", "averaged step_averaged"),
+    ("dop853", "dopri5.c", "dopri5", ""),
+    ("dop853", "nystrom.c", "dopri5", "add combine nystrom_combine"),
+    ("dop853", "dop853.c", "dop853", ""),
+    ("dop853", "symmetric_multistep.c", "symmetric_multistep", ""),
+    ("newton", "bdf2.c", "bdf2", ""),
+    ("newton", "tr_bdf2.c", "tr_bdf2", ""),
+    ("newton", "sdirk2.c", "sdirk2", ""),
+    ("newton", "ros2.c", "ros2", ""),
+    ("newton", "newmark.c", "newmark", ""),
+    ("newton", "esdirk.c", "esdirk", ""),
+    ("r-respa", "r_respa.c", "r_respa", "take_fast step archive"),
+    ("rkc2", "chebyshev_step.c", "rkc2", ""),
+)
+# kind, what is replaced, by what; {d} is a size of SIZES in turn
+SIZES = ("1e-3", "1e-6", "1e-9")
+RULES = (
+    ("coefficient", r"(?<![\w.])-?\d+\.\d+(?:e-?\d+)?(?: / \d+(?:\.\d+)?)?(?![\w.])", r"(\g<0> * (1 + {d}))"),
+    ("half", r"\bh / 2\b", "h / 2 * (1 + {d})"),
+    ("step", r"\bh \* (?=[a-z(])", "h * (1 + {d}) * "),
+    ("time", r"\bt \+ [\w.\[\]>()-]+(?: \* [\w.\[\]>()-]+)*", "t"),
+    ("range", r"(?<=; )(\w) < (row->count|n3|count)\b", r"\1 + 1 < \2"),
+    ("mass", r"\bw\[i\]", "w[i / 2]"),
+    ("float", r"^( +\w+\[\w\] [+*]?=) (.+);$", r"\1 (float)(\2);"),
+    ("clamp", r"^( +)(v\[\w\]) [+*]?= .+;$", r"\g<0> \2 = \2 > 50 ? 50 : \2;"),
+    ("save", r"^ +archive->\w+\([^;]+;$", ""),
+    ("copy", r"^ +memcpy\(self->[^;]+;$", ""),
+)
+FUNCTION = re.compile(r"^(?!static const|const|struct|enum \{)\w[\w *]*?\b(\w+)\([^;]*?\) \{$", re.M)
+
+
+def code_only(text):
+    """The text with comments and lines of options blanked, of the same length."""
+    text = re.sub(r"/\*.*?\*/|//[^\n]*", lambda m: re.sub(r"[^\n]", " ", m.group(0)), text, flags=re.S)
+    return re.sub(r"static const struct cs_option rows.*?\};", lambda m: re.sub(r"[^\n]", " ", m.group(0)),
+                  text, flags=re.S)
+
+
+def function_at(text, place):
+    name = ""
+    for m in FUNCTION.finditer(text, 0, place):
+        name = m.group(1)
+    return name
+
+
+def faulty():
+    for fault, bases, sizes, parts in FAULTS:
+        for base, size, part in itertools.product(bases, sizes, parts or ("",)):
+            flags = [f"-DBASE={BASES[base]}", f"-DFAULT={fault}", f"-DSIZE={float(size)}"]
+            flags += [f"-DPART=CS_PART_{part}"] if part else []
+            name = "-".join(filter(None, (BASES[base].lower(), fault.lower(), part.lower(), f"{size:g}")))
+            yield {"name": name, "kind": fault.lower(), "flags": flags}
+
+
+def mutations(root):
+    """Of each rule in each file SITES sites, evenly chosen."""
+    turn = itertools.cycle(SIZES)
+    for module, file, method, words in TARGETS:
+        source = (root / "plugins" / file).read_text()
+        code = code_only(source)
+        for kind, pattern, new in RULES:
+            sites = [m for m in re.finditer(pattern, code, re.M)
+                     if not words or function_at(code, m.start()).startswith(tuple(words.split()))]
+            step = max(1, len(sites) / SITES)
+            for m in [sites[int(k * step)] for k in range(min(SITES, len(sites)))]:
+                changed = m.expand(new.replace("{d}", next(turn))) if new else ""
+                line = source.count("\n", 0, m.start()) + 1
+                text = source[:m.start()] + changed + source[m.end():]
+                # of what is changed, not of the file, which may change elsewhere
+                start = source.rfind("\n", 0, m.start()) + 1
+                place = source[start:source.index("\n", start)]
+                place += str(source.count(place, 0, start) or "")
+                digest = hashlib.sha256((file + place + str(m.start() - start) + changed).encode()).hexdigest()[:6]
+                yield {"name": f"{method}-{kind}-{digest}", "kind": kind, "module": module, "file": file,
+                       "method": method, "text": text, "line": line,
+                       "change": f"{m.group(0).strip()} -> {changed.strip() or 'left out'}"}
+
+
+class Maker:
+    """Builds modules in a folder; objects of unchanged files are made once."""
+
+    def __init__(self, root, work):
+        self.root, self.work = root, Path(work)
+        self.cc = os.environ.get("CC", "cc").split()
+
+    def compile(self, source, out, flags=()):
+        include = [f"-I{self.root / 'include'}", f"-I{self.root / 'plugins'}"]
+        return subprocess.run([*self.cc, *FLAGS, *include, *flags, "-c", source, "-o", out],
+                              capture_output=True).returncode == 0
+
+    def prepare(self):
+        for module, (first, others) in MODULES.items():
+            for file in others.split():
+                if not (out := self.work / f"{file}.o").exists():
+                    assert self.compile(self.root / "plugins" / file, out), file
+
+    def make(self, mutant, number):
+        """The module's path, or None if it does not compile."""
+        base = self.work / f"m{number}"
+        source, objects = base.with_suffix(".c"), []
+        if "module" not in mutant:
+            source = HERE / "faulty.c"
+        else:
+            first, others = MODULES[mutant["module"]]
+            text = (self.root / "plugins" / first).read_text() if first != mutant["file"] else mutant["text"]
+            # the changed method alone
+            text = re.sub(r"(\*const integrators\[\] = \{)[^}]*\}", rf"\1&{mutant['method']}}}", text)
+            source.write_text(text)
+            for file in others.split():
+                if file == mutant["file"]:
+                    changed = self.work / f"m{number}b.c"
+                    changed.write_text(mutant["text"])
+                    if not self.compile(changed, changed.with_suffix(".o")):
+                        return None
+                    objects.append(changed.with_suffix(".o"))
+                else:
+                    objects.append(self.work / f"{file}.o")
+        if not self.compile(source, base.with_suffix(".o"), mutant.get("flags", ())):
+            return None
+        out = base.with_suffix(".so")
+        link = subprocess.run([*self.cc, "-shared", base.with_suffix(".o"), *objects, "-o", out, "-lm"],
+                              capture_output=True)
+        return out if link.returncode == 0 else None
+
+
+def judge(clothsim, module, only):
+    """The first check that fails, or ''."""
+    command = [clothsim, "conform", "-q", "--fail-fast", "--isolate", "20", module] + (["--only", only] if only else [])
+    done = subprocess.run(command, capture_output=True, text=True)
+    failed = re.findall(r"^(?:FAIL|STALE) +(\S+)", done.stdout, re.M)
+    if done.returncode not in (0, 1) and not failed:
+        return "refused"
+    return failed[0] if failed else ""
+
+
+def read_table():
+    rows = [(line + "\t\t").split("\t")[:3] for line in TABLE.read_text().splitlines()[1:]] if TABLE.exists() else []
+    return {row[0]: row for row in rows}
+
+
+def main():
+    clothsim, root = sys.argv[1], Path(sys.argv[2]).resolve()
+    whole, write = "--all" in sys.argv, "--write" in sys.argv
+    table = read_table()
+    mutants = list(faulty()) + list(mutations(root))
+    if "--list" in sys.argv:
+        for m in mutants:
+            print(m["name"], m.get("file", ""), m.get("line", ""), m.get("change", ""), sep="\t")
+        return 0
+    if not whole:
+        found = [m for m in mutants if table.get(m["name"], ["", ""])[1]]
+        mutants = [found[int(k * len(found) / QUICK)] for k in range(QUICK)]
+    with tempfile.TemporaryDirectory() as work, ThreadPoolExecutor(int(os.environ.get("JOBS", "2"))) as pool:
+        maker = Maker(root, work)
+        maker.prepare()
+
+        def run(item):
+            number, mutant = item
+            module = maker.make(mutant, number)
+            if module is None:
+                return None
+            only = "" if whole else table[mutant["name"]][1]
+            check = judge(clothsim, module, only)
+            module.unlink()
+            return check
+
+        results = list(pool.map(run, enumerate(mutants)))
+    made = [(m, check) for m, check in zip(mutants, results) if check is not None]
+    found = [m for m, check in made if check]
+    lines = []
+    for mutant, check in made:
+        row = table.get(mutant["name"], ["", "", ""])
+        reason = row[2] if len(row) > 2 else ""
+        known = bool(check) or (whole and bool(reason))
+        print("ok" if known or write else "not ok", "-", mutant["name"], f"({check or 'survives: ' + reason})",
+              mutant.get("file", ""), mutant.get("line", ""), mutant.get("change", ""))
+        lines.append("\t".join((mutant["name"], check, "" if check else reason)))
+    same = sum(not check and table.get(m["name"], ["", "", ""])[2].startswith("same") for m, check in made)
+    rate = len(found) / (len(made) - same)
+    print(f"# {len(found)} of {len(made) - same} mutants found, {100 * rate:.1f} %; {same} more do what the right "
+          f"method does, {len(mutants) - len(made)} do not compile")
+    if write:
+        TABLE.write_text("\n".join(["mutant\tcheck\treason"] + lines) + "\n")
+    held = rate >= FLOOR if whole else len(found) == QUICK
+    print("ok" if held else "not ok", "- the rate")
+    print(f"1..{len(made) + 1}")
+    return 0 if held or write else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
