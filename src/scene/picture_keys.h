@@ -4,6 +4,10 @@
 
 #include <clothsim/option.h>
 
+/* linear RGB: the default colour of cloth, which means white behind a texture */
+#define CS_CLOTH_RED                                                                           \
+    { 0.60, 0.06, 0.07 }
+
 enum cs_frame_kind { CS_FRAME_GIVEN, CS_FRAME_AUTO, CS_FRAME_START };
 enum cs_projection { CS_PROJECTION_PERSPECTIVE, CS_PROJECTION_ORTHOGRAPHIC };
 struct cs_camera_key {
@@ -35,8 +39,8 @@ struct cs_light {
     X(WIREFRAME, wireframe)                                                                    \
     X(SPRINGS, springs)                                                                        \
     X(FORCE, force)                                                                            \
-    X(STRAIN, strain) X(GOALS, goals) X(CROSSINGS, crossings) X(STRESS, stress)                \
-        X(NORMALS, normals) X(UV, uv)
+    X(STRAIN, strain)                                                                          \
+    X(GOALS, goals) X(CROSSINGS, crossings) X(STRESS, stress) X(NORMALS, normals) X(UV, uv)
 
 enum cs_look {
 #define X(NAME, name) CS_LOOK_##NAME,

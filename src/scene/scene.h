@@ -78,9 +78,6 @@ struct cs_spring_law {
 enum cs_shading { CS_SHADING_SMOOTH, CS_SHADING_FLAT };
 
 /* Blinn-Phong coefficients (shade.c); colours are linear RGB in 0..1. */
-#define CS_CLOTH_RED                                                                           \
-    { 0.60, 0.06, 0.07 } /* linear RGB, the default; behind a texture it means white */
-
 struct cs_material {
     double colour[3];
     double back_colour[3]; /* of the other side; first component NAN: as the front */
