@@ -182,10 +182,9 @@ struct cs_wind {
     double direction[3]; /* made a unit vector by cs_scene_check; along velocity if absent */
     double strength;
     int32_t strength_unit; /* enum cs_wind_unit */
-    /* of air that flows past the cloth (model/force/term_airflow.c) */
-    double velocity[3]; /* m/s; first component NAN: none does */
-    double density;     /* kg/m3 */
-    double drag;        /* coefficient of the pressure across the surface */
+    double velocity[3];    /* m/s, of air past the cloth; first component NAN: none */
+    double density;        /* kg/m3 */
+    double drag;           /* coefficient of the pressure across the surface */
 };
 enum cs_drag_unit { CS_DRAG_PARTICLE, CS_DRAG_AREA };
 
