@@ -136,7 +136,7 @@ static const struct {
     {'W', "colliders[0]", "ground", "\"floor\""},
     {'W', "colliders[0]", "cube", "\"box\""},
     {'W', "colliders[0]", "obj", "\"mesh.file\""},
-    {'W', "colliders[0]", "restitution", "\"absorption\""},
+    {'W', "colliders[0]", "restitution", "\"contact.restitution\""},
     {'W', "colliders[0]", "motion", "\"events[0].move\""},
     {'W', "colliders[0].box", "extents", "\"size\""},
     {'W', "colliders[0].capsule", "height", "\"to\""},

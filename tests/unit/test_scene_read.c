@@ -136,10 +136,10 @@ TEST(messages_name_the_place) {
          "s.json:1:24: camera.eye[1]: found null, expected a number"},
         {"{\"render\": {\"look\": \"strian\"}}",
          "s.json:1:21: render.look: unknown choice \"strian\"; did you mean \"strain\"? "
-         "(lit, wireframe, springs, force, strain, goals, crossings, stress)"},
+         "(lit, wireframe, springs, force, strain, goals, crossings, stress, normals, uv)"},
         {"{\"render\": {\"look\": 3}}",
          "s.json:1:21: render.look: found 3, expected one of lit, "
-         "wireframe, springs, force, strain, goals, crossings, stress"},
+         "wireframe, springs, force, strain, goals, crossings, stress, normals, uv"},
         {"{\"render\": {\"ground\": 1}}",
          "s.json:1:23: render.ground: found 1, expected one of auto, none, shadow, grid"},
         {"{\"render\": {\"viewpoint_forces\": 1}}",
@@ -148,7 +148,8 @@ TEST(messages_name_the_place) {
         {"{\"about\": true}", "s.json:1:11: about: found true, expected a string"},
         {"{\"bodies\": [{\"pins\": [[1]]}]}",
          "s.json:1:23: bodies[0].pins[0]: found a list of 1, "
-         "expected an object (\"to\", \"at\", \"index\", \"box\", ...) or a string or a number"},
+         "expected an object (\"to\", \"at\", \"index\", \"box\", ...) or a string or a "
+         "number"},
         {"{\"bodies\": [{\"pins\": [-1]}]}",
          "s.json:1:23: bodies[0].pins[0]: -1 is out of range (0..4294967295)"},
         {"{\"bodies\": [{\"pins\": [{}]}]}",
