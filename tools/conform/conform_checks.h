@@ -325,7 +325,7 @@ struct cs_force_scene {
 
 /* Every scene runs CS_FORCE_FRAMES frames of CS_FORCE_FRAME, and has at most
  * CS_FORCE_PARTICLES particles. */
-enum { CS_FORCE_FRAMES = 5, CS_FORCE_PARTICLES = 18, CS_FORCE_VALUES = 3 * CS_FORCE_PARTICLES };
+enum { CS_FORCE_FRAMES = 5, CS_FORCE_PARTICLES = 21, CS_FORCE_VALUES = 3 * CS_FORCE_PARTICLES };
 
 #define CS_FORCE_FRAME 0.1 /* s */
 

@@ -44,6 +44,13 @@
 #define WIND(strength, unit)                                                                   \
     "\"wind\": {\"direction\": [1, 2, 3], \"strength\": " strength                             \
     ", \"strength_unit\": \"" unit "\"}"
+#define AIR "\"wind\": {\"velocity\": [1, 2, 3]}"
+/* A ring of 21 particles. */
+#define BLOWN(pressure, events)                                                                \
+    "{\"bodies\": [{\"mesh\": {\"shape\": \"torus\", \"detail\": 3}, \"mass\": "               \
+    "{\"particle\": "                                                                          \
+    "0.1}, " FREE_OF_SPRINGS ", \"pressure\": " pressure "}], \"forces\": {" NO_GRAVITY        \
+    "}, \"events\": [" events "], " FIVE_FRAMES "}"
 #define VIEWPOINT_FORCE(times, more)                                                           \
     times ", \"viewpoint_force\": {\"viewpoint\": {\"eye\": [1, 0, 6], \"target\": [1, 0, "    \
           "0], \"fov\":"                                                                       \
@@ -168,6 +175,11 @@ const struct cs_force_scene cs_force_scenes[] = {
      "{\"bodies\": [{" CLOTH ", " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY ", "
      WIND("2", "Pa") "}, " FIVE_FRAMES "}", 4, false, true},
 
+    {"force-wind", "air that flows past a turning sheet",
+     "{\"bodies\": [{" CLOTH ", " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY ", "
+     AIR "}, " FIVE_FRAMES "}", 4, true, true},
+    {"force-wind", "a pressure in a ring", BLOWN("0.3", ""), 4, false, true},
+
     {"force-push", "a steady impact",
      SHEETS_WITH(NO_GRAVITY, "\"from\": 0, \"to\": 0.35, \"impact\": {\"body\": 1,"
                  " \"direction\": [1, -2, 1], \"impulse\": 1}"), 4, false, false},
@@ -217,6 +229,12 @@ const struct cs_force_scene cs_force_scenes[] = {
     {"time-dependence", "a gust",
      SHEETS_WITH(NO_GRAVITY ", " WIND("0.3", "N"), "\"from\": 0.05, \"to\": 0.45, \"wind\":"
                  " {\"direction\": [3, -1, 1], \"strength\": 1}"), 4, false, false},
+    {"time-dependence", "ramps of air that flows",
+     SHEETS_WITH(NO_GRAVITY ", " AIR, RAMP("forces.wind.velocity[2]", "5") "}, {"
+                 RAMP("forces.wind.density", "2") "}, {" RAMP("forces.wind.drag", "0.5")),
+     4, true, false},
+    {"time-dependence", "a ramp of a pressure",
+     BLOWN("0.1", "{" RAMP("bodies[0].pressure", "0.5") "}"), 4, false, true},
     {"time-dependence", "a ramp of a collider's friction",
      CONTACT("0.1", "{" RAMP("colliders[0].friction", "0.9") "}"), 9, true, false},
     {"time-dependence", "ramps of springs and dampers",
