@@ -1,6 +1,6 @@
 #!/bin/sh
 # gallery.sh [FILM ...] - makes the films of docs/films and their contact sheets anew, or those
-# named; about ten minutes for the twelve of the README. PROGRAM: which clothsim. Needs ffmpeg.
+# named; about ten minutes for the fourteen of the README. PROGRAM: which clothsim. Needs ffmpeg.
 set -eu
 
 program=$(realpath "${PROGRAM:-$(dirname "$0")/../build/clothsim}")
@@ -100,7 +100,7 @@ make() {
     esac
 }
 
-[ $# -gt 0 ] || set -- tablecloth flag knot funnel twister bag hammock curtain bears instability methods map
+[ $# -gt 0 ] || set -- tablecloth flag knot funnel twister bag curtain skirt parachute balloon bears instability methods map
 for film; do
     echo "$film"
     make "$film"
