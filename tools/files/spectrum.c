@@ -32,7 +32,7 @@ static void transform(double complex *a, size_t n) {
     for (size_t length = 2; length <= n; length *= 2)
         for (size_t k = 0; k < length / 2; k++) {
             const double angle = -2 * M_PI * (double)k / (double)length;
-            const double complex turn = CMPLX(cos(angle), sin(angle));
+            const double complex turn = cos(angle) + sin(angle) * (double complex)I;
             for (size_t at = k; at < n; at += length) {
                 const double complex even = a[at], odd = turn * a[at + length / 2];
                 a[at] = even + odd;
