@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""progress.py BUILD [ARGUMENT ...] - meson test with these arguments: lines of tests that do not pass,
-and on standard error one line of progress with the time left.
+"""progress.py BUILD [ARGUMENT ...] - meson test with these arguments, and on standard error the progress
+with the time left. A terminal has no lines of tests that pass; a file, as of CI, has all lines.
 
 The priority of a test is about its processor time in s (tests/meson.build): the longest start first. Tests
 that have ended tell how much longer a second of it takes here. A terminal has one line, anything else a
@@ -71,7 +71,7 @@ def main():
                              errors="replace")
     for line in meson.stdout:
         found = LINE.match(line)
-        if not found or found[4] not in PASSED:
+        if not found or found[4] not in PASSED or not progress.terminal:
             progress.clear()
             print(line, end="", flush=True)
         if found:

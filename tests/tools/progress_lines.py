@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""progress_lines.py ROOT - what tests/progress.py makes of a meson that prints known lines: lines of tests
-that pass are left out, all others stay, the time left follows from the pace, and the status is meson's.
+"""progress_lines.py ROOT - what tests/progress.py makes of a meson that prints known lines: in a terminal
+lines of tests that pass are left out, a file has all, the time left follows from the pace, and the status
+is meson's.
 """
 import os
+import pty
 import subprocess
 import sys
 import tempfile
@@ -32,12 +34,17 @@ def main():
         path = Path(folder, "meson")
         path.write_text(MESON)
         path.chmod(0o755)
-        ran = subprocess.run([root / "tests/progress.py", "build", "--suite", "cli"], capture_output=True, text=True,
-                             env={**os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "PROGRESS_SECONDS": "0",
-                                  "MESON_TESTTHREADS": "2"})
+        line = [root / "tests/progress.py", "build", "--suite", "cli"]
+        env = {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "PROGRESS_SECONDS": "0", "MESON_TESTTHREADS": "2"}
+        ran = subprocess.run(line, capture_output=True, text=True, env=env)
+        reader, terminal = pty.openpty()
+        in_terminal = subprocess.run(line, stdout=subprocess.PIPE, stderr=terminal, text=True, env=env)
+        shown = [line.split()[0] for line in in_terminal.stdout.splitlines()]
+        os.close(terminal), os.close(reader)
     checks.check(ran.returncode == 3, f"exit status {ran.returncode}, expected 3")
     out = ran.stdout.splitlines()
-    checks.check([line.split()[0] for line in out] == ["ninja:", "2/3", "what", "Ok:"], f"printed {out}")
+    checks.check([line.split()[0] for line in out] == ["ninja:", "1/3", "2/3", "what", "3/3", "Ok:"], f"printed {out}")
+    checks.check(shown == ["ninja:", "2/3", "what", "Ok:"], f"shown {shown}")
     # 400.5 s of work at 40 s for 100, by two processors; then at 42.5 s for 100.5
     told = [line.replace(",", "").split() for line in ran.stderr.splitlines()]
     checks.check([(words[0], words[4]) for words in told] == [("1", "0"), ("2", "1"), ("3", "1")], f"progress {told}")
