@@ -177,8 +177,8 @@ const struct cs_force_scene cs_force_scenes[] = {
 
     {"force-wind", "air that flows past a turning sheet",
      "{\"bodies\": [{" CLOTH ", " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY ", "
-     AIR "}, " FIVE_FRAMES "}", 4, true, true},
-    {"force-wind", "a pressure in a ring", BLOWN("0.3", ""), 4, false, true},
+     AIR "}, " FIVE_FRAMES "}", 9, true, true},
+    {"force-wind", "a pressure in a ring", BLOWN("3", ""), 9, false, true},
 
     {"force-push", "a steady impact",
      SHEETS_WITH(NO_GRAVITY, "\"from\": 0, \"to\": 0.35, \"impact\": {\"body\": 1,"
@@ -234,7 +234,7 @@ const struct cs_force_scene cs_force_scenes[] = {
                  RAMP("forces.wind.density", "2") "}, {" RAMP("forces.wind.drag", "0.5")),
      4, true, false},
     {"time-dependence", "a ramp of a pressure",
-     BLOWN("0.1", "{" RAMP("bodies[0].pressure", "0.5") "}"), 4, false, true},
+     BLOWN("3", "{" RAMP("bodies[0].pressure", "4") "}"), 9, false, true},
     {"time-dependence", "a ramp of a collider's friction",
      CONTACT("0.1", "{" RAMP("colliders[0].friction", "0.9") "}"), 9, true, false},
     {"time-dependence", "ramps of springs and dampers",
