@@ -234,8 +234,9 @@ void cs_extrapolate(double *states, int levels, size_t stride, size_t n, uint32_
         const double power = ldexp(1, (int)order + column - 1);
         for (int k = levels - 1; k >= column; k--) {
             double *state = states + (size_t)k * stride;
+            const double *coarser = state - stride;
             for (size_t i = 0; i < n; i++)
-                state[i] += (state[i] - state[i - stride]) / (power - 1);
+                state[i] += (state[i] - coarser[i]) / (power - 1);
         }
     }
 }
