@@ -392,8 +392,7 @@ TEST(a_matrix_without_pairs_in_range_has_no_links) {
     open_folded(&folded, 32, true, 0.3, "");
     set_up(&folded, true);
     ck_assert(first_level(&folded)->extra_springs->is_nonempty);
-    const size_t n = folded.crumple.sheet.n;
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0, n = folded.crumple.sheet.n; i < n; i++)
         folded.crumple.sheet.x[2 * n + i] *= 100;
     set_up(&folded, true);
     ck_assert(!first_level(&folded)->extra_springs->is_nonempty);
