@@ -101,7 +101,7 @@ const struct cs_integrator energy_momentum = {
     STEP_HALVING_METHOD(struct energy_momentum_options, rows, step_halving_archive),
     .name = "energy-momentum",
     .summary =
-        "midpoint rule whose springs keep energy and both momenta at any step, by Newton",
+        "midpoint rule whose springs conserve energy and momentum at any step, by Newton",
     .source = "Simo, Tarnow 1992; Gonzalez 1996; LaBudde, Greenspan 1976",
     .order = 2,
     .order_damped = 2,

@@ -90,7 +90,7 @@ void cs_arena_adopt(struct cs_arena *arena, void (*finish)(void *object), void *
     arena->adopted = owned;
 }
 
-bool cs_arena_grow(void *address, size_t *capacity, size_t needed, size_t size) {
+bool cs_arena_realloc(void *address, size_t *capacity, size_t needed, size_t size) {
     if (needed <= *capacity)
         return true;
     const size_t larger = needed > 2 * *capacity ? needed : 2 * *capacity;

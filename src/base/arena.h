@@ -50,9 +50,9 @@ void cs_arena_adopt(struct cs_arena *arena, void (*finish)(void *object), void *
  * it is large enough. address: of the pointer to it, which moves with it. The caller frees it.
  * Returns false if out of memory; the array and *capacity are then as before. May be called by
  * several threads, unlike an arena. */
-bool cs_arena_grow(void *address, size_t *capacity, size_t needed, size_t size);
-#define CS_ARENA_GROW(items, capacity, needed)                                                 \
-    cs_arena_grow(&(items), &(capacity), needed, sizeof *(items))
+bool cs_arena_realloc(void *address, size_t *capacity, size_t needed, size_t size);
+#define CS_ARENA_REALLOC(items, capacity, needed)                                              \
+    cs_arena_realloc(&(items), &(capacity), needed, sizeof *(items))
 
 /* Finishes adopted objects and frees all blocks; the arena is empty afterwards. */
 void cs_arena_finish(struct cs_arena *arena);

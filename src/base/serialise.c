@@ -10,7 +10,7 @@
 /* Appends n bytes. Returns false if out of memory. */
 static bool write_bytes(struct cs_serialiser *record, const void *value, size_t n) {
     if (n > (size_t)-1 / 4 - record->length ||
-        !CS_ARENA_GROW(record->bytes, record->capacity, record->length + n))
+        !CS_ARENA_REALLOC(record->bytes, record->capacity, record->length + n))
         return false;
     memcpy(record->bytes + record->length, value, n);
     record->length += n;

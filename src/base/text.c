@@ -15,7 +15,7 @@
  * memory. */
 static bool reserve(struct cs_text *text, size_t more) {
     text->failed =
-        text->failed || !CS_ARENA_GROW(text->bytes, text->capacity, text->length + more + 1);
+        text->failed || !CS_ARENA_REALLOC(text->bytes, text->capacity, text->length + more + 1);
     return !text->failed;
 }
 

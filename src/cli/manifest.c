@@ -54,7 +54,7 @@ static bool is_swept(const char *name) {
 
 static enum cs_status add(struct list *list, const struct entry *entry,
                           struct cs_error *error) {
-    if (!CS_ARENA_GROW(list->entries, list->capacity, list->n + 1))
+    if (!CS_ARENA_REALLOC(list->entries, list->capacity, list->n + 1))
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a manifest");
     list->entries[list->n++] = *entry;
     return CS_OK;

@@ -268,8 +268,8 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
         cs_event_moves_any(scene))
         return cs_fail(
             error, CS_ERR_SCENE,
-            "contact.law: force makes energy where colliders move: integrator \"%s\" "
-            "drags as if all stood still; use %sanother integrator",
+            "contact.law: force gains energy by integrator \"%s\" where colliders move, "
+            "because its drag does not move with them; use %sanother integrator",
             method->name, cs_scene_has_body_contact(scene) ? "" : "project, or ");
     const uint32_t elastic = cs_scene_first_elastic(scene);
     if (elastic < scene->bodies.n && cs_plan_has_own_springs(method))

@@ -1,6 +1,7 @@
 /* The sphere, with centre c and radius r. With l = |p - c|:
  *   d = l - r,   gradient n = (p - c) / l,   Hessian (I - n n^T) / l
  * In the centre the normal is up and the Hessian 0. */
+#include "base/vec3.h"
 #include "scene/shape_core.h"
 #include "scene/table_rows.h"
 
@@ -29,11 +30,12 @@ static double distance(const struct cs_posed_collider *sphere, double skin, cons
 /* The exact distance is smooth: there are no features to blend. */
 static double smooth(const struct cs_posed_collider *sphere, const double p[3], double g[3],
                      double h[6]) {
-    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const double length = cs_core_from_point(p, sphere->centre, g);
     memset(h, 0, 6 * sizeof *h);
-    for (int e = 0; e < 6 && length > 0; e++)
-        h[e] = ((row[e] == column[e]) - g[row[e]] * g[column[e]]) / length;
+    for (int e = 0; e < 6 && length > 0; e++) {
+        const int r = cs_sym3_row[e], s = cs_sym3_column[e];
+        h[e] = ((r == s) - g[r] * g[s]) / length;
+    }
     return length - sphere->radius;
 }
 

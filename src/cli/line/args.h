@@ -81,8 +81,7 @@ struct cs_arg {
 /* Programs are items of the list of modules. */
 #define CS_ARG_PROGRAM(struct_, items, n_items)                                                \
     {                                                                                          \
-        "program", 0, "[NAME=]COMMAND",                                                        \
-            "run this command as a method; may be repeated",                            \
+        "program", 0, "[NAME=]COMMAND", "run this command as a method; may be repeated",       \
             CS_ARG_LIST(struct_, items, n_items), .prefix = "program:"                         \
     }
 /* The same in every command that has it. */

@@ -14,7 +14,7 @@
 
 /* An unused item behind the last one, or NULL if out of memory. */
 static struct cs_thick_line *next(struct cs_thick_lines *strokes) {
-    if (!CS_ARENA_GROW(strokes->items, strokes->capacity, strokes->n + 1)) {
+    if (!CS_ARENA_REALLOC(strokes->items, strokes->capacity, strokes->n + 1)) {
         strokes->failed = true;
         return NULL;
     }

@@ -148,7 +148,7 @@ static bool set_box(struct cs_triangle *t, int width, int height) {
 
 // an unused item behind the last one, or NULL if out of memory
 static struct cs_triangle *next(struct cs_triangles *triangles) {
-    if (!CS_ARENA_GROW(triangles->items, triangles->capacity, triangles->n + 1)) {
+    if (!CS_ARENA_REALLOC(triangles->items, triangles->capacity, triangles->n + 1)) {
         triangles->failed = true;
         return NULL;
     }

@@ -158,15 +158,15 @@ void cs_contact_chunk_clear(struct cs_contact_chunk *chunk) {
     chunk->failed = false;
 }
 
-/* Capacity grows in steps (cs_arena_grow); entries that were appended before are kept. */
+/* Capacity grows in steps (cs_arena_realloc); entries that were appended before are kept. */
 struct cs_contact_entry *cs_contact_chunk_next(struct cs_contact_chunk *chunk) {
-    const bool there = CS_ARENA_GROW(chunk->pairs, chunk->capacity, chunk->n + 1);
+    const bool there = CS_ARENA_REALLOC(chunk->pairs, chunk->capacity, chunk->n + 1);
     chunk->failed = chunk->failed || !there;
     return there ? chunk->pairs + chunk->n++ : NULL;
 }
 
 struct cs_contact_matrix_part *cs_contact_chunk_part(struct cs_contact_chunk *chunk) {
-    const bool there = CS_ARENA_GROW(chunk->parts, chunk->parts_capacity, chunk->n);
+    const bool there = CS_ARENA_REALLOC(chunk->parts, chunk->parts_capacity, chunk->n);
     chunk->failed = chunk->failed || !there;
     return there ? chunk->parts + chunk->n - 1 : NULL;
 }
@@ -219,8 +219,9 @@ static void put_ends(struct cs_contact_set *set) {
 /* Counting sort by particle. Counts go two places on: filling then moves every start[i + 1]
  * from the begin of list i to its end, which is where the format wants it. */
 void cs_contact_set_gather(struct cs_contact_set *set) {
-    if (!CS_ARENA_GROW(set->particle_vertices, set->particle_vertices_capacity, 4 * set->n) ||
-        !CS_ARENA_GROW(set->vertices, set->vertices_capacity, 4 * set->n)) {
+    if (!CS_ARENA_REALLOC(set->particle_vertices, set->particle_vertices_capacity,
+                          4 * set->n) ||
+        !CS_ARENA_REALLOC(set->vertices, set->vertices_capacity, 4 * set->n)) {
         set->failed = true;
         set->n = 0;
     }

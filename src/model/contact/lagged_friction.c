@@ -120,7 +120,7 @@ void cs_lagged_friction_store(struct cs_lagged_friction *lagged, uint32_t chunk,
         return;
     struct cs_contact_entry *entry = cs_contact_chunk_next(to);
     struct cs_contact_matrix_part *part = entry ? cs_contact_chunk_part(to) : NULL;
-    if (!part || !CS_ARENA_GROW(own->contacts, own->capacity, to->n)) {
+    if (!part || !CS_ARENA_REALLOC(own->contacts, own->capacity, to->n)) {
         to->failed = true;
         return;
     }

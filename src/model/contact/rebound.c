@@ -350,10 +350,9 @@ bool cs_rebounds_resolve_step(const struct cs_system *system, double t1, const d
 
 void cs_rebound_add_block(const struct cs_rebound *rebound, const struct cs_matrix *matrix,
                           double b[6]) {
-    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const double drag = -matrix->cd * rebound->drag;
     const double along = -matrix->ck * rebound->stiffness - drag / squared_gradient(rebound->g);
     for (int e = 0; e < 6; e++)
-        b[e] += along * rebound->g[row[e]] * rebound->g[column[e]] +
-                (row[e] == column[e] ? drag : 0);
+        b[e] += along * rebound->g[cs_sym3_row[e]] * rebound->g[cs_sym3_column[e]] +
+                (cs_sym3_row[e] == cs_sym3_column[e] ? drag : 0);
 }

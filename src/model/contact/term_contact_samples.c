@@ -5,6 +5,7 @@
 #include "model/contact/point_query.h"
 #include "model/force/term.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
 #include <string.h>
 
@@ -63,32 +64,16 @@ static void meet(const struct job *job, const struct cs_posed_collider_law *near
                 place->vectors[k][c] = point->w[k] * answer.vector[c];
 }
 
-/* Middle of the box of particles [first, last]; returns half its diagonal in m. */
-static double box_of(const double *x, size_t n, uint32_t first, uint32_t last,
-                     double middle[3]) {
+/* Middle of the box of `count` particles from `first` on, or of those listed; returns half its
+ * diagonal in m. No sample of these vertices is further from the middle. */
+CS_INLINE double box_of(const double *x, size_t n, const uint32_t *listed, size_t first,
+                        size_t count, double middle[3]) {
     double squared = 0;
     for (size_t c = 0; c < 3; c++) {
-        const double *at = x + c * n;
-        double low = at[first], high = low;
-        for (size_t i = (size_t)first + 1; i <= last; i++) {
-            low = at[i] < low ? at[i] : low;
-            high = at[i] > high ? at[i] : high;
-        }
-        middle[c] = 0.5 * (low + high);
-        squared += 0.25 * (high - low) * (high - low);
-    }
-    return sqrt(squared);
-}
-
-/* The same for the vertices of one item: no sample of it is further from the middle. */
-static double reach_of(const struct cs_contact_sample_chunk *chunk, uint32_t item, size_t n,
-                       const double *x, double middle[3]) {
-    const uint32_t *at = chunk->vertices + (size_t)chunk->vertices_per_item * item;
-    double squared = 0;
-    for (size_t c = 0; c < 3; c++) {
-        double low = x[c * n + at[0]], high = low;
-        for (uint32_t k = 1; k < chunk->vertices_per_item; k++) {
-            const double p = x[c * n + at[k]];
+        const double *at = x + c * n + first;
+        double low = at[listed ? listed[0] : 0], high = low;
+        for (size_t k = 1; k < count; k++) {
+            const double p = at[listed ? listed[k] : k];
             low = p < low ? p : low;
             high = p > high ? p : high;
         }
@@ -106,15 +91,18 @@ static void do_chunk(void *arg, uint32_t number) {
     const size_t n = job->query.system->view.n;
     double middle[3];
     cs_contact_chunk_clear(job->set->chunks + number);
-    const double all = box_of(job->query.eval.x, n, chunk->first, chunk->last, middle);
+    const double *x = job->query.eval.x;
+    const double all =
+        box_of(x, n, NULL, chunk->first, (size_t)chunk->last - chunk->first + 1, middle);
     if (!cs_posed_collider_is_near(&near->collider, near->params.range + all, middle))
         return;
     for (uint32_t i = chunk->begin; i < chunk->end; i++) {
         struct cs_contact_sample_point point;
         if (!chunk->subdivisions[i - chunk->begin])
             continue;
+        const uint32_t *vertices = chunk->vertices + (size_t)chunk->vertices_per_item * i;
         const double reach =
-            near->params.range + reach_of(chunk, i, n, job->query.eval.x, middle);
+            near->params.range + box_of(x, n, vertices, 0, chunk->vertices_per_item, middle);
         if (cs_posed_collider_is_near(&near->collider, reach, middle))
             for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
                 meet(job, near, &point, number);

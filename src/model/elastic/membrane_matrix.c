@@ -222,13 +222,12 @@ static void matrix_tensions(const struct triangle *at, const struct cs_moduli *m
  *   2 kappa (K_kk d_k d_k^T + K_mm d_m d_m^T - K_km (d_k d_m^T + d_m d_k^T)) + (s_k + s_m) I */
 static void add_corner_block(const struct triangle *at, const double K[6], const double s[3],
                              double kappa, size_t corner, double block[6]) {
-    static const int rows[6] = {0, 0, 0, 1, 1, 2}, columns[6] = {0, 1, 2, 1, 2, 2};
     const size_t k = corner, m = (corner + 2) % 3;
     const double *u = at->d[k], *w = at->d[m];
     const double uu = 2 * kappa * K[entry[k][k]], ww = 2 * kappa * K[entry[m][m]],
                  uw = 2 * kappa * K[entry[k][m]];
     for (int c = 0; c < 6; c++) {
-        const int a = rows[c], b = columns[c];
+        const int a = cs_sym3_row[c], b = cs_sym3_column[c];
         block[c] += uu * u[a] * u[b] + ww * w[a] * w[b] - uw * (u[a] * w[b] + w[a] * u[b]) +
                     (a == b ? s[k] + s[m] : 0);
     }

@@ -1,6 +1,7 @@
 /* Curvatures along normals: first the forces on the points of each stencil, by all threads,
  * then at each particle their sum in one order. */
 #include "model/elastic/normal_curvature.h"
+#include "base/vec3.h"
 
 #include "base/pool.h"
 #include "model/elastic/membranes.h"
@@ -232,11 +233,11 @@ void cs_normal_curvature_add_bound(const struct cs_system *system, const double 
 static void add_own_blocks(const struct cs_bending_stencil *of,
                            double K[CS_NORMAL_FORCES][CS_NORMAL_FORCES], double factor,
                            size_t n, double *blocks) {
-    static const size_t rows[6] = {0, 0, 0, 1, 1, 2}, columns[6] = {0, 1, 2, 1, 2, 2};
     for (size_t i = 0; i < of->n; i++)
         for (size_t j = 0; j < of->n; j++)
             for (size_t c = 0; of->at[i] == of->at[j] && c < 6; c++)
-                blocks[c * n + of->at[i]] += factor * K[3 * i + rows[c]][3 * j + columns[c]];
+                blocks[c * n + of->at[i]] +=
+                    factor * K[3 * i + cs_sym3_row[c]][3 * j + cs_sym3_column[c]];
 }
 
 void cs_normal_curvature_prepare_matrix(const struct cs_system *system,

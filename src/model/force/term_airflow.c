@@ -111,14 +111,13 @@ static void prepare_matrix(const struct cs_system *system, const struct cs_matri
 
 static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
                        size_t begin, size_t end, double *blocks) {
-    static const int rows[6] = {0, 0, 0, 1, 1, 2}, columns[6] = {0, 1, 2, 1, 2, 2};
     for (size_t i = begin; i < end; i++) {
         double u[3], n[3];
         flow_past(system, matrix->v, i, u);
         read_normal(system, i, n);
         const double rate = -2 * matrix->cd * scale_of(system, i) * fabs(cs_vec3_dot(u, n));
         for (size_t m = 0; m < 6; m++)
-            blocks[m * system->view.n + i] += rate * n[rows[m]] * n[columns[m]];
+            blocks[m * system->view.n + i] += rate * n[cs_sym3_row[m]] * n[cs_sym3_column[m]];
     }
 }
 

@@ -120,7 +120,6 @@ static double energy(const struct cs_system *system, const struct cs_eval *at) {
 /* S of a stitch by places and by velocities: xx, xy, xz, yy, yz, zz. */
 static void find_blocks(const struct cs_stitch *stitch, const struct cs_matrix *matrix,
                         const double d[3], double by_place[6], double by_velocity[6]) {
-    static const int rows[6] = {0, 0, 0, 1, 1, 2}, columns[6] = {0, 1, 2, 1, 2, 2};
     double u[3];
     const double l = direction_of(d, u);
     const bool slack = stitch->length > 0;
@@ -128,7 +127,8 @@ static void find_blocks(const struct cs_stitch *stitch, const struct cs_matrix *
     if (matrix->psd && across < 0)
         across = 0;
     for (int m = 0; m < 6; m++) {
-        const double one = rows[m] == columns[m], uu = u[rows[m]] * u[columns[m]];
+        const int r = cs_sym3_row[m], s = cs_sym3_column[m];
+        const double one = r == s, uu = u[r] * u[s];
         by_place[m] = -matrix->ck * stitch->stiffness * (across * (one - uu) + uu);
         by_velocity[m] = -matrix->cd * stitch->damping * (slack ? uu : one);
     }

@@ -1,6 +1,7 @@
 /* Extra springs of bodies in contact: from contact pairs to the first level, and from level to
  * level. */
 #include "model/solver/contact_coupling.h"
+#include "base/vec3.h"
 
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/solver/extra_springs.h"
@@ -103,10 +104,9 @@ static void set_blocks(double g[4][3], const struct cs_pair_matrix_terms *part,
 /* Adds the second derivative of the distance, which an exact matrix has, to the diagonal block.
  */
 static void add_turn(const struct cs_pair_hessian *full, struct cs_pair_vertex_terms *share) {
-    static const uint32_t row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const uint32_t first = 3 * share->vertex;
     for (int e = 0; e < 6; e++)
-        share->diagonal_block[e] += full->m[first + row[e]][first + column[e]];
+        share->diagonal_block[e] += full->m[first + cs_sym3_row[e]][first + cs_sym3_column[e]];
 }
 
 /* Reads the terms of a pair, of either kind of stored matrix, for one of its vertices. */
@@ -291,11 +291,11 @@ size_t cs_pair_vertices_count(const struct cs_pairs *pairs) {
 /* Makes room for all vertices and zeroes the starts. Returns false if out of memory. */
 static bool reserve(struct cs_pair_vertices *corners, const struct cs_pairs *pairs) {
     const size_t n = pairs->system->view.n + (size_t)2;
-    if (!CS_ARENA_GROW(corners->starts, corners->starts_capacity, n))
+    if (!CS_ARENA_REALLOC(corners->starts, corners->starts_capacity, n))
         return false;
     memset(corners->starts, 0, n * sizeof *corners->starts);
-    return CS_ARENA_GROW(corners->items, corners->items_capacity,
-                         4 * cs_pair_vertices_count(pairs));
+    return CS_ARENA_REALLOC(corners->items, corners->items_capacity,
+                            4 * cs_pair_vertices_count(pairs));
 }
 
 /* Visits all vertices: counts them at `to`, and, unless `of` is NULL, stores them where `to`

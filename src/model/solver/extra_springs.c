@@ -46,8 +46,9 @@ static struct cs_extra_spring *link_to(struct cs_extra_springs_chunk *piece, uin
     for (size_t k = 0; k < n; k++)
         if (piece->partners[k] == to)
             return piece->list + k;
-    piece->failed = piece->failed || !CS_ARENA_GROW(piece->list, piece->list_capacity, n + 1) ||
-                    !CS_ARENA_GROW(piece->partners, piece->partners_capacity, n + 1);
+    piece->failed = piece->failed ||
+                    !CS_ARENA_REALLOC(piece->list, piece->list_capacity, n + 1) ||
+                    !CS_ARENA_REALLOC(piece->partners, piece->partners_capacity, n + 1);
     if (piece->failed)
         return NULL;
     piece->partners[n] = to;
@@ -84,8 +85,8 @@ static bool is_positive(const float block[6]) {
 static bool open_slot(struct cs_extra_springs_chunk *piece, uint32_t first) {
     const size_t n = (size_t)piece->slots_used + 1, slot = piece->slots_used;
     piece->failed = piece->failed ||
-                    !CS_ARENA_GROW(piece->cells, piece->cells_capacity, LANES * n) ||
-                    !CS_ARENA_GROW(piece->springs, piece->springs_capacity, 6 * LANES * n);
+                    !CS_ARENA_REALLOC(piece->cells, piece->cells_capacity, LANES * n) ||
+                    !CS_ARENA_REALLOC(piece->springs, piece->springs_capacity, 6 * LANES * n);
     if (piece->failed)
         return false;
     for (uint32_t l = 0; l < LANES; l++)

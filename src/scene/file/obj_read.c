@@ -60,7 +60,7 @@ static bool fault_at(struct reader *in, uint32_t line, const char *format, ...) 
 
 /* Adds a zeroed item; NULL and CS_ERR_MEMORY if out of memory. */
 static void *add(struct reader *in, struct array *array, size_t size) {
-    if (!cs_arena_grow(&array->items, &array->capacity, array->n + 1, size)) {
+    if (!cs_arena_realloc(&array->items, &array->capacity, array->n + 1, size)) {
         cs_fail(in->error, CS_ERR_MEMORY, "out of memory for \"%s\"", in->name);
         return NULL;
     }

@@ -123,7 +123,7 @@ static size_t visit(struct cs_uniform_grid *cells, const struct cs_aabb *box, ui
 static bool count_all(struct cs_uniform_grid *cells, const struct set *boxes, size_t *places) {
     const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
     *places = 0;
-    if (!CS_ARENA_GROW(cells->cell_starts, cells->starts_capacity, all + 1))
+    if (!CS_ARENA_REALLOC(cells->cell_starts, cells->starts_capacity, all + 1))
         return false;
     memset(cells->cell_starts, 0, (all + 1) * sizeof *cells->cell_starts);
     for (uint32_t i = 0; i < boxes->n && *places <= (size_t)PLACES_EACH * boxes->n + FEW; i++)
@@ -136,7 +136,7 @@ static bool count_all(struct cs_uniform_grid *cells, const struct set *boxes, si
  * to the first brings it down to the begin, with items in ascending order. */
 static bool fill_all(struct cs_uniform_grid *cells, const struct set *boxes, size_t places) {
     const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
-    if (!CS_ARENA_GROW(cells->items, cells->items_capacity, places))
+    if (!CS_ARENA_REALLOC(cells->items, cells->items_capacity, places))
         return false;
     for (size_t c = 1; c < all; c++)
         cells->cell_starts[c] += cells->cell_starts[c - 1];
@@ -210,8 +210,8 @@ static bool is_first_cell(const struct cs_uniform_grid *cells, const struct cs_a
 static bool add(struct cs_nearby_clusters *near, uint32_t cluster, const struct cs_aabb *box) {
     static const struct cs_aabb none = {{1, 1, 1}, {0, 0, 0}};
     const size_t group = near->n / CS_AABB_CLUSTER;
-    if (!CS_ARENA_GROW(near->clusters, near->clusters_capacity, near->n + 1) ||
-        !CS_ARENA_GROW(near->boxes, near->boxes_capacity, group + 1))
+    if (!CS_ARENA_REALLOC(near->clusters, near->clusters_capacity, near->n + 1) ||
+        !CS_ARENA_REALLOC(near->boxes, near->boxes_capacity, group + 1))
         return false;
     for (uint32_t l = 0; l < CS_AABB_CLUSTER && near->n % CS_AABB_CLUSTER == 0; l++)
         cs_aabb_cluster_set(near->boxes + group, l, &none);
@@ -304,7 +304,8 @@ bool cs_nearby_clusters_find(struct cs_nearby_clusters *near,
         struct looking looking = {clusters, clusters->cells + k, box, {0}};
         there = there && add_cells(near, &looking);
     }
-    return there && CS_ARENA_GROW(near->items, near->items_capacity, CS_AABB_CLUSTER * near->n);
+    return there &&
+           CS_ARENA_REALLOC(near->items, near->items_capacity, CS_AABB_CLUSTER * near->n);
 }
 
 /* Bit mask of the lanes whose boxes overlap a box. Comparisons with NaN are false, so that

@@ -46,7 +46,7 @@ static void store_pairs(struct cs_candidates *candidates, uint32_t number,
     struct cs_primitive_batch *of = candidates->search.batches + number;
     const uint32_t n = cs_distance_filter_run(filter, of->edges);
     of->failed =
-        of->failed || !CS_ARENA_GROW(batch->pairs, batch->capacity, 2 * (batch->n + n));
+        of->failed || !CS_ARENA_REALLOC(batch->pairs, batch->capacity, 2 * (batch->n + n));
     if (!n || of->failed)
         return;
     memcpy(batch->pairs + 2 * batch->n, filter->pairs, n * sizeof *filter->pairs);
@@ -84,7 +84,7 @@ static void sort_batch(void *arg, uint32_t number) {
     const size_t first = CS_AABB_CLUSTER * (size_t)of->begin,
                  end = CS_AABB_CLUSTER * (size_t)of->end;
     of->failed =
-        of->failed || !CS_ARENA_GROW(batch->seconds, batch->seconds_capacity, batch->n);
+        of->failed || !CS_ARENA_REALLOC(batch->seconds, batch->seconds_capacity, batch->n);
     for (size_t k = first; k < end; k++)
         if (items[k] != CS_NO_ITEM)
             rows[items[k]] = (struct cs_candidate_range){number, 0, 0};
@@ -127,7 +127,7 @@ static void list_chunk(void *arg, uint32_t number) {
     for (uint32_t i = chunk->begin; i < chunk->end; i++)
         n += rows[i].n;
     chunk->n = 0;
-    chunk->failed = !CS_ARENA_GROW(chunk->pairs, chunk->capacity, 2 * n);
+    chunk->failed = !CS_ARENA_REALLOC(chunk->pairs, chunk->capacity, 2 * n);
     for (uint32_t i = chunk->begin; i < chunk->end && !chunk->failed; i++) {
         if (!rows[i].n)
             continue;

@@ -49,8 +49,8 @@ static struct cs_body_pair_params meeting_of(const struct cs_candidates *search,
 /* Makes room for one pair more; NULL if out of memory. */
 static struct cs_active_lanes *next(struct cs_active_chunk *chunk) {
     const size_t n_blocks = chunk->n / CS_PAIR_LANES + 1;
-    const bool there = CS_ARENA_GROW(chunk->blocks, chunk->capacity, n_blocks) &&
-                       CS_ARENA_GROW(chunk->points, chunk->points_capacity, chunk->n + 1);
+    const bool there = CS_ARENA_REALLOC(chunk->blocks, chunk->capacity, n_blocks) &&
+                       CS_ARENA_REALLOC(chunk->points, chunk->points_capacity, chunk->n + 1);
     chunk->failed = chunk->failed || !there;
     return there ? chunk->blocks + chunk->n / CS_PAIR_LANES : NULL;
 }
@@ -101,7 +101,8 @@ static void add_features(struct work *work, const struct cs_weighted_feature *us
     struct cs_active_chunk *chunk = work->chunk;
     if (work->n_felt && chunk->features->points[0] != uses->points[0])
         finish_point(work);
-    if (!CS_ARENA_GROW(chunk->features, chunk->features_capacity, (size_t)work->n_felt + n)) {
+    if (!CS_ARENA_REALLOC(chunk->features, chunk->features_capacity,
+                          (size_t)work->n_felt + n)) {
         chunk->failed = true;
         return;
     }
@@ -213,7 +214,7 @@ static void number_chunk(void *arg, uint32_t number) {
     struct cs_active_chunk *chunk = active->chunks + number;
     struct cs_gather_chunk *rows = active->force_gather.chunks + number;
     cs_gather_clear(rows);
-    rows->failed = !CS_ARENA_GROW(chunk->rows, chunk->rows_capacity, chunk->n);
+    rows->failed = !CS_ARENA_REALLOC(chunk->rows, chunk->rows_capacity, chunk->n);
     uint32_t(*to)[4] = chunk->rows;
     // neighbours in the list have points in common
     for (size_t p = 0; p < chunk->n && !rows->failed; p++)

@@ -222,9 +222,9 @@ static void find_chunk(void *arg, uint32_t number) {
     const uint32_t *pairs = job->searches_nearby ? chunk->nearby : chunk->pairs;
     const size_t n = job->searches_nearby ? chunk->n_nearby : chunk->n;
     // room for all pairs
-    chunk->failed =
-        !CS_ARENA_GROW(chunk->in_range, chunk->close_capacity, 2 * chunk->n) ||
-        !CS_ARENA_GROW(chunk->nearby, chunk->nearby_capacity, job->collects ? 2 * chunk->n : 0);
+    chunk->failed = !CS_ARENA_REALLOC(chunk->in_range, chunk->close_capacity, 2 * chunk->n) ||
+                    !CS_ARENA_REALLOC(chunk->nearby, chunk->nearby_capacity,
+                                      job->collects ? 2 * chunk->n : 0);
     chunk->n_in_range = 0;
     chunk->n_nearby = job->collects ? 0 : chunk->n_nearby;
     if (chunk->failed || !n)

@@ -40,7 +40,7 @@ static uint32_t *slot_of(const struct cs_gather_chunk *chunk, uint32_t point) {
 
 /* Builds a table of 2^bits slots with the points so far; returns false if out of memory. */
 static bool grow_table(struct cs_gather_chunk *chunk, uint32_t bits) {
-    if (!CS_ARENA_GROW(chunk->slots, chunk->slots_capacity, (size_t)1 << bits))
+    if (!CS_ARENA_REALLOC(chunk->slots, chunk->slots_capacity, (size_t)1 << bits))
         return false;
     chunk->bits = bits;
     memset(chunk->slots, 0, sizeof *chunk->slots << bits);
@@ -57,7 +57,7 @@ void cs_gather_clear(struct cs_gather_chunk *chunk) {
 
 /* Makes room for one row more, with the table at most half full; false if out of memory. */
 static bool make_room(struct cs_gather_chunk *chunk) {
-    if (!CS_ARENA_GROW(chunk->points, chunk->points_capacity, (size_t)chunk->n + 1))
+    if (!CS_ARENA_REALLOC(chunk->points, chunk->points_capacity, (size_t)chunk->n + 1))
         return false;
     if (!chunk->bits)
         return grow_table(chunk, BITS_MIN);
@@ -110,8 +110,8 @@ static void visit_rows(const struct cs_gather *gather, uint32_t *starts, bool pu
 bool cs_gather_set(struct cs_gather *gather) {
     uint32_t *starts = gather->starts + 1;
     if (!count_rows(gather) ||
-        !CS_ARENA_GROW(gather->rows, gather->rows_capacity, gather->n_rows) ||
-        !CS_ARENA_GROW(gather->row_sums, gather->sums_capacity, 3 * (size_t)gather->n_rows))
+        !CS_ARENA_REALLOC(gather->rows, gather->rows_capacity, gather->n_rows) ||
+        !CS_ARENA_REALLOC(gather->row_sums, gather->sums_capacity, 3 * (size_t)gather->n_rows))
         return false;
     if (!gather->n_rows)
         return true;
@@ -127,7 +127,8 @@ bool cs_gather_set(struct cs_gather *gather) {
 
 bool cs_gather_reserve(struct cs_gather *gather, size_t width) {
     gather->width = width;
-    return CS_ARENA_GROW(gather->gathered, gather->gathered_capacity, width * gather->n_rows);
+    return CS_ARENA_REALLOC(gather->gathered, gather->gathered_capacity,
+                            width * gather->n_rows);
 }
 
 double *cs_gather_read(const struct cs_gather *gather, uint32_t number, size_t column,

@@ -54,16 +54,16 @@ bool cs_pair_matrix_begin(struct cs_pair_matrix *product, struct cs_active_conta
     product->contacts = active;
     product->exact = exact;
     product->diagonal_bound = alone;
-    return CS_ARENA_GROW(product->diagonal, product->diagonal_capacity,
-                         6 * (size_t)active->force_gather.n_rows);
+    return CS_ARENA_REALLOC(product->diagonal, product->diagonal_capacity,
+                            6 * (size_t)active->force_gather.n_rows);
 }
 
 bool cs_pair_matrix_chunk_begin(struct cs_pair_matrix *product, uint32_t number) {
     struct cs_pair_matrix_chunk *chunk = product->chunks + number;
     const struct cs_active_chunk *pairs = product->contacts->chunks + number;
-    chunk->failed = !CS_ARENA_GROW(chunk->factors, chunk->capacity, blocks_of(pairs)) ||
-                    !CS_ARENA_GROW(chunk->hessians, chunk->hessians_capacity,
-                                   product->exact ? pairs->n : 0);
+    chunk->failed = !CS_ARENA_REALLOC(chunk->factors, chunk->capacity, blocks_of(pairs)) ||
+                    !CS_ARENA_REALLOC(chunk->hessians, chunk->hessians_capacity,
+                                      product->exact ? pairs->n : 0);
     return !chunk->failed;
 }
 
