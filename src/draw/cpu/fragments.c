@@ -28,19 +28,19 @@ CS_INLINE void find_widths(const struct cs_shading_context *shading,
     const float sy = 2 * r->slope_y / (float)shading->height;
     const float right = r->right[0] * n[0] + r->right[1] * n[1] + r->right[2] * n[2];
     const float up = r->up[0] * n[0] + r->up[1] * n[1] + r->up[2] * n[2];
-    for (int i = 0; i < N; i++) {
-        float q[3], down = 0;
-        for (int k = 0; k < 3; k++) {
-            q[k] = near * (w->place[k][i] - r->eye[k]) + (1 - near) * r->back[k];
-            down += q[k] * n[k];
-        }
-        const float safe = down > 1e-6f || down < -1e-6f ? down : 1e-6f;
+    // q.n is the height of the eye over the plane, one for all its points
+    float down = 0;
+    for (int k = 0; k < 3; k++)
+        down += (near * (w->place[k][0] - r->eye[k]) + (1 - near) * r->back[k]) * n[k];
+    const float share = 1 / (down > 1e-6f || down < -1e-6f ? down : 1e-6f);
+    for (int a = 0; a < 2; a++) {
+        const float eye = near * r->eye[2 * a] - (1 - near) * r->back[2 * a];
+        const float across = r->right[2 * a], along = r->up[2 * a];
         // along an axis, a step across and a step up move the point by |t sx dx| + |t sy dy|
-        const float t = 1 / f->inverse[i], share = 1 / safe;
-        for (int a = 0; a < 2; a++) {
-            const float dx = r->right[2 * a] - q[2 * a] * share * right;
-            const float dy = r->up[2 * a] - q[2 * a] * share * up;
-            wide[a][i] = t * (sx * fabsf(dx) + sy * fabsf(dy));
+        for (int i = 0; i < N; i++) {
+            const float q = (near * w->place[2 * a][i] - eye) * share;
+            const float step = sx * fabsf(across - q * right) + sy * fabsf(along - q * up);
+            wide[a][i] = step / f->inverse[i];
         }
     }
 }
@@ -61,12 +61,16 @@ CS_INLINE void find_squares(float tile, float wide[2][N], struct cs_shading_work
     const float part = 1 / tile;
     for (int i = 0; i < N; i++)
         w->cover[i] = 1;
-    for (int a = 0; a < 2; a++)
+    for (int a = 0; a < 2; a++) {
         for (int i = 0; i < N; i++) {
-            const float u = w->place[2 * a][i] * part, pixel = wide[a][i] * part;
-            const float width = pixel > 0.01f ? pixel : 0.01f, half = 0.5f * width;
-            w->cover[i] *= (wave_integral(u + half) - wave_integral(u - half)) / width;
+            const float pixel = wide[a][i] * part;
+            wide[a][i] = pixel > 0.01f ? pixel : 0.01f;
         }
+        for (int i = 0; i < N; i++) {
+            const float u = w->place[2 * a][i] * part, half = 0.5f * wide[a][i];
+            w->cover[i] *= (wave_integral(u + half) - wave_integral(u - half)) / wide[a][i];
+        }
+    }
 }
 
 /* Coverage of a pixel by lines in steps of `step`. A line fades linearly over the pixel at its
@@ -156,12 +160,16 @@ CS_CLONES void cs_shade_haze(const struct cs_shading_context *shading,
     for (int i = 0; i < N; i++) {
         const float dx = (w->place[0][i] - ground->centre[0]) * part;
         const float dz = (w->place[2][i] - ground->centre[1]) * part;
-        const float left = cs_clamp(1 - (dx * dx + dz * dz), 0, 1);
-        const float cover = whole ? 1 : w->cover[i];
-        w->shine[i] = left * left * cover;
-        w->cover[i] = opaque ? 1 : w->shine[i];
+        w->shine[i] = cs_clamp(1 - (dx * dx + dz * dz), 0, 1);
+    }
+    for (int i = 0; i < N; i++) {
+        w->shine[i] *= w->shine[i];
         w->share[i] = cs_srgb_dither((int)f->y[i]);
     }
+    for (int i = 0; i < N && !whole; i++)
+        w->shine[i] *= w->cover[i];
+    for (int i = 0; i < N; i++)
+        w->cover[i] = opaque ? 1 : w->shine[i];
     for (int k = 0; k < 3; k++) {
         const float top = shading->view->top_colour[k];
         const float slope = (shading->view->bottom_colour[k] - top) / (float)shading->height;

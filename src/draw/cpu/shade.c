@@ -214,12 +214,16 @@ CS_INLINE void add_light(const struct cs_shading_context *shading, int l,
 /* Bends light above the knee k towards 1 instead of cutting it off there: with o = (c - k) /
  * (1 - k), k + (1 - k) o / (1 + o), of slope 1 at the knee (after Reinhard et al. 2002). */
 CS_INLINE void bend_highlights(struct cs_shading_work *w) {
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++) {
         for (int i = 0; i < N; i++) {
-            const float c = w->colour[k][i];
-            const float over = c > CS_KNEE ? c - CS_KNEE : 0;
-            w->colour[k][i] = c - over + over / (1 + over * (1 / (1 - CS_KNEE)));
+            const float over = w->colour[k][i] - CS_KNEE;
+            w->shine[i] = over > 0 ? over : 0;
         }
+        for (int i = 0; i < N; i++) {
+            const float over = w->shine[i];
+            w->colour[k][i] += over / (1 + over * (1 / (1 - CS_KNEE))) - over;
+        }
+    }
 }
 
 CS_INLINE void shade_lit(const struct cs_shading_context *shading, const struct cs_fragments *f,

@@ -2,11 +2,11 @@
  * four comparisons (percentage closer filtering, Reeves 1987).
  *
  * The taps of a row weigh 1, 2, 3, 2 and 1. A tap at t of weight w adds w max(0, 1 - |k - t|)
- * to the weight of texel k; both are tents, so the border of a shadow is a smooth curve without
- * steps. The weights of all 25 are products of a row's and a column's, with sum 81:
- *   V = (1/81) sum_kl a_k b_l [depth_kl <= nearness]
- * The taps reach from x - 2 to x + 2. They touch the texels floor(x) - 2 to floor(x) + 3, a
- * window of 6 x 6.
+ * to the weight of texel k. Their sum is the tent max(0, 3 - |k - x|) about the middle tap x,
+ * so the border of a shadow is a smooth curve without steps. The weights of all 25 are products
+ * of a row's and a column's, with sum 81: V = (1/81) sum_kl a_k b_l [depth_kl <= nearness] The
+ * taps reach from x - 2 to x + 2. They touch the texels floor(x) - 2 to floor(x) + 3, a window
+ * of 6 x 6.
  *
  * Min/max bounds decide most queries: if the window's maximum is no nearer than the position, V
  * is 1; if its minimum is nearer, V is 0. A 6 x 6 window starts at an even or an odd texel;
@@ -115,13 +115,8 @@ CS_CLONES void cs_shadow_map_bound(struct cs_shadow_map *map) {
 // summed weights of texels k (four of them) of a row whose middle tap lies at `at`
 CS_INLINE cs_f4 weights(cs_f4 k, float at) {
     const cs_i4 no_sign = {0x7fffffff, 0x7fffffff, 0x7fffffff, 0x7fffffff};
-    cs_f4 sum = {0};
-    for (int tap = -2; tap <= 2; tap++) {
-        const cs_f4 far = (cs_f4)((cs_i4)(k - (at + (float)tap)) & no_sign);
-        const cs_f4 near = 1 - far;
-        sum += (cs_f4)((near > 0) & (cs_i4)near) * (float)(3 - (tap < 0 ? -tap : tap));
-    }
-    return sum;
+    const cs_f4 near = 3 - (cs_f4)((cs_i4)(k - at) & no_sign);
+    return (cs_f4)((near > 0) & (cs_i4)near);
 }
 
 /* The weighted fraction of lit texels. x, y: texels from the middle of the map's first; (bx,
@@ -185,12 +180,16 @@ CS_INLINE void project(const struct cs_shadow_map *map, const struct cs_shadow_q
         const float x = clip.x[0] * a + clip.x[1] * b + clip.x[2] * c + clip.x[3];
         const float y = clip.y[0] * a + clip.y[1] * b + clip.y[2] * c + clip.y[3];
         const float inverse = 1 / w;
-        // behind the lamp there is no shadow: beyond the map
-        out[0][i] = w > 0 ? (x * inverse * 0.5f + 0.5f) * side - 0.5f : -2;
+        out[0][i] = (x * inverse * 0.5f + 0.5f) * side - 0.5f;
         out[1][i] = (0.5f - y * inverse * 0.5f) * side - 0.5f;
+        out[2][i] = cs_reversed_depth(z * inverse * 0.5f + 0.5f);
+        slant[i] = w;
+    }
+    for (int i = 0; i < n; i++) {
+        // behind the lamp there is no shadow: beyond the map
+        out[0][i] = slant[i] > 0 ? out[0][i] : -2;
         // what lies farther away than all that casts shadow still catches it
-        const float nearness = cs_reversed_depth(z * inverse * 0.5f + 0.5f);
-        out[2][i] = nearness > 0 ? nearness : 0;
+        out[2][i] = out[2][i] > 0 ? out[2][i] : 0;
     }
 }
 
