@@ -1,12 +1,14 @@
 /* camera_fit.c - fits a camera to points, by the maxima that camera_fit.h derives. */
 #include "draw/camera_fit.h"
 
+#include "draw/colour_bar.h"
 #include "draw/matrix.h"
+#include "draw/view.h"
 
 enum { MOST_POINTS = 200 }; // particles whose view is tested
 
 void cs_camera_fit_begin(struct cs_camera_fit *fit, const struct cs_camera *camera,
-                         const int64_t size[2]) {
+                         const struct cs_render *render) {
     double look[16];
     cs_matrix_look(camera->eye, camera->target, camera->up, look);
     for (int row = 0; row < 3; row++)
@@ -14,7 +16,8 @@ void cs_camera_fit_begin(struct cs_camera_fit *fit, const struct cs_camera *came
             fit->axes[row][i] = look[4 * i + row];
     fit->camera = *camera;
     fit->slope = cs_tangent(camera->fov * (3.14159265358979323846 / 360));
-    fit->aspect = (double)size[0] / (double)size[1];
+    fit->aspect =
+        ((double)render->size[0] - cs_colour_bar_width(render)) / (double)render->size[1];
     fit->has_corners = false;
 }
 
@@ -96,6 +99,17 @@ void cs_camera_fit_solve(const struct cs_camera_fit *fit, size_t n, const double
     }
 }
 
+void cs_camera_fit_picture(const struct cs_camera_fit *fit,
+                           const struct cs_posed_collider *colliders, size_t n, const double *x,
+                           struct cs_camera *camera) {
+    struct cs_camera_fit moved = *fit;
+    for (int i = 0; fit->follows > 0 && i < 3; i++)
+        for (int k = 0; k < CS_CAMERA_FIT_CORNERS; k++)
+            moved.corners[CS_CAMERA_FIT_CORNERS * i + k] +=
+                colliders[fit->follows - 1].centre[i] - fit->follows_from[i];
+    cs_camera_fit_solve(&moved, n, x, 0.9, camera);
+}
+
 void cs_camera_fit_rows(const struct cs_camera_fit *fit, const struct cs_camera *camera,
                         size_t n, const double *x, double rows[2]) {
     double eye[3], view[3];
@@ -143,18 +157,24 @@ static double depth_below(const struct cs_scene *scene, const double low[3],
     for (uint32_t k = 0; k < scene->colliders.n; k++) {
         const struct cs_collider *collider = cs_scene_colliders(scene) + k;
         const double below = low[1] - collider->floor.height;
-        if (collider->floor.present && below >= 0 && below < 3 * fmax(width, high[1] - low[1]))
-            depth = below;
+        // what stands on a floor may reach a little into it
+        if (collider->floor.present && below < 3 * fmax(width, high[1] - low[1]))
+            depth = fmax(below, 0);
     }
     return depth;
 }
 
 static void set_corners(struct cs_camera_fit *fit, double depth, const double low[3],
                         const double high[3]) {
+    double inset[3], sunk[3] = {0, depth, 0};
+    for (int i = 0; i < 3; i++)
+        inset[i] = fmin(depth, (high[i] - low[i]) / 2) / 2;
     for (int k = 0; k < CS_CAMERA_FIT_CORNERS; k++)
-        for (int i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++) {
+            const double inwards = i != 1 && !(k & 2) ? inset[i] : 0;
             fit->corners[CS_CAMERA_FIT_CORNERS * i + k] =
-                k >> i & 1 ? high[i] : low[i] - (i == 1 ? depth : 0);
+                k >> i & 1 ? high[i] - inwards : low[i] - sunk[i] + inwards;
+        }
     fit->has_corners = true;
 }
 
@@ -181,28 +201,67 @@ static uint32_t count_behind(const struct cs_system *system,
     return hidden;
 }
 
+/* The points of a path in turn, of a collider's moves or of a grab. */
+struct walk {
+    uint32_t event, point;
+    double begin[3], shift[3]; /* m from the start: at the begin of the event, at the point */
+};
+
+/* Steps to the next point of the paths of collider k, whose centre at the start is given.
+ * Returns false behind the last one. */
+static bool step(const struct cs_scene *scene, uint32_t k, const double centre[3],
+                 struct walk *at) {
+    for (; at->event < scene->events.n; at->event++, at->point = 0) {
+        const struct cs_move *move = &cs_scene_events(scene)[at->event].move;
+        const struct cs_path_point *points = move->path.items;
+        if (!move->present || move->collider != k || at->point == move->path.n)
+            continue;
+        if (at->point == 0)
+            memcpy(at->begin, at->shift, sizeof at->begin);
+        for (int i = 0; i < 3; i++)
+            at->shift[i] =
+                points[at->point].point[i] + (move->relative ? at->begin[i] : -centre[i]);
+        at->point++;
+        return true;
+    }
+    return false;
+}
+
 /* The most thinned particles that collider k hides at the start or at a point of its paths. */
 static uint32_t most_behind(const struct cs_system *system,
                             const struct cs_posed_collider *collider, uint32_t k,
                             const double eye[3]) {
+    struct walk walk = {0};
+    uint32_t most = 0;
+    do {
+        const uint32_t hidden = count_behind(system, collider, walk.shift, eye);
+        most = hidden > most ? hidden : most;
+    } while (step(system->scene, k, collider->centre, &walk));
+    return most;
+}
+
+/* Extends a box by where paths take visible colliders and the bodies that they hold. Returns
+ * the collider + 1 that goes farthest; 0: none moves. */
+static uint32_t grow_by_moves(const struct cs_system *system,
+                              const struct cs_posed_collider *colliders, double low[3],
+                              double high[3]) {
     const struct cs_scene *scene = system->scene;
-    double shift[3] = {0, 0, 0}, begin[3];
-    uint32_t most = count_behind(system, collider, shift, eye);
-    for (uint32_t e = 0; e < scene->events.n; e++) {
-        const struct cs_move *move = &cs_scene_events(scene)[e].move;
-        const struct cs_path_point *points = move->path.items;
-        if (!move->present || move->collider != k)
-            continue;
-        memcpy(begin, shift, sizeof begin);
-        for (uint32_t p = 0; p < move->path.n; p++) {
+    uint32_t farthest = 0;
+    double most = 0;
+    for (uint32_t k = 0; k < scene->colliders.n; k++) {
+        struct cs_posed_collider moved = colliders[k];
+        struct walk walk = {0};
+        while (step(scene, k, colliders[k].centre, &walk)) {
             for (int i = 0; i < 3; i++)
-                shift[i] =
-                    points[p].point[i] + (move->relative ? begin[i] : -collider->centre[i]);
-            const uint32_t hidden = count_behind(system, collider, shift, eye);
-            most = hidden > most ? hidden : most;
+                moved.centre[i] = colliders[k].centre[i] + walk.shift[i];
+            cs_scene_extent_grow(&moved, low, high);
+            if (colliders[k].collider->visible && cs_length(walk.shift) > most) {
+                most = cs_length(walk.shift);
+                farthest = k + 1;
+            }
         }
     }
-    return most;
+    return farthest;
 }
 
 /* Thinned particles of the start that visible colliders hide from the fit's camera. */
@@ -210,7 +269,7 @@ static uint32_t count_hidden(const struct cs_camera_fit *fit, const struct cs_sy
                              const struct cs_posed_collider *colliders) {
     struct cs_camera camera;
     uint32_t hidden = 0;
-    cs_camera_fit_picture(fit, 0, NULL, &camera);
+    cs_camera_fit_picture(fit, colliders, 0, NULL, &camera);
     for (uint32_t k = 0; k < system->scene->colliders.n; k++)
         if (colliders[k].collider->visible)
             hidden += most_behind(system, colliders + k, k, camera.eye);
@@ -218,8 +277,8 @@ static uint32_t count_hidden(const struct cs_camera_fit *fit, const struct cs_sy
 }
 
 void cs_camera_fit_start(struct cs_camera_fit *fit, const struct cs_system *system,
-                         const struct cs_posed_collider *colliders, const double low[3],
-                         const double high[3]) {
+                         const struct cs_posed_collider *colliders, const double start_low[3],
+                         const double start_high[3]) {
     /* the first is the default of the key */
     static const double eyes[][3] = {{1.2, 0.7, 2.2}, {-1.2, 0.7, 2.2}, {0, 0.7, 2.5},
                                      {1.2, 2, 1.7},   {-1.2, 2, 1.7},   {0, 2.5, 1}};
@@ -228,11 +287,26 @@ void cs_camera_fit_start(struct cs_camera_fit *fit, const struct cs_system *syst
     const bool is_free = !memcmp(camera.eye, eyes[0], sizeof camera.eye) &&
                          !(cs_dot(camera.target, camera.target) > 0);
     uint32_t least = UINT32_MAX;
+    double low[3], high[3];
+    uint32_t follows = 0;
+    memcpy(low, start_low, sizeof low);
+    memcpy(high, start_high, sizeof high);
+    const uint32_t farthest = grow_by_moves(system, colliders, low, high);
+    for (int i = 0; i < 3; i++)
+        if (high[i] - low[i] > 2 * (start_high[i] - start_low[i]))
+            follows = farthest;
+    if (follows > 0) {
+        memcpy(low, start_low, sizeof low);
+        memcpy(high, start_high, sizeof high);
+    }
     for (size_t k = 0; k < (is_free ? sizeof eyes / sizeof *eyes : 1) && least > 0; k++) {
         struct cs_camera_fit tried;
         if (k > 0)
             memcpy(camera.eye, eyes[k], sizeof camera.eye);
-        cs_camera_fit_begin(&tried, &camera, scene->render.size);
+        cs_camera_fit_begin(&tried, &camera, &scene->render);
+        tried.follows = follows;
+        if (follows > 0)
+            memcpy(tried.follows_from, colliders[follows - 1].centre, sizeof low);
         set_corners(&tried, depth_below(scene, low, high), low, high);
         const uint32_t hidden = count_hidden(&tried, system, colliders);
         // a direction further down the list must show clearly more

@@ -22,12 +22,15 @@ struct cs_camera_fit {
     /* (3, CS_CAMERA_FIT_CORNERS) points in m that each picture shows beside those given */
     double corners[3 * CS_CAMERA_FIT_CORNERS];
     bool has_corners;
+    /* collider + 1 with which the corners move, and its centre at the start; 0: they do not */
+    uint32_t follows;
+    double follows_from[3];
 };
 
-/* Prepares fits of cameras with the direction of `camera`, for a picture of size[0] x
- * size[1]. */
+/* Prepares fits of cameras with the direction of `camera`, for the pictures of `render`: for
+ * what the colour bar leaves of their width. */
 void cs_camera_fit_begin(struct cs_camera_fit *fit, const struct cs_camera *camera,
-                         const int64_t size[2]);
+                         const struct cs_render *render);
 
 /* Writes a camera whose direction is the fit's and whose picture holds the n points x (3,n) in
  * m: they fill the fraction `share` of its height, or 0.96 of its width if that comes first. */
@@ -47,7 +50,12 @@ void cs_camera_fit_extremes(const struct cs_camera_fit *fit, size_t n, const dou
                             double *out);
 
 /* The fit of CS_FRAME_START. Its corners are those of the box from low to high of all that
- * there is at the start, extended downwards to a near floor, else by half the box's width.
+ * there is at the start, extended by visible colliders at each point of their paths. Where that
+ * more than doubles the box's width or height, the camera goes with the collider that goes
+ * farthest instead, so that who walks through a scene stays large. The box is then extended
+ * downwards to a near floor, else by half its width; as what falls or hangs down comes inwards,
+ * its lower side is narrower, by a quarter at most on each side. All of this follows from the
+ * scene alone: neither the number of frames nor where a run is resumed changes a picture.
  * Where the scene leaves eye and target at their defaults, five more directions are tried in
  * turn: one is taken if fewer of the start's particles, by 2 % at least, are hidden by
  * colliders (scene->colliders.n, at the start), there or moved to any point of their paths. */
@@ -56,10 +64,10 @@ void cs_camera_fit_start(struct cs_camera_fit *fit, const struct cs_system *syst
                          const double high[3]);
 
 /* The camera of a picture that shows the corners and the points x (3,n), each side with a
- * margin of a twentieth at least: it stands still as long as the points are in the picture. */
-static inline void cs_camera_fit_picture(const struct cs_camera_fit *fit, size_t n,
-                                         const double *x, struct cs_camera *camera) {
-    cs_camera_fit_solve(fit, n, x, 0.9, camera);
-}
+ * margin of a twentieth at least: it stands still, or goes with the collider that it follows,
+ * as long as the points are in the picture. colliders (scene->colliders.n): at its time. */
+void cs_camera_fit_picture(const struct cs_camera_fit *fit,
+                           const struct cs_posed_collider *colliders, size_t n, const double *x,
+                           struct cs_camera *camera);
 
 #endif

@@ -2,6 +2,7 @@
 #include "draw/colour_bar.h"
 
 #include "draw/glyph.h"
+#include "draw/look.h"
 #include "draw/srgb.h"
 
 #include <math.h>
@@ -12,6 +13,15 @@
 struct place {
     double box[4], unit;
 };
+
+// pixels of a unit: labels of small pictures stay legible
+static double unit_of(double height) {
+    return fmax(height / 480, 0.75);
+}
+
+double cs_colour_bar_width(const struct cs_render *render) {
+    return cs_look_of(render->look)->title ? 98 * unit_of((double)render->size[1]) : 0;
+}
 
 void cs_colour_bar_init(struct cs_colour_bar *bar, const struct cs_render *render) {
     bar->width = (double)render->size[0];
@@ -110,7 +120,7 @@ static void add_figures(const struct place *place, struct cs_lines *lines,
 void cs_colour_bar_draw(const struct cs_colour_bar *bar, struct cs_lines *lines,
                         const struct cs_frame *frame) {
     // small pictures have fewer labels
-    const double unit = fmax(bar->height / 480, 0.75), length = 0.39 * bar->height;
+    const double unit = unit_of(bar->height), length = 0.39 * bar->height;
     const struct place place = {
         .box = {bar->width - 32 * unit, bar->height - 18 * unit - length, 14 * unit, length},
         .unit = unit};

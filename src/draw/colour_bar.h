@@ -18,6 +18,9 @@ enum {
     CS_COLOUR_BAR_TICKS = 16
 };
 
+/* Pixels of a picture's width that the bar and its panel take; 0 for a look without one. */
+double cs_colour_bar_width(const struct cs_render *render);
+
 /* Sets the bar for pictures of the scene. */
 void cs_colour_bar_init(struct cs_colour_bar *bar, const struct cs_render *render);
 

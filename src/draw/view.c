@@ -1,6 +1,7 @@
 /* Sets up the camera, light, background and colour map that all shaders share. */
 #include "draw/view.h"
 
+#include "draw/colour_bar.h"
 #include "draw/matrix.h"
 #include "draw/mesh.h"
 #include "draw/srgb.h"
@@ -68,6 +69,10 @@ static void set_camera(struct cs_view_state *view, const struct cs_render *rende
     else
         cs_matrix_perspective(slope, width / height, view->depth[0], view->depth[1], lens);
     cs_matrix_multiply(lens, look, both);
+    // the middle of what the colour bar leaves of the picture
+    view->shift = cs_colour_bar_width(render) / width;
+    for (size_t i = 0; i < 16; i += 4)
+        both[i] -= view->shift * both[i + 3];
     cs_matrix_to_float(both, view->block.world_to_clip);
     cs_normalise(back);
     copy3(parallel ? back : camera->eye, !parallel, view->block.eye);
@@ -78,15 +83,15 @@ static void set_camera(struct cs_view_state *view, const struct cs_render *rende
 }
 
 void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
-                  const struct cs_bounding_sphere *extent, double t, size_t n,
-                  const double *x) {
+                  const struct cs_bounding_sphere *extent, size_t n,
+                  const struct cs_frame *frame) {
     struct cs_camera_fit fit;
-    view->camera = camera_at(&scene->camera, t);
+    view->camera = camera_at(&scene->camera, frame->t);
     if (scene->camera.frame == CS_FRAME_START)
-        cs_camera_fit_picture(&view->fit, n, x, &view->camera);
+        cs_camera_fit_picture(&view->fit, frame->colliders, n, frame->x, &view->camera);
     if (scene->camera.frame == CS_FRAME_AUTO) {
-        cs_camera_fit_begin(&fit, &scene->camera, scene->render.size);
-        cs_camera_fit_solve(&fit, n, x, 0.62, &view->camera);
+        cs_camera_fit_begin(&fit, &scene->camera, &scene->render);
+        cs_camera_fit_solve(&fit, n, frame->x, 0.62, &view->camera);
     }
     set_camera(view, &scene->render, extent);
 }
@@ -173,7 +178,7 @@ void cs_view_init(struct cs_view_state *view, const struct cs_system *system,
     view->camera = camera_at(&scene->camera, 0);
     if (scene->camera.frame == CS_FRAME_START) {
         cs_camera_fit_start(&view->fit, system, colliders, extent->low, extent->high);
-        cs_camera_fit_picture(&view->fit, 0, NULL, &view->camera);
+        cs_camera_fit_picture(&view->fit, colliders, 0, NULL, &view->camera);
     }
     set_camera(view, &scene->render, extent);
     cs_view_set_colours(view, scene);
@@ -268,6 +273,16 @@ static void grow_by_mesh(double low[3], double high[3],
     }
 }
 
+void cs_scene_extent_grow(const struct cs_posed_collider *collider, double low[3],
+                          double high[3]) {
+    if (!collider->collider->visible || cs_shape_is_endless(collider->shape))
+        return;
+    if (collider->shape->bounds == CS_BOUNDS_MESH)
+        grow_by_mesh(low, high, collider);
+    else
+        grow_by(low, high, collider);
+}
+
 struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, const double *x,
                                                 const struct cs_posed_collider *obstacles) {
     const struct cs_scene *scene = system->scene;
@@ -280,14 +295,8 @@ struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, 
         grow(low, high, place);
     }
     /* planes are left out: they have no end */
-    for (uint32_t i = 0; i < scene->colliders.n; i++) {
-        if (!obstacles[i].collider->visible || cs_shape_is_endless(obstacles[i].shape))
-            continue;
-        if (obstacles[i].shape->bounds == CS_BOUNDS_MESH)
-            grow_by_mesh(low, high, obstacles + i);
-        else
-            grow_by(low, high, obstacles + i);
-    }
+    for (uint32_t i = 0; i < scene->colliders.n; i++)
+        cs_scene_extent_grow(obstacles + i, low, high);
     for (int i = 0; i < 3; i++)
         ball.centre[i] = (low[i] + high[i]) / 2;
     memcpy(ball.low, low, sizeof low);

@@ -3,6 +3,7 @@
 #define CS_DRAW_VIEW_H
 
 #include "draw/camera_fit.h"
+#include "draw/render.h"
 #include "model/contact/posed_collider.h"
 #include "model/system/particle_system.h"
 #include "scene/scene.h"
@@ -44,6 +45,7 @@ struct cs_view_state {
     double depth[2];          /* m along the view of the near and the far plane */
     double haze;              /* m: cs_view_haze at the start */
     struct cs_camera_fit fit; /* of CS_FRAME_START */
+    double shift;             /* of the picture to the left, in halves of its width */
 };
 
 /* A sphere around everything that is drawn. */
@@ -67,10 +69,11 @@ static inline bool cs_view_varies(const struct cs_scene *scene) {
     return scene->camera.path.n > 0 || scene->camera.frame != CS_FRAME_GIVEN;
 }
 
-/* Moves a camera that varies to time t in s: along its path, or fitted to the positions x (3,n)
- * of the bodies. */
+/* Moves a camera that varies to the time of a frame of n particles: along its path, or fitted
+ * to the bodies. */
 void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
-                  const struct cs_bounding_sphere *extent, double t, size_t n, const double *x);
+                  const struct cs_bounding_sphere *extent, size_t n,
+                  const struct cs_frame *frame);
 
 /* Uploads the block as a uniform buffer; OpenGL only. */
 void cs_view_upload(struct cs_view_state *view);
@@ -93,6 +96,10 @@ void cs_light_frusta_fit(const struct cs_bounding_sphere *solid, struct cs_view_
  */
 struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, const double *x,
                                                 const struct cs_posed_collider *colliders);
+
+/* Extends the box from low to high by a collider, if it is visible and no plane. */
+void cs_scene_extent_grow(const struct cs_posed_collider *collider, double low[3],
+                          double high[3]);
 
 /* Distance in m from the centre of a scene at which haze hides the ground. */
 static inline double cs_view_haze(const struct cs_bounding_sphere *extent) {

@@ -21,8 +21,8 @@ static const struct cs_option camera_rows[] = {
     CHOICE(struct cs_camera, frame, frame_names, CS_FRAME_GIVEN,
            "given: the camera stands at eye; auto: it keeps that direction, from a position "
            "where the bodies fill the picture; start: likewise, where all that there is at the "
-           "start and what there is of the bodies later fit, the default without frame, eye, "
-           "target and path"),
+           "start, all paths of colliders and what there is of the bodies later fit, or beside "
+           "the collider that goes far; the default without frame, eye, target and path"),
     VECTOR(struct cs_camera, eye, 3, "m", eye, -BIG, BIG, "position of the camera"),
     VECTOR(struct cs_camera, target, 3, "m", zero3, -BIG, BIG,
            "point that the camera looks at"),

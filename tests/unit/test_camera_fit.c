@@ -21,7 +21,7 @@ static void begin(struct cs_camera_fit *fit, int32_t projection, int64_t width) 
                                      .up = {0, 1, 0},
                                      .fov = 35,
                                      .projection = projection};
-    cs_camera_fit_begin(fit, &camera, (const int64_t[2]){width, 480});
+    cs_camera_fit_begin(fit, &camera, &(const struct cs_render){.size = {width, 480}});
 }
 
 /* highest and lowest place at the share that was asked for; the view keeps its direction */
@@ -90,11 +90,59 @@ TEST(the_start_is_in_the_picture) {
         double rows[2];
         scene.colliders.n = n;
         cs_camera_fit_start(&fit, &system, &posed, low, high);
-        cs_camera_fit_picture(&fit, 0, NULL, &camera);
+        cs_camera_fit_picture(&fit, &posed, 0, NULL, &camera);
         for (int k = 0; k < 8; k++) {
-            const double corner[3] = {k & 1 ? 4 : 6, k & 2 ? 2 : n ? -2 : -1, k & 4 ? -1 : 1};
+            // the lower side is narrower by half of the depth, and by a quarter at most
+            const double in = k & 2 ? 0 : 0.5;
+            const double corner[3] = {k & 1 ? 4 + in : 6 - in,
+                                      k & 2 ? 2
+                                      : n   ? -2
+                                            : -1,
+                                      k & 4 ? -1 + in : 1 - in};
             cs_camera_fit_rows(&fit, &camera, 1, corner, rows);
             ck_assert_msg(fabs(rows[0]) <= 0.9 + 1e-9, "corner %d at %g", k, rows[0]);
         }
     }
+}
+
+/* The camera of the start where a ball of 0.5 m, below a particle, goes by `to` along x, at the
+ * time when the ball is at `at`. */
+static struct cs_camera camera_of(double to, double at) {
+    struct cs_path_point point = {.at = 1, .point = {to, 0, 0}};
+    struct cs_event event = {
+        .at = (double)NAN,
+        .move = {.present = true, .relative = true, .path = {.items = &point, .n = 1}}};
+    struct cs_collider ball = {.visible = true};
+    const struct cs_scene scene = {
+        .camera = {.frame = CS_FRAME_START, .eye = {0, 0, 3}, .up = {0, 1, 0}, .fov = 40},
+        .render = {.size = {640, 480}},
+        .colliders = {.items = &ball, .n = 1},
+        .events = {.items = &event, .n = 1}};
+    const double particle[3] = {0, 2, 0};
+    const struct cs_system system = {.scene = &scene, .view = {.n = 1, .start = particle}};
+    struct cs_posed_collider posed = {
+        .collider = &ball, .shape = &cs_shape_sphere, .radius = 0.5};
+    const double low[3] = {-0.5, -0.5, -0.5}, high[3] = {0.5, 2, 0.5};
+    struct cs_camera_fit fit;
+    struct cs_camera camera;
+    cs_camera_fit_start(&fit, &system, &posed, low, high);
+    posed.centre[0] = at;
+    cs_camera_fit_picture(&fit, &posed, 0, NULL, &camera);
+    return camera;
+}
+
+/* The whole of a short path, from -0.5 m to 1.4 m, is in the middle of all pictures. */
+TEST(what_moves_later_is_in_the_picture) {
+    ck_assert_double_eq_tol(camera_of(0.9, 0).target[0], 0.45, 1e-9);
+    ck_assert_double_eq_tol(camera_of(0.9, 0.9).target[0], 0.45, 1e-9);
+}
+
+/* On a path of many times its size the camera goes with the ball, at the distance of the start.
+ */
+TEST(the_camera_follows_what_goes_far) {
+    const struct cs_camera first = camera_of(30, 0), later = camera_of(30, 7);
+    ck_assert_double_eq_tol(first.target[0], 0, 1e-9);
+    ck_assert_double_eq_tol(later.target[0], 7, 1e-9);
+    ck_assert_double_eq_tol(later.eye[2], first.eye[2], 1e-9);
+    ck_assert_double_lt(first.eye[2], 6);
 }

@@ -155,7 +155,7 @@ void cs_run_camera_find(struct cs_scene *scene, void *camera) {
     }
     // those of the session that asks
     once.threads = 0;
-    cs_camera_fit_begin(&motion.fit, &scene->camera, scene->render.size);
+    cs_camera_fit_begin(&motion.fit, &scene->camera, &scene->render);
     if (!cs_session_open(&session, &once, &of->error) &&
         !take(&motion, frames / every, &of->error) &&
         !record(&session, frames, every, &motion, &of->error))

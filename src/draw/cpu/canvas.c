@@ -53,6 +53,7 @@ static void aim_rays(struct cs_rays *rays, const struct cs_view_state *view,
     cs_subtract(camera->eye, camera->target, back);
     if (rays->parallel)
         slope *= cs_length(back);
+    rays->shift = (float)view->shift;
     rays->depth[0] = (float)view->depth[0];
     rays->depth[1] = (float)view->depth[1];
     rays->slope_x = (float)(slope * ((double)render->size[0] / (double)render->size[1]));
@@ -200,8 +201,7 @@ static void draw_stripe(void *arg, uint32_t stripe) {
 static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
                         const struct cs_bounding_sphere *solid) {
     const struct cs_system *system = canvas->settings.system;
-    cs_view_move(&canvas->view, canvas->settings.scene, solid, frame->t, system->view.n,
-                 frame->x);
+    cs_view_move(&canvas->view, canvas->settings.scene, solid, system->view.n, frame);
     cs_overlay_aim(&canvas->overlay, canvas->view.pixels_per_m);
     aim_camera(canvas);
 }

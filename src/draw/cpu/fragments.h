@@ -84,7 +84,7 @@ CS_INLINE void cs_sky_colour(const struct cs_shading_context *shading, float y, 
 CS_INLINE void cs_ray_direction(const struct cs_shading_context *shading, float x, float y,
                                 float d[3]) {
     const struct cs_rays *r = &shading->rays;
-    const float right = ((x + 0.5f) * (2 / (float)shading->width) - 1) * r->slope_x;
+    const float right = ((x + 0.5f) * (2 / (float)shading->width) - 1 + r->shift) * r->slope_x;
     const float up = (1 - (y + 0.5f) * (2 / (float)shading->height)) * r->slope_y;
     for (int i = 0; i < 3; i++)
         d[i] = right * r->right[i] + up * r->up[i] - (r->parallel ? 0 : r->back[i]);

@@ -108,6 +108,7 @@ int cs_clip_transform_clip(const struct cs_clip_transform *lens,
 struct cs_rays {
     float eye[3], right[3], up[3], back[3]; /* m; unit vectors */
     float slope_x, slope_y;                 /* tangents of the rays at the picture's edges */
+    float shift;    /* of the picture to the left, in halves of its width */
     bool parallel;  /* origins differ instead: slope_x, slope_y in m from the middle */
     float depth[2]; /* m along parallel rays at the near and the far plane */
 };

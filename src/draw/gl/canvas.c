@@ -261,8 +261,7 @@ static enum cs_status create(const struct cs_canvas_settings *settings,
 
 static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
                         const struct cs_bounding_sphere *solid) {
-    cs_view_move(&canvas->view, canvas->scene, solid, frame->t, canvas->system->view.n,
-                 frame->x);
+    cs_view_move(&canvas->view, canvas->scene, solid, canvas->system->view.n, frame);
     cs_overlay_aim(&canvas->overlay, canvas->view.pixels_per_m);
 }
 
@@ -341,7 +340,7 @@ extern EXPORT const struct cs_renderer clothsim_renderer;
 
 EXPORT const struct cs_renderer clothsim_renderer = {
     .abi = CS_RENDERER_ABI,
-    .name = cs_context_name,
+    .name = "osmesa",
     .create = create,
     .paint = paint,
     .description = description,
