@@ -82,7 +82,7 @@ static const struct cs_arg rows[] = {
     {"pictures", 0, NULL,
      "draw the last frames at equal step and at equal cost, coloured by their error",
      CS_ARG_INTO(struct options, compare.pictures)},
-    {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)",
+    {"renderer", 0, "NAME", "cpu, osmesa or auto (default: auto)",
      CS_ARG_INTO(struct options, renderer), .names = cs_renderer_names},
     {"shard", 0, "K/N", "run shard K of N of the cells; see: clothsim merge",
      CS_ARG_INTO(struct options, compare.shard)},

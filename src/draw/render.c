@@ -15,12 +15,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-const char *const cs_renderer_names[] = {"auto", "cpu", "osmesa", "egl", NULL};
+const char *const cs_renderer_names[] = {"auto", "cpu", "osmesa", NULL};
 
 /* Debian packages that a module is built with; NULL: none. */
-static const char *const packages[] = {[CS_RENDERER_CPU] = NULL,
-                                       [CS_RENDERER_OSMESA] = "libosmesa6-dev",
-                                       [CS_RENDERER_EGL] = "libegl-dev"};
+static const char *const packages[] = {
+    [CS_RENDERER_CPU] = NULL, [CS_RENDERER_OSMESA] = "libosmesa6-dev"};
 
 static enum cs_status open_one(const char *folder, enum cs_renderer_kind kind,
                                const struct cs_renderer **renderer, struct cs_error *error) {
@@ -36,19 +35,15 @@ static enum cs_status open_one(const char *folder, enum cs_renderer_kind kind,
 
 enum cs_status cs_renderer_open(const char *folder, enum cs_renderer_kind kind,
                                 const struct cs_renderer **renderer, struct cs_error *error) {
-    static const enum cs_renderer_kind order[] = {CS_RENDERER_CPU, CS_RENDERER_OSMESA,
-                                                  CS_RENDERER_EGL};
+    struct cs_error later = {0};
     *renderer = NULL;
     if (kind != CS_RENDERER_AUTO)
         return open_one(folder, kind, renderer, error);
-    struct cs_error first = {0};
-    for (size_t i = 0; i < sizeof order / sizeof *order; i++) {
-        struct cs_error later = {0};
-        if (open_one(folder, order[i], renderer, i ? &later : &first) == CS_OK)
-            return CS_OK;
-    }
     // the first one needs no library: why it cannot be had is what helps
-    return cs_fail(error, CS_ERR_MODULE, "%s", first.message);
+    if (open_one(folder, CS_RENDERER_CPU, renderer, error) &&
+        open_one(folder, CS_RENDERER_OSMESA, renderer, &later) == CS_OK)
+        *error = later;
+    return error->status;
 }
 
 /* --- diagrams --- */

@@ -1,7 +1,7 @@
 /* render.h - the interface of renderers: a table of four calls that a module exports.
  *
- * The module render-cpu.so needs nothing but the processor; render-osmesa.so and render-egl.so
- * hold everything that touches OpenGL. They are loaded only when a frame is requested
+ * The module render-cpu.so needs nothing but the processor; render-osmesa.so holds
+ * everything that touches OpenGL. They are loaded only when a frame is requested
  * (cs_renderer_open).
  *
  * A canvas belongs to the thread that made it. Another thread may step scene and system while
@@ -73,17 +73,12 @@ struct cs_renderer {
     void (*destroy)(struct cs_canvas *canvas); /* NULL is fine */
 };
 
-enum cs_renderer_kind {
-    CS_RENDERER_AUTO,
-    CS_RENDERER_CPU,
-    CS_RENDERER_OSMESA,
-    CS_RENDERER_EGL
-};
+enum cs_renderer_kind { CS_RENDERER_AUTO, CS_RENDERER_CPU, CS_RENDERER_OSMESA };
 extern const char *const cs_renderer_names[];
 
 /* Loads the module of a renderer from folder, once per process. auto takes the one without
- * OpenGL, else OSMesa, else EGL without a display. On failure CS_ERR_MODULE, and the message
- * says which package to install. */
+ * OpenGL, else OSMesa. On failure CS_ERR_MODULE, and the message says which package to install.
+ */
 enum cs_status cs_renderer_open(const char *folder, enum cs_renderer_kind kind,
                                 const struct cs_renderer **renderer, struct cs_error *error);
 

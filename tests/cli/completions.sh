@@ -126,7 +126,7 @@ value "options of a method" run -i newmark: $options
 value "a choice of an option" run -i newmark:variant=h newmark:variant=hht
 value "another option, or the next method" compare --integrators rk4:dt=1e-3,d \
     rk4:dt=1e-3,dt= $(echo "$methods" | grep '^d' | sed 's/^/rk4:dt=1e-3,/')
-value "renderers" run --renderer "" auto cpu osmesa egl
+value "renderers" run --renderer "" auto cpu osmesa
 value "norms" compare --error-norm "" error path largest velocity energy
 "$program" --complete compare --rank p >"$work/offered"
 echo path >"$work/expected"

@@ -2,9 +2,9 @@
  * images: each renderer checks the other. The one without OpenGL must also draw the same bytes
  * with one thread, two and three.
  *
- *   renderers RENDERER SIZE LOOKS SCENE=FRAME...
+ *   renderers osmesa SIZE LOOKS SCENE=FRAME...
  *
- * RENDERER is osmesa or egl, SIZE as 160x120, LOOKS names with commas between. A scene that
+ * SIZE as 160x120, LOOKS names with commas between. A scene that
  * cannot be drawn with look goals is passed over. Prints a row a picture, and fails if any is
  * beyond the gate. */
 #include "base/pool.h"
@@ -101,8 +101,7 @@ int main(int argc, char **argv) {
     char size[40], looks[200];
     if (argc < 5 || sscanf(argv[2], "%ux%u", &width, &height) != 2)
         return 2;
-    const enum cs_renderer_kind kind =
-        strcmp(argv[1], "egl") ? CS_RENDERER_OSMESA : CS_RENDERER_EGL;
+    const enum cs_renderer_kind kind = CS_RENDERER_OSMESA;
     snprintf(size, sizeof size, "[%u,%u]", width, height);
     for (int i = 4; i < argc; i++) {
         char *at = strchr(argv[i], '=');

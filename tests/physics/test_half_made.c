@@ -67,11 +67,11 @@ TEST(a_shape_without_a_call_aborts) {
         }
 }
 
-/* The folder has a render-egl.so without `paint`. */
+/* The folder has a render-osmesa.so without `paint`. */
 TEST(a_renderer_without_a_call_is_refused) {
     const struct cs_renderer *renderer;
     struct cs_error error = {0};
-    cs_renderer_open(getenv("HALF_RENDERER"), CS_RENDERER_EGL, &renderer, &error);
+    cs_renderer_open(getenv("HALF_RENDERER"), CS_RENDERER_OSMESA, &renderer, &error);
     UNIT_ASSERT_FAILED(&error, CS_ERR_MODULE, "lacks a call");
     ck_assert_ptr_null(renderer);
 }

@@ -24,7 +24,6 @@ LIMITS = (
 # a type that one header declares, and that alternatives define: no program sees two of them
 ALTERNATIVES = {
     "cs_canvas": {"src/draw/cpu/canvas.c", "src/draw/gl/canvas.c"},
-    "cs_context": {"src/draw/gl/ctx_egl.c", "src/draw/gl/ctx_osmesa.c"},
 }
 TAG = re.compile(r"\b(?:struct|union|enum)\s+(\w+)\s*\{")
 # a declaration or definition at the left margin

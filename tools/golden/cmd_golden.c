@@ -54,7 +54,7 @@ static const struct cs_arg rows[] = {
     {"folder", 0, "DIR", "the golden folder (default: golden here, else the installed one)",
      CS_ARG_INTO(struct options, check.folder)},
     CS_ARG_PLUGIN(struct options, check),
-    {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto); may be repeated",
+    {"renderer", 0, "NAME", "cpu, osmesa or auto (default: auto); may be repeated",
      CS_ARG_INTO(struct options, check.renderers), .names = cs_renderer_names,
      .repeatable = true},
     {"threads", 0, "N", "threads that step each scene, 1 to 64 (default: 1)",

@@ -105,7 +105,7 @@ static const struct cs_arg rows[] = {
      "threads that step the scene, 1 to 64 (default: one per processor, up to 16; 1 below "
      "16384 particles, or below 1024 with contact by force)",
      CS_ARG_INTO(struct options, job.session.threads), .min = 1, .max = CS_POOL_THREADS_MAX},
-    {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)",
+    {"renderer", 0, "NAME", "cpu, osmesa or auto (default: auto)",
      CS_ARG_INTO(struct options, job.renderer), .names = cs_renderer_names},
     {"range", 0, "RANGE",
      "range of the colours of looks force and strain in all pictures: MIN,MAX, or auto, which "

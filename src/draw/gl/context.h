@@ -1,13 +1,10 @@
-/* context.h - an OpenGL context without a window; each renderer module has one
- * implementation. */
+/* context.h - an OpenGL context without a window. */
 #ifndef CS_DRAW_CONTEXT_H
 #define CS_DRAW_CONTEXT_H
 
 #include "base/status.h"
 
 struct cs_context;
-
-extern const char cs_context_name[]; /* "osmesa" or "egl" */
 
 /* Makes a core context of version 3.3 or later, and makes it current. On failure CS_ERR_MODULE
  * or CS_ERR_MEMORY, and *context is NULL. Call cs_driver_pin before. */

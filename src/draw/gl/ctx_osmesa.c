@@ -1,5 +1,5 @@
 /* An OpenGL context through OSMesa. Its own buffer is never drawn into: frames go to
- * framebuffer objects, as with EGL. */
+ * framebuffer objects. */
 #include "draw/gl/context.h"
 
 #include <GL/osmesa.h>
@@ -10,8 +10,6 @@ struct cs_context {
     OSMesaContext handle;
     unsigned char pixels[16 * 16 * 4]; // never drawn into
 };
-
-const char cs_context_name[] = "osmesa";
 
 enum cs_status cs_context_create(struct cs_context **context, struct cs_error *error) {
     static const int attributes[] = {OSMESA_FORMAT,

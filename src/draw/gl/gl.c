@@ -17,8 +17,8 @@ enum cs_status cs_gl_load(struct cs_error *error) {
         gl.GetIntegerv(GL_MINOR_VERSION, &minor);
     }
     if (major * 10 + minor < 33)
-        return cs_fail(error, CS_ERR_MODULE, "renderer %s: OpenGL %d.%d found, 3.3 expected",
-                       cs_context_name, major, minor);
+        return cs_fail(error, CS_ERR_MODULE,
+                       "renderer osmesa: OpenGL %d.%d found, 3.3 expected", major, minor);
     return CS_OK;
 }
 
@@ -27,8 +27,7 @@ enum cs_status cs_gl_check(const char *during, struct cs_error *error) {
     if (code == GL_NO_ERROR)
         return CS_OK;
     if (code == GL_OUT_OF_MEMORY)
-        return cs_fail(error, CS_ERR_MEMORY, "renderer %s: out of memory while %s",
-                       cs_context_name, during);
-    return cs_fail(error, CS_ERR_MODULE, "renderer %s: OpenGL error 0x%04x while %s",
-                   cs_context_name, code, during);
+        return cs_fail(error, CS_ERR_MEMORY, "renderer osmesa: out of memory while %s", during);
+    return cs_fail(error, CS_ERR_MODULE, "renderer osmesa: OpenGL error 0x%04x while %s", code,
+                   during);
 }

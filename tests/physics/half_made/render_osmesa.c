@@ -19,7 +19,7 @@ static void destroy(struct cs_canvas *canvas) {
 extern const struct cs_renderer clothsim_renderer;
 __attribute__((visibility("default")))
 const struct cs_renderer clothsim_renderer = {.abi = CS_RENDERER_ABI,
-                                              .name = "egl",
+                                              .name = "osmesa",
                                               .create = create,
                                               .description = description,
                                               .destroy = destroy};
