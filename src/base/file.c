@@ -135,8 +135,8 @@ int cs_file_open_stream(const char *path, struct cs_error *error) {
     return file;
 }
 
-int cs_file_open_own(const char *path, int flags, struct cs_error *error) {
-    struct stat info, named;
+int cs_file_open_shared(const char *path, int flags, struct cs_error *error) {
+    struct stat info;
     const int file = open(path, flags | O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
     if (file < 0 || fstat(file, &info))
         cs_fail(error, cs_file_status(errno), "cannot write \"%s\": %s", path,
@@ -144,15 +144,24 @@ int cs_file_open_own(const char *path, int flags, struct cs_error *error) {
     else if (S_ISREG(info.st_mode) && info.st_nlink > 1)
         cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": it has %lu names, expected one", path,
                 (unsigned long)info.st_nlink);
-    // without the name it is the finished file of the process that had the lock
-    else if (!check_regular(&info, "write", path, error) &&
-             ((flock(file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK) || lstat(path, &named) ||
-              named.st_ino != info.st_ino || named.st_dev != info.st_dev))
-        cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": another process is writing it", path);
-    if (!error->status)
+    else if (!check_regular(&info, "write", path, error))
         return file;
     if (file >= 0)
         close(file);
+    return -1;
+}
+
+int cs_file_open_own(const char *path, int flags, struct cs_error *error) {
+    struct stat info, named;
+    const int file = cs_file_open_shared(path, flags, error);
+    if (file < 0)
+        return -1;
+    // without the name it is the finished file of the process that had the lock
+    if ((!flock(file, LOCK_EX | LOCK_NB) || errno != EWOULDBLOCK) && !fstat(file, &info) &&
+        !lstat(path, &named) && named.st_ino == info.st_ino && named.st_dev == info.st_dev)
+        return file;
+    close(file);
+    cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": another process is writing it", path);
     return -1;
 }
 
@@ -303,6 +312,10 @@ void cs_file_abandon(struct cs_file_out *out) {
     out->file = NULL;
     if (*out->temporary)
         unlink(out->temporary);
+}
+
+enum cs_status cs_file_rename(const char *from, const char *to, struct cs_error *error) {
+    return rename(from, to) ? fail("write", to, error) : CS_OK;
 }
 
 enum cs_status cs_file_remove(const char *path, struct cs_error *error) {

@@ -48,9 +48,11 @@ enum cs_status cs_file_target(const char *path, bool *streams, struct cs_error *
 /* Opens a device or a FIFO for writing; waits 10 s at most for the reader of a FIFO, or until a
  * signal. Returns the descriptor; -1 with CS_ERR_FILE or CS_ERR_INTERRUPT. */
 int cs_file_open_stream(const char *path, struct cs_error *error);
-/* Opens a regular file that grows in place for reading and writing, and locks it against other
- * processes. A link, or a file with another name too, is refused: its rows would be written
- * over. flags: O_CREAT or 0. Returns the descriptor; -1 with CS_ERR_FILE. */
+/* Opens a regular file that grows in place for reading and writing, of one process or of all
+ * that agree on a lock. A link, or a file with another name too, is refused: its rows would be
+ * written over. flags: O_CREAT or 0. Returns the descriptor; -1 with CS_ERR_FILE. */
+int cs_file_open_shared(const char *path, int flags, struct cs_error *error);
+/* The same, locked against other processes. */
 int cs_file_open_own(const char *path, int flags, struct cs_error *error);
 
 /* True for NAME.tmp.DIGITS; target gets NAME. */
@@ -60,6 +62,8 @@ bool cs_file_is_temporary(const char *name, char target[CS_FILE_NAME_BYTES]);
  * system has no locks, they stay. */
 void cs_file_sweep(const char *path, bool (*is_ours)(const char *name));
 
+/* Gives a file that has grown in place its name. CS_ERR_FILE. */
+enum cs_status cs_file_rename(const char *from, const char *to, struct cs_error *error);
 /* Removes a file that is no longer needed, if it is there. CS_ERR_FILE. */
 enum cs_status cs_file_remove(const char *path, struct cs_error *error);
 

@@ -151,9 +151,7 @@ enum cs_status cs_row_table_open(struct cs_row_table *table, const char *folder,
  * interrupts the wait and not the lock, so the wait goes on: no owner keeps it long. On a file
  * system without locks there is no wait. */
 static int take_lock(const char *path, struct cs_error *error) {
-    const int lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (lock < 0)
-        cs_fail(error, CS_ERR_FILE, "cannot open %s: %s", path, strerror(errno));
+    const int lock = cs_file_open_shared(path, O_CREAT, error);
     while (lock >= 0 && flock(lock, LOCK_EX) && errno == EINTR)
         ;
     return lock;
@@ -186,7 +184,7 @@ enum cs_status cs_row_table_append(const struct cs_row_table *table, const void 
     const int lock = take_lock(table->lock_path, error);
     if (lock < 0)
         return error->status;
-    const int file = open(table->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    const int file = cs_file_open_shared(table->path, O_CREAT, error);
     const off_t end = file >= 0 ? end_of_rows(file, table->row_bytes) : -1;
     if (end < 0 || ftruncate(file, end) || pwrite(file, rows, length, end) != (ssize_t)length)
         cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", table->path, strerror(errno));

@@ -6,6 +6,7 @@
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "cli/manifest.h"
 #include "cli/run_output.h"
 #include "model/elastic/membranes.h"
 #include "scene/body_pairs.h"
@@ -332,8 +333,9 @@ static enum cs_status advise_for_error(struct cs_args *args, struct cs_error *er
     if (list.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of methods");
     else if (!add_modules(args, &settings, error) &&
-             !cs_session_fit_frames(&study->session, &settings.run.frames, &seconds, error) &&
-             !cs_compare_run(&compare, &settings, error)) {
+             !cs_session_fit_frames(&study->session, &settings.run.frames, &seconds, error))
+        cs_compare_run(&compare, &settings, error);
+    if (!cs_manifest_write_study(options->folder, error)) {
         cs_verdict_print_at(&compare, bound, &out);
         cs_compare_warn(&compare, "warning: ", &out);
         cs_print_out(stdout, &out, error);

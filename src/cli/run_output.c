@@ -122,8 +122,8 @@ static enum cs_status sweep(const char *folder, cs_output_kind *is_ours, bool wh
     if (!entries)
         return error->status;
     for (struct dirent *entry; (entry = readdir(entries)) && !error->status;)
-        if (is_ours(entry->d_name) && !join(folder, entry->d_name, path, error) && unlink(path))
-            cs_fail(error, CS_ERR_FILE, "cannot remove \"%s\": %s", path, strerror(errno));
+        if (is_ours(entry->d_name) && !join(folder, entry->d_name, path, error))
+            cs_file_remove(path, error);
     closedir(entries);
     return error->status;
 }

@@ -162,7 +162,7 @@ enum cs_status cs_row_log_finish(struct cs_row_log *log, struct cs_error *error)
         return error->status;
     const bool cut = log->streams || !ftruncate(fileno(file), (off_t)log->length);
     // renamed under the lock, which the end of the file releases
-    const bool named = cut && (log->streams || !rename(log->part, log->path));
+    const bool named = cut && (log->streams || !cs_file_rename(log->part, log->path, error));
     if ((fclose(file) != 0 || !named) && !error->status)
         fail(log, error);
     return error->status;

@@ -24,10 +24,8 @@ enum cs_status cs_sweep_rows_open(struct cs_sweep_rows *rows, const char *folder
     if (cs_row_table_open(&rows->table, folder, NAME, ".lock", 0, error))
         return error->status;
     snprintf(path, sizeof path, "%s/.cells", folder);
-    rows->cell_locks = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    return rows->cell_locks < 0
-               ? cs_fail(error, CS_ERR_FILE, "cannot open %s: %s", path, strerror(errno))
-               : CS_OK;
+    rows->cell_locks = cs_file_open_shared(path, O_CREAT, error);
+    return error->status;
 }
 
 void cs_sweep_rows_finish(struct cs_sweep_rows *rows) {

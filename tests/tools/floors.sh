@@ -5,6 +5,7 @@
 # units (a unit: NAME.c, NAME.h or both). Units form no circle either, in src or in plugins: one that
 # includes another's header, or names what another's .c defines (a header may declare for several),
 # stands above it.
+# What opens a file to write it, renames or removes one, is base/file.c, which looks at the target.
 # The host is known to sim alone, only a session begins a run, and only follow.c steps one.
 cd "$1" || exit 1
 awk '
@@ -66,6 +67,11 @@ awk '
         if (in_comment && !sub(/^.*\*\//, "", line)) next
         gsub(/\/\*([^*]|\*[^\/])*\*\//, "", line)
         in_comment = sub(/\/\*.*/, "", line)
+    }
+    # a path that is a text is one of /dev or /proc
+    here != "base/file" && (line ~ /(^|[^a-z_.>])(rename|unlink|remove|mkdir|creat|mkstemp|truncate)(at)?\(/ ||
+                            line ~ /(^|[^a-z_])open(at)?\([^,]+,.*O_(CREAT|WRONLY|RDWR)/ || $0 ~ /fopen\([^"]*, "(w|a|r\+)/) {
+        wrong(FILENAME ":" FNR ": writes, renames or removes a file: see base/file.h")
     }
     line ~ /^[a-z]/ && line !~ /^(static|extern|typedef)/ && match(line, shared "(\\(|\\[| =)") {
         name = substr(line, RSTART, RLENGTH); sub(/[^a-z0-9_].*/, "", name)

@@ -12,7 +12,6 @@
 #include "study/stability/stability_state.h"
 
 #include <dirent.h>
-#include <errno.h>
 #include <fnmatch.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -81,8 +80,8 @@ static enum cs_status remove_earlier(const char *out, struct cs_error *error) {
     for (const struct dirent *entry; directory && (entry = readdir(directory));)
         for (size_t k = 0; k < MERGED && !error->status; k++) {
             snprintf(path, sizeof path, "%s/%s", out, entry->d_name);
-            if (!fnmatch(merged[k], entry->d_name, 0) && remove(path))
-                cs_fail(error, CS_ERR_FILE, "cannot remove %s: %s", path, strerror(errno));
+            if (!fnmatch(merged[k], entry->d_name, 0))
+                cs_file_remove(path, error);
         }
     if (directory)
         closedir(directory);

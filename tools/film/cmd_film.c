@@ -178,9 +178,10 @@ static enum cs_status make(struct film *film, struct cs_error *error) {
     if (part < 0)
         return error->status;
     const struct cs_subprocess_result end = cs_subprocess_run(film->folder, arguments, stop);
-    const bool done = end.exited_ok && !rename(film->part, film->out);
+    struct cs_error unseen = {0};
+    const bool done = end.exited_ok && !cs_file_rename(film->part, film->out, &unseen);
     if (!done)
-        remove(film->part);
+        cs_file_remove(film->part, &unseen);
     close(part);
     if (!end.was_found) {
         film->awaits_ffmpeg = true;
@@ -244,9 +245,10 @@ static enum cs_status write_tiles(const struct cs_film_tiles *tiles, const char 
 /* Removes the pictures of tiles, which ffmpeg alone needs. */
 static void remove_tiles(const char *folder, uint32_t n) {
     char path[PATH_BYTES + 16];
+    struct cs_error unseen = {0};
     for (uint32_t k = 0; k < n; k++) {
         snprintf(path, sizeof path, "%.4000s/frame_%05u.png", folder, k + 1);
-        remove(path);
+        cs_file_remove(path, &unseen);
     }
     rmdir(folder);
 }

@@ -1,6 +1,7 @@
 /* Checks rows of pictures: by the hash of their pixels, or by the gate between renderers. */
 #include "golden/golden_row.h"
 
+#include "base/file.h"
 #include "io/png.h"
 #include "shared/image_diff.h"
 #include "study/frame_picture.h"
@@ -41,10 +42,11 @@ static enum cs_status write_evidence(const struct cs_golden *golden,
 /* Removes the evidence of an earlier check. */
 static void remove_evidence(const struct cs_golden *golden, const struct cs_golden_row *row) {
     char path[1024];
+    struct cs_error unseen = {0};
     cs_golden_image_path(golden->folder, row, ".actual.png", path);
-    remove(path);
+    cs_file_remove(path, &unseen);
     cs_golden_image_path(golden->folder, row, ".difference.png", path);
-    remove(path);
+    cs_file_remove(path, &unseen);
 }
 
 /* Fills row->message if the picture does not pass. */
