@@ -120,7 +120,8 @@ enum cs_status cs_particle_read(const char *path, uint32_t particle, struct cs_a
     if (!find_array(&archive, "times.npy", 1, &times, error) &&
         !find_array(&archive, "positions.npy", 3, &positions, error)) {
         /* one position for each time */
-        if (positions.shape[2] != 3 || positions.shape[0] != times.shape[0])
+        if (!positions.shape[1] || positions.shape[2] != 3 ||
+            positions.shape[0] != times.shape[0])
             cs_fail(error, CS_ERR_FILE, "%s: positions.npy is not (samples, particles, 3)",
                     path);
         else if (particle >= positions.shape[1])

@@ -11,6 +11,9 @@
 #define PERIODS    2
 /* Largest deviation of a sample's time, as a fraction of the distance of samples. */
 #define EVEN 1e-3
+/* Samples are at least so many seconds apart, and at most its inverse: frequencies are finite.
+ */
+#define APART 1e-300
 
 enum { SAMPLES_MIN = 8 };
 
@@ -53,6 +56,11 @@ static double sample_distance(const struct cs_number_table *table, uint32_t t,
     const double first = cs_number_table_at(table, 0, t),
                  dt = (cs_number_table_at(table, table->rows - 1, t) - first) /
                       (table->rows - 1);
+    if (!(dt > APART && dt < 1 / APART)) {
+        cs_fail(error, CS_ERR_USAGE, "--spectrum: found samples %g s apart, expected above 0",
+                dt);
+        return 0;
+    }
     for (uint32_t r = 0; r < table->rows; r++)
         if (!(fabs(cs_number_table_at(table, r, t) - first - r * dt) <= EVEN * dt)) {
             cs_fail(error, CS_ERR_USAGE,

@@ -19,7 +19,7 @@ static void set_label(struct cs_plot_axis *axis, const char *name) {
 /* True for a word of "a,b,c". */
 static bool has_word(const char *list, const char *word) {
     const size_t length = strlen(word);
-    for (const char *at = list; (at = strstr(at, word)); at += length)
+    for (const char *at = list; length && (at = strstr(at, word)); at += length)
         if ((at == list || at[-1] == ',') && (!at[length] || at[length] == ','))
             return true;
     return false;
