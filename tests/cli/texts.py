@@ -23,7 +23,7 @@ NAME = SHELL + MARKUP + CONTROL
 # no text: control characters but line breaks and tabs, those that turn the direction, or hide
 FORBIDDEN = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]")
 TAGS = set("html head meta title style body h1 h2 h3 pre p code table tbody tr th td div span i figure img figcaption br "
-           "script svg defs g symbol path use rect clippath mask circle".split())
+           "script section svg defs g symbol path use rect clippath mask circle".split())
 SCENE = {"about": NAME, "bodies": [{"cloth": {"grid": [2, 2], "velocity": [0, 0, 0.1]}, "mass": {"particle": 0.01},
                                     "springs": {"stretch": 40, "damping": 0.01}, "pins": [0]}],
          "render": {"size": [32, 24]}, "time": {"fps": 20}}
@@ -56,7 +56,7 @@ class Page(HTMLParser):
 def html(path, text):
     page = Page()
     page.feed(text)
-    return page.wrong + ["scripts"] * (text.count("<script") != 1)
+    return page.wrong + ["scripts"] * (text.count("<script") != text.count("<head"))
 
 
 def markdown(path, text):
@@ -67,6 +67,12 @@ def markdown(path, text):
 def table(path, text):
     rows = list(csv.reader(text.split("\n")[:-1]))
     return ["rows of other lengths"] * (len({len(row) for row in rows}) != 1)
+
+
+def junit(path, text):
+    page = xml.dom.minidom.parseString(text)
+    names = {e.tagName for e in page.getElementsByTagName("*")}
+    return sorted(names - {"testsuite", "testcase", "failure"})
 
 
 def svg(path, text):
@@ -95,7 +101,7 @@ def pdf(path):
             if any(word in part for part in [data, *parts])]
 
 
-READERS = {".html": html, ".md": markdown, ".csv": table, ".svg": svg,
+READERS = {".html": html, ".md": markdown, ".csv": table, ".svg": svg, ".xml": junit,
            ".json": lambda path, text: [] if json.loads(text) else ["empty"],
            ".txt": lambda path, text: []}
 
@@ -160,6 +166,20 @@ def test():
         clean.rename("stranger")
         look("names in a stranger's table", "s", ran, PICTURES)
         look("in the terminal", "none", shown)
+    # a name of a line, as no row of a golden table holds more
+    line = NAME.replace("\n", "") + ".json"
+    shutil.copy("plain.json", line)
+    for name in (line, scene):
+        added = run("golden", "--folder", "g", "--add", name, "-n", "1", "-i", "rk4", "--image")
+    hashes = Path("g/hash.tsv")
+    hashes.write_text(re.sub(r"\t1\t\w+\t", "\t1\t0\t", hashes.read_text(encoding="utf-8")), encoding="utf-8")
+    os.mkdir("reports")
+    checked = run("golden", "--folder", "g", "--github", "--renderer", "cpu", "--html", "reports/a.html", "--json",
+                  "reports/a.json", "--junit", "reports/a.xml")
+    told("a golden row has no line breaks, and differs", "" if added.returncode == 2 else "added",
+         "" if checked.returncode == 1 and b"::error file=" in checked.stdout else ascii(checked))
+    checked.returncode = 0
+    look("golden", "reports", checked, {".html", ".json", ".xml"})
     bad = run("run", "missing" + NAME)
     told("a message is one line", *FORBIDDEN.findall(bad.stderr.decode("utf-8")),
          "" if bad.stderr.count(b"\n") == 1 else "lines")

@@ -182,6 +182,10 @@ static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
         cs_fail(error, CS_ERR_USAGE,
                 "--set: found %u of them, %zu bytes, expected at most %d, %d", options->n_sets,
                 sets.length, CS_GOLDEN_SETS_MAX, CS_GOLDEN_SETS_BYTES - 1);
+    else if (run->scene && (strpbrk(run->scene, "\t\n") ||
+                            (run->integrator && strpbrk(run->integrator, "\t\n"))))
+        cs_fail(error, CS_ERR_USAGE,
+                "--add: found a tab or a new line in a name, which no row can hold");
     else if (has_semicolon || strpbrk(cs_text_get(&sets), "\t\n"))
         cs_fail(error, CS_ERR_USAGE,
                 "--set: found a tab, a new line or a semicolon, which no row can hold");

@@ -162,6 +162,8 @@ static bool is_taken(const struct cs_golden_table *table, const char *name) {
 static const char *make_name(const struct cs_golden_table *table, struct cs_golden_row *row) {
     const char *slash = strrchr(row->run.scene, '/'),
                *name = slash ? slash + 1 : row->run.scene;
+    if (*name == '.')
+        name = "scene";
     const int length = (int)strcspn(name, ".");
     uint32_t number = 1;
     do {
