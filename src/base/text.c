@@ -151,8 +151,8 @@ void cs_text_add_json(struct cs_text *text, const char *s) {
                      bytes = length ? length : 1;
         if (*s == '"' || *s == '\\')
             cs_text_add(text, "\\%c", *s);
-        else if (length && !is_text(code))
-            cs_text_add(text, "\\u%04x", code);
+        else if (!length || !is_text(code))
+            cs_text_add(text, "\\u%04x", length ? code : 0xfffd);
         else
             cs_text_add(text, "%.*s", (int)bytes, s);
         s += bytes;

@@ -31,8 +31,8 @@ void cs_text_add_real(struct cs_text *text, double value);
 /* Adds bytes as base64 (RFC 4648). */
 void cs_text_add_base64(struct cs_text *text, const void *bytes, size_t length);
 
-/* Adds s in quotes with JSON's escapes; characters that cs_text_add_plain replaces are escaped.
- */
+/* Adds s in quotes with JSON's escapes; characters that cs_text_add_plain replaces are escaped,
+ * and bytes that are no UTF-8 become U+FFFD. */
 void cs_text_add_json(struct cs_text *text, const char *s);
 
 /* Text from outside, such as names of files and of other people's methods: each kind of output
