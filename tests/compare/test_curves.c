@@ -130,7 +130,8 @@ TEST(points_are_those_of_the_cells) {
     cs_plot_finish(&plot);
 }
 
-/* A run in search of an error is a hollow mark beside its line. */
+/* A run in search of an error is a hollow mark beside its line; over time only where it was
+ * timed in rounds, since one time alone is that of the load. */
 TEST(probes_are_not_joined) {
     struct cs_plot_settings settings = make();
     struct cs_plot plot;
@@ -138,8 +139,14 @@ TEST(probes_are_not_joined) {
     settings.n = EACH;
     settings.width = CS_WIDTH_COLUMN;
     cells[2].target = 1e-5;
+    cells[2].runs = 1;
     ck_assert_int_eq(cs_plot_make(&plot, &settings, &error), CS_OK);
     const struct cs_series *line = plot.panels->series + plot.panels->n_series - 1;
+    ck_assert_uint_eq(line->n, EACH - 1);
+    cs_plot_finish(&plot);
+    cells[2].runs = 2;
+    ck_assert_int_eq(cs_plot_make(&plot, &settings, &error), CS_OK);
+    line = plot.panels->series + plot.panels->n_series - 1;
     ck_assert_uint_eq(line->n, EACH);
     for (uint32_t k = 0; k < EACH; k++) {
         ck_assert_int_eq(line->points[k].mark, k == 2 ? CS_MARK_HOLLOW : CS_MARK_FULL);

@@ -107,7 +107,7 @@ void cs_cairo_mark(cairo_t *cairo, enum cs_mark mark, const struct cs_style *sty
                    double y) {
     if (mark == CS_MARK_NONE)
         return;
-    const double size = mark == CS_MARK_HOLLOW ? 0.8 * MARK_RADIUS : MARK_RADIUS;
+    const double size = mark == CS_MARK_HOLLOW ? 0.6 * MARK_RADIUS : MARK_RADIUS;
     cairo_new_path(cairo); /* a text leaves its end as the current point */
     cairo_set_line_width(cairo, MARK_LINE);
     if (mark == CS_MARK_CROSS) {
@@ -121,7 +121,7 @@ void cs_cairo_mark(cairo_t *cairo, enum cs_mark mark, const struct cs_style *sty
     cs_cairo_ink(cairo, mark == CS_MARK_HOLLOW ? 0xffffff : style->colour, 1);
     cairo_fill_preserve(cairo);
     cs_cairo_ink(cairo, mark == CS_MARK_HOLLOW ? style->colour : 0xffffff, 1);
-    cairo_set_line_width(cairo, mark == CS_MARK_HOLLOW ? 0.5 : 0.2);
+    cairo_set_line_width(cairo, mark == CS_MARK_HOLLOW ? 0.4 : 0.2);
     cairo_stroke(cairo);
 }
 

@@ -17,7 +17,7 @@
 #define GREY       0x404040u
 #define GRID       0xdddddd
 #define GRID_MINOR 0xf2f2f2
-enum { GAP = 12, TICK = 3, LEADER = 6, NAMES_MAX = 64 };
+enum { GAP = 12, TICK = 3, LEADER = 6, APART = 9, NAMES_MAX = 64 };
 
 /* The box of the axes of a panel. */
 struct box {
@@ -27,7 +27,7 @@ struct box {
 /* A name and where its line ends. */
 struct name {
     const struct cs_series *series;
-    double anchor, y; /* of the line's end; of the name */
+    double end[2], y; /* pt: the line's end; the name's height */
 };
 
 static double to_x(const struct box *box, const struct cs_panel *panel, double x) {
@@ -134,9 +134,10 @@ static void draw_line(cairo_t *cairo, const struct box *box, const struct cs_pan
     cairo_new_path(cairo);
 }
 
+/* Of full marks on a line only those that leave it in sight, and the last. */
 static void draw_marks(cairo_t *cairo, const struct box *box, const struct cs_panel *panel,
                        const struct cs_series *series, enum cs_mark mark) {
-    double x, y;
+    double x, y, last[2] = {HUGE_VAL, HUGE_VAL};
     for (const struct cs_point *p = series->points; p < series->points + series->n; p++) {
         if (p->mark != mark || !place(box, panel, p, &x, &y))
             continue;
@@ -144,7 +145,11 @@ static void draw_marks(cairo_t *cairo, const struct box *box, const struct cs_pa
         cairo_set_line_width(cairo, 0.6);
         if (p->low < p->high)
             cs_cairo_line(cairo, to_x(box, panel, p->low), y, to_x(box, panel, p->high), y);
-        cs_cairo_mark(cairo, mark, &series->style, x, y);
+        if (mark != CS_MARK_FULL || hypot(x - last[0], y - last[1]) > APART ||
+            p + 1 == series->points + series->n) {
+            cs_cairo_mark(cairo, mark, &series->style, x, y);
+            last[0] = x, last[1] = y;
+        }
         if (p->ring)
             cs_cairo_ring(cairo, x, y);
         cs_cairo_title(cairo, panel, series, p, x, y);
@@ -171,9 +176,8 @@ static void draw_series(cairo_t *cairo, const struct box *box, const struct cs_p
 
 static int compare_names(const void *a, const void *b) {
     const struct name *one = a, *other = b;
-    return one->anchor != other->anchor
-               ? (one->anchor > other->anchor) - (one->anchor < other->anchor)
-               : (one->series > other->series) - (one->series < other->series);
+    return one->y != other->y ? (one->y > other->y) - (one->y < other->y)
+                              : (one->series > other->series) - (one->series < other->series);
 }
 
 /* Names of a panel from above, as near to the ends of their lines as their height lets them. */
@@ -181,12 +185,13 @@ static uint32_t find_names(const struct box *box, const struct cs_panel *panel,
                            struct name names[NAMES_MAX]) {
     uint32_t n = 0;
     for (const struct cs_series *s = panel->series; s < panel->series + panel->n_series; s++) {
-        double x, y, anchor = (double)NAN;
+        double x, y;
+        struct name name = {.series = NULL};
         for (const struct cs_point *p = s->points; p < s->points + s->n; p++)
             if (p->joined && place(box, panel, p, &x, &y))
-                anchor = y;
-        if (s->name && isfinite(anchor) && n < NAMES_MAX)
-            names[n++] = (struct name){s, anchor, anchor};
+                name = (struct name){s, {x, y}, y};
+        if (s->name && name.series && n < NAMES_MAX)
+            names[n++] = name;
     }
     qsort(names, n, sizeof *names, compare_names);
     /* from above, then from below: none on another, none outside */
@@ -212,7 +217,7 @@ static void draw_names(cairo_t *cairo, const struct box *box, const struct cs_pa
             mark = s->points[p].joined ? s->points[p].mark : mark;
         cs_cairo_ink(cairo, s->style.colour, 0.6);
         cairo_set_line_width(cairo, 0.4);
-        cs_cairo_line(cairo, right, names[k].anchor, right + LEADER, names[k].y);
+        cs_cairo_line(cairo, names[k].end[0], names[k].end[1], right + LEADER, names[k].y);
         cs_cairo_sample(cairo, &s->style, mark, right + LEADER, names[k].y);
         cs_cairo_ink(cairo, 0, 1);
         cs_cairo_fitted(cairo, s->name, right + LEADER + CS_SAMPLE + 2,
@@ -259,7 +264,7 @@ static void draw_panel(cairo_t *cairo, const struct box *box, const struct cs_pa
     cairo_stroke(cairo);
     cs_cairo_ink(cairo, 0, 1);
     cs_cairo_fitted(cairo, panel->x.label, box->left + box->width / 2,
-                    bottom + TICK + 2 * CS_LINE_HEIGHT + 2, 0.5, box->width + GAP);
+                    bottom + TICK + 2 * CS_LINE_HEIGHT, 0.5, box->width + GAP);
     if (first) {
         cairo_save(cairo);
         cairo_translate(cairo, CS_MARGIN + CS_FONT_SIZE, middle);
@@ -291,7 +296,7 @@ static double draw_page(cairo_t *cairo, const struct cs_diagram *diagram) {
         const struct box box = {left + column * (wide + GAP), y, wide, panel->aspect * wide};
         const bool last = column + 1 == columns || k + 1 == diagram->n_panels;
         draw_panel(cairo, &box, panel, column == 0, last ? names : 0);
-        below = fmax(below, box.height + TICK + 2 * CS_LINE_HEIGHT + 12);
+        below = fmax(below, box.height + TICK + 2 * CS_LINE_HEIGHT + 9);
         if (last) {
             y += below;
             below = 0;

@@ -224,12 +224,16 @@ static void add_band(struct filling *at, const struct cs_curve *curve) {
 static bool make_point(const struct filling *at, uint32_t k, struct cs_point *point) {
     const struct cs_cell *cell = at->settings.cells + k;
     const struct cs_plot_axis *x = &at->panel->x, *y = &at->panel->y;
+    const bool is_time = strstr("cpu wall", at->settings.x->name);
     const bool timed = !strcmp(at->settings.x->name, "cpu") && cell->runs > 1;
     *point = (struct cs_point){.mark = is_probe(cell) ? CS_MARK_HOLLOW : CS_MARK_FULL,
                                .joined = !is_probe(cell),
                                .ring = cs_cell_has_crossings(cell),
                                .front = at->spread[k].front,
                                .note = cell->options};
+    /* a probe that was timed once stands where the load of that moment put it */
+    if (is_time && is_probe(cell) && cell->runs < 2)
+        return false;
     if (cs_curves_point(&at->settings, cell, &point->x, &point->y)) {
         point->low = timed ? cell->cpu_low : (double)NAN;
         point->high = timed ? cell->cpu_high : (double)NAN;
