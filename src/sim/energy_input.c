@@ -6,6 +6,7 @@
  * until the method has done SHARE times their work. */
 #include "base/vector.h"
 #include "model/contact/posed_collider.h"
+#include "model/contact/rebound.h"
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
@@ -92,8 +93,9 @@ static void book_powers(struct cs_run_host *host, double t, double dt, const dou
     }
     double power = 0;
     for (size_t i = 0; i < n; i++)
-        power += host->power[i];
-    input->given[CS_SOURCE_FORCES] += host->has_impact ? host->impact_work : dt * power;
+        if (!host->has_impact || !system->rebounds->list[i].collider)
+            power += host->power[i];
+    input->given[CS_SOURCE_FORCES] += dt * power + (host->has_impact ? host->impact_work : 0);
     host->has_impact = false;
     input->powers_work = work;
     host->power_is_set = false;

@@ -2,6 +2,7 @@
 #include "body_pair_fixture.h"
 #include "fixture.h"
 
+#include "model/contact/rebound.h"
 #include "model/force/terms.h"
 #include "sim/energy_ledger.h"
 
@@ -144,4 +145,39 @@ TEST(methods_make_the_energy_that_they_claim) {
         ck_assert_double_gt(made(scene, "xpbd:dt=frame", 20), 0.5);
         ck_assert_double_gt(made(scene, "implicit-block:dt=frame", 20), 0.5);
     }
+}
+
+/* A sheet bounces on a floor in each step, so that its particles step alone, and another one is
+ * blown along: the account has the work on the second, by the power at the ends of steps. */
+TEST(work_counts_beside_impacts) {
+    enum { STEPS = 20 };
+    struct fixture sheets;
+    struct cs_error error = {0};
+    struct cs_energy_ledger ledger = {0};
+    fixture_open(
+        &sheets, "implicit-linearised:dt=frame",
+        "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3], \"size\": [0.3, 0.3], \"start\": "
+        "\"flat\", \"place\": {\"translate\": [0, 0.012, 0]}}, \"mass\": {\"total\": 1}}, "
+        "{\"cloth\": {\"grid\": [2, 2], \"place\": {\"translate\": [0, 9, 0]}}, \"mass\": "
+        "{\"total\": 0.4}}], \"colliders\": [{\"floor\": {}, \"thickness\": 0.01}], "
+        "\"contact\": {\"law\": \"force\", \"stiffness\": 100000, \"restitution\": 1}, "
+        "\"forces\": {\"wind\": {\"direction\": [0, 0, 1], \"strength\": 2, "
+        "\"strength_unit\": \"N\"}}}");
+    cs_energy_ledger_open(&ledger, sheets.system, 0, &error);
+    ck_assert_int_eq(error.status, CS_OK);
+    sheets.session.settings.run.ledger = &ledger;
+    fixture_start(&sheets);
+    uint32_t impacts = 0;
+    for (int frame = 0; frame < STEPS; frame++) {
+        fixture_frames(&sheets, 1);
+        impacts += sheets.system->rebounds->any;
+    }
+    ck_assert_uint_gt(impacts, STEPS / 4);
+    // v grows evenly: the rule, by an end of each step, is off by at most one step's part
+    const double work = ledger.work[CS_WORK_WIND];
+    ck_assert_double_gt(work, 1);
+    ck_assert_double_eq_tol(sheets.session.run.energy_input.given[CS_SOURCE_FORCES] / work, 1,
+                            1.0 / STEPS);
+    cs_energy_ledger_close(&ledger);
+    fixture_close(&sheets);
 }
