@@ -15,21 +15,21 @@ struct job {
     const double *x0, *x1;
 };
 
-/* Tests one sample, with its effective mass; pinned ones are never unresolved. */
-static bool is_unresolved(const struct cs_collider_step *passing,
-                          const struct cs_contact_sample_point *point) {
+/* J, the excess of one sample, with its effective mass; 0 of a pinned one. */
+static double excess_of(const struct cs_collider_step *passing,
+                        const struct cs_contact_sample_point *point) {
     const size_t n = passing->system->view.n;
     const double mass = cs_contact_sample_mass(passing->system, point);
     double from[3], to[3];
     cs_contact_sample_interpolate(point, n, passing->x0, from);
     cs_contact_sample_interpolate(point, n, passing->x1, to);
-    return mass < HUGE_VAL && cs_collider_step_misses_contact(passing, mass, from, to);
+    return mass < HUGE_VAL ? cs_collider_step_excess(passing, mass, from, to) : 0;
 }
 
-/* Number of unresolved samples in the chunks [begin, end). */
-static double count_unresolved(const void *arg, size_t begin, size_t end) {
+/* J, the excess of the samples in the chunks [begin, end). */
+static double sum_excess(const void *arg, size_t begin, size_t end) {
     const struct job *job = arg;
-    double unseen = 0;
+    double sum = 0;
     for (size_t l = begin; l < end; l++) {
         const struct cs_contact_sample_chunk *chunk = job->covers->chunks + l;
         struct cs_collider_step passing = {.x0 = job->x0, .x1 = job->x1};
@@ -40,16 +40,16 @@ static double count_unresolved(const void *arg, size_t begin, size_t end) {
         for (uint32_t i = chunk->begin; i < chunk->end; i++) {
             struct cs_contact_sample_point point;
             for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
-                unseen += is_unresolved(&passing, &point);
+                sum += excess_of(&passing, &point);
         }
     }
-    return unseen;
+    return sum;
 }
 
 bool cs_contact_samples_resolve_step(const struct cs_contact_samples *samples, double t0,
                                      const double *x0, double t1, const double *x1) {
     const struct job job = {samples, t0, t1, x0, x1};
-    return cs_vector_sum(samples->n_chunks, count_unresolved, &job) == 0;
+    return !(cs_vector_sum(samples->n_chunks, sum_excess, &job) > 0);
 }
 
 /* items per chunk */

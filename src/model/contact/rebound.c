@@ -14,10 +14,8 @@ enum { FLIGHT_STEPS_MAX = 2000 };
 /* A step of a flight in units of sqrt(m/K), and in ranges: energy is then kept to 1 %. */
 #define FLIGHT_PHASE 0.1
 #define FLIGHT_RANGE 0.03
-/* Fraction of E that the linear model may miss before a particle is in impact, and that an end
- * may depart from the flight. */
-#define MISSED_MAX    0.01
-#define DEPARTURE_MAX 0.1
+/* Fraction of E that the linear model may miss before a particle is in impact. */
+#define MISSED_MAX 0.01
 
 bool cs_rebounds_possible(const struct cs_scene *scene) {
     if (scene->contact.law != CS_CONTACT_FORCE)
@@ -319,33 +317,15 @@ double cs_rebounds_work(const struct cs_system *system, double t, const double *
     return work;
 }
 
-bool cs_rebounds_resolve_step(const struct cs_system *system, double t1, const double *x1) {
-    const size_t n = system->view.n;
-    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
-        const struct cs_collider_params *params = system->collider_params + k;
-        const double range = params->range, stiffness = params->k;
-        struct cs_posed_collider pose;
-        cs_posed_collider_at(system, k, t1, &pose);
-        for (size_t i = 0; i < n; i++) {
-            const struct cs_rebound *rebound = system->rebounds->list + i;
-            if (rebound->collider != k + 1)
-                continue;
-            const double p[3] = {x1[i], x1[n + i], x1[2 * n + i]};
-            double g[3], hessian[6];
-            const double d1 = rebound->distance;
-            const double d = cs_posed_collider_smooth_distance(&pose, p, g, hessian),
-                         s = d1 - d;
-            const struct cs_barrier law = cs_barrier_at(d1, range, stiffness);
-            const double departure = fabs(cs_barrier_energy(d, range, stiffness) -
-                                          cs_barrier_energy(d1, range, stiffness) -
-                                          law.force * s - 0.5 * law.stiffness * s * s);
-            // nor deeper into the pole of psi than the flight
-            if (!(departure <= DEPARTURE_MAX * rebound->energy) ||
-                (d1 > 0 && d < 0.5 * fmin(CS_BARRIER_CORE * range, d1)))
-                return false;
-        }
-    }
-    return true;
+double cs_rebound_departure(const struct cs_rebound *rebound,
+                            const struct cs_collider_step *step, const double p[3]) {
+    const double range = step->params.range, k = step->params.k, d1 = rebound->distance;
+    double g[3], hessian[6];
+    const double d = cs_posed_collider_smooth_distance(&step->at_t1, p, g, hessian);
+    const struct flight end = {.range = range, .k = k, .d = d1};
+    const struct cs_barrier law = cs_barrier_at(d1, range, k);
+    return d1 > 0 && d < 0.5 * fmin(CS_BARRIER_CORE * range, d1) ? HUGE_VAL
+                                                                 : missed(&end, &law, d1 - d);
 }
 
 void cs_rebound_add_block(const struct cs_rebound *rebound, const struct cs_matrix *matrix,

@@ -31,8 +31,7 @@
  * c) = b - A c. Otherwise c would be most of b, and what a relative residual allows would be
  * large against friction and neighbours.
  *
- * After the step a particle in impact must end near d1: what psi departs from its second-order
- * model about d1 is at most 0.1 E. Meshes meet particles in pairs, which are not stepped alone.
+ * After the step a particle in impact must end near d1 (step_check.h). Meshes meet particles in pairs, which are not stepped alone.
  */
 #ifndef CS_CONTACT_REBOUND_H
 #define CS_CONTACT_REBOUND_H
@@ -54,15 +53,17 @@ void cs_rebounds_find(const struct cs_system *system, double t, double h, const 
                       const double *v, const double *f);
 
 /* v (3,n) += c, and x += what particles in impact move beyond h v' without c, for v' = v +
- * (dv - c). The next cs_rebounds_resolve_step is about this step. */
+ * (dv - c). The next test of a step is about this one. */
 void cs_rebounds_move(const struct cs_system *system, double h, double *x, double *v);
 
 /* Work in J that colliders do on the particles in impact: m c.w, with the velocity w of the
  * surface at (t, x). */
 double cs_rebounds_work(const struct cs_system *system, double t, const double *x);
 
-/* Returns whether all particles in impact end near where their flights do, at x1 and t1. */
-bool cs_rebounds_resolve_step(const struct cs_system *system, double t1, const double *x1);
+/* J, by how much psi at p, the end of a particle in impact, departs from its second-order model
+ * about d1; HUGE_VAL deeper in the pole of psi than half the flight. */
+double cs_rebound_departure(const struct cs_rebound *rebound,
+                            const struct cs_collider_step *step, const double p[3]);
 
 /* The impact of particle i with a collider in this matrix, or NULL. */
 static inline const struct cs_rebound *cs_rebound_of(const struct cs_system *system,

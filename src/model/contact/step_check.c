@@ -5,6 +5,7 @@
 #include "model/contact/barrier_law.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/posed_collider.h"
+#include "model/contact/rebound.h"
 
 #include <clothsim/clones.h>
 #include <math.h>
@@ -22,9 +23,16 @@ static double distance_at(const struct cs_collider_step *passing, const double f
     return cs_posed_collider_smooth_distance(&passing->at_t1, p, g, h);
 }
 
+/* J: `missed` beyond the fraction that a point of this energy may miss. */
+static double excess(const struct cs_collider_step *passing, double missed, double fraction,
+                     double energy) {
+    const double most = fraction * (energy + passing->spare_energy);
+    return missed > passing->alone * most ? HUGE_VAL : missed - most;
+}
+
 /* Samples the straight way of a point relative to the collider, at most half a range apart. */
-bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, double mass,
-                                     const double start[3], const double to[3]) {
+double cs_collider_step_excess(const struct cs_collider_step *passing, double mass,
+                               const double start[3], const double to[3]) {
     const double range = passing->params.range, k = passing->params.k;
     // relative to the collider, which keeps its position after the step
     double from[3], squared = 0;
@@ -34,15 +42,13 @@ bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, dou
     }
     const double move = sqrt(squared);
     if (!cs_posed_collider_is_near(&passing->at_t1, range + move, to))
-        return false;
+        return 0;
     const double d = distance_at(passing, from, to, 0);
     if (!(d - move < range))
-        return false;
+        return 0;
     const struct cs_barrier law =
         passing->impacts ? (struct cs_barrier){0} : cs_barrier_at(d, range, k);
     const double held = cs_barrier_energy(d, range, k);
-    const double has =
-        0.5 * mass * squared / (passing->h * passing->h) + held + passing->spare_energy;
     const int points =
         move < 0.5 * range * POINTS_MAX ? 1 + (int)(move / (0.5 * range)) : POINTS_MAX;
     double unseen = 0;
@@ -51,7 +57,8 @@ bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, dou
         unseen = fmax(unseen, fabs(cs_barrier_energy(d - s, range, k) - held - law.force * s -
                                    0.5 * law.stiffness * s * s));
     }
-    return unseen > passing->unresolved_max * has;
+    const double kinetic = 0.5 * mass * squared / (passing->h * passing->h);
+    return excess(passing, unseen, passing->unresolved_max, kinetic + held);
 }
 
 /* Number of particles of a row that may be unresolved at a plane or sphere: a conservative test
@@ -112,31 +119,38 @@ bool cs_collider_step_is_far(const struct cs_collider_step *passing, size_t begi
     return !cs_posed_collider_is_near(&passing->at_t1, reach, middle);
 }
 
+/* The impacts of the step that was finished last, if that is this one; NULL: none. */
+static const struct cs_rebound *impacts_of(const struct cs_collider_step *passing) {
+    const struct cs_rebounds *rebounds = passing->system->rebounds;
+    return rebounds && rebounds->judged && rebounds->any ? rebounds->list : NULL;
+}
+
 /* Returns whether a row needs no test particle by particle. */
 static bool row_is_resolved(const struct cs_collider_step *passing, size_t begin,
                             size_t count) {
     const enum cs_shape_bounds bounds = passing->at_t1.shape->bounds;
-    return !passing->impacts && (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE)
+    return !passing->impacts && !impacts_of(passing) && (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE)
                ? count_suspect(passing, begin, count) == 0
                : cs_collider_step_is_far(passing, begin, count);
 }
 
-/* Tests particle i. */
-static bool is_unresolved(const struct cs_collider_step *passing, size_t i) {
+/* J, the excess of particle i. */
+static double excess_of(const struct cs_collider_step *passing, size_t i) {
     const size_t n = passing->system->view.n;
-    const struct cs_rebounds *rebounds = passing->system->rebounds;
+    const struct cs_rebound *rebound = impacts_of(passing);
     double from[3], to[3];
-    if (rebounds && rebounds->judged && rebounds->list[i].collider == passing->collider + 1)
-        return false;
     for (size_t c = 0; c < 3; c++) {
         from[c] = passing->x0[c * n + i];
         to[c] = passing->x1[c * n + i];
     }
-    return cs_collider_step_misses_contact(passing, passing->system->mass[i], from, to);
+    return rebound && rebound[i].collider == passing->collider + 1
+               ? excess(passing, cs_rebound_departure(rebound + i, passing, to),
+                        CS_UNRESOLVED_BESIDE_REBOUNDS, rebound[i].energy)
+               : cs_collider_step_excess(passing, passing->system->mass[i], from, to);
 }
 
-/* Number of unresolved particles in [begin, end). */
-static double count_unresolved(const void *arg, size_t begin, size_t end) {
+/* J, the excess of the particles in [begin, end). */
+static double sum_excess(const void *arg, size_t begin, size_t end) {
     const struct cs_collider_step *passing = arg;
     double unseen = 0;
     for (size_t start = begin; start < end; start += ROW) {
@@ -144,7 +158,7 @@ static double count_unresolved(const void *arg, size_t begin, size_t end) {
         if (row_is_resolved(passing, start, count))
             continue;
         for (size_t i = start; i < start + count; i++)
-            unseen += passing->system->inv_mass[i] > 0 && is_unresolved(passing, i);
+            unseen += passing->system->inv_mass[i] > 0 ? excess_of(passing, i) : 0;
     }
     return unseen;
 }
@@ -156,6 +170,7 @@ void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_syst
     passing->impacts = cs_impacts_are_resolved(system);
     passing->unresolved_max =
         passing->impacts ? CS_IMPACT_CHANGE_MAX : CS_UNRESOLVED_ENERGY_MAX;
+    passing->alone = system->rebounds && !passing->impacts ? CS_UNRESOLVED_ALONE : 1;
     passing->spare_energy = 0;
     passing->h = t1 - t0;
     passing->params = system->collider_params[collider];
@@ -197,14 +212,14 @@ void cs_collider_step_set_beside_rebounds(struct cs_collider_step *passing) {
              most_energy(passing));
 }
 
-/* Ends at the first collider with an unresolved particle. */
+/* Ends at the first collider whose contact the step misses. */
 bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0,
                                        const double *x0, double t1, const double *x1) {
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         struct cs_collider_step passing = {.x0 = x0, .x1 = x1};
         cs_collider_step_set(&passing, system, c, t0, t1);
         cs_collider_step_set_beside_rebounds(&passing);
-        if (cs_vector_sum(system->view.n, count_unresolved, &passing) > 0)
+        if (cs_vector_sum(system->view.n, sum_excess, &passing) > 0)
             return false;
     }
     return true;

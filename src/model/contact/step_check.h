@@ -7,14 +7,20 @@
 #include "model/contact/collider_params.h"
 #include "model/contact/posed_collider.h"
 
-/* Fraction of a particle's energy that a step with impacts may miss at particles that are not
- * in impact: those are loaded by more than their contact, and need no restitution. Beside
- * CS_UNRESOLVED_ENERGY_MAX of methods without impacts. To their energy is added this fraction
- * of psi(D/2), as all of it is to that of pairs (contact_pairs.h): else particles that barely
- * touch, with energies far below what contact holds, would cut steps for all. Or of the most
- * that any particle brings, if that is less: a contact may hold 1e6 times that. */
+/* Fraction of a particle's energy that a step with impacts may miss. Particles that are not in
+ * impact are loaded by more than their contact, and need no restitution. Beside
+ * CS_UNRESOLVED_ENERGY_MAX of methods without impacts. To their energy is added
+ * CS_SPARE_BESIDE_REBOUNDS of psi(D/2), as all of it is to that of pairs (contact_pairs.h):
+ * else particles that barely touch, with energies far below what contact holds, would cut steps
+ * for all. Or of the most that any particle brings, if that is less: a contact may hold 1e6
+ * times that.
+ *
+ * The fraction holds for the sum over all points near a collider, so that a few of a thousand
+ * do not cut the step of all. One point may miss CS_UNRESOLVED_ALONE times as much: at most its
+ * own energy. */
 #define CS_UNRESOLVED_BESIDE_REBOUNDS 0.1
 #define CS_SPARE_BESIDE_REBOUNDS      0.02
+#define CS_UNRESOLVED_ALONE           10.0
 
 /* One particle in impact. */
 struct cs_rebound {
@@ -45,9 +51,9 @@ struct cs_rebounds {
  * range apart, so that nothing is passed over. Returns true if e is at most
  * CS_UNRESOLVED_ENERGY_MAX of the energy of every particle: the kinetic energy of its motion
  * relative to the collider plus psi(d). x0, x1 (3,n) in m. Particles that are not finite are
- * left to the blow-up check. Particles in impact in the step that was finished last are left to
- * cs_rebounds_resolve_step; others are then judged as cs_collider_step_set_beside_rebounds
- * says. */
+ * left to the blow-up check. In a scene with impacts the sum over the particles is judged
+ * (cs_collider_step_set_beside_rebounds); those in impact in the step that was finished last
+ * miss what cs_rebound_departure says. */
 #define CS_UNRESOLVED_ENERGY_MAX 0.02
 
 /* Where the scene gives contact.restitution, psi may change by this fraction of the energy in a
@@ -73,10 +79,11 @@ struct cs_collider_step {
     struct cs_collider_params params;
     bool impacts;          /* e is the change of psi: cs_impacts_are_resolved */
     double unresolved_max; /* of a particle's energy */
+    double alone;          /* what one point may miss, in units of unresolved_max */
     double spare_energy;   /* J, added to a particle's energy */
 };
 /* Sets all members but x0 and x1: unresolved_max to CS_UNRESOLVED_ENERGY_MAX, spare_energy to
- * 0. */
+ * 0; alone to CS_UNRESOLVED_ALONE in scenes with impacts, else 1. */
 void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_system *system,
                           uint32_t collider, double t0, double t1);
 /* Sets unresolved_max and spare_energy for the particles of a step with impacts that are not in
@@ -88,9 +95,10 @@ void cs_collider_step_set_beside_rebounds(struct cs_collider_step *passing);
 bool cs_collider_step_is_far(const struct cs_collider_step *passing, size_t begin,
                              size_t count);
 
-/* Returns whether a point of `mass` kg that moves from `from` to `to` in m has e above the
- * limit. */
-bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, double mass,
-                                     const double from[3], const double to[3]);
+/* J, by how much a point of `mass` kg that moves from `from` to `to` in m exceeds the limit of
+ * e: negative below it; HUGE_VAL beyond what one point may miss. A step misses contact if the
+ * sum over its points is positive. */
+double cs_collider_step_excess(const struct cs_collider_step *passing, double mass,
+                               const double from[3], const double to[3]);
 
 #endif

@@ -90,7 +90,7 @@ static void try_point(struct point_search *search, uint32_t particle, double mas
     const struct cs_collider_step *step = search->step;
     const double range = step->params.range, k = step->params.k;
     double start[3], way[3], g[3], h[6];
-    if (!search->resolved && !cs_collider_step_misses_contact(step, mass, from, to))
+    if (!search->resolved && !(cs_collider_step_excess(step, mass, from, to) > 0))
         return;
     for (int c = 0; c < 3; c++) {
         start[c] = from[c] + step->at_t1.centre[c] - step->at_t0.centre[c];

@@ -19,9 +19,7 @@ bool cs_step_limit_applies(const struct cs_system *system) {
 static bool colliders_resolve_step(const struct cs_system *system, double t0, const double *x0,
                                    double t1, const double *x1) {
     struct cs_rebounds *rebounds = system->rebounds;
-    const bool resolved =
-        cs_collider_contact_resolves_step(system, t0, x0, t1, x1) &&
-        (!rebounds || !rebounds->judged || cs_rebounds_resolve_step(system, t1, x1));
+    const bool resolved = cs_collider_contact_resolves_step(system, t0, x0, t1, x1);
     if (rebounds)
         rebounds->judged = false;
     return resolved;
