@@ -54,6 +54,8 @@ static const struct method_case cases[] = {
     {"velocity-verlet", 1000, 1e4, 0, 1, true},
     {"rk4", 1000, 1e4, 0, 1, true},
     {"implicit-block", 64, 1e4, FRAME / 10, 10, false},
+    {"xpbd:iterations=20", 64, 1e4, FRAME, 1, false},
+    {"vbd:iterations=20", 64, 1e4, FRAME, 1, false},
     {"implicit-linearised", 16, 1e4, FRAME, 1, false},
     {"implicit-linearised", 64, 1e2, FRAME, 1, false},
     {"implicit-linearised", 64, 1e4, FRAME, 1, true},
@@ -77,7 +79,8 @@ static enum cs_status open_case(struct stepping *stepping, const struct method_c
     const struct bench_model model = {.r = one->r, .stiffness = one->stiffness, .fps = 60};
     const double h = step_of(one, &model);
     char method[96];
-    snprintf(method, sizeof method, "%s:dt=%.17g", one->method, h);
+    snprintf(method, sizeof method, "%s%cdt=%.17g", one->method,
+             strchr(one->method, ':') ? ',' : ':', h);
     struct cs_session *session = &stepping->session;
     if (bench_sheet_open(session, settings, &model, method, 0, error))
         return error->status;
@@ -114,7 +117,7 @@ static void add_row(const struct method_case *one, const struct stepping *steppi
     if (counts->solves)
         snprintf(iterations, sizeof iterations, "%.1f",
                  (double)counts->solve_iterations / (double)counts->solves);
-    else
+    else if (!counts->method.sweeps)
         snprintf(to_limit, sizeof to_limit, "%.2f", ns / least);
     bench_table_add(table, "%s,%s,%g,%.4g,%u,%.4f,%.4f,%.4f,%.2f,%.2f,%s,%s,", one->method,
                     name, one->stiffness, step_of(one, &model), one->steps,

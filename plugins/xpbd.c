@@ -30,9 +30,9 @@
  * Contact keeps its impulses in either mode.
  */
 #include "fixed_step.h"
+#include "spring_groups.h"
 
 #include <clothsim/small.h>
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -69,99 +69,18 @@ static const struct cs_option rows[] = {
 struct xpbd {
     struct fixed_step loop; /* first: the loop's functions take it for the whole */
     int64_t iterations, substeps;
-    bool forgets;    /* mode pbd */
-    double *f;       /* (3,n) in N: outer forces */
-    double *old;     /* (3,n) in m: where the step began */
-    double *spring;  /* (n_springs) multipliers of the springs, kg m */
-    double *damper;  /* (n_springs, 3) of the relative dampers; NULL: there are none */
-    uint64_t passes; /* over the springs */
+    bool forgets; /* mode pbd */
+    double *f;    /* (3,n) in N: outer forces */
+    double *old;  /* (3,n) in m: where the step began */
+    struct spring_groups springs;
+    double springs_h; /* s: the step that their constants were read for; 0: they are stale */
+    uint64_t passes;  /* over the springs */
 
     /* in scenes with contact by force, else NULL */
     double *impulse; /* (3,n) p in kg m */
     double *blocks;  /* (6,n) B in kg */
     double *speed;   /* (3,n) in m/s */
 };
-
-/* Moves the ends of a spring apart by push (3) in kg m, over their masses. */
-static void move_ends(const struct cs_view *view, const uint32_t ends[2], const double push[3],
-                      double *x) {
-    const size_t n = view->n;
-    for (size_t c = 0; c < 3; c++) {
-        x[c * n + ends[0]] -= view->inv_mass[ends[0]] * push[c];
-        x[c * n + ends[1]] += view->inv_mass[ends[1]] * push[c];
-    }
-}
-
-/* d = x_b - x_a of the ends of a spring. */
-static void difference(const struct cs_view *view, const uint32_t ends[2], const double *x,
-                       double d[3]) {
-    for (size_t c = 0; c < 3; c++)
-        d[c] = x[c * view->n + ends[1]] - x[c * view->n + ends[0]];
-}
-
-/* One correction of spring s with its axial damper; weight = w_a + w_b in 1/kg. */
-static void project_spring(struct xpbd *self, size_t s, double h, double weight, double *x) {
-    const struct cs_view *view = self->loop.host->view;
-    const uint32_t *ends = view->ends + 2 * s;
-    const double k = view->stiffness[s], compliance = 1 / (k * h * h);
-    const double gamma = view->axial[s] ? view->damping[s] / (k * h) : 0;
-    double d[3], d_old[3], squared = DBL_MIN, moved = 0;
-    difference(view, ends, x, d);
-    difference(view, ends, self->old, d_old);
-    for (int c = 0; c < 3; c++)
-        squared += d[c] * d[c];
-    // two particles in one place have no direction: d is 0, and nothing moves
-    const double length = sqrt(squared);
-    for (int c = 0; c < 3; c++)
-        moved += d[c] / length * (d[c] - d_old[c]);
-    const double change =
-        (view->length[s] - length - compliance * self->spring[s] - gamma * moved) /
-        ((1 + gamma) * weight + compliance);
-    self->spring[s] += change;
-    for (int c = 0; c < 3; c++)
-        d[c] *= change / length;
-    move_ends(view, ends, d, x);
-}
-
-/* One correction of the relative damper of spring s: the constraint d = d_old. */
-static void project_damper(struct xpbd *self, size_t s, double h, double weight, double *x) {
-    const struct cs_view *view = self->loop.host->view;
-    const uint32_t *ends = view->ends + 2 * s;
-    const double compliance = 1 / (view->damping[s] * h);
-    double d[3], d_old[3], *kept = self->damper + 3 * s;
-    difference(view, ends, x, d);
-    difference(view, ends, self->old, d_old);
-    for (int c = 0; c < 3; c++) {
-        d[c] = (d_old[c] - d[c] - compliance * kept[c]) / (weight + compliance);
-        kept[c] += d[c];
-    }
-    move_ends(view, ends, d, x);
-}
-
-/* Sets all multipliers of springs and dampers to 0. */
-static void forget(struct xpbd *self) {
-    const size_t n_springs = self->loop.host->view->n_springs;
-    memset(self->spring, 0, n_springs * sizeof *self->spring);
-    if (self->damper)
-        memset(self->damper, 0, 3 * n_springs * sizeof *self->damper);
-}
-
-/* One pass over the springs, in the order of forces: Gauss-Seidel, each sees the corrections
- * before it. */
-static void sweep(struct xpbd *self, double h, double *x) {
-    const struct cs_view *view = self->loop.host->view;
-    for (size_t s = 0; s < view->n_springs; s++) {
-        const double weight =
-            view->inv_mass[view->ends[2 * s]] + view->inv_mass[view->ends[2 * s + 1]];
-        // between two pinned ends there is nothing to move
-        if (weight <= 0)
-            continue;
-        project_spring(self, s, h, weight, x);
-        if (self->damper && !view->axial[s] && view->damping[s] > 0)
-            project_damper(self, s, h, weight, x);
-    }
-    self->passes++;
-}
 
 /* One Newton step of each particle towards p = h h F, at the end t of the step. Uses self->f
  * as scratch. */
@@ -197,22 +116,30 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
     const uint32_t outer = self->impulse ? CS_PART_OUTER & ~CONTACT : CS_PART_OUTER;
     host->force(host->ctx, t, x, v, outer, self->f);
     memcpy(self->old, x, 3 * n * sizeof *x);
+    if (h != self->springs_h || loop->history_void)
+        spring_groups_read_constants(&self->springs, host->view, h);
+    self->springs_h = h;
+    spring_groups_take(&self->springs, host->view, x);
+    spring_groups_note_old(&self->springs);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0, k = c * n; i < n; i++, k++) {
             v[k] += h * self->f[k] * host->view->inv_mass[i];
             x[k] += h * v[k];
         }
 
-    forget(self);
     if (self->impulse)
         memset(self->impulse, 0, 3 * n * sizeof *x);
+    spring_groups_take(&self->springs, host->view, x);
     for (int64_t i = 0; i < self->iterations; i++) {
-        if (self->forgets && i > 0)
-            forget(self);
-        sweep(self, h, x);
-        if (self->impulse)
-            touch(self, t + h, h, x);
+        spring_groups_sweep(&self->springs, i == 0 || self->forgets);
+        self->passes++;
+        if (!self->impulse)
+            continue;
+        spring_groups_give(&self->springs, host->view, x);
+        touch(self, t + h, h, x);
+        spring_groups_take(&self->springs, host->view, x);
     }
+    spring_groups_give(&self->springs, host->view, x);
     // (x - old) / h by what the springs moved, so that free flight keeps every bit of v
     for (size_t k = 0; k < 3 * n; k++)
         v[k] += (x[k] - (self->old[k] + h * v[k])) / h;
@@ -243,14 +170,6 @@ static enum cs_step advance(void *object, double t0, double t1, double *x, doubl
     return status;
 }
 
-/* True if a spring has a damper against every relative velocity of its ends. */
-static bool has_relative_dampers(const struct cs_view *view) {
-    for (size_t s = 0; s < view->n_springs; s++)
-        if (view->damping[s] > 0 && !view->axial[s])
-            return true;
-    return false;
-}
-
 /* Allocates the arrays of contact by force; the host offers contact_blocks only in such
  * scenes. */
 static enum cs_step take_contact(struct xpbd *self, size_t vectors) {
@@ -268,7 +187,6 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     const struct xpbd_options *asked = options;
     const struct cs_view *view = host->view;
     const size_t vectors = 3 * sizeof(double) * (size_t)view->n;
-    const size_t springs = sizeof(double) * (size_t)view->n_springs;
     struct xpbd *self = host->alloc(host->ctx, sizeof *self);
     if (!self)
         return CS_STEP_FAIL;
@@ -279,15 +197,18 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     self->forgets = asked->mode == PBD;
     if (!(self->f = host->alloc(host->ctx, vectors)) ||
         !(self->old = host->alloc(host->ctx, vectors)) ||
-        !(self->spring = host->alloc(host->ctx, springs)))
-        return CS_STEP_FAIL;
-    /* three multipliers a spring, which only relative dampers need */
-    if (has_relative_dampers(view) && !(self->damper = host->alloc(host->ctx, 3 * springs)))
+        spring_groups_init(&self->springs, host) != CS_STEP_OK)
         return CS_STEP_FAIL;
     if (take_contact(self, vectors) != CS_STEP_OK)
         return CS_STEP_FAIL;
     self->loop.free_motion = 1;
     return fixed_step_guard(&self->loop, NULL);
+}
+
+/* Events may have changed the springs, and a state that is read afterwards does not tell. */
+static enum cs_step restart(void *object, double t, const double *x, const double *v) {
+    ((struct xpbd *)object)->springs_h = 0;
+    return fixed_step_restart(object, t, x, v);
 }
 
 static void stats(const void *object, struct cs_stats *out) {
@@ -319,7 +240,7 @@ static const struct cs_integrator xpbd = {
     .n_options = sizeof rows / sizeof rows[0],
     .options_size = sizeof(struct xpbd_options),
     .create = create,
-    .restart = fixed_step_restart,
+    .restart = restart,
     .advance = advance,
     .stats = stats,
     .save = archive,

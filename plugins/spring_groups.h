@@ -1,0 +1,72 @@
+/* spring_groups.h - springs in groups of LANES that share no particle, for sweeps that correct
+ * them one after the other.
+ *
+ * The level of a spring is one more than those of all springs before it at its ends; groups are
+ * of one level, and go level by level (level scheduling, Anderson and Saad 1989). Each particle
+ * is then corrected in the order of its springs: the bits are those of a loop over springs,
+ * while a group is a loop over vectors. On a grid, whose springs stand row by row, a level is a
+ * front through several rows.
+ *
+ * Sweeps work on particles of their own, four numbers each, so that a particle is one load and
+ * one store. */
+#ifndef SPRING_GROUPS_H
+#define SPRING_GROUPS_H
+
+#include <clothsim/integrator.h>
+
+enum { LANES = 4 };
+
+/* One number of each spring of a group. */
+typedef double spring_lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
+
+/* Springs of a group, for a step of h. Places left over join the particle n to itself. */
+struct spring_group {
+    spring_lanes length, compliance; /* L in m, 1/(k h h) in 1/kg */
+    spring_lanes multiplier;         /* l in kg m */
+    uint32_t a[LANES], b[LANES];     /* of the particles, positions in places */
+};
+
+/* Dampers along the springs of a group: g = c/(k h), and d at the begin of the step in m. */
+struct axial_group {
+    spring_lanes gamma, old[3];
+};
+
+/* Dampers of a group against every relative velocity. */
+struct relative_group {
+    spring_lanes compliance, old[3]; /* 1/(c h) in 1/kg, 0: none; d as above */
+    spring_lanes multiplier[3];      /* kg m */
+};
+
+struct spring_groups {
+    uint32_t n;
+    uint32_t *spring; /* (n, LANES) */
+    double *places;   /* (n particles + 1, 4) x in m and the inverse mass in 1/kg */
+    struct spring_group *groups;
+    struct axial_group *axial;
+    struct relative_group *relative; /* NULL: there are none at the begin of the run */
+    bool is_damped;                  /* an axial damper acts */
+};
+
+/* Groups the springs of the view; [create]. Needs CS_NEED_SPRINGS. */
+enum cs_step spring_groups_init(struct spring_groups *self, const struct cs_host *host);
+
+/* Reads the springs' constants for a step of h in s: events change them. */
+void spring_groups_read_constants(struct spring_groups *self, const struct cs_view *view,
+                                  double h);
+
+/* Takes the particles from x (3,n). */
+void spring_groups_take(struct spring_groups *self, const struct cs_view *view,
+                        const double *x);
+
+/* Notes the places taken last as those at the begin of a step, for dampers. */
+void spring_groups_note_old(struct spring_groups *self);
+
+/* One pass over all springs, which corrects the particles; is_first: with multipliers 0 before
+ * it. */
+void spring_groups_sweep(struct spring_groups *self, bool is_first);
+
+/* Gives the particles back to x (3,n). */
+void spring_groups_give(const struct spring_groups *self, const struct cs_view *view,
+                        double *x);
+
+#endif
