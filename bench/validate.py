@@ -146,13 +146,19 @@ def tip_of_elastica(weight, load):
     return np.trapz(np.sin(angle), fine)
 
 
-def still(scene, run, seconds):
-    """Lets a scene come to rest by a method that damps, and returns the shift of the last column."""
+def rest(run, scene, seconds):
+    """Lets a scene come to rest by a method that damps; returns positions at the start and the end."""
     _, x, v = run(scene, seconds, "implicit-linearised:dt=frame")
-    columns = scene["bodies"][0]["cloth"]["grid"][0]
     if np.abs(v[-1]).max() > 1e-4:
         raise RuntimeError(f"still moves at {np.abs(v[-1]).max():.2g} m/s")
-    return (x[-1] - x[0])[columns - 1::columns].mean(axis=0)
+    return x[0], x[-1]
+
+
+def still(scene, run, seconds):
+    """Lets a scene come to rest, and returns the shift of the last column."""
+    start, end = rest(run, scene, seconds)
+    columns = scene["bodies"][0]["cloth"]["grid"][0]
+    return (end - start)[columns - 1::columns].mean(axis=0)
 
 
 def heavy_elastica(run, cells):
@@ -172,6 +178,42 @@ def end_shear(run, cells):
                                                "direction": [0, -1, 0], "impulse": 90 * force}}]
     scene = cantilever(cells, length, width, law, 0.15, 0, events)
     return -still(scene, run, 8)[1] / length
+
+
+def end_moment(run, cells):
+    """M L / D = pi, half of the greatest moment of Sze 2004, 3.2, rolls a strip up to half a circle,
+    2 / pi of the length high. M is a couple on the last two columns, whose forces turn with the end
+    as it grows. The strip reaches from the middle of the held columns to that of the loaded ones."""
+    length, width, rigidity, parts = 0.1, 0.01, 1e-4, 40
+    law = {"membrane": {"young": 2000}, "bending": {"stiffness": rigidity, "poisson": 0}}
+    cell, columns, events = length / (cells - 1), cells + 1, []
+    for k in range(parts):
+        begin, end = 4 * k / parts, 4 * (k + 1) / parts if k + 1 < parts else 90
+        angle = math.pi * (k + 1) / parts
+        force = angle * rigidity * width / length / cell
+        for column, sign in ((cells, 1), (cells - 1, -1)):
+            events.append({"from": begin, "to": end, "impact": {
+                "body": 0, "particles": [column + columns * row for row in range(3)],
+                "direction": [-sign * math.sin(angle), sign * math.cos(angle), 0],
+                "impulse": force * (end - begin)}})
+    _, x = rest(run, cantilever(cells, (cells - 0.5) * cell, width, law, 0.15, 0, events), 8)
+    tip, root = ((x[k::columns] + x[k + 1::columns]).mean(axis=0) / 2 for k in (cells - 1, 0))
+    return (tip - root)[1] / length
+
+
+def balloon(run, detail):
+    """Laplace: the tension T of a sphere holds p = 2 T / r. A stretch s, the same along each line,
+    makes T = E / (1 - nu) (s^2 - 1) / 2 of Green's strain. Returns the stretch under the pressure of
+    s = 1.2, by the distances of the vertices from their middle."""
+    radius, young, poisson, stretch = 0.5, 40.0, 0.4, 1.2
+    tension = young / (1 - poisson) * (stretch**2 - 1) / 2
+    scene = {"bodies": [{"mesh": {"shape": "sphere", "detail": detail},
+                         "mass": {"areal_density": 0.12},
+                         "pressure": 2 * tension / (radius * stretch),
+                         "elastic": {"membrane": {"young": young, "poisson": poisson}}}],
+             "forces": {"gravity": [0, 0, 0], "drag": 3, "drag_unit": "Pa s/m"}}
+    start, end = (np.linalg.norm(x - x.mean(axis=0), axis=1).mean() for x in rest(run, scene, 4))
+    return end / start
 
 
 def ringing(scene, run, seconds, particle, axis, guess, method="dop853:rtol=1e-7"):
@@ -316,6 +358,8 @@ ROWS = {
     "lateral buckling": (1, "of a beam", lateral_buckling, 0.025, (16, 32)),
     "heavy elastica": (tip_of_elastica(8, 0), "L", heavy_elastica, 0.001, (8, 16, 32)),
     "end shear": (tip_of_elastica(0, 4), "L", end_shear, 0.001, (8, 16, 32)),
+    "end moment": (2 / math.pi, "L", end_moment, 0.005, (8, 16, 32)),
+    "balloon": (1.2, "R", balloon, 0.001, (4, 8, 16)),
 }
 
 

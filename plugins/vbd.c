@@ -1,4 +1,5 @@
-/* vbd.c - vertex block descent: implicit Euler, particle by particle.
+/* vbd.c - vertex block descent: implicit Euler, particle by particle; and augmented vertex
+ * block descent, whose passes see springs of which none is stiff (augmented_springs.h).
  *
  * With h the step and y = x + h v + h^2 f/m the position that the outer forces alone lead to, a
  * step of implicit Euler minimises G(z) = |z - y|_M^2 / 2 + h^2 E(z). A pass visits the
@@ -21,6 +22,7 @@
  * 2/(2 - rho^2), 4/(4 - rho^2 w), ... Particles in contact are left out of it, as their blocks
  * change from pass to pass.
  */
+#include "augmented_springs.h"
 #include "fixed_step.h"
 #include "parallel.h"
 #include "vertex_groups.h"
@@ -47,15 +49,35 @@ static const struct cs_option rows[] = {
               "0 is none; too large a rate makes energy"),
 };
 
+struct avbd_options {
+    double dt, penalty, beta, gamma, penalty_max;
+    int64_t iterations;
+};
+
+static const struct cs_option avbd_rows[] = {
+    FIXED_STEP_DT_BY_ERROR(struct avbd_options),
+    CS_OPTION(struct avbd_options, iterations, "", 10, 1, 1e6,
+              "passes over the particles in a step"),
+    CS_OPTION(struct avbd_options, penalty, "", 3, 1e-3, 1e6,
+              "least stiffness that a spring counts with, in masses over dt^2"),
+    CS_OPTION(struct avbd_options, beta, "", 100, 0, 1e9,
+              "growth of that stiffness in a pass, times a spring's error over its length"),
+    CS_OPTION(struct avbd_options, gamma, "", 0.9, 0, 1,
+              "part of that stiffness that the next step starts with"),
+    CS_OPTION(struct avbd_options, penalty_max, "", 100, 1e-3, 1e9,
+              "greatest stiffness that a spring counts with, in masses over dt^2"),
+};
+
 struct vbd {
     struct fixed_step loop; /* first: the loop's functions take it for the whole */
     int64_t iterations;
     double rho, h;
     struct vertex_groups groups;
-    uint32_t first_group; /* of the colour at work */
-    double *x;            /* (3,n) in m: the present z */
-    double *f;            /* (3,n) in N: outer forces, then those of contact */
-    double *old, *y;      /* (3,n) in m: begin of the step, and where outer forces alone lead */
+    struct augmented_springs *augmented; /* of avbd; NULL: vbd */
+    uint32_t first_group;                /* of the colour at work */
+    double *x;                           /* (3,n) in m: the present z */
+    double *f;                           /* (3,n) in N: outer forces, then those of contact */
+    double *old, *y; /* (3,n) in m: begin of the step, and where outer forces alone lead */
     double *last, *before_last; /* (3,n) in m: z before the pass, and before the one before */
     double *blocks, *speed;     /* (6,n) B in kg, (3,n) in m/s; NULL: no contact by force */
     uint64_t passes;
@@ -195,6 +217,20 @@ static void sweep(struct vbd *self, double t) {
     self->passes++;
 }
 
+/* The springs that the first pass of a step of h sees, or the one after `passed`. */
+static void read_springs(struct vbd *self, double h, bool passed) {
+    const struct cs_view *view = self->loop.host->view;
+    struct augmented_springs *augmented = self->augmented;
+    if (augmented && passed)
+        augmented_springs_update(augmented, view, h, self->x);
+    else if (augmented)
+        augmented_springs_begin(augmented, view, h);
+    if (augmented || !passed)
+        vertex_groups_read_springs(&self->groups, view,
+                                   augmented ? augmented->stiffness : view->stiffness,
+                                   augmented ? augmented->length : view->length, h);
+}
+
 static enum cs_step step(struct fixed_step *loop, double t, double h, double *x, double *v) {
     struct vbd *self = (struct vbd *)loop;
     const struct cs_host *host = loop->host;
@@ -209,10 +245,11 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
         }
     self->h = h;
     self->x = x;
-    vertex_groups_read_springs(&self->groups, host->view, h);
+    read_springs(self, h, false);
     double weight = 1;
     for (int64_t k = 0; k < self->iterations; k++) {
         sweep(self, t + h);
+        read_springs(self, h, true);
         weight =
             k == 0 ? 1 : (k == 1 ? 2 : 4) / ((k == 1 ? 2 : 4) - self->rho * self->rho * weight);
         if (k > 0 && self->rho > 0)
@@ -224,17 +261,17 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
     return CS_STEP_OK;
 }
 
-static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
-    const struct vbd_options *asked = options;
+/* What both methods start from, in *out. */
+static enum cs_step create_passes(const struct cs_host *host, double dt, int64_t iterations,
+                                  struct vbd **out) {
     const size_t bytes = 3 * sizeof(double) * (size_t)host->view->n;
     struct vbd *self = host->alloc(host->ctx, sizeof *self);
     if (!self)
         return CS_STEP_FAIL;
     *out = self;
-    self->loop = fixed_step_of(host, asked->dt, step);
+    self->loop = fixed_step_of(host, dt, step);
     self->loop.free_motion = 1;
-    self->iterations = asked->iterations;
-    self->rho = asked->rho;
+    self->iterations = iterations;
     double **const arrays[] = {&self->f, &self->old, &self->y, &self->last, &self->before_last};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         if (!(*arrays[k] = host->alloc(host->ctx, bytes)))
@@ -247,6 +284,40 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     return status == CS_STEP_OK ? fixed_step_guard(&self->loop, NULL) : status;
 }
 
+static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
+    const struct vbd_options *asked = options;
+    const enum cs_step status =
+        create_passes(host, asked->dt, asked->iterations, (struct vbd **)out);
+    if (status == CS_STEP_OK)
+        ((struct vbd *)*out)->rho = asked->rho;
+    return status;
+}
+
+static enum cs_step create_augmented(const struct cs_host *host, const void *options,
+                                     void **out) {
+    const struct avbd_options *asked = options;
+    const enum cs_step status =
+        create_passes(host, asked->dt, asked->iterations, (struct vbd **)out);
+    if (status != CS_STEP_OK)
+        return status;
+    struct augmented_springs *augmented = host->alloc(host->ctx, sizeof *augmented);
+    if (!augmented)
+        return CS_STEP_FAIL;
+    ((struct vbd *)*out)->augmented = augmented;
+    augmented->beta = asked->beta;
+    augmented->gamma = asked->gamma;
+    augmented->start = asked->penalty;
+    augmented->most = fmax(asked->penalty, asked->penalty_max);
+    return augmented_springs_init(augmented, host);
+}
+
+static enum cs_step restart(void *object, double t, const double *x, const double *v) {
+    struct vbd *self = object;
+    if (self->augmented)
+        augmented_springs_restart(self->augmented, self->loop.host->view);
+    return fixed_step_restart(self, t, x, v);
+}
+
 static void stats(const void *object, struct cs_stats *out) {
     fixed_step_stats(object, out);
     out->newton = ((const struct vbd *)object)->passes;
@@ -255,34 +326,41 @@ static void stats(const void *object, struct cs_stats *out) {
 }
 
 static enum cs_step archive(void *object, const struct cs_archive *archive) {
-    archive->integers(archive->ctx, &((struct vbd *)object)->passes, 1);
+    struct vbd *self = object;
+    archive->integers(archive->ctx, &self->passes, 1);
+    if (self->augmented)
+        augmented_springs_archive(self->augmented, self->loop.host->view, archive);
     return fixed_step_archive(object, archive);
 }
 
+/* What both methods have in common. */
+#define VERTEX_BLOCK_DESCENT(options_, rows_, create_)                                         \
+    .size = sizeof(struct cs_integrator), .order = 1, .order_damped = 1,                       \
+    .needs = CS_NEED_SPRINGS | CS_NEED_COLOURS, .traits = CS_IMPLICIT,                         \
+    .fidelity = CS_FIDELITY_IMPLICIT_EULER, .options = (rows_),                                \
+    .n_options = sizeof(rows_) / sizeof(rows_)[0], .options_size = sizeof(options_),           \
+    .create = (create_), .restart = restart, .advance = fixed_step_advance, .stats = stats,    \
+    .save = archive, .load = archive
+
 static const struct cs_integrator vbd = {
-    .size = sizeof(struct cs_integrator),
+    VERTEX_BLOCK_DESCENT(struct vbd_options, rows, create),
     .name = "vbd",
     .summary =
         "implicit Euler by blocks of one particle, colour by colour; cheap passes that damp, "
         "and leave momentum to the last of them",
     .source = "Chen, Liu, Yang, Yuksel 2024 (vertex block descent); acceleration: Wang 2015",
-    .order = 1,
-    .order_damped = 1,
-    .needs = CS_NEED_SPRINGS | CS_NEED_COLOURS,
-    .traits = CS_IMPLICIT,
-    .fidelity = CS_FIDELITY_IMPLICIT_EULER,
-    .options = rows,
-    .n_options = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct vbd_options),
-    .create = create,
-    .restart = fixed_step_restart,
-    .advance = fixed_step_advance,
-    .stats = stats,
-    .save = archive,
-    .load = archive,
 };
 
-static const struct cs_integrator *const integrators[] = {&vbd};
+static const struct cs_integrator avbd = {
+    VERTEX_BLOCK_DESCENT(struct avbd_options, avbd_rows, create_augmented),
+    .name = "avbd",
+    .summary =
+        "vbd with an augmented Lagrangian: its passes reach implicit Euler where springs "
+        "are stiff, or far stiffer than others",
+    .source = "Giles, Diaz, Yuksel 2025 (augmented vertex block descent)",
+};
+
+static const struct cs_integrator *const integrators[] = {&vbd, &avbd};
 
 CS_EXPORT const struct cs_module clothsim_module = {
     .abi = CS_ABI,

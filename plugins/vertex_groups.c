@@ -65,15 +65,15 @@ enum cs_step vertex_groups_init(struct vertex_groups *groups, const struct cs_ho
 }
 
 void vertex_groups_read_springs(struct vertex_groups *groups, const struct cs_view *view,
-                                double h) {
+                                const double *stiffness, const double *length, double h) {
     for (size_t k = 0; k < groups->slot_begin[groups->colour_begin[view->n_colours]]; k++)
         for (size_t l = 0; l < LANES; l++) {
             struct spring_slot *slot = groups->slots + k;
             const uint32_t s = slot->spring[l];
             if (s == NO_SPRING)
                 continue;
-            slot->stiffness[l] = h * h * view->stiffness[s];
-            slot->length[l] = view->length[s];
+            slot->stiffness[l] = h * h * stiffness[s];
+            slot->length[l] = length[s];
             slot->axial[l] = view->axial[s] ? h * view->damping[s] : 0;
             slot->relative[l] = view->axial[s] ? 0 : h * view->damping[s];
         }

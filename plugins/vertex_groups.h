@@ -28,8 +28,9 @@ struct vertex_groups {
 /* Groups the particles by the colours of the view; [create]. Needs CS_NEED_COLOURS. */
 enum cs_step vertex_groups_init(struct vertex_groups *groups, const struct cs_host *host);
 
-/* Reads the springs' constants for a step of h in s: ramps and events change them. */
+/* Reads the springs' constants for a step of h in s: ramps and events change them. stiffness in
+ * N/m and length in m (n_springs) are the view's, or in place of them. */
 void vertex_groups_read_springs(struct vertex_groups *groups, const struct cs_view *view,
-                                double h);
+                                const double *stiffness, const double *length, double h);
 
 #endif

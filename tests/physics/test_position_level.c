@@ -1,4 +1,4 @@
-/* What the position-level methods come to: fast-mass-spring, projective-dynamics and vbd to
+/* What the position-level methods come to: fast-mass-spring, projective-dynamics, vbd and avbd to
  * implicit Euler as their iterations grow, xpbd to a place of its own beside it that implicit
  * Euler and it share as h goes to 0, its mode pbd to nothing.
  *
@@ -161,12 +161,13 @@ TEST(vbd_and_quasi_newton_come_to_implicit_euler) {
         double bound; /* m, after the few */
     } rows[] = {{"vbd", 30, 2000, 1e-3},
                 {"vbd:rho=0.9", 30, 1000, 1e-3},
+                {"avbd", 30, 2000, 1e-3},
                 {QUASI_NEWTON, 10, 100, 1e-5}};
     static const struct start starts[] = {
         {"", "0", 1 / 20.0, 1},
         {", \"damping\": 0.5, \"damping_model\": \"relative\"", "0", 1 / 20.0, 1},
         {", \"damping\": 0.5, \"damping_model\": \"axial\"", "0", 1 / 20.0, 1}};
-    for (size_t k = 0; k < 9; k++) {
+    for (size_t k = 0; k < 3 * sizeof rows / sizeof *rows; k++) {
         const char *method = rows[k / 3].method;
         const struct start *from = starts + k % 3;
         if (!is_built(method[0] == 'p' ? QUASI_NEWTON : "vbd"))
@@ -177,6 +178,35 @@ TEST(vbd_and_quasi_newton_come_to_implicit_euler) {
                       "%s, start %zu: %.3g m after %d iterations, %.3g after %d", method, k % 3,
                       few, rows[k / 3].few, many, rows[k / 3].many);
     }
+}
+
+/* Where a strip of stretch springs of 1e5 N/m and bend springs of 1 N/m is 20 frames after it
+ * was let go, in steps of a frame: p (3,63) in m. */
+static void hang_strip(const char *integrator, double *p) {
+    struct fixture strip;
+    fixture_open(&strip, integrator,
+                 "{\"bodies\": [{\"cloth\": {\"grid\": [3, 21], \"size\": [0.1, 1]}, "
+                 "\"mass\": {\"particle\": 0.01}, \"springs\": {\"stretch\": 1e5, "
+                 "\"shear\": 1e3, \"bend\": 1, \"damping\": 0}, \"pins\": [\"left\"]}]}");
+    fixture_start(&strip);
+    fixture_frames(&strip, 20);
+    memcpy(p, strip.x, 3 * strip.n * sizeof *p);
+    fixture_close(&strip);
+}
+
+/* Multipliers carry over stiff springs what passes cannot, and both come to one place. */
+TEST(avbd_meets_implicit_euler_where_springs_are_stiff) {
+    static const char *const methods[] = {"vbd:iterations=30,dt=frame",
+                                          "avbd:iterations=30,dt=frame",
+                                          "avbd:iterations=900,dt=frame"};
+    double expected[189], found[189], off[3];
+    hang_strip("backward-euler:dt=frame,rtol=1e-12", expected);
+    for (int k = 0; k < 3; k++) {
+        hang_strip(methods[k], found);
+        off[k] = cs_rms_difference(found, expected, 189) * sqrt(3);
+    }
+    ck_assert_msg(off[0] > 5e-3 && off[1] < 1e-3 * off[0] && off[2] < 1e-8,
+                  "vbd: %.3g m, avbd: %.3g m, after 900 passes %.3g m", off[0], off[1], off[2]);
 }
 
 /* What acceleration is for: fewer passes, fewer solves. */
