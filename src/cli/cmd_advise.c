@@ -111,7 +111,7 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
     case CS_ADVICE_REFUSED:
         break;
     }
-    if (row->cut > 0)
+    if (row->cut > 0 && cs_advice_has_step(row))
         cs_text_add(out, "; its reference was over budget at %.3g s", row->cut);
     if (row->steps_ahead > 0 && cs_advice_has_step(row))
         cs_text_add(out, "; without a reference, because %.3g explicit steps exceed the budget",

@@ -119,6 +119,7 @@ enum cs_step cs_run_host_fail_solve(struct cs_run_host *host, enum cs_linear_end
 #define MEMBRANE_SPRINGS 10 /* a particle of elastic bodies, with its triangles and hinges */
 #define PAIR_SPRINGS     24 /* a particle of bodies in contact with each other */
 #define COLLIDER_SPRINGS 2
+#define MATRIX_SPRINGS   500 /* a particle that bends, where the matrix of a solver is made */
 
 double cs_pass_seconds(const struct cs_system *system) {
     double springs = 0, particle = 1 + COLLIDER_SPRINGS * (double)system->scene->colliders.n;
@@ -145,7 +146,10 @@ void cs_run_host_count(struct cs_run_host *host) {
 
 double cs_run_host_work_seconds(const struct cs_run_host *host) {
     const struct cs_counts *counts = &host->run->counts;
-    return fmax((double)counts->steps, cs_counts_work(counts)) * host->pass_seconds;
+    const struct cs_system *system = host->run->system;
+    const double bent = system->bendings ? SPRING_SECONDS * MATRIX_SPRINGS * system->view.n : 0;
+    return fmax((double)counts->steps, cs_counts_work(counts)) * host->pass_seconds +
+           (double)counts->solve_setups * bent;
 }
 
 bool cs_run_host_is_over_budget(struct cs_run_host *host) {

@@ -76,6 +76,7 @@ enum cs_status cs_singular_force_find(const struct cs_session_settings *settings
     asked.threads = 0;
     asked.render = false;
     asked.run = (struct cs_run_settings){.budget = settings->run.budget,
+                                         .pot = settings->run.pot,
                                          .stop = &steps.stop,
                                          .after_commit = watch_step,
                                          .ctx = &steps};

@@ -17,7 +17,7 @@ static double limit_of(const char *method, double square, double rate) {
     double limit = (double)NAN;
     fixture_open(&pair, method, PAIR);
     const struct cs_amplification amplify = {pair.session.method.integrator,
-                                             pair.session.method.options, 0};
+                                             pair.session.method.options, 0, NULL};
     cs_amplification_limit(&amplify, square, rate, &limit, &error);
     ck_assert_msg(!error.status, "%s", error.message);
     fixture_close(&pair);

@@ -45,11 +45,11 @@ double cs_norm_scale(enum cs_norm norm, const struct cs_compare_reference *refer
  * alike, to PART_MIN at least, where reference and sweep leave less than they take of
  * ALL_SECONDS. Tuned on three garments of 231 to 1488 particles, whose processor time is 1.3 to
  * 3 times nominal: each ends within two minutes. */
-#define CS_COMPARE_ALL_SECONDS     45.0
+#define CS_COMPARE_ALL_SECONDS     36.0
 #define CS_COMPARE_PART_MIN        0.2
-#define CS_COMPARE_SECONDS         18
-#define CS_COMPARE_EQUAL_SECONDS   10.0
-#define CS_COMPARE_ROUND_SECONDS   15.0
+#define CS_COMPARE_SECONDS         15
+#define CS_COMPARE_EQUAL_SECONDS   8.0
+#define CS_COMPARE_ROUND_SECONDS   11.0
 #define CS_COMPARE_RUN_SECONDS_MAX 4.0
 
 /* Nominal s of work from which the parts of a comparison are announced. */

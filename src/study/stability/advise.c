@@ -13,7 +13,8 @@ enum { SAMPLES = 32, HALVINGS = 6 };
 #define MARGIN          0.9  /* fraction of the limit that is advised */
 #define GROWTH_SEEN     1e-7 /* growth per step that counts; less is rounding */
 #define CALL_BUDGET     20   /* nominal s of work of a call, if none is given */
-#define METHOD_BUDGET   5    /* and of each of many methods */
+#define METHOD_BUDGET   5    /* and of each of some methods */
+#define MOST_BUDGET     60   /* of many, so that a call ends within two minutes */
 #define REFERENCE_SHARE 0.5  /* of the work for a method, that its reference may take */
 
 /* Context of the worker tasks. */
@@ -163,8 +164,12 @@ static enum cs_status advise_fixed(struct cs_advice *row,
                                    bool check, struct cs_error *error) {
     struct cs_reference reference, none = {.seconds = settings->seconds};
     struct cs_sampled_run_settings half = *settings;
-    half.session.run.budget = REFERENCE_SHARE * *settings->session.run.pot;
-    if (cs_reference_run(&reference, &half, error))
+    row->held = (1 - REFERENCE_SHARE) * row->pot;
+    half.session.run.budget = row->pot -= row->held;
+    cs_reference_run(&reference, &half, error);
+    row->pot = fmax(row->pot, 0) + row->held;
+    row->held = 0;
+    if (error->status)
         return error->status;
     const bool is_cut = keep_cut_reference(&reference);
     row->cut = is_cut ? reference.seconds : 0;
@@ -203,7 +208,7 @@ static enum cs_status advise_fixed(struct cs_advice *row,
  */
 static enum cs_status measure_growth(struct cs_advice *row, const struct cs_method *method,
                                      struct cs_error *error) {
-    const struct cs_amplification amplify = {method->integrator, method->options, 0};
+    const struct cs_amplification amplify = {method->integrator, method->options, 0, NULL};
     double radius;
     if (!(row->safe > 0) || !(row->theory > 0 && row->theory < HUGE_VAL) ||
         cs_amplification_measure(&amplify, row->safe, fmax(row->mode.omega_squared, 0),
@@ -267,7 +272,7 @@ static void report(void *ctx, uint32_t ticks) {
     double left = 0;
     (void)ticks;
     for (uint32_t k = 0; k < advise->n; k++)
-        left += fmax(advise->rows[k].pot, 0);
+        left += fmax(advise->rows[k].pot, 0) + advise->rows[k].held;
     if (advise->progress)
         advise->progress(advise->ctx, (uint32_t)(100 * (1 - left / advise->budget)), 100);
 }
@@ -297,7 +302,7 @@ enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error) {
     work.workers.n_tasks = advise->n;
     advise->rows = cs_process_pool_shared_alloc(advise->n * sizeof *advise->rows, error);
     if (!(advise->budget > 0))
-        advise->budget = fmax(CALL_BUDGET, METHOD_BUDGET * advise->n);
+        advise->budget = fmin(fmax(CALL_BUDGET, METHOD_BUDGET * advise->n), MOST_BUDGET);
     work.workers.silence_max = cs_hang_seconds(advise->budget / advise->n);
     for (uint32_t k = 0; advise->rows && k < advise->n; k++)
         advise->rows[k].pot = advise->budget / advise->n;

@@ -43,7 +43,8 @@ struct cs_advice {
     double steps, frame_cost; /* steps and wall time in s of a frame with the safe step */
     double cut;               /* s, where the budget ended the reference; 0: it did not */
     double steps_ahead;       /* of a reference beyond the budget, not begun; 0: begun */
-    double pot;               /* nominal s of work that are left, while it is at work */
+    /* nominal s of work that are left, while it is at work; and held back for its tests */
+    double pot, held;
     char message[320];
 };
 
@@ -67,7 +68,7 @@ struct cs_advise {
     double
         seconds;   /* that the advice is for: of the trusted run and the probe runs, at least */
     double budget; /* nominal s of work of all runs, divided equally among the methods; 0: 20,
-                      or 5 per method. Out: the one used */
+                      or 5 per method up to 60. Out: the one used */
     bool bisect_too; /* bisect the limit too */
     uint32_t workers;
     const volatile sig_atomic_t *stop;

@@ -27,11 +27,9 @@ enum { STEPS = 200 };
 #define GRID_RATIO 32
 /* Fraction of the smallest limit by rate so far below which a step is looked at too. */
 #define TIGHTER 0.95
-/* Work of bounds at a state, of those with bending, and of amplification matrices at a look, in
- * passes over the forces, about. */
+/* Work of bounds at a state, and of those with bending, in passes over the forces, about. */
 #define BOUND_PASSES   10
 #define BENDING_PASSES 35
-#define TIGHTEN_PASSES 500
 /* Steps from one bound to the next where bounds change with the motion alone: a step is at most
  * 1/omega, hence about a period of the stiffest mode. */
 enum { STEPS_PER_BOUND = 8 };
@@ -88,15 +86,16 @@ static void tighten(struct way *way, double t, const double *x, bool with_damper
     struct cs_reference *reference = way->reference;
     struct cs_theory_limit *smallest = &reference->smallest_limit;
     const double before = smallest->dt;
-    charge(way, TIGHTEN_PASSES);
     if (smallest->dt < HUGE_VAL)
         cs_theory_tighten(way->theory, x, with_dampers, smallest, way->error);
     else if (way->is_explicit && cs_spectral_bounds_depend_on_state(way->system))
         cs_theory_at(way->theory, x, smallest, way->error);
     if (smallest->dt < before)
         reference->smallest_time = t;
-    /* bounds other than those of contact hold for the whole run */
-    if (!way->error->status && cs_spectral_bounds_depend_on_state(way->system))
+    /* bounds other than those of contact hold for the whole run; nothing limits an implicit
+     * method without a limit at the start */
+    if (!way->error->status && cs_spectral_bounds_depend_on_state(way->system) &&
+        (way->is_explicit || reference->gershgorin_limit < HUGE_VAL))
         cs_theory_gershgorin(way->theory, x, &reference->gershgorin_limit, way->error);
 }
 
@@ -241,7 +240,7 @@ static enum cs_status run_with(struct cs_reference *reference, struct cs_session
                            session->method.options, growth_of(&session->system, settings),
                            error))
             goto done;
-        theory.modes.pot = settings->session.run.pot;
+        theory.modes.pot = theory.amplification.pot = settings->session.run.pot;
         theory.modes.pass_seconds = cs_pass_seconds(&session->system);
         if (cs_theory_gershgorin(&theory, session->system.state, &reference->gershgorin_limit,
                                  error) ||

@@ -27,6 +27,9 @@
  * is forgotten. The number of steps in between is a power of 2, for roots by sqrt. */
 enum { STEPS_BEFORE = 8, STEPS_BETWEEN = 16 };
 
+/* Nominal s of a measurement: nearly all of it is to open the scene. */
+#define MEASURE_SECONDS 1e-4
+
 /* Tolerance of the test that two steps are the square of one, relative to the effect of a
  * step. */
 #define SAME 1e-6
@@ -159,6 +162,8 @@ enum cs_status cs_amplification_measure(const struct cs_amplification *amplify, 
                                                  .method = amplify->integrator,
                                                  .options = amplify->options,
                                                  .dt = FRAME};
+    if (amplify->pot)
+        *amplify->pot -= MEASURE_SECONDS;
     if (cs_session_open_system(&session, &settings, error))
         return error->status;
     measure(&session, SAME * fmin(1, h * h * square + h * rate), radius, error);
@@ -233,7 +238,7 @@ enum { MOST_TURNS = 5 };
 enum cs_status cs_theory_init(struct cs_theory *theory, struct cs_system *system,
                               const struct cs_integrator *integrator, const void *options,
                               double growth, struct cs_error *error) {
-    *theory = (struct cs_theory){.amplification = {integrator, options, growth},
+    *theory = (struct cs_theory){.amplification = {integrator, options, growth, NULL},
                                  .stiffness_damping_direction = {1, 0}};
     return cs_stiffest_modes_init(&theory->modes, system, error);
 }
@@ -241,26 +246,6 @@ enum cs_status cs_theory_init(struct cs_theory *theory, struct cs_system *system
 void cs_theory_finish(struct cs_theory *theory) {
     cs_stiffest_modes_finish(&theory->modes);
 }
-
-/* The bound view.delta is half of the largest damping rate, hence 2 delta. The undamped limit
- * is taken too, because damping lengthens the limit of some methods and modes need not have all
- * of it. */
-enum cs_status cs_theory_gershgorin(struct cs_theory *theory, const double *x, double *dt,
-                                    struct cs_error *error) {
-    const struct cs_stiffest_modes *modes = &theory->modes;
-    const struct cs_eval at = {.t = modes->t, .x = x, .v = modes->zeros, .parts = CS_PART_ALL};
-    double omega, delta, free = HUGE_VAL, damped = HUGE_VAL;
-    cs_spectral_bounds_rate(modes->system, &at, false, modes->dx, &omega, &delta);
-    if (cs_amplification_limit(&theory->amplification, omega * omega, 0, &free, error) ||
-        cs_amplification_limit(&theory->amplification, omega * omega, 2 * delta, &damped,
-                               error))
-        return error->status;
-    *dt = fmin(*dt, fmin(free, damped));
-    return CS_OK;
-}
-
-static enum cs_status is_growing(const struct cs_amplification *amplify, double h,
-                                 double square, double rate, bool *out, struct cs_error *error);
 
 /* The limit of one motion replaces a larger one, and is searched only if the motion grows at
  * the limit there is. A motion that pushes itself away is physically unstable: it limits no
@@ -279,6 +264,25 @@ static enum cs_status consider(struct cs_theory *theory, const struct cs_mode *m
     if (found.dt < limit->dt)
         *limit = found;
     return CS_OK;
+}
+
+/* The bound view.delta is half of the largest damping rate, hence 2 delta. The undamped limit
+ * is taken too, because damping lengthens the limit of some methods and modes need not have all
+ * of it. */
+enum cs_status cs_theory_gershgorin(struct cs_theory *theory, const double *x, double *dt,
+                                    struct cs_error *error) {
+    const struct cs_stiffest_modes *modes = &theory->modes;
+    const struct cs_eval at = {.t = modes->t, .x = x, .v = modes->zeros, .parts = CS_PART_ALL};
+    struct cs_theory_limit limit = {.dt = *dt};
+    double omega, delta;
+    cs_spectral_bounds_rate(modes->system, &at, false, modes->dx, &omega, &delta);
+    struct cs_mode mode = {.omega_squared = omega * omega};
+    if (consider(theory, &mode, &limit, error))
+        return error->status;
+    mode.damping_rate = 2 * delta;
+    if (!consider(theory, &mode, &limit, error))
+        *dt = limit.dt;
+    return error->status;
 }
 
 /* Turns the search direction to the outward normal of the stable set at the limit.

@@ -58,6 +58,7 @@ struct cs_amplification {
     const struct cs_integrator *integrator; /* borrowed */
     const void *options;                    /* filled; borrowed; its dt is not used */
     double growth; /* 1/s, of a motion that still counts as stable; 0: none */
+    double *pot;   /* where the nominal s of measurements are subtracted, or NULL */
 };
 
 /* Measures the spectral radius of A for a step of h s, square in 1/s2, rate in 1/s: the largest
