@@ -3,7 +3,6 @@
 
 #include "draw/colour_bar.h"
 #include "draw/matrix.h"
-#include "draw/view.h"
 
 enum { MOST_POINTS = 200 }; // particles whose view is tested
 
@@ -240,6 +239,39 @@ static uint32_t most_behind(const struct cs_system *system,
     return most;
 }
 
+/* Extends a box by a shape with a core: the core's half sizes along its axes, and the radius.
+ */
+static void grow_by(double low[3], double high[3], const struct cs_posed_collider *obstacle) {
+    for (int i = 0; i < 3; i++) {
+        double reach = obstacle->radius;
+        for (int k = 0; k < 3; k++)
+            reach += fabs(obstacle->axes[k][i]) * obstacle->half_sizes[k];
+        low[i] = fmin(low[i], obstacle->centre[i] - reach);
+        high[i] = fmax(high[i], obstacle->centre[i] + reach);
+    }
+}
+
+static void grow_by_mesh(double low[3], double high[3],
+                         const struct cs_posed_collider *obstacle) {
+    const uint32_t n = obstacle->collider->mesh.geometry->n;
+    for (uint32_t i = 0; i < n; i++) {
+        double own[3], place[3];
+        cs_collider_mesh_vertex(obstacle, i, own);
+        cs_collider_to_world(obstacle, own, place);
+        cs_box_grow(low, high, place);
+    }
+}
+
+void cs_box_grow_by_collider(double low[3], double high[3],
+                             const struct cs_posed_collider *collider) {
+    if (!collider->collider->visible || cs_shape_is_endless(collider->shape))
+        return;
+    if (collider->shape->bounds == CS_BOUNDS_MESH)
+        grow_by_mesh(low, high, collider);
+    else
+        grow_by(low, high, collider);
+}
+
 /* Extends a box by where paths take visible colliders and the bodies that they hold. Returns
  * the collider + 1 that goes farthest; 0: none moves. */
 static uint32_t grow_by_moves(const struct cs_system *system,
@@ -254,7 +286,7 @@ static uint32_t grow_by_moves(const struct cs_system *system,
         while (step(scene, k, colliders[k].centre, &walk)) {
             for (int i = 0; i < 3; i++)
                 moved.centre[i] = colliders[k].centre[i] + walk.shift[i];
-            cs_scene_extent_grow(&moved, low, high);
+            cs_box_grow_by_collider(low, high, &moved);
             if (colliders[k].collider->visible && cs_length(walk.shift) > most) {
                 most = cs_length(walk.shift);
                 farthest = k + 1;

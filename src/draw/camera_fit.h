@@ -12,6 +12,8 @@
 
 #include "model/contact/posed_collider.h"
 
+#include <math.h>
+
 enum { CS_CAMERA_FIT_CORNERS = 8 };
 
 /* View direction and field of view, prepared; zeroed: not begun. */
@@ -48,6 +50,18 @@ void cs_camera_fit_rows(const struct cs_camera_fit *fit, const struct cs_camera 
 enum { CS_CAMERA_FIT_STEPS = 8, CS_CAMERA_FIT_EXTREMES = 4 * (CS_CAMERA_FIT_STEPS + 1) + 2 };
 void cs_camera_fit_extremes(const struct cs_camera_fit *fit, size_t n, const double *x,
                             double *out);
+
+/* Extends the box from low to high by a point. */
+static inline void cs_box_grow(double low[3], double high[3], const double place[3]) {
+    for (int i = 0; i < 3; i++) {
+        low[i] = fmin(low[i], place[i]);
+        high[i] = fmax(high[i], place[i]);
+    }
+}
+
+/* Extends the box from low to high by a collider, if it is visible and no plane. */
+void cs_box_grow_by_collider(double low[3], double high[3],
+                             const struct cs_posed_collider *collider);
 
 /* The fit of CS_FRAME_START. Its corners are those of the box from low to high of all that
  * there is at the start, extended by visible colliders at each point of their paths. Where that

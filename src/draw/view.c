@@ -242,47 +242,6 @@ void cs_light_frusta_fit(const struct cs_bounding_sphere *solid, struct cs_view_
             cs_light_frustum_fit(solid, view->block.lights + k);
 }
 
-/* Extends a box by a point. */
-static void grow(double low[3], double high[3], const double place[3]) {
-    for (int i = 0; i < 3; i++) {
-        low[i] = fmin(low[i], place[i]);
-        high[i] = fmax(high[i], place[i]);
-    }
-}
-
-/* Extends a box by a shape with a core: the core's half sizes along its axes, and the radius.
- */
-static void grow_by(double low[3], double high[3], const struct cs_posed_collider *obstacle) {
-    for (int i = 0; i < 3; i++) {
-        double reach = obstacle->radius;
-        for (int k = 0; k < 3; k++)
-            reach += fabs(obstacle->axes[k][i]) * obstacle->half_sizes[k];
-        low[i] = fmin(low[i], obstacle->centre[i] - reach);
-        high[i] = fmax(high[i], obstacle->centre[i] + reach);
-    }
-}
-
-static void grow_by_mesh(double low[3], double high[3],
-                         const struct cs_posed_collider *obstacle) {
-    const uint32_t n = obstacle->collider->mesh.geometry->n;
-    for (uint32_t i = 0; i < n; i++) {
-        double own[3], place[3];
-        cs_collider_mesh_vertex(obstacle, i, own);
-        cs_collider_to_world(obstacle, own, place);
-        grow(low, high, place);
-    }
-}
-
-void cs_scene_extent_grow(const struct cs_posed_collider *collider, double low[3],
-                          double high[3]) {
-    if (!collider->collider->visible || cs_shape_is_endless(collider->shape))
-        return;
-    if (collider->shape->bounds == CS_BOUNDS_MESH)
-        grow_by_mesh(low, high, collider);
-    else
-        grow_by(low, high, collider);
-}
-
 struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, const double *x,
                                                 const struct cs_posed_collider *obstacles) {
     const struct cs_scene *scene = system->scene;
@@ -292,11 +251,11 @@ struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, 
     memcpy(high, low, sizeof high);
     for (uint32_t i = 0; i < system->view.n; i++) {
         cs_mesh_position(system->view.n, x, i, place);
-        grow(low, high, place);
+        cs_box_grow(low, high, place);
     }
     /* planes are left out: they have no end */
     for (uint32_t i = 0; i < scene->colliders.n; i++)
-        cs_scene_extent_grow(obstacles + i, low, high);
+        cs_box_grow_by_collider(low, high, obstacles + i);
     for (int i = 0; i < 3; i++)
         ball.centre[i] = (low[i] + high[i]) / 2;
     memcpy(ball.low, low, sizeof low);

@@ -97,10 +97,6 @@ void cs_light_frusta_fit(const struct cs_bounding_sphere *solid, struct cs_view_
 struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, const double *x,
                                                 const struct cs_posed_collider *colliders);
 
-/* Extends the box from low to high by a collider, if it is visible and no plane. */
-void cs_scene_extent_grow(const struct cs_posed_collider *collider, double low[3],
-                          double high[3]);
-
 /* Distance in m from the centre of a scene at which haze hides the ground. */
 static inline double cs_view_haze(const struct cs_bounding_sphere *extent) {
     return 12 * extent->radius;
