@@ -62,7 +62,9 @@ LONG = {
     "compare": "s.json -t 100 -i rk4:dt=1e-6 --runs 1 -q -y -o long",
     "sweep": "s.json -i rk4:dt=1e-6 -n 6000 -s bodies[0].springs.stretch=50,60 -q -y -o long",
     "stability": "s.json -i rk4 --columns 9 --rows 9 -t 50 -q -y -o long",
-    "advise": "s.json -t 500 -q",
+    "advise": "s.json -t 500 --error 1e-9 -q -o long",
+    "bisect": "s.json -n 9000000 -b threads=1 -q",
+    "golden": "--folder g --add s.json -n 9000000 -i rk4 -q",
 }
 SIGNALS = [signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGXCPU, signal.SIGUSR1]
 ENDS = [signal.SIGKILL, *SIGNALS]

@@ -197,8 +197,8 @@ def main():
                 absorbed, wrong = try_points(fault, line + alone, name, kind, chosen, calls[kind], whole, files)
                 n += 1
                 failed += bool(wrong)
-                print(f"{'not ok' if wrong else 'ok'} {n} - {name}, {kind}: {len(chosen)} points, "
-                      f"{absorbed} ended as ever, {len(wrong)} wrong", flush=True)
+                print(f"{'not ok' if wrong else 'ok'} {n} - {name}, {kind}: {len(chosen)} points of "
+                      f"{calls[kind]} calls, {absorbed} ended as ever, {len(wrong)} wrong", flush=True)
                 for text in wrong[:20]:
                     print(f"#   {text}")
     print(f"1..{n}")

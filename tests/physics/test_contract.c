@@ -154,6 +154,17 @@ TEST(jvp_is_the_derivative) {
     }
 }
 
+/* The blow-up check adds energies up: only gravity's may be below 0. */
+static bool keeps_sign(const struct cs_term *term, double energy) {
+    return energy >= 0 || term->energy_kind == CS_ENERGY_GRAVITY;
+}
+
+TEST(an_energy_below_zero_is_found) {
+    const struct cs_term potential = {.energy_kind = CS_ENERGY_OTHER};
+    ck_assert(keeps_sign(&potential, 0) && !keeps_sign(&potential, -1e-9) &&
+              !keeps_sign(&potential, (double)NAN) && keeps_sign(&cs_term_gravity, -1));
+}
+
 /* without the force that an energy has, the energy is level: f = -dE/dx of those bits */
 TEST(force_is_the_slope_of_its_energy) {
     for (uint32_t k = 0; k < cs_n_terms; k++) {
@@ -172,6 +183,9 @@ TEST(force_is_the_slope_of_its_energy) {
             cloth.x[i] = place - STEP;
             const double below = cs_terms[k]->energy(cloth.system, &at);
             cloth.x[i] = place;
+            ck_assert_msg(keeps_sign(cs_terms[k], above) && keeps_sign(cs_terms[k], below),
+                          "%s: its energy is %g J and %g J, expected 0 or more",
+                          cs_terms[k]->name, above, below);
             ck_assert_msg(fabs(f[i] - (below - above) / (2 * STEP)) < 1e-7, "%s",
                           cs_terms[k]->name);
         }

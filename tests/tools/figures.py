@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """figures.py ROOT - the figures of docs/reliability.md that the tree itself can count are right:
 fuzz targets and their executions, scenes that go on, command lines that faults are planted in,
-cells of other machines, and the floor of coverage."""
+rows and cells of other machines, hostile deeds, and the floor of coverage."""
 import re
 import sys
 from pathlib import Path
@@ -41,7 +41,10 @@ FIGURES = [
     (r"executions.tsv` counts ([\d.]+) 10\^7", executions),
     (r"test_resume.c` \((\d+) pairs", resumed),
     (r"two allocations of each of (\w+) command lines", fault_lines),
+    (r"(\d+) golden rows in", lambda: text_of("tests/cross/rows.tsv").count("\t") // 2),
     (r"golden rows in (\d+) cells", cells_elsewhere),
+    # the first of them does nothing
+    (r"of (\d+) hostile deeds", lambda: len(re.findall(r'^ +X\("', text_of("tests/abi/deeds.h"), re.M)) - 1),
     (r"at least ([\d.]+) % of the branches",
      lambda: text_of("tests/tools/coverage_floor.txt").strip()),
 ]
