@@ -261,7 +261,7 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
     return CS_STEP_OK;
 }
 
-/* What both methods start from, in *out. */
+/* The part of create that both methods share, in *out. */
 static enum cs_step create_passes(const struct cs_host *host, double dt, int64_t iterations,
                                   struct vbd **out) {
     const size_t bytes = 3 * sizeof(double) * (size_t)host->view->n;
@@ -333,7 +333,7 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
     return fixed_step_archive(object, archive);
 }
 
-/* What both methods have in common. */
+/* The part of the descriptor that both methods share. */
 #define VERTEX_BLOCK_DESCENT(options_, rows_, create_)                                         \
     .size = sizeof(struct cs_integrator), .order = 1, .order_damped = 1,                       \
     .needs = CS_NEED_SPRINGS | CS_NEED_COLOURS, .traits = CS_IMPLICIT,                         \
