@@ -27,7 +27,7 @@ bool cs_follow_next(struct cs_follow *follow, struct cs_error *error);
 struct cs_run_result {
     enum cs_outcome
         outcome;        /* CS_RUNNING: at its last frame; CS_FAILED: an error of the method */
-    double reached;     /* s, of the last frame */
+    double reached;     /* s, of the last frame; of the last step where the budget ended it */
     double time;        /* s, of the blow-up if there was one, else as reached */
     char message[1024]; /* why the method gave up, else the outcome as text */
 };

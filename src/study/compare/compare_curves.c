@@ -224,7 +224,6 @@ static void add_band(struct filling *at, const struct cs_curve *curve) {
 static bool make_point(const struct filling *at, uint32_t k, struct cs_point *point) {
     const struct cs_cell *cell = at->settings.cells + k;
     const struct cs_plot_axis *x = &at->panel->x, *y = &at->panel->y;
-    const bool is_time = strstr("cpu wall", at->settings.x->name);
     const bool timed = !strcmp(at->settings.x->name, "cpu") && cell->runs > 1;
     *point = (struct cs_point){.mark = is_probe(cell) ? CS_MARK_HOLLOW : CS_MARK_FULL,
                                .joined = !is_probe(cell),
@@ -232,7 +231,7 @@ static bool make_point(const struct filling *at, uint32_t k, struct cs_point *po
                                .front = at->spread[k].front,
                                .note = cell->options};
     /* a probe that was timed once stands where the load of that moment put it */
-    if (is_time && is_probe(cell) && cell->runs < 2)
+    if (is_probe(cell) && cell->runs < 2 && strstr("cpu wall", at->settings.x->name))
         return false;
     if (cs_curves_point(&at->settings, cell, &point->x, &point->y)) {
         point->low = timed ? cell->cpu_low : (double)NAN;
@@ -310,32 +309,16 @@ static void fill_panel(struct filling *at, const struct cs_column *x,
 static void add_keys(struct cs_diagram *diagram, const struct cs_curves *curves) {
     enum { FRONT, BAND, PROBE, FAILED, RING, BAR, KEYS };
     static const struct cs_key keys[KEYS] = {
-        {CS_KEY_LINE,
-         0,
-         {CS_FRONT_COLOUR, 0, 0, 3.5},
-         'A',
-         "front: nothing is both cheaper and more accurate",
-         NULL},
-        {CS_KEY_PATCH,
-         0,
-         {.colour = 0xc8d8e4},
-         0,
-         "scatter under error control; its line is the median",
-         NULL},
-        {CS_KEY_MARK,
-         CS_MARK_HOLLOW,
-         {.colour = 0x404040},
-         0,
-         "run in search of equal errors",
-         NULL},
+        {CS_KEY_LINE, .style = {CS_FRONT_COLOUR, .width = 3.5}, .letter = 'A',
+         .text = "front: nothing is both cheaper and more accurate"},
+        {CS_KEY_PATCH, .style.colour = 0xc8d8e4,
+         .text = "scatter under error control; its line is the median"},
+        {CS_KEY_MARK, CS_MARK_HOLLOW, .style.colour = 0x404040,
+         .text = "run in search of equal errors"},
         {CS_KEY_MARK, CS_MARK_CROSS, {.colour = 0x404040}, 'x', "did not finish", NULL},
         {CS_KEY_RING, 0, {.colour = CS_RING_COLOUR}, 'o', "edges through triangles", NULL},
-        {CS_KEY_PATCH,
-         0,
-         {.colour = CS_BAR_COLOUR},
-         0,
-         "below the reference's own error",
-         NULL},
+        {CS_KEY_PATCH, .style.colour = CS_BAR_COLOUR,
+         .text = "below the reference's own error"},
     };
     const struct cs_panel *panel = diagram->panels;
     bool there[KEYS] = {[BAR] = panel->n_boxes};

@@ -17,15 +17,11 @@ enum { STOPS = 6, TILE_BYTES_MAX = 1 << 22 };
 
 /* The cells of one sheet, one per series at most. */
 struct sheet {
-    const char *kind;
+    const char *kind, *title;
     const struct cs_cell *cells[TILES_MAX];
     uint32_t n;
     double range[2]; /* log10 m */
 };
-
-static const char *title_of(const struct sheet *sheet) {
-    return !strcmp(sheet->kind, "equal_step") ? "Equal step" : "Equal cost";
-}
 
 /* FOLDER/pictures/KIND_SERIES.png */
 static void tile_path(const struct sheet *sheet, const struct cs_cell *cell,
@@ -99,7 +95,6 @@ static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
 
 /* Renders one tile with a scalar per particle. */
 static enum cs_status paint(struct cs_recorded_run *recording, const struct cs_frame *frame,
-                            const struct cs_posed_collider *obstacles,
                             enum cs_renderer_kind kind, const char *path,
                             struct cs_error *error) {
     struct cs_scene *scene = &recording->session.scene;
@@ -111,11 +106,11 @@ static enum cs_status paint(struct cs_recorded_run *recording, const struct cs_f
     const struct cs_canvas_settings settings = {.scene = scene,
                                                 .system = &recording->session.system,
                                                 .textures = textures,
-                                                .colliders = obstacles};
+                                                .colliders = frame->colliders};
     scene->render.size[0] = TILE_WIDTH;
     scene->render.size[1] = TILE_HEIGHT;
     scene->render.look = CS_LOOK_FORCE; // colours of what has no sign
-    if (!image.rgb || !textures || !obstacles)
+    if (!image.rgb || !textures || !frame->colliders)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
     else if (!cs_renderer_open(cs_renderer_folder(), kind, &renderer, error) &&
              !renderer->create(&settings, &canvas, error) &&
@@ -139,7 +134,7 @@ static enum cs_status draw_reference(const struct sheet *sheet,
     snprintf(path, sizeof path, "%s/pictures/%s_reference.png", compare->settings->folder,
              sheet->kind);
     frame.x = cs_trajectory_state(track, track->frames);
-    return paint(recording, &frame, frame.colliders, kind, path, error);
+    return paint(recording, &frame, kind, path, error);
 }
 
 /* Runs a cell again and draws its last frame: a comparison stores no states of its cells. The
@@ -177,7 +172,7 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
                                            .range = {sheet->range[0], sheet->range[1]},
                                            .inv_mass = system->inv_mass,
                                            .colliders = obstacles};
-            paint(&recording, &frame, obstacles, kind, path, error);
+            paint(&recording, &frame, kind, path, error);
             for (uint32_t i = 0; i < compare->particles; i++)
                 distance[i] = sheet->range[0];
             if (!error->status && cell == sheet->cells[0])
@@ -208,8 +203,8 @@ static void set_range(struct sheet sheets[SHEETS], const struct cs_compare *comp
 
 /* Chooses the cells of both sheets and their range; none without errors of position. */
 static void choose_sheets(struct sheet sheets[SHEETS], const struct cs_compare *compare) {
-    sheets[0] = (struct sheet){.kind = "equal_step"};
-    sheets[1] = (struct sheet){.kind = "equal_cost"};
+    sheets[0] = (struct sheet){.kind = "equal_step", .title = "Equal step"};
+    sheets[1] = (struct sheet){.kind = "equal_cost", .title = "Equal cost"};
     if (!compare->reference.pointwise)
         return;
     choose_step(sheets + 0, compare);
@@ -260,7 +255,7 @@ static bool begin_figure(const char *path, struct cs_text *out) {
 static void add_strip(const struct sheet *sheet, const struct cs_compare *compare,
                       struct cs_text *out) {
     char path[4400];
-    cs_text_add(out, "<h3>%s</h3>\n<div class=\"strip\">\n", title_of(sheet));
+    cs_text_add(out, "<h3>%s</h3>\n<div class=\"strip\">\n", sheet->title);
     snprintf(path, sizeof path, "%s/pictures/%s_reference.png", compare->settings->folder,
              sheet->kind);
     if (begin_figure(path, out))
@@ -310,7 +305,7 @@ void cs_compare_contact_sheet_add_markdown(const struct cs_compare *compare,
             "## %s\n\nColours: distance to the reference after %.4g s, from 1e%.0f m to "
             "1e%.0f m.\n\n| | |\n|---|---|\n| ![](pictures/%s_reference.png) | "
             "reference, known to %.1e m |\n",
-            title_of(sheets + s), compare->time, sheets[s].range[0], sheets[s].range[1],
+            sheets[s].title, compare->time, sheets[s].range[0], sheets[s].range[1],
             sheets[s].kind, compare->reference.error_bar);
         for (uint32_t k = 0; k < sheets[s].n; k++) {
             const struct cs_cell *cell = sheets[s].cells[k];

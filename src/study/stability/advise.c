@@ -17,12 +17,6 @@ enum { SAMPLES = 32, HALVINGS = 6 };
 #define MOST_BUDGET     60   /* of many, so that a call ends within two minutes */
 #define REFERENCE_SHARE 0.5  /* of the work for a method, that its reference may take */
 
-/* Context of the worker tasks. */
-struct work {
-    struct cs_advise *advise;
-    struct cs_process_pool workers;
-};
-
 /* Probe runs with the advised step, from the perturbed start and, if that is stable, from the
  * scene's own, as `run` takes it: a flag that hangs straight buckles in one of them only. Sets
  * the verdict, and steps and cost per frame. */
@@ -31,20 +25,19 @@ static enum cs_status try_safe(struct cs_advice *row,
                                const struct cs_reference *reference, double frame,
                                struct cs_error *error) {
     struct cs_sampled_run_settings asked = *settings;
-    struct cs_sampled_run trial, own;
+    struct cs_sampled_run trial, run;
     asked.session.dt = row->safe;
     asked.seconds = reference->seconds;
-    if (cs_sampled_run_execute(&trial, &asked, error))
-        return error->status;
-    row->verdict = cs_stability_judge(&trial, &reference->run, true);
-    if (cs_stability_is_stable(row->verdict)) {
-        asked.session.perturbation = 0;
-        if (cs_sampled_run_execute(&own, &asked, error))
+    for (int own = 0; own < 2 && (!own || cs_stability_is_stable(row->verdict)); own++) {
+        if (cs_sampled_run_execute(&run, &asked, error))
             return error->status;
-        if (!cs_stability_is_stable(cs_stability_judge(&own, NULL, true))) {
-            trial = own;
-            row->verdict = cs_stability_judge(&own, NULL, true);
-        }
+        const enum cs_stability_verdict verdict =
+            cs_stability_judge(&run, own ? NULL : &reference->run, true);
+        asked.session.perturbation = 0;
+        if (own && cs_stability_is_stable(verdict))
+            break;
+        trial = run;
+        row->verdict = verdict;
     }
     row->checked_seconds = trial.result.reached;
     row->speed = fmax(row->speed, trial.speed_max);
@@ -81,6 +74,14 @@ static enum cs_status try_shorter(struct cs_advice *row,
     return CS_OK;
 }
 
+static enum cs_status end_search(struct cs_advice *row) {
+    row->kind = CS_ADVICE_REFUSED;
+    snprintf(row->message, sizeof row->message,
+             "a step of %.3g s is unstable, and the budget ended the search for a smaller one",
+             row->safe);
+    return CS_OK;
+}
+
 /* Theory has no limit: probes one step per frame. If it is unstable, large motions limit the
  * step, and the border is bisected. */
 static enum cs_status try_frame(struct cs_advice *row,
@@ -95,13 +96,8 @@ static enum cs_status try_frame(struct cs_advice *row,
     row->kind = CS_ADVICE_MEASURED;
     if (cs_stability_boundary(settings, reference, 0, row->safe, &row->limit, error))
         return error->status;
-    if (isnan(row->limit)) {
-        row->kind = CS_ADVICE_REFUSED;
-        snprintf(row->message, sizeof row->message,
-                 "one step per frame is unstable, and the budget ended the search for a "
-                 "smaller one");
-        return CS_OK;
-    }
+    if (isnan(row->limit))
+        return end_search(row);
     if (!(row->limit > 0)) {
         row->kind = CS_ADVICE_NONE;
         return CS_OK;
@@ -121,6 +117,8 @@ static enum cs_status try_lower(struct cs_advice *row,
     double border;
     if (cs_stability_boundary(settings, reference, 0, row->safe, &border, error))
         return error->status;
+    if (isnan(border))
+        return end_search(row);
     if (!(border > 0 && border < HUGE_VAL)) {
         row->safe /= 2;
         return try_shorter(row, settings, reference, frame, error);
@@ -241,8 +239,7 @@ static enum cs_status refuse(struct cs_advice *row, struct cs_error *error) {
 
 /* Runs in a worker process: advice for one method. */
 static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *error) {
-    struct work *work = ctx;
-    struct cs_advise *advise = work->advise;
+    struct cs_advise *advise = ctx;
     struct cs_advice *row = advise->rows + task;
     struct cs_session session;
     struct cs_sampled_run_settings trial = {
@@ -289,24 +286,23 @@ static enum cs_status list_methods(struct cs_advise *advise, struct cs_error *er
 }
 
 enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error) {
-    struct work work = {advise,
-                        {.n_workers = advise->workers,
-                         .task = advise_task,
-                         .progress = report,
-                         .progress_ctx = advise,
-                         .stop = advise->stop}};
+    struct cs_process_pool workers = {.n_workers = advise->workers,
+                                      .task = advise_task,
+                                      .ctx = advise,
+                                      .progress = report,
+                                      .progress_ctx = advise,
+                                      .stop = advise->stop};
     if (cs_session_open_system(&advise->was_opened, &advise->session, error) ||
         list_methods(advise, error))
         return error->status;
-    work.workers.ctx = &work;
-    work.workers.n_tasks = advise->n;
+    workers.n_tasks = advise->n;
     advise->rows = cs_process_pool_shared_alloc(advise->n * sizeof *advise->rows, error);
     if (!(advise->budget > 0))
         advise->budget = fmin(fmax(CALL_BUDGET, METHOD_BUDGET * advise->n), MOST_BUDGET);
-    work.workers.silence_max = cs_hang_seconds(advise->budget / advise->n);
+    workers.silence_max = cs_hang_seconds(advise->budget / advise->n);
     for (uint32_t k = 0; advise->rows && k < advise->n; k++)
         advise->rows[k].pot = advise->budget / advise->n;
-    return advise->rows ? cs_process_pool_run(&work.workers, error) : error->status;
+    return advise->rows ? cs_process_pool_run(&workers, error) : error->status;
 }
 
 enum cs_status cs_advise_check(const struct cs_advise *advise, struct cs_error *error) {
