@@ -5,36 +5,34 @@
  * of one level, and go level by level (level scheduling, Anderson and Saad 1989). Each particle
  * is then corrected in the order of its springs: the bits are those of a loop over springs,
  * while a group is a loop over vectors. On a grid, whose springs stand row by row, a level is a
- * front through several rows.
- *
- * Sweeps work on particles of their own, four numbers each, so that a particle is one load and
- * one store. */
+ * front through several rows. */
 #ifndef SPRING_GROUPS_H
 #define SPRING_GROUPS_H
 
 #include <clothsim/integrator.h>
 
-enum { LANES = 4 };
-
-/* One number of each spring of a group. */
-typedef double spring_lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
+/* Springs of a group at once; a vector has all, four or two of them (places.h). */
+enum { LANES = 8 };
 
 /* Springs of a group, for a step of h. Places left over join the particle n to itself. */
 struct spring_group {
-    spring_lanes length, compliance; /* L in m, 1/(k h h) in 1/kg */
-    spring_lanes multiplier;         /* l in kg m */
-    uint32_t a[LANES], b[LANES];     /* of the particles, positions in places */
+    _Alignas(64) double length[LANES]; /* L in m */
+    double compliance[LANES];          /* 1/(k h h) in 1/kg */
+    double multiplier[LANES];          /* l in kg m */
+    uint32_t a[LANES], b[LANES];       /* where the particles begin in `places` */
 };
 
 /* Dampers along the springs of a group: g = c/(k h), and d at the begin of the step in m. */
 struct axial_group {
-    spring_lanes gamma, old[3];
+    _Alignas(64) double gamma[LANES];
+    double old[3][LANES];
 };
 
 /* Dampers of a group against every relative velocity. */
 struct relative_group {
-    spring_lanes compliance, old[3]; /* 1/(c h) in 1/kg, 0: none; d as above */
-    spring_lanes multiplier[3];      /* kg m */
+    _Alignas(64) double compliance[LANES]; /* 1/(c h) in 1/kg, 0: none */
+    double old[3][LANES];                  /* d as above */
+    double multiplier[3][LANES];           /* kg m */
 };
 
 struct spring_groups {
@@ -58,12 +56,18 @@ void spring_groups_read_constants(struct spring_groups *self, const struct cs_vi
 void spring_groups_take(struct spring_groups *self, const struct cs_view *view,
                         const double *x);
 
-/* Notes the places taken last as those at the begin of a step, for dampers. */
-void spring_groups_note_old(struct spring_groups *self);
+/* The loops over groups, with vectors of one width. */
+struct spring_sweeps {
+    /* Notes the places taken last as those at the begin of a step, for dampers. */
+    void (*note_old)(struct spring_groups *self);
+    /* One pass over all springs, which corrects the particles; is_first: with multipliers 0
+     * before it. */
+    void (*sweep)(struct spring_groups *self, bool is_first);
+};
+extern const struct spring_sweeps spring_sweeps_2, spring_sweeps_4, spring_sweeps_8;
 
-/* One pass over all springs, which corrects the particles; is_first: with multipliers 0 before
- * it. */
-void spring_groups_sweep(struct spring_groups *self, bool is_first);
+/* Those that are quickest on this processor; they all have the same bits. */
+const struct spring_sweeps *spring_sweeps(void);
 
 /* Gives the particles back to x (3,n). */
 void spring_groups_give(const struct spring_groups *self, const struct cs_view *view,

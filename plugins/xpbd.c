@@ -73,6 +73,7 @@ struct xpbd {
     double *f;    /* (3,n) in N: outer forces */
     double *old;  /* (3,n) in m: where the step began */
     struct spring_groups springs;
+    const struct spring_sweeps *sweeps;
     double springs_h; /* s: the step that their constants were read for; 0: they are stale */
     uint64_t passes;  /* over the springs */
 
@@ -120,7 +121,7 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
         spring_groups_read_constants(&self->springs, host->view, h);
     self->springs_h = h;
     spring_groups_take(&self->springs, host->view, x);
-    spring_groups_note_old(&self->springs);
+    self->sweeps->note_old(&self->springs);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0, k = c * n; i < n; i++, k++) {
             v[k] += h * self->f[k] * host->view->inv_mass[i];
@@ -131,7 +132,7 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
         memset(self->impulse, 0, 3 * n * sizeof *x);
     spring_groups_take(&self->springs, host->view, x);
     for (int64_t i = 0; i < self->iterations; i++) {
-        spring_groups_sweep(&self->springs, i == 0 || self->forgets);
+        self->sweeps->sweep(&self->springs, i == 0 || self->forgets);
         self->passes++;
         if (!self->impulse)
             continue;
@@ -194,6 +195,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     self->loop = fixed_step_of(host, asked->dt, step);
     self->iterations = asked->iterations;
     self->substeps = asked->substeps;
+    self->sweeps = spring_sweeps();
     self->forgets = asked->mode == PBD;
     if (!(self->f = host->alloc(host->ctx, vectors)) ||
         !(self->old = host->alloc(host->ctx, vectors)) ||
