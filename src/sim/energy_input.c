@@ -91,11 +91,11 @@ static void book_powers(struct cs_run_host *host, double t, double dt, const dou
             cs_normals_update(host->run->system, x);
         cs_terms_force(system, &at, host->power + n);
     }
+    const struct cs_rebound *impacts = host->has_impact ? system->rebounds->list : NULL;
     double power = 0;
     for (size_t i = 0; i < n; i++)
-        if (!host->has_impact || !system->rebounds->list[i].collider)
-            power += host->power[i];
-    input->given[CS_SOURCE_FORCES] += dt * power + (host->has_impact ? host->impact_work : 0);
+        power += impacts && impacts[i].collider ? 0 : host->power[i];
+    input->given[CS_SOURCE_FORCES] += (impacts ? host->impact_work : 0) + dt * power;
     host->has_impact = false;
     input->powers_work = work;
     host->power_is_set = false;

@@ -31,7 +31,8 @@
  * c) = b - A c. Otherwise c would be most of b, and what a relative residual allows would be
  * large against friction and neighbours.
  *
- * After the step a particle in impact must end near d1 (step_check.h). Meshes meet particles in pairs, which are not stepped alone.
+ * After the step a particle in impact must end near d1 (step_check.h). Meshes meet particles in
+ * pairs, which are not stepped alone.
  */
 #ifndef CS_CONTACT_REBOUND_H
 #define CS_CONTACT_REBOUND_H

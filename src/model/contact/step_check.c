@@ -26,8 +26,8 @@ static double distance_at(const struct cs_collider_step *passing, const double f
 /* J: `missed` beyond the fraction that a point of this energy may miss. */
 static double excess(const struct cs_collider_step *passing, double missed, double fraction,
                      double energy) {
-    const double most = fraction * (energy + passing->spare_energy);
-    return missed > passing->alone * most ? HUGE_VAL : missed - most;
+    const double whole = energy + passing->spare_energy;
+    return missed > passing->alone * whole ? HUGE_VAL : missed - fraction * whole;
 }
 
 /* Samples the straight way of a point relative to the collider, at most half a range apart. */
@@ -129,7 +129,8 @@ static const struct cs_rebound *impacts_of(const struct cs_collider_step *passin
 static bool row_is_resolved(const struct cs_collider_step *passing, size_t begin,
                             size_t count) {
     const enum cs_shape_bounds bounds = passing->at_t1.shape->bounds;
-    return !passing->impacts && !impacts_of(passing) && (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE)
+    return !passing->impacts && !impacts_of(passing) &&
+                   (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE)
                ? count_suspect(passing, begin, count) == 0
                : cs_collider_step_is_far(passing, begin, count);
 }
@@ -170,7 +171,8 @@ void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_syst
     passing->impacts = cs_impacts_are_resolved(system);
     passing->unresolved_max =
         passing->impacts ? CS_IMPACT_CHANGE_MAX : CS_UNRESOLVED_ENERGY_MAX;
-    passing->alone = system->rebounds && !passing->impacts ? CS_UNRESOLVED_ALONE : 1;
+    passing->alone =
+        system->rebounds && !passing->impacts ? CS_UNRESOLVED_ALONE : passing->unresolved_max;
     passing->spare_energy = 0;
     passing->h = t1 - t0;
     passing->params = system->collider_params[collider];
