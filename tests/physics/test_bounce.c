@@ -2,12 +2,17 @@
  * left after the bounce; and the rest that contact by force comes to. */
 #include "fixture.h"
 
+#include "model/contact/barrier_law.h"
+#include "model/contact/step_check.h"
+
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #define E       0.6
 #define DROP    0.8
 #define GRAVITY 9.81
+#define STEP    0.02
 
 /* on a floor at y = 0; a flat start is all particles at one height */
 #define SCENE                                                                                  \
@@ -149,4 +154,87 @@ TEST(damping_is_chosen_where_nobody_names_law_or_damping) {
         ck_assert_double_eq_tol(box.system->scene->contact.damping, rows[r].damping, 1e-15);
         fixture_close(&box);
     }
+}
+
+/* A sheet of 4 x 4 particles at the height 0.09 over a floor with a range of 0.1 m. */
+#define LOW                                                                                    \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [4, 4], \"start\": \"flat\", \"place\": "            \
+    "{\"translate\": [0, 0.09, 0]}}, \"mass\": {\"particle\": 0.1}}], \"colliders\": "         \
+    "[{\"floor\": {}, \"thickness\": 0.1}], \"contact\": {\"stiffness\": 100}}"
+
+/* m, height at which a particle that comes down to it in STEP misses `ratio` times its energy
+ * with the force and the stiffness of the begin, by halving */
+static double height_that_misses(const struct fixture *sheet, double ratio) {
+    const double range = 0.1, k = 100, d = sheet->x[sheet->n];
+    const struct cs_barrier law = cs_barrier_at(d, range, k);
+    const double held = cs_barrier_energy(d, range, k);
+    const double spare = CS_SPARE_BESIDE_REBOUNDS * cs_barrier_energy(0.5 * range, range, k);
+    double low = 1e-3, high = d;
+    for (int halving = 0; halving < 60; halving++) {
+        const double at = 0.5 * (low + high), s = d - at;
+        const double missed = cs_barrier_energy(at, range, k) - held - law.force * s -
+                              0.5 * law.stiffness * s * s;
+        const double energy = 0.5 * sheet->system->mass[0] * s * s / (STEP * STEP) + held;
+        *(missed > ratio * (energy + spare) ? &low : &high) = at;
+    }
+    return high;
+}
+
+/* Returns whether a step is resolved that takes the first `divers` particles down so far, and
+ * the others aside by as much. */
+static bool dive(const struct fixture *sheet, uint32_t divers, double ratio) {
+    const size_t n = sheet->n;
+    double x[48];
+    const double way = sheet->x[n] - height_that_misses(sheet, ratio);
+    memcpy(x, sheet->x, sizeof x);
+    for (size_t i = 0; i < n; i++)
+        x[i < divers ? n + i : i] += i < divers ? -way : way;
+    return cs_collider_contact_resolves_step(sheet->system, 0, sheet->x, STEP, x);
+}
+
+/* In a scene with impacts a tenth is allowed in the sum of all, and three times its energy to
+ * one; without impacts, a fiftieth to each. */
+TEST(few_particles_do_not_cut_the_step_of_all) {
+    static const char *const methods[] = {"implicit-linearised:dt=0.02", "rk4:dt=0.01"};
+    for (int m = 0; m < 2; m++) {
+        struct fixture sheet;
+        fixture_open(&sheet, methods[m], LOW);
+        fixture_start(&sheet); // sets the impacts up
+        ck_assert_int_eq(sheet.system->rebounds != NULL, m == 0);
+        ck_assert(dive(&sheet, 0, 0.5));
+        ck_assert_int_eq(dive(&sheet, 1, 0.9), m == 0);
+        ck_assert_int_eq(dive(&sheet, 16, 0.09), m == 0);
+        ck_assert(!dive(&sheet, 4, 0.9));
+        ck_assert(!dive(&sheet, 16, 0.11));
+        ck_assert(!dive(&sheet, 1, 3.3));
+        fixture_close(&sheet);
+    }
+}
+
+/* A ball pushes through a curtain: few of its contacts are impacts at a time. */
+#define CURTAIN                                                                                \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [28, 32], \"size\": [1, 1.2]}, \"mass\": "           \
+    "{\"areal_density\": 0.25}, \"springs\": {\"stretch\": 1000, \"shear\": 300, \"bend\": "   \
+    "5, \"damping\": 0.01}, \"pins\": [\"top\"]}], \"colliders\": [{\"sphere\": {\"centre\": " \
+    "[0, -0.15, -0.45], \"radius\": 0.2}, \"thickness\": 0.008}], \"events\": [{\"at\": 0.1, " \
+    "\"move\": {\"collider\": 0, \"path\": [{\"at\": 0.9, \"point\": [0, 0.05, 0.6]}]}}], "    \
+    "\"forces\": {\"drag\": 0.12}}"
+
+/* The account has the work of all contacts of a step with impacts: that of an independent
+ * method, which has none. */
+TEST(work_of_contacts_beside_impacts_counts) {
+    static const char *const methods[] = {"velocity-verlet",
+                                          "implicit-linearised:dt=0.0041667"};
+    double given[2];
+    for (int m = 0; m < 2; m++) {
+        struct fixture curtain;
+        fixture_open(&curtain, methods[m], CURTAIN);
+        fixture_start(&curtain);
+        fixture_frames(&curtain, 40);
+        given[m] = curtain.session.run.energy_input.given[CS_SOURCE_FORCES];
+        fixture_close(&curtain);
+    }
+    ck_assert_double_gt(given[0], 0.05);
+    ck_assert_msg(fabs(given[1] / given[0] - 1) < 0.15, "%g J, expected %g J", given[1],
+                  given[0]);
 }
