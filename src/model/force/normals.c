@@ -6,6 +6,7 @@
  *   dn = (I - n n^T) dN / |N|,   d(a x b) = da x b + a x db */
 #include "model/force/terms.h"
 
+#include "base/vec3.h"
 #include "base/vector.h"
 #include "mesh/trimesh.h"
 
@@ -35,12 +36,6 @@ static void difference(const double *p, uint32_t n, uint32_t from, uint32_t to, 
         out[c] = p[c * n + to] - p[c * n + from];
 }
 
-static void cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* N of particle i of a grid: (right - left) x (up - down). */
 static void grid_product(const struct cs_body_range *body, uint32_t i, size_t n,
                          const double *x, double product[3]) {
@@ -48,7 +43,7 @@ static void grid_product(const struct cs_body_range *body, uint32_t i, size_t n,
     double across[3], upwards[3];
     difference(x, (uint32_t)n, at.left, at.right, across);
     difference(x, (uint32_t)n, at.down, at.up, upwards);
-    cross(across, upwards, product);
+    cs_vec3_cross(across, upwards, product);
 }
 
 /* N of particle i of a mesh: the sum of the normals of its triangles. */
@@ -127,9 +122,9 @@ static struct change change_of(const struct cs_eval *at, uint32_t n, uint32_t fr
 /* sum += a x b, with the product rule for its change. */
 static void add_product(const struct change *a, const struct change *b, struct change *sum) {
     double whole[3], first[3], second[3];
-    cross(a->of, b->of, whole);
-    cross(a->by, b->of, first);
-    cross(a->of, b->by, second);
+    cs_vec3_cross(a->of, b->of, whole);
+    cs_vec3_cross(a->by, b->of, first);
+    cs_vec3_cross(a->of, b->by, second);
     for (int c = 0; c < 3; c++) {
         sum->of[c] += whole[c];
         sum->by[c] += first[c] + second[c];
