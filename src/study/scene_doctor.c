@@ -6,6 +6,7 @@
 #include "base/vec3.h"
 #include "model/contact/posed_collider.h"
 #include "model/force/diagnostics.h"
+#include "model/force/terms.h"
 #include "scene/body_pairs.h"
 #include "study/contact_capacity.h"
 #include "study/overlap_warning.h"
@@ -18,7 +19,7 @@
 /* Energy at the start over all that can come later, from which on it is reported: a factor of 3
  * in speed. */
 #define STORED_MAX 10.0
-/* Static strain of the springs at pins that is reported, and that the proposed stiffness has.
+/* Static strain of the springs at pins that is reported, and that the proposed cure has.
  */
 #define STRAIN_MAX    0.2
 #define STRAIN_WANTED 0.1
@@ -137,13 +138,9 @@ static void check_energy(const struct cs_system *system, struct cs_text *out) {
 
 /* --- springs at pins --- */
 
-/* The least strain of the springs between a body's pins and its free particles under the
- * weight of the latter: |sum of forces| <= strain * sum of k L. */
-static double pin_strain(const struct cs_system *system, uint32_t body) {
-    const struct cs_body_range *range = system->bodies + body;
-    double mass = 0, strength = 0;
-    for (size_t i = range->first; i < (size_t)range->first + range->count; i++)
-        mass += system->inv_mass[i] > 0 ? system->mass[i] : 0;
+/* N, sum of k L of the springs between a body's pins and its free particles. */
+static double pin_strength(const struct cs_system *system, const struct cs_body_range *range) {
+    double strength = 0;
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_run *s = system->springs.runs + r;
         for (uint32_t i = 0; i < s->count; i++) {
@@ -153,23 +150,50 @@ static double pin_strain(const struct cs_system *system, uint32_t body) {
                 strength += cs_spring_stiffness(s, i) * cs_spring_length(s, i);
         }
     }
-    return strength > 0 ? mass * gravity_of(system) / strength : 0;
+    return strength;
 }
 
-/* Where obstacles may carry a part of the weight nothing is said. */
+/* N, sum over a body's free particles of the forces of some parts at the start. */
+static double load_of(const struct cs_system *system, const struct cs_body_range *range,
+                      uint32_t parts) {
+    const size_t n = system->view.n, last = (size_t)range->first + range->count;
+    double *f = calloc(3 * n, sizeof *f), sum[3] = {0};
+    if (f && cs_terms_need_normals(system, parts))
+        cs_normals_update(system, system->state);
+    if (f)
+        cs_terms_force(
+            system,
+            &(struct cs_eval){.x = system->state, .v = system->state + 3 * n, .parts = parts},
+            f);
+    for (size_t i = range->first; f && i < last; i++)
+        for (size_t c = 0; c < 3; c++)
+            sum[c] += f[c * n + i];
+    free(f);
+    return length_of(sum);
+}
+
+/* The least strain of the springs at pins under a load F: |F| <= strain * sum of k L. Where
+ * obstacles may carry a part of it nothing is said. */
 static void check_load(const struct cs_system *system, struct cs_text *out) {
+    static const struct {
+        const char *what, *cure[2];
+        uint32_t parts;
+    } loads[] = {
+        {"its weight", {"springs ", "as stiff, or strain_limit 1.1, keep"}, CS_PART_GRAVITY},
+        {"the wind at the start", {"a wind ", "weaker keeps"}, CS_PART_WIND}};
     const struct cs_scene *scene = system->scene;
     if (scene->colliders.n || cs_scene_has_body_contact(scene))
         return;
-    for (uint32_t b = 0; b < scene->bodies.n; b++) {
-        const struct cs_body *body = cs_scene_bodies(scene) + b;
-        const double strain = pin_strain(system, b);
-        if (strain > STRAIN_MAX && isnan(body->strain_limit))
+    for (uint32_t k = 0; k < 2 * scene->bodies.n; k++) {
+        const struct cs_body_range *range = system->bodies + k / 2;
+        const double strength = pin_strength(system, range);
+        const double load = strength > 0 ? load_of(system, range, loads[k % 2].parts) : 0;
+        if (load > STRAIN_MAX * strength && isnan(cs_scene_bodies(scene)[k / 2].strain_limit))
             cs_text_add(out,
-                        "bodies[%u]: its weight stretches the springs at its pins by at least "
-                        "%.3g %%: springs %.2g times as stiff, or strain_limit %.2g, keep it "
-                        "below %.3g %%\n",
-                        b, 100 * strain, strain / STRAIN_WANTED, 1 + STRAIN_WANTED,
+                        "bodies[%u]: %s stretches the springs at its pins by at least %.3g %%: "
+                        "%s%.2g times %s it below %.3g %%\n",
+                        k / 2, loads[k % 2].what, 100 * load / strength, loads[k % 2].cure[0],
+                        load / strength / STRAIN_WANTED, loads[k % 2].cure[1],
                         100 * STRAIN_WANTED);
     }
 }

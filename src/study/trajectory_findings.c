@@ -20,6 +20,9 @@ enum { POSES = 256 };
 #define SWEPT 0.1
 /* Length of a stitch at the start over the size of its body that is reported. */
 #define GAP_MAX 1.0
+/* Distance of two held particles over that in the sheet at rest that is reported: that of
+ * "beyond cloth". */
+#define APART_MAX 1.5
 /* Length of a leg of positions over that of the same numbers as shifts that is reported, and
  * the part of a body's size that such a leg has at least. */
 #define JUMP_RATIO 3.0
@@ -262,6 +265,46 @@ static void check_jump(const struct cs_system *system, uint32_t e, struct cs_tex
                     e, jump, jump / seconds);
 }
 
+/* A grab that draws a particle further from one that pins hold than the sheet between them
+ * goes. In a flat sheet that is their distance at rest. */
+static void check_apart(const struct cs_system *system, uint32_t e, const struct held *held,
+                        struct cs_text *out) {
+    const struct cs_grab *grab = &cs_scene_events(system->scene)[e].grab;
+    const struct cs_event_path path = cs_event_path_of(cs_scene_events(system->scene) + e);
+    const size_t n = system->view.n;
+    cs_event_mark(system, &grab->target);
+    const bool *first = memchr(system->events->work, true, n);
+    if (!first || !cs_vec3_is_zero(grab->spin))
+        return;
+    const uint32_t i = (uint32_t)(first - system->events->work), b = body_of(system, i);
+    const struct cs_body_range *range = system->bodies + b;
+    const struct cs_cloth *cloth = &cs_scene_bodies(system->scene)[b].cloth;
+    for (uint32_t k = 0; k < path.n * held->n; k++) {
+        const struct cs_path_point *to = path.points + k / held->n;
+        const uint32_t h = held->particles[k % held->n], p = i - range->first,
+                       q = h - range->first;
+        if (range->mesh || q >= range->count)
+            continue;
+        double way[3];
+        for (size_t c = 0; c < 3; c++)
+            way[c] = to->point[c] + (grab->relative ? system->state[c * n + i] : 0) -
+                     system->state[c * n + h];
+        const double u = cloth->size[0] / fmax(range->columns - 1, 1) *
+                         ((double)(p % range->columns) - (double)(q % range->columns)),
+                     v = cloth->size[1] / fmax(range->rows - 1, 1) *
+                         ((double)(p / range->columns) - (double)(q / range->columns));
+        const double length = sqrt(cs_vec3_dot(way, way)), rest = sqrt(u * u + v * v);
+        if (!(length > APART_MAX * rest))
+            continue;
+        cs_text_add(
+            out,
+            "events[%u].grab draws particle %u of bodies[%u] until %.4g s to %.3g m from "
+            "particle %u, which pins hold: the sheet between them is %.3g m long\n",
+            e, p, b, to->at, length, q, rest);
+        return;
+    }
+}
+
 void cs_trajectory_findings_print(const struct cs_system *system,
                                   struct cs_scene_findings *out) {
     const struct cs_scene *scene = system->scene;
@@ -277,8 +320,10 @@ void cs_trajectory_findings_print(const struct cs_system *system,
             check_sweep(system, e, &held, &out->warnings);
         if (event->release.present)
             check_release(system, e, &out->hints);
-        if (event->grab.present)
+        if (event->grab.present) {
             check_jump(system, e, &out->hints);
+            check_apart(system, e, &held, &out->warnings);
+        }
     }
     free(held.particles);
 }

@@ -63,6 +63,15 @@ static const struct {
                                        "{\"particles\": [\"top\"], \"relative\": true, "
                                        "\"path\": [{\"at\": 0.5, \"point\": [0, 0, 0.1]}]}}]",
      "events[0].grab takes particles that pins hold", "bodies[0].pins", "[\"bottom\"]", false},
+    {BODY("", ", \"pins\": [\"top\"]") ", \"forces\": {\"wind\": {\"direction\": [0, 0, 1], "
+                                       "\"strength\": 5000}}",
+     "the wind at the start stretches the springs at its pins", "forces.wind.strength", "10",
+     false},
+    {BODY("", ", \"pins\": [\"left\"]") ", \"events\": [{\"from\": 0, \"to\": 0.5, \"grab\": "
+                                        "{\"particles\": [\"right\"], \"relative\": true, "
+                                        "\"path\": [{\"at\": 0.5, \"point\": [3, 0, 0]}]}}]",
+     "events[0].grab draws particle 7 of bodies[0] until 0.5 s to 3.5 m from particle 0",
+     "events[0].grab.path[0].point", "[0.1, 0, 0]", true},
     // keys that nothing reads
     {BODY("", ", \"thickness\": 0.002"), "bodies[0].thickness has no effect",
      "bodies[0].self_contact", "true", false},
