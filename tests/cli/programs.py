@@ -9,6 +9,7 @@ import csv
 import importlib.util
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -84,6 +85,11 @@ def check_bits():
     ours = state("rk4:dt=0.0005", scene=drum, frames="6")
     theirs = state(f"program:{PYTHON} {rk4}:dt=0.0005", scene=drum, frames="6")
     told("rk4 in Python has the bits of rk4", ours == theirs, f"{ours}\n{theirs}")
+    if build_rust():
+        rust = state("program:./rk4_program:dt=0.0005", scene=drum, frames="6")
+        told("rk4 in Rust has them too", rust == ours, f"{rust}\n{ours}")
+        bare = subprocess.run("./rk4_program", capture_output=True, text=True)
+        told("it says who starts it", bare.returncode == 2 and "by clothsim" in bare.stderr, bare)
     build_client()
     c, python = state("program:./midpoint:dt=1e-3"), state(f"program:{PYTHON} midpoint.py:dt=1e-3")
     told("a method in C has the bits of that in Python", c == python and len(c) == 32, f"{c}\n{python}")
@@ -94,10 +100,20 @@ def build_client():
                     f"{EXAMPLES}/midpoint_program.c", "-o", "midpoint", "-lm"], check=True)
 
 
+def build_rust():
+    """False where there is no compiler; ./dev test slow installs it."""
+    if not shutil.which("rustc"):
+        print("# no rustc: the client in Rust is left out")
+        return False
+    subprocess.run(["rustc", "--edition", "2021", "-O", "-D", "warnings", f"{EXAMPLES}/rk4_program.rs"], check=True)
+    return True
+
+
 def check_cards():
     """The whole card passes; a program that claims too high an order is found."""
     build_client()
-    for name in ("./midpoint", f"{PYTHON} midpoint.py"):
+    rust = ["./rk4_program"] if build_rust() else []
+    for name in ("./midpoint", f"{PYTHON} midpoint.py", *rust):
         code, out, err = call("conform", "-q", f"program:{name}")
         told(f"the card of {name}", code == 0 and " 0 fail" in out and not err, f"{code}\n{out}{err}")
     with open("midpoint.py") as file:

@@ -23,6 +23,16 @@ tree() {
     git ls-files -z | xargs -0 tar -c | tar -x -C "$root/clothsim"
 }
 
+# rust SUITE: the client in Rust gives the bits of rk4, by the compiler of that distribution
+rust() {
+    chroot "$folder/$1" sh -ec 'cd /tmp
+        rustc --edition 2021 -O /clothsim/examples/rk4_program.rs
+        for method in rk4 program:./rk4_program; do
+            /build/gcc/clothsim run /clothsim/scenes/drum.json -n 3 --no-render -y -i $method:dt=0.0005 |
+                grep "^state hash"
+        done | uniq | wc -l | grep -qx 1'
+}
+
 # build SUITE COMPILER
 build() {
     chroot "$folder/$1" sh -c 'cd /clothsim && { [ -f "/build/$1/build.ninja" ] || CC=$1 meson setup \
@@ -39,6 +49,7 @@ for suite; do
             found=$(chroot "$folder/$suite" sh -c 'cd /clothsim && "/build/$1/clothsim" golden --hashes --quiet' \
                 sh "$compiler" 2>&1 | tail -n 1)
             case $found in *" 0 differ"*) ;; *) code=1 ;; esac
+            [ "$compiler" = clang ] || rust "$suite" >>"$log" 2>&1 || { code=1 found="$found; no Rust"; }
         else
             tail -n 20 "$log" >&2
             code=1 found="does not build"
