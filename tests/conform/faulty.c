@@ -57,6 +57,7 @@ struct method {
     const struct cs_host *host;
     double dt;
     double *f, *g, *part, *stage; /* (3,n), (3,n), (3,n), (6,n) */
+    double *later;                /* (3,n) the part at the second stage */
     double *mass;                 /* (n) inverse masses of create */
     double *last;                 /* (3,n) force, (3,n) velocity of the last step */
     double last_h;                /* s; 0: there is none */
@@ -120,11 +121,9 @@ static void second_stage(struct method *self, double t, double a, const double *
         if (k % n >= (uint32_t)SIZE)
             self->g[k] = self->f[k];
     if (FAULT == PART_LAGS) {
+        host->force(host->ctx, t + a, xs, vs, PART, self->later);
         for (uint32_t k = 0; k < 3 * n; k++)
-            self->g[k] += SIZE * self->part[k];
-        host->force(host->ctx, t + a, xs, vs, PART, self->part);
-        for (uint32_t k = 0; k < 3 * n; k++)
-            self->g[k] -= SIZE * self->part[k];
+            self->g[k] -= SIZE * (self->later[k] - self->part[k]);
     }
 }
 
@@ -234,6 +233,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     self->part = self->g + bytes / sizeof(double);
     self->stage = self->part + bytes / sizeof(double);
     self->last = self->stage + 2 * bytes / sizeof(double);
+    self->later = self->last + 2 * bytes / sizeof(double);
     memcpy(self->mass, host->view->inv_mass, bytes / 3);
     return CS_STEP_OK;
 }

@@ -13,6 +13,11 @@ enum kind {
     ADAMS3, /* Adams and Bashforth of 3 and 4 steps, begun by the classical method */
     ADAMS4,
     PECE,             /* the same as predictor, Adams and Moulton as corrector */
+    TAYLOR,           /* of order 2, by the derivative of the force along the motion */
+    DEFERRED,         /* corrections on Lobatto's nodes (Dutt, Greengard, Rokhlin 2000) */
+    SSP104,           /* ten stages of order 4, two registers (Ketcheson 2008) */
+    SUZUKI,           /* five leapfrog steps, of order 4 (Suzuki 1990) */
+    LOBATTO,          /* IIIA of order 4, by fixed-point iteration */
     EXPONENTIAL_DRAG, /* Strang's splitting, drag by its exponential */
     FOREST_RUTH,      /* a composition of order 4 (Forest, Ruth 1990) */
     DRIFT_KICK,       /* half a drift, a kick, half a drift */
@@ -42,212 +47,7 @@ struct method {
     uint64_t known;     /* slopes of earlier steps in k */
 };
 
-static void rate(struct method *self, double t, const double *y, uint32_t parts, double *k) {
-    const struct cs_host *host = self->host;
-    const size_t half = self->length / 2, n = host->view->n;
-    host->force(host->ctx, t, y, y + half, parts, k + half);
-    for (size_t i = 0; i < half; i++) {
-        k[i] = y[half + i];
-        k[half + i] *= host->view->inv_mass[i % n];
-    }
-}
-
-/* out = y + a k */
-static void add(const struct method *self, const double *y, double a, const double *k,
-                double *out) {
-    for (size_t i = 0; i < self->length; i++)
-        out[i] = y[i] + a * k[i];
-}
-
-static void classical(struct method *self, double t, double h, double *y, double *first) {
-    static const double reach[] = {0, 0.5, 0.5, 1}, weight[] = {1, 2, 2, 1};
-    double *k = self->k[3], *sum = self->k[4];
-    for (int i = 0; i < 4; i++) {
-        add(self, y, i ? reach[i] * h : 0, i ? k : y, self->z);
-        rate(self, t + reach[i] * h, self->z, CS_PART_ALL, k);
-        if (i == 0)
-            memcpy(first, k, self->length * sizeof *k);
-        for (size_t j = 0; j < self->length; j++)
-            sum[j] = (i ? sum[j] : 0) + weight[i] * k[j];
-    }
-    add(self, y, h / 6, sum, y);
-}
-
-static void extrapolate_euler(struct method *self, double t, double h, double *y) {
-    for (int m = 0; m < 4; m++) {
-        double *end = self->k[m];
-        memcpy(end, y, self->length * sizeof *end);
-        for (int j = 0; j <= m; j++) {
-            const double part = h / (m + 1);
-            rate(self, t + j * part, end, CS_PART_ALL, self->z);
-            add(self, end, part, self->z, end);
-        }
-    }
-    for (int column = 1; column < 4; column++)
-        for (int m = 3; m >= column; m--)
-            for (size_t i = 0; i < self->length; i++)
-                self->k[m][i] += (self->k[m][i] - self->k[m - 1][i]) /
-                                 ((m + 1) / (double)(m + 1 - column) - 1);
-    memcpy(y, self->k[3], self->length * sizeof *y);
-}
-
-static void gragg(struct method *self, double t, double h, double *y) {
-    for (int m = 0; m < 2; m++) {
-        const int parts = 2 * (m + 1);
-        const double part = h / parts;
-        double *old = self->k[2], *now = self->k[3];
-        memcpy(old, y, self->length * sizeof *y);
-        rate(self, t, y, CS_PART_ALL, self->z);
-        add(self, y, part, self->z, now);
-        for (int j = 1; j <= parts; j++) {
-            rate(self, t + j * part, now, CS_PART_ALL, self->z);
-            if (j < parts) {
-                add(self, old, 2 * part, self->z, old);
-                double *const swap = old;
-                old = now;
-                now = swap;
-            }
-        }
-        for (size_t i = 0; i < self->length; i++)
-            self->k[m][i] = (now[i] + old[i] + part * self->z[i]) / 2;
-    }
-    for (size_t i = 0; i < self->length; i++)
-        y[i] = self->k[1][i] + (self->k[1][i] - self->k[0][i]) / 3;
-}
-
-/* k has the slopes of earlier steps, the newest first; k[3] and k[4] serve the first steps. */
-static void adams(struct method *self, double t, double h, double *y) {
-    static const double ahead[2][4] = {{23, -16, 5, 0}, {55, -59, 37, -9}},
-                        behind[4] = {9, 19, -5, 1};
-    const uint64_t back = KIND == ADAMS3 ? 2 : 3;
-    const double *w = ahead[KIND != ADAMS3], all = KIND == ADAMS3 ? 12 : 24;
-    if (fabs(h - self->last_h) > 1e-9 * h)
-        self->known = 0;
-    self->last_h = h;
-    double *now = self->before; /* the advance's own copy is not needed here */
-    if (self->known < back)
-        classical(self, t, h, y, now);
-    else {
-        rate(self, t, y, CS_PART_ALL, now);
-        for (size_t i = 0; i < self->length; i++) {
-            double sum = w[0] * now[i];
-            for (uint64_t j = 1; j <= back; j++)
-                sum += w[j] * self->k[j - 1][i];
-            self->z[i] = y[i] + h / all * sum;
-        }
-        if (KIND == PECE) {
-            rate(self, t + h, self->z, CS_PART_ALL, self->k[3]);
-            for (size_t i = 0; i < self->length; i++)
-                self->z[i] = y[i] + h / 24 *
-                                        (behind[0] * self->k[3][i] + behind[1] * now[i] +
-                                         behind[2] * self->k[0][i] + behind[3] * self->k[1][i]);
-        }
-        memcpy(y, self->z, self->length * sizeof *y);
-    }
-    double *const oldest = self->k[2];
-    self->k[2] = self->k[1];
-    self->k[1] = self->k[0];
-    self->k[0] = now;
-    self->before = oldest;
-    self->known += self->known < back;
-}
-
-/* v *= exp(-c h / m), c from the drag of a unit velocity. */
-static void decay(struct method *self, double t, double h, double *y) {
-    const struct cs_host *host = self->host;
-    const size_t half = self->length / 2, n = host->view->n;
-    for (size_t i = 0; i < half; i++)
-        self->z[i] = 1;
-    host->force(host->ctx, t, y, self->z, CS_PART_DRAG, self->k[0]);
-    for (size_t i = 0; i < half; i++)
-        if (host->view->inv_mass[i % n] > 0)
-            y[half + i] *= exp(self->k[0][i] * h * host->view->inv_mass[i % n]);
-}
-
-static void exponential_drag(struct method *self, double t, double h, double *y) {
-    const uint32_t parts = CS_PART_ALL & ~(uint32_t)CS_PART_DRAG;
-    decay(self, t, h / 2, y);
-    rate(self, t, y, parts, self->k[0]);
-    add(self, y, h / 2, self->k[0], self->z);
-    rate(self, t + h / 2, self->z, parts, self->k[0]);
-    add(self, y, h, self->k[0], y);
-    decay(self, t + h, h / 2, y);
-}
-
-/* Drifts of d h and kicks of c h in turn; time goes with the drifts. */
-static void drifts_and_kicks(struct method *self, double t, double h, double *y, int n,
-                             const double *d, const double *c) {
-    const size_t half = self->length / 2;
-    for (int j = 0; j < n; j++) {
-        for (size_t i = 0; i < half; i++)
-            y[i] += d[j] * h * y[half + i];
-        t += d[j] * h;
-        if (c[j] == 0)
-            continue;
-        rate(self, t, y, CS_PART_ALL, self->k[0]);
-        for (size_t i = half; i < self->length; i++)
-            y[i] += c[j] * h * self->k[0][i];
-    }
-}
-
-static void forest_ruth(struct method *self, double t, double h, double *y) {
-    const double theta = 1 / (2 - cbrt(2));
-    drifts_and_kicks(self, t, h, y, 4,
-                     (const double[]){theta / 2, (1 - theta) / 2, (1 - theta) / 2, theta / 2},
-                     (const double[]){theta, 1 - 2 * theta, theta, 0});
-}
-
-static enum cs_step trapezoid(struct method *self, double t, double h, double *y) {
-    double change = 1;
-    rate(self, t, y, CS_PART_ALL, self->k[0]);
-    add(self, y, h, self->k[0], self->z);
-    for (int j = 0; j < ITERATIONS && change > 1e-15; j++) {
-        double largest = 0;
-        change = 0;
-        rate(self, t + h, self->z, CS_PART_ALL, self->k[1]);
-        for (size_t i = 0; i < self->length; i++) {
-            const double z = y[i] + h / 2 * (self->k[0][i] + self->k[1][i]);
-            change = fmax(change, fabs(z - self->z[i]));
-            largest = fmax(largest, fabs(z));
-            self->z[i] = z;
-        }
-        change = largest > 0 ? change / largest : 0;
-    }
-    if (!(change <= 1e-13))
-        return self->host->fail(self->host->ctx, "the iteration does not converge at %g s", h);
-    memcpy(y, self->z, self->length * sizeof *y);
-    return CS_STEP_OK;
-}
-
-static void low_storage(struct method *self, double t, double h, double *y) {
-    static const double a[] = {0, -5. / 9, -153. / 128}, b[] = {1. / 3, 15. / 16, 8. / 15},
-                        c[] = {0, 1. / 3, 3. / 4};
-    for (int j = 0; j < 3; j++) {
-        rate(self, t + c[j] * h, y, CS_PART_ALL, self->z);
-        add(self, self->z, j ? a[j] : 0, j ? self->k[0] : self->z, self->k[0]);
-        add(self, y, b[j] * h, self->k[0], y);
-    }
-}
-
-/* One step of the pair, and its error in units of the tolerance. */
-static double pair(struct method *self, double t, double h, double *y) {
-    double **k = self->k, sum = 0;
-    rate(self, t, y, CS_PART_ALL, k[0]);
-    add(self, y, h / 2, k[0], self->z);
-    rate(self, t + h / 2, self->z, CS_PART_ALL, k[1]);
-    add(self, y, 3 * h / 4, k[1], self->z);
-    rate(self, t + 3 * h / 4, self->z, CS_PART_ALL, k[2]);
-    for (size_t i = 0; i < self->length; i++)
-        y[i] += h / 9 * (2 * k[0][i] + 3 * k[1][i] + 4 * k[2][i]);
-    rate(self, t + h, y, CS_PART_ALL, k[3]);
-    for (size_t i = 0; i < self->length; i++) {
-        const double error =
-            h * (-5. / 72 * k[0][i] + k[1][i] / 12 + k[2][i] / 9 - k[3][i] / 8);
-        const double allowed = self->asked.rtol * (1e-3 + fabs(y[i]));
-        sum += error / allowed * (error / allowed);
-    }
-    return sqrt(sum / (double)self->length);
-}
+#include "right_steps.h"
 
 static enum cs_step step(struct method *self, double t, double h, double *y) {
     switch (KIND) {
@@ -266,8 +66,21 @@ static enum cs_step step(struct method *self, double t, double h, double *y) {
     case DRIFT_KICK:
         drifts_and_kicks(self, t, h, y, 2, (const double[]){0.5, 0.5}, (const double[]){1, 0});
         break;
+    case TAYLOR:
+        taylor(self, t, h, y);
+        break;
+    case DEFERRED:
+        deferred(self, t, h, y);
+        break;
+    case SSP104:
+        ssp104(self, t, h, y);
+        break;
+    case SUZUKI:
+        suzuki(self, t, h, y);
+        break;
+    case LOBATTO:
     case TRAPEZOID:
-        return trapezoid(self, t, h, y);
+        return iterate(self, t, h, y);
     case LOW_STORAGE:
         low_storage(self, t, h, y);
         break;
@@ -362,12 +175,14 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
 }
 
 enum {
-    LINEAR = KIND == EXPONENTIAL_DRAG || KIND == TRAPEZOID || KIND == DRIFT_KICK,
-    ORDER = LINEAR                                                        ? 2
+    SECOND =
+        KIND == EXPONENTIAL_DRAG || KIND == TRAPEZOID || KIND == DRIFT_KICK || KIND == TAYLOR,
+    ORDER = SECOND                                                        ? 2
             : KIND == ADAMS3 || KIND == LOW_STORAGE || KIND == CONTROLLED ? 3
                                                                           : 4,
+    BY_ITERATION = KIND == LOBATTO || KIND == TRAPEZOID,
     HAS_HISTORY = KIND == ADAMS3 || KIND == ADAMS4 || KIND == PECE,
-    BY_KICKS = KIND == FOREST_RUTH || KIND == DRIFT_KICK
+    BY_KICKS = KIND == FOREST_RUTH || KIND == DRIFT_KICK || KIND == SUZUKI
 };
 
 static const struct cs_integrator method = {
@@ -378,9 +193,11 @@ static const struct cs_integrator method = {
     .order = ORDER,
     /* a kick sees the velocity before it */
     .order_damped = BY_KICKS ? 1 : ORDER,
+    .needs = KIND == TAYLOR ? CS_NEED_JVP : 0,
     .traits = BY_KICKS             ? CS_SYMPLECTIC
               : HAS_HISTORY        ? CS_MULTISTEP
               : KIND == CONTROLLED ? CS_ADAPTIVE
+              : BY_ITERATION       ? CS_IMPLICIT
                                    : 0,
     .fidelity = CS_FIDELITY_ODE,
     .options = rows,

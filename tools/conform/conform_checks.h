@@ -1,9 +1,10 @@
 /* conform_checks.h - shared parts of the checks of a card; each file of checks is a group.
  *
- *   motion    exact motions and conserved momenta               conform_motion.c
- *   order     oscillators, order, tolerance, limit, events      conform_order.c
+ *   motion    exact motions, oscillators, conserved momenta     conform_motion.c
+ *   order     order, tolerance, limit, events                   conform_order.c
  *   forces    each force alone, unequal masses, time            conform_forces.c
- *   invariance copies of a body, and the unit of mass           conform_invariance.c
+ *   exact     polynomials of the time                           conform_exact.c
+ *   invariance copies of a body, and the unit of mass          conform_invariance.c
  *   energy    symmetry in time, bounded energy                  conform_motion.c
  *   contact   incline, rest, bounce, impacts, crossings         conform_contact.c
  *   rules     descriptor, imports, commits, pins, failures      conform_rules.c
@@ -102,7 +103,7 @@ struct cs_probe {
     bool has_ended;            /* blew up or failed: error says how */
     struct cs_error error;
     struct cs_error *card_error; /* of the card */
-    char text[2048];             /* the scene */
+    char text[4096];             /* the scene */
     bool asks_step_fraction;     /* the method called max_step_fraction */
     struct cs_trace trace;       /* sees that */
 
@@ -136,6 +137,10 @@ bool cs_probe_set(struct cs_probe *probe, const char *name, double value);
  * Options that a method lacks are skipped. */
 void cs_probe_set_step(struct cs_probe *probe, double dt);
 void cs_probe_set_tolerance(struct cs_probe *probe, double rtol);
+
+/* Sets the step as cs_probe_set_step does, or without dt the loosest tolerances, so that a
+ * method takes a step a frame: at its claimed order, where that is an option. */
+void cs_probe_set_frames(struct cs_probe *probe, double dt);
 
 /* The tolerance at which an adaptive method is compared with the solution. A hundred thousand
  * steps of order 2 are within the bound at a looser tolerance already. */
@@ -226,6 +231,8 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     X("translation", translation, ANY, "a uniform velocity changes nothing else")              \
     X("copies", copies, ANY, "equal sheets of 513 particles move alike")                       \
     X("units", units, ANY, "masses and forces a million times change nothing")                 \
+    X("polynomials", polynomials, ANY, "motions that its order makes exact, by gravity")       \
+    X("order-conditions", order_conditions, ANY, "and by one particle that pulls the next")    \
     X("rotation", rotation, SPRINGS, "a stretched pair turns on its circle")                   \
     X("commit", commit, ANY, "every step is committed, and they fill the time")                \
     X("momentum", momentum, ANY, "momentum is conserved without external forces")              \

@@ -1,8 +1,6 @@
 /* Runs the drum, a stretched sheet in a fixed frame, and its reference solution. */
 #include "conform/conform_checks.h"
 
-#include "base/options.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -67,16 +65,6 @@ bool cs_drum_open(struct cs_probe *probe, const struct cs_conform *card,
     return open_frames(probe, card, method, drum, CS_DRUM_FRAME);
 }
 
-/* Sets an option `order` that is a choice to the claimed order, which is one digit: by its
- * default a method may take lower ones at loose tolerances. */
-static void set_claimed_order(const struct cs_method *method) {
-    const struct cs_option *row = cs_option_find(&method->table, "order");
-    const char order[] = {(char)('0' + method->integrator->order), 0};
-    struct cs_error ignored = {0};
-    if (row && row->type == CS_CHOICE)
-        cs_option_set_choice(row, method->options, order, row->name, CS_ERR_USAGE, &ignored);
-}
-
 bool cs_drum_state(const struct cs_conform *card, const struct cs_integrator *method,
                    const struct cs_drum *drum, double step_or_rtol, double *state,
                    struct cs_conform_row *row) {
@@ -89,12 +77,7 @@ bool cs_drum_state(const struct cs_conform *card, const struct cs_integrator *me
     if (by_tolerance)
         cs_probe_set_tolerance(&probe, step_or_rtol);
     else
-        cs_probe_set_step(&probe, step_or_rtol);
-    if (by_frames) {
-        cs_probe_set(&probe, "rtol", HUGE_VAL);
-        cs_probe_set(&probe, "atol", HUGE_VAL);
-        set_claimed_order(&probe.session.method);
-    }
+        cs_probe_set_frames(&probe, step_or_rtol);
     bool done = cs_probe_run(&probe, frames);
     // the first step of a method that chooses it may be short
     const uint64_t most = frames + FIRST_STEPS, steps = probe.session.run.counts.steps;

@@ -224,6 +224,96 @@ void cs_check_rotation(const struct cs_conform *card, struct cs_conform_row *row
     check_rotation(card, row, 1);
 }
 
+/* A free pair of masses m: the elongation s obeys s'' + 2 d s' + w^2 s = 0 with w^2 = 2 k/m =
+ * 100/s^2 and d = c/m = 1.2/s, because the reduced mass is m/2. */
+#define OSCILLATOR                                                                             \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 1]}, \"mass\": {\"particle\": 0.5},"             \
+    " \"springs\": {\"stretch\": 25, \"damping\": 0.6, \"damping_model\": \"%s\"}}],"          \
+    " \"forces\": {\"gravity\": [0, 0, 0]}, \"time\": {\"fps\": 20}}"
+
+#define REACH 0.1 /* m */
+
+/* s(t) / s0 = exp(-d t) (cos(u t) + d/u sin(u t)), u^2 = w^2 - d^2, from rest. */
+static double elongation(double t) {
+    const double d = 0.6 / 0.5, w = 10, u = sqrt(w * w - d * d);
+    return exp(-d * t) * (cos(u * t) + d / u * sin(u * t));
+}
+
+/* Compares the elongation at T = 1 s with s(T) from s0 = 0.1 m. The phase error of order (h
+ * w)^p accumulates over w T = 10 radians; half of that product is allowed. */
+static void check_oscillator(const struct cs_conform *card, struct cs_conform_row *row,
+                             const char *model, int level) {
+    const double w = 10, expected = REACH * elongation(1);
+    struct cs_probe pair;
+    if (cs_probe_open(&pair, card, card->method, OSCILLATOR, model)) {
+        pair.x[0] -= REACH / 2;
+        pair.x[1] += REACH / 2;
+    }
+    const double share = cs_probe_set_level(&pair, 5e-3, w, card->method->order_damped, level);
+    if (!cs_probe_run(&pair, 20))
+        cs_row_fail(row, "%s", pair.error.message);
+    else {
+        const double found = pair.x[1] - pair.x[0] - 1;
+        // an error grows over w T = 10 radians; half of that is left to the method
+        cs_row_state(row, fabs(found - expected) / REACH, fmax(share * w / 2, 1e-11),
+                     "of the amplitude off after 1.6 periods: %.6f m, expected %.6f m", found,
+                     expected);
+    }
+    cs_probe_close(&pair);
+}
+
+/* Elongation, as a fraction of the reach, after one period, in steps of h. */
+static bool elongation_at(const struct cs_conform *card, struct cs_conform_row *row,
+                          const char *model, double h, double *found) {
+    struct cs_probe pair;
+    if (cs_probe_open(&pair, card, card->method, OSCILLATOR, model)) {
+        pair.x[0] -= REACH / 2;
+        pair.x[1] += REACH / 2;
+    }
+    cs_probe_set_step(&pair, h);
+    const bool done = cs_probe_run(&pair, 12);
+    if (done)
+        *found = (pair.x[1] - pair.x[0] - 1) / REACH;
+    else
+        cs_row_fail(row, "%s", pair.error.message);
+    cs_probe_close(&pair);
+    return done;
+}
+
+/* Fixed steps are extrapolated to h = 0. The equation is linear and the pair small, so that
+ * more digits are left than in other scenes. */
+static void oscillator_limit(const struct cs_conform *card, struct cs_conform_row *row,
+                             const char *model) {
+    const uint32_t order = card->method->order_damped;
+    const int levels = order > 3 ? 5 : 7;
+    double found[7];
+    for (int k = 0; k < levels; k++)
+        if (!elongation_at(card, row, model, ldexp(0.025, -k), found + k))
+            return;
+    cs_extrapolate(found, levels, 1, 1, order);
+    cs_row_state(row, fabs(found[levels - 1] - elongation(0.6)), order < 2 ? 1e-9 : 1e-12,
+                 "of the amplitude off after a period in the limit");
+}
+
+/* Both levels of accuracy, and the limit. */
+static void oscillator(const struct cs_conform *card, struct cs_conform_row *row,
+                       const char *model) {
+    if (!cs_probe_can_be_set(card, row))
+        return;
+    check_oscillator(card, row, model, 0);
+    check_oscillator(card, row, model, 1);
+    if (card->method->fidelity == CS_FIDELITY_ODE && cs_method_has(card->method, "dt"))
+        oscillator_limit(card, row, model);
+}
+
+void cs_check_oscillator_axial(const struct cs_conform *card, struct cs_conform_row *row) {
+    oscillator(card, row, "axial");
+}
+
+void cs_check_oscillator_relative(const struct cs_conform *card, struct cs_conform_row *row) {
+    oscillator(card, row, "relative");
+}
+
 /* p: momentum in kg m/s; l: angular momentum about the origin in kg m2/s. scale: the sums of
  * the magnitudes of all terms, which make changes relative even where the totals vanish. */
 static void momenta(const struct cs_probe *probe, double p[3], double l[3], double scale[2]) {

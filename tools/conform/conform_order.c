@@ -1,5 +1,5 @@
-/* Checks closed-form oscillators, the order of fixed steps, the tolerance of adaptive methods,
- * and both through an event.
+/* Checks the order of fixed steps, the tolerance of adaptive methods, and both through an
+ * event.
  *
  * Order: with the error e(h) = C h^p (1 + O(h)), the slope log2(e(h) / e(h/2)) tends to p. The
  * slope is only evident between the region of large steps, where higher terms count, and the
@@ -17,60 +17,12 @@
 
 #include <math.h>
 
-/* A free pair of masses m: the elongation s obeys s'' + 2 d s' + w^2 s = 0 with w^2 = 2 k/m =
- * 100/s^2 and d = c/m = 1.2/s, because the reduced mass is m/2. */
-#define OSCILLATOR                                                                             \
-    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 1]}, \"mass\": {\"particle\": 0.5},"             \
-    " \"springs\": {\"stretch\": 25, \"damping\": 0.6, \"damping_model\": \"%s\"}}],"          \
-    " \"forces\": {\"gravity\": [0, 0, 0]}, \"time\": {\"fps\": 20}}"
-
-/* Compares the elongation at T = 1 s with s(T) = s0 exp(-d T) (cos(u T) + d/u sin(u T)), u^2 =
- * w^2 - d^2, from rest at s0 = 0.1 m. The phase error of order (h w)^p accumulates over w T =
- * 10 radians; half of that product is allowed. */
-static void check_oscillator(const struct cs_conform *card, struct cs_conform_row *row,
-                             const char *model, int level) {
-    const double d = 0.6 / 0.5, w = 10, u = sqrt(w * w - d * d), reach = 0.1;
-    const double expected = reach * exp(-d) * (cos(u) + d / u * sin(u));
-    struct cs_probe pair;
-    if (cs_probe_open(&pair, card, card->method, OSCILLATOR, model)) {
-        pair.x[0] -= reach / 2;
-        pair.x[1] += reach / 2;
-    }
-    const double share = cs_probe_set_level(&pair, 5e-3, w, card->method->order_damped, level);
-    if (!cs_probe_run(&pair, 20))
-        cs_row_fail(row, "%s", pair.error.message);
-    else {
-        const double found = pair.x[1] - pair.x[0] - 1;
-        // an error grows over w T = 10 radians; half of that is left to the method
-        cs_row_state(row, fabs(found - expected) / reach, fmax(share * w / 2, 1e-11),
-                     "of the amplitude off after 1.6 periods: %.6f m, expected %.6f m", found,
-                     expected);
-    }
-    cs_probe_close(&pair);
-}
-
-/* Both levels of accuracy. */
-static void oscillator(const struct cs_conform *card, struct cs_conform_row *row,
-                       const char *model) {
-    if (!cs_probe_can_be_set(card, row))
-        return;
-    check_oscillator(card, row, model, 0);
-    check_oscillator(card, row, model, 1);
-}
-
-void cs_check_oscillator_axial(const struct cs_conform *card, struct cs_conform_row *row) {
-    oscillator(card, row, "axial");
-}
-
-void cs_check_oscillator_relative(const struct cs_conform *card, struct cs_conform_row *row) {
-    oscillator(card, row, "relative");
-}
-
 /* Most steps of a measurement, the order from which it starts at the stability limit, and the
  * steps of a frame that it tries there. */
 enum { STEPS_MAX = 10, HIGH_ORDER = 5, FIRST_PARTS = 2, PARTS_MAX = 24 };
-/* Relative error below which rounding would show as a slope: the reference carries 1e-14. */
-#define FLOOR 2e-13
+/* Relative error below which rounding would show as a slope: it leaves up to 7e-14, and
+ * at 2.4e-13 moved the slope of a method of Adams by 0.2. */
+#define FLOOR 3e-13
 /* How far a slope may be from a high order. Few steps lie between the stability limit and
  * rounding, and terms of the next order still count there: for the same reason the errors of
  * position and velocity, one of which may be small by chance, are joined. */

@@ -94,10 +94,11 @@ bool cs_probe_set(struct cs_probe *probe, const char *name, double value) {
  * only if it claims implicit Euler as its limit; other fidelities are tested with the default.
  */
 static void set_inner(struct cs_probe *probe) {
+    const struct cs_integrator *method = probe->session.method.integrator;
     cs_probe_set(probe, "linear_rtol", INNER_RTOL);
     cs_probe_set(probe, "newton_rtol", INNER_RTOL);
     // that method's order is a claim about its limit; others stand by their default
-    if (probe->session.method.integrator->fidelity == CS_FIDELITY_IMPLICIT_EULER)
+    if (method && method->fidelity == CS_FIDELITY_IMPLICIT_EULER)
         cs_probe_set(probe, "iterations", ITERATIONS);
 }
 
@@ -110,6 +111,25 @@ void cs_probe_set_step(struct cs_probe *probe, double dt) {
 void cs_probe_set_tolerance(struct cs_probe *probe, double rtol) {
     cs_probe_set(probe, "rtol", rtol);
     set_inner(probe);
+}
+
+/* Sets an option `order` that is a choice to the claimed order, which is one digit: by its
+ * default a method may take lower ones at loose tolerances. */
+static void set_claimed_order(const struct cs_method *method) {
+    const struct cs_option *row = cs_option_find(&method->table, "order");
+    const char order[] = {(char)('0' + method->integrator->order), 0};
+    struct cs_error ignored = {0};
+    if (row && row->type == CS_CHOICE)
+        cs_option_set_choice(row, method->options, order, row->name, CS_ERR_USAGE, &ignored);
+}
+
+void cs_probe_set_frames(struct cs_probe *probe, double dt) {
+    cs_probe_set_step(probe, dt);
+    if (!probe->session.method.options || cs_method_has(probe->session.method.integrator, "dt"))
+        return;
+    cs_probe_set(probe, "rtol", HUGE_VAL);
+    cs_probe_set(probe, "atol", HUGE_VAL);
+    set_claimed_order(&probe->session.method);
 }
 
 double cs_probe_tightest_tolerance(const struct cs_conform *card) {

@@ -232,7 +232,7 @@ const struct cs_force_scene cs_force_scenes[] = {
     {"time-dependence", "ramps of air that flows",
      SHEETS_WITH(NO_GRAVITY ", " AIR, RAMP("forces.wind.velocity[2]", "5") "}, {"
                  RAMP("forces.wind.density", "2") "}, {" RAMP("forces.wind.drag", "0.5")),
-     4, true, false},
+     9, true, false},
     {"time-dependence", "a ramp of a pressure",
      BLOWN("3", "{" RAMP("bodies[0].pressure", "4") "}"), 9, false, true},
     {"time-dependence", "a ramp of a collider's friction",
