@@ -1,6 +1,7 @@
+#!/usr/bin/env python3
 """A Runge-Kutta method whose tableau is a file, as a method of clothsim: clothsim-program(7).
 
-    clothsim compare scenes/drum.json -i 'program:python3 tableau.py tableaux/ralston3.json,rk4'
+    clothsim compare scenes/drum.json -i tableau:tableaux/ralston3.json,rk4
 
 The file is JSON: name, order, source, A (a row for each stage), b, and if they differ from the row sums
 of A, c. Numbers are JSON's or fractions as text, "-5/9". A may have a diagonal: such a stage is solved by

@@ -237,7 +237,7 @@ bool cs_external_modules_requested(const struct cs_args *args, const char *const
                  (folders && *folders);
     for (uint32_t k = 0; k < n; k++)
         named |= texts[k] && (strchr(texts[k], '/') || strstr(texts[k], ".so") ||
-                              strstr(texts[k], "program:"));
+                              strstr(texts[k], "program:") || strstr(texts[k], "tableau:"));
     return named;
 }
 

@@ -3,7 +3,7 @@
  * The grammar of a list of methods:
  *   list   = method { "," method }
  *   method = [ SERIES "=" ] NAME [ ":" pair { "," pair } ]
- *   NAME   = name | FILE | "program:" COMMAND
+ *   NAME   = name | FILE | "program:" COMMAND | "tableau:" FILE
  *   pair   = key "=" value
  *
  * A comma separates both methods and pairs. A token between commas is a pair if it has a '=',

@@ -12,10 +12,11 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char PREFIX[] = "program:";
+/* Bytes of "program:" and "tableau:". */
+enum { PREFIX = 8 };
 
 bool cs_program_is_named(const char *text) {
-    return !strncmp(text, PREFIX, sizeof PREFIX - 1);
+    return !strncmp(text, "program:", PREFIX) || !strncmp(text, "tableau:", PREFIX);
 }
 
 /* Closes a text of the description, which may hold anything. */
@@ -79,15 +80,12 @@ static void find_file(struct cs_program_method *program, pid_t pid) {
 /* Cuts a command into words at spaces, and at quotes around a word. Returns false if there are
  * more than fit. */
 static bool cut_words(struct cs_program_method *program, char *text) {
-    for (int n = 0; n < CS_PROGRAM_WORDS_MAX && *(text += strspn(text, " "));) {
+    for (int n = 0; n < CS_PROGRAM_WORDS_MAX && text && *(text += strspn(text, " "));) {
         const char *end = *text == '\'' ? "'" : *text == '"' ? "\"" : " ";
         text += *end != ' ';
-        program->words[n++] = text;
-        text += strcspn(text, end);
-        if (*text)
-            *text++ = 0;
+        program->words[n++] = strsep(&text, end);
     }
-    return !text[strspn(text, " ")];
+    return !text || !text[strspn(text, " ")];
 }
 
 /* Fails unless the first message is a hello of this version; got as cs_program_receive_hello
@@ -139,13 +137,14 @@ static enum cs_status open_program(struct cs_program_method *program, struct cs_
     const struct cs_module *calls;
     char *command = program->command, *name = NULL, file[PATH_MAX];
     const size_t length = strspn(command, "abcdefghijklmnopqrstuvwxyz0123456789-");
-    if (length > 0 && command[length] == '=') {
-        name = command;
-        command += length;
-        *command++ = 0;
-    }
+    if (length > 0 && command[length] == '=')
+        name = strsep(&command, "=");
+    static char tableau[PATH_MAX];
+    snprintf(tableau, sizeof tableau, "%.4000s/tableau.py", cs_module_folder());
+    if (*program->key == *"tableau:")
+        program->words[0] = tableau, program->words[1] = command;
     // from here on the command is cut: the key has it whole
-    if (!cut_words(program, command))
+    else if (!cut_words(program, command))
         return cs_fail(error, CS_ERR_USAGE, "\"%.60s...\": more than %d words", program->key,
                        CS_PROGRAM_WORDS_MAX);
     if (!program->words[0])
@@ -173,7 +172,7 @@ enum cs_status cs_program_method_open(const char *text, const struct cs_integrat
             return cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%.200s\"", text);
         // two copies behind the struct: one stays, one is cut
         program->key = memcpy(program + 1, text, bytes);
-        program->command = strcpy(program->key + bytes, text + sizeof PREFIX - 1);
+        program->command = strcpy(program->key + bytes, text + PREFIX);
         if (open_program(program, error)) {
             free(program);
             return error->status;

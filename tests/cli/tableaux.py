@@ -14,7 +14,6 @@ from functools import lru_cache
 from pathlib import Path
 
 program, source = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-METHOD = source / "examples/tableau.py"
 FILES = sorted((source / "examples/tableaux").glob("*.json"))
 n = failed = 0
 
@@ -82,7 +81,7 @@ def check_orders():
 
 
 def conform(file, checks):
-    return subprocess.run([program, "conform", "--only", checks, f"program:{sys.executable} {METHOD} {file}"],
+    return subprocess.run([program, "conform", "--only", checks, f"tableau:{file}"],
                           capture_output=True, text=True)
 
 
@@ -115,6 +114,9 @@ def check_faults():
         file.write_text('{"name": "a",\n "order": 2,,\n}')
         done = conform(file, "abi")
         told("no JSON", f"tableau.py: {file}:2:13: " in done.stderr, done.stderr)
+        file.write_text(json.dumps({"integrator": f"tableau:{FILES[0]}"}))
+        done = subprocess.run([program, "run", file, "-n", "1", "--no-render"], capture_output=True, text=True)
+        told("no scene starts one", done.returncode == 3 and "expected a name" in done.stderr, done.stderr)
         # a wrong coefficient that leaves the sums alone is what the order is for
         file.write_text(json.dumps({**GOOD, "b": ["1/1000", "999/1000"]}))
         done = conform(file, "solution,order")

@@ -8,6 +8,7 @@
 #include "golden/golden.h"
 #include "golden/golden_report.h"
 #include "io/file_conflicts.h"
+#include "sim/module.h"
 #include "study/compare/compare_curves.h"
 #include "study/process_pool.h"
 #include "study/recorded_run.h"
@@ -148,7 +149,7 @@ static enum cs_status take_states(struct cs_args *args, struct cs_error *error) 
     // a distance is measured from something that is kept
     else if (m > 0 && !check->states)
         cs_fail(error, CS_ERR_USAGE, "--tolerance needs states, found --keep 0");
-    else if (method && !strncmp(method, "program:", 8))
+    else if (method && cs_program_is_named(method))
         cs_fail(error, CS_ERR_USAGE,
                 "no table starts a program; expected --program NAME=COMMAND -i NAME, here and "
                 "at each check");

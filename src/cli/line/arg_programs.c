@@ -2,6 +2,7 @@
  */
 #include "cli/line/args.h"
 #include "sim/method.h"
+#include "sim/module.h"
 
 #include <string.h>
 
@@ -13,13 +14,12 @@ static enum cs_status add_programs(struct cs_args *args, const struct cs_arg *ro
         char *item = cs_method_split(&rest), name[CS_SERIES_BYTES];
         const char *method = item;
         struct cs_error unread = {0}; // reported when the list is read
-        if (cs_series_parse_name(&method, name, &unread) ||
-            strncmp(method, row->prefix, strlen(row->prefix)) != 0)
+        if (cs_series_parse_name(&method, name, &unread) || !cs_program_is_named(method))
             continue;
         // the name alone: without SERIES= and options
         item += method - item;
         item[cs_method_name_length(item)] = 0;
-        cs_arg_read(row, item + strlen(row->prefix), args->options, &args->arena, error);
+        cs_arg_read(row, item, args->options, &args->arena, error);
     }
     return error->status;
 }

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "cli/line/print.h"
 #include "sim/method.h"
+#include "sim/module.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -334,11 +335,12 @@ static void *append(const struct list *list, size_t size, struct cs_error *error
     return items + size * (*n)++;
 }
 
-/* Appends a text, with the row's prefix. */
+/* Appends a text, with the row's prefix unless it has one. */
 static enum cs_status add_word(const struct list *list, const char *text,
                                struct cs_error *error) {
     const char **word = append(list, sizeof *word, error);
-    const char *prefix = list->row->prefix ? list->row->prefix : "";
+    const bool is_whole = !list->row->prefix || cs_program_is_named(text);
+    const char *prefix = is_whole ? "" : list->row->prefix;
     char *copy = cs_arena_alloc(list->arena, strlen(prefix) + strlen(text) + 1, error);
     if (word && copy)
         *word = strcat(strcpy(copy, prefix), text);
