@@ -298,9 +298,8 @@ TEST(impacts_lose_what_friction_takes) {
 #define GIVEN                                                                                  \
     "{\"bodies\": [%s], \"contact\": {\"law\": \"force\", \"restitution\": %g%s}, "            \
     "\"forces\": "                                                                             \
-    "{\"gravity\": [0, 0, 0]}, \"pairs\": \"all\", \"colliders\": [{\"floor\": {\"height\": "  \
-    "%g}, "                                                                                    \
-    "\"thickness\": 0.002}]}"
+    "{\"gravity\": [0, 0, 0]}, \"pairs\": \"all\", \"colliders\": [{%s, \"thickness\": "       \
+    "0.002}]}"
 #define GIVEN_SHEET                                                                            \
     "{\"cloth\": {\"grid\": [%d, %d], \"size\": [0.4, 0.4], \"start\": \"flat\", \"place\": "  \
     "{\"translate\": [%g, %.15g, 0]}, \"velocity\": [0, %g, 0]}, \"mass\": "                   \

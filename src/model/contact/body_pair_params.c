@@ -51,6 +51,18 @@ static double range_between(const struct cs_system *system, uint32_t a, uint32_t
     return collider || a == b ? first : 0.5 * (first + thickness_of(system, b, error));
 }
 
+/* 1/kg, of the mean free particle of a body; 0 if all are pinned, and of a collider. */
+static double inverse_mass_of(const struct cs_system *system, uint32_t body) {
+    double mass = 0, count = 0;
+    if (body >= system->scene->bodies.n)
+        return 0;
+    const struct cs_body_range *range = system->bodies + body;
+    for (uint32_t i = range->first; i < range->first + range->count; i++)
+        if (system->inv_mass[i] > 0)
+            mass += system->mass[i], count++;
+    return count > 0 ? count / mass : 0;
+}
+
 /* Stores the parameters of a pair in both orders. */
 static void meet(struct cs_body_pair_table *body_pairs, uint32_t a, uint32_t b,
                  const struct cs_body_pair_params *meeting) {
@@ -82,6 +94,8 @@ enum cs_status cs_body_pair_table_build(struct cs_system *system,
             meeting.range = range_between(system, a, b, error);
             meeting.k = cs_approach_stiffness(system, body_pairs->softest,
                                               cs_approach_energy(system, a, b), meeting.range);
+            meeting.inverse_mass = (inverse_mass_of(system, a) + inverse_mass_of(system, b)) *
+                                   (b < system->scene->bodies.n ? 2 : 1);
             meet(body_pairs, a, b, &meeting);
         }
     return error->status;

@@ -18,6 +18,9 @@ struct cs_body_pair_params {
     double k;
     /* coefficient of friction (1) */
     double friction;
+    /* 1/kg, 1/M of restitution (point_contact.h): 1/a of a body's mean free particle before a
+     * collider, 2 (1/a + 1/b) between bodies, which are pushed from both sides */
+    double inverse_mass;
 };
 
 /* Fraction of the range at which edges act on edges. The number of crossing edges changes as

@@ -11,8 +11,8 @@
  *
  * The loss gives an impact its restitution: scaling the speed scales s, whatever k, M and D
  * are, so that the fraction of the energy that comes back depends on alpha alone
- * (cs_restitution_loss). M is the mean mass of free particles, a quarter of it where bodies
- * meet: two particles of mass m have m/2 against each other, and are pushed from both sides.
+ * (cs_restitution_loss). M is the mean mass of free particles. Where bodies meet it is half of
+ * the reduced mass of their mean particles, which are pushed from both sides.
  * Particles lighter than M lose more: at e = 1/2, M/4 comes back with 0.37.
  *
  * ev is the speed at which friction has 1/sqrt(2) = 0.71 of mu N. All are functions of position

@@ -55,13 +55,6 @@ static struct cs_active_lanes *next(struct cs_active_chunk *chunk) {
     return there ? chunk->blocks + chunk->n / CS_PAIR_LANES : NULL;
 }
 
-/* 1/s2, k/M of restitution (point_contact.h); either side of a pair may be a collider's. */
-static double rate_of(const struct work *work, const uint32_t points[4], double k) {
-    const struct cs_system *system = work->active->candidates->system;
-    const bool obstacle = points[0] >= system->view.n || points[3] >= system->view.n;
-    return (obstacle ? k : 4 * k) / system->scene->contact.mass;
-}
-
 /* Appends a feature or edge pair. */
 static void put(const struct work *work, const struct cs_weighted_feature *use) {
     const bool edges = work->chunk->kind == CS_PAIR_EDGE_EDGE;
@@ -81,7 +74,7 @@ static void put(const struct work *work, const struct cs_weighted_feature *use) 
     to->is_off_plane[l] = use->form.is_off_plane;
     to->blend_radius[l] = use->form.e;
     to->d[l] = use->d;
-    to->rate[l] = rate_of(work, use->points, to->k[l]);
+    to->rate[l] = to->k[l] * params.inverse_mass;
 }
 
 /* --- points and triangles --- */

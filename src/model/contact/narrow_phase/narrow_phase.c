@@ -50,8 +50,8 @@ static void read_lane(const double *rows, size_t width, const uint32_t to[4], ui
 static void contact_of(const struct work *work, const struct cs_pair_lanes *lanes, uint32_t l,
                        struct cs_pair_contact *contact) {
     const struct cs_system *system = work->narrow->contacts->candidates->system;
-    const struct cs_body_pair_params params = {lanes->range[l], lanes->k[l],
-                                               lanes->friction[l]};
+    const struct cs_body_pair_params params = {
+        .range = lanes->range[l], .k = lanes->k[l], .friction = lanes->friction[l]};
     const struct cs_feature_kind form = {lanes->is_edge[l], lanes->is_off_plane[l],
                                          lanes->blend_radius[l]};
     double p[4][3], v[4][3];

@@ -48,8 +48,8 @@ CS_INLINE void lane_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, i
                           const struct cs_pair_lane_constants *law,
                           struct cs_pair_contact *reaction) {
     double p[4][3], v[4][3];
-    const struct cs_body_pair_params params = {lanes->range[lane], lanes->k[lane],
-                                               lanes->friction[lane]};
+    const struct cs_body_pair_params params = {
+        .range = lanes->range[lane], .k = lanes->k[lane], .friction = lanes->friction[lane]};
     read_lane(lanes->p, lane, p);
     read_lane(lanes->v, lane, v);
     const struct cs_feature_kind form = {lanes->is_edge[lane], lanes->is_off_plane[lane],
