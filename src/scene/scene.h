@@ -101,8 +101,8 @@ struct cs_body {
     double thickness;    /* m, range of its contact with bodies; 0: a fraction of its edges */
     double friction;     /* Coulomb coefficient of self-contact */
     double strain_limit; /* max length of a stretch spring / rest length; NAN: none */
-    int64_t strain_limit_sweeps; /* passes over the springs per step */
-    double pressure;             /* Pa, inside a closed mesh over outside */
+    int64_t strain_limit_sweeps;     /* passes over the springs per step */
+    double pressure, outer_pressure; /* Pa: inside over outside; outside, NAN: a pump */
     struct cs_material material;
 };
 

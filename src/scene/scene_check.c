@@ -119,8 +119,9 @@ static enum cs_status check_elastic(const struct cs_check *at, const char *body,
 static enum cs_status check_pressure(const struct cs_check *at, const char *body,
                                      const struct cs_body *of) {
     char path[128];
-    snprintf(path, sizeof path, "%s.pressure", body);
-    if (of->pressure > 0 && !cs_shape_is_closed(of))
+    snprintf(path, sizeof path, "%s.%s", body,
+             of->pressure > 0 ? "pressure" : "outer_pressure");
+    if ((of->pressure > 0 || of->outer_pressure >= 0) && !cs_shape_is_closed(of))
         return cs_check_refuse(at, path, "expected a closed mesh whose faces look outwards");
     return CS_OK;
 }

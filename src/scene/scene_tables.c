@@ -223,8 +223,10 @@ static const struct cs_option body_rows[] = {
     INT(struct cs_body, strain_limit_sweeps, "", 10, 1, 10000,
         "passes of the strain limit over the springs after each step, before rounds that meet "
         "it"),
-    REAL(struct cs_body, pressure, "Pa", 0, 0, BIG,
-         "inside a closed mesh over that outside, whatever its volume, as from a pump"),
+    REAL(struct cs_body, pressure, "Pa", 0, 0, BIG, "inside a closed mesh over that outside"),
+    REAL(struct cs_body, outer_pressure, "Pa", ABSENT, 0, 1e9,
+         "outside, 101325 of air: the gas inside is shut in, and its pressure over 0 times the "
+         "volume stays as at the start; absent: pressure stays, as from a pump"),
     TABLE(struct cs_body, material, material_table, "Blinn-Phong look"),
 };
 static const struct cs_table body_table = {ROWS(body_rows), .size = sizeof(struct cs_body)};

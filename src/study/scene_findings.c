@@ -163,6 +163,7 @@ static const struct {
     {"bodies[].elastic", NULL, NULL},
     {"bodies[].pins", NULL, NULL},
     {"bodies[].pressure", NULL, NULL},
+    {"bodies[].outer_pressure", NULL, NULL},
     {"bodies[].self_contact", NULL, NULL},
     {"bodies[].thickness", has_surface,
      "the body meets no surface, expected self_contact true, pairs, or contact.law force with "

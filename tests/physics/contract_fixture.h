@@ -36,7 +36,10 @@
     "8]}}, "                                                                                   \
     "\"mass\": {\"areal_density\": 0.4}, \"pressure\": 7, \"elastic\": {\"membrane\": "        \
     "{\"young\": 60}, "                                                                        \
-    "\"bending\": {\"stiffness\": 0.04, \"damping\": 0.02}}}],"                                \
+    "\"bending\": {\"stiffness\": 0.04, \"damping\": 0.02}}}, {\"mesh\": {\"shape\": "         \
+    "\"box\", \"detail\": 3, \"place\": {\"translate\": [0, 0, 12]}}, \"mass\": "              \
+    "{\"areal_density\": 0.4}, \"springs\": {\"stretch\": 20, \"bend\": 0}, \"pressure\": "    \
+    "5, \"outer_pressure\": 20}],"                                                             \
     " \"events\": [{\"from\": 0, \"to\": 1, \"impact\": {\"impulse\": 1, \"direction\": [1, "  \
     "2, 3]}}],"                                                                                \
     " \"colliders\": [{\"sphere\": {\"centre\": [0.1, -0.05, -0.5], \"radius\": 0.35},"        \
@@ -52,7 +55,7 @@
     " \"weights\": [0.2, 0.3, 0.5]}, \"stiffness\": 40, \"damping\": 0.4}],"                   \
     " \"forces\": {" FORCES "%s}}"
 
-enum { N = 97, VALUES = 3 * N };
+enum { N = 153, VALUES = 3 * N };
 
 #define STATE_OF(cloth, p)                                                                     \
     { .x = (cloth)->x, .v = (cloth)->v, .parts = (p) }

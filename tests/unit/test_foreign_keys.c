@@ -125,6 +125,7 @@ static const struct {
     {'D', "", "garments", "\"bodies\""},
     {'D', "", "sewing", "\"seams\""},
     {'W', "bodies[0]", "inflation", "\"pressure\""},
+    {'W', "bodies[0]", "ambient_pressure", "\"outer_pressure\""},
     {'W', "forces.wind", "speed", "\"velocity\""},
     {'W', "forces.wind", "air_density", "\"density\""},
     {'W', "forces.wind", "lift", "\"drag\""},

@@ -198,6 +198,8 @@ const struct cs_force_scene cs_force_scenes[] = {
     {"force-contact", "two sheets in contact by force", PAIRS("0.3"), 12, true, true},
 
     {"force-contact", "stitches without length", SEAMS("0"), 12, true, true},
+    {"force-contact", "gas that is shut in a ring", BLOWN("1, \"outer_pressure\": 1", ""),
+     9, true, true},
     {"force-contact", "stitches with a length", SEAMS("0.15"), 12, true, true},
 
     {"unequal-masses", "two sheets in gravity, wind and drag",

@@ -14,7 +14,7 @@
 // the formatter would move the list at each run
 // clang-format off
 #define CS_TERM_LIST(X)                                                                        \
-    X(springs) X(membrane) X(bending) X(gravity) X(drag) X(wind) X(airflow) X(pressure)        \
+    X(springs) X(membrane) X(bending) X(gravity) X(drag) X(wind) X(airflow) X(pressure) X(gas)  \
     X(push) X(seams) X(contact) X(pairs) X(cover) CS_TERM_LIST_MORE(X)
 // clang-format on
 

@@ -84,6 +84,7 @@ struct cs_lagged_friction;
 struct cs_collider_motion;
 struct cs_surfaces;
 struct cs_seams;
+struct cs_gas;
 struct cs_membranes;
 struct cs_bendings;
 struct cs_points;
@@ -126,6 +127,7 @@ struct cs_system {
     struct cs_points *points;       /* NULL unless colliders are meshes (surface_points.h) */
     struct cs_crossings *crossings; /* NULL unless asked for (body_pairs.h) */
     struct cs_seams *seams;         /* stitches between particles; NULL: none (seams.h) */
+    struct cs_gas *gas;             /* shut in; NULL: none is (force/term_pressure.c) */
     struct cs_membranes *membranes; /* of elastic bodies; NULL: none (elastic/membranes.h) */
     struct cs_bendings *bendings;   /* likewise (elastic/bendings.h) */
     struct cs_events *events;       /* NULL without events; it owns the scene's changed copy */

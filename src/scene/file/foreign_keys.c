@@ -86,7 +86,7 @@ static const struct {
     {"", "obstacles", "colliders"}, {"", "objects", "bodies"}, {"", "cloths", "bodies"},
     {"", "garments", "bodies"}, {"", "motions", "events"}, {"forces", "pressure", "wind.strength"},
     {"bodies", "uniform_pressure_force", "bodies.pressure"}, {"bodies", "inflation", "bodies.pressure"},
-    {"bodies", "inflate", "bodies.pressure"}, {"", "gas_pressure", "bodies.pressure"}, {"", "sewing", "seams"}, {"", "stitches", "seams"},
+    {"bodies", "inflate", "bodies.pressure"}, {"bodies", "ambient_pressure", "bodies.outer_pressure"}, {"", "gas_pressure", "bodies.pressure"}, {"", "sewing", "seams"}, {"", "stitches", "seams"},
     {"", "name", "about"}, {"", "title", "about"}, {"", "description", "about"},
     {"", "dt", "integrator.dt"}, {"", "step", "integrator.dt"}, {"", "timestep", "integrator.dt"},
     {"", "time_step", "integrator.dt"}, {"", "substeps", "integrator.dt"}, {"", "quality", "integrator.dt"},
