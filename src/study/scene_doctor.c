@@ -184,6 +184,7 @@ static void check_load(const struct cs_system *system, struct cs_text *out) {
     const struct cs_scene *scene = system->scene;
     if (scene->colliders.n || cs_scene_has_body_contact(scene))
         return;
+    // each body under each load
     for (uint32_t k = 0; k < 2 * scene->bodies.n; k++) {
         const struct cs_body_range *range = system->bodies + k / 2;
         const double strength = pin_strength(system, range);

@@ -285,6 +285,7 @@ static void check_apart(const struct cs_system *system, uint32_t e, const struct
                        q = h - range->first;
         if (range->mesh || q >= range->count)
             continue;
+        // where the point leads, and the same way in the sheet
         double way[3];
         for (size_t c = 0; c < 3; c++)
             way[c] = to->point[c] + (grab->relative ? system->state[c * n + i] : 0) -

@@ -13,7 +13,7 @@
  *
  * and df = p d2V dx - (P V0/V^2) (dV/dx . dx) dV/dx. Both are in the matrix, the first, which
  * is indefinite, unless that is clamped. V has no block of a vertex with itself. Below V0
- * CRUSHED the pressure stays what it is there. */
+ * CRUSHED p is that at V0 CRUSHED. */
 #include "base/portable_sine.h"
 #include "base/vec3.h"
 #include "model/force/term.h"
@@ -158,6 +158,7 @@ static struct cs_gas *look(const struct cs_system *system, int which, const doub
 
 static enum cs_status gas_build(struct cs_system *system, struct cs_error *error) {
     struct cs_arena *arena = &system->arena;
+    // one for evaluations, one for the matrix
     system->gas = cs_arena_alloc_array(arena, 2, sizeof *system->gas, error);
     for (int k = NOW; k <= KEPT && !error->status; k++) {
         struct cs_gas *gas = system->gas + k;
@@ -255,6 +256,7 @@ static void add_products(const struct cs_system *system, const double *p, bool a
     for (const struct enclosed *in = gas->list; in < gas->list + gas->n; in++) {
         if (!gas->is_clamped)
             add_slope(system, &along, in->body, in->p, y);
+        // the product of rank one
         const double change = change_along(gas, in, n, p);
         for (size_t i = in->body->first; i < (size_t)in->body->first + in->body->count; i++) {
             const double own = g[i] * p[i] + g[n + i] * p[n + i] + g[2 * n + i] * p[2 * n + i];
