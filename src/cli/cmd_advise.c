@@ -125,7 +125,7 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
                     row->message);
     else if (row->verdict != CS_STABILITY_BOUNDED && row->kind != CS_ADVICE_NONE)
         cs_text_add(out, "; %s", cs_stability_word(row->verdict));
-    if (row->verdict == CS_STABILITY_OVER_BUDGET && row->checked_seconds > 0)
+    if (row->verdict == CS_STABILITY_OVER_BUDGET && row->kind != CS_ADVICE_REFUSED)
         cs_text_add(out, " after %.3g s: not tested longer", row->checked_seconds);
 }
 

@@ -7,8 +7,9 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Samples of a probe run, and halvings of a step that proved unstable. */
-enum { SAMPLES = 32, HALVINGS = 6 };
+/* Samples of a probe run, halvings of a step that proved unstable, and the steps that a run
+ * must take before its budget ends to be an answer. */
+enum { SAMPLES = 32, HALVINGS = 6, STEPS_TESTED = 4 };
 #define PERTURBATION    1e-4 /* lengths of the shortest spring */
 #define MARGIN          0.9  /* fraction of the limit that is advised */
 #define GROWTH_SEEN     1e-7 /* growth per step that counts; less is rounding */
@@ -41,10 +42,11 @@ static enum cs_status try_safe(struct cs_advice *row,
     }
     row->checked_seconds = trial.result.reached;
     row->speed = fmax(row->speed, trial.speed_max);
-    if (row->verdict == CS_STABILITY_OVER_BUDGET && !(row->checked_seconds > 0)) {
+    if (row->verdict == CS_STABILITY_OVER_BUDGET && trial.steps < STEPS_TESTED) {
         row->kind = CS_ADVICE_REFUSED;
         snprintf(row->message, sizeof row->message,
-                 "the budget ended before a step was tested: a larger --budget is needed");
+                 "the budget ended before %d steps were tested: a larger --budget is needed",
+                 STEPS_TESTED);
     }
     if (cs_outcome_has_reason(trial.result.outcome))
         snprintf(row->message, sizeof row->message, "%.300s", trial.result.message);
@@ -169,8 +171,8 @@ static enum cs_status advise_fixed(struct cs_advice *row,
     row->held = 0;
     if (error->status)
         return error->status;
-    const bool is_cut = keep_cut_reference(&reference);
-    row->cut = is_cut ? reference.seconds : 0;
+    const struct cs_reference *by = keep_cut_reference(&reference) ? &none : &reference;
+    row->cut = by == &none ? reference.seconds : 0;
     row->steps_ahead = reference.steps_ahead;
     row->limit = row->theory = HUGE_VAL;
     if (reference.steps_ahead > 0)
@@ -189,16 +191,16 @@ static enum cs_status advise_fixed(struct cs_advice *row,
     row->seconds = reference.seconds;
     /* theory knows no limit */
     if (row->limit > 1e100)
-        return try_frame(row, settings, is_cut ? &none : &reference, frame, error);
+        return try_frame(row, settings, by, frame, error);
     row->kind = row->limit > 0 ? CS_ADVICE_THEORY : CS_ADVICE_NONE;
     row->safe = fmin(MARGIN * row->limit, fmin(frame, 10));
     if (row->kind == CS_ADVICE_NONE)
         return CS_OK;
-    if (check && check_limit(row, settings, &reference, error))
+    if (check && check_limit(row, settings, by, error))
         return error->status;
-    if (try_safe(row, settings, &reference, frame, error) || !cs_advice_is_unstable(row))
+    if (try_safe(row, settings, by, frame, error) || !cs_advice_is_unstable(row))
         return error->status;
-    return try_lower(row, settings, &reference, frame, error);
+    return try_lower(row, settings, by, frame, error);
 }
 
 /* Growth rate in 1/s of the worst mode at the advised step, ln(radius) / dt. Theory calls a
