@@ -31,11 +31,11 @@ def numbers(path, place, row, length):
     values = []
     for k, entry in enumerate(row):
         try:
-            if isinstance(entry, bool):
-                raise ValueError
             values.append(Fraction(entry))
+            if isinstance(entry, bool) or abs(values[-1]) > 10**9:
+                raise ValueError
         except (TypeError, ValueError, ZeroDivisionError, OverflowError):
-            fail(path, f"{place}[{k}]", entry, "a number or a fraction as text")
+            fail(path, f"{place}[{k}]", entry, "a number or a fraction as text, at most 10^9")
     return values + [Fraction(0)] * (length - len(row))
 
 

@@ -95,7 +95,8 @@ GOOD = {"name": "good", "order": 2, "source": "tests", "A": [[], ["1/2"]], "b": 
 # what is changed, and the line
 BAD = (
     ({"b": [0, 2]}, 'b: found 2.0, expected numbers whose sum is 1'),
-    ({"A": [[], ["1/x"]]}, 'A[1][0]: found "1/x", expected a number or a fraction as text'),
+    ({"A": [[], ["1/x"]]}, 'A[1][0]: found "1/x", expected a number or a fraction as text, at most 10^9'),
+    ({"A": [[], [10**400]]}, f"A[1][0]: found 1{59 * '0'}, expected a number or a fraction as text, at most 10^9"),
     ({"A": [[]]}, "A: found 1, expected 2 rows, as many as b has numbers"),
     ({"A": [[0, 1], ["1/2"]]}, "A[0]: found [0, 1], expected no number behind the 1th: stages follow each other"),
     ({"c": [0, "1/3"]}, "c[1]: found 0.3333333333333333, expected 0.5, the sum of A[1]"),

@@ -178,10 +178,9 @@ static enum cs_status make(struct film *film, struct cs_error *error) {
     if (part < 0)
         return error->status;
     const struct cs_subprocess_result end = cs_subprocess_run(film->folder, arguments, stop);
-    struct cs_error unseen = {0};
-    const bool done = end.exited_ok && !cs_file_rename(film->part, film->out, &unseen);
+    const bool done = end.exited_ok && !cs_file_rename(film->part, film->out, error);
     if (!done)
-        cs_file_remove(film->part, &unseen);
+        cs_file_remove(film->part, error);
     close(part);
     if (!end.was_found) {
         film->awaits_ffmpeg = true;
@@ -245,10 +244,9 @@ static enum cs_status write_tiles(const struct cs_film_tiles *tiles, const char 
 /* Removes the pictures of tiles, which ffmpeg alone needs. */
 static void remove_tiles(const char *folder, uint32_t n) {
     char path[PATH_BYTES + 16];
-    struct cs_error unseen = {0};
     for (uint32_t k = 0; k < n; k++) {
         snprintf(path, sizeof path, "%.4000s/frame_%05u.png", folder, k + 1);
-        cs_file_remove(path, &unseen);
+        cs_file_remove(path, &(struct cs_error){0});
     }
     rmdir(folder);
 }
