@@ -100,7 +100,7 @@ static void close_case(struct stepping *stepping) {
 }
 
 /* Calls of the force and iterations of a solve are exact, whatever the number of calls. The
- * limit of a method that solves nothing is that of its forces: the divider. */
+ * limit of a method that neither solves nor iterates is that of its forces: the divider. */
 static void add_row(const struct method_case *one, const struct stepping *stepping,
                     const struct bench_task *task, double divide_ns,
                     struct bench_table *table) {
@@ -117,7 +117,7 @@ static void add_row(const struct method_case *one, const struct stepping *steppi
     if (counts->solves)
         snprintf(iterations, sizeof iterations, "%.1f",
                  (double)counts->solve_iterations / (double)counts->solves);
-    else if (!counts->method.sweeps)
+    else if (!strchr(one->method, ':'))
         snprintf(to_limit, sizeof to_limit, "%.2f", ns / least);
     bench_table_add(table, "%s,%s,%g,%.4g,%u,%.4f,%.4f,%.4f,%.2f,%.2f,%s,%s,", one->method,
                     name, one->stiffness, step_of(one, &model), one->steps,

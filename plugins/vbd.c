@@ -83,25 +83,28 @@ struct vbd {
     uint64_t passes;
 };
 
-/* d = p_i - p_j of a slot's springs. */
-CS_INLINE void difference(size_t n, const double *p, const uint32_t *item,
-                          const uint32_t *other, double d[3][LANES]) {
+/* Some particles of p (3,n). */
+CS_INLINE void read_items(size_t n, const double *p, const uint32_t *item,
+                          double to[3][LANES]) {
     for (size_t c = 0; c < 3; c++, p += n)
         for (size_t l = 0; l < LANES; l++)
-            d[c][l] = p[item[l]] - p[other[l]];
+            to[c][l] = p[item[l]];
 }
 
-/* Adds a slot's springs to the blocks a (6) and right-hand sides b (3) of a group at z. */
+/* Adds a slot's springs to the blocks a (6) and right-hand sides b (3) of a group that is at z,
+ * and was at `old` when the step began. */
 CS_INLINE void add_slot(const struct vbd *self, const struct spring_slot *slot,
-                        const uint32_t *item, double a[6][LANES], double b[3][LANES]) {
+                        double z[3][LANES], double old[3][LANES], double a[6][LANES],
+                        double b[3][LANES]) {
     const size_t n = self->loop.host->view->n;
     double d[3][LANES], e[3][LANES];
-    difference(n, self->x, item, slot->other, d);
-    difference(n, self->old, item, slot->other, e);
+    read_items(n, self->x, slot->other, d);
+    read_items(n, self->old, slot->other, e);
     CS_INDEPENDENT
     for (size_t l = 0; l < LANES; l++) {
-        const double dx = d[0][l], dy = d[1][l], dz = d[2][l];
-        const double ex = dx - e[0][l], ey = dy - e[1][l], ez = dz - e[2][l];
+        const double dx = z[0][l] - d[0][l], dy = z[1][l] - d[1][l], dz = z[2][l] - d[2][l];
+        const double ex = dx - (old[0][l] - e[0][l]), ey = dy - (old[1][l] - e[1][l]),
+                     ez = dz - (old[2][l] - e[2][l]);
         // two particles in one place have no direction: u is 0
         const double inverse = 1 / sqrt(dx * dx + dy * dy + dz * dz + DBL_MIN);
         const double ux = dx * inverse, uy = dy * inverse, uz = dz * inverse;
@@ -146,15 +149,17 @@ CS_INLINE void move_group(struct vbd *self, size_t group) {
     const struct cs_view *view = self->loop.host->view;
     const size_t n = view->n;
     const uint32_t *item = self->groups.item + group * LANES;
-    double a[6][LANES] = {{0}}, b[3][LANES];
+    double a[6][LANES] = {{0}}, b[3][LANES], z[3][LANES], old[3][LANES];
+    read_items(n, self->x, item, z);
+    read_items(n, self->old, item, old);
     for (size_t l = 0; l < LANES; l++) {
         const double mass = view->mass[item[l]];
         a[0][l] = a[3][l] = a[5][l] = mass;
         for (size_t c = 0; c < 3; c++)
-            b[c][l] = mass * (self->y[c * n + item[l]] - self->x[c * n + item[l]]);
+            b[c][l] = mass * (self->y[c * n + item[l]] - z[c][l]);
     }
     for (size_t s = self->groups.slot_begin[group]; s < self->groups.slot_begin[group + 1]; s++)
-        add_slot(self, self->groups.slots + s, item, a, b);
+        add_slot(self, self->groups.slots + s, z, old, a, b);
     if (self->blocks)
         add_contact(self, item, a, b);
     CS_INDEPENDENT
@@ -166,7 +171,7 @@ CS_INLINE void move_group(struct vbd *self, size_t group) {
             (double)(view->inv_mass[item[l]] > 0) / cs_sym3_cofactors(block, cofactors);
         cs_sym3_mul(cofactors, r, dz);
         for (size_t c = 0; c < 3; c++)
-            b[c][l] = self->x[c * n + item[l]] + inverse * dz[c];
+            b[c][l] = z[c][l] + inverse * dz[c];
     }
     // after all were read, since a particle may fill several lanes
     for (size_t l = 0; l < LANES; l++)
