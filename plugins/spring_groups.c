@@ -1,7 +1,7 @@
 /* Springs as constraints, in groups of vectors. */
 #include "spring_groups.h"
 
-#include "places.h"
+#include "positions.h"
 
 /* Finds the level of each spring, one more than those of all springs before it at its ends, and
  * the number of springs of each level. `after` (n): level after those of the springs at a
@@ -58,6 +58,7 @@ static bool has_relative_dampers(const struct cs_view *view) {
 
 enum cs_step spring_groups_init(struct spring_groups *self, const struct cs_host *host) {
     const struct cs_view *view = host->view;
+    // one more, since an allocation of nothing is none
     const size_t springs = view->n_springs + (size_t)1, word = sizeof(uint32_t);
     uint32_t *place = host->alloc(host->ctx, springs * word);
     uint32_t *count = host->alloc(host->ctx, springs * word);
@@ -67,7 +68,7 @@ enum cs_step spring_groups_init(struct spring_groups *self, const struct cs_host
     self->n = find_places(view, place, count, find_levels(view, place, count, after));
     const size_t n = self->n + (size_t)1, particles = view->n + (size_t)1;
     if (!(self->spring = host->alloc(host->ctx, n * LANES * word)) ||
-        !(self->places = host->alloc(host->ctx, particles * sizeof(quad))) ||
+        !(self->positions = host->alloc(host->ctx, particles * sizeof(quad))) ||
         !(self->groups = host->alloc(host->ctx, n * sizeof *self->groups)) ||
         !(self->axial = host->alloc(host->ctx, n * sizeof *self->axial)))
         return CS_STEP_FAIL;
@@ -88,20 +89,21 @@ void spring_groups_read_constants(struct spring_groups *self, const struct cs_vi
             self->groups[g].length[l] = view->length[s];
             self->groups[g].compliance[l] = 1 / (k * h * h);
             self->axial[g].gamma[l] = view->axial[s] ? c / (k * h) : 0;
+            // a lane left over has the constants of spring 0, and moves nothing
             self->is_damped |= self->axial[g].gamma[l] != 0;
             if (self->relative)
                 self->relative[g].compliance[l] = !view->axial[s] && c > 0 ? 1 / (c * h) : 0;
         }
 }
 
-CS_CLONES void spring_groups_take(struct spring_groups *self, const struct cs_view *view,
-                                  const double *x) {
-    take_places(self->places, view->n, x, view->inv_mass);
+void spring_groups_take(struct spring_groups *self, const struct cs_view *view,
+                        const double *x) {
+    take_positions(self->positions, view->n, x, view->inv_mass);
 }
 
-CS_CLONES void spring_groups_give(const struct spring_groups *self, const struct cs_view *view,
-                                  double *x) {
-    give_places(self->places, view->n, x);
+void spring_groups_give(const struct spring_groups *self, const struct cs_view *view,
+                        double *x) {
+    give_positions(self->positions, view->n, x);
 }
 
 const struct spring_sweeps *spring_sweeps(void) {

@@ -11,15 +11,15 @@
 
 #include <clothsim/integrator.h>
 
-/* Springs of a group at once; a vector has all, four or two of them (places.h). */
+/* Springs of a group at once; a vector has all, four or two of them (positions.h). */
 enum { LANES = 8 };
 
-/* Springs of a group, for a step of h. Places left over join the particle n to itself. */
+/* Springs of a group, for a step of h. Lanes left over join the particle n to itself. */
 struct spring_group {
     _Alignas(64) double length[LANES]; /* L in m */
     double compliance[LANES];          /* 1/(k h h) in 1/kg */
     double multiplier[LANES];          /* l in kg m */
-    uint32_t a[LANES], b[LANES];       /* where the particles begin in `places` */
+    uint32_t a[LANES], b[LANES];       /* where the particles begin in `positions` */
 };
 
 /* Dampers along the springs of a group: g = c/(k h), and d at the begin of the step in m. */
@@ -37,8 +37,8 @@ struct relative_group {
 
 struct spring_groups {
     uint32_t n;
-    uint32_t *spring; /* (n, LANES) */
-    double *places;   /* (n particles + 1, 4) x in m and the inverse mass in 1/kg */
+    uint32_t *spring;  /* (n, LANES) */
+    double *positions; /* (n particles + 1, 4) x in m and the inverse mass in 1/kg */
     struct spring_group *groups;
     struct axial_group *axial;
     struct relative_group *relative; /* NULL: there are none at the begin of the run */
@@ -58,7 +58,7 @@ void spring_groups_take(struct spring_groups *self, const struct cs_view *view,
 
 /* The loops over groups, with vectors of one width. */
 struct spring_sweeps {
-    /* Notes the places taken last as those at the begin of a step, for dampers. */
+    /* Notes the positions taken last as those at the begin of a step, for dampers. */
     void (*note_old)(struct spring_groups *self);
     /* One pass over all springs, which corrects the particles; is_first: with multipliers 0
      * before it. */
@@ -66,7 +66,7 @@ struct spring_sweeps {
 };
 extern const struct spring_sweeps spring_sweeps_2, spring_sweeps_4, spring_sweeps_8;
 
-/* Those that are quickest on this processor; they all have the same bits. */
+/* The quickest sweeps of this processor; bits are those of all others. */
 const struct spring_sweeps *spring_sweeps(void);
 
 /* Gives the particles back to x (3,n). */

@@ -1,6 +1,6 @@
 /* spring_sweep.h - sweeps over groups of springs, with vectors of WIDTH springs: the whole of
  * spring_sweep_2.c, spring_sweep_4.c and spring_sweep_8.c. */
-#include "places.h"
+#include "positions.h"
 #include "spring_groups.h"
 
 #include <float.h>
@@ -16,8 +16,8 @@ CS_CLONES static void note_old(struct spring_groups *self) {
     for (size_t k = 0; (self->is_damped || self->relative) && k < self->n * (size_t)LANES;
          k += WIDTH) {
         const size_t g = k / LANES, l = k % LANES;
-        read_places(self->places, self->groups[g].a + l, a);
-        read_places(self->places, self->groups[g].b + l, b);
+        read_positions(self->positions, self->groups[g].a + l, a);
+        read_positions(self->positions, self->groups[g].b + l, b);
         for (size_t c = 0; c < 3; c++) {
             *at(self->axial[g].old[c] + l) = b[c] - a[c];
             if (self->relative)
@@ -45,6 +45,7 @@ CS_INLINE void project_springs(struct spring_group *group, struct axial_group *a
                          dz / length * (dz - *at(axial->old[2] + first)));
         weight *= 1 + gamma;
     }
+    // the rest as in project_dampers: along d, by inverse masses
     const lanes change = miss / (weight + compliance), push = change / length;
     *at(group->multiplier + first) = kept + change;
     const lanes moved[3] = {dx * push, dy * push, dz * push};
@@ -65,6 +66,7 @@ CS_INLINE void project_dampers(struct relative_group *damper, size_t first, bool
             const double change = (damper->old[c][first + l] - d - compliance * kept) /
                                   (a[3][l] + b[3][l] + compliance);
             *multiplier = kept;
+            // no damper
             if (!(compliance > 0))
                 continue;
             *multiplier += change;
@@ -80,13 +82,13 @@ CS_INLINE void sweep_groups(struct spring_groups *self, bool is_first, const boo
     for (size_t g = 0; g < self->n; g++)
         for (size_t first = 0; first < LANES; first += WIDTH) {
             struct spring_group *group = self->groups + g;
-            read_places(self->places, group->a + first, a);
-            read_places(self->places, group->b + first, b);
+            read_positions(self->positions, group->a + first, a);
+            read_positions(self->positions, group->b + first, b);
             project_springs(group, self->axial + g, first, damped, is_first, a, b);
             if (related)
                 project_dampers(self->relative + g, first, is_first, a, b);
-            write_places(self->places, group->a + first, a);
-            write_places(self->places, group->b + first, b);
+            write_positions(self->positions, group->a + first, a);
+            write_positions(self->positions, group->b + first, b);
         }
 }
 

@@ -1,11 +1,11 @@
-/* places.h - particles as four numbers each, x and the inverse mass: one load and one store a
- * particle, for loops over vectors that go through particles in any order.
+/* positions.h - particles as four numbers each, x and the inverse mass: one load and one store
+ * a particle, for loops over vectors that go through particles in any order.
  *
  * WIDTH, 2, 4 or 8, is the number of particles that a vector has: as many as the processor's
  * own, because gcc takes wider ones apart, number by number. Each lane has its own arithmetic,
  * and results do not depend on the width. */
-#ifndef PLACES_H
-#define PLACES_H
+#ifndef POSITIONS_H
+#define POSITIONS_H
 
 #include <clothsim/clones.h>
 #include <stddef.h>
@@ -15,42 +15,47 @@ enum { PLACE = 4 };
 
 typedef double quad __attribute__((vector_size(PLACE * sizeof(double)), may_alias));
 
-/* The place that begins at number k of the places. */
-CS_INLINE quad *place_at(double *places, size_t k) {
-    return (quad *)(places + k);
+/* The particle that begins at number k of the positions. */
+CS_INLINE quad *position_at(double *positions, size_t k) {
+    return (quad *)(positions + k);
 }
 
 /* Takes n particles from x (3,n). */
-CS_INLINE void take_places(double *places, size_t n, const double *x, const double *inv_mass) {
+CS_INLINE void take_positions(double *positions, size_t n, const double *x,
+                              const double *inv_mass) {
     for (size_t i = 0; i < n; i++)
-        *place_at(places, PLACE * i) = (quad){x[i], x[n + i], x[2 * n + i], inv_mass[i]};
+        *position_at(positions, PLACE * i) = (quad){x[i], x[n + i], x[2 * n + i], inv_mass[i]};
 }
 
 /* Gives n particles back to x (3,n). */
-CS_INLINE void give_places(const double *places, size_t n, double *x) {
+CS_INLINE void give_positions(const double *positions, size_t n, double *x) {
     for (size_t i = 0; i < n; i++)
         for (size_t c = 0; c < 3; c++)
-            x[c * n + i] = places[PLACE * i + c];
+            x[c * n + i] = positions[PLACE * i + c];
 }
 #ifdef WIDTH
 /* One number of each of WIDTH particles. */
 typedef double lanes __attribute__((vector_size(WIDTH * sizeof(double)), may_alias));
 
 #if WIDTH == 2
-/* x, y, z in m and inverse mass in 1/kg of WIDTH particles, whose places begin at `item`. */
-CS_INLINE void read_places(double *places, const uint32_t *item, lanes to[PLACE]) {
+/* x, y, z in m and inverse mass in 1/kg of WIDTH particles, which begin at `item`. */
+CS_INLINE void read_positions(double *positions, const uint32_t *item, lanes to[PLACE]) {
     for (size_t c = 0; c < PLACE; c += WIDTH) {
-        const lanes p = *(lanes *)(places + item[0] + c), q = *(lanes *)(places + item[1] + c);
+        const lanes p = *(lanes *)(positions + item[0] + c),
+                    q = *(lanes *)(positions + item[1] + c);
         to[c] = __builtin_shufflevector(p, q, 0, 2);
         to[c + 1] = __builtin_shufflevector(p, q, 1, 3);
     }
 }
 
 /* The reverse. */
-CS_INLINE void write_places(double *places, const uint32_t *item, const lanes from[PLACE]) {
+CS_INLINE void write_positions(double *positions, const uint32_t *item,
+                               const lanes from[PLACE]) {
     for (size_t c = 0; c < PLACE; c += WIDTH) {
-        *(lanes *)(places + item[0] + c) = __builtin_shufflevector(from[c], from[c + 1], 0, 2);
-        *(lanes *)(places + item[1] + c) = __builtin_shufflevector(from[c], from[c + 1], 1, 3);
+        *(lanes *)(positions + item[0] + c) =
+            __builtin_shufflevector(from[c], from[c + 1], 0, 2);
+        *(lanes *)(positions + item[1] + c) =
+            __builtin_shufflevector(from[c], from[c + 1], 1, 3);
     }
 }
 #else
@@ -75,30 +80,32 @@ CS_INLINE void transpose(const lanes *from, lanes *to) {
     to[3] = __builtin_shufflevector(q, s, PICK_HALVES(2));
 }
 
-/* x, y, z in m and inverse mass in 1/kg of WIDTH particles, whose places begin at `item`. */
-CS_INLINE void read_places(double *places, const uint32_t *item, lanes to[PLACE]) {
+/* x, y, z in m and inverse mass in 1/kg of WIDTH particles, which begin at `item`. */
+CS_INLINE void read_positions(double *positions, const uint32_t *item, lanes to[PLACE]) {
     lanes rows[PLACE];
     for (size_t l = 0; l < PLACE; l++)
 #if WIDTH == 8
-        rows[l] =
-            __builtin_shufflevector(*place_at(places, item[l]),
-                                    *place_at(places, item[l + PLACE]), 0, 1, 2, 3, 4, 5, 6, 7);
+        rows[l] = __builtin_shufflevector(*position_at(positions, item[l]),
+                                          *position_at(positions, item[l + PLACE]), 0, 1, 2, 3,
+                                          4, 5, 6, 7);
 #else
-        rows[l] = *place_at(places, item[l]);
+        rows[l] = *position_at(positions, item[l]);
 #endif
     transpose(rows, to);
 }
 
 /* The reverse. */
-CS_INLINE void write_places(double *places, const uint32_t *item, const lanes from[PLACE]) {
+CS_INLINE void write_positions(double *positions, const uint32_t *item,
+                               const lanes from[PLACE]) {
     lanes rows[PLACE];
     transpose(from, rows);
     for (size_t l = 0; l < PLACE; l++) {
 #if WIDTH == 8
-        *place_at(places, item[l + PLACE]) =
+        *position_at(positions, item[l + PLACE]) =
             __builtin_shufflevector(rows[l], rows[l], 4, 5, 6, 7);
 #endif
-        *place_at(places, item[l]) = __builtin_shufflevector(rows[l], rows[l], 0, 1, 2, 3);
+        *position_at(positions, item[l]) =
+            __builtin_shufflevector(rows[l], rows[l], 0, 1, 2, 3);
     }
 }
 #endif
