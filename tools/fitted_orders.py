@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-SECONDS, FPS = 0.2, 20
+SECONDS, FPS = 0.4, 5
 PINS = ["top-left", "top-right"]
 SPRINGS = {"stretch": 20, "shear": 6, "bend": 0.6}
 
@@ -47,8 +47,9 @@ SCENES = {
                 "contact": {"law": "force", "stiffness": 20, "damping": 0.01,
                             "friction_speed": 0.3}},
     "moving pins": {"bodies": [sheet()],
-                    "events": [{"from": 0, "to": 9, "move": {
-                        "particles": ["top-left"], "path": [{"at": 9, "by": [0.9, 1.8, -0.9]}]}}]},
+                    "events": [{"from": 0, "to": 9, "grab": {
+                        "body": 0, "particles": ["top-left"],
+                        "path": [{"at": 9, "point": [0.65, 1.8, -1.15]}]}}]},
 }
 DAMPED = set(SCENES) - {"smooth", "moving pins"}
 # what else a method needs, so that its iterations leave less than its steps do

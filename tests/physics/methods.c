@@ -64,6 +64,7 @@ static const struct {
      "sinks by a tenth more in shorter steps"},
     {"pins", "cvode-bdf", "rtol=1e-2", "takes long steps then"},
     {"pins", "explicit-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"slide", "avbd", "iterations=300", "its passes move a stiff body as a whole slowly"},
     {"slide", "implicit-block", NULL, "h K_ii v is a drag that a sliding sheet feels"},
     {"slide", "vbd", "iterations=300", "its passes move a stiff body as a whole slowly"},
     {"small creep", "ros2", NULL, "throws to and fro what slips at the begin of a step"},

@@ -37,6 +37,7 @@ static const struct bounds {
     double least, most, pairs;
     const char *reason;
 } own_bounds[] = {
+    {"avbd", 0.35, 1, 0.05, "dissipates as backward-euler"},
     {"backward-euler", 0.35, 1, 0.05, "dissipates: a step that is long against range/speed"},
     {"implicit-linearised", 0.97, 1.01, 0, "pairs: as backward-euler, without its iteration"},
     {"symplectic-euler", 0.9, 1.06, 0.9, "its energy swings by the first order of h"},
