@@ -28,7 +28,7 @@ _Static_assert(CV_ERR_FAILURE == SUNDIALS_ERROR_TEST &&
 
 /* The fraction of the local error that the nonlinear iteration may leave. CVODE's default 0.1
  * suits an outdated matrix; here each iteration has its own, and 0.1 takes 1.08 to 1.45 times
- * the work at no smaller error (docs/notes/sundials-calls.md). */
+ * the work for about the same error or more (docs/notes/sundials-calls.md). */
 #define NONLINEAR_SHARE 1
 
 /* The largest growth of a step after a restart. CVODE allows 1e4 there, and the step is then
