@@ -1,7 +1,7 @@
 /* Any bytes as sweep.csv: rows or a refusal, and what is written again reads as the same rows.
  * Once as they are, and once with the checks of the rows put right. */
 #include "folder.h"
-#include "study/sweep_cell.h"
+#include "sweep/sweep_cell.h"
 
 #include <stdint.h>
 

@@ -5,8 +5,8 @@
 #include "shared/known_columns.h"
 #include "study/compare/compare_cell.h"
 #include "study/energy_monitor.h"
-#include "study/parameter_sweep.h"
 #include "study/stability/stability.h"
+#include "sweep/parameter_sweep.h"
 
 #define SCENE "path of the scene file; - for standard input"
 #define HASH  "XXH3, 128 bits, in hexadecimal digits"

@@ -8,8 +8,8 @@
 #include "cli/line/print.h"
 #include "cli/manifest.h"
 #include "study/compare/compare_state.h"
-#include "study/parameter_sweep.h"
 #include "study/stability/stability_state.h"
+#include "sweep/parameter_sweep.h"
 
 #include <dirent.h>
 #include <fnmatch.h>

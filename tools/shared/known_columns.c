@@ -4,8 +4,8 @@
 #include "sim/energy_ledger.h"
 #include "study/compare/compare_cell.h"
 #include "study/energy_monitor.h"
-#include "study/parameter_sweep.h"
 #include "study/stability/stability.h"
+#include "sweep/parameter_sweep.h"
 
 #include <string.h>
 

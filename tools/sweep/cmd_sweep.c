@@ -6,9 +6,9 @@
 #include "cli/manifest.h"
 #include "cli/run_output.h"
 #include "sim/registry.h"
-#include "study/parameter_sweep.h"
 #include "study/process_pool.h"
 #include "study/recorded_run.h"
+#include "sweep/parameter_sweep.h"
 
 #include <stdio.h>
 #include <string.h>

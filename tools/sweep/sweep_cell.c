@@ -1,6 +1,6 @@
 /* sweep_cell.c - one cell of a sweep: its values, its key, its run, its row; and the rows of
  * sweep.csv. */
-#include "study/sweep_cell.h"
+#include "sweep/sweep_cell.h"
 
 #include "base/file.h"
 #include "model/force/diagnostics.h"

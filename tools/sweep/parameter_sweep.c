@@ -1,8 +1,8 @@
 /* Runs the Cartesian product of values and methods, and stores one row per cell. */
-#include "study/parameter_sweep.h"
+#include "sweep/parameter_sweep.h"
 
 #include "study/process_pool.h"
-#include "study/sweep_cell.h"
+#include "sweep/sweep_cell.h"
 
 #include <stdio.h>
 #include <stdlib.h>

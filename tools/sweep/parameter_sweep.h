@@ -3,7 +3,7 @@
 #ifndef CS_PARAMETER_SWEEP_H
 #define CS_PARAMETER_SWEEP_H
 
-#include "study/sweep_cell.h"
+#include "sweep/sweep_cell.h"
 
 /* Runs the cells of the shard that sweep.csv lacks and no other process runs, each in a process
  * of its own. Each row is appended at once; when all cells are there, they are sorted. A cell
