@@ -53,13 +53,11 @@ static enum cs_status read_bytes(int file, const char *path, char *bytes, size_t
     size_t done = 0;
     while (done < size) {
         const ssize_t got = read(file, bytes + done, size - done);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got < 0)
+        if (got < 0 && errno != EINTR)
             return fail("read", path, error);
         if (got == 0)
             break;
-        done += (size_t)got;
+        done += got > 0 ? (size_t)got : 0;
     }
     bytes[done] = 0;
     *length = done;
@@ -154,11 +152,10 @@ int cs_file_open_shared(const char *path, int flags, struct cs_error *error) {
 int cs_file_open_own(const char *path, int flags, struct cs_error *error) {
     struct stat info, named;
     const int file = cs_file_open_shared(path, flags, error);
-    if (file < 0)
-        return -1;
     // without the name it is the finished file of the process that had the lock
-    if ((!flock(file, LOCK_EX | LOCK_NB) || errno != EWOULDBLOCK) && !fstat(file, &info) &&
-        !lstat(path, &named) && named.st_ino == info.st_ino && named.st_dev == info.st_dev)
+    if (file < 0 ||
+        ((!flock(file, LOCK_EX | LOCK_NB) || errno != EWOULDBLOCK) && !fstat(file, &info) &&
+         !lstat(path, &named) && named.st_ino == info.st_ino && named.st_dev == info.st_dev))
         return file;
     close(file);
     cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": another process is writing it", path);
@@ -169,13 +166,12 @@ int cs_file_open_own(const char *path, int flags, struct cs_error *error) {
 static void remove_left(const char *path) {
     struct stat info;
     const int file = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0 && errno == ELOOP)
+    if (file < 0
+            ? errno == ELOOP
+            : !fstat(file, &info) && S_ISREG(info.st_mode) && !flock(file, LOCK_EX | LOCK_NB))
         unlink(path);
-    if (file < 0)
-        return;
-    if (!fstat(file, &info) && S_ISREG(info.st_mode) && !flock(file, LOCK_EX | LOCK_NB))
-        unlink(path);
-    close(file);
+    if (file >= 0)
+        close(file);
 }
 
 /* Opens a new file and locks it, never through a link that someone else made. Returns -1 and
@@ -250,9 +246,7 @@ enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
     if (out->file)
         return CS_OK;
     fail("write", path, error);
-    if (file >= 0)
-        close(file);
-    if (file >= 0 && !streams)
+    if (file >= 0 && !close(file) && !streams)
         unlink(out->temporary);
     return error->status;
 }
@@ -269,26 +263,23 @@ static void sync_folder(const char *path) {
     close(file);
 }
 
+/* Keeps the reason of the first failure. */
+static void record(bool now, bool *failed, int *reason) {
+    *reason = now && !*failed ? errno : *reason;
+    *failed = *failed || now;
+}
+
 enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error) {
     /* an earlier failure shows in ferror alone, with the reason most likely still in errno;
      * what is still in the buffer fails now */
     int reason = errno;
     bool failed = ferror(out->file) != 0;
-    if (!failed && fflush(out->file)) {
-        failed = true;
-        reason = errno;
-    }
+    record(!failed && fflush(out->file), &failed, &reason);
     const bool streams = !*out->temporary;
     // the lock lasts until the file has its name: without it another process would remove it
     const int lock = streams ? -1 : fcntl(fileno(out->file), F_DUPFD_CLOEXEC, 0);
-    if (!failed && !streams && out->durable && fsync(fileno(out->file))) {
-        failed = true;
-        reason = errno;
-    }
-    if (fclose(out->file) && !failed) {
-        failed = true;
-        reason = errno;
-    }
+    record(!failed && !streams && out->durable && fsync(fileno(out->file)), &failed, &reason);
+    record(fclose(out->file) != 0, &failed, &reason);
     out->file = NULL;
     const bool named = !failed && (streams || !rename(out->temporary, out->path));
     reason = failed || named ? reason : errno;

@@ -186,9 +186,9 @@ enum cs_status cs_row_table_append(const struct cs_row_table *table, const void 
         return error->status;
     const int file = cs_file_open_shared(table->path, O_CREAT, error);
     const off_t end = file >= 0 ? end_of_rows(file, table->row_bytes) : -1;
-    if (end < 0 || ftruncate(file, end) || pwrite(file, rows, length, end) != (ssize_t)length)
-        cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", table->path, strerror(errno));
-    if (file >= 0 && close(file) && !error->status)
+    const bool wrote =
+        end >= 0 && !ftruncate(file, end) && pwrite(file, rows, length, end) == (ssize_t)length;
+    if ((file >= 0 && close(file)) || !wrote)
         cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", table->path, strerror(errno));
     close(lock);
     return error->status;
