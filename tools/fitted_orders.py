@@ -8,7 +8,7 @@ The page of docs/notes has this output and notes by hand; all methods take ten m
 The error is that of the last positions, the root of the mean square in m against dop853 at a
 tolerance of 1e-13. Fixed steps are halved three times from one that depends on the order claimed,
 tolerances divided by ten; the order is the slope of log(error) against log(time / steps)
-over the last three runs that err by 1e-12 to 1e-2 m. "-": fewer than three did, and methods of
+over the last three runs that err by 1e-13 to 1e-2 m. "-": fewer than three did, and methods of
 variable order; "refused": the method may not.
 """
 import json
@@ -106,7 +106,7 @@ def fitted(program, folder, scene, method, reference):
         if x is not None:
             error = math.sqrt(np.mean(np.sum((x - reference) ** 2, axis=1)))
             points.append((math.log(SECONDS / steps), error))
-    good = [(h, math.log(error)) for h, error in points if 1e-12 < error < 1e-2][-3:]
+    good = [(h, math.log(error)) for h, error in points if 1e-13 < error < 1e-2][-3:]
     if len(good) < 3:
         return "-"
     return f"{np.polyfit(*zip(*good), 1)[0]:.2f}"
