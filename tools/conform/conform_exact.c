@@ -74,7 +74,7 @@ static bool applies(const struct cs_conform *card, struct cs_conform_row *row) {
     return false;
 }
 
-/* What is claimed. */
+/* The order that is claimed, and whether a step needs no earlier ones. */
 struct claim {
     uint32_t order;
     bool one_step;
