@@ -48,7 +48,7 @@ struct spring_groups {
 /* Groups the springs of the view; [create]. Needs CS_NEED_SPRINGS. */
 enum cs_step spring_groups_init(struct spring_groups *self, const struct cs_host *host);
 
-/* Reads the springs' constants for a step of h in s: events change them. */
+/* Reads the springs' constants for a step of h in s: events and ramps change them. */
 void spring_groups_read_constants(struct spring_groups *self, const struct cs_view *view,
                                   double h);
 

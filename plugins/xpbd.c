@@ -74,8 +74,7 @@ struct xpbd {
     double *old;  /* (3,n) in m: where the step began */
     struct spring_groups springs;
     const struct spring_sweeps *sweeps;
-    double springs_h; /* s: the step that their constants were read for; 0: they are stale */
-    uint64_t passes;  /* over the springs */
+    uint64_t passes; /* over the springs */
 
     /* in scenes with contact by force, else NULL */
     double *impulse; /* (3,n) p in kg m */
@@ -117,9 +116,8 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
     const uint32_t outer = self->impulse ? CS_PART_OUTER & ~CONTACT : CS_PART_OUTER;
     host->force(host->ctx, t, x, v, outer, self->f);
     memcpy(self->old, x, 3 * n * sizeof *x);
-    if (h != self->springs_h || loop->history_void)
-        spring_groups_read_constants(&self->springs, host->view, h);
-    self->springs_h = h;
+    // ramps change them with the time of the force above
+    spring_groups_read_constants(&self->springs, host->view, h);
     spring_groups_take(&self->springs, host->view, x);
     self->sweeps->note_old(&self->springs);
     for (size_t c = 0; c < 3; c++)
@@ -207,12 +205,6 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     return fixed_step_guard(&self->loop, NULL);
 }
 
-/* Events may have changed the springs, and a state that is read afterwards does not tell. */
-static enum cs_step restart(void *object, double t, const double *x, const double *v) {
-    ((struct xpbd *)object)->springs_h = 0;
-    return fixed_step_restart(object, t, x, v);
-}
-
 static void stats(const void *object, struct cs_stats *out) {
     fixed_step_stats(object, out);
     out->newton = ((const struct xpbd *)object)->passes;
@@ -242,7 +234,7 @@ static const struct cs_integrator xpbd = {
     .n_options = sizeof rows / sizeof rows[0],
     .options_size = sizeof(struct xpbd_options),
     .create = create,
-    .restart = restart,
+    .restart = fixed_step_restart,
     .advance = advance,
     .stats = stats,
     .save = archive,
