@@ -8,7 +8,8 @@
  * from the perturbed start and from the scene's own.
  *   4. If it is unstable, the border is bisected by probe runs and 0.9 of it is advised.
  * Without a limit in theory one step per frame is tried, and bisected if unstable; the
- * reference is not begun for such a method if its steps exceed the budget. An adaptive method
+ * reference is not begun for such a method if its steps exceed the budget; beyond one that the
+ * budget cut, steps are tested without it. An adaptive method
  * gets a probe run only, for its cost and verdict. */
 #ifndef CS_ADVISE_H
 #define CS_ADVISE_H
