@@ -246,7 +246,8 @@ enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
     if (run->outcome == CS_RUNNING) {
         run->t = next;
         run->frame++;
-    }
+    } else if (run->outcome == CS_OVER_BUDGET)
+        run->t = run->host->advance_check.last_commit;
     return CS_OK;
 }
 

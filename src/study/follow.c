@@ -2,7 +2,6 @@
 #include "study/follow.h"
 
 #include "base/clock.h"
-#include "sim/run_host.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -37,16 +36,14 @@ enum cs_status cs_follow_result(const struct cs_run *run, const char *interrupte
     // a process that was changed must not go on with other runs
     const bool failed = error->status == CS_ERR_MODULE && !run->is_process_changed;
     const char *text = run->reason ? run->reason : cs_outcome_text(run->outcome);
-    const double reached =
-        run->outcome == CS_OVER_BUDGET ? run->host->advance_check.last_commit : run->t;
     *result = (struct cs_run_result){
         .outcome = failed ? CS_FAILED : run->outcome,
-        .reached = reached,
-        .time = cs_outcome_is_blow_up(run->outcome) ? run->blow_up.time : reached};
+        .reached = run->t,
+        .time = cs_outcome_is_blow_up(run->outcome) ? run->blow_up.time : run->t};
     if (run->outcome == CS_OVER_BUDGET)
         snprintf(result->message, sizeof result->message,
                  "%s after %.4g passes over the forces, at t = %.4g s", text,
-                 cs_counts_work(&run->counts), reached);
+                 cs_counts_work(&run->counts), run->t);
     else
         snprintf(result->message, sizeof result->message, "%s", failed ? error->message : text);
     if (failed)

@@ -134,7 +134,7 @@ static void draw_line(cairo_t *cairo, const struct box *box, const struct cs_pan
     cairo_new_path(cairo);
 }
 
-/* Of full marks on a line only those that leave it in sight, and the last. */
+/* Draws full marks only where they leave their line in sight, and the last of them. */
 static void draw_marks(cairo_t *cairo, const struct box *box, const struct cs_panel *panel,
                        const struct cs_series *series, enum cs_mark mark) {
     double x, y, last[2] = {HUGE_VAL, HUGE_VAL};
