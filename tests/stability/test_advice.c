@@ -235,23 +235,3 @@ TEST(friction_beside_dampers_limits_no_step) {
         ck_assert(border[1] > safe[1] && border[1] < 1.3 * safe[1]);
     }
 }
-
-/* A call has 20 nominal seconds, 5 for each of some methods, and 60 for many. The runs are
- * interrupted: the budget stands before the first one. */
-TEST(budget_of_a_call_is_bounded) {
-    static const uint32_t n[] = {1, 6, 0};
-    static const double budgets[] = {20, 30, 60};
-    for (int k = 0; k < 3; k++) {
-        const volatile sig_atomic_t stop = 1;
-        struct cs_error error = {0};
-        struct cs_advise advise = {.session = {.scene = SCENES "/swing.json"},
-                                   .methods = methods,
-                                   .n_methods = n[k],
-                                   .seconds = 1,
-                                   .workers = 1,
-                                   .stop = &stop};
-        ck_assert_int_eq(cs_advise_run(&advise, &error), CS_ERR_INTERRUPT);
-        ck_assert_double_eq(advise.budget, budgets[k]);
-        cs_advise_finish(&advise);
-    }
-}
