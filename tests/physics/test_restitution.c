@@ -305,12 +305,18 @@ TEST(impacts_lose_what_friction_takes) {
     "{\"cloth\": {\"grid\": [%d, %d], \"size\": [0.4, 0.4], \"start\": \"flat\", \"place\": "  \
     "{\"translate\": [%g, %.15g, 0]}, \"velocity\": [0, %g, 0]}, \"mass\": "                   \
     "{\"areal_density\": "                                                                     \
-    "0.2}, \"thickness\": 0.002}"
+    "%g}, \"thickness\": 0.002}"
+/* a box of triangles with its top at y = 0 */
+#define BOX                                                                                    \
+    "\"mesh\": {\"shape\": \"box\", \"detail\": 4, \"scale\": [1, 0.2, 1], "                   \
+    "\"place\": {\"translate\": [0, -0.1, 0]}}"
 struct given {
     int side;            /* particles of a sheet's edge */
     bool clash;          /* two sheets far above the floor */
     double speed;        /* m/s of each */
     const char *further; /* keys of contact */
+    double heavier;      /* the sheet from below, in times; 0: as heavy */
+    bool mesh;           /* the floor is the top of a box of triangles */
 };
 
 /* Velocity apart after the impact over that together before. */
@@ -320,12 +326,15 @@ static double comes_back(const char *method, const struct given *given, double r
     char bodies[800];
     struct fixture sheets;
     int used = snprintf(bodies, sizeof bodies, GIVEN_SHEET, given->side, given->side, 0.0,
-                        height, -given->speed);
+                        height, -given->speed, 0.2);
+    const double density = given->heavier > 0 ? 0.2 * given->heavier : 0.2;
     if (given->clash)
         snprintf(bodies + used, sizeof bodies - (size_t)used, ", " GIVEN_SHEET, given->side,
-                 given->side, 0.013, -height, given->speed);
+                 given->side, 0.013, -height, given->speed, density);
     fixture_open(&sheets, method, GIVEN, bodies, restitution, given->further,
-                 given->clash ? -100.0 : 0.0);
+                 given->clash  ? "\"floor\": {\"height\": -100}"
+                 : given->mesh ? BOX
+                               : "\"floor\": {}");
     fixture_start(&sheets);
     fixture_frames(&sheets, 6);
     const size_t upper = (size_t)(given->side * given->side);
@@ -341,9 +350,9 @@ static double comes_back(const char *method, const struct given *given, double r
 /* The loss is the only law of one particle: its closed form against the motion. */
 TEST(restitution_of_one_particle_is_exact) {
     static const double restitutions[] = {0, 0.1, 0.3, 0.5, 0.8, 0.95, 1};
-    static const struct given throws[] = {{1, false, 0.3, ", \"stiffness\": 100"},
-                                          {1, false, 3, ", \"stiffness\": 1e3"},
-                                          {1, false, 20, ", \"stiffness\": 1e7"}};
+    static const struct given throws[] = {{1, false, 0.3, ", \"stiffness\": 100", 0, false},
+                                          {1, false, 3, ", \"stiffness\": 1e3", 0, false},
+                                          {1, false, 20, ", \"stiffness\": 1e7", 0, false}};
     for (size_t e = 0; e < LENGTH(restitutions); e++)
         for (size_t k = 0; k < LENGTH(throws); k++)
             ck_assert_double_eq_tol(comes_back("dopri5:rtol=1e-7", throws + k, restitutions[e]),
@@ -355,10 +364,10 @@ TEST(restitution_of_one_particle_is_exact) {
 TEST(restitution_is_that_of_the_key) {
     static const char *const more[] = {"implicit-linearised:dt=frame",
                                        "backward-euler:dt=frame", "newmark:dt=frame", NULL};
-    static const struct given impacts[] = {{5, false, 1, ""},
-                                           {5, false, 10, ", \"stiffness\": 1e5"},
-                                           {5, true, 2, ""},
-                                           {5, true, 7, ", \"stiffness\": 1e6"}};
+    static const struct given impacts[] = {{5, false, 1, "", 0, false},
+                                           {5, false, 10, ", \"stiffness\": 1e5", 0, false},
+                                           {5, true, 2, "", 0, false},
+                                           {5, true, 7, ", \"stiffness\": 1e6", 0, false}};
     const struct methods methods = methods_find(&(struct methods_query){
         .test = "bounce", .without = CS_EXPLICIT_OUTER | CS_NOT_GALILEAN, .more = more});
     for (size_t m = 0; m < methods.n; m++)
@@ -368,4 +377,16 @@ TEST(restitution_is_that_of_the_key) {
                 ck_assert_msg(fabs(found - e) < 0.1, "%s, impact %zu: %.4f, expected %g",
                               methods.list[m].text, k, found, e);
             }
+}
+
+/* Sheets of 4 and 100 times the mass, and colliders of triangles. */
+TEST(restitution_depends_neither_on_masses_nor_on_triangles) {
+    static const char *const methods[] = {"dopri5", "implicit-linearised:dt=frame",
+                                          "backward-euler:dt=frame"};
+    static const struct given impacts[] = {
+        {5, true, 2, "", 4, false}, {5, true, 2, "", 100, false}, {5, false, 2, "", 0, true}};
+    for (size_t m = 0; m < LENGTH(methods); m++)
+        for (size_t k = 0; k < LENGTH(impacts); k++)
+            for (double e = 0.5; e <= 1; e += 0.5)
+                ck_assert_double_eq_tol(comes_back(methods[m], impacts + k, e), e, 0.1);
 }

@@ -214,15 +214,18 @@ void cs_collider_step_set_beside_rebounds(struct cs_collider_step *passing) {
              most_energy(passing));
 }
 
-/* Ends at the first collider whose contact the step misses. */
+/* Ends at the first collider whose contact the step misses. The next step's impacts are others.
+ */
 bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0,
                                        const double *x0, double t1, const double *x1) {
-    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
+    bool resolved = true;
+    for (uint32_t c = 0; c < system->scene->colliders.n && resolved; c++) {
         struct cs_collider_step passing = {.x0 = x0, .x1 = x1};
         cs_collider_step_set(&passing, system, c, t0, t1);
         cs_collider_step_set_beside_rebounds(&passing);
-        if (cs_vector_sum(system->view.n, sum_excess, &passing) > 0)
-            return false;
+        resolved = !(cs_vector_sum(system->view.n, sum_excess, &passing) > 0);
     }
-    return true;
+    if (system->rebounds)
+        system->rebounds->judged = false;
+    return resolved;
 }

@@ -6,7 +6,6 @@
 #include "model/contact/contact_samples.h"
 #include "model/contact/lagged_friction.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
-#include "model/contact/rebound.h"
 #include "model/contact/step_check.h"
 #include "scene/body_pairs.h"
 
@@ -15,21 +14,12 @@ bool cs_step_limit_applies(const struct cs_system *system) {
            cs_scene_crossings(system->scene) == CS_CROSSINGS_LIMIT;
 }
 
-/* Contact with colliders; the test after a step with impacts is theirs too. */
-static bool colliders_resolve_step(const struct cs_system *system, double t0, const double *x0,
-                                   double t1, const double *x1) {
-    struct cs_rebounds *rebounds = system->rebounds;
-    const bool resolved = cs_collider_contact_resolves_step(system, t0, x0, t1, x1);
-    if (rebounds)
-        rebounds->judged = false;
-    return resolved;
-}
-
 /* Cheap tests come first: particles, samples, pairs, crossings. The first that fails decides.
  */
 double cs_step_limit_fraction(const struct cs_system *system, double t0, const double *x0,
                               double t1, const double *x1) {
-    if (system->collider_params && t1 > t0 && !colliders_resolve_step(system, t0, x0, t1, x1))
+    if (system->collider_params && t1 > t0 &&
+        !cs_collider_contact_resolves_step(system, t0, x0, t1, x1))
         return 0.5;
     if (system->contact_samples && t1 > t0 &&
         !cs_contact_samples_resolve_step(system->contact_samples, t0, x0, t1, x1))
