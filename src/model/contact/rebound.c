@@ -317,17 +317,6 @@ double cs_rebounds_work(const struct cs_system *system, double t, const double *
     return work;
 }
 
-double cs_rebound_departure(const struct cs_rebound *rebound,
-                            const struct cs_collider_step *step, const double p[3]) {
-    const double range = step->params.range, k = step->params.k, d1 = rebound->distance;
-    double g[3], hessian[6];
-    const double d = cs_posed_collider_smooth_distance(&step->at_t1, p, g, hessian);
-    const struct flight end = {.range = range, .k = k, .d = d1};
-    const struct cs_barrier law = cs_barrier_at(d1, range, k);
-    return d1 > 0 && d < 0.5 * fmin(CS_BARRIER_CORE * range, d1) ? HUGE_VAL
-                                                                 : missed(&end, &law, d1 - d);
-}
-
 void cs_rebound_add_block(const struct cs_rebound *rebound, const struct cs_matrix *matrix,
                           double b[6]) {
     const double drag = -matrix->cd * rebound->drag;

@@ -61,11 +61,6 @@ void cs_rebounds_move(const struct cs_system *system, double h, double *x, doubl
  * surface at (t, x). */
 double cs_rebounds_work(const struct cs_system *system, double t, const double *x);
 
-/* J, by how much psi at p, the end of a particle in impact, departs from its second-order model
- * about d1; HUGE_VAL deeper in the pole of psi than half the flight. */
-double cs_rebound_departure(const struct cs_rebound *rebound,
-                            const struct cs_collider_step *step, const double p[3]);
-
 /* The impact of particle i with a collider in this matrix, or NULL. */
 static inline const struct cs_rebound *cs_rebound_of(const struct cs_system *system,
                                                      const struct cs_matrix *matrix,

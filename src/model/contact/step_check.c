@@ -5,7 +5,6 @@
 #include "model/contact/barrier_law.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/posed_collider.h"
-#include "model/contact/rebound.h"
 
 #include <clothsim/clones.h>
 #include <math.h>
@@ -59,6 +58,19 @@ double cs_collider_step_excess(const struct cs_collider_step *passing, double ma
     }
     const double kinetic = 0.5 * mass * squared / (passing->h * passing->h);
     return excess(passing, unseen, passing->unresolved_max, kinetic + held);
+}
+
+/* J, by how much psi at p, the end of a particle in impact, departs from its second-order model
+ * about d1; HUGE_VAL deeper in the pole of psi than half the flight. */
+static double departure_of(const struct cs_rebound *rebound,
+                           const struct cs_collider_step *passing, const double p[3]) {
+    const double range = passing->params.range, k = passing->params.k, d1 = rebound->distance;
+    const double d = distance_at(passing, p, p, 0), s = d1 - d;
+    const struct cs_barrier law = cs_barrier_at(d1, range, k);
+    return d1 > 0 && d < 0.5 * fmin(CS_BARRIER_CORE * range, d1)
+               ? HUGE_VAL
+               : fabs(cs_barrier_energy(d, range, k) - cs_barrier_energy(d1, range, k) -
+                      law.force * s - 0.5 * law.stiffness * s * s);
 }
 
 /* Number of particles of a row that may be unresolved at a plane or sphere: a conservative test
@@ -145,7 +157,7 @@ static double excess_of(const struct cs_collider_step *passing, size_t i) {
         to[c] = passing->x1[c * n + i];
     }
     return rebound && rebound[i].collider == passing->collider + 1
-               ? excess(passing, cs_rebound_departure(rebound + i, passing, to),
+               ? excess(passing, departure_of(rebound + i, passing, to),
                         CS_UNRESOLVED_BESIDE_REBOUNDS, rebound[i].energy)
                : cs_collider_step_excess(passing, passing->system->mass[i], from, to);
 }

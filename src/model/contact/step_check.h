@@ -54,7 +54,7 @@ struct cs_rebounds {
  * relative to the collider plus psi(d). x0, x1 (3,n) in m. Particles that are not finite are
  * left to the blow-up check. In a scene with impacts the sum over the particles is judged
  * (cs_collider_step_set_beside_rebounds); those in impact in the step that was finished last
- * miss what cs_rebound_departure says. */
+ * miss what their end departs from the flight. */
 #define CS_UNRESOLVED_ENERGY_MAX 0.02
 
 /* Where the scene gives contact.restitution, psi may change by this fraction of the energy in a
