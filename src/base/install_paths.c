@@ -105,7 +105,7 @@ void cs_program_from_tool(void) {
 
 /* Writes the folder of a place to out: of the build, or relative to the program; as configured
  * if the program's path is unknown. out stays as it is where a build has none. */
-static const char *find(const struct place *place, char *out) {
+static const char *find_place(const struct place *place, char *out) {
     char program[PATH_MAX], build[PATH_MAX];
     memcpy(program, program_path(), sizeof program);
     if (!parent_path(program)) {
@@ -126,7 +126,7 @@ const char *cs_program_path(void) {
     char folder[FOLDER_MAX];
     if (!*program_path())
         return "clothsim";
-    snprintf(path, sizeof path, "%s/clothsim", find(&beside, folder));
+    snprintf(path, sizeof path, "%s/clothsim", find_place(&beside, folder));
     return path;
 }
 
@@ -139,17 +139,17 @@ const char *cs_program_path_fault(void) {
 
 const char *cs_module_folder(void) {
     static char folder[FOLDER_MAX];
-    return *folder ? folder : find(&modules, folder);
+    return *folder ? folder : find_place(&modules, folder);
 }
 
 const char *cs_renderer_folder(void) {
     static char folder[FOLDER_MAX];
-    return *folder ? folder : find(&renderers, folder);
+    return *folder ? folder : find_place(&renderers, folder);
 }
 
 const char *cs_tool_path(const char *command, char *out, size_t size) {
     char folder[FOLDER_MAX];
-    snprintf(out, size, "%s/clothsim-%s", find(&tools, folder), command);
+    snprintf(out, size, "%s/clothsim-%s", find_place(&tools, folder), command);
     return out;
 }
 
@@ -182,7 +182,7 @@ static const char *find_data(const char *path, char *out, size_t size) {
     char folder[FOLDER_MAX] = "";
     if (access(path, F_OK) == 0)
         return path;
-    if (*path == '/' || !*find(&data, folder))
+    if (*path == '/' || !*find_place(&data, folder))
         return NULL;
     const int length = snprintf(out, size, "%s/%s", folder, path);
     return length > 0 && (size_t)length < size && access(out, F_OK) == 0 ? out : NULL;
@@ -232,7 +232,7 @@ void cs_scene_nearest(const char *name, char *out, size_t size) {
     if (slash)
         snprintf(folder, sizeof folder, "%.*s", kept, name);
     if (!find_near(folder, name + kept, bare, best) && bare &&
-        !find_near("scenes", name, bare, best) && *find(&data, strcpy(folder, "")))
+        !find_near("scenes", name, bare, best) && *find_place(&data, strcpy(folder, "")))
         find_near(strcat(folder, "/scenes"), name, bare, best);
     snprintf(out, size, "%.*s%s", *best ? kept : 0, name, best);
 }

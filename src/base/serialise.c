@@ -8,41 +8,42 @@
 #include <string.h>
 
 /* Appends n bytes. Returns false if out of memory. */
-static bool write_bytes(struct cs_serialiser *record, const void *value, size_t n) {
-    if (n > (size_t)-1 / 4 - record->length ||
-        !CS_ARENA_REALLOC(record->bytes, record->capacity, record->length + n))
+static bool write_bytes(struct cs_serialiser *serialiser, const void *value, size_t n) {
+    if (n > (size_t)-1 / 4 - serialiser->length ||
+        !CS_ARENA_REALLOC(serialiser->bytes, serialiser->capacity, serialiser->length + n))
         return false;
-    memcpy(record->bytes + record->length, value, n);
-    record->length += n;
+    memcpy(serialiser->bytes + serialiser->length, value, n);
+    serialiser->length += n;
     return true;
 }
 
 /* Reads the next n bytes. Returns false if fewer are left. */
-static bool read_bytes(struct cs_serialiser *record, void *value, size_t n) {
-    if (n > record->length - record->position)
+static bool read_bytes(struct cs_serialiser *serialiser, void *value, size_t n) {
+    if (n > serialiser->length - serialiser->position)
         return false;
-    memcpy(value, record->bytes + record->position, n);
-    record->position += n;
+    memcpy(value, serialiser->bytes + serialiser->position, n);
+    serialiser->position += n;
     return true;
 }
 
-void cs_serialiser_bytes(struct cs_serialiser *record, void *value, size_t n) {
-    if (record->failed || n == 0)
+void cs_serialiser_bytes(struct cs_serialiser *serialiser, void *value, size_t n) {
+    if (serialiser->failed || n == 0)
         return;
-    record->failed =
-        record->is_reading ? !read_bytes(record, value, n) : !write_bytes(record, value, n);
+    serialiser->failed = serialiser->is_reading ? !read_bytes(serialiser, value, n)
+                                                : !write_bytes(serialiser, value, n);
 }
 
-void cs_serialiser_begin(struct cs_serialiser *record) {
-    record->length = record->position = 0;
-    record->is_reading = record->failed = false;
+void cs_serialiser_begin(struct cs_serialiser *serialiser) {
+    serialiser->length = serialiser->position = 0;
+    serialiser->is_reading = serialiser->failed = false;
 }
 
-bool cs_serialiser_is_done(const struct cs_serialiser *record) {
-    return record->is_reading && !record->failed && record->position == record->length;
+bool cs_serialiser_is_done(const struct cs_serialiser *serialiser) {
+    return serialiser->is_reading && !serialiser->failed &&
+           serialiser->position == serialiser->length;
 }
 
-void cs_serialiser_finish(struct cs_serialiser *record) {
-    free(record->bytes);
-    *record = (struct cs_serialiser){0};
+void cs_serialiser_finish(struct cs_serialiser *serialiser) {
+    free(serialiser->bytes);
+    *serialiser = (struct cs_serialiser){0};
 }

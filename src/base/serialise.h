@@ -24,19 +24,19 @@ struct cs_serialiser {
 };
 
 /* Writes or reads n bytes of a value without pointers. After a failure calls do nothing. */
-void cs_serialiser_bytes(struct cs_serialiser *record, void *value, size_t n);
+void cs_serialiser_bytes(struct cs_serialiser *serialiser, void *value, size_t n);
 
 /* Writes or reads a variable or array of fixed size. */
 #define CS_SERIALISER(record, value) cs_serialiser_bytes(record, &(value), sizeof(value))
 
 /* Empties the buffer for writing again; its memory is kept. */
-void cs_serialiser_begin(struct cs_serialiser *record);
+void cs_serialiser_begin(struct cs_serialiser *serialiser);
 
 /* Tells, after reading, whether exactly all bytes were read. */
-bool cs_serialiser_is_done(const struct cs_serialiser *record);
+bool cs_serialiser_is_done(const struct cs_serialiser *serialiser);
 
 /* Frees the buffer; *record is empty afterwards. */
-void cs_serialiser_finish(struct cs_serialiser *record);
+void cs_serialiser_finish(struct cs_serialiser *serialiser);
 
 /* Bits of a double in little-endian order, to be written as they are. */
 static inline uint64_t cs_double_to_le64(double value) {

@@ -193,7 +193,7 @@ static bool is_same(char a, char b) {
 /* Edit distance of a and b with the edits insert, delete, replace, and swap of two neighbours
  * (Damerau 1964): the usual table by rows, of which a swap needs three. Restricted: no letter
  * is edited twice. */
-static size_t distance(const char *a, const char *b) {
+static size_t edit_distance(const char *a, const char *b) {
     enum { LONGEST = 64 };
     size_t rows[3][LONGEST + 1];
     const size_t n = strlen(b);
@@ -225,7 +225,7 @@ const char *cs_nearest_word(const char *word, const char *const *candidates) {
         const size_t most = letters < 3 ? 1 : letters / 3;
         /* the beginning of a candidate counts as one edit */
         const bool begun = strlen(word) > 2 && !strncmp(word, *candidates, strlen(word));
-        const size_t d = begun ? 1 : distance(word, *candidates);
+        const size_t d = begun ? 1 : edit_distance(word, *candidates);
         if (d <= most && d < least) {
             least = d;
             nearest = *candidates;

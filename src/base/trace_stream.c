@@ -14,16 +14,16 @@ void cs_trace_stream_begin(FILE *file) {
     fprintf(file, "clothsim trail 1\n");
 }
 
-void cs_trace_stream_write(FILE *file, const struct cs_trace_record *point) {
+void cs_trace_stream_write(FILE *file, const struct cs_trace_record *record) {
     struct cs_text t = {0};
     uint64_t words[BLOCK];
-    cs_text_add_real(&t, point->t);
-    fprintf(file, "%" PRIu32 " %" PRIu64 " %s %zu %s:%s\n", point->frame, point->step,
-            cs_text_get(&t), point->n, point->phase, point->name);
+    cs_text_add_real(&t, record->t);
+    fprintf(file, "%" PRIu32 " %" PRIu64 " %s %zu %s:%s\n", record->frame, record->step,
+            cs_text_get(&t), record->n, record->phase, record->name);
     cs_text_finish(&t);
-    for (size_t done = 0; done < point->n;) {
-        const size_t count = point->n - done < BLOCK ? point->n - done : BLOCK;
-        memcpy(words, point->values + done, count * sizeof *words);
+    for (size_t done = 0; done < record->n;) {
+        const size_t count = record->n - done < BLOCK ? record->n - done : BLOCK;
+        memcpy(words, record->values + done, count * sizeof *words);
         for (size_t k = 0; k < count; k++)
             words[k] = htole64(words[k]);
         fwrite(words, sizeof *words, count, file);
@@ -32,7 +32,7 @@ void cs_trace_stream_write(FILE *file, const struct cs_trace_record *point) {
 }
 
 /* Reports that the file is no such stream. */
-static bool refuse(struct cs_error *error) {
+static bool refuse_stream(struct cs_error *error) {
     cs_fail(error, CS_ERR_FILE,
             "expected the output of clothsim run --trace, found something else");
     return false;
@@ -40,25 +40,25 @@ static bool refuse(struct cs_error *error) {
 
 /* Reads "FRAME STEP T N PHASE:NAME"; a phase may contain blanks, a name no colon. */
 static bool read_line(struct cs_trace_stream *trace, struct cs_error *error) {
-    struct cs_trace_record *point = &trace->point;
+    struct cs_trace_record *record = &trace->record;
     char line[240], t[40], *colon;
     if (!fgets(line, sizeof line, trace->file))
         return false;
     line[strcspn(line, "\n")] = 0;
-    if (sscanf(line, "%" SCNu32 " %" SCNu64 " %39s %zu %79[^\n]", &point->frame, &point->step,
-               t, &point->n, trace->buffer) != 5 ||
-        !cs_parse_real(t, &point->t) || point->n > VALUES_MAX ||
+    if (sscanf(line, "%" SCNu32 " %" SCNu64 " %39s %zu %79[^\n]", &record->frame, &record->step,
+               t, &record->n, trace->buffer) != 5 ||
+        !cs_parse_real(t, &record->t) || record->n > VALUES_MAX ||
         !(colon = strrchr(trace->buffer, ':')))
-        return refuse(error);
+        return refuse_stream(error);
     *colon = 0;
-    point->phase = trace->buffer;
-    point->name = colon + 1;
+    record->phase = trace->buffer;
+    record->name = colon + 1;
     return true;
 }
 
 /* Reads the values of the record into the stream's buffer. */
 static bool read_values(struct cs_trace_stream *trace, struct cs_error *error) {
-    const size_t n = trace->point.n;
+    const size_t n = trace->record.n;
     if (n > trace->capacity) {
         free(trace->values);
         trace->values = malloc(n * sizeof *trace->values);
@@ -76,7 +76,7 @@ static bool read_values(struct cs_trace_stream *trace, struct cs_error *error) {
         word = le64toh(word);
         memcpy(trace->values + k, &word, sizeof word);
     }
-    trace->point.values = trace->values;
+    trace->record.values = trace->values;
     return true;
 }
 
@@ -87,7 +87,7 @@ bool cs_trace_stream_next(struct cs_trace_stream *trace, struct cs_error *error)
         if (!fgets(line, sizeof line, trace->file))
             return false;
         if (strcmp(line, "clothsim trail 1\n") != 0)
-            return refuse(error);
+            return refuse_stream(error);
     }
     return read_line(trace, error) && read_values(trace, error);
 }

@@ -24,12 +24,12 @@ struct cs_trace_record {
 
 /* Writes the first line. Errors of writing show in ferror. */
 void cs_trace_stream_begin(FILE *file);
-void cs_trace_stream_write(FILE *file, const struct cs_trace_record *point);
+void cs_trace_stream_write(FILE *file, const struct cs_trace_record *record);
 
 /* A stream being read. Zeroed except for the file: at its beginning. */
 struct cs_trace_stream {
     FILE *file;
-    struct cs_trace_record point; /* the last that was read */
+    struct cs_trace_record record; /* the last that was read */
     bool header_done;
     char buffer[80]; /* owned: phase and name */
     double *values;  /* owned */

@@ -52,8 +52,8 @@ static bool is_swept(const char *name) {
     return !strcmp(name, CS_MANIFEST_NAME) || is_of_study(name);
 }
 
-static enum cs_status add(struct list *list, const struct entry *entry,
-                          struct cs_error *error) {
+static enum cs_status add_entry(struct list *list, const struct entry *entry,
+                                struct cs_error *error) {
     if (!CS_ARENA_REALLOC(list->entries, list->capacity, list->n + 1))
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a manifest");
     list->entries[list->n++] = *entry;
@@ -78,7 +78,7 @@ static enum cs_status list_names(const char *folder, bool (*is_listed)(const cha
         if (is_listed(entry.name) ||
             (other && other->n &&
              bsearch(&entry, other->entries, other->n, sizeof entry, by_name)))
-            add(list, &entry, error);
+            add_entry(list, &entry, error);
     }
     closedir(entries);
     if (list->n)
@@ -177,7 +177,7 @@ static enum cs_status read_list(const char *folder, struct list *list, struct cs
         struct entry entry;
         good = read_line(line, &entry);
         if (good)
-            add(list, &entry, error);
+            add_entry(list, &entry, error);
     }
     free(text);
     return good ? error->status

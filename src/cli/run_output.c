@@ -75,7 +75,7 @@ static enum cs_status join(const char *folder, const char *name, char path[PATH_
     return CS_OK;
 }
 
-static enum cs_status refuse(const char *path, struct cs_error *error) {
+static enum cs_status refuse_folder(const char *path, struct cs_error *error) {
     return cs_fail(error, CS_ERR_FILE, "\"%s\" already exists; -y overwrites it", path);
 }
 
@@ -84,7 +84,7 @@ enum cs_status cs_output_check_file(const char *path, struct cs_error *error) {
     bool streams;
     return lstat(path, &info) || (!cs_file_target(path, &streams, error) && streams)
                ? error->status
-               : refuse(path, error);
+               : refuse_folder(path, error);
 }
 
 /* An open folder, or NULL: with CS_OK where it is not there. */
@@ -110,7 +110,7 @@ enum cs_status cs_output_check(const char *folder, cs_output_kind *is_ours,
     closedir(entries);
     if (!*first || join(folder, first, path, error))
         return error->status;
-    return refuse(path, error);
+    return refuse_folder(path, error);
 }
 
 /* whole: the files of an earlier run too, not only what was left half written */

@@ -26,13 +26,14 @@ static enum cs_status write_file(const struct cs_stability_options *options, con
 /* Refuses a map whose files would overwrite the scene, or, but for -y, earlier ones. A shard
  * writes none. */
 static enum cs_status check_files(const struct cs_stability_options *options,
-                                  const struct cs_stability *map, struct cs_error *error) {
+                                  const struct cs_stability *stability,
+                                  struct cs_error *error) {
     static const char *const endings[] = {".csv", "_border.csv", ".json",
                                           ".png", ".svg",        ".pdf"};
     enum { FILES = sizeof endings / sizeof *endings };
     const char *folder = options->map.folder, *list[FILES + 1] = {NULL};
     char name[CS_SERIES_BYTES], files[FILES][CS_SERIES_BYTES + 16], path[4200];
-    cs_series_file_name(map->series, name);
+    cs_series_file_name(stability->series, name);
     for (int k = 0; k < FILES; k++) {
         snprintf(files[k], sizeof files[k], "%s%s", name, endings[k]);
         list[k] = files[k];
@@ -41,32 +42,34 @@ static enum cs_status check_files(const struct cs_stability_options *options,
             cs_output_check_file(path, error))
             return error->status;
     }
-    return cs_study_files_check(&map->settings->session, folder, list, error);
+    return cs_study_files_check(&stability->settings->session, folder, list, error);
 }
 
 /* Makes the diagram of the tables that were written. */
 static enum cs_status make_plot(const struct cs_stability_options *options,
-                                const struct cs_stability *map, struct cs_table_plot *plot,
-                                char title[640], struct cs_error *error) {
+                                const struct cs_stability *stability,
+                                struct cs_table_plot *plot, char title[640],
+                                struct cs_error *error) {
     char name[CS_SERIES_BYTES], path[4200];
-    cs_series_file_name(map->series, name);
+    cs_series_file_name(stability->series, name);
     snprintf(path, sizeof path, "%s/%s.csv", options->map.folder, name);
-    snprintf(title, 640, "%s: stable time steps, %.255s, %g s of motion per cell", map->series,
-             map->session.scene.path, map->settings->seconds);
+    snprintf(title, 640, "%s: stable time steps, %.255s, %g s of motion per cell",
+             stability->series, stability->session.scene.path, stability->settings->seconds);
     return cs_table_plot_open(plot, path, title, 1.35 * CS_WIDTH_COLUMN, error);
 }
 
 /* *drawn: false without the module that draws, which is no failure. */
 static enum cs_status write_files(const struct cs_stability_options *options,
-                                  const struct cs_stability *map, struct cs_table_plot *plot,
-                                  char title[640], bool *drawn, struct cs_error *error) {
+                                  const struct cs_stability *stability,
+                                  struct cs_table_plot *plot, char title[640], bool *drawn,
+                                  struct cs_error *error) {
     char name[CS_SERIES_BYTES], path[4200];
     struct cs_text cells = {0}, borders = {0}, json = {0};
     struct cs_error unseen = {0};
-    cs_series_file_name(map->series, name);
-    cs_stability_print_csv(map, &cells);
-    cs_stability_print_borders_csv(map, &borders);
-    cs_stability_print_json(map, &json);
+    cs_series_file_name(stability->series, name);
+    cs_stability_print_csv(stability, &cells);
+    cs_stability_print_borders_csv(stability, &borders);
+    cs_stability_print_json(stability, &json);
     write_file(options, name, ".csv", &cells, error);
     if (!error->status)
         write_file(options, name, "_border.csv", &borders, error);
@@ -74,7 +77,7 @@ static enum cs_status write_files(const struct cs_stability_options *options,
         write_file(options, name, ".json", &json, error);
     /* the picture is made of the files above */
     snprintf(path, sizeof path, "%s/%s", options->map.folder, name);
-    if (!error->status && !make_plot(options, map, plot, title, error))
+    if (!error->status && !make_plot(options, stability, plot, title, error))
         *drawn = !cs_diagram_write(cs_renderer_folder(), &plot->diagram, path, CS_FORMATS_ALL,
                                    &unseen);
     if (unseen.status == CS_ERR_MODULE)
@@ -82,7 +85,7 @@ static enum cs_status write_files(const struct cs_stability_options *options,
     else if (unseen.status)
         *error = unseen;
     /* not before all results are in files */
-    if (!error->status && !cs_journal_remove(map, error))
+    if (!error->status && !cs_journal_remove(stability, error))
         cs_manifest_write_study(options->map.folder, error);
     cs_text_finish(&borders);
     cs_text_finish(&json);
@@ -91,41 +94,43 @@ static enum cs_status write_files(const struct cs_stability_options *options,
 
 /* Prints the table or the diagram of a finished map. */
 static enum cs_status print_map(const struct cs_stability_options *options,
-                                const struct cs_stability *map,
+                                const struct cs_stability *stability,
                                 const struct cs_table_plot *plot, bool drawn,
                                 struct cs_error *error) {
     char name[CS_SERIES_BYTES];
     struct cs_screen screen;
     struct cs_text out = {0};
-    cs_series_file_name(map->series, name);
+    cs_series_file_name(stability->series, name);
     if (options->show && !cs_screen_open(&screen, false, error)) {
         cs_screen_print_diagram(&screen, &plot->diagram, &out);
         cs_print_raw(stdout, &out, error);
     } else if (!options->show)
-        cs_stability_print_table(map, &out);
+        cs_stability_print_table(stability, &out);
     if (!options->quiet)
-        cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json%s\n\n", map->wall,
+        cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json%s\n\n", stability->wall,
                     options->map.folder, name, drawn ? ", .png, .svg, .pdf" : "; no picture");
     return error->status ? error->status : cs_print_out(stdout, &out, error);
 }
 
 /* Reports a shard: some of the columns are no map yet. */
-static enum cs_status print_shard(const struct cs_stability *map, struct cs_error *error) {
+static enum cs_status print_shard(const struct cs_stability *stability,
+                                  struct cs_error *error) {
     struct cs_text out = {0};
-    cs_text_add(&out, "%s: shard %u of %u is in %s (see: clothsim merge)\n", map->series,
-                map->settings->shard.index, map->settings->shard.count,
-                map->journal.table.path);
+    cs_text_add(&out, "%s: shard %u of %u is in %s (see: clothsim merge)\n", stability->series,
+                stability->settings->shard.index, stability->settings->shard.count,
+                stability->journal.table.path);
     return cs_print_out(stdout, &out, error);
 }
 
 /* For --strict: fails if a cell was not stable. */
-static enum cs_status check_cells(const struct cs_stability *map, struct cs_error *error) {
+static enum cs_status check_cells(const struct cs_stability *stability,
+                                  struct cs_error *error) {
     uint32_t bad = 0;
-    for (uint32_t c = 0; c < map->n_columns; c++)
-        for (uint32_t r = 0; r < map->n_rows; r++)
-            bad += !cs_stability_is_sound(map->columns[c].cells[r].verdict);
+    for (uint32_t c = 0; c < stability->n_columns; c++)
+        for (uint32_t r = 0; r < stability->n_rows; r++)
+            bad += !cs_stability_is_sound(stability->columns[c].cells[r].verdict);
     return bad ? cs_fail(error, CS_ERR_UNSTABLE, "%s: %u of %u cells are not stable",
-                         map->series, bad, map->n_columns * map->n_rows)
+                         stability->series, bad, stability->n_columns * stability->n_rows)
                : CS_OK;
 }
 
@@ -133,7 +138,7 @@ static enum cs_status check_cells(const struct cs_stability *map, struct cs_erro
 enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
                                     struct cs_error *error) {
     struct cs_progress progress;
-    struct cs_stability map;
+    struct cs_stability stability;
     struct cs_stability_settings asked = options->map;
     const bool quiet = options->quiet;
     struct cs_table_plot plot = {0};
@@ -145,28 +150,29 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
     asked.progress = cs_progress_show;
     asked.ctx = &progress;
     cs_progress_begin(&progress, "cell", quiet);
-    if (!cs_stability_open(&map, &asked, error) && !check_files(options, &map, error))
-        cs_stability_run(&map, error);
+    if (!cs_stability_open(&stability, &asked, error) &&
+        !check_files(options, &stability, error))
+        cs_stability_run(&stability, error);
     cs_progress_end(&progress);
     if (error->status == CS_ERR_INTERRUPT) {
         *error = (struct cs_error){0};
         cs_fail(
             error, CS_ERR_INTERRUPT,
             "interrupted; finished cells are in %s, and the same command continues from there",
-            map.journal.table.path);
+            stability.journal.table.path);
         cs_manifest_write_study(options->map.folder, error);
     }
-    if (!error->status && !map.is_complete) {
+    if (!error->status && !stability.is_complete) {
         if (!cs_manifest_write_study(options->map.folder, error) && !quiet)
-            print_shard(&map, error);
+            print_shard(&stability, error);
     } else if (!error->status && !cs_folder_create(options->map.folder, error) &&
-               !write_files(options, &map, &plot, title, &drawn, error) &&
+               !write_files(options, &stability, &plot, title, &drawn, error) &&
                (!quiet || options->show))
-        print_map(options, &map, &plot, drawn, error);
+        print_map(options, &stability, &plot, drawn, error);
     cs_table_plot_finish(&plot);
     if (!error->status && options->strict)
-        check_cells(&map, error);
-    cs_stability_finish(&map);
+        check_cells(&stability, error);
+    cs_stability_finish(&stability);
     return error->status;
 }
 

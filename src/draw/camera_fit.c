@@ -241,23 +241,23 @@ static uint32_t most_behind(const struct cs_system *system,
 
 /* Extends a box by a shape with a core: the core's half sizes along its axes, and the radius.
  */
-static void grow_by(double low[3], double high[3], const struct cs_posed_collider *obstacle) {
+static void grow_by(double low[3], double high[3], const struct cs_posed_collider *collider) {
     for (int i = 0; i < 3; i++) {
-        double reach = obstacle->radius;
+        double reach = collider->radius;
         for (int k = 0; k < 3; k++)
-            reach += fabs(obstacle->axes[k][i]) * obstacle->half_sizes[k];
-        low[i] = fmin(low[i], obstacle->centre[i] - reach);
-        high[i] = fmax(high[i], obstacle->centre[i] + reach);
+            reach += fabs(collider->axes[k][i]) * collider->half_sizes[k];
+        low[i] = fmin(low[i], collider->centre[i] - reach);
+        high[i] = fmax(high[i], collider->centre[i] + reach);
     }
 }
 
 static void grow_by_mesh(double low[3], double high[3],
-                         const struct cs_posed_collider *obstacle) {
-    const uint32_t n = obstacle->collider->mesh.geometry->n;
+                         const struct cs_posed_collider *collider) {
+    const uint32_t n = collider->collider->mesh.geometry->n;
     for (uint32_t i = 0; i < n; i++) {
         double own[3], place[3];
-        cs_collider_mesh_vertex(obstacle, i, own);
-        cs_collider_to_world(obstacle, own, place);
+        cs_collider_mesh_vertex(collider, i, own);
+        cs_collider_to_world(collider, own, place);
         cs_box_grow(low, high, place);
     }
 }

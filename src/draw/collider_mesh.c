@@ -10,27 +10,27 @@
  * the middle one is double (shape_core.h) */
 enum { PARTS = 8, LINES = 2 * (PARTS + 1) };
 
-static bool is_ball(const struct cs_posed_collider *obstacle) {
-    return obstacle->shape->bounds == CS_BOUNDS_SPHERE;
+static bool is_ball(const struct cs_posed_collider *collider) {
+    return collider->shape->bounds == CS_BOUNDS_SPHERE;
 }
 
 // the collider at this time; the last one may be the ground
-static const struct cs_posed_collider *pose_of(const struct cs_collider_geometry *solids,
-                                               const struct cs_posed_collider *obstacles,
+static const struct cs_posed_collider *pose_of(const struct cs_collider_geometry *geometries,
+                                               const struct cs_posed_collider *colliders,
                                                uint32_t i) {
-    return solids->ground->present && i + 1 == solids->n ? &solids->ground->pose
-                                                         : obstacles + i;
+    return geometries->ground->present && i + 1 == geometries->n ? &geometries->ground->pose
+                                                                 : colliders + i;
 }
 
 /* Enlarges the square of a floor until haze hides its edges; a tilted one lies over less. */
 static void extend(struct cs_solid *solid, const struct cs_ground *ground) {
     const struct cs_ground_style *style = &ground->style;
-    const double *centre = solid->at.centre;
+    const double *centre = solid->collider.centre;
     const double aside = fmax(fabs(centre[0] - (double)style->centre[0]),
                               fabs(centre[2] - (double)style->centre[1]));
-    const double half = ((double)style->radius + aside) / solid->at.axes[1][1];
+    const double half = ((double)style->radius + aside) / solid->collider.axes[1][1];
     const double factor = half / fabs(solid->mesh.positions[0]);
-    for (uint32_t k = 0; cs_ground_is(ground, &solid->at) && k < 3 * solid->mesh.n; k++)
+    for (uint32_t k = 0; cs_ground_is(ground, &solid->collider) && k < 3 * solid->mesh.n; k++)
         solid->mesh.positions[k] *= factor;
 }
 
@@ -60,14 +60,14 @@ static void fill_normals(struct cs_solid *solid) {
 /* Counts the vertices of a collider, and makes its triangles if they are drawn. */
 static enum cs_status make(struct cs_solid *solid, struct cs_arena *arena,
                            struct cs_error *error) {
-    const struct cs_posed_collider *at = &solid->at;
-    if (!at->collider->visible)
+    const struct cs_posed_collider *collider = &solid->collider;
+    if (!collider->collider->visible)
         return CS_OK;
-    if (is_ball(at))
+    if (is_ball(collider))
         solid->n = CS_SPHERE_CAP_VERTICES;
-    else if (at->shape->is_core)
+    else if (collider->shape->is_core)
         solid->n = 6 * 6 * (LINES - 1) * (LINES - 1);
-    else if (!at->shape->triangles(at, &solid->mesh, arena, error))
+    else if (!collider->shape->triangles(collider, &solid->mesh, arena, error))
         solid->n = 3 * solid->mesh.n_triangles;
     if (solid->mesh.vertex_triangles)
         solid->normals =
@@ -76,47 +76,49 @@ static enum cs_status make(struct cs_solid *solid, struct cs_arena *arena,
     return error->status;
 }
 
-enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *solids,
+enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *geometries,
                                          const struct cs_system *system,
-                                         const struct cs_posed_collider *obstacles,
+                                         const struct cs_posed_collider *colliders,
                                          const struct cs_ground *ground, struct cs_arena *arena,
                                          struct cs_error *error) {
     uint32_t most = 0;
-    solids->n = system->scene->colliders.n + ground->present;
-    solids->ground = ground;
-    solids->cell = cs_scene_extent_cell(system);
-    solids->of = cs_arena_alloc_array(arena, solids->n, sizeof *solids->of, error);
-    for (uint32_t i = 0; i < solids->n && !error->status; i++) {
-        solids->of[i].at = *pose_of(solids, obstacles, i);
-        if (!make(solids->of + i, arena, error) && solids->of[i].mesh.n)
-            extend(solids->of + i, ground);
-        most = solids->of[i].n > most ? solids->of[i].n : most;
+    geometries->n = system->scene->colliders.n + ground->present;
+    geometries->ground = ground;
+    geometries->cell = cs_scene_extent_cell(system);
+    geometries->of = cs_arena_alloc_array(arena, geometries->n, sizeof *geometries->of, error);
+    for (uint32_t i = 0; i < geometries->n && !error->status; i++) {
+        geometries->of[i].collider = *pose_of(geometries, colliders, i);
+        if (!make(geometries->of + i, arena, error) && geometries->of[i].mesh.n)
+            extend(geometries->of + i, ground);
+        most = geometries->of[i].n > most ? geometries->of[i].n : most;
     }
-    solids->vertices = cs_arena_alloc_array(arena, most, sizeof *solids->vertices, error);
+    geometries->vertices =
+        cs_arena_alloc_array(arena, most, sizeof *geometries->vertices, error);
     return error->status;
 }
 
-bool cs_collider_geometry_move(struct cs_collider_geometry *solids,
+bool cs_collider_geometry_move(struct cs_collider_geometry *geometries,
                                const struct cs_posed_collider *now) {
     bool moved = false;
-    for (uint32_t i = 0; i < solids->n; i++)
-        moved = cs_solid_move(solids->of + i, pose_of(solids, now, i)) || moved;
+    for (uint32_t i = 0; i < geometries->n; i++)
+        moved = cs_solid_move(geometries->of + i, pose_of(geometries, now, i)) || moved;
     return moved;
 }
 
-void cs_collider_geometry_style(const struct cs_collider_geometry *solids, uint32_t i,
+void cs_collider_geometry_style(const struct cs_collider_geometry *geometries, uint32_t i,
                                 struct cs_surface_style *style) {
-    cs_style_solid(style, &solids->of[i].at, solids->cell);
-    cs_ground_style_of(solids->ground, &solids->of[i].at, style);
+    cs_style_solid(style, &geometries->of[i].collider, geometries->cell);
+    cs_ground_style_of(geometries->ground, &geometries->of[i].collider, style);
 }
 
 bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now) {
-    const struct cs_posed_collider *at = &solid->at;
-    const bool deformed = memcmp(&at->path.t, &now->path.t, sizeof at->path.t);
-    const bool moved = deformed || memcmp(at->centre, now->centre, sizeof at->centre) ||
-                       memcmp(at->axes, now->axes, sizeof at->axes) ||
-                       at->radius != now->radius;
-    solid->at = *now;
+    const struct cs_posed_collider *collider = &solid->collider;
+    const bool deformed = memcmp(&collider->path.t, &now->path.t, sizeof collider->path.t);
+    const bool moved = deformed ||
+                       memcmp(collider->centre, now->centre, sizeof collider->centre) ||
+                       memcmp(collider->axes, now->axes, sizeof collider->axes) ||
+                       collider->radius != now->radius;
+    solid->collider = *now;
     if (deformed && solid->n > 0) {
         cs_collider_mesh_vertices(now, solid->mesh.positions);
         fill_normals(solid);
@@ -125,11 +127,11 @@ bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now) 
 }
 
 /* Writes a vertex whose position and normal are given in the own frame. */
-static void set_vertex(const struct cs_posed_collider *at, const double own[3],
+static void set_vertex(const struct cs_posed_collider *collider, const double own[3],
                        const double normal[3], struct cs_vertex *out) {
     double place[3], turned[3];
-    cs_collider_to_world(at, own, place);
-    cs_collider_rotate(at, normal, turned);
+    cs_collider_to_world(collider, own, place);
+    cs_collider_rotate(collider, normal, turned);
     for (int i = 0; i < 3; i++) {
         out->position[i] = (float)place[i];
         out->normal[i] = (float)turned[i];
@@ -143,7 +145,7 @@ struct line {
 };
 
 /* Fills the face of the cube on one side (-1 or 1) of an axis; returns the next vertex. */
-static struct cs_vertex *fill_face(const struct cs_posed_collider *at,
+static struct cs_vertex *fill_face(const struct cs_posed_collider *collider,
                                    const struct line lines[LINES], int axis, int side,
                                    struct cs_vertex *out) {
     static const unsigned char corners[6][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}};
@@ -158,14 +160,14 @@ static struct cs_vertex *fill_face(const struct cs_posed_collider *at,
                 direction[axis] = sides[axis] = side;
                 direction[u] = a->at, sides[u] = a->side;
                 direction[v] = b->at, sides[v] = b->side;
-                cs_core_surface(at, sides, direction, own);
-                set_vertex(at, own, direction, out++);
+                cs_core_surface(collider, sides, direction, own);
+                set_vertex(collider, own, direction, out++);
             }
     return out;
 }
 
 /* Fills the six faces; lines are evenly spaced by angle. */
-static void fill_core(const struct cs_posed_collider *at, struct cs_vertex *out) {
+static void fill_core(const struct cs_posed_collider *collider, struct cs_vertex *out) {
     struct line lines[LINES];
     for (int k = 0; k <= PARTS; k++) {
         const double tangent = cs_tangent(3.14159265358979323846 / 4 * k / PARTS);
@@ -174,7 +176,7 @@ static void fill_core(const struct cs_posed_collider *at, struct cs_vertex *out)
     }
     for (int axis = 0; axis < 3; axis++)
         for (int side = -1; side <= 1; side += 2)
-            out = fill_face(at, lines, axis, side, out);
+            out = fill_face(collider, lines, axis, side, out);
 }
 
 /* Fills a triangle with its own normal or those of its corners, moved back by `sink` m. */
@@ -189,25 +191,26 @@ static void fill_triangle(const struct cs_solid *solid, uint32_t t, double sink,
         double own[3];
         for (size_t a = 0; a < 3; a++)
             own[a] = from[a * mesh->n] - sink * normal[a];
-        set_vertex(&solid->at, own,
+        set_vertex(&solid->collider, own,
                    solid->normals ? solid->normals + 3 * (3 * (size_t)t + k) : normal, out + k);
     }
 }
 
-void cs_solids_fill(const struct cs_collider_geometry *solids, uint32_t i, const float eye[4]) {
-    const struct cs_solid *solid = solids->of + i;
-    const struct cs_posed_collider *at = &solid->at;
-    const double sink = cs_shape_is_endless(at->shape) ? 0.03 * solids->cell : 0;
-    if (is_ball(at))
-        cs_sphere_cap_fill(at->centre, at->radius, eye, solids->vertices);
-    else if (at->shape->is_core)
-        fill_core(at, solids->vertices);
+void cs_solids_fill(const struct cs_collider_geometry *geometries, uint32_t i,
+                    const float eye[4]) {
+    const struct cs_solid *solid = geometries->of + i;
+    const struct cs_posed_collider *collider = &solid->collider;
+    const double sink = cs_shape_is_endless(collider->shape) ? 0.03 * geometries->cell : 0;
+    if (is_ball(collider))
+        cs_sphere_cap_fill(collider->centre, collider->radius, eye, geometries->vertices);
+    else if (collider->shape->is_core)
+        fill_core(collider, geometries->vertices);
     for (uint32_t t = 0; t < solid->mesh.n_triangles; t++)
-        fill_triangle(solid, t, sink, solids->vertices + 3 * (size_t)t);
+        fill_triangle(solid, t, sink, geometries->vertices + 3 * (size_t)t);
     // the ground hides nothing from an eye below it
-    if (at->collider == &solids->ground->collider &&
-        (double)eye[1] <= (eye[3] > 0 ? at->centre[1] : 0))
-        memset(solids->vertices, 0, solid->n * sizeof *solids->vertices);
+    if (collider->collider == &geometries->ground->collider &&
+        (double)eye[1] <= (eye[3] > 0 ? collider->centre[1] : 0))
+        memset(geometries->vertices, 0, solid->n * sizeof *geometries->vertices);
 }
 
 /* Makes the visible side of a sphere: rings about the line of sight, the last on

@@ -8,10 +8,10 @@
 
 /* One collider as it is drawn. */
 struct cs_solid {
-    struct cs_posed_collider at; /* pose of the last frame */
-    struct cs_trimesh mesh;      /* in its own frame; of shapes without a core */
-    double *normals;             /* (n_triangles, 3, 3) of the corners; NULL: flat triangles */
-    uint32_t n;                  /* vertices, three per triangle, none shared; 0: not visible */
+    struct cs_posed_collider collider; /* pose of the last frame */
+    struct cs_trimesh mesh;            /* in its own frame; of shapes without a core */
+    double *normals; /* (n_triangles, 3, 3) of the corners; NULL: flat triangles */
+    uint32_t n;      /* vertices, three per triangle, none shared; 0: not visible */
 };
 
 /* All colliders of a scene. */
@@ -25,18 +25,18 @@ struct cs_collider_geometry {
 
 /* Allocates for the colliders at the start (scene->colliders.n) and a ground. CS_ERR_MEMORY.
  */
-enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *solids,
+enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *geometries,
                                          const struct cs_system *system,
                                          const struct cs_posed_collider *colliders,
                                          const struct cs_ground *ground, struct cs_arena *arena,
                                          struct cs_error *error);
 
 /* Takes poses of all colliders and the ground; returns true if any has moved. */
-bool cs_collider_geometry_move(struct cs_collider_geometry *solids,
+bool cs_collider_geometry_move(struct cs_collider_geometry *geometries,
                                const struct cs_posed_collider *now);
 
 /* Fills the style of a collider or the ground. */
-void cs_collider_geometry_style(const struct cs_collider_geometry *solids, uint32_t i,
+void cs_collider_geometry_style(const struct cs_collider_geometry *geometries, uint32_t i,
                                 struct cs_surface_style *style);
 
 /* Takes a collider's pose and key frame; returns true if it has moved, turned, grown or
@@ -46,7 +46,8 @@ bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now);
 /* Fills `vertices` with a visible collider in world coordinates, counter-clockwise seen from
  * outside. The square of a plane lies a little below its position, or it would show through
  * cloth on it. A sphere is filled as far as it is visible from eye (collider_mesh.h). */
-void cs_solids_fill(const struct cs_collider_geometry *solids, uint32_t i, const float eye[4]);
+void cs_solids_fill(const struct cs_collider_geometry *geometries, uint32_t i,
+                    const float eye[4]);
 
 /* The visible side of a sphere as triangles, computed without sines.
  */

@@ -63,14 +63,14 @@ static const struct glyph glyphs[] = {
 
 static const double gap = 1.7; // between letters, in units of the strokes
 
-static const struct glyph *find(char letter) {
+static const struct glyph *find_glyph(char letter) {
     for (size_t i = 0; i < sizeof glyphs / sizeof *glyphs; i++)
         if (glyphs[i].letter == letter)
             return glyphs + i;
-    return find(' ');
+    return find_glyph(' ');
 }
 
-static void add(struct cs_lines *lines, const char *s, double x, double y, double unit) {
+static void add_text(struct cs_lines *lines, const char *s, double x, double y, double unit) {
     // a pair of points a line; a stroke ends before '|'
     for (; s[0] && s[1]; s += 2) {
         if (s[2] == '|') {
@@ -88,9 +88,9 @@ static void add(struct cs_lines *lines, const char *s, double x, double y, doubl
 void cs_glyph_add(struct cs_lines *lines, const char *text, double x, double y, double height) {
     const double unit = height / 6;
     for (size_t i = strlen(text); i-- > 0;) {
-        const struct glyph *glyph = find(text[i]);
+        const struct glyph *glyph = find_glyph(text[i]);
         x -= unit * glyph->width;
-        add(lines, glyph->strokes, x, y, unit);
+        add_text(lines, glyph->strokes, x, y, unit);
         x -= unit * gap;
     }
 }
@@ -98,7 +98,7 @@ void cs_glyph_add(struct cs_lines *lines, const char *text, double x, double y, 
 double cs_glyph_width(const char *text, double height) {
     double width = 0;
     for (; *text; text++)
-        width += find(*text)->width + gap;
+        width += find_glyph(*text)->width + gap;
     return width * height / 6;
 }
 

@@ -34,7 +34,7 @@ static void rest_position(const struct cs_body *body, const struct cs_body_range
     place[2] = 0;
 }
 
-static double distance(const double a[3], const double b[3]) {
+static double distance_between(const double a[3], const double b[3]) {
     double square = 0;
     for (int c = 0; c < 3; c++)
         square += (a[c] - b[c]) * (a[c] - b[c]);
@@ -77,7 +77,7 @@ static double lowest_of_body(const struct cs_system *system, uint32_t b) {
         double place[3], held = -HUGE_VAL;
         rest_position(cs_scene_bodies(system->scene) + b, range, i, place);
         for (uint32_t p = 0; p < pins.n; p++)
-            held = fmax(held, pins.height[p] - 1.1 * distance(place, pins.rest[p]));
+            held = fmax(held, pins.height[p] - 1.1 * distance_between(place, pins.rest[p]));
         lowest = fmin(lowest, held);
     }
     return lowest;
@@ -114,26 +114,26 @@ static double round_length(double length, bool powers) {
 
 /* the visible floor, or plane that serves as one; NULL: there is none */
 static const struct cs_posed_collider *floor_of(const struct cs_scene *scene,
-                                                const struct cs_posed_collider *obstacles) {
+                                                const struct cs_posed_collider *colliders) {
     for (uint32_t i = 0; i < scene->colliders.n; i++)
-        if (obstacles[i].collider->visible && cs_shape_is_endless(obstacles[i].shape) &&
-            obstacles[i].axes[1][1] > 0.5)
-            return obstacles + i;
+        if (colliders[i].collider->visible && cs_shape_is_endless(colliders[i].shape) &&
+            colliders[i].axes[1][1] > 0.5)
+            return colliders + i;
     return NULL;
 }
 
 /* Sets pattern and haze, and the colours of a ground of its own: those of the background, a
  * little darker, or nothing but shadows. */
 static void set_style(struct cs_ground *ground, const struct cs_render *render,
-                      const struct cs_bounding_sphere *extent) {
+                      const struct cs_bounding_sphere *sphere) {
     struct cs_ground_style *style = &ground->style;
     const bool clear = render->background.kind == CS_BACKGROUND_NONE;
-    style->centre[0] = (float)extent->centre[0];
-    style->centre[1] = (float)extent->centre[2];
-    style->radius = (float)cs_view_haze(extent);
+    style->centre[0] = (float)sphere->centre[0];
+    style->centre[1] = (float)sphere->centre[2];
+    style->radius = (float)cs_view_haze(sphere);
     style->lines = render->ground == CS_GROUND_GRID;
     if (style->lines || (render->ground == CS_GROUND_AUTO && !clear))
-        style->tile = (float)round_length(0.3 * extent->radius, style->lines);
+        style->tile = (float)round_length(0.3 * sphere->radius, style->lines);
     cs_colour_ink(render->background.colour, style->ink);
     ground->shadow = render->ground == CS_GROUND_SHADOW || clear ? 0.4f : 0;
     for (int i = 0; i < 3; i++)
@@ -141,11 +141,12 @@ static void set_style(struct cs_ground *ground, const struct cs_render *render,
 }
 
 /* Makes a square of half side 1 m, which is then extended to the haze. */
-static enum cs_status make_square(const struct cs_posed_collider *at, struct cs_trimesh *mesh,
-                                  struct cs_arena *arena, struct cs_error *error) {
+static enum cs_status make_square(const struct cs_posed_collider *collider,
+                                  struct cs_trimesh *mesh, struct cs_arena *arena,
+                                  struct cs_error *error) {
     static const double corners[12] = {-1, -1, 1, 1, 0, 0, 0, 0, -1, 1, 1, -1};
     static const uint32_t triangles[6] = {0, 1, 2, 0, 2, 3};
-    (void)at;
+    (void)collider;
     mesh->positions = cs_arena_alloc_array(arena, 12, sizeof *corners, error);
     mesh->triangles = cs_arena_alloc_array(arena, 6, sizeof *triangles, error);
     if (error->status)
@@ -161,12 +162,12 @@ static const struct cs_shape square = {.bounds = CS_BOUNDS_HALF_SPACE,
                                        .triangles = make_square};
 
 void cs_ground_make(struct cs_ground *ground, const struct cs_system *system,
-                    const struct cs_posed_collider *obstacles,
-                    const struct cs_bounding_sphere *extent) {
+                    const struct cs_posed_collider *colliders,
+                    const struct cs_bounding_sphere *sphere) {
     const struct cs_render *render = &system->scene->render;
-    const struct cs_posed_collider *floor = floor_of(system->scene, obstacles);
+    const struct cs_posed_collider *floor = floor_of(system->scene, colliders);
     const bool given = !isnan(render->ground_height);
-    set_style(ground, render, extent);
+    set_style(ground, render, sphere);
     ground->floor = floor ? floor->collider : NULL;
     ground->collider.visible = true;
     ground->pose.collider = &ground->collider;
@@ -175,39 +176,40 @@ void cs_ground_make(struct cs_ground *ground, const struct cs_system *system,
         ground->pose.axes[i][i] = 1;
     // a little below what hangs, so that it does not touch
     ground->height =
-        given ? render->ground_height : lowest_point(system, obstacles) - 0.05 * extent->radius;
+        given ? render->ground_height : lowest_point(system, colliders) - 0.05 * sphere->radius;
     ground->follows_lowest = !given;
     ground->present = render->ground != CS_GROUND_NONE && (given || !floor) &&
                       (render->ground != CS_GROUND_AUTO || (!floor && !isnan(ground->height)));
     // what falls without end is followed by it
     if (isnan(ground->height))
-        ground->height = extent->low[1];
-    cs_ground_aim(ground, extent);
+        ground->height = sphere->low[1];
+    cs_ground_aim(ground, sphere);
 }
 
-void cs_ground_aim(struct cs_ground *ground, const struct cs_bounding_sphere *solid) {
-    const double below = solid->low[1] - 0.02 * solid->radius;
+void cs_ground_aim(struct cs_ground *ground, const struct cs_bounding_sphere *sphere) {
+    const double below = sphere->low[1] - 0.02 * sphere->radius;
     ground->pose.centre[1] =
         ground->follows_lowest ? fmin(ground->height, below) : ground->height;
 }
 
-void cs_ground_style_of(const struct cs_ground *ground, const struct cs_posed_collider *at,
+void cs_ground_style_of(const struct cs_ground *ground,
+                        const struct cs_posed_collider *collider,
                         struct cs_surface_style *style) {
-    if (!cs_ground_is(ground, at))
+    if (!cs_ground_is(ground, collider))
         return;
     style->ground = ground->style;
     for (int i = 0; i < 3; i++)
-        style->ground.normal[i] = (float)at->axes[1][i];
-    style->ground.shadow = at->collider == &ground->collider ? ground->shadow : 0;
+        style->ground.normal[i] = (float)collider->axes[1][i];
+    style->ground.shadow = collider->collider == &ground->collider ? ground->shadow : 0;
     style->specular = 0;
-    if (at->collider != &ground->collider)
+    if (collider->collider != &ground->collider)
         return;
     // pale shadows: the ground is no part of what is simulated
     style->ambient = 2.2;
     style->diffuse = 0.65;
 }
 
-bool cs_ground_is(const struct cs_ground *ground, const struct cs_posed_collider *at) {
-    return at->collider == ground->floor ||
-           (cs_shape_is_endless(at->shape) && at->axes[1][1] > 0.9999);
+bool cs_ground_is(const struct cs_ground *ground, const struct cs_posed_collider *collider) {
+    return collider->collider == ground->floor ||
+           (cs_shape_is_endless(collider->shape) && collider->axes[1][1] > 0.9999);
 }

@@ -23,17 +23,18 @@ struct cs_ground {
  * colliders (scene->colliders.n) at the start. */
 void cs_ground_make(struct cs_ground *ground, const struct cs_system *system,
                     const struct cs_posed_collider *colliders,
-                    const struct cs_bounding_sphere *extent);
+                    const struct cs_bounding_sphere *sphere);
 
 /* Places the ground below everything in a frame. */
-void cs_ground_aim(struct cs_ground *ground, const struct cs_bounding_sphere *solid);
+void cs_ground_aim(struct cs_ground *ground, const struct cs_bounding_sphere *sphere);
 
 /* Makes the style of a floor or of the ground itself that of ground; leaves others. */
-void cs_ground_style_of(const struct cs_ground *ground, const struct cs_posed_collider *at,
+void cs_ground_style_of(const struct cs_ground *ground,
+                        const struct cs_posed_collider *collider,
                         struct cs_surface_style *style);
 
 /* Returns true for the ground, and for the floors and planes that are drawn to the horizon:
  * level ones, and the first with a normal that points up. */
-bool cs_ground_is(const struct cs_ground *ground, const struct cs_posed_collider *at);
+bool cs_ground_is(const struct cs_ground *ground, const struct cs_posed_collider *collider);
 
 #endif

@@ -93,10 +93,10 @@ void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *ma
 
 /* Specular coefficients and shininess of colliders were chosen by trial: planes dull, others
  * glossy. */
-void cs_style_solid(struct cs_surface_style *style, const struct cs_posed_collider *obstacle,
+void cs_style_solid(struct cs_surface_style *style, const struct cs_posed_collider *posed,
                     double cell) {
-    const struct cs_collider *collider = obstacle->collider;
-    const struct cs_shape *shape = obstacle->shape;
+    const struct cs_collider *collider = posed->collider;
+    const struct cs_shape *shape = posed->shape;
     const bool flat = cs_shape_is_endless(shape);
     *style = (struct cs_surface_style){.ambient = 1,
                                        .diffuse = 1,
@@ -104,5 +104,5 @@ void cs_style_solid(struct cs_surface_style *style, const struct cs_posed_collid
                                        .shininess = flat ? 12 : 40};
     memcpy(style->front_colour, collider->colour, sizeof style->front_colour);
     memcpy(style->back_colour, collider->colour, sizeof style->back_colour);
-    style->depth_bias = shape->chord_depth ? shape->chord_depth(obstacle, cell) : 0;
+    style->depth_bias = shape->chord_depth ? shape->chord_depth(posed, cell) : 0;
 }

@@ -54,7 +54,7 @@ static void shrink(const uint16_t *from, int width, int height, uint16_t *to) {
 }
 
 enum cs_status cs_mipmap_make(struct cs_mipmap *mips, const struct cs_image *image,
-                              const struct cs_srgb *tone, struct cs_arena *arena,
+                              const struct cs_srgb *srgb, struct cs_arena *arena,
                               struct cs_error *error) {
     int width = (int)image->width, height = (int)image->height;
     for (mips->n = 0; mips->n < CS_MIPMAP_LEVELS_MAX; mips->n++) {
@@ -64,7 +64,7 @@ enum cs_status cs_mipmap_make(struct cs_mipmap *mips, const struct cs_image *ima
         if (!light)
             return error->status;
         for (size_t i = 0; mips->n == 0 && i < n; i++)
-            light[i] = (uint16_t)(tone->linear[image->rgb[i]] * 65535 + 0.5f);
+            light[i] = (uint16_t)(srgb->linear[image->rgb[i]] * 65535 + 0.5f);
         if (mips->n > 0)
             shrink(mips->levels[last].light, mips->levels[last].width,
                    mips->levels[last].height, light);

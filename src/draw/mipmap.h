@@ -19,7 +19,7 @@ struct cs_mipmap {
 
 /* Makes all levels of an image; memory from the arena. Fails with CS_ERR_MEMORY. */
 enum cs_status cs_mipmap_make(struct cs_mipmap *mips, const struct cs_image *image,
-                              const struct cs_srgb *tone, struct cs_arena *arena,
+                              const struct cs_srgb *srgb, struct cs_arena *arena,
                               struct cs_error *error);
 
 /* Linear colour at (u, v), which repeats with period 1. square: squared distance of

@@ -27,12 +27,12 @@ static bool was_active(const struct cs_system *system,
 }
 
 // adds a dot for each particle that was visible at the last test
-static void add_visible(const struct cs_wireframe *net, struct cs_lines *lines,
+static void add_visible(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                         const struct cs_viewpoint_force_state *state, const double *x) {
     double place[3];
-    for (uint32_t i = 0; i < net->system->view.n; i++)
+    for (uint32_t i = 0; i < wireframe->system->view.n; i++)
         if (state->is_visible[i]) {
-            cs_mesh_position(net->system->view.n, x, i, place);
+            cs_mesh_position(wireframe->system->view.n, x, i, place);
             cs_lines_add(lines, place, place);
         }
 }
@@ -60,17 +60,17 @@ static void find_corners(const struct cs_system *system,
 }
 
 // dots, then lines from the eye, then the rectangle in front of all
-static void draw(const struct cs_wireframe *net, struct cs_lines *lines,
+static void draw(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                  const struct cs_viewpoint_force_state *state, const double *x) {
-    struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * net->depth_offset};
+    struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * wireframe->depth_offset};
     double corners[4][3];
     cs_colour_linear(0xff5a00, style.colour);
-    style.half_width = cs_wireframe_width(net, 0.16, 0.9, 3);
-    add_visible(net, lines, state, x);
+    style.half_width = cs_wireframe_width(wireframe, 0.16, 0.9, 3);
+    add_visible(wireframe, lines, state, x);
     cs_lines_draw(lines, &style);
 
-    style.half_width = 0.6 * net->line_unit;
-    find_corners(net->system, state, corners);
+    style.half_width = 0.6 * wireframe->line_unit;
+    find_corners(wireframe->system, state, corners);
     for (int k = 0; k < 4; k++)
         cs_lines_add(lines, state->query.eye, corners[k]);
     cs_lines_draw(lines, &style);
@@ -83,13 +83,13 @@ static void draw(const struct cs_wireframe *net, struct cs_lines *lines,
 /* Marks each viewpoint force that acted in the frame that ends now: dots on the particles that
  * it saw last; its rectangle at the distance of its target, in front of all; and lines from the
  * eye to its corners. Seen from the same viewpoint, that is the rectangle alone. */
-static void viewpoint_forces_draw(const struct cs_wireframe *net, struct cs_lines *lines,
+static void viewpoint_forces_draw(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                                   const struct cs_frame *frame) {
-    const struct cs_events *events = net->system->events;
+    const struct cs_events *events = wireframe->system->events;
     for (uint32_t k = 0; events && events->viewpoint_forces && k < events->viewpoint_forces->n;
          k++)
-        if (was_active(net->system, events->viewpoint_forces->states + k, frame->t))
-            draw(net, lines, events->viewpoint_forces->states + k, frame->x);
+        if (was_active(wireframe->system, events->viewpoint_forces->states + k, frame->t))
+            draw(wireframe, lines, events->viewpoint_forces->states + k, frame->x);
 }
 
 enum cs_status cs_overlay_init(struct cs_overlay *overlay, const struct cs_system *system,
@@ -126,15 +126,16 @@ bool cs_overlay_hides(const struct cs_scene *scene, uint32_t body) {
 static void marks_draw(const struct cs_overlay *overlay, struct cs_lines *lines,
                        const double *x) {
     static const uint32_t colours[2] = {0xffffff, 0xd0121b};
-    const struct cs_wireframe *net = &overlay->wireframe;
+    const struct cs_wireframe *wireframe = &overlay->wireframe;
     for (int k = 0; k < 4; k++) {
         struct cs_line_style style = {.alpha = 1, .on_top = true};
         cs_colour_linear(colours[k % 2], style.colour);
-        style.half_width = (k < 2 ? 3 : 5.5) * net->line_unit - k % 2 * net->line_unit;
-        for (uint32_t i = 0; i < net->system->view.n; i++)
+        style.half_width =
+            (k < 2 ? 3 : 5.5) * wireframe->line_unit - k % 2 * wireframe->line_unit;
+        for (uint32_t i = 0; i < wireframe->system->view.n; i++)
             if (overlay->marks[i] == 1 + k / 2) {
                 double place[3];
-                cs_mesh_position(net->system->view.n, x, i, place);
+                cs_mesh_position(wireframe->system->view.n, x, i, place);
                 cs_lines_add(lines, place, place);
             }
         cs_lines_draw(lines, &style);
@@ -144,22 +145,22 @@ static void marks_draw(const struct cs_overlay *overlay, struct cs_lines *lines,
 void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *frame) {
     const struct cs_render *render = &overlay->wireframe.system->scene->render;
     const struct cs_look_kind *look = cs_look_of(render->look);
-    const struct cs_wireframe *net = &overlay->wireframe;
+    const struct cs_wireframe *wireframe = &overlay->wireframe;
     struct cs_lines *lines = overlay->lines;
-    cs_wireframe_draw_threads(net, lines, frame->x);
+    cs_wireframe_draw_threads(wireframe, lines, frame->x);
     if (look->edges)
-        cs_wireframe_draw_edges(net, lines, frame->x);
+        cs_wireframe_draw_edges(wireframe, lines, frame->x);
     if (look->springs) {
-        cs_wireframe_draw_springs(net, lines, frame->x);
-        cs_wireframe_draw_seams(net, lines, frame->x);
-        cs_wireframe_draw_pins(net, lines, frame->x, frame->inv_mass);
+        cs_wireframe_draw_springs(wireframe, lines, frame->x);
+        cs_wireframe_draw_seams(wireframe, lines, frame->x);
+        cs_wireframe_draw_pins(wireframe, lines, frame->x, frame->inv_mass);
     }
     if (render->pins && !look->springs && frame->inv_mass)
-        cs_wireframe_draw_pegs(net, lines, frame->x, frame->inv_mass);
+        cs_wireframe_draw_pegs(wireframe, lines, frame->x, frame->inv_mass);
     if (look->goals && frame->goals)
-        cs_wireframe_draw_goals(net, lines, frame->x, frame->goals);
+        cs_wireframe_draw_goals(wireframe, lines, frame->x, frame->goals);
     if (render->viewpoint_forces)
-        viewpoint_forces_draw(net, lines, frame);
+        viewpoint_forces_draw(wireframe, lines, frame);
     if (overlay->marks)
         marks_draw(overlay, lines, frame->x);
     if (frame->title)
@@ -185,11 +186,11 @@ uint32_t cs_wireframe_capacity(const struct cs_system *system) {
 }
 
 /* Adds a line between particles a and b of the system; a dot if they are one. */
-static void add(const struct cs_wireframe *net, struct cs_lines *lines, const double *x,
-                uint32_t a, uint32_t b) {
+static void add_wire(const struct cs_wireframe *wireframe, struct cs_lines *lines,
+                     const double *x, uint32_t a, uint32_t b) {
     double from[3], to[3];
-    cs_mesh_position(net->system->view.n, x, a, from);
-    cs_mesh_position(net->system->view.n, x, b, to);
+    cs_mesh_position(wireframe->system->view.n, x, a, from);
+    cs_mesh_position(wireframe->system->view.n, x, b, to);
     cs_lines_add(lines, from, to);
 }
 
@@ -203,55 +204,56 @@ struct choice {
 
 static const struct choice all = {NULL, NULL};
 
-static void add_edge(const struct cs_wireframe *net, struct cs_lines *lines, const double *x,
-                     const struct choice *choice, const uint32_t ends[2]) {
+static void add_edge(const struct cs_wireframe *wireframe, struct cs_lines *lines,
+                     const double *x, const struct choice *choice, const uint32_t ends[2]) {
     const uint32_t a = ends[0], b = ends[1];
     const double *inv_mass = choice->free_from;
     if (inv_mass && (inv_mass[a] == 0) != (inv_mass[b] == 0))
         choice->rim[inv_mass[a] == 0 ? a : b] = 1;
     if (!inv_mass && (!choice->rim || (choice->rim[a] && choice->rim[b])))
-        add(net, lines, x, a, b);
+        add_wire(wireframe, lines, x, a, b);
 }
 
 /* Adds the edges of body b that are chosen, at most as many as edges_of counts. */
-static void add_edges(const struct cs_wireframe *net, struct cs_lines *lines, const double *x,
-                      uint32_t b, const struct choice *choice) {
-    const struct cs_body_range *body = net->system->bodies + b;
+static void add_edges(const struct cs_wireframe *wireframe, struct cs_lines *lines,
+                      const double *x, uint32_t b, const struct choice *choice) {
+    const struct cs_body_range *body = wireframe->system->bodies + b;
     for (uint32_t e = 0; body->mesh && e < body->mesh->n_edges; e++) {
         const uint32_t *own = body->mesh->edges + 2 * (size_t)e;
-        add_edge(net, lines, x, choice,
+        add_edge(wireframe, lines, x, choice,
                  (uint32_t[2]){body->first + own[0], body->first + own[1]});
     }
     for (uint32_t row = 0; row < body->rows; row++)
         for (uint32_t column = 0; column < body->columns; column++) {
             const uint32_t i = body->first + row * body->columns + column;
             if (column + 1 < body->columns)
-                add_edge(net, lines, x, choice, (uint32_t[2]){i, i + 1});
+                add_edge(wireframe, lines, x, choice, (uint32_t[2]){i, i + 1});
             if (row + 1 < body->rows)
-                add_edge(net, lines, x, choice, (uint32_t[2]){i, i + body->columns});
+                add_edge(wireframe, lines, x, choice, (uint32_t[2]){i, i + body->columns});
         }
 }
 
-double cs_wireframe_width(const struct cs_wireframe *net, double share, double least,
+double cs_wireframe_width(const struct cs_wireframe *wireframe, double share, double least,
                           double most) {
-    return fmin(fmax(share * net->cell, least * net->line_unit), most * net->line_unit);
+    return fmin(fmax(share * wireframe->cell, least * wireframe->line_unit),
+                most * wireframe->line_unit);
 }
 
-void cs_wireframe_draw_edges(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_edges(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                              const double *x) {
-    for (uint32_t b = 0; b < net->system->scene->bodies.n; b++) {
+    for (uint32_t b = 0; b < wireframe->system->scene->bodies.n; b++) {
         // darkened to ink that still tells bodies apart
-        const double *colour = cs_scene_bodies(net->system->scene)[b].material.colour;
-        struct cs_line_style style = {.alpha = 0.9, .depth_offset = net->depth_offset};
+        const double *colour = cs_scene_bodies(wireframe->system->scene)[b].material.colour;
+        struct cs_line_style style = {.alpha = 0.9, .depth_offset = wireframe->depth_offset};
         for (int i = 0; i < 3; i++)
             style.colour[i] = (float)(0.012 + 0.45 * colour[i]);
-        style.half_width = cs_wireframe_width(net, 0.07, 0.35, 0.8);
-        add_edges(net, lines, x, b, &all);
+        style.half_width = cs_wireframe_width(wireframe, 0.07, 0.35, 0.8);
+        add_edges(wireframe, lines, x, b, &all);
         cs_lines_draw(lines, &style);
     }
 }
 
-void cs_wireframe_draw_springs(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_springs(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                                const double *x) {
     // Layers from back to front. Bend springs run along two stretch springs: wide and pale
     // below them, they frame them. Surface springs of a network are pale, or they would hide
@@ -265,14 +267,14 @@ void cs_wireframe_draw_springs(const struct cs_wireframe *net, struct cs_lines *
                   {CS_SPRING_SHEAR, NETWORK, 0x1f7f4d, 0.3, 0.05, 0.25, 0.5},
                   {CS_SPRING_SHEAR, PLAIN, 0x2f9e62, 0.85, 0.05, 0.3, 0.7},
                   {CS_SPRING_STRETCH, PLAIN, 0xc8321f, 0.95, 0.07, 0.4, 0.9}};
-    const struct cs_springs *springs = &net->system->springs;
-    const struct cs_body *bodies = cs_scene_bodies(net->system->scene);
+    const struct cs_springs *springs = &wireframe->system->springs;
+    const struct cs_body *bodies = cs_scene_bodies(wireframe->system->scene);
     for (size_t layer = 0; layer < sizeof layers / sizeof *layers; layer++) {
         struct cs_line_style style = {.alpha = layers[layer].alpha,
-                                      .depth_offset = net->depth_offset};
+                                      .depth_offset = wireframe->depth_offset};
         cs_colour_linear(layers[layer].colour, style.colour);
-        style.half_width = cs_wireframe_width(net, layers[layer].share, layers[layer].least,
-                                              layers[layer].most);
+        style.half_width = cs_wireframe_width(wireframe, layers[layer].share,
+                                              layers[layer].least, layers[layer].most);
         for (uint32_t r = 0; r < springs->n_runs; r++) {
             const struct cs_spring_run *run = springs->runs + r;
             const uint32_t of = bodies[run->body].network.present ? NETWORK : PLAIN;
@@ -280,74 +282,75 @@ void cs_wireframe_draw_springs(const struct cs_wireframe *net, struct cs_lines *
                 (layers[layer].of != ALL && layers[layer].of != of))
                 continue;
             for (uint32_t i = 0; i < run->count; i++)
-                add(net, lines, x, cs_spring_a(run, i), cs_spring_b(run, i));
+                add_wire(wireframe, lines, x, cs_spring_a(run, i), cs_spring_b(run, i));
         }
         cs_lines_draw(lines, &style);
     }
 }
 
-void cs_wireframe_draw_seams(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_seams(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                              const double *x) {
-    const struct cs_seams *seams = net->system->seams;
-    struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * net->depth_offset};
+    const struct cs_seams *seams = wireframe->system->seams;
+    struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * wireframe->depth_offset};
     cs_colour_linear(0x6a2fa8, style.colour);
-    style.half_width = cs_wireframe_width(net, 0.14, 0.8, 2);
+    style.half_width = cs_wireframe_width(wireframe, 0.14, 0.8, 2);
     for (uint32_t s = 0; seams && s < seams->n; s++)
         for (uint32_t k = 1; k < seams->stitches[s].n && !seams->broken[s]; k++)
-            add(net, lines, x, seams->stitches[s].at[0], seams->stitches[s].at[k]);
+            add_wire(wireframe, lines, x, seams->stitches[s].at[0], seams->stitches[s].at[k]);
     if (seams)
         cs_lines_draw(lines, &style);
 }
 
-void cs_wireframe_draw_pins(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_pins(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                             const double *x, const double *inv_mass) {
     // a light disc with a dark border
     static const uint32_t colours[2] = {0x1d2733, 0xffd34d};
     for (int pass = 0; pass < 2; pass++) {
-        struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * net->depth_offset};
+        struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * wireframe->depth_offset};
         cs_colour_linear(colours[pass], style.colour);
-        style.half_width = cs_wireframe_width(net, 0.4, 2.2, 5) - pass * 1.1 * net->line_unit;
-        for (uint32_t i = 0; i < net->system->view.n; i++)
+        style.half_width =
+            cs_wireframe_width(wireframe, 0.4, 2.2, 5) - pass * 1.1 * wireframe->line_unit;
+        for (uint32_t i = 0; i < wireframe->system->view.n; i++)
             if (inv_mass[i] == 0)
-                add(net, lines, x, i, i);
+                add_wire(wireframe, lines, x, i, i);
         cs_lines_draw(lines, &style);
     }
 }
 
-void cs_wireframe_draw_pegs(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_pegs(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                             const double *x, const double *inv_mass) {
-    struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * net->depth_offset};
-    struct choice choice = {net->rim, inv_mass};
-    const uint32_t bodies = net->system->scene->bodies.n;
+    struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * wireframe->depth_offset};
+    struct choice choice = {wireframe->rim, inv_mass};
+    const uint32_t bodies = wireframe->system->scene->bodies.n;
     cs_colour_linear(0x3b444f, style.colour);
-    memset(net->rim, 0, net->system->view.n);
+    memset(wireframe->rim, 0, wireframe->system->view.n);
     for (uint32_t b = 0; b < bodies; b++)
-        add_edges(net, lines, x, b, &choice);
+        add_edges(wireframe, lines, x, b, &choice);
     // rods, then pegs
     choice.free_from = NULL;
-    style.half_width = 1.1 * net->line_unit;
+    style.half_width = 1.1 * wireframe->line_unit;
     for (uint32_t b = 0; b < bodies; b++)
-        add_edges(net, lines, x, b, &choice);
+        add_edges(wireframe, lines, x, b, &choice);
     cs_lines_draw(lines, &style);
-    style.half_width = 1.9 * net->line_unit;
-    for (uint32_t i = 0; i < net->system->view.n; i++)
-        if (net->rim[i])
-            add(net, lines, x, i, i);
+    style.half_width = 1.9 * wireframe->line_unit;
+    for (uint32_t i = 0; i < wireframe->system->view.n; i++)
+        if (wireframe->rim[i])
+            add_wire(wireframe, lines, x, i, i);
     cs_lines_draw(lines, &style);
 }
 
-void cs_wireframe_draw_goals(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_goals(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                              const double *x, const double *goals) {
     static const uint32_t colours[2] = {0x2b5fa8, 0xc8321f};
-    const struct cs_system *system = net->system;
+    const struct cs_system *system = wireframe->system;
     const uint32_t n = system->view.n;
     /* two passes: the dots of every body lie over the lines of all */
     for (int dots = 0; dots < 2; dots++) {
         struct cs_line_style style = {.alpha = dots ? 0.95 : 0.75,
-                                      .depth_offset = net->depth_offset};
+                                      .depth_offset = wireframe->depth_offset};
         cs_colour_linear(colours[dots], style.colour);
-        style.half_width = dots ? cs_wireframe_width(net, 0.11, 0.5, 1.8)
-                                : cs_wireframe_width(net, 0.06, 0.35, 0.8);
+        style.half_width = dots ? cs_wireframe_width(wireframe, 0.11, 0.5, 1.8)
+                                : cs_wireframe_width(wireframe, 0.06, 0.35, 0.8);
         for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
             const struct cs_body_range *body = system->bodies + b;
             if (!cs_scene_bodies(system->scene)[b].shape_matching.present)
@@ -363,21 +366,21 @@ void cs_wireframe_draw_goals(const struct cs_wireframe *net, struct cs_lines *li
     }
 }
 
-void cs_wireframe_draw_threads(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_threads(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                                const double *x) {
-    for (uint32_t b = 0; b < net->system->scene->bodies.n; b++) {
-        const struct cs_body_range *body = net->system->bodies + b;
-        const double *colour = cs_scene_bodies(net->system->scene)[b].material.colour;
-        struct cs_line_style style = {.alpha = 1, .half_width = net->line_unit};
+    for (uint32_t b = 0; b < wireframe->system->scene->bodies.n; b++) {
+        const struct cs_body_range *body = wireframe->system->bodies + b;
+        const double *colour = cs_scene_bodies(wireframe->system->scene)[b].material.colour;
+        struct cs_line_style style = {.alpha = 1, .half_width = wireframe->line_unit};
         if (body->mesh || (body->columns > 1 && body->rows > 1))
             continue;
         for (int i = 0; i < 3; i++)
             style.colour[i] = (float)colour[i];
-        add_edges(net, lines, x, b, &all);
+        add_edges(wireframe, lines, x, b, &all);
         cs_lines_draw(lines, &style);
         for (uint32_t i = 0; i < body->count; i++)
-            add(net, lines, x, body->first + i, body->first + i);
-        style.half_width = cs_wireframe_width(net, 0.3, 1.5, 5);
+            add_wire(wireframe, lines, x, body->first + i, body->first + i);
+        style.half_width = cs_wireframe_width(wireframe, 0.3, 1.5, 5);
         cs_lines_draw(lines, &style);
     }
 }

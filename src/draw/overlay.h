@@ -20,33 +20,33 @@ struct cs_wireframe {
 
 /* Half a line's width in pixels: the fraction `share` of the cell, so that fine grids keep
  * gaps, limited to least..most units. */
-double cs_wireframe_width(const struct cs_wireframe *net, double share, double least,
+double cs_wireframe_width(const struct cs_wireframe *wireframe, double share, double least,
                           double most);
 
 /* Lines that the largest of these calls adds between two draws. */
 uint32_t cs_wireframe_capacity(const struct cs_system *system);
 
 /* Each adds and draws the lines of one kind from positions x (3,n). */
-void cs_wireframe_draw_edges(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_edges(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                              const double *x);
-void cs_wireframe_draw_springs(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_springs(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                                const double *x);
-void cs_wireframe_draw_seams(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_seams(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                              const double *x); /* stitches that are not broken */
-void cs_wireframe_draw_pins(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_pins(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                             const double *x, const double *inv_mass);
 
 /* Draws a line from each particle to its goal, and a dot there; goals (3,n). A particle at its
  * goal has the dot alone. */
-void cs_wireframe_draw_pegs(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_pegs(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                             const double *x,
                             const double *inv_mass); /* and rods, where held meets free */
-void cs_wireframe_draw_goals(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_goals(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                              const double *x, const double *goals);
 
 /* Draws bodies of one row or column of particles, which have no surface, as a thread with
  * knots. */
-void cs_wireframe_draw_threads(const struct cs_wireframe *net, struct cs_lines *lines,
+void cs_wireframe_draw_threads(const struct cs_wireframe *wireframe, struct cs_lines *lines,
                                const double *x);
 
 /* The lines of a scene's pictures. */

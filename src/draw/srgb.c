@@ -23,19 +23,19 @@ static double decode(double c) {
     return c <= 0.04045 ? c / 12.92 : power_2_4((c + 0.055) / 1.055);
 }
 
-void cs_srgb_make(struct cs_srgb *tone) {
-    tone->threshold[0] = -1;
-    tone->threshold[256] = tone->threshold[257] = 2;
+void cs_srgb_make(struct cs_srgb *srgb) {
+    srgb->threshold[0] = -1;
+    srgb->threshold[256] = srgb->threshold[257] = 2;
     for (int byte = 0; byte < 256; byte++) {
-        tone->linear[byte] = (float)decode(byte / 255.0);
+        srgb->linear[byte] = (float)decode(byte / 255.0);
         if (byte > 0)
-            tone->threshold[byte] = (float)decode((byte - 0.5) / 255);
+            srgb->threshold[byte] = (float)decode((byte - 0.5) / 255);
     }
     int byte = 0;
     for (int i = 0; i <= 4097; i++) {
-        while (byte < 255 && tone->threshold[byte + 1] <= (float)i / 4096)
+        while (byte < 255 && srgb->threshold[byte + 1] <= (float)i / 4096)
             byte++;
-        tone->segment_start[i] = (uint8_t)byte;
+        srgb->segment_start[i] = (uint8_t)byte;
     }
 }
 
@@ -50,14 +50,14 @@ uint32_t cs_srgb_blend_rows(uint32_t under, uint32_t over, uint32_t share) {
     return out;
 }
 
-uint32_t cs_srgb_mean_clear(const struct cs_srgb *tone, const uint32_t samples[4]) {
+uint32_t cs_srgb_mean_clear(const struct cs_srgb *srgb, const uint32_t samples[4]) {
     float light[3] = {0, 0, 0};
     uint32_t whole = 0;
     for (int s = 0; s < 4; s++) {
         const uint32_t cover = 255 - (samples[s] >> 24);
         whole += cover;
         for (int k = 0; k < 3; k++)
-            light[k] += (float)cover * tone->linear[samples[s] >> 8 * k & 255];
+            light[k] += (float)cover * srgb->linear[samples[s] >> 8 * k & 255];
     }
     if (!whole)
         return 0xff000000;
@@ -65,43 +65,43 @@ uint32_t cs_srgb_mean_clear(const struct cs_srgb *tone, const uint32_t samples[4
         const float mean = light[k] / (float)whole;
         light[k] = mean < 1 ? mean : 1;
     }
-    return cs_srgb_pack(tone, light[0], light[1], light[2]) | (255 - (whole + 2) / 4) << 24;
+    return cs_srgb_pack(srgb, light[0], light[1], light[2]) | (255 - (whole + 2) / 4) << 24;
 }
 
-uint32_t cs_srgb_blend_on_white(const struct cs_srgb *tone, uint32_t colour) {
+uint32_t cs_srgb_blend_on_white(const struct cs_srgb *srgb, uint32_t colour) {
     const float clear = (float)(colour >> 24);
     float light[3];
     for (int k = 0; k < 3; k++)
-        light[k] = (clear + (255 - clear) * tone->linear[colour >> 8 * k & 255]) / 255;
-    return cs_srgb_pack(tone, light[0], light[1], light[2]);
+        light[k] = (clear + (255 - clear) * srgb->linear[colour >> 8 * k & 255]) / 255;
+    return cs_srgb_pack(srgb, light[0], light[1], light[2]);
 }
 
 /* Mean of the linear light in a box (left, top, right, bottom) of a picture, by area. */
-static void shrink_pixel(const struct cs_srgb *tone, const struct cs_image *picture,
+static void shrink_pixel(const struct cs_srgb *srgb, const struct cs_image *image,
                          const double box[4], uint8_t out[3]) {
     double light[3] = {0}, area = 0;
-    for (uint32_t y = (uint32_t)box[1]; y < picture->height && y < box[3]; y++)
-        for (uint32_t x = (uint32_t)box[0]; x < picture->width && x < box[2]; x++) {
+    for (uint32_t y = (uint32_t)box[1]; y < image->height && y < box[3]; y++)
+        for (uint32_t x = (uint32_t)box[0]; x < image->width && x < box[2]; x++) {
             const double share = (fmin(x + 1, box[2]) - fmax(x, box[0])) *
                                  (fmin(y + 1, box[3]) - fmax(y, box[1]));
-            const size_t i = (size_t)y * picture->width + x;
-            const double cover = picture->alpha ? picture->alpha[i] / 255.0 : 1;
+            const size_t i = (size_t)y * image->width + x;
+            const double cover = image->alpha ? image->alpha[i] / 255.0 : 1;
             for (int k = 0; k < 3; k++)
                 light[k] +=
-                    share * (1 - cover + cover * (double)tone->linear[picture->rgb[3 * i + k]]);
+                    share * (1 - cover + cover * (double)srgb->linear[image->rgb[3 * i + k]]);
             area += share;
         }
     for (int k = 0; k < 3; k++)
-        out[k] = (uint8_t)cs_srgb_encode(tone, (float)fmin(light[k] / area, 1));
+        out[k] = (uint8_t)cs_srgb_encode(srgb, (float)fmin(light[k] / area, 1));
 }
 
-void cs_srgb_shrink(const struct cs_srgb *tone, const struct cs_image *picture,
+void cs_srgb_shrink(const struct cs_srgb *srgb, const struct cs_image *image,
                     const uint32_t size[2], size_t first, const struct cs_image *paper) {
-    const double sx = (double)picture->width / size[0], sy = (double)picture->height / size[1];
+    const double sx = (double)image->width / size[0], sy = (double)image->height / size[1];
     for (uint32_t y = 0; y < size[1]; y++)
         for (uint32_t x = 0; x < size[0]; x++) {
             const double box[4] = {x * sx, y * sy, (x + 1) * sx, (y + 1) * sy};
-            shrink_pixel(tone, picture, box,
+            shrink_pixel(srgb, image, box,
                          paper->rgb + 3 * (first + (size_t)y * paper->width + x));
         }
 }

@@ -27,21 +27,21 @@ struct cs_srgb {
 };
 
 /* Fills the tables. */
-void cs_srgb_make(struct cs_srgb *tone);
+void cs_srgb_make(struct cs_srgb *srgb);
 
 /* The byte of c in 0..1, rounded exactly. Thresholds are at least 1 / (255 * 12.92) = 3.0e-4
  * apart, the slope of the straight part. A segment of 1/4096 = 2.4e-4 thus contains one of them
  * at most, and a single comparison decides. */
-CS_INLINE uint32_t cs_srgb_encode(const struct cs_srgb *tone, float c) {
-    const uint32_t byte = tone->segment_start[(int)(c * 4096)];
-    return byte + (c >= tone->threshold[byte + 1]);
+CS_INLINE uint32_t cs_srgb_encode(const struct cs_srgb *srgb, float c) {
+    const uint32_t byte = srgb->segment_start[(int)(c * 4096)];
+    return byte + (c >= srgb->threshold[byte + 1]);
 }
 
 /* Encodes three channels in 0..1 into a packed colour that covers. */
-CS_INLINE uint32_t cs_srgb_pack(const struct cs_srgb *tone, float red, float green,
+CS_INLINE uint32_t cs_srgb_pack(const struct cs_srgb *srgb, float red, float green,
                                 float blue) {
-    return cs_srgb_encode(tone, red) | cs_srgb_encode(tone, green) << 8 |
-           cs_srgb_encode(tone, blue) << 16;
+    return cs_srgb_encode(srgb, red) | cs_srgb_encode(srgb, green) << 8 |
+           cs_srgb_encode(srgb, blue) << 16;
 }
 
 /* Threshold 0..1 of row y in an ordered dither (Bayer 1973) of 16 rows: the bits of y, the
@@ -90,30 +90,30 @@ CS_INLINE uint32_t cs_srgb_blend(uint32_t under, uint32_t over, uint32_t share) 
 
 /* cs_srgb_mean for samples with transparency: the mean weighted by opacity, and mean opacity.
  */
-uint32_t cs_srgb_mean_clear(const struct cs_srgb *tone, const uint32_t samples[4]);
+uint32_t cs_srgb_mean_clear(const struct cs_srgb *srgb, const uint32_t samples[4]);
 
 /* The mean of four samples' linear light, not of their bytes: a surface that covers half of a
  * pixel gives half of its light. Four equal colours give the same colour. */
-CS_INLINE uint32_t cs_srgb_mean(const struct cs_srgb *tone, const uint32_t samples[4]) {
+CS_INLINE uint32_t cs_srgb_mean(const struct cs_srgb *srgb, const uint32_t samples[4]) {
     float light[3] = {0, 0, 0};
     if ((samples[0] | samples[1] | samples[2] | samples[3]) >> 24)
-        return cs_srgb_mean_clear(tone, samples);
+        return cs_srgb_mean_clear(srgb, samples);
     for (int s = 0; s < 4; s++)
         for (int k = 0; k < 3; k++)
-            light[k] += tone->linear[samples[s] >> 8 * k & 255];
-    return cs_srgb_pack(tone, light[0] * 0.25f, light[1] * 0.25f, light[2] * 0.25f);
+            light[k] += srgb->linear[samples[s] >> 8 * k & 255];
+    return cs_srgb_pack(srgb, light[0] * 0.25f, light[1] * 0.25f, light[2] * 0.25f);
 }
 
 /* Blends a colour with transparency over white, in linear light; the result covers. */
-uint32_t cs_srgb_blend_on_white(const struct cs_srgb *tone, uint32_t colour);
+uint32_t cs_srgb_blend_on_white(const struct cs_srgb *srgb, uint32_t colour);
 
 /* Writes a packed colour to pixel i of an image; over white if the image has no alpha. */
-CS_INLINE void cs_srgb_store(const struct cs_srgb *tone, uint32_t colour,
+CS_INLINE void cs_srgb_store(const struct cs_srgb *srgb, uint32_t colour,
                              const struct cs_image *image, size_t i) {
     if (image->alpha)
         image->alpha[i] = (uint8_t)(255 - (colour >> 24));
     else if (colour >> 24)
-        colour = cs_srgb_blend_on_white(tone, colour);
+        colour = cs_srgb_blend_on_white(srgb, colour);
     image->rgb[3 * i] = (uint8_t)colour;
     image->rgb[3 * i + 1] = (uint8_t)(colour >> 8);
     image->rgb[3 * i + 2] = (uint8_t)(colour >> 16);
@@ -122,7 +122,7 @@ CS_INLINE void cs_srgb_store(const struct cs_srgb *tone, uint32_t colour,
 /* Shrinks a picture to size (width, height), with its upper left corner at pixel `first` of
  * `paper`: each pixel is the mean of the linear light in the box that it covers, by area. What
  * is not opaque lies on white. */
-void cs_srgb_shrink(const struct cs_srgb *tone, const struct cs_image *picture,
+void cs_srgb_shrink(const struct cs_srgb *srgb, const struct cs_image *image,
                     const uint32_t size[2], size_t first, const struct cs_image *paper);
 
 /* Colour maps of values, and the colours of lines and marks. */

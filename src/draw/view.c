@@ -38,22 +38,22 @@ static struct cs_camera camera_at(const struct cs_camera *camera, double t) {
 
 /* Near and far plane. The far one is four times as far as anything is now, since bodies may
  * fall or be blown away; the near one leaves enough steps of depth. */
-static void set_depth(struct cs_view_state *view, const struct cs_bounding_sphere *extent) {
+static void set_depth(struct cs_view_state *view, const struct cs_bounding_sphere *sphere) {
     const struct cs_camera *camera = &view->camera;
     double to_target[3], to_centre[3];
     cs_subtract(camera->target, camera->eye, to_target);
-    cs_subtract(extent->centre, camera->eye, to_centre);
+    cs_subtract(sphere->centre, camera->eye, to_centre);
     const double distance = cs_length(to_target);
-    const double far = 4 * fmax(distance, cs_length(to_centre) + extent->radius);
+    const double far = 4 * fmax(distance, cs_length(to_centre) + sphere->radius);
     const bool parallel = camera->projection == CS_PROJECTION_ORTHOGRAPHIC;
     view->depth[0] = parallel ? -far : fmin(far / 1000, distance / 20);
     // haze hides the ground before the far plane cuts it
-    view->depth[1] = fmax(far, cs_length(to_centre) + extent->radius + 1.1 * view->haze);
+    view->depth[1] = fmax(far, cs_length(to_centre) + sphere->radius + 1.1 * view->haze);
 }
 
 /* Fills matrix, eye and picture size from the camera. */
 static void set_camera(struct cs_view_state *view, const struct cs_render *render,
-                       const struct cs_bounding_sphere *extent) {
+                       const struct cs_bounding_sphere *sphere) {
     const struct cs_camera *camera = &view->camera;
     const double width = (double)render->size[0], height = (double)render->size[1];
     const double slope = cs_tangent(camera->fov * (3.14159265358979323846 / 360));
@@ -61,7 +61,7 @@ static void set_camera(struct cs_view_state *view, const struct cs_render *rende
     double back[3], look[16], lens[16], both[16];
     cs_subtract(camera->eye, camera->target, back);
     const double distance = cs_length(back);
-    set_depth(view, extent);
+    set_depth(view, sphere);
     cs_matrix_look(camera->eye, camera->target, camera->up, look);
     if (parallel)
         cs_matrix_parallel(slope * distance, width / height, view->depth[0], view->depth[1],
@@ -83,7 +83,7 @@ static void set_camera(struct cs_view_state *view, const struct cs_render *rende
 }
 
 void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
-                  const struct cs_bounding_sphere *extent, size_t n,
+                  const struct cs_bounding_sphere *sphere, size_t n,
                   const struct cs_frame *frame) {
     struct cs_camera_fit fit;
     view->camera = camera_at(&scene->camera, frame->t);
@@ -93,7 +93,7 @@ void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
         cs_camera_fit_begin(&fit, &scene->camera, &scene->render);
         cs_camera_fit_solve(&fit, n, frame->x, 0.62, &view->camera);
     }
-    set_camera(view, &scene->render, extent);
+    set_camera(view, &scene->render, sphere);
 }
 
 /* Position of a lamp or direction to a sun; by default from above, in front and the right. */
@@ -171,16 +171,16 @@ void cs_view_set_colours(struct cs_view_state *view, const struct cs_scene *scen
 
 void cs_view_init(struct cs_view_state *view, const struct cs_system *system,
                   const struct cs_posed_collider *colliders,
-                  const struct cs_bounding_sphere *extent) {
+                  const struct cs_bounding_sphere *sphere) {
     const struct cs_scene *scene = system->scene;
     memset(view, 0, sizeof *view);
-    view->haze = cs_view_haze(extent);
+    view->haze = cs_view_haze(sphere);
     view->camera = camera_at(&scene->camera, 0);
     if (scene->camera.frame == CS_FRAME_START) {
-        cs_camera_fit_start(&view->fit, system, colliders, extent->low, extent->high);
+        cs_camera_fit_start(&view->fit, system, colliders, sphere->low, sphere->high);
         cs_camera_fit_picture(&view->fit, colliders, 0, NULL, &view->camera);
     }
-    set_camera(view, &scene->render, extent);
+    set_camera(view, &scene->render, sphere);
     cs_view_set_colours(view, scene);
     cs_colour_stops(scene->render.look, scene->render.palette == CS_PALETTE_GREEN_RED,
                     view->block.colour_stops);
@@ -236,17 +236,17 @@ void cs_light_frustum_fit(const struct cs_bounding_sphere *solid, struct cs_view
     block->shadow_params[1] = (float)(2 * (is_lamp ? slope * distance : r) / CS_SHADOW_SIDE);
 }
 
-void cs_light_frusta_fit(const struct cs_bounding_sphere *solid, struct cs_view_state *view) {
+void cs_light_frusta_fit(const struct cs_bounding_sphere *sphere, struct cs_view_state *view) {
     for (uint32_t k = 0; k < view->n_lights; k++)
         if (view->casts[k])
-            cs_light_frustum_fit(solid, view->block.lights + k);
+            cs_light_frustum_fit(sphere, view->block.lights + k);
 }
 
 struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, const double *x,
-                                                const struct cs_posed_collider *obstacles) {
+                                                const struct cs_posed_collider *colliders) {
     const struct cs_scene *scene = system->scene;
     double low[3], high[3], diagonal[3], place[3];
-    struct cs_bounding_sphere ball = {.radius = 0};
+    struct cs_bounding_sphere sphere = {.radius = 0};
     cs_mesh_position(system->view.n, x, 0, low);
     memcpy(high, low, sizeof high);
     for (uint32_t i = 0; i < system->view.n; i++) {
@@ -255,15 +255,15 @@ struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, 
     }
     /* planes are left out: they have no end */
     for (uint32_t i = 0; i < scene->colliders.n; i++)
-        cs_box_grow_by_collider(low, high, obstacles + i);
+        cs_box_grow_by_collider(low, high, colliders + i);
     for (int i = 0; i < 3; i++)
-        ball.centre[i] = (low[i] + high[i]) / 2;
-    memcpy(ball.low, low, sizeof low);
-    memcpy(ball.high, high, sizeof high);
+        sphere.centre[i] = (low[i] + high[i]) / 2;
+    memcpy(sphere.low, low, sizeof low);
+    memcpy(sphere.high, high, sizeof high);
     cs_subtract(high, low, diagonal);
     /* even a lone particle has some extent: what is drawn scales by the radius */
-    ball.radius = fmax(cs_length(diagonal) / 2, 1e-3);
-    return ball;
+    sphere.radius = fmax(cs_length(diagonal) / 2, 1e-3);
+    return sphere;
 }
 
 double cs_scene_extent_cell(const struct cs_system *system) {

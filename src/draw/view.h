@@ -58,7 +58,7 @@ struct cs_bounding_sphere {
  * `extent` lies between near and far plane. */
 void cs_view_init(struct cs_view_state *view, const struct cs_system *system,
                   const struct cs_posed_collider *colliders,
-                  const struct cs_bounding_sphere *extent);
+                  const struct cs_bounding_sphere *sphere);
 
 /* Fills lights and background from a scene. */
 void cs_view_set_colours(struct cs_view_state *view, const struct cs_scene *scene);
@@ -72,7 +72,7 @@ static inline bool cs_view_varies(const struct cs_scene *scene) {
 /* Moves a camera that varies to the time of a frame of n particles: along its path, or fitted
  * to the bodies. */
 void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
-                  const struct cs_bounding_sphere *extent, size_t n,
+                  const struct cs_bounding_sphere *sphere, size_t n,
                   const struct cs_frame *frame);
 
 /* Uploads the block as a uniform buffer; OpenGL only. */
@@ -86,10 +86,10 @@ enum { CS_SHADOW_SIDE = 512 }; /* texels: coarse enough to blur the edges */
 /* Fits a light's frustum to the sphere `solid` of all casters. Writes world_to_light and
  * shadow_params[0..2]: 1 / side; texel size in m at the centre; 1 or 0: shadows on. They are
  * off if a lamp is within 1.05 radii of the centre. */
-void cs_light_frustum_fit(const struct cs_bounding_sphere *solid, struct cs_view_light *light);
+void cs_light_frustum_fit(const struct cs_bounding_sphere *sphere, struct cs_view_light *light);
 
 /* Fits those of all lights of the view that cast shadows. */
-void cs_light_frusta_fit(const struct cs_bounding_sphere *solid, struct cs_view_state *view);
+void cs_light_frusta_fit(const struct cs_bounding_sphere *sphere, struct cs_view_state *view);
 
 /* Returns a sphere around the particles at x (3,n) and the visible colliders
  * (scene->colliders.n) but planes: around their bounding box, with a radius of 1 mm at least.
@@ -98,8 +98,8 @@ struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, 
                                                 const struct cs_posed_collider *colliders);
 
 /* Distance in m from the centre of a scene at which haze hides the ground. */
-static inline double cs_view_haze(const struct cs_bounding_sphere *extent) {
-    return 12 * extent->radius;
+static inline double cs_view_haze(const struct cs_bounding_sphere *sphere) {
+    return 12 * sphere->radius;
 }
 
 /* The largest distance of neighbours in the bodies at rest, in m; 0 for lone particles. */

@@ -30,15 +30,15 @@ static void add_item(struct cs_serialiser *file, const char *name, const void *b
     cs_serialiser_bytes(file, "\n", 1);
 }
 
-enum cs_status cs_checkpoint_write(const char *path, const struct cs_checkpoint_key *facts,
-                                   uint32_t n_facts, const struct cs_serialiser *record,
+enum cs_status cs_checkpoint_write(const char *path, const struct cs_checkpoint_key *keys,
+                                   uint32_t n_facts, const struct cs_serialiser *serialiser,
                                    const char *command, struct cs_error *error) {
     struct cs_serialiser file = {0};
     char digits[CS_HASH_DIGITS];
     cs_serialiser_bytes(&file, FIRST_LINE, sizeof FIRST_LINE - 1);
     for (uint32_t k = 0; k < n_facts; k++)
-        add_item(&file, facts[k].name, facts[k].value, strlen(facts[k].value));
-    add_item(&file, "record", record->bytes, record->length);
+        add_item(&file, keys[k].name, keys[k].value, strlen(keys[k].value));
+    add_item(&file, "record", serialiser->bytes, serialiser->length);
     if (*command)
         add_item(&file, "command", command, strlen(command));
     cs_hash_bytes(file.bytes, file.length, digits);
@@ -107,9 +107,10 @@ static const char *next_line(const char *line, const char *end) {
 }
 
 /* Refuses a fact that differs; the message shows the first lines that do. */
-static enum cs_status refuse(const char *path, const struct cs_checkpoint_key *fact,
-                             const char *there, size_t length, struct cs_error *error) {
-    const char *here = fact->value, *end = here + strlen(here), *stop = there + length;
+static enum cs_status refuse_checkpoint(const char *path, const struct cs_checkpoint_key *key,
+                                        const char *there, size_t length,
+                                        struct cs_error *error) {
+    const char *here = key->value, *end = here + strlen(here), *stop = there + length;
     while (there < stop && here < end) {
         const char *after = next_line(there, stop), *next = next_line(here, end);
         if (after - there != next - here || memcmp(there, here, (size_t)(after - there)) != 0)
@@ -120,43 +121,43 @@ static enum cs_status refuse(const char *path, const struct cs_checkpoint_key *f
     const int shown_there = trim(&there, stop), shown_here = trim(&here, end);
     return cs_fail(error, CS_ERR_FILE,
                    "\"%s\" was written for a different %s: found %.*s, expected %.*s", path,
-                   fact->name, shown_there, there, shown_here, here);
+                   key->name, shown_there, there, shown_here, here);
 }
 
 /* Compares all facts with those of the file, and moves past them. */
-static enum cs_status check_facts(const char *path, const struct cs_checkpoint_key *facts,
+static enum cs_status check_facts(const char *path, const struct cs_checkpoint_key *keys,
                                   uint32_t n_facts, struct cs_serialiser *file,
                                   struct cs_error *error) {
     for (uint32_t k = 0; k < n_facts; k++) {
         size_t length;
-        const char *value = take_item(file, facts[k].name, &length);
+        const char *value = take_item(file, keys[k].name, &length);
         if (!value)
             return cs_fail(error, CS_ERR_FILE, "\"%s\": it does not state the %s", path,
-                           facts[k].name);
-        if (length != strlen(facts[k].value) || memcmp(value, facts[k].value, length) != 0)
-            return refuse(path, facts + k, value, length, error);
+                           keys[k].name);
+        if (length != strlen(keys[k].value) || memcmp(value, keys[k].value, length) != 0)
+            return refuse_checkpoint(path, keys + k, value, length, error);
     }
     return CS_OK;
 }
 
-enum cs_status cs_checkpoint_read(const char *path, const struct cs_checkpoint_key *facts,
-                                  uint32_t n_facts, struct cs_serialiser *record,
+enum cs_status cs_checkpoint_read(const char *path, const struct cs_checkpoint_key *keys,
+                                  uint32_t n_facts, struct cs_serialiser *serialiser,
                                   struct cs_error *error) {
     size_t length;
-    *record = (struct cs_serialiser){0};
-    if (cs_file_read(path, BYTES_MAX, &record->bytes, &record->length, error))
+    *serialiser = (struct cs_serialiser){0};
+    if (cs_file_read(path, BYTES_MAX, &serialiser->bytes, &serialiser->length, error))
         return error->status;
-    record->is_reading = true;
-    if (check_whole(path, record, error))
+    serialiser->is_reading = true;
+    if (check_whole(path, serialiser, error))
         return error->status;
-    record->position = sizeof FIRST_LINE - 1;
-    if (check_facts(path, facts, n_facts, record, error))
+    serialiser->position = sizeof FIRST_LINE - 1;
+    if (check_facts(path, keys, n_facts, serialiser, error))
         return error->status;
-    const char *bytes = take_item(record, "record", &length);
+    const char *bytes = take_item(serialiser, "record", &length);
     if (!bytes)
         return cs_fail(error, CS_ERR_FILE, "\"%s\": it contains no record", path);
-    record->position = (size_t)(bytes - record->bytes);
-    record->length = record->position + length;
+    serialiser->position = (size_t)(bytes - serialiser->bytes);
+    serialiser->length = serialiser->position + length;
     return CS_OK;
 }
 

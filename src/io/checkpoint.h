@@ -32,8 +32,8 @@ struct cs_checkpoint_key {
 /* Replaces the file atomically and returns when the disk has it. Facts and record are only
  * read. command: words of the command line that the run needs, each closed by a newline; "":
  * none. On failure CS_ERR_FILE or CS_ERR_MEMORY, and an older file stays as it was. */
-enum cs_status cs_checkpoint_write(const char *path, const struct cs_checkpoint_key *facts,
-                                   uint32_t n_facts, const struct cs_serialiser *record,
+enum cs_status cs_checkpoint_write(const char *path, const struct cs_checkpoint_key *keys,
+                                   uint32_t n_facts, const struct cs_serialiser *serialiser,
                                    const char *command, struct cs_error *error);
 
 /* Adds the command of a checkpoint to a text. CS_ERR_FILE if the file cannot be read, is
@@ -45,8 +45,8 @@ enum cs_status cs_checkpoint_read_command(const char *path, struct cs_text *comm
  * writer, in its order. Fails with CS_ERR_FILE if the file cannot be read, is damaged in any
  * byte, or a fact differs: the message then shows both values. The caller finishes the record,
  * also after a failure. */
-enum cs_status cs_checkpoint_read(const char *path, const struct cs_checkpoint_key *facts,
-                                  uint32_t n_facts, struct cs_serialiser *record,
+enum cs_status cs_checkpoint_read(const char *path, const struct cs_checkpoint_key *keys,
+                                  uint32_t n_facts, struct cs_serialiser *serialiser,
                                   struct cs_error *error);
 
 #endif

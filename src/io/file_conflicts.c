@@ -19,20 +19,20 @@ static bool stat_folder(const char *path, struct stat *info) {
 
 /* Fills a file's identity; returns false if neither it nor its folder exists. */
 static bool stat_file(const char *path, const char *what, bool output,
-                      struct cs_file_use *claim) {
+                      struct cs_file_use *use) {
     struct stat file, folder;
     const char *end = strrchr(path, '/');
-    *claim = (struct cs_file_use){.role = what, .is_output = output};
-    snprintf(claim->name, sizeof claim->name, "%s", end ? end + 1 : path);
+    *use = (struct cs_file_use){.role = what, .is_output = output};
+    snprintf(use->name, sizeof use->name, "%s", end ? end + 1 : path);
     if (!stat_folder(path, &folder))
         return false;
-    claim->folder_device_id = folder.st_dev;
-    claim->folder_inode = folder.st_ino;
+    use->folder_device_id = folder.st_dev;
+    use->folder_inode = folder.st_ino;
     // a character device has no content that another use could harm
-    claim->exists = !stat(path, &file) && !S_ISCHR(file.st_mode);
-    if (claim->exists) {
-        claim->device_id = file.st_dev;
-        claim->inode = file.st_ino;
+    use->exists = !stat(path, &file) && !S_ISCHR(file.st_mode);
+    if (use->exists) {
+        use->device_id = file.st_dev;
+        use->inode = file.st_ino;
     }
     return true;
 }
@@ -63,28 +63,27 @@ void cs_file_conflicts_input(struct cs_file_conflicts *conflicts, const char *pa
 }
 
 /* Names the two uses that collide. */
-static enum cs_status refuse(const struct cs_file_use *claim, const char *path,
-                             const char *what, struct cs_error *error) {
+static enum cs_status refuse_use(const struct cs_file_use *use, const char *path,
+                                 const char *what, struct cs_error *error) {
     const char *name = strrchr(path, '/');
-    const bool on_the_way = is_on_the_way(name ? name + 1 : path, claim->name);
+    const bool on_the_way = is_on_the_way(name ? name + 1 : path, use->name);
     return cs_fail(error, CS_ERR_FILE, "%s: \"%s\"%s%s%s is %s %s", what, path,
-                   on_the_way ? " is first \"" : "", on_the_way ? claim->name : "",
+                   on_the_way ? " is first \"" : "", on_the_way ? use->name : "",
                    on_the_way ? "\", which" : "",
-                   claim->is_output ? "also written by" : "read as", claim->role);
+                   use->is_output ? "also written by" : "read as", use->role);
 }
 
 enum cs_status cs_file_conflicts_output(struct cs_file_conflicts *conflicts, const char *path,
                                         const char *what, struct cs_error *error) {
-    struct cs_file_use claim;
+    struct cs_file_use use;
     struct stat device;
-    if (!stat_file(path, what, true, &claim) ||
-        (!stat(path, &device) && S_ISCHR(device.st_mode)))
+    if (!stat_file(path, what, true, &use) || (!stat(path, &device) && S_ISCHR(device.st_mode)))
         return CS_OK; // writing it will say why it cannot be; a device is harmed by nothing
     for (unsigned k = 0; k < conflicts->n; k++)
-        if (is_same(&claim, conflicts->items + k))
-            return refuse(conflicts->items + k, path, what, error);
+        if (is_same(&use, conflicts->items + k))
+            return refuse_use(conflicts->items + k, path, what, error);
     if (conflicts->n < CS_FILE_CONFLICTS_MAX)
-        conflicts->items[conflicts->n++] = claim;
+        conflicts->items[conflicts->n++] = use;
     return CS_OK;
 }
 
@@ -93,7 +92,7 @@ enum cs_status cs_file_conflicts_pair(const char *output, const char *what, cons
     struct cs_file_use written, read;
     return output && stat_file(input, role, false, &read) &&
                    stat_file(output, what, true, &written) && is_same(&written, &read)
-               ? refuse(&read, output, what, error)
+               ? refuse_use(&read, output, what, error)
                : CS_OK;
 }
 
@@ -104,14 +103,14 @@ enum cs_status cs_file_conflicts_folder(const struct cs_file_conflicts *conflict
     if (stat(folder, &info))
         return CS_OK;
     for (unsigned k = 0; k < conflicts->n; k++) {
-        const struct cs_file_use *claim = conflicts->items + k;
+        const struct cs_file_use *use = conflicts->items + k;
         char path[4096], target[CS_FILE_NAME_BYTES];
-        const bool on_the_way = cs_file_is_temporary(claim->name, target);
-        if (claim->folder_device_id != info.st_dev || claim->folder_inode != info.st_ino ||
-            !is_ours(on_the_way ? target : claim->name))
+        const bool on_the_way = cs_file_is_temporary(use->name, target);
+        if (use->folder_device_id != info.st_dev || use->folder_inode != info.st_ino ||
+            !is_ours(on_the_way ? target : use->name))
             continue;
-        snprintf(path, sizeof path, "%.3800s/%s", folder, claim->name);
-        return refuse(claim, path, what, error);
+        snprintf(path, sizeof path, "%.3800s/%s", folder, use->name);
+        return refuse_use(use, path, what, error);
     }
     return CS_OK;
 }

@@ -70,9 +70,9 @@ enum cs_status cs_row_log_add(struct cs_row_log *log, struct cs_text *row,
     return error->status;
 }
 
-void cs_row_log_record(struct cs_row_log *log, struct cs_serialiser *record) {
-    CS_SERIALISER(record, log->length);
-    CS_SERIALISER(record, log->hash);
+void cs_row_log_record(struct cs_row_log *log, struct cs_serialiser *serialiser) {
+    CS_SERIALISER(serialiser, log->length);
+    CS_SERIALISER(serialiser, log->hash);
 }
 
 enum cs_status cs_row_log_sync(const struct cs_row_log *log, struct cs_error *error) {

@@ -39,7 +39,7 @@ enum cs_status cs_row_log_resume(struct cs_row_log *log, const char *path,
 enum cs_status cs_row_log_add(struct cs_row_log *log, struct cs_text *row,
                               struct cs_error *error);
 /* Stores or loads length and hash. */
-void cs_row_log_record(struct cs_row_log *log, struct cs_serialiser *record);
+void cs_row_log_record(struct cs_row_log *log, struct cs_serialiser *serialiser);
 /* Waits until the disk has all rows. CS_ERR_FILE. */
 enum cs_status cs_row_log_sync(const struct cs_row_log *log, struct cs_error *error);
 /* Writes the first bytes of the rows to a stream, whose errors the caller looks at. CS_ERR_FILE

@@ -245,7 +245,7 @@ static uint32_t count_pieces(const struct cs_raw_mesh *raw, uint32_t *parents) {
 
 /* --- all --- */
 
-static enum cs_status begin(struct work *work, struct cs_error *error) {
+static enum cs_status begin_mending(struct work *work, struct cs_error *error) {
     const size_t n = work->raw->n_vertices, sides = 3 * (size_t)work->raw->n_triangles;
     work->sides = calloc(sides + 1, sizeof *work->sides);
     work->places = calloc(n + 1, sizeof *work->places);
@@ -275,7 +275,7 @@ static enum cs_status mend_once(struct cs_raw_mesh *raw, bool weld, bool first,
                                 struct cs_mesh_mends *mends, bool *again,
                                 struct cs_error *error) {
     struct work work = {.raw = raw, .mends = mends};
-    if (!begin(&work, error)) {
+    if (!begin_mending(&work, error)) {
         *again = mark_splits(&work, first) > 0;
         if (*again || first)
             if (!weld || !find_places(&work, error)) {

@@ -33,7 +33,7 @@ static double squared_distance(const double a[3], const double b[3]) {
 }
 
 /* The lowest first vertex near vertex i, or i. */
-static uint32_t find(const struct grid *grid, uint32_t i) {
+static uint32_t find_nearest(const struct grid *grid, uint32_t i) {
     const double width = 4 * grid->distance, *p = grid->x[i];
     uint32_t found = i;
     for (int corner = 0; corner < 8; corner++) {
@@ -89,7 +89,7 @@ uint32_t cs_near_vertices_find(const double (*positions)[3], uint32_t n, const b
         if (!among[i])
             continue;
         /* only the first of a place is entered, and found by the others */
-        places[i] = find(&grid, i);
+        places[i] = find_nearest(&grid, i);
         doubled += places[i] != i;
         if (places[i] == i)
             insert(&grid, i);

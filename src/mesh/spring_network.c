@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 /* The constants are those of SplitMix64: a Weyl sequence, then two rounds of mixing. */
-uint64_t cs_rng_next(struct cs_rng *draws) {
-    uint64_t z = draws->state += 0x9e3779b97f4a7c15u;
+uint64_t cs_rng_next(struct cs_rng *rng) {
+    uint64_t z = rng->state += 0x9e3779b97f4a7c15u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
@@ -23,7 +23,7 @@ struct pairs {
 };
 
 /* The slot of a pair, or the empty one where it belongs. Linear probing. */
-static uint64_t *find(const struct pairs *pairs, uint32_t a, uint32_t b) {
+static uint64_t *find_pair(const struct pairs *pairs, uint32_t a, uint32_t b) {
     const uint64_t key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
     struct cs_rng mix = {key};
     uint64_t at = cs_rng_next(&mix) & pairs->mask;
@@ -34,7 +34,7 @@ static uint64_t *find(const struct pairs *pairs, uint32_t a, uint32_t b) {
 
 /* Adds a pair to the set. */
 static void join(const struct pairs *pairs, uint32_t a, uint32_t b) {
-    *find(pairs, a, b) = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+    *find_pair(pairs, a, b) = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
 }
 
 /* State of one cs_spring_network_make. */
@@ -42,7 +42,7 @@ struct work {
     const struct cs_spring_network *network;
     struct cs_trimesh *mesh;
     struct pairs pairs;
-    struct cs_rng draws;
+    struct cs_rng rng;
     double *normals; /* (n, 3) unit */
 };
 
@@ -67,7 +67,7 @@ static void fill_normals(struct work *work) {
 /* Returns true if vertex j may become a partner of i. */
 static bool is_candidate(const struct work *work, uint32_t i, uint32_t j) {
     const double *m = work->normals + 3 * (size_t)i, *o = work->normals + 3 * (size_t)j;
-    if (i == j || *find(&work->pairs, i, j))
+    if (i == j || *find_pair(&work->pairs, i, j))
         return false;
     return work->network->placement == CS_PLACEMENT_RANDOM ||
            m[0] * o[0] + m[1] * o[1] + m[2] * o[2] <= -0.5;
@@ -92,7 +92,7 @@ static uint32_t draw_partner(struct work *work, uint32_t i) {
     int64_t found = 0;
     for (int64_t t = 0; t < network->tries && found < wanted; t++) {
         /* scales 32 random bits to 0..n-1 without a division */
-        const uint64_t drawn = cs_rng_next(&work->draws) >> 32;
+        const uint64_t drawn = cs_rng_next(&work->rng) >> 32;
         const uint32_t j = (uint32_t)(drawn * work->mesh->n >> 32);
         if (!is_candidate(work, i, j))
             continue;
@@ -128,7 +128,7 @@ enum cs_status cs_spring_network_make(const struct cs_spring_network *network,
                                       struct cs_trimesh *mesh, struct cs_arena *arena,
                                       struct cs_error *error) {
     const uint64_t most = (uint64_t)mesh->n * (uint64_t)network->springs;
-    struct work work = {.network = network, .mesh = mesh, .draws = {(uint64_t)network->seed}};
+    struct work work = {.network = network, .mesh = mesh, .rng = {(uint64_t)network->seed}};
     for (work.pairs.mask = 1; work.pairs.mask < 2 * (most + mesh->n_edges);)
         work.pairs.mask = 2 * work.pairs.mask + 1;
     /* where addresses are short, a mask can be longer */

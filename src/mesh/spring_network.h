@@ -28,7 +28,7 @@ struct cs_rng {
     uint64_t state;
 };
 /* Returns the next 64 bits. */
-uint64_t cs_rng_next(struct cs_rng *draws);
+uint64_t cs_rng_next(struct cs_rng *rng);
 
 /* Fills mesh->network_springs of a finished, closed mesh; memory from the arena. Each vertex in
  * turn draws `springs` partners. No pair is joined twice, nor if an edge joins it:

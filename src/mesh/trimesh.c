@@ -249,7 +249,7 @@ static void measure_edges(struct cs_trimesh *mesh) {
 }
 
 /* Allocates the temporary sides, and the arrays of vertices in the arena. */
-static enum cs_status take(struct work *work) {
+static enum cs_status allocate_mesh(struct work *work) {
     struct cs_trimesh *mesh = work->mesh;
     const size_t corners = 3 * (size_t)mesh->n_triangles;
     work->sides = calloc(corners + 1, sizeof *work->sides);
@@ -271,7 +271,7 @@ static enum cs_status build(struct work *work) {
     for (uint32_t t = 0; t < mesh->n_triangles; t++)
         if (check_triangle(work, t))
             return work->error->status;
-    if (take(work))
+    if (allocate_mesh(work))
         return work->error->status;
     fill_sides(work);
     if (walk_edges(work) || fill_vertices(work))

@@ -25,13 +25,13 @@
 
 /* Starts a feature: returns whether it is built, and counts allocations from now on in its row.
  */
-static bool begin(struct cs_system *system, enum cs_feature feature) {
+static bool begin_feature(struct cs_system *system, enum cs_feature feature) {
     system->arena.part = &system->plan.rows[feature].bytes;
     return system->plan.rows[feature].built;
 }
 
 /* Allocates doubles in the system's arena. Returns NULL and sets the error if out of memory. */
-static double *take(struct cs_system *system, size_t n, struct cs_error *error) {
+static double *allocate(struct cs_system *system, size_t n, struct cs_error *error) {
     return cs_arena_alloc_array(&system->arena, n, sizeof(double), error);
 }
 
@@ -46,7 +46,7 @@ static void build_springs(struct cs_system *system, struct cs_error *error) {
                                      bodies[b].mesh.present ? &n_listed : &n_springs);
     struct cs_spring_run *runs =
         cs_arena_alloc_array(&system->arena, n_runs, sizeof *runs, error);
-    double *lists = take(system, 2 * (size_t)n_listed, error);
+    double *lists = allocate(system, 2 * (size_t)n_listed, error);
     if (error->status)
         return;
     n_runs = n_springs = 0;
@@ -65,8 +65,8 @@ static void build_springs(struct cs_system *system, struct cs_error *error) {
 static void build_spring_list(struct cs_system *system, struct cs_error *error) {
     const uint32_t n = system->springs.n;
     uint32_t *ends = cs_arena_alloc_array(&system->arena, 2 * (size_t)n, sizeof *ends, error);
-    double *length = take(system, n, error), *stiffness = take(system, n, error);
-    double *damping = take(system, n, error);
+    double *length = allocate(system, n, error), *stiffness = allocate(system, n, error);
+    double *damping = allocate(system, n, error);
     uint32_t *kind = cs_arena_alloc_array(&system->arena, n, sizeof *kind, error);
     uint8_t *axial = cs_arena_alloc_array(&system->arena, n, sizeof *axial, error);
     if (error->status)
@@ -210,7 +210,7 @@ static void build_term(struct cs_system *system, const struct cs_term *term,
                        struct cs_error *error) {
     const uint32_t uses = term->uses ? term->uses(system->scene) : 0;
     if (uses & CS_USE_NORMALS && !system->normals)
-        system->normals = take(system, 3 * (size_t)system->view.n, error);
+        system->normals = allocate(system, 3 * (size_t)system->view.n, error);
     if (term->build && !error->status)
         term->build(system, error);
 }
@@ -239,13 +239,13 @@ static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
     uint32_t first = 0;
     system->arena.part = &system->plan.state_bytes;
     CS_ARENA_ARRAY(&system->arena, system->bodies, system->scene->bodies.n, error);
-    system->mass = take(system, n, error);
-    system->inv_mass = take(system, n, error);
-    system->state = take(system, 6 * n, error);
-    system->start = take(system, 3 * n, error);
+    system->mass = allocate(system, n, error);
+    system->inv_mass = allocate(system, n, error);
+    system->state = allocate(system, 6 * n, error);
+    system->start = allocate(system, 3 * n, error);
     /* areas only if a force reads them */
-    if (begin(system, CS_FEATURE_AREA))
-        system->area = take(system, n, error);
+    if (begin_feature(system, CS_FEATURE_AREA))
+        system->area = allocate(system, n, error);
     if (error->status)
         return;
     system->view.mass = system->mass;
@@ -263,16 +263,16 @@ static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
 /* Builds in the order above. work has 2n doubles. */
 static void build(struct cs_system *system, void *work, struct cs_error *error) {
     alloc_arrays(system, error);
-    if (!error->status && begin(system, CS_FEATURE_SPRINGS))
+    if (!error->status && begin_feature(system, CS_FEATURE_SPRINGS))
         build_springs(system, error);
-    begin(system, CS_FEATURE_THREADS);
+    begin_feature(system, CS_FEATURE_THREADS);
     if (!error->status)
         cs_thread_partition_build(system, error);
-    if (!error->status && begin(system, CS_FEATURE_SPRING_LIST))
+    if (!error->status && begin_feature(system, CS_FEATURE_SPRING_LIST))
         build_spring_list(system, error);
     if (!error->status && system->plan.colours)
         build_colours(system, error);
-    if (!error->status && begin(system, CS_FEATURE_CLUSTERS))
+    if (!error->status && begin_feature(system, CS_FEATURE_CLUSTERS))
         cs_shape_clusters_build(system, error);
     if (error->status)
         return;
@@ -288,16 +288,16 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
     /* events choose particles by where they start, so before them */
     memcpy(system->start, system->state, 3 * sizeof(double) * system->view.n);
     choose_terms(system, error);
-    if (!error->status && begin(system, CS_FEATURE_FRICTION_ANCHORS))
+    if (!error->status && begin_feature(system, CS_FEATURE_FRICTION_ANCHORS))
         cs_friction_anchors_build(system, error);
-    if (!error->status && begin(system, CS_FEATURE_CONTACT) &&
+    if (!error->status && begin_feature(system, CS_FEATURE_CONTACT) &&
         cs_tunnelling_is_possible(system->scene))
         cs_approach_build(system, error);
-    if (!error->status && begin(system, CS_FEATURE_CROSSINGS))
+    if (!error->status && begin_feature(system, CS_FEATURE_CROSSINGS))
         cs_crossings_build(system, error);
     if (error->status)
         return;
-    if (begin(system, CS_FEATURE_EVENTS)) {
+    if (begin_feature(system, CS_FEATURE_EVENTS)) {
         if (!cs_events_build(system, error))
             cs_events_set_bounds(system, work);
         return;

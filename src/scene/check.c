@@ -5,15 +5,15 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-enum cs_status cs_check_refuse(const struct cs_check *at, const char *path, const char *format,
-                               ...) {
+enum cs_status cs_check_refuse(const struct cs_check *check, const char *path,
+                               const char *format, ...) {
     char message[512];
     va_list args;
     va_start(args, format);
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
-    snprintf(at->path, CS_TEXT_MAX, "%s", path);
-    return cs_fail(at->error, CS_ERR_SCENE, "%s", message);
+    snprintf(check->path, CS_TEXT_MAX, "%s", path);
+    return cs_fail(check->error, CS_ERR_SCENE, "%s", message);
 }
 
 double cs_check_length(const double *v, int n) {
@@ -23,10 +23,10 @@ double cs_check_length(const double *v, int n) {
     return sqrt(squared);
 }
 
-enum cs_status cs_check_unit(const struct cs_check *at, const char *path, double *v, int n) {
+enum cs_status cs_check_unit(const struct cs_check *check, const char *path, double *v, int n) {
     const double length = cs_check_length(v, n);
     if (length < 1e-12)
-        return cs_check_refuse(at, path, "the zero vector has no direction");
+        return cs_check_refuse(check, path, "the zero vector has no direction");
     if (fabs(length - 1) > 1e-14)
         for (int i = 0; i < n; i++)
             v[i] /= length;
@@ -34,7 +34,7 @@ enum cs_status cs_check_unit(const struct cs_check *at, const char *path, double
 }
 
 /* Checks that M M^T = I to 1e-6 per element, and that the determinant is above 0. */
-static enum cs_status check_matrix(const struct cs_check *at, const char *path,
+static enum cs_status check_matrix(const struct cs_check *check, const char *path,
                                    const double *m) {
     const double determinant = m[0] * (m[4] * m[8] - m[5] * m[7]) -
                                m[1] * (m[3] * m[8] - m[5] * m[6]) +
@@ -45,22 +45,24 @@ static enum cs_status check_matrix(const struct cs_check *at, const char *path,
                 m[3 * i] * m[3 * j] + m[3 * i + 1] * m[3 * j + 1] + m[3 * i + 2] * m[3 * j + 2];
             if (!(fabs(product - (i == j)) <= 1e-6))
                 return cs_check_refuse(
-                    at, path, "rows %d and %d have the dot product %.9g: not a rotation matrix",
-                    j, i, product);
+                    check, path,
+                    "rows %d and %d have the dot product %.9g: not a rotation matrix", j, i,
+                    product);
         }
     if (!(determinant > 0))
-        return cs_check_refuse(
-            at, path, "a mirror image (determinant %.3g): not a rotation matrix", determinant);
+        return cs_check_refuse(check, path,
+                               "a mirror image (determinant %.3g): not a rotation matrix",
+                               determinant);
     return CS_OK;
 }
 
-enum cs_status cs_check_pose(const struct cs_check *at, const char *body, const char *shape,
+enum cs_status cs_check_pose(const struct cs_check *check, const char *body, const char *shape,
                              struct cs_pose *place) {
     char path[128];
     if (!isnan(place->matrix[0])) {
         snprintf(path, sizeof path, "%s.%s.place.matrix", body, shape);
-        return check_matrix(at, path, place->matrix);
+        return check_matrix(check, path, place->matrix);
     }
     snprintf(path, sizeof path, "%s.%s.place.rotate", body, shape);
-    return cs_check_unit(at, path, place->rotate, 4);
+    return cs_check_unit(check, path, place->rotate, 4);
 }

@@ -11,27 +11,27 @@ struct cs_check {
 };
 
 /* Fails with CS_ERR_SCENE: stores the path of the faulty value and the message. */
-enum cs_status cs_check_refuse(const struct cs_check *at, const char *path, const char *format,
-                               ...) __attribute__((format(printf, 3, 4)));
+enum cs_status cs_check_refuse(const struct cs_check *check, const char *path,
+                               const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 /* Euclidean length of v (n). */
 double cs_check_length(const double *v, int n);
 
 /* Makes v (n) a unit vector; refuses the zero vector. A vector that is unit to 1e-14 keeps its
  * bits, so that a resolved scene runs to the same hash as the scene that it came from. */
-enum cs_status cs_check_unit(const struct cs_check *at, const char *path, double *v, int n);
+enum cs_status cs_check_unit(const struct cs_check *check, const char *path, double *v, int n);
 
 /* Checks the rotation of BODY.SHAPE.place: a matrix must be a rotation, a quaternion is made
  * unit. */
-enum cs_status cs_check_pose(const struct cs_check *at, const char *body, const char *shape,
+enum cs_status cs_check_pose(const struct cs_check *check, const char *body, const char *shape,
                              struct cs_pose *place);
 
 /* Checks the constants of an elastic body. */
-enum cs_status cs_elastic_check(const struct cs_check *at, const char *body,
+enum cs_status cs_elastic_check(const struct cs_check *check, const char *body,
                                 const struct cs_body *of);
 
 /* Checks that bodies, particles, weights and lengths of the scene's seams are possible. */
-enum cs_status cs_seams_check(const struct cs_check *at, const struct cs_scene *scene);
+enum cs_status cs_seams_check(const struct cs_check *check, const struct cs_scene *scene);
 
 /* Checks of a scene's events that ranges cannot express. */
 

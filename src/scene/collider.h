@@ -56,29 +56,28 @@ struct cs_shape {
 
     /* cs_posed_collider_distance (model/contact/posed_collider.h) less `skin` in m; n: unit
      * normal. Exact: negative inside. */
-    double (*distance)(const struct cs_posed_collider *obstacle, double skin, const double p[3],
+    double (*distance)(const struct cs_posed_collider *posed, double skin, const double p[3],
                        double n[3]);
 
     /* cs_posed_collider_smooth_distance, which says how smooth it is: gradient (3), Hessian
      * (xx, xy, xz, yy, yz, zz) in 1/m. */
-    double (*smooth)(const struct cs_posed_collider *obstacle, const double p[3],
+    double (*smooth)(const struct cs_posed_collider *posed, const double p[3],
                      double gradient[3], double hessian[6]);
 
     /* cs_posed_collider_hits_segment: true if the segment from..from + share way comes
      * inside. */
-    bool (*meets_line)(const struct cs_posed_collider *obstacle, const double from[3],
+    bool (*meets_line)(const struct cs_posed_collider *posed, const double from[3],
                        const double way[3], double share);
 
     /* Depth in m by which a chord of `cell` m between two points of the surface cuts into it.
      * NULL: 0. */
-    double (*chord_depth)(const struct cs_posed_collider *obstacle, double cell);
+    double (*chord_depth)(const struct cs_posed_collider *posed, double cell);
 
     /* Makes its surface in its own frame, counter-clockwise seen from outside; memory from the
      * arena. Fails with CS_ERR_MEMORY.
      */
-    enum cs_status (*triangles)(const struct cs_posed_collider *obstacle,
-                                struct cs_trimesh *mesh, struct cs_arena *arena,
-                                struct cs_error *error);
+    enum cs_status (*triangles)(const struct cs_posed_collider *posed, struct cs_trimesh *mesh,
+                                struct cs_arena *arena, struct cs_error *error);
 };
 
 /* Asserts that a shape has the calls that may not be NULL. */
@@ -115,52 +114,52 @@ static inline bool cs_shape_needs_points(const struct cs_shape *shape) {
 }
 
 /* Sets x = p in the collider's own frame, in m. */
-static inline void cs_collider_to_local(const struct cs_posed_collider *obstacle,
+static inline void cs_collider_to_local(const struct cs_posed_collider *collider,
                                         const double p[3], double x[3]) {
-    const double from[3] = {p[0] - obstacle->centre[0], p[1] - obstacle->centre[1],
-                            p[2] - obstacle->centre[2]};
+    const double from[3] = {p[0] - collider->centre[0], p[1] - collider->centre[1],
+                            p[2] - collider->centre[2]};
     for (int k = 0; k < 3; k++)
-        x[k] = cs_vec3_dot(obstacle->axes[k], from);
+        x[k] = cs_vec3_dot(collider->axes[k], from);
 }
 
 /* Sets own = position in m of vertex i of a mesh in its own frame, at its time if it has key
  * frames. */
-static inline void cs_collider_mesh_vertex(const struct cs_posed_collider *obstacle, uint32_t i,
+static inline void cs_collider_mesh_vertex(const struct cs_posed_collider *collider, uint32_t i,
                                            double own[3]) {
-    const struct cs_mesh_source *mesh = &obstacle->collider->mesh;
+    const struct cs_mesh_source *mesh = &collider->collider->mesh;
     const struct cs_trimesh *geometry = mesh->geometry;
     for (size_t c = 0; c < 3 && !mesh->paths; c++)
         own[c] = geometry->positions[c * geometry->n + i];
     if (mesh->paths)
-        cs_vertex_paths_sum(mesh->paths, &obstacle->path, obstacle->path.position, i, own);
+        cs_vertex_paths_sum(mesh->paths, &collider->path, collider->path.position, i, own);
 }
 
 /* Sets positions (3,n) of all vertices likewise. */
-static inline void cs_collider_mesh_vertices(const struct cs_posed_collider *obstacle,
+static inline void cs_collider_mesh_vertices(const struct cs_posed_collider *collider,
                                              double *positions) {
-    const uint32_t n = obstacle->collider->mesh.geometry->n;
+    const uint32_t n = collider->collider->mesh.geometry->n;
     for (uint32_t i = 0; i < n; i++) {
         double own[3];
-        cs_collider_mesh_vertex(obstacle, i, own);
+        cs_collider_mesh_vertex(collider, i, own);
         for (size_t c = 0; c < 3; c++)
             positions[c * n + i] = own[c];
     }
 }
 
 /* Sets out = a point of the collider's own frame in the world, in m. */
-static inline void cs_collider_to_world(const struct cs_posed_collider *obstacle,
+static inline void cs_collider_to_world(const struct cs_posed_collider *collider,
                                         const double own[3], double out[3]) {
     for (int c = 0; c < 3; c++)
-        out[c] = obstacle->centre[c] + obstacle->axes[0][c] * own[0] +
-                 obstacle->axes[1][c] * own[1] + obstacle->axes[2][c] * own[2];
+        out[c] = collider->centre[c] + collider->axes[0][c] * own[0] +
+                 collider->axes[1][c] * own[1] + collider->axes[2][c] * own[2];
 }
 
 /* Sets out = a vector of the own frame in the world; no translation. */
-static inline void cs_collider_rotate(const struct cs_posed_collider *obstacle,
+static inline void cs_collider_rotate(const struct cs_posed_collider *collider,
                                       const double own[3], double out[3]) {
     for (int c = 0; c < 3; c++)
-        out[c] = own[0] * obstacle->axes[0][c] + own[1] * obstacle->axes[1][c] +
-                 own[2] * obstacle->axes[2][c];
+        out[c] = own[0] * collider->axes[0][c] + own[1] * collider->axes[1][c] +
+                 own[2] * collider->axes[2][c];
 }
 
 #endif

@@ -135,29 +135,29 @@ struct given {
 };
 
 /* Checks that one set of constants is whole, and that energies are positive. */
-static enum cs_status check_given(const struct cs_check *at, const char *path,
+static enum cs_status check_given(const struct cs_check *check, const char *path,
                                   const struct given *given) {
     int n = 0;
     for (int k = 0; k < 3; k++)
         n += !isnan(given->three[k]);
     if (n + !isnan(given->one) == 0)
-        return cs_check_refuse(at, path, "found no constants, expected %s, or %s",
+        return cs_check_refuse(check, path, "found no constants, expected %s, or %s",
                                given->isotropic, given->orthotropic);
     if (!isnan(given->one) && n > 0)
-        return cs_check_refuse(at, path, "found %s and others, expected %s, or %s",
+        return cs_check_refuse(check, path, "found %s and others, expected %s, or %s",
                                given->isotropic, given->isotropic, given->orthotropic);
     if (isnan(given->one) && n < 3)
-        return cs_check_refuse(at, path, "found %d of %s, expected all three", n,
+        return cs_check_refuse(check, path, "found %d of %s, expected all three", n,
                                given->orthotropic);
     if (n == 3 && !(given->coupling * given->coupling < given->three[0] * given->three[1]))
-        return cs_check_refuse(at, path,
+        return cs_check_refuse(check, path,
                                "coupling = %.9g, expected less than sqrt(warp weft) = %.9g in "
                                "magnitude",
                                given->coupling, sqrt(given->three[0] * given->three[1]));
     return CS_OK;
 }
 
-enum cs_status cs_elastic_check(const struct cs_check *at, const char *body,
+enum cs_status cs_elastic_check(const struct cs_check *check, const char *body,
                                 const struct cs_body *of) {
     const struct cs_membrane_keys *membrane = &of->elastic.membrane;
     const struct cs_bending_keys *bending = &of->elastic.bending;
@@ -167,31 +167,31 @@ enum cs_status cs_elastic_check(const struct cs_check *at, const char *body,
     snprintf(path, sizeof path, "%s.elastic", body);
     // a measured cloth has all constants
     if (of->elastic.cloth >= 0 && (membrane->present || bending->present))
-        return cs_check_refuse(at, path, "found cloth and %s, expected one of the two",
+        return cs_check_refuse(check, path, "found cloth and %s, expected one of the two",
                                membrane->present ? "membrane" : "bending");
     if (of->elastic.cloth < 0 && !membrane->present)
-        return cs_check_refuse(at, path, "missing key \"membrane\" or \"cloth\"");
+        return cs_check_refuse(check, path, "missing key \"membrane\" or \"cloth\"");
     if (of->cloth.present && (of->cloth.grid[0] < 2 || of->cloth.grid[1] < 2))
-        return cs_check_refuse(at, path,
+        return cs_check_refuse(check, path,
                                "a cloth of one row or column has no area, expected at "
                                "least 2 rows and columns");
     snprintf(path, sizeof path, "%s.elastic.membrane", body);
     if (membrane->present &&
-        check_given(at, path,
+        check_given(check, path,
                     &(struct given){"young",
                                     "warp, weft and shear",
                                     membrane->young,
                                     {membrane->warp, membrane->weft, membrane->shear},
                                     membrane->coupling}))
-        return at->error->status;
+        return check->error->status;
     snprintf(path, sizeof path, "%s.elastic.bending", body);
     if (bending->present &&
-        check_given(at, path,
+        check_given(check, path,
                     &(struct given){"stiffness",
                                     "warp, weft and twist",
                                     bending->stiffness,
                                     {bending->warp, bending->weft, bending->twist},
                                     bending->coupling}))
-        return at->error->status;
+        return check->error->status;
     return CS_OK;
 }

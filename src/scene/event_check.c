@@ -25,9 +25,10 @@ struct look {
 };
 
 /* Fails at a part of the event: ".impact.direction", or "" for the event itself. */
-static enum cs_status refuse(const struct look *at, const char *part, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-static enum cs_status refuse(const struct look *at, const char *part, const char *format, ...) {
+static enum cs_status refuse_event(const struct look *at, const char *part, const char *format,
+                                   ...) __attribute__((format(printf, 3, 4)));
+static enum cs_status refuse_event(const struct look *at, const char *part, const char *format,
+                                   ...) {
     char message[512];
     va_list args;
     va_start(args, format);
@@ -56,46 +57,48 @@ static double end_of(const struct cs_event *event) {
 static enum cs_status check_times(const struct look *at, const struct cs_event *event) {
     const bool once = !isnan(event->at), from = !isnan(event->from), to = !isnan(event->to);
     if (once ? from || to : !from || !to)
-        return refuse(at, "", "found %s, expected at, or from and to",
-                      once   ? "at with from or to"
-                      : from ? "from alone"
-                      : to   ? "to alone"
-                             : "no time");
+        return refuse_event(at, "", "found %s, expected at, or from and to",
+                            once   ? "at with from or to"
+                            : from ? "from alone"
+                            : to   ? "to alone"
+                                   : "no time");
     if (!once && !(event->to >= event->from + APART))
-        return refuse(at, ".to", "%.9g s is not after from = %.9g s", event->to, event->from);
+        return refuse_event(at, ".to", "%.9g s is not after from = %.9g s", event->to,
+                            event->from);
     if ((event->release.present || event->unsew.present) && !once)
-        return refuse(at, event->release.present ? ".release" : ".unsew",
-                      "is instantaneous, expected at");
+        return refuse_event(at, event->release.present ? ".release" : ".unsew",
+                            "is instantaneous, expected at");
     return CS_OK;
 }
 
 /* Checks that a body has the selected particles. */
 static enum cs_status check_particles(const struct look *at, const char *part,
-                                      const struct cs_event_target *aim, uint32_t body) {
-    const struct cs_pin *pins = aim->particles.items;
+                                      const struct cs_event_target *target, uint32_t body) {
+    const struct cs_pin *pins = target->particles.items;
     char place[64], fault[160];
-    for (uint32_t p = 0; p < aim->particles.n; p++) {
+    for (uint32_t p = 0; p < target->particles.n; p++) {
         snprintf(place, sizeof place, "%s.particles[%u]", part, p);
         if (cs_shape_pin_fault(cs_scene_bodies(at->scene) + body, pins + p, fault,
                                sizeof fault))
-            return refuse(at, place, "body %u: %s", body, fault);
+            return refuse_event(at, place, "body %u: %s", body, fault);
         if (pins[p].to.present)
-            return refuse(at, place, "found to, which only pins of a body and a grab have");
+            return refuse_event(at, place,
+                                "found to, which only pins of a body and a grab have");
     }
     return CS_OK;
 }
 
 /* Checks that the target's body exists, and its particles in each body that it means. */
 static enum cs_status check_aim(const struct look *at, const char *part,
-                                const struct cs_event_target *aim) {
+                                const struct cs_event_target *target) {
     const uint32_t n = at->scene->bodies.n;
     char place[64];
     snprintf(place, sizeof place, "%s.body", part);
-    if (aim->body >= n)
-        return refuse(at, place, "body %lld does not exist (0..%u)", (long long)aim->body,
-                      n - 1);
+    if (target->body >= n)
+        return refuse_event(at, place, "body %lld does not exist (0..%u)",
+                            (long long)target->body, n - 1);
     for (uint32_t b = 0; b < n; b++)
-        if ((aim->body < 0 || aim->body == b) && check_particles(at, part, aim, b))
+        if ((target->body < 0 || target->body == b) && check_particles(at, part, target, b))
             return at->error->status;
     return CS_OK;
 }
@@ -111,13 +114,13 @@ static bool has_direction(const struct look *at) {
 }
 
 /* Checks that a change of wind changes something and leaves it with a direction. */
-static enum cs_status check_wind(const struct look *at, struct cs_wind_change *gust) {
-    const bool turns = !isnan(gust->direction[0]);
-    if (!turns && isnan(gust->strength))
-        return refuse(at, ".wind", "found neither direction nor strength");
+static enum cs_status check_wind(const struct look *at, struct cs_wind_change *wind) {
+    const bool turns = !isnan(wind->direction[0]);
+    if (!turns && isnan(wind->strength))
+        return refuse_event(at, ".wind", "found neither direction nor strength");
     if (!turns && !has_direction(at))
-        return refuse(at, ".wind", "no direction, and there was no wind before");
-    return turns ? make_unit(at, ".wind.direction", gust->direction) : CS_OK;
+        return refuse_event(at, ".wind", "no direction, and there was no wind before");
+    return turns ? make_unit(at, ".wind.direction", wind->direction) : CS_OK;
 }
 
 /* Fills absent values of a viewpoint from the camera and the picture. */
@@ -142,9 +145,10 @@ static enum cs_status check_lengths(const struct look *at, bool once,
     double *used = once ? &viewpoint_force->duration : &viewpoint_force->refresh;
     const double other = once ? viewpoint_force->refresh : viewpoint_force->duration;
     if (!isnan(other))
-        return once ? refuse(at, ".viewpoint_force.refresh",
-                             "an impulse tests visibility once, expected from and to")
-                    : refuse(at, ".viewpoint_force.duration", "it lasts until to, expected at");
+        return once ? refuse_event(at, ".viewpoint_force.refresh",
+                                   "an impulse tests visibility once, expected from and to")
+                    : refuse_event(at, ".viewpoint_force.duration",
+                                   "it lasts until to, expected at");
     if (isnan(*used))
         *used = once ? 1.0 / 60 : 60;
     return CS_OK;
@@ -162,18 +166,20 @@ static enum cs_status check_viewpoint_force(const struct look *at, bool once,
     fault = cs_viewpoint_fault(from->eye, from->target, from->up, &key);
     snprintf(place, sizeof place, ".viewpoint_force.viewpoint.%s", fault ? key : "");
     if (fault)
-        return refuse(at, place, "%s", fault);
+        return refuse_event(at, place, "%s", fault);
     if (!(rectangle[0] < rectangle[2]))
-        return refuse(at, ".viewpoint_force.rectangle", "left = %.9g is not below right = %.9g",
-                      rectangle[0], rectangle[2]);
+        return refuse_event(at, ".viewpoint_force.rectangle",
+                            "left = %.9g is not below right = %.9g", rectangle[0],
+                            rectangle[2]);
     if (!(rectangle[1] < rectangle[3]))
-        return refuse(at, ".viewpoint_force.rectangle", "top = %.9g is not below bottom = %.9g",
-                      rectangle[1], rectangle[3]);
+        return refuse_event(at, ".viewpoint_force.rectangle",
+                            "top = %.9g is not below bottom = %.9g", rectangle[1],
+                            rectangle[3]);
     if (isnan(viewpoint_force->force))
-        return refuse(at, ".viewpoint_force", "missing key \"force\"");
+        return refuse_event(at, ".viewpoint_force", "missing key \"force\"");
     if (viewpoint_force->body >= at->scene->bodies.n)
-        return refuse(at, ".viewpoint_force.body", "body %lld does not exist (0..%u)",
-                      (long long)viewpoint_force->body, at->scene->bodies.n - 1);
+        return refuse_event(at, ".viewpoint_force.body", "body %lld does not exist (0..%u)",
+                            (long long)viewpoint_force->body, at->scene->bodies.n - 1);
     return check_lengths(at, once, viewpoint_force);
 }
 
@@ -183,15 +189,15 @@ static enum cs_status check_ramp(const struct look *at, const struct cs_event *e
     struct cs_event_key key;
     struct cs_error said = {0};
     if (cs_event_key_find(at->scene, ramp->key, &key, &said))
-        return refuse(at, ".ramp.key", "%s", said.message);
+        return refuse_event(at, ".ramp.key", "%s", said.message);
     if (isnan(ramp->value))
-        return refuse(at, ".ramp", "found no value, expected one for %s", ramp->key);
+        return refuse_event(at, ".ramp", "found no value, expected one for %s", ramp->key);
     /* its message starts with the ": " behind no place */
     if (cs_option_check_range(key.row, ramp->value, -1, "", CS_ERR_SCENE, &said))
-        return refuse(at, ".ramp.value", "%s", said.message + 2);
+        return refuse_event(at, ".ramp.value", "%s", said.message + 2);
     /* methods take a mass for constant within an advance */
     if (cs_event_changes_mass(event) && isnan(event->at))
-        return refuse(at, "", "found from and to, expected at: masses change instantly");
+        return refuse_event(at, "", "found from and to, expected at: masses change instantly");
     return CS_OK;
 }
 
@@ -205,20 +211,21 @@ static enum cs_status check_path(const struct look *at, const char *key,
     const uint32_t first = cs_path_starts_at(list, before);
     snprintf(place, sizeof place, ".%s.path[0]", key);
     if (first && relative && cs_check_length(path->point, 3) > 0)
-        return refuse(at, place, "at the start the shift is 0, found [%.9g, %.9g, %.9g]",
-                      path->point[0], path->point[1], path->point[2]);
+        return refuse_event(at, place, "at the start the shift is 0, found [%.9g, %.9g, %.9g]",
+                            path->point[0], path->point[1], path->point[2]);
     if (first == list->n && first)
-        return refuse(at, place, "found no point after the start, %.9g s", before);
+        return refuse_event(at, place, "found no point after the start, %.9g s", before);
     for (uint32_t p = first; p < list->n; p++) {
         snprintf(place, sizeof place, ".%s.path[%u]", key, p);
         if (isnan(path[p].at))
-            return refuse(at, place, "missing key \"at\"");
+            return refuse_event(at, place, "missing key \"at\"");
         if (!(path[p].at >= before + APART))
-            return refuse(at, place, "at = %.9g s is not after %.9g s", path[p].at, before);
+            return refuse_event(at, place, "at = %.9g s is not after %.9g s", path[p].at,
+                                before);
         before = path[p].at;
         if (before > event->to)
-            return refuse(at, place, "at = %.9g s is after the end, to = %.9g s", before,
-                          event->to);
+            return refuse_event(at, place, "at = %.9g s is after the end, to = %.9g s", before,
+                                event->to);
     }
     return CS_OK;
 }
@@ -228,15 +235,16 @@ static enum cs_status check_grab(const struct look *at, const struct cs_grab *gr
     const bool spins = cs_check_length(grab->spin, 3) > 0;
     char fault[160];
     if (grab->to.present && (grab->path.n || spins))
-        return refuse(at, ".grab.to", "found %s too, but the collider leads; expected either",
-                      grab->path.n ? "path" : "spin");
+        return refuse_event(at, ".grab.to",
+                            "found %s too, but the collider leads; expected either",
+                            grab->path.n ? "path" : "spin");
     if (grab->to.present && cs_holder_fault(at->scene, &grab->to, fault, sizeof fault))
-        return refuse(at, ".grab.to", "%s", fault);
+        return refuse_event(at, ".grab.to", "%s", fault);
     if (!isnan(grab->centre[0]) && !spins)
-        return refuse(at, ".grab.centre", "without spin it has no effect");
+        return refuse_event(at, ".grab.centre", "without spin it has no effect");
     if (grab->path.n == 0 && !spins && !grab->to.present)
-        return refuse(at, ".grab.path",
-                      "found no point, expected at least one, or spin, or to");
+        return refuse_event(at, ".grab.path",
+                            "found no point, expected at least one, or spin, or to");
     return check_path(at, "grab", &grab->path, grab->relative)
                ? at->error->status
                : check_aim(at, ".grab", &grab->target);
@@ -247,16 +255,16 @@ static enum cs_status check_move(const struct look *at, const struct cs_move *mo
     const uint32_t n = at->scene->colliders.n;
     const double *spin = move->spin;
     if (move->collider < 0)
-        return refuse(at, ".move", "missing key \"collider\", expected its number");
+        return refuse_event(at, ".move", "missing key \"collider\", expected its number");
     if (n == 0)
-        return refuse(at, ".move.collider", "the scene has no colliders");
+        return refuse_event(at, ".move.collider", "the scene has no colliders");
     if (move->collider >= n)
-        return refuse(at, ".move.collider", "collider %lld does not exist (0..%u)",
-                      (long long)move->collider, n - 1);
+        return refuse_event(at, ".move.collider", "collider %lld does not exist (0..%u)",
+                            (long long)move->collider, n - 1);
     if (move->path.n == 0 && cs_vec3_is_zero(spin))
-        return refuse(at, ".move", "found neither path nor spin");
+        return refuse_event(at, ".move", "found neither path nor spin");
     if (!isnan(move->centre[0]) && cs_vec3_is_zero(spin))
-        return refuse(at, ".move.centre", "without spin it has no effect");
+        return refuse_event(at, ".move.centre", "without spin it has no effect");
     return check_path(at, "move", &move->path, move->relative);
 }
 
@@ -264,10 +272,10 @@ static enum cs_status check_move(const struct look *at, const struct cs_move *mo
 static enum cs_status check_unsew(const struct look *at, const struct cs_unsew *unsew) {
     const uint32_t n = at->scene->seams.n;
     if (unsew->seam < 0)
-        return refuse(at, ".unsew", "missing key \"seam\", expected its number");
+        return refuse_event(at, ".unsew", "missing key \"seam\", expected its number");
     if (unsew->seam >= n)
-        return refuse(at, ".unsew.seam", "seam %lld does not exist, the scene has %u",
-                      (long long)unsew->seam, n);
+        return refuse_event(at, ".unsew.seam", "seam %lld does not exist, the scene has %u",
+                            (long long)unsew->seam, n);
     return CS_OK;
 }
 
@@ -286,7 +294,7 @@ static enum cs_status check_overlap(const struct look *at, const struct cs_event
         const char *other = moved_key(events + k);
         if (other && !strcmp(key, other) && begin_of(event) < end_of(events + k) &&
             begin_of(events + k) < end_of(event))
-            return refuse(at, "", "changes %s while events[%u] does", key, k);
+            return refuse_event(at, "", "changes %s while events[%u] does", key, k);
     }
     return CS_OK;
 }

@@ -51,7 +51,7 @@ const struct cs_table cs_seam_table = {ROWS(seam_rows), .size = sizeof(struct cs
 
 /* A seam under check, for messages. */
 struct look {
-    const struct cs_check *at;
+    const struct cs_check *check;
     const struct cs_scene *scene;
     uint32_t number;
 };
@@ -64,21 +64,22 @@ static enum cs_status check_side(const struct look *look, const char *part,
     char path[96], fault[160];
     snprintf(path, sizeof path, "seams[%u]%s", look->number, part);
     if (side->body < 0)
-        return cs_check_refuse(look->at, path, "missing key \"body\", expected its number");
+        return cs_check_refuse(look->check, path, "missing key \"body\", expected its number");
     if (!side->particles.n)
-        return cs_check_refuse(look->at, path, "missing key \"particles\", expected some");
+        return cs_check_refuse(look->check, path, "missing key \"particles\", expected some");
     snprintf(path, sizeof path, "seams[%u]%s.body", look->number, part);
     if (side->body >= n)
-        return cs_check_refuse(look->at, path, "body %lld does not exist (0..%u)",
+        return cs_check_refuse(look->check, path, "body %lld does not exist (0..%u)",
                                (long long)side->body, n - 1);
     for (uint32_t p = 0; p < side->particles.n; p++) {
         snprintf(path, sizeof path, "seams[%u]%s.particles[%u]", look->number, part, p);
         if (cs_shape_pin_fault(cs_scene_bodies(look->scene) + side->body, pins + p, fault,
                                sizeof fault))
-            return cs_check_refuse(look->at, path, "body %lld: %s", (long long)side->body,
+            return cs_check_refuse(look->check, path, "body %lld: %s", (long long)side->body,
                                    fault);
         if (pins[p].to.present)
-            return cs_check_refuse(look->at, path, "found to, which only pins of a body have");
+            return cs_check_refuse(look->check, path,
+                                   "found to, which only pins of a body have");
     }
     return CS_OK;
 }
@@ -89,24 +90,24 @@ static enum cs_status check_seam(const struct look *look, const struct cs_seam *
     const double sum = w[0] + w[1] + w[2];
     char path[64];
     if (check_side(look, "", &seam->side) || check_side(look, ".to", &seam->to.side))
-        return look->at->error->status;
+        return look->check->error->status;
     snprintf(path, sizeof path, "seams[%u].to.weights", look->number);
     // false for absent weights
     if (!isnan(w[0]) && !(fabs(sum - 1) <= 1e-9))
-        return cs_check_refuse(look->at, path, "their sum is %.12g, expected 1", sum);
+        return cs_check_refuse(look->check, path, "their sum is %.12g, expected 1", sum);
     snprintf(path, sizeof path, "seams[%u].breaking_length", look->number);
     if (seam->breaking_length <= seam->length)
-        return cs_check_refuse(look->at, path,
+        return cs_check_refuse(look->check, path,
                                "%.9g m is not above length, %.9g m: every stitch would break",
                                seam->breaking_length, seam->length);
     return CS_OK;
 }
 
-enum cs_status cs_seams_check(const struct cs_check *at, const struct cs_scene *scene) {
-    struct look look = {at, scene, 0};
+enum cs_status cs_seams_check(const struct cs_check *check, const struct cs_scene *scene) {
+    struct look look = {check, scene, 0};
     const struct cs_seam *seams = scene->seams.items;
     for (; look.number < scene->seams.n; look.number++)
         if (check_seam(&look, seams + look.number))
-            return at->error->status;
+            return check->error->status;
     return CS_OK;
 }

@@ -56,8 +56,8 @@ static void pose(const struct cs_collider *collider, struct cs_posed_collider *o
 }
 
 /* Exact distance; inside the core the nearest face leads out. */
-static double distance(const struct cs_posed_collider *box, double skin, const double p[3],
-                       double n[3]) {
+static double box_distance(const struct cs_posed_collider *box, double skin, const double p[3],
+                           double n[3]) {
     double x[3], out[3];
     if (!cs_core_holds(box, p, x, out))
         return cs_core_beyond(box, out, n) - skin;
@@ -80,7 +80,7 @@ const struct cs_shape cs_shape_box = {
     .is_core = true,
     .check = check,
     .pose = pose,
-    .distance = distance,
+    .distance = box_distance,
     .smooth = cs_core_smooth,
     .meets_line = cs_core_meets_line,
     .chord_depth = chord_depth,

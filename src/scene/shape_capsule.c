@@ -45,8 +45,8 @@ static void pose(const struct cs_collider *collider, struct cs_posed_collider *o
 }
 
 /* Exact distance; on the segment itself, where any direction leads out, the normal is up. */
-static double distance(const struct cs_posed_collider *capsule, double skin, const double p[3],
-                       double n[3]) {
+static double capsule_distance(const struct cs_posed_collider *capsule, double skin,
+                               const double p[3], double n[3]) {
     double x[3], out[3];
     if (!cs_core_holds(capsule, p, x, out))
         return cs_core_beyond(capsule, out, n) - skin;
@@ -60,7 +60,7 @@ const struct cs_shape cs_shape_capsule = {
     .is_core = true,
     .check = check,
     .pose = pose,
-    .distance = distance,
+    .distance = capsule_distance,
     .smooth = cs_core_smooth,
     .meets_line = cs_core_meets_line,
     .chord_depth = cs_core_chord_depth,

@@ -30,8 +30,8 @@ static void pose(const struct cs_collider *collider, struct cs_posed_collider *o
 }
 
 /* Infinite: contact by distance never acts on a mesh. */
-static double distance(const struct cs_posed_collider *mesh, double skin, const double p[3],
-                       double n[3]) {
+static double mesh_distance(const struct cs_posed_collider *mesh, double skin,
+                            const double p[3], double n[3]) {
     (void)skin, (void)p;
     memcpy(n, mesh->axes[1], sizeof mesh->axes[1]);
     return HUGE_VAL;
@@ -40,16 +40,16 @@ static double distance(const struct cs_posed_collider *mesh, double skin, const 
 static double smooth(const struct cs_posed_collider *mesh, const double p[3], double g[3],
                      double h[6]) {
     memset(h, 0, 6 * sizeof *h);
-    return distance(mesh, 0, p, g);
+    return mesh_distance(mesh, 0, p, g);
 }
 
 /* Returns true if a line in the mesh's own frame goes through triangle t, edges included. */
-static bool meets_triangle(const struct cs_posed_collider *obstacle, uint32_t t,
+static bool meets_triangle(const struct cs_posed_collider *collider, uint32_t t,
                            const double from[3], const double way[3], double share) {
-    const uint32_t *vertices = obstacle->collider->mesh.geometry->triangles + 3 * (size_t)t;
+    const uint32_t *vertices = collider->collider->mesh.geometry->triangles + 3 * (size_t)t;
     double corners[3][3], u[3], v[3], to[3], across[3], turned[3];
     for (size_t k = 0; k < 3; k++)
-        cs_collider_mesh_vertex(obstacle, vertices[k], corners[k]);
+        cs_collider_mesh_vertex(collider, vertices[k], corners[k]);
     for (size_t c = 0; c < 3; c++) {
         u[c] = corners[1][c] - corners[0][c];
         v[c] = corners[2][c] - corners[0][c];
@@ -64,29 +64,29 @@ static bool meets_triangle(const struct cs_posed_collider *obstacle, uint32_t t,
 }
 
 /* Tests the triangles one by one until one is met. */
-static bool meets_line(const struct cs_posed_collider *obstacle, const double from[3],
+static bool meets_line(const struct cs_posed_collider *collider, const double from[3],
                        const double way[3], double share) {
-    const struct cs_trimesh *mesh = obstacle->collider->mesh.geometry;
+    const struct cs_trimesh *mesh = collider->collider->mesh.geometry;
     double own[3], own_way[3];
     bool meets = false;
-    cs_collider_to_local(obstacle, from, own);
+    cs_collider_to_local(collider, from, own);
     for (int k = 0; k < 3; k++)
-        own_way[k] = cs_vec3_dot(obstacle->axes[k], way);
+        own_way[k] = cs_vec3_dot(collider->axes[k], way);
     for (uint32_t t = 0; t < mesh->n_triangles && !meets; t++)
-        meets = meets_triangle(obstacle, t, own, own_way, share);
+        meets = meets_triangle(collider, t, own, own_way, share);
     return meets;
 }
 
 /* Copies the struct; its arrays stay those of the scene, but for positions that change. */
-static enum cs_status triangles(const struct cs_posed_collider *obstacle,
+static enum cs_status triangles(const struct cs_posed_collider *collider,
                                 struct cs_trimesh *mesh, struct cs_arena *arena,
                                 struct cs_error *error) {
-    *mesh = *obstacle->collider->mesh.geometry;
-    if (!obstacle->collider->mesh.paths)
+    *mesh = *collider->collider->mesh.geometry;
+    if (!collider->collider->mesh.paths)
         return CS_OK;
     mesh->positions = cs_arena_alloc_array(arena, mesh->n, 3 * sizeof *mesh->positions, error);
     if (mesh->positions)
-        cs_collider_mesh_vertices(obstacle, mesh->positions);
+        cs_collider_mesh_vertices(collider, mesh->positions);
     return error->status;
 }
 
@@ -94,7 +94,7 @@ const struct cs_shape cs_shape_mesh = {
     .bounds = CS_BOUNDS_MESH,
     .check = check,
     .pose = pose,
-    .distance = distance,
+    .distance = mesh_distance,
     .smooth = smooth,
     .meets_line = meets_line,
     .triangles = triangles,

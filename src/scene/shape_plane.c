@@ -49,28 +49,28 @@ static void pose_floor(const struct cs_collider *collider, struct cs_posed_colli
     cs_core_complete_axes(out->axes);
 }
 
-static double distance(const struct cs_posed_collider *plane, double skin, const double p[3],
-                       double n[3]) {
-    memcpy(n, plane->axes[1], 3 * sizeof *n);
+static double plane_distance(const struct cs_posed_collider *collider, double skin,
+                             const double p[3], double n[3]) {
+    memcpy(n, collider->axes[1], 3 * sizeof *n);
     double distance = -skin;
     for (int c = 0; c < 3; c++)
-        distance += n[c] * (p[c] - plane->centre[c]);
+        distance += n[c] * (p[c] - collider->centre[c]);
     return distance;
 }
 
-static double smooth(const struct cs_posed_collider *plane, const double p[3], double g[3],
+static double smooth(const struct cs_posed_collider *collider, const double p[3], double g[3],
                      double h[6]) {
     memset(h, 0, 6 * sizeof *h);
-    return distance(plane, 0, p, g);
+    return plane_distance(collider, 0, p, g);
 }
 
 /* Returns true if an end of the line is behind the plane: d is linear along it. */
-static bool meets_line(const struct cs_posed_collider *plane, const double from[3],
+static bool meets_line(const struct cs_posed_collider *collider, const double from[3],
                        const double way[3], double share) {
-    const double *normal = plane->axes[1];
+    const double *normal = collider->axes[1];
     double distance = 0;
     for (int c = 0; c < 3; c++)
-        distance += normal[c] * (from[c] - plane->centre[c]);
+        distance += normal[c] * (from[c] - collider->centre[c]);
     return distance < 0 || distance + share * cs_vec3_dot(normal, way) < 0;
 }
 
@@ -97,7 +97,7 @@ const struct cs_shape cs_shape_plane = {
     .bounds = CS_BOUNDS_HALF_SPACE,
     .check = check,
     .pose = pose_plane,
-    .distance = distance,
+    .distance = plane_distance,
     .smooth = smooth,
     .meets_line = meets_line,
     .triangles = triangles,
@@ -106,7 +106,7 @@ const struct cs_shape cs_shape_plane = {
 const struct cs_shape cs_shape_floor = {
     .bounds = CS_BOUNDS_HALF_SPACE,
     .pose = pose_floor,
-    .distance = distance,
+    .distance = plane_distance,
     .smooth = smooth,
     .meets_line = meets_line,
     .triangles = triangles,

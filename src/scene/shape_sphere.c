@@ -22,8 +22,8 @@ static void pose(const struct cs_collider *collider, struct cs_posed_collider *o
     memcpy(out->centre, collider->sphere.centre, sizeof out->centre);
 }
 
-static double distance(const struct cs_posed_collider *sphere, double skin, const double p[3],
-                       double n[3]) {
+static double sphere_distance(const struct cs_posed_collider *sphere, double skin,
+                              const double p[3], double n[3]) {
     return cs_core_from_point(p, sphere->centre, n) - sphere->radius - skin;
 }
 
@@ -64,7 +64,7 @@ static enum cs_status triangles(const struct cs_posed_collider *sphere, struct c
 const struct cs_shape cs_shape_sphere = {
     .bounds = CS_BOUNDS_SPHERE,
     .pose = pose,
-    .distance = distance,
+    .distance = sphere_distance,
     .smooth = smooth,
     .meets_line = meets_line,
     .chord_depth = cs_core_chord_depth,

@@ -49,7 +49,7 @@ static struct cs_crash_log *calls = &own;
 static struct sigaction before[SIGNALS];
 
 /* Appends as much as fits; safe in a handler. */
-static void add(char text[TEXT], const char *part) {
+static void add_part(char text[TEXT], const char *part) {
     strncat(text, part, TEXT - 1 - strlen(text));
 }
 
@@ -65,7 +65,7 @@ static void describe(const struct cs_crash_call *call, const char *how, const ch
                                  call->place,
                                  what};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
-        add(text, parts[k]);
+        add_part(text, parts[k]);
 }
 
 /* A failed allocation is blamed before the module. */
@@ -79,7 +79,7 @@ static _Noreturn void write_report(const struct cs_crash_call *call, const char 
                                    const char *what) {
     char text[TEXT] = "clothsim: ";
     describe(call, how, what, text);
-    add(text, "\n");
+    add_part(text, "\n");
     if (calls == &own && write(STDERR_FILENO, text, strlen(text)) < 0)
         _exit(cs_status_exit_code(CS_ERR_INTERNAL));
     _exit(cs_status_exit_code(status_of(call)));

@@ -76,8 +76,8 @@ static void move_values(const struct cs_energy_ledger *ledger, double t) {
 
 /* holds = the energies of (x, v) at t, by column. Contact and other forces with an energy add
  * to the column that ledger->holding_of gives them. */
-static void measure(const struct cs_energy_ledger *ledger, double t, const double *x,
-                    const double *v, double holds[CS_HOLDINGS_MAX]) {
+static void measure_energy(const struct cs_energy_ledger *ledger, double t, const double *x,
+                           const double *v, double holds[CS_HOLDINGS_MAX]) {
     const struct cs_system *system = ledger->system;
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
     const uint32_t n = system->view.n;
@@ -228,7 +228,7 @@ static double find_drift(const struct cs_energy_ledger *ledger, double t, double
         double holds[CS_HOLDINGS_MAX];
         const double at = k ? t + away : t - away;
         move_values(ledger, at);
-        measure(ledger, at, x, v, holds);
+        measure_energy(ledger, at, x, v, holds);
         holds[CS_HOLDING_KINETIC] = 0;
         ends[k] = sum_of(holds);
     }
@@ -314,7 +314,7 @@ void cs_energy_ledger_book_step(struct cs_energy_ledger *ledger, double t, const
         add_works(ledger, ledger->t + points[k] * step.h, weights[k] * step.h, step.h);
     }
     move_values(ledger, t);
-    measure(ledger, t, x, v, ledger->energies);
+    measure_energy(ledger, t, x, v, ledger->energies);
     ledger->work[CS_WORK_INTEGRATOR] +=
         cs_energy_ledger_sum(ledger) - before - (sum_forces(ledger) - worked);
 }
@@ -323,7 +323,7 @@ void cs_energy_ledger_book_correction(struct cs_energy_ledger *ledger, enum cs_l
                                       double t, const double *x, const double *v) {
     const double before = cs_energy_ledger_sum(ledger);
     const double moving = ledger->energies[CS_HOLDING_KINETIC];
-    measure(ledger, t, x, v, ledger->energies);
+    measure_energy(ledger, t, x, v, ledger->energies);
     double made = cs_energy_ledger_sum(ledger) - before;
     if (work == CS_WORK_PROJECTION) {
         const double kinetic = ledger->energies[CS_HOLDING_KINETIC] - moving;

@@ -225,7 +225,7 @@ static void host_contact_blocks(void *ctx, double t, const double *x, const doub
 }
 
 /* Tells if a feature is built. Memory taken from now on counts in its row of the plan. */
-static bool begin(struct cs_run_host *host, enum cs_feature feature) {
+static bool begin_feature(struct cs_run_host *host, enum cs_feature feature) {
     struct cs_plan_row *row = host->run->plan.rows + feature;
     host->arena.part = &row->bytes;
     return row->built;
@@ -237,7 +237,7 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
     const bool judged = cs_step_limit_applies(system) || host->contact.limits_steps;
     if (judged)
         host->table.max_step_fraction = host_max_step_fraction;
-    begin(host, CS_FEATURE_CROSSINGS);
+    begin_feature(host, CS_FEATURE_CROSSINGS);
     if (cs_blocked_step_init(&host->blocked_step, system, &host->arena, error))
         return error->status;
     host->arena.part = &host->run->plan.state_bytes;
@@ -277,7 +277,7 @@ static double host_friction_potential(void *ctx, const double *v, double *f) {
 }
 
 static enum cs_status add_lagged_friction(struct cs_run_host *host, struct cs_error *error) {
-    if (!begin(host, CS_FEATURE_LAGGED_FRICTION))
+    if (!begin_feature(host, CS_FEATURE_LAGGED_FRICTION))
         return CS_OK;
     host->table.lag_friction = host_lag_friction;
     host->table.friction_potential = host_friction_potential;
@@ -303,7 +303,7 @@ static double host_longest_step(void *ctx, double t, const double *x, const doub
 /* Contact by projection; for CS_FIDELITY_OTHER no force decides static friction. */
 static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *error) {
     struct cs_system *system = host->run->system;
-    if (!begin(host, CS_FEATURE_CONTACT))
+    if (!begin_feature(host, CS_FEATURE_CONTACT))
         return CS_OK;
     if (cs_contact_projection_init(&host->contact, system, &host->arena, error))
         return error->status;
@@ -369,14 +369,14 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         add_lagged_friction(host, error) || cs_energy_input_init(host, error))
         return error->status;
     // only methods with CS_NEED_SOLVE pay for the solver's memory and the copies of the state
-    if (!begin(host, CS_FEATURE_SOLVER))
+    if (!begin_feature(host, CS_FEATURE_SOLVER))
         return CS_OK;
     const size_t n3 = 3 * (size_t)system->view.n;
     host->setup_x = cs_arena_alloc_array(&host->arena, n3, sizeof(double), error);
     if (cs_terms_have_blocks(system))
         host->setup_v = cs_arena_alloc_array(&host->arena, n3, sizeof(double), error);
     if (cs_linear_init(&host->linear, system, &host->arena, error) ||
-        cs_host_init_settling(host, error) || !begin(host, CS_FEATURE_REBOUNDS))
+        cs_host_init_settling(host, error) || !begin_feature(host, CS_FEATURE_REBOUNDS))
         return error->status;
     host->table.euler_finish = cs_host_euler_finish;
     return cs_rebounds_init(system, &host->arena, error);

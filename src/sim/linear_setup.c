@@ -45,7 +45,7 @@ static bool clamp(struct cs_matrix *matrix) {
 }
 
 /* The failure of a set-up that was not declared, or whose coefficients are wrong. */
-static enum cs_step refuse(struct cs_run_host *host, double cm, double cd, double ck) {
+static enum cs_step refuse_setup(struct cs_run_host *host, double cm, double cd, double ck) {
     if (!host->linear.system)
         return host->table.fail(host, "solve was used without CS_NEED_SOLVE");
     if (!(cm > 0) || !(cd <= 0) || !(ck <= 0))
@@ -61,7 +61,7 @@ enum cs_step cs_host_solve_setup(void *ctx, double t, const double *x, const dou
     struct cs_run_host *host = ctx;
     const size_t bytes = 3 * sizeof *x * host->run->system->view.n;
     cs_host_state_at(host, t, &x, &v);
-    if (refuse(host, cm, cd, ck))
+    if (refuse_setup(host, cm, cd, ck))
         return CS_STEP_FAIL;
     cs_trace_state(host, "solve set-up", t, x, v);
     const struct cs_stage_start begin = cs_stage_begin(host);
@@ -172,7 +172,7 @@ enum cs_step cs_host_euler_setup(void *ctx, double t, double h, const double *x,
                                  const double *v, uint32_t flags, double *b) {
     struct cs_run_host *host = ctx;
     cs_move_values(host, t);
-    if (refuse(host, 1, -h, -h * h))
+    if (refuse_setup(host, 1, -h, -h * h))
         return CS_STEP_FAIL;
     cs_trace_state(host, "solve set-up", t, x, v);
     host->run->counts.solve_setups++;

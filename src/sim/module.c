@@ -165,7 +165,7 @@ static enum cs_status check_file(const char *file, struct cs_error *error) {
 enum cs_status cs_module_open(const char *file, const struct cs_module **module,
                               struct cs_error *error) {
     *module = NULL;
-    const struct cs_process_state guard = cs_process_state_save();
+    const struct cs_process_state state = cs_process_state_save();
     if (check_file(file, error))
         return error->status;
     cs_crash_begin(CS_CRASH_METHOD);
@@ -173,7 +173,7 @@ enum cs_status cs_module_open(const char *file, const struct cs_module **module,
     void *handle = dlopen(file, RTLD_NOW | RTLD_LOCAL);
     cs_crash_forget(CS_CRASH_METHOD);
     const bool starved = cs_crash_was_starved(CS_CRASH_METHOD);
-    const char *changed = cs_process_state_restore(&guard);
+    const char *changed = cs_process_state_restore(&state);
     if (!handle)
         return cs_fail(error, starved ? CS_ERR_MEMORY : CS_ERR_MODULE, "%scannot be loaded: %s",
                        starved ? "out of memory: " : "", dlerror());

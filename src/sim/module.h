@@ -61,7 +61,7 @@ void cs_program_process_end(struct cs_program_process *process, struct cs_text *
 /* Waits for the first message, which follows the description, for a minute. Returns 1; 0 if the
  * program has ended; -1 if it was silent, or a signal came (errno EINTR). */
 int cs_program_receive_hello(const struct cs_program_process *process,
-                             struct cs_program_message *hello);
+                             struct cs_program_message *message);
 
 /* True for "program:COMMAND" and "tableau:FILE", which name programs rather than methods or
  * module files. */

@@ -69,29 +69,29 @@ static bool is_parent(void) {
 }
 
 struct cs_process_state cs_process_state_save(void) {
-    struct cs_process_state guard = {.fp_control = control_get(),
+    struct cs_process_state state = {.fp_control = control_get(),
                                      .rounding = fegetround(),
                                      .streams = open_streams(),
                                      .has_children = is_parent()};
     struct stat info;
     for (int k = 0; k < CS_INTERRUPTS; k++)
-        sigaction(cs_interrupts[k], NULL, guard.signals + k);
+        sigaction(cs_interrupts[k], NULL, state.signals + k);
     if (!stat(".", &info)) {
-        guard.cwd_device = info.st_dev;
-        guard.cwd_inode = info.st_ino;
+        state.cwd_device = info.st_dev;
+        state.cwd_inode = info.st_ino;
     }
-    return guard;
+    return state;
 }
 
 /* Restores handlers that differ; true if one did. */
-static bool restore_signals(const struct cs_process_state *guard) {
+static bool restore_signals(const struct cs_process_state *state) {
     bool changed = false;
     for (int k = 0; k < CS_INTERRUPTS; k++) {
         struct sigaction now;
         sigaction(cs_interrupts[k], NULL, &now);
-        if (now.sa_handler == guard->signals[k].sa_handler)
+        if (now.sa_handler == state->signals[k].sa_handler)
             continue;
-        sigaction(cs_interrupts[k], guard->signals + k, NULL);
+        sigaction(cs_interrupts[k], state->signals + k, NULL);
         changed = true;
     }
     return changed;
@@ -108,31 +108,31 @@ static bool restore_locale(void) {
 }
 
 /* True if the working folder is another one, or gone. */
-static bool has_moved(const struct cs_process_state *guard) {
+static bool has_moved(const struct cs_process_state *state) {
     struct stat info;
-    return stat(".", &info) || info.st_dev != guard->cwd_device ||
-           info.st_ino != guard->cwd_inode;
+    return stat(".", &info) || info.st_dev != state->cwd_device ||
+           info.st_ino != state->cwd_inode;
 }
 
 /* Restores rounding, traps and flush-to-zero; true if one had changed. */
-static bool restore_mode(const struct cs_process_state *guard) {
-    if (control_get() == guard->fp_control && fegetround() == guard->rounding)
+static bool restore_mode(const struct cs_process_state *state) {
+    if (control_get() == state->fp_control && fegetround() == state->rounding)
         return false;
-    fesetround(guard->rounding);
-    control_set(guard->fp_control);
+    fesetround(state->rounding);
+    control_set(state->fp_control);
     return true;
 }
 
-const char *cs_process_state_restore(const struct cs_process_state *guard) {
+const char *cs_process_state_restore(const struct cs_process_state *state) {
     /* all three are restored, whichever is reported */
-    const bool mode = restore_mode(guard), signals = restore_signals(guard),
+    const bool mode = restore_mode(state), signals = restore_signals(state),
                locale = restore_locale();
     return mode                                  ? cs_process_state_mode
            : signals                             ? "a signal handler"
            : locale                              ? "the locale"
-           : has_moved(guard)                    ? "the working folder"
-           : open_streams() != guard->streams    ? "the open standard streams"
-           : is_parent() && !guard->has_children ? "the set of processes"
+           : has_moved(state)                    ? "the working folder"
+           : open_streams() != state->streams    ? "the open standard streams"
+           : is_parent() && !state->has_children ? "the set of processes"
                                                  : NULL;
 }
 

@@ -40,7 +40,7 @@ struct cs_process_state cs_process_state_save(void);
 /* Restores the mode, the handlers and the locale. Returns the name of the first change found,
  * a constant such as cs_process_state_mode, or NULL. Folder, streams and child processes are
  * detected only: nothing here can undo them. */
-const char *cs_process_state_restore(const struct cs_process_state *guard);
+const char *cs_process_state_restore(const struct cs_process_state *state);
 
 /* A copy of the view of a system on pages that nobody can write while a method runs. A module
  * from outside gets it: if it writes to what is const, it is named by its crash, and no other

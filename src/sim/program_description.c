@@ -91,7 +91,7 @@ static bool cut_words(struct cs_program_method *program, char *text) {
 /* Fails unless the first message is a hello of this version; got as cs_program_receive_hello
  * returns it, how: how the program ended. */
 static enum cs_status check_hello(const struct cs_program_method *program, int got,
-                                  const struct cs_program_message *hello, const char *how,
+                                  const struct cs_program_message *message, const char *how,
                                   struct cs_error *error) {
     char why[160];
     if (got < 0 && errno == EINTR)
@@ -100,11 +100,11 @@ static enum cs_status check_hello(const struct cs_program_method *program, int g
         snprintf(why, sizeof why, "has not described itself within a minute");
     else if (got == 0)
         snprintf(why, sizeof why, "%.100s before it described itself", how);
-    else if (!hello->code)
-        snprintf(why, sizeof why, "cannot be started: %.100s", strerror((int)hello->count));
-    else if (hello->code != 'V' || hello->count != CS_PROGRAM_VERSION)
+    else if (!message->code)
+        snprintf(why, sizeof why, "cannot be started: %.100s", strerror((int)message->count));
+    else if (message->code != 'V' || message->count != CS_PROGRAM_VERSION)
         snprintf(why, sizeof why, "sent %#llx, %llu, expected 'V', %d",
-                 (unsigned long long)hello->code, (unsigned long long)hello->count,
+                 (unsigned long long)message->code, (unsigned long long)message->count,
                  CS_PROGRAM_VERSION);
     else
         return CS_OK;
@@ -116,17 +116,17 @@ static enum cs_status check_hello(const struct cs_program_method *program, int g
 static enum cs_status ask_description(struct cs_program_method *program,
                                       struct cs_program_process *process,
                                       struct cs_error *error) {
-    struct cs_program_message hello = {0};
+    struct cs_program_message message = {0};
     struct cs_text how = {0};
     // the calls below set errno, which tells a signal
-    const int got = cs_program_receive_hello(process, &hello), reason = errno;
+    const int got = cs_program_receive_hello(process, &message), reason = errno;
     find_file(program, process->pid);
     program->description = process->head->description;
     if (got < 0)
         kill(process->pid, SIGKILL);
     cs_program_process_end(process, &how);
     errno = reason;
-    check_hello(program, got, &hello, cs_text_get(&how), error);
+    check_hello(program, got, &message, cs_text_get(&how), error);
     cs_text_finish(&how);
     return error->status;
 }

@@ -101,12 +101,12 @@ void cs_program_process_end(struct cs_program_process *process, struct cs_text *
 }
 
 int cs_program_receive_hello(const struct cs_program_process *process,
-                             struct cs_program_message *hello) {
+                             struct cs_program_message *message) {
     struct pollfd socket = {.fd = process->socket, .events = POLLIN};
     errno = 0;
     const int ready = poll(&socket, 1, HELLO_MS);
     // a message of this size comes whole
-    return ready <= 0 ? -1 : recv(socket.fd, hello, sizeof *hello, 0) == sizeof *hello;
+    return ready <= 0 ? -1 : recv(socket.fd, message, sizeof *message, 0) == sizeof *message;
 }
 
 /* Starts the process of a run, and hands it to the module that speaks with it. */
@@ -115,7 +115,7 @@ static enum cs_step create(const struct cs_host *table, const void *options, voi
     // the method is the first member of its program
     const struct cs_program_method *program = (const void *)host->run->integrator;
     struct cs_program_process *process = table->alloc(host, sizeof *process);
-    struct cs_program_message hello;
+    struct cs_program_message message;
     if (!process || cs_program_process_start(process, program, table->view->n, &host->error))
         return CS_STEP_FAIL;
     // this one is allowed
@@ -125,7 +125,7 @@ static enum cs_step create(const struct cs_host *table, const void *options, voi
         process->head, &program->integrator, program->description.history,
         options};
     enum cs_step step = CS_STEP_FAIL;
-    if (cs_program_receive_hello(process, &hello) > 0)
+    if (cs_program_receive_hello(process, &message) > 0)
         step = program->calls->create(table, &channel, self);
     else
         cs_fail(&host->error, errno == EINTR ? CS_ERR_INTERRUPT : CS_ERR_MODULE,

@@ -74,12 +74,12 @@ bool cs_run_method_has_history(const struct cs_integrator *integrator);
 /* Writes everything that the next frame depends on: state, time, counts, events, contact, and
  * the method's history. May restart the method, see above. CS_ERR_MEMORY, or CS_ERR_MODULE
  * with the method's message. */
-enum cs_status cs_run_save(struct cs_run *run, struct cs_serialiser *record,
+enum cs_status cs_run_save(struct cs_run *run, struct cs_serialiser *serialiser,
                            struct cs_error *error);
 
 /* Reads a record into a run that was begun in the same way and has made no frame yet. After a
  * failure (CS_ERR_FILE: bytes of another run; CS_ERR_MODULE) the run must not be used. */
-enum cs_status cs_run_load(struct cs_run *run, struct cs_serialiser *record,
+enum cs_status cs_run_load(struct cs_run *run, struct cs_serialiser *serialiser,
                            struct cs_error *error);
 
 #endif

@@ -165,9 +165,9 @@ bool cs_run_host_is_over_budget(struct cs_run_host *host) {
 /* Detects a blow-up; the bound is derived in run_host.h. */
 
 /* The bound on kinetic energy at t, in J. */
-static double energy_at(const struct cs_blow_up_check *bound, double t) {
-    const double pushed = bound->force_gain + sqrt(bound->force_rate) * (t - bound->t_forces);
-    return 100 * (bound->start_energy + bound->speed + pushed * pushed);
+static double energy_at(const struct cs_blow_up_check *check, double t) {
+    const double pushed = check->force_gain + sqrt(check->force_rate) * (t - check->t_forces);
+    return 100 * (check->start_energy + check->speed + pushed * pushed);
 }
 
 /* Sum of F^2 / m in J/s2, F the sum of the greatest forces that the terms can exert on a
@@ -184,12 +184,12 @@ static double force_power_bound(const struct cs_system *system) {
     return sum;
 }
 
-void cs_blow_up_check_set(struct cs_blow_up_check *bound, const struct cs_system *system,
+void cs_blow_up_check_set(struct cs_blow_up_check *check, const struct cs_system *system,
                           double t) {
     const double *x = system->state, *v = x + 3 * (size_t)system->view.n;
     const struct cs_energy energy = cs_diagnostics_energy(system, t, x, v);
     const double speed = cs_scene_key_frame_speed(system->scene);
-    *bound = (struct cs_blow_up_check){
+    *check = (struct cs_blow_up_check){
         .start_energy = energy.elastic + energy.other +
                         cs_springs_energy_at_twice(&system->springs) +
                         cs_membranes_energy_at_twice(system) + cs_shape_clusters_energy(system),
@@ -198,17 +198,17 @@ void cs_blow_up_check_set(struct cs_blow_up_check *bound, const struct cs_system
         .t_forces = t,
     };
     for (size_t i = 0; speed > 0 && i < system->view.n; i++)
-        bound->speed += 2 * system->mass[i] * speed * speed;
+        check->speed += 2 * system->mass[i] * speed * speed;
 }
 
 /* Continues the bound from t on with other forces: closes the piece before t, and takes the
  * larger rate of those now and at the end of the ramps. Leaves the values at t. */
-static void continue_bound(struct cs_blow_up_check *bound, struct cs_system *system, double t) {
-    bound->force_gain += sqrt(bound->force_rate) * (t - bound->t_forces);
-    bound->t_forces = t;
-    bound->force_rate = force_power_bound(system);
+static void continue_bound(struct cs_blow_up_check *check, struct cs_system *system, double t) {
+    check->force_gain += sqrt(check->force_rate) * (t - check->t_forces);
+    check->t_forces = t;
+    check->force_rate = force_power_bound(system);
     cs_events_move_values(system, system->events->end);
-    bound->force_rate = fmax(bound->force_rate, force_power_bound(system));
+    check->force_rate = fmax(check->force_rate, force_power_bound(system));
     cs_events_move_values(system, t);
 }
 
@@ -216,22 +216,22 @@ static void continue_bound(struct cs_blow_up_check *bound, struct cs_system *sys
  * and the larger energies and forces count: ramps are linear, and each force grows with its
  * value. The speed w of paths adds 2 m w^2 for every particle, since a grab may pull all along.
  */
-void cs_blow_up_check_after_events(struct cs_blow_up_check *bound, struct cs_system *system,
+void cs_blow_up_check_after_events(struct cs_blow_up_check *check, struct cs_system *system,
                                    double t) {
     struct cs_blow_up_check now;
     if (system->events->begin < t) {
-        continue_bound(bound, system, t);
+        continue_bound(check, system, t);
         return;
     }
     cs_blow_up_check_set(&now, system, t);
     cs_events_move_values(system, system->events->end);
-    cs_blow_up_check_set(bound, system, t);
+    cs_blow_up_check_set(check, system, t);
     cs_events_move_values(system, t);
-    bound->start_energy = fmax(bound->start_energy, now.start_energy);
-    bound->force_rate = fmax(bound->force_rate, now.force_rate);
+    check->start_energy = fmax(check->start_energy, now.start_energy);
+    check->force_rate = fmax(check->force_rate, now.force_rate);
     const double speed = cs_events_speed(system);
     for (size_t i = 0; i < system->view.n; i++)
-        bound->speed += 2 * system->mass[i] * speed * speed;
+        check->speed += 2 * system->mass[i] * speed * speed;
 }
 
 typedef double lanes __attribute__((vector_size(2 * sizeof(double))));
@@ -278,11 +278,11 @@ static double watch_part(const void *arg, size_t begin, size_t end) {
 }
 
 /* Kinetic energy decides: a number that is not finite anywhere makes it so. */
-bool cs_blow_up_check_step(const struct cs_blow_up_check *bound, struct cs_run *run, double t,
+bool cs_blow_up_check_step(const struct cs_blow_up_check *check, struct cs_run *run, double t,
                            const double *x, const double *v) {
     const size_t n = run->system->view.n;
     const struct watched watched = {n, run->system->mass, x, v};
-    const double energy = cs_vector_sum(n, watch_part, &watched), most = energy_at(bound, t);
+    const double energy = cs_vector_sum(n, watch_part, &watched), most = energy_at(check, t);
     // NaN is not <= most
     if (energy <= most)
         return false;
@@ -334,11 +334,11 @@ void cs_run_host_set_scales(struct cs_run_host *host) {
 void cs_trace_emit(const struct cs_run_host *host, const struct cs_trace_record *named,
                    double t, const double *values, size_t n) {
     const struct cs_trace *trace = host->settings.trace;
-    struct cs_trace_record point = *named;
-    point.frame = host->run->frame + 1;
-    point.step = host->run->counts.steps;
-    point.t = t;
-    point.values = values;
-    point.n = n;
-    trace->emit(trace->ctx, &point);
+    struct cs_trace_record record = *named;
+    record.frame = host->run->frame + 1;
+    record.step = host->run->counts.steps;
+    record.t = t;
+    record.values = values;
+    record.n = n;
+    trace->emit(trace->ctx, &record);
 }

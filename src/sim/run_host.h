@@ -37,19 +37,19 @@ struct cs_blow_up_check {
 };
 
 /* Sets the bound from the state and the forces that the system has at time t. */
-void cs_blow_up_check_set(struct cs_blow_up_check *bound, const struct cs_system *system,
+void cs_blow_up_check_set(struct cs_blow_up_check *check, const struct cs_system *system,
                           double t);
 
 /* Sets the bound again after the events at time t. It starts from the state that they leave,
  * with the larger of the values now and those at the end of the segment; a grab may pull all
  * particles along. If viewpoint forces only tested visibility again, the bound continues with
  * the new forces: a fresh start at each test would follow a blow-up. */
-void cs_blow_up_check_after_events(struct cs_blow_up_check *bound, struct cs_system *system,
+void cs_blow_up_check_after_events(struct cs_blow_up_check *check, struct cs_system *system,
                                    double t);
 
 /* Checks the state (x, v) after a step. Returns true on a blow-up; run->outcome and
  * run->blow_up then say which, where and by how much. */
-bool cs_blow_up_check_step(const struct cs_blow_up_check *bound, struct cs_run *run, double t,
+bool cs_blow_up_check_step(const struct cs_blow_up_check *check, struct cs_run *run, double t,
                            const double *x, const double *v);
 
 /* Reads the method's own counts into run->counts, with those before the loaded checkpoint. */

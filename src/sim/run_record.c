@@ -28,43 +28,43 @@ static void record_wholes(void *ctx, uint64_t *values, size_t n) {
 }
 
 /* The archive that a method's save or load gets. */
-static struct cs_archive archive_of(struct cs_serialiser *record) {
+static struct cs_archive archive_of(struct cs_serialiser *serialiser) {
     return (struct cs_archive){.size = sizeof(struct cs_archive),
-                               .ctx = record,
+                               .ctx = serialiser,
                                .reals = record_reals,
                                .integers = record_wholes};
 }
 
 /* Everything that the model has changed since the run began: state, time, blow-up bound,
  * events, contact, anchors of friction, broken stitches. */
-static void record_system(struct cs_run *run, struct cs_serialiser *record) {
+static void record_system(struct cs_run *run, struct cs_serialiser *serialiser) {
     struct cs_run_host *host = run->host;
     struct cs_system *system = run->system;
-    cs_serialiser_bytes(record, run->x, 6 * (size_t)system->view.n * sizeof *run->x);
-    CS_SERIALISER(record, run->t);
-    CS_SERIALISER(record, run->frame);
-    CS_SERIALISER(record, host->blow_up);
-    CS_SERIALISER(record, run->energy_input);
-    cs_events_serialise(system, record);
+    cs_serialiser_bytes(serialiser, run->x, 6 * (size_t)system->view.n * sizeof *run->x);
+    CS_SERIALISER(serialiser, run->t);
+    CS_SERIALISER(serialiser, run->frame);
+    CS_SERIALISER(serialiser, host->blow_up);
+    CS_SERIALISER(serialiser, run->energy_input);
+    cs_events_serialise(system, serialiser);
     if (system->plan.rows[CS_FEATURE_CONTACT].built)
-        cs_contact_projection_serialise(&host->contact, record);
+        cs_contact_projection_serialise(&host->contact, serialiser);
     if (system->friction_anchors)
-        cs_serialiser_bytes(record, system->friction_anchors->values,
+        cs_serialiser_bytes(serialiser, system->friction_anchors->values,
                             system->friction_anchors->n_values * sizeof(double));
     if (system->seams) {
-        cs_serialiser_bytes(record, system->seams->broken,
+        cs_serialiser_bytes(serialiser, system->seams->broken,
                             system->seams->n * sizeof *system->seams->broken);
-        CS_SERIALISER(record, system->seams->n_broken);
+        CS_SERIALISER(serialiser, system->seams->n_broken);
     }
 }
 
 /* Counts and remarks, which only reports show. A damaged number of remarks fails the record. */
-static void record_counts(struct cs_run *run, struct cs_serialiser *record) {
-    CS_SERIALISER(record, run->counts);
-    CS_SERIALISER(record, run->notes);
-    CS_SERIALISER(record, run->n_notes);
+static void record_counts(struct cs_run *run, struct cs_serialiser *serialiser) {
+    CS_SERIALISER(serialiser, run->counts);
+    CS_SERIALISER(serialiser, run->notes);
+    CS_SERIALISER(serialiser, run->n_notes);
     if (run->n_notes > CS_NOTES_MAX)
-        record->failed = true;
+        serialiser->failed = true;
 }
 
 /* Restarts a method that cannot save its history, and remarks it. */
@@ -73,15 +73,15 @@ static enum cs_status restart_silent(struct cs_run *run, struct cs_error *error)
     return cs_run_restart(run, run->t, error);
 }
 
-enum cs_status cs_run_save(struct cs_run *run, struct cs_serialiser *record,
+enum cs_status cs_run_save(struct cs_run *run, struct cs_serialiser *serialiser,
                            struct cs_error *error) {
-    const struct cs_archive archive = archive_of(record);
+    const struct cs_archive archive = archive_of(serialiser);
     const bool remembers = cs_run_method_has_history(run->integrator);
-    record_system(run, record);
-    record_counts(run, record);
+    record_system(run, serialiser);
+    record_counts(run, serialiser);
     if (remembers && cs_run_archive(run, run->integrator->save, &archive, error))
         return error->status;
-    if (record->failed)
+    if (serialiser->failed)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a checkpoint");
     return remembers ? CS_OK : restart_silent(run, error);
 }
@@ -91,20 +91,20 @@ static void store_counts(struct cs_run *run) {
     run->host->stats_before = run->counts.method;
 }
 
-enum cs_status cs_run_load(struct cs_run *run, struct cs_serialiser *record,
+enum cs_status cs_run_load(struct cs_run *run, struct cs_serialiser *serialiser,
                            struct cs_error *error) {
-    const struct cs_archive archive = archive_of(record);
+    const struct cs_archive archive = archive_of(serialiser);
     const bool remembers = cs_run_method_has_history(run->integrator);
     struct cs_run counted = {0};
-    CS_ASSERT(run->frame == 0 && record->is_reading);
-    record_system(run, record);
-    record_counts(&counted, record);
-    if (record->failed)
+    CS_ASSERT(run->frame == 0 && serialiser->is_reading);
+    record_system(run, serialiser);
+    record_counts(&counted, serialiser);
+    if (serialiser->failed)
         return cs_fail(error, CS_ERR_FILE, "it is too short");
     if (remembers && (cs_run_restart(run, run->t, error) ||
                       cs_run_archive(run, run->integrator->load, &archive, error)))
         return error->status;
-    if (record->failed)
+    if (serialiser->failed)
         return cs_fail(error, CS_ERR_FILE, "it is too short for the method");
     run->counts = counted.counts;
     memcpy(run->notes, counted.notes, sizeof run->notes);

@@ -138,7 +138,7 @@ struct cs_run {
 /* Receives each array that passes between a method and the host, and each state that a
  * correction leaves: see sim/trace.h. */
 struct cs_trace {
-    void (*emit)(void *ctx, const struct cs_trace_record *point);
+    void (*emit)(void *ctx, const struct cs_trace_record *record);
     void *ctx;
     bool enabled; /* may be set and cleared between frames */
 };

@@ -38,59 +38,63 @@ bool cs_contact_capacity_find(const struct cs_system *system, struct cs_contact_
         return false;
     for (uint32_t a = 0; a < scene->bodies.n; a++)
         for (uint32_t b = a; b < scene->bodies.n + scene->colliders.n; b++) {
-            struct cs_contact_capacity at;
-            if (!params_of(system, a, b, &at))
+            struct cs_contact_capacity capacity;
+            if (!params_of(system, a, b, &capacity))
                 continue;
-            at.holds = cs_barrier_capacity(at.range, at.k);
-            at.comes = cs_approach_energy(system, a, b);
-            at.k_needed = CS_APPROACH_MARGIN * at.comes / cs_barrier_capacity(at.range, 1);
+            capacity.holds = cs_barrier_capacity(capacity.range, capacity.k);
+            capacity.comes = cs_approach_energy(system, a, b);
+            capacity.k_needed =
+                CS_APPROACH_MARGIN * capacity.comes / cs_barrier_capacity(capacity.range, 1);
             // what nothing comes to is compared by its energy alone, after all others
-            const double order = at.comes > 0 ? at.holds / at.comes : 1e100 * at.holds;
+            const double order =
+                capacity.comes > 0 ? capacity.holds / capacity.comes : 1e100 * capacity.holds;
             if (order < least) {
                 least = order;
-                *out = at;
+                *out = capacity;
             }
         }
     return least < HUGE_VAL;
 }
 
 /* "bodies[0] with colliders[1]", or "bodies[0] with itself" */
-static void print_surfaces(const struct cs_system *system, const struct cs_contact_capacity *at,
-                           struct cs_text *out) {
+static void print_surfaces(const struct cs_system *system,
+                           const struct cs_contact_capacity *capacity, struct cs_text *out) {
     const uint32_t n_bodies = system->scene->bodies.n;
-    cs_text_add(out, "bodies[%u] with ", at->a);
-    if (at->b == at->a)
+    cs_text_add(out, "bodies[%u] with ", capacity->a);
+    if (capacity->b == capacity->a)
         cs_text_add(out, "itself");
     else
-        cs_text_add(out, at->b < n_bodies ? "bodies[%u]" : "colliders[%u]",
-                    at->b < n_bodies ? at->b : at->b - n_bodies);
+        cs_text_add(out, capacity->b < n_bodies ? "bodies[%u]" : "colliders[%u]",
+                    capacity->b < n_bodies ? capacity->b : capacity->b - n_bodies);
 }
 
 void cs_contact_capacity_print(const struct cs_system *system,
-                               const struct cs_contact_capacity *at, struct cs_text *out) {
+                               const struct cs_contact_capacity *capacity,
+                               struct cs_text *out) {
     cs_text_add(out, "a contact of ");
-    print_surfaces(system, at, out);
-    cs_text_add(out, " takes up %.3g J (k %.3g N/m, range %.3g m); ", at->holds, at->k,
-                at->range);
-    if (at->comes > 0)
+    print_surfaces(system, capacity, out);
+    cs_text_add(out, " takes up %.3g J (k %.3g N/m, range %.3g m); ", capacity->holds,
+                capacity->k, capacity->range);
+    if (capacity->comes > 0)
         cs_text_add(out, "a particle comes with %.3g J, for which k = %.3g N/m would do",
-                    at->comes, at->k_needed);
+                    capacity->comes, capacity->k_needed);
     else
         cs_text_add(out, "nothing comes at the start");
 }
 
 void cs_contact_capacity_warn(const struct cs_system *system, struct cs_text *out) {
-    struct cs_contact_capacity at;
-    if (!cs_contact_capacity_find(system, &at) || isnan(system->scene->contact.stiffness) ||
-        at.holds >= CS_APPROACH_MARGIN * at.comes)
+    struct cs_contact_capacity capacity;
+    if (!cs_contact_capacity_find(system, &capacity) ||
+        isnan(system->scene->contact.stiffness) ||
+        capacity.holds >= CS_APPROACH_MARGIN * capacity.comes)
         return;
-    cs_text_add(out, "contact.stiffness: at %.3g N/m a contact of ", at.k);
-    print_surfaces(system, &at, out);
+    cs_text_add(out, "contact.stiffness: at %.3g N/m a contact of ", capacity.k);
+    print_surfaces(system, &capacity, out);
     cs_text_add(out,
                 " takes up %.3g J, but a particle comes with %.3g J: expected at least %.3g "
                 "N/m, or no value for %.3g N/m",
-                at.holds, at.comes, at.k_needed,
-                CS_APPROACH_STIFFNESS * at.comes / (at.range * at.range));
+                capacity.holds, capacity.comes, capacity.k_needed,
+                CS_APPROACH_STIFFNESS * capacity.comes / (capacity.range * capacity.range));
 }
 
 /* Ranges of contact per step that are reported: the step check cuts a step to about one. */
@@ -112,14 +116,14 @@ void cs_contact_ranges_print(const struct cs_system *system, double dt, struct c
     double most = RANGES_MAX, speed = 0;
     for (uint32_t a = 0; a < scene->bodies.n && system->approach && dt > 0; a++)
         for (uint32_t b = a; b < scene->bodies.n + scene->colliders.n; b++) {
-            struct cs_contact_capacity at;
-            if (!params_of(system, a, b, &at) || !(at.range > 0))
+            struct cs_contact_capacity capacity;
+            if (!params_of(system, a, b, &capacity) || !(capacity.range > 0))
                 continue;
             const double v = approach_speed(system, a, b);
-            if (v * dt > most * at.range) {
-                most = v * dt / at.range;
+            if (v * dt > most * capacity.range) {
+                most = v * dt / capacity.range;
                 speed = v;
-                worst = at;
+                worst = capacity;
             }
         }
     if (!(speed > 0))

@@ -267,7 +267,7 @@ void cs_picture_range(const struct cs_scene *scene, double most, double range[2]
 
 /* Values and range of the colours. The magnitude is robust: one pinched corner must not leave
  * the rest without colours. */
-static void measure(struct cs_picture *picture, const struct cs_run *run) {
+static void measure_colours(struct cs_picture *picture, const struct cs_run *run) {
     const double *given = picture->scene->render.range;
     const uint32_t n = picture->system->view.n;
     cs_picture_values(picture->system, run, picture->scalar, picture->work);
@@ -307,7 +307,7 @@ void cs_picture_begin(struct cs_picture *picture, const struct cs_run *run,
     cs_posed_colliders_at(picture->system, run->t, picture->colliders);
     set_ramps(picture, run->t);
     if (picture->scalar)
-        measure(picture, run);
+        measure_colours(picture, run);
     if (picture->triangle_marks)
         cs_crossings_mark(picture->system, run->t, run->x, picture->triangle_marks);
     if (picture->goals)

@@ -48,18 +48,18 @@ struct child {
 };
 
 /* Settings of a process that is one of many. */
-static void become_cell(const struct cs_isolate *limits) {
+static void become_cell(const struct cs_isolate *isolate) {
     const int file =
-        limits->is_cell ? open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC) : -1;
+        isolate->is_cell ? open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC) : -1;
     if (file >= 0) {
         /* where it may not be written, the kernel chooses by size alone */
         (void)!write(file, "1000", 4);
         close(file);
     }
-    if (limits->is_cell)
+    if (isolate->is_cell)
         dup2(STDERR_FILENO, STDOUT_FILENO);
-    const struct rlimit space = {(rlim_t)limits->bytes, (rlim_t)limits->bytes};
-    if (limits->bytes > 0)
+    const struct rlimit space = {(rlim_t)isolate->bytes, (rlim_t)isolate->bytes};
+    if (isolate->bytes > 0)
         setrlimit(RLIMIT_AS, &space);
 }
 
@@ -72,9 +72,9 @@ static _Noreturn void child_serve(const struct child *child, pid_t parent) {
 #endif
     if (getppid() != parent)
         _exit(cs_status_exit_code(CS_ERR_INTERRUPT));
-    become_cell(&child->queue->limits);
+    become_cell(&child->queue->isolate);
     cs_crash_log_to(&child->shared->log);
-    if (!child->queue->limits.is_cell)
+    if (!child->queue->isolate.is_cell)
         cs_crash_divert_output();
     child->queue->task(child->queue->ctx, child->slot, &error);
     if ((fflush(stdout) || ferror(stdout)) && !error.status)
@@ -90,11 +90,11 @@ static _Noreturn void child_serve(const struct child *child, pid_t parent) {
  * and does not come back to the host is not waited for. */
 static const struct cs_crash_call *find_timed_out_call(struct child *child) {
     struct patience *patience = &child->patience;
-    const struct cs_isolate *limits = &child->queue->limits;
+    const struct cs_isolate *isolate = &child->queue->isolate;
     const struct cs_crash_log *log = &child->shared->log;
-    const bool stops = patience->told && limits->stop_seconds > 0 &&
-                       !(limits->seconds > 0 && limits->seconds < limits->stop_seconds);
-    const double limit = stops ? limits->stop_seconds : limits->seconds;
+    const bool stops = patience->told && isolate->stop_seconds > 0 &&
+                       !(isolate->seconds > 0 && isolate->seconds < isolate->stop_seconds);
+    const double limit = stops ? isolate->stop_seconds : isolate->seconds;
     const double step = cs_crash_patience_look(&patience->calls, log);
     // the times of the task go on between its calls too
     patience->task += step;
@@ -108,7 +108,7 @@ static const struct cs_crash_call *find_timed_out_call(struct child *child) {
 
 /* Reports that the whole task has reached its limit, and the call that is under way. */
 static enum cs_status report_task_limit(const struct child *child, struct cs_error *result) {
-    const double seconds = child->queue->limits.task_seconds;
+    const double seconds = child->queue->isolate.task_seconds;
     for (int k = 0; k < CS_CRASH_SIDES; k++) {
         const struct cs_crash_call *call = child->shared->log.calls + k;
         if (call->kind && cs_crash_is_running(call))
@@ -121,26 +121,26 @@ static enum cs_status report_task_limit(const struct child *child, struct cs_err
 
 /* Reports a limit that the child has reached; CS_OK: none. */
 static enum cs_status check_limits(struct child *child, struct cs_error *result) {
-    const struct cs_isolate *limits = &child->queue->limits;
+    const struct cs_isolate *isolate = &child->queue->isolate;
     const struct cs_crash_call *hung = find_timed_out_call(child);
-    if (hung && child->patience.told && limits->stop_seconds > 0)
+    if (hung && child->patience.told && isolate->stop_seconds > 0)
         return cs_fail(result, CS_ERR_INTERRUPT,
                        "interrupted; %s \"%s\" did not return %s and was ended", hung->kind,
                        hung->name, hung->place);
     if (hung)
         return cs_fail(result, CS_ERR_MODULE, "%s \"%s\" hung %s: it was ended after %g s",
-                       hung->kind, hung->name, hung->place, limits->seconds);
-    if (limits->task_seconds > 0 && child->patience.task > limits->task_seconds)
+                       hung->kind, hung->name, hung->place, isolate->seconds);
+    if (isolate->task_seconds > 0 && child->patience.task > isolate->task_seconds)
         return report_task_limit(child, result);
-    if (limits->is_cell && limits->stop_seconds > 0 &&
-        child->patience.stopping > limits->stop_seconds)
+    if (isolate->is_cell && isolate->stop_seconds > 0 &&
+        child->patience.stopping > isolate->stop_seconds)
         return cs_fail(result, CS_ERR_INTERRUPT, "interrupted");
     return CS_OK;
 }
 
 /* Passes a request to stop on to the child, once. */
 static void pass_on_stop(struct child *child) {
-    const volatile sig_atomic_t *stop = child->queue->limits.stop;
+    const volatile sig_atomic_t *stop = child->queue->isolate.stop;
     if (!stop || !*stop || child->patience.told)
         return;
     child->patience.told = true;
@@ -197,7 +197,7 @@ static enum cs_status child_start(struct child *child, const sigset_t *before,
  * way. */
 static uint32_t serve_slots(const struct cs_isolate_queue *queue, struct child *children,
                             const sigset_t *before, struct cs_error *error) {
-    const volatile sig_atomic_t *stop = queue->limits.stop;
+    const volatile sig_atomic_t *stop = queue->isolate.stop;
     uint32_t n = 0;
     for (uint32_t k = 0; k < queue->n_slots; k++) {
         struct child *child = children + k;
@@ -275,7 +275,7 @@ static void single_ended(void *ctx, uint32_t slot, const struct cs_error *result
 
 enum cs_status cs_isolate_run(const struct cs_isolate *isolate, struct cs_error *error) {
     struct single single = {.isolate = isolate};
-    const struct cs_isolate_queue queue = {.limits = *isolate,
+    const struct cs_isolate_queue queue = {.isolate = *isolate,
                                            .n_slots = 1,
                                            .ctx = &single,
                                            .next = single_next,

@@ -41,7 +41,7 @@ static bool overlap(const struct box *a, const struct box *b) {
     return !apart;
 }
 
-static void take(const double *x, size_t n, size_t i, double p[3]) {
+static void copy_point(const double *x, size_t n, size_t i, double p[3]) {
     for (size_t c = 0; c < 3; c++)
         p[c] = x[c * n + i];
 }
@@ -50,10 +50,10 @@ static void take(const double *x, size_t n, size_t i, double p[3]) {
  * the pin. */
 static void reach_from_pin(const double *x, size_t n, size_t pin, struct box *reach) {
     double from[3], squared = 0;
-    take(x, n, pin, from);
+    copy_point(x, n, pin, from);
     for (size_t i = 0; i < n; i++) {
         double p[3], sum = 0;
-        take(x, n, i, p);
+        copy_point(x, n, i, p);
         for (int c = 0; c < 3; c++)
             sum += (p[c] - from[c]) * (p[c] - from[c]);
         squared = fmax(squared, sum);
@@ -81,8 +81,9 @@ static void free_fall_box(const struct cs_scene *scene, const struct cs_body *bo
 }
 
 /* Boxes of a body, from a copy of its start positions. */
-static enum cs_status measure(const struct cs_scene *scene, const struct cs_body *body,
-                              double seconds, struct body *out, struct cs_error *error) {
+static enum cs_status measure_overlap(const struct cs_scene *scene, const struct cs_body *body,
+                                      double seconds, struct body *out,
+                                      struct cs_error *error) {
     const size_t n = (size_t)cs_shape_count(body);
     double *x = calloc(n, 3 * sizeof *x);
     bool *pinned = calloc(n, sizeof *pinned);
@@ -96,7 +97,7 @@ static enum cs_status measure(const struct cs_scene *scene, const struct cs_body
     cs_shape_pin(body, (uint32_t)n, 0, x, pinned);
     for (size_t i = 0; i < n; i++) {
         double p[3];
-        take(x, n, i, p);
+        copy_point(x, n, i, p);
         extend_box(&out->start, p, 0);
         pin = pinned[i] ? i : pin;
     }
@@ -153,7 +154,7 @@ enum cs_status cs_overlap_warning_print(const struct cs_scene *scene, double sec
     if (!bodies)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u bodies", n);
     for (uint32_t b = 0; b < n && !error->status; b++)
-        measure(scene, cs_scene_bodies(scene) + b, seconds, bodies + b, error);
+        measure_overlap(scene, cs_scene_bodies(scene) + b, seconds, bodies + b, error);
     bool now = true;
     uint32_t pairs = error->status ? 0 : count_pairs(scene, bodies, true, &first, &second);
     if (!pairs && !error->status) {
@@ -187,17 +188,17 @@ void cs_sampling_warning_print(const struct cs_system *system, struct cs_text *o
         return;
     const double edge = cs_contact_sample_longest(system);
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        struct cs_posed_collider at;
-        cs_posed_collider_at(system, c, 0, &at);
+        struct cs_posed_collider collider;
+        cs_posed_collider_at(system, c, 0, &collider);
         const double range = system->collider_params[c].range;
-        if (edge <= CS_CONTACT_SAMPLE_PARTS_MAX * cs_contact_sample_spacing(&at, range) ||
+        if (edge <= CS_CONTACT_SAMPLE_PARTS_MAX * cs_contact_sample_spacing(&collider, range) ||
             fine++ > 0)
             continue;
         cs_text_add(
             out,
             "colliders[%u]: an edge of %.3g m has at most %d contact samples, too few for this "
             "collider: use a finer mesh, or a thickness of at least %.2g m (now %.2g m)",
-            c, edge, CS_CONTACT_SAMPLE_PARTS_MAX + 1, needed(edge, at.radius), range);
+            c, edge, CS_CONTACT_SAMPLE_PARTS_MAX + 1, needed(edge, collider.radius), range);
     }
     if (fine > 1)
         cs_text_add(out, "; the same holds for %u more", fine - 1);

@@ -46,15 +46,15 @@ void cs_process_pool_shared_free(void *memory, size_t bytes) {
         munmap(memory, bytes + 1);
 }
 
-void cs_process_pool_tick(struct cs_process_pool *workers, uint32_t ticks) {
-    __atomic_fetch_add(workers->ticks, ticks, __ATOMIC_RELAXED);
+void cs_process_pool_tick(struct cs_process_pool *pool, uint32_t ticks) {
+    __atomic_fetch_add(pool->ticks, ticks, __ATOMIC_RELAXED);
 }
 
 /* Limits the processor time of one task: SIGPROF then ends the worker, which covers a task that
  * never returns to check its budget. */
-static void limit_task(const struct cs_process_pool *workers) {
-    const struct itimerval limit = {.it_value.tv_sec = (time_t)workers->task_seconds_max};
-    if (workers->task_seconds_max > 0)
+static void limit_task(const struct cs_process_pool *pool) {
+    const struct itimerval limit = {.it_value.tv_sec = (time_t)pool->task_seconds_max};
+    if (pool->task_seconds_max > 0)
         setitimer(ITIMER_PROF, &limit, NULL);
 }
 
@@ -70,23 +70,22 @@ static void store_memory(void) {
 }
 
 /* Takes tasks from the shared counter until none is left or one fails. */
-static void serve(struct cs_process_pool *workers, struct shared *shared, uint32_t worker) {
+static void serve(struct cs_process_pool *pool, struct shared *shared, uint32_t worker) {
     struct cs_error *error = shared->errors + worker;
     while (!error->status) {
         const uint32_t task = atomic_fetch_add(&shared->next, 1);
-        if (task >= workers->n_tasks)
+        if (task >= pool->n_tasks)
             return;
-        limit_task(workers);
-        workers->task(workers->ctx, task, error);
+        limit_task(pool);
+        pool->task(pool->ctx, task, error);
     }
     /* no worker begins another task */
-    atomic_store(&shared->next, workers->n_tasks);
+    atomic_store(&shared->next, pool->n_tasks);
 }
 
-static void report(const struct cs_process_pool *workers) {
-    if (workers->progress)
-        workers->progress(workers->progress_ctx,
-                          __atomic_load_n(workers->ticks, __ATOMIC_RELAXED));
+static void report(const struct cs_process_pool *pool) {
+    if (pool->progress)
+        pool->progress(pool->progress_ctx, __atomic_load_n(pool->ticks, __ATOMIC_RELAXED));
 }
 
 /* A worker as the caller sees it. */
@@ -117,7 +116,7 @@ static void collect(struct shared *shared, uint32_t worker, bool overdue, int en
 }
 
 /* Forks a worker. Its process is < 0 if there is none. */
-static void start(struct cs_process_pool *workers, struct shared *shared, uint32_t number,
+static void start(struct cs_process_pool *pool, struct shared *shared, uint32_t number,
                   struct worker *worker) {
     *worker = (struct worker){.patience.looked = cs_clock_wall()};
     /* that of the worker before, which was ended in a task */
@@ -127,34 +126,34 @@ static void start(struct cs_process_pool *workers, struct shared *shared, uint32
         return;
     cs_crash_log_to(shared->logs + number);
     store_memory();
-    serve(workers, shared, number);
+    serve(pool, shared, number);
     atomic_store(shared->done + number, true);
     _exit(0);
 }
 
 /* Passes a request to stop on, and ends a worker that does not stop or whose method hangs. */
-static void hold_to_limits(const struct cs_process_pool *workers, struct shared *shared,
+static void hold_to_limits(const struct cs_process_pool *pool, struct shared *shared,
                            uint32_t number, struct worker *worker) {
     const struct cs_crash_log *log = shared->logs + number;
     const double step = cs_crash_patience_look(&worker->patience, log);
     const struct cs_crash_call *hung =
-        cs_crash_find_silent(&worker->patience, log, workers->silence_max);
-    const bool stops = workers->stop && *workers->stop;
+        cs_crash_find_silent(&worker->patience, log, pool->silence_max);
+    const bool stops = pool->stop && *pool->stop;
     if (stops)
         kill(worker->process, (worker->stopping += step) > STOP_SECONDS ? SIGKILL : SIGTERM);
-    else if (hung && workers->task_seconds_max > 0) {
+    else if (hung && pool->task_seconds_max > 0) {
         worker->is_late = true;
         kill(worker->process, SIGKILL);
     } else if (hung && !shared->errors[number].status) {
         cs_fail(shared->errors + number, CS_ERR_MODULE,
                 "%s \"%s\" hung %s: it was ended after %g s", hung->kind, hung->name,
-                hung->place, workers->silence_max);
+                hung->place, pool->silence_max);
         kill(worker->process, SIGKILL);
     }
 }
 
 /* Waits for all workers. Polls every 20 ms, so progress shows and signals are noticed. */
-static void wait_for(struct cs_process_pool *workers, struct shared *shared,
+static void wait_for(struct cs_process_pool *pool, struct shared *shared,
                      struct worker *children, uint32_t n, struct cs_error *error) {
     const struct timespec pause = {.tv_nsec = 20000000};
     uint32_t left = n;
@@ -165,34 +164,34 @@ static void wait_for(struct cs_process_pool *workers, struct shared *shared,
             if (child->process <= 0)
                 continue;
             if (waitpid(child->process, &end, WNOHANG) != child->process) {
-                hold_to_limits(workers, shared, k, child);
+                hold_to_limits(pool, shared, k, child);
                 continue;
             }
             const bool overdue = is_overdue(child, end);
             collect(shared, k, overdue, end, error);
             // one that was ended by its limit of time leaves the other tasks
             child->process = 0;
-            if (overdue && atomic_load(&shared->next) < workers->n_tasks)
-                start(workers, shared, k, child);
+            if (overdue && atomic_load(&shared->next) < pool->n_tasks)
+                start(pool, shared, k, child);
             left -= child->process <= 0;
         }
         if (left)
             nanosleep(&pause, NULL);
-        report(workers);
+        report(pool);
     }
 }
 
-enum cs_status cs_process_pool_run(struct cs_process_pool *workers, struct cs_error *error) {
+enum cs_status cs_process_pool_run(struct cs_process_pool *pool, struct cs_error *error) {
     struct shared *shared = cs_process_pool_shared_alloc(sizeof *shared, error);
     struct worker children[CS_PROCESS_POOL_MAX];
     uint32_t n = 0;
     if (!shared)
         return error->status;
-    workers->ticks = &shared->ticks;
+    pool->ticks = &shared->ticks;
     /* what waits in the buffers is not to be written twice */
     fflush(NULL);
-    while (n < workers->n_workers && n < workers->n_tasks && n < CS_PROCESS_POOL_MAX) {
-        start(workers, shared, n, children + n);
+    while (n < pool->n_workers && n < pool->n_tasks && n < CS_PROCESS_POOL_MAX) {
+        start(pool, shared, n, children + n);
         if (children[n].process < 0) {
             if (!n)
                 cs_fail(error, CS_ERR_MEMORY, "cannot start a worker: %s", strerror(errno));
@@ -200,8 +199,8 @@ enum cs_status cs_process_pool_run(struct cs_process_pool *workers, struct cs_er
         }
         n++;
     }
-    wait_for(workers, shared, children, n, error);
-    if (workers->stop && *workers->stop) {
+    wait_for(pool, shared, children, n, error);
+    if (pool->stop && *pool->stop) {
         *error = (struct cs_error){0};
         cs_fail(error, CS_ERR_INTERRUPT, "interrupted");
     }

@@ -45,12 +45,12 @@ static inline double cs_hang_seconds(double budget) {
 }
 
 /* Advances the progress; callable from every worker. */
-void cs_process_pool_tick(struct cs_process_pool *workers, uint32_t ticks);
+void cs_process_pool_tick(struct cs_process_pool *pool, uint32_t ticks);
 
 /* Runs all tasks and returns when they are done. The first error stops further tasks.
  * CS_ERR_MODULE if a worker crashed or hung; CS_ERR_INTERRUPT; CS_ERR_MEMORY if no worker can
  * be started. */
-enum cs_status cs_process_pool_run(struct cs_process_pool *workers, struct cs_error *error);
+enum cs_status cs_process_pool_run(struct cs_process_pool *pool, struct cs_error *error);
 
 /* Runs tasks that call foreign code in child processes, one process a task, and turns their
  * deaths into error messages.
@@ -82,8 +82,8 @@ enum cs_status cs_isolate_run(const struct cs_isolate *isolate, struct cs_error 
 
 /* Tasks of the same limits, several at a time, each in a child of its own. */
 struct cs_isolate_queue {
-    struct cs_isolate limits; /* without task and ctx */
-    uint32_t n_slots;         /* tasks at a time, up to CS_PROCESS_POOL_MAX */
+    struct cs_isolate isolate; /* without task and ctx */
+    uint32_t n_slots;          /* tasks at a time, up to CS_PROCESS_POOL_MAX */
     void *ctx;
     /* in this process: chooses the next task of a free slot; false: none is left */
     bool (*next)(void *ctx, uint32_t slot, struct cs_error *error);

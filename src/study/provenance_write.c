@@ -134,16 +134,16 @@ static void add_compact(const char *json, struct cs_text *out) {
     }
 }
 
-void cs_provenance_out_print_recipe(const struct cs_picture_provenance *recipe,
+void cs_provenance_out_print_recipe(const struct cs_picture_provenance *provenance,
                                     struct cs_text *out) {
     struct cs_text whole = {0};
     cs_json_write(&whole,
                   "{'versions': {'clothsim': %s},\n'renderer': %s,\n'renderer_name': %s,\n"
                   "'fast_render': %d,\n",
-                  CS_VERSION, recipe->renderer_description, recipe->renderer,
-                  recipe->fast_render);
-    cs_provenance_out_add_restarts(recipe->restarts, &whole);
-    cs_text_add(&whole, "%s,\n\"scene\": %s}", recipe->provenance, recipe->scene);
+                  CS_VERSION, provenance->renderer_description, provenance->renderer,
+                  provenance->fast_render);
+    cs_provenance_out_add_restarts(provenance->restarts, &whole);
+    cs_text_add(&whole, "%s,\n\"scene\": %s}", provenance->provenance, provenance->scene);
     add_compact(cs_text_get(&whole), out);
     out->failed |= whole.failed;
     cs_text_finish(&whole);

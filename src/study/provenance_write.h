@@ -30,7 +30,7 @@ struct cs_picture_provenance {
 };
 
 /* Adds it as one JSON object in one line. */
-void cs_provenance_out_print_recipe(const struct cs_picture_provenance *recipe,
+void cs_provenance_out_print_recipe(const struct cs_picture_provenance *provenance,
                                     struct cs_text *out);
 
 /* Adds the member "restarted_every": frames between the checkpoints at which a method without

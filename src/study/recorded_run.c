@@ -100,60 +100,62 @@ enum cs_status cs_recorded_run_open(struct cs_recorded_run *recording,
 }
 
 /* Stores the state of the current frame, judges it and counts its crossings. */
-static void store_state(struct cs_trajectory *track, const struct cs_run *run,
-                        struct cs_recorded_run_result *end) {
+static void store_state(struct cs_trajectory *trajectory, const struct cs_run *run,
+                        struct cs_recorded_run_result *result) {
     struct cs_energy_monitor_row row;
-    if (!track)
+    if (!trajectory)
         return;
-    cs_crossing_stats_add(&end->crossings, run);
-    cs_energy_monitor_sample(&end->monitor, run, &row);
-    memcpy(cs_trajectory_state(track, run->frame), run->x, 6 * track->n * sizeof *run->x);
-    track->n_recorded = run->frame;
+    cs_crossing_stats_add(&result->crossings, run);
+    cs_energy_monitor_sample(&result->monitor, run, &row);
+    memcpy(cs_trajectory_state(trajectory, run->frame), run->x,
+           6 * trajectory->n * sizeof *run->x);
+    trajectory->n_recorded = run->frame;
 }
 
 /* Steps to the end and stores each frame. Copies and counts are not timed. Without a track the
  * clocks are read only twice, because short runs are timed through this function. */
-static void step_frames(struct cs_recorded_run *recording, struct cs_trajectory *track,
-                        struct cs_recorded_run_result *end, struct cs_error *error) {
+static void step_frames(struct cs_recorded_run *recording, struct cs_trajectory *trajectory,
+                        struct cs_recorded_run_result *result, struct cs_error *error) {
     struct cs_run *run = &recording->session.run;
-    struct cs_follow follow = {.run = run, .last = recording->frames, .every = track ? 1 : 0};
-    if (track && cs_energy_monitor_begin(&end->monitor, run, error))
+    struct cs_follow follow = {
+        .run = run, .last = recording->frames, .every = trajectory ? 1 : 0};
+    if (trajectory && cs_energy_monitor_begin(&result->monitor, run, error))
         return;
     do
-        store_state(track, run, end);
+        store_state(trajectory, run, result);
     while (cs_follow_next(&follow, error));
     // a state between two frames, at which the run ended, counts as well
     if (run->outcome != CS_RUNNING && !error->status)
-        store_state(track, run, end);
-    end->cpu = follow.cpu;
-    end->wall = follow.wall;
+        store_state(trajectory, run, result);
+    result->cpu = follow.cpu;
+    result->wall = follow.wall;
 }
 
 /* Joins the notes of the run. */
-static void store_notes(struct cs_recorded_run_result *end, const struct cs_run *run) {
+static void store_notes(struct cs_recorded_run_result *result, const struct cs_run *run) {
     for (uint32_t k = 0; k < run->n_notes; k++) {
-        const size_t used = strlen(end->note);
-        snprintf(end->note + used, sizeof end->note - used, "%s%s", k ? "; " : "",
+        const size_t used = strlen(result->note);
+        snprintf(result->note + used, sizeof result->note - used, "%s%s", k ? "; " : "",
                  run->notes[k]);
     }
 }
 
 enum cs_status cs_recorded_run_execute(struct cs_recorded_run *recording, double budget,
-                                       struct cs_trajectory *track,
-                                       struct cs_recorded_run_result *end,
+                                       struct cs_trajectory *trajectory,
+                                       struct cs_recorded_run_result *result,
                                        struct cs_error *error) {
     struct cs_session *session = &recording->session;
-    *end = (struct cs_recorded_run_result){0};
+    *result = (struct cs_recorded_run_result){0};
     session->settings.run.budget = budget;
     if (!cs_session_begin(session, recording->initial_state, error)) {
-        step_frames(recording, track, end, error);
-        end->counts = session->run.counts;
-        store_notes(end, &session->run);
-        cs_run_hash(&session->run, end->hash);
+        step_frames(recording, trajectory, result, error);
+        result->counts = session->run.counts;
+        store_notes(result, &session->run);
+        cs_run_hash(&session->run, result->hash);
     }
-    cs_follow_result(&session->run, "; finished rows are saved", &end->result, error);
-    if (cs_outcome_has_reason(end->result.outcome))
-        snprintf(end->note, sizeof end->note, "%.239s", end->result.message);
+    cs_follow_result(&session->run, "; finished rows are saved", &result->result, error);
+    if (cs_outcome_has_reason(result->result.outcome))
+        snprintf(result->note, sizeof result->note, "%.239s", result->result.message);
     cs_run_finish(&session->run);
     return error->status ? error->status : renew(recording, error);
 }
@@ -164,28 +166,29 @@ void cs_recorded_run_close(struct cs_recorded_run *recording) {
     *recording = (struct cs_recorded_run){0};
 }
 
-enum cs_status cs_trajectory_init(struct cs_trajectory *track,
+enum cs_status cs_trajectory_init(struct cs_trajectory *trajectory,
                                   const struct cs_recorded_run *recording,
                                   struct cs_error *error) {
-    *track = (struct cs_trajectory){.n = recording->session.system.view.n,
-                                    .frames = recording->frames,
-                                    .fps = recording->session.scene.time.fps};
-    const size_t n = track->n, values = ((size_t)track->frames + 1) * 6 * n;
-    track->states = calloc(values + n, sizeof *track->states);
-    if (!track->states)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u states", track->frames + 1);
-    memcpy(track->states + values, recording->free_from, n * sizeof *track->states);
-    track->free_from = track->states + values;
+    *trajectory = (struct cs_trajectory){.n = recording->session.system.view.n,
+                                         .frames = recording->frames,
+                                         .fps = recording->session.scene.time.fps};
+    const size_t n = trajectory->n, values = ((size_t)trajectory->frames + 1) * 6 * n;
+    trajectory->states = calloc(values + n, sizeof *trajectory->states);
+    if (!trajectory->states)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u states",
+                       trajectory->frames + 1);
+    memcpy(trajectory->states + values, recording->free_from, n * sizeof *trajectory->states);
+    trajectory->free_from = trajectory->states + values;
     return CS_OK;
 }
 
-double *cs_trajectory_state(const struct cs_trajectory *track, uint32_t frame) {
-    return track->states + 6 * (size_t)track->n * frame;
+double *cs_trajectory_state(const struct cs_trajectory *trajectory, uint32_t frame) {
+    return trajectory->states + 6 * (size_t)trajectory->n * frame;
 }
 
-void cs_trajectory_finish(struct cs_trajectory *track) {
-    free(track->states);
-    *track = (struct cs_trajectory){0};
+void cs_trajectory_finish(struct cs_trajectory *trajectory) {
+    free(trajectory->states);
+    *trajectory = (struct cs_trajectory){0};
 }
 
 /* Counts crossings frame by frame, and prints their statistics. */

@@ -91,8 +91,8 @@ void cs_recorded_run_describe_changes(const struct cs_scene *scene, struct cs_te
  * track may be NULL: then no states are stored. A method that gives up is a result. Can be
  * called again: each run starts from initial_state. CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
 enum cs_status cs_recorded_run_execute(struct cs_recorded_run *recording, double budget,
-                                       struct cs_trajectory *track,
-                                       struct cs_recorded_run_result *end,
+                                       struct cs_trajectory *trajectory,
+                                       struct cs_recorded_run_result *result,
                                        struct cs_error *error);
 
 /* Closes the scene; a zeroed object is allowed. */
@@ -100,12 +100,12 @@ void cs_recorded_run_close(struct cs_recorded_run *recording);
 
 /* Allocates the states of a recorded run. Returns CS_ERR_MEMORY; the trajectory is then empty.
  */
-enum cs_status cs_trajectory_init(struct cs_trajectory *track,
+enum cs_status cs_trajectory_init(struct cs_trajectory *trajectory,
                                   const struct cs_recorded_run *recording,
                                   struct cs_error *error);
 
 /* Returns x (3,n) of a frame; v (3,n) follows it. */
-double *cs_trajectory_state(const struct cs_trajectory *track, uint32_t frame);
-void cs_trajectory_finish(struct cs_trajectory *track);
+double *cs_trajectory_state(const struct cs_trajectory *trajectory, uint32_t frame);
+void cs_trajectory_finish(struct cs_trajectory *trajectory);
 
 #endif

@@ -49,11 +49,11 @@ static double size_of(const struct cs_system *system) {
         }
     }
     for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
-        struct cs_posed_collider at;
-        cs_posed_collider_at(system, k, 0, &at);
+        struct cs_posed_collider collider;
+        cs_posed_collider_at(system, k, 0, &collider);
         for (int c = 0; c < 3; c++) {
-            low[c] = fmin(low[c], at.centre[c]);
-            high[c] = fmax(high[c], at.centre[c]);
+            low[c] = fmin(low[c], collider.centre[c]);
+            high[c] = fmax(high[c], collider.centre[c]);
         }
     }
     for (int c = 0; c < 3; c++)
@@ -289,10 +289,10 @@ static double spacing_of(const struct cs_body *body) {
 }
 
 /* m, smallest square hole that an obstacle does not pass: its second largest side. */
-static double width_of(const struct cs_posed_collider *at) {
-    const double *h = at->half_sizes;
+static double width_of(const struct cs_posed_collider *collider) {
+    const double *h = collider->half_sizes;
     const double second = fmax(fmin(h[0], h[1]), fmin(fmax(h[0], h[1]), h[2]));
-    return 2 * (second + at->radius + at->collider->thickness);
+    return 2 * (second + collider->radius + collider->collider->thickness);
 }
 
 /* Obstacles that fit between the particles: projection sees particles only. */
@@ -300,17 +300,17 @@ static void check_gaps(const struct cs_system *system, struct cs_text *out) {
     const struct cs_scene *scene = system->scene;
     for (uint32_t k = 0; k < scene->colliders.n && scene->contact.law == CS_CONTACT_PROJECT;
          k++) {
-        struct cs_posed_collider at;
+        struct cs_posed_collider collider;
         double gap = 0;
-        cs_posed_collider_at(system, k, 0, &at);
+        cs_posed_collider_at(system, k, 0, &collider);
         for (uint32_t b = 0; b < scene->bodies.n; b++)
             gap = fmax(gap, spacing_of(cs_scene_bodies(scene) + b));
-        if (!cs_shape_is_endless(at.shape) && width_of(&at) < gap)
+        if (!cs_shape_is_endless(collider.shape) && width_of(&collider) < gap)
             cs_text_add(out,
                         "colliders[%u] is %.3g m wide, particles are %.3g m apart: contact by "
                         "projection lets it through between them; contact.law \"force\" does "
                         "not, nor a grid with cells below %.3g m\n",
-                        k, width_of(&at), gap, width_of(&at));
+                        k, width_of(&collider), gap, width_of(&collider));
     }
 }
 

@@ -346,12 +346,12 @@ static void check_grab(const struct cs_system *system, uint32_t e, struct cs_tex
 }
 
 /* m, of a collider without a plane: the diagonal of its box. */
-static double size_of(const struct cs_posed_collider *at) {
+static double size_of(const struct cs_posed_collider *collider) {
     const struct cs_trimesh *mesh =
-        at->collider->mesh.present ? at->collider->mesh.geometry : NULL;
+        collider->collider->mesh.present ? collider->collider->mesh.geometry : NULL;
     double sides[3], low, high;
     for (size_t c = 0; c < 3; c++) {
-        sides[c] = 2 * at->half_sizes[c];
+        sides[c] = 2 * collider->half_sizes[c];
         low = high = mesh ? mesh->positions[c * mesh->n] : 0;
         for (size_t i = 0; mesh && i < mesh->n; i++) {
             low = fmin(low, mesh->positions[c * mesh->n + i]);
@@ -359,7 +359,7 @@ static double size_of(const struct cs_posed_collider *at) {
         }
         sides[c] += high - low;
     }
-    return 2 * at->radius + sqrt(cs_vec3_dot(sides, sides));
+    return 2 * collider->radius + sqrt(cs_vec3_dot(sides, sides));
 }
 
 static void check_move(const struct cs_system *system, uint32_t e, struct cs_text *out) {
@@ -367,15 +367,15 @@ static void check_move(const struct cs_system *system, uint32_t e, struct cs_tex
     const struct cs_move *move = &event->move;
     const struct cs_event_path path = cs_event_path_of(event);
     const struct cs_path_point *to = path.points;
-    struct cs_posed_collider at;
+    struct cs_posed_collider collider;
     if (!path.n || !system->motions)
         return;
-    cs_posed_collider_at(system, (uint32_t)move->collider, 0, &at);
-    if (cs_shape_is_endless(at.shape))
+    cs_posed_collider_at(system, (uint32_t)move->collider, 0, &collider);
+    if (cs_shape_is_endless(collider.shape))
         return;
-    const double still[3] = {0}, *from = move->relative ? still : at.centre;
+    const double still[3] = {0}, *from = move->relative ? still : collider.centre;
     const double speed = first_speed(event, to, from);
-    const double size = size_of(&at);
+    const double size = size_of(&collider);
     const double fastest = size * system->scene->time.fps / JUMP_FRAMES;
     if (speed > fastest)
         cs_text_add(out,

@@ -17,8 +17,8 @@
 #include <unistd.h>
 
 /* Fails with a message about the scene, at the place in its file that the message names. */
-static enum cs_status refuse(const struct cs_session *session, enum cs_status status,
-                             const char *message, struct cs_error *error) {
+static enum cs_status fail_at(const struct cs_session *session, enum cs_status status,
+                              const char *message, struct cs_error *error) {
     return cs_scene_refuse(&session->scene, session->settings.overrides,
                            session->settings.n_overrides, status, message, error);
 }
@@ -72,7 +72,7 @@ static enum cs_status set_options_of_scene(struct cs_session *session, const cha
     if (pairs || session->settings.has_all_values)
         session->method.given = 0;
     return cs_method_check(&session->method, "integrator.", CS_ERR_SCENE, &said)
-               ? refuse(session, said.status, said.message, error)
+               ? fail_at(session, said.status, said.message, error)
                : CS_OK;
 }
 
@@ -120,7 +120,7 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
                 "integrator: found \"%.60s\", expected a name: a module file is given with "
                 "--integrator or --plugin, a program with --program",
                 scene->integrator);
-        return refuse(session, CS_ERR_SCENE, missing.message, error);
+        return fail_at(session, CS_ERR_SCENE, missing.message, error);
     }
     if (cs_method_find(method, &session->registry, asked ? asked : scene->integrator, &pairs,
                        &missing)) {
@@ -128,7 +128,7 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
         if (asked || missing.status != CS_ERR_USAGE)
             return cs_fail(error, missing.status, "%s", missing.message);
         cs_text_add(&message, "integrator: %s", missing.message);
-        refuse(session, CS_ERR_SCENE, cs_text_get(&message), error);
+        fail_at(session, CS_ERR_SCENE, cs_text_get(&message), error);
         cs_text_finish(&message);
         return error->status;
     }
@@ -172,7 +172,7 @@ static enum cs_status check_method(struct cs_session *session, struct cs_error *
     struct cs_error said = {0};
     cs_plan_choose_contact_law(&session->scene, method);
     if (!session->settings.method && cs_plan_check(&session->scene, method, &said))
-        return refuse(session, said.status, said.message, error);
+        return fail_at(session, said.status, said.message, error);
     if (render && session->scene.render.look == CS_LOOK_GOALS && !cs_run_has_goals(method))
         return cs_fail(error, CS_ERR_SCENE,
                        "%s: render.look: integrator \"%s\" has no goals to draw",
@@ -337,7 +337,7 @@ enum cs_status cs_session_build(struct cs_session *session, struct cs_error *err
         return error->status;
     // what only the built system tells is a fault of the scene too
     if (cs_system_build(&session->system, &session->scene, &session->plan, &said))
-        return said.status == CS_ERR_SCENE ? refuse(session, said.status, said.message, error)
+        return said.status == CS_ERR_SCENE ? fail_at(session, said.status, said.message, error)
                                            : cs_fail(error, said.status, "%s", said.message);
     cs_contact_keys_complete(&session->scene.contact, &session->system);
     if (cs_initial_penetration_resolve(&session->system, &session->initial_penetration, error))

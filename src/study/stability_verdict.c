@@ -103,39 +103,39 @@ enum cs_stability_verdict cs_stability_at_end(enum cs_outcome outcome,
     return seen;
 }
 
-enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *trial,
+enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *sample,
                                              const struct cs_sampled_run *reference,
                                              bool is_full_length) {
     const enum cs_stability_verdict verdict =
-        cs_stability_at_end(trial->result.outcome, trial->monitor.worst_verdict);
+        cs_stability_at_end(sample->result.outcome, sample->monitor.worst_verdict);
     if (!cs_stability_is_stable(verdict))
         return verdict;
     if (!is_full_length)
         return CS_STABILITY_SHORT;
     if (reference && reference->kinetic > LEAST_ENERGY &&
-        trial->mean_kinetic < 0.5 * reference->mean_kinetic)
+        sample->mean_kinetic < 0.5 * reference->mean_kinetic)
         return CS_STABILITY_DAMPED;
     return verdict;
 }
 
-double cs_stability_drift(const struct cs_sampled_run *trial,
+double cs_stability_drift(const struct cs_sampled_run *sample,
                           const struct cs_sampled_run *reference) {
-    return (trial->end_energy - reference->end_energy) /
+    return (sample->end_energy - reference->end_energy) /
            fmax(reference->energy_max, LEAST_ENERGY);
 }
 
 /* Updates all figures with the state of one sample. */
-static void take_sample(struct cs_sampled_run *trial,
+static void take_sample(struct cs_sampled_run *sample,
                         const struct cs_sampled_run_settings *settings,
                         const struct cs_run *run) {
     struct cs_energy_monitor_row row;
-    cs_energy_monitor_sample(&trial->monitor, run, &row);
-    trial->end_energy = cs_energy_total(&row.energy);
-    trial->kinetic = fmax(trial->kinetic, row.energy.kinetic);
-    trial->energy_max = fmax(trial->energy_max, cs_energy_without_gravity(&row.energy));
-    trial->mean_kinetic += row.energy.kinetic;
-    trial->speed_max = fmax(trial->speed_max, row.speed);
-    cs_crossing_stats_add(&trial->crossings, run);
+    cs_energy_monitor_sample(&sample->monitor, run, &row);
+    sample->end_energy = cs_energy_total(&row.energy);
+    sample->kinetic = fmax(sample->kinetic, row.energy.kinetic);
+    sample->energy_max = fmax(sample->energy_max, cs_energy_without_gravity(&row.energy));
+    sample->mean_kinetic += row.energy.kinetic;
+    sample->speed_max = fmax(sample->speed_max, row.speed);
+    cs_crossing_stats_add(&sample->crossings, run);
     if (settings->on_sample)
         settings->on_sample(settings->ctx, run, &row.energy);
 }
@@ -152,37 +152,37 @@ static double choose_fps(const struct cs_sampled_run_settings *settings) {
 }
 
 /* Steps to the end; the sample at the start is included in the mean. */
-static void run_samples(struct cs_sampled_run *trial,
+static void run_samples(struct cs_sampled_run *sample,
                         const struct cs_sampled_run_settings *settings, struct cs_run *run,
                         struct cs_error *error) {
     struct cs_follow follow = {.run = run,
                                .last = cs_follow_frames(run->system->scene, settings->seconds),
                                .every = 1};
-    if (cs_energy_monitor_begin(&trial->monitor, run, error))
+    if (cs_energy_monitor_begin(&sample->monitor, run, error))
         return;
     do
-        take_sample(trial, settings, run);
+        take_sample(sample, settings, run);
     while (cs_follow_next(&follow, error));
-    trial->steps = run->counts.steps;
-    trial->mean_step =
-        run->t > 0 && trial->steps ? run->t / (double)trial->steps : settings->session.dt;
-    trial->seconds = run->advance_seconds;
-    trial->mean_kinetic /= run->frame + 1;
+    sample->steps = run->counts.steps;
+    sample->mean_step =
+        run->t > 0 && sample->steps ? run->t / (double)sample->steps : settings->session.dt;
+    sample->seconds = run->advance_seconds;
+    sample->mean_kinetic /= run->frame + 1;
 }
 
-enum cs_status cs_sampled_run_execute(struct cs_sampled_run *trial,
+enum cs_status cs_sampled_run_execute(struct cs_sampled_run *sample,
                                       const struct cs_sampled_run_settings *settings,
                                       struct cs_error *error) {
     struct cs_session_settings asked = settings->session;
     struct cs_session session;
-    *trial = (struct cs_sampled_run){0};
+    *sample = (struct cs_sampled_run){0};
     asked.fps = choose_fps(settings);
     asked.count_crossings_only = true;
     if (cs_session_open_system(&session, &asked, error))
         return error->status;
     if (!cs_session_begin(&session, NULL, error))
-        run_samples(trial, settings, &session.run, error);
-    cs_follow_result(&session.run, "", &trial->result, error);
+        run_samples(sample, settings, &session.run, error);
+    cs_follow_result(&session.run, "", &sample->result, error);
     cs_session_close(&session);
     return error->status;
 }

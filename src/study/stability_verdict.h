@@ -55,7 +55,7 @@ struct cs_sampled_run {
 
 /* Runs the scene and fills *trial. A blow-up or a failed method is a result, not an error.
  * Errors are those of the scene, the command, memory, or CS_ERR_INTERRUPT. */
-enum cs_status cs_sampled_run_execute(struct cs_sampled_run *trial,
+enum cs_status cs_sampled_run_execute(struct cs_sampled_run *sample,
                                       const struct cs_sampled_run_settings *settings,
                                       struct cs_error *error);
 
@@ -68,13 +68,13 @@ enum cs_stability_verdict cs_stability_at_end(enum cs_outcome outcome,
  *
  * is_full_length: the run was meant to last as long as the reference; otherwise
  * CS_STABILITY_SHORT replaces the stable verdicts. */
-enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *trial,
+enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *sample,
                                              const struct cs_sampled_run *reference,
                                              bool is_full_length);
 
 /* Energy at the end minus that of the reference, as a fraction of the energy the reference
  * held. */
-double cs_stability_drift(const struct cs_sampled_run *trial,
+double cs_stability_drift(const struct cs_sampled_run *sample,
                           const struct cs_sampled_run *reference);
 
 #endif

@@ -83,39 +83,39 @@ static double box_distance(size_t n, const double *a, const double *b) {
 }
 
 /* Updates the largest differences of energy, centre, box and strain with one frame. */
-static void take_statistics(struct cs_trajectory_error *deviation,
-                            const struct cs_system *system, double t, const double *a,
-                            const double *b) {
+static void take_statistics(struct cs_trajectory_error *error, const struct cs_system *system,
+                            double t, const double *a, const double *b) {
     const size_t n = system->view.n;
-    deviation->energy =
-        fmax(deviation->energy, fabs(energy_of(system, t, a) - energy_of(system, t, b)));
-    deviation->centre = fmax(deviation->centre, centre_distance(system, a, b));
-    deviation->box = fmax(deviation->box, box_distance(n, a, b));
-    deviation->strain = fmax(deviation->strain, cs_diagnostics_strain(system, a));
+    error->energy =
+        fmax(error->energy, fabs(energy_of(system, t, a) - energy_of(system, t, b)));
+    error->centre = fmax(error->centre, centre_distance(system, a, b));
+    error->box = fmax(error->box, box_distance(n, a, b));
+    error->strain = fmax(error->strain, cs_diagnostics_strain(system, a));
 }
 
 /* path is the root mean square over frames of the RMS distance; end and velocity are those of
  * the last compared frame. */
-void cs_trajectory_error_compute(struct cs_trajectory_error *deviation,
+void cs_trajectory_error_compute(struct cs_trajectory_error *error,
                                  const struct cs_system *system,
-                                 const struct cs_trajectory *track,
+                                 const struct cs_trajectory *trajectory,
                                  const struct cs_trajectory *reference, uint32_t frames,
                                  uint32_t pointwise_frames) {
     const size_t v = 3 * (size_t)system->view.n;
-    *deviation = (struct cs_trajectory_error){0};
+    *error = (struct cs_trajectory_error){0};
     for (uint32_t k = 1; k <= frames; k++) {
-        const double *a = cs_trajectory_state(track, k), *b = cs_trajectory_state(reference, k);
-        take_statistics(deviation, system, k / system->scene->time.fps, a, b);
+        const double *a = cs_trajectory_state(trajectory, k),
+                     *b = cs_trajectory_state(reference, k);
+        take_statistics(error, system, k / system->scene->time.fps, a, b);
         if (k > pointwise_frames)
             continue;
-        deviation->end = cs_distance_rms(system, track, k, a, b);
-        deviation->end_max = cs_distance_max(system, a, b);
-        deviation->velocity = cs_distance_rms(system, track, k, a + v, b + v);
-        deviation->path += deviation->end * deviation->end;
-        deviation->path_max = fmax(deviation->path_max, deviation->end_max);
+        error->end = cs_distance_rms(system, trajectory, k, a, b);
+        error->end_max = cs_distance_max(system, a, b);
+        error->velocity = cs_distance_rms(system, trajectory, k, a + v, b + v);
+        error->path += error->end * error->end;
+        error->path_max = fmax(error->path_max, error->end_max);
     }
-    deviation->path = sqrt(deviation->path / frames);
+    error->path = sqrt(error->path / frames);
     if (pointwise_frames < frames)
-        deviation->end = deviation->end_max = deviation->path = deviation->path_max =
-            deviation->velocity = (double)NAN;
+        error->end = error->end_max = error->path = error->path_max = error->velocity =
+            (double)NAN;
 }

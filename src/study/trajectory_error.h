@@ -20,9 +20,9 @@ struct cs_trajectory_error {
 
 /* Compares the frames 1..`frames`, which both runs must have. Pointwise figures use the frames
  * up to pointwise_frames only; they are NAN if these are fewer than `frames`. */
-void cs_trajectory_error_compute(struct cs_trajectory_error *deviation,
+void cs_trajectory_error_compute(struct cs_trajectory_error *error,
                                  const struct cs_system *system,
-                                 const struct cs_trajectory *track,
+                                 const struct cs_trajectory *trajectory,
                                  const struct cs_trajectory *reference, uint32_t frames,
                                  uint32_t pointwise_frames);
 

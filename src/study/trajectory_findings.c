@@ -148,13 +148,13 @@ static bool list_held(const struct cs_system *system, struct held *held) {
 
 /* The deepest of the held particles in a collider that is shifted; view.n: none is inside. */
 static uint32_t find_inside(const struct cs_system *system, const struct held *held,
-                            const struct cs_posed_collider *at, const double shift[3]) {
+                            const struct cs_posed_collider *collider, const double shift[3]) {
     const size_t n = system->view.n;
-    const double *core = at->half_sizes;
+    const double *core = collider->half_sizes;
     double low[3], high[3], normal[3];
-    const double reach = cs_shape_is_endless(at->shape) ? box_of(system, 0, low, high)
-                         : at->radius > 0               ? at->radius
-                                                        : fmin(core[0], fmin(core[1], core[2]));
+    const double reach = cs_shape_is_endless(collider->shape) ? box_of(system, 0, low, high)
+                         : collider->radius > 0               ? collider->radius
+                                                : fmin(core[0], fmin(core[1], core[2]));
     double least = -SWEPT * reach;
     uint32_t found = (uint32_t)n;
     for (uint32_t k = 0; k < held->n; k++) {
@@ -162,7 +162,7 @@ static uint32_t find_inside(const struct cs_system *system, const struct held *h
         /* shifting the particle back is the same as shifting the collider */
         const double p[3] = {system->state[i] - shift[0], system->state[n + i] - shift[1],
                              system->state[2 * n + i] - shift[2]};
-        const double distance = at->shape->distance(at, 0, p, normal);
+        const double distance = collider->shape->distance(collider, 0, p, normal);
         found = distance < least ? i : found;
         least = fmin(least, distance);
     }
@@ -186,24 +186,24 @@ static void check_sweep(const struct cs_system *system, uint32_t e, const struct
                         struct cs_text *out) {
     const struct cs_event *event = cs_scene_events(system->scene) + e;
     const struct cs_event_path path = cs_event_path_of(event);
-    struct cs_posed_collider at;
+    struct cs_posed_collider collider;
     double from[3] = {0};
     if (!moves_once(system->scene, e))
         return;
-    cs_posed_collider_at(system, (uint32_t)event->move.collider, 0, &at);
-    if (at.shape->bounds == CS_BOUNDS_MESH ||
-        find_inside(system, held, &at, from) < system->view.n)
+    cs_posed_collider_at(system, (uint32_t)event->move.collider, 0, &collider);
+    if (collider.shape->bounds == CS_BOUNDS_MESH ||
+        find_inside(system, held, &collider, from) < system->view.n)
         return;
     for (uint32_t leg = 0; leg < path.n; leg++) {
         const struct cs_path_point *to = path.points + leg;
         double shift[3], end[3];
         /* a smooth leg goes through the same places */
         for (int c = 0; c < 3; c++)
-            end[c] = to->point[c] - (event->move.relative ? 0 : at.centre[c]);
+            end[c] = to->point[c] - (event->move.relative ? 0 : collider.centre[c]);
         for (int k = 1; k <= POSES; k++) {
             for (int c = 0; c < 3; c++)
                 shift[c] = from[c] + (end[c] - from[c]) * k / POSES;
-            const uint32_t i = find_inside(system, held, &at, shift);
+            const uint32_t i = find_inside(system, held, &collider, shift);
             if (i == system->view.n)
                 continue;
             const uint32_t b = body_of(system, i);

@@ -50,8 +50,7 @@ static double best_work(const struct planted *of, double bound) {
 /* A comparison with one cell of each method that is not run. */
 static void plant(struct cs_compare *compare, const struct cs_compare_settings *settings,
                   const struct planted *methods, int n) {
-    *compare = (struct cs_compare){
-        .settings = settings, .fps = FPS, .time = FRAMES / FPS};
+    *compare = (struct cs_compare){.settings = settings, .fps = FPS, .time = FRAMES / FPS};
     compare->reference = (struct cs_compare_reference){
         .families_agree = true, .pointwise = true, .motion_scale = 1, .error_bar = 1e-12};
     for (int m = 0; m < n; m++) {
@@ -75,18 +74,18 @@ static uint32_t search_planted(const struct planted *methods, int n, double boun
                                double stable, double *work) {
     const struct cs_compare_settings settings = {.run = {.frames = 30}, .bound = bound};
     struct cs_compare compare;
-    struct cs_cheapest search = {0};
+    struct cs_cheapest cheapest = {0};
     struct cs_error error = {0};
     const struct cs_cell *of;
     double value;
     plant(&compare, &settings, methods, n);
-    ck_assert(!cs_cheapest_begin(&search, &compare, &error));
-    ck_assert_uint_eq(search.n, (uint32_t)n);
+    ck_assert(!cs_cheapest_begin(&cheapest, &compare, &error));
+    ck_assert_uint_eq(cheapest.n, (uint32_t)n);
     for (int m = 0; m < n; m++)
         if (!strcmp(methods[m].family, "explicit"))
-            search.candidates[m].probe.high = fmin(1, stable * methods[m].limit) / FPS;
+            cheapest.candidates[m].probe.high = fmin(1, stable * methods[m].limit) / FPS;
     *work = HUGE_VAL;
-    while ((of = cs_cheapest_find_next(&search, &compare, &value))) {
+    while ((of = cs_cheapest_find_next(&cheapest, &compare, &value))) {
         struct cs_cell cell;
         const uint32_t before = compare.cells.n;
         cs_cell_derive(&cell, of, value);
@@ -97,7 +96,7 @@ static uint32_t search_planted(const struct planted *methods, int n, double boun
             *work = fmin(*work, cell.work);
     }
     const uint32_t n_cells = compare.cells.n;
-    cs_cheapest_finish(&search);
+    cs_cheapest_finish(&cheapest);
     cs_compare_finish(&compare);
     return n_cells;
 }
@@ -156,7 +155,7 @@ static double least_work(const struct cs_compare *compare, double bound) {
  */
 static double compare_at(const char *scene, double bound, cs_compare_next *next,
                          uint32_t *n_cells) {
-    struct cs_cheapest search = {0};
+    struct cs_cheapest cheapest = {0};
     struct cs_compare compare = {0};
     struct cs_error error = {0};
     char folder[] = "cheapest-XXXXXX";
@@ -174,12 +173,12 @@ static double compare_at(const char *scene, double bound, cs_compare_next *next,
         .folder = folder,
         .cache = folder,
         .next = next,
-        .ctx = &search};
+        .ctx = &cheapest};
     ck_assert_msg(!cs_compare_run(&compare, &settings, &error), "%s", error.message);
     const double least = least_work(&compare, bound);
     *n_cells = compare.cells.n;
     cs_compare_finish(&compare);
-    cs_cheapest_finish(&search);
+    cs_cheapest_finish(&cheapest);
     return least;
 }
 

@@ -170,24 +170,23 @@ TEST(sweeps_are_work) {
 }
 
 TEST(list_is_read) {
-    struct cs_cell_list sweep;
+    struct cs_cell_list list;
     struct cs_error error = {0};
     const struct cs_cell_list_settings settings = {
         .list = "rk4:dt=1e-3..4e-3,velocity-verlet,dopri5:rtol=1e-4..1e-3,atol=1e-9",
         .fps = 60,
         .omega = 1000};
-    ck_assert_msg(!cs_cell_list_parse(&sweep, &settings, &error), "%s", error.message);
-    ck_assert_uint_eq(sweep.n, 3 + 20 + 3);
-    ck_assert_str_eq(sweep.cells[0].options, "dt=0.004");
-    ck_assert_str_eq(sweep.cells[2].options, "dt=0.001");
-    ck_assert_double_le(sweep.cells[3].value, 1 / 60.0);
-    ck_assert_double_gt(sweep.cells[3].value, 2 / settings.omega);
-    ck_assert_str_eq(sweep.cells[23].options, "atol=1e-09,rtol=0.001");
+    ck_assert_msg(!cs_cell_list_parse(&list, &settings, &error), "%s", error.message);
+    ck_assert_uint_eq(list.n, 3 + 20 + 3);
+    ck_assert_str_eq(list.cells[0].options, "dt=0.004");
+    ck_assert_str_eq(list.cells[2].options, "dt=0.001");
+    ck_assert_double_le(list.cells[3].value, 1 / 60.0);
+    ck_assert_double_gt(list.cells[3].value, 2 / settings.omega);
+    ck_assert_str_eq(list.cells[23].options, "atol=1e-09,rtol=0.001");
     // what may be run besides: between the ends of a range, or as far as the method goes
-    ck_assert(sweep.cells[1].low == 1e-3 && sweep.cells[1].high == 4e-3 &&
-              !sweep.cells[1].open);
-    ck_assert(sweep.cells[3].open && sweep.cells[3].high == 1 / 60.0);
-    cs_cell_list_finish(&sweep);
+    ck_assert(list.cells[1].low == 1e-3 && list.cells[1].high == 4e-3 && !list.cells[1].open);
+    ck_assert(list.cells[3].open && list.cells[3].high == 1 / 60.0);
+    cs_cell_list_finish(&list);
 }
 
 /* The cells of a list, "series options" each, between semicolons. */

@@ -57,21 +57,21 @@ static double true_error(const struct cs_compare_reference *reference, const cha
     char path[64];
     struct cs_error error = {0};
     struct cs_recorded_run recording;
-    struct cs_recorded_run_result end = {0};
-    struct cs_trajectory track;
+    struct cs_recorded_run_result result = {0};
+    struct cs_trajectory trajectory;
     double found = 0;
     scene_write(path, SMALL_SCENE, "0.02");
     const struct cs_recorded_run_settings asked = {.session = {.scene = path},
                                                    .frames = FRAMES};
     ck_assert(!cs_recorded_run_open(&recording, &asked, integrator, &error));
-    ck_assert(!cs_trajectory_init(&track, &recording, &error));
-    ck_assert(!cs_recorded_run_execute(&recording, 0, &track, &end, &error));
-    ck_assert(end.result.outcome == CS_RUNNING);
+    ck_assert(!cs_trajectory_init(&trajectory, &recording, &error));
+    ck_assert(!cs_recorded_run_execute(&recording, 0, &trajectory, &result, &error));
+    ck_assert(result.result.outcome == CS_RUNNING);
     for (uint32_t k = 1; k <= FRAMES; k++)
-        found = fmax(found, cs_distance_rms(&recording.session.system, &track, k,
+        found = fmax(found, cs_distance_rms(&recording.session.system, &trajectory, k,
                                             cs_trajectory_state(&reference->trajectory, k),
-                                            cs_trajectory_state(&track, k)));
-    cs_trajectory_finish(&track);
+                                            cs_trajectory_state(&trajectory, k)));
+    cs_trajectory_finish(&trajectory);
     cs_recorded_run_close(&recording);
     return found;
 }
@@ -234,24 +234,25 @@ TEST(a_released_particle_counts_from_its_release_on) {
     char path[64];
     struct cs_error error = {0};
     struct cs_recorded_run recordings[2];
-    struct cs_recorded_run_result end;
-    struct cs_trajectory tracks[2];
+    struct cs_recorded_run_result result;
+    struct cs_trajectory trajectories[2];
     const char *const methods[2] = {"symplectic-euler:dt=0.005", "rk4:dt=0.005"};
     scene_write(path, RELEASED, "");
     const struct cs_recorded_run_settings asked = {.session = {.scene = path}, .frames = 6};
     for (int k = 0; k < 2; k++) {
         ck_assert(!cs_recorded_run_open(recordings + k, &asked, methods[k], &error));
-        ck_assert(!cs_trajectory_init(tracks + k, recordings + k, &error));
-        ck_assert(!cs_recorded_run_execute(recordings + k, 0, tracks + k, &end, &error));
+        ck_assert(!cs_trajectory_init(trajectories + k, recordings + k, &error));
+        ck_assert(
+            !cs_recorded_run_execute(recordings + k, 0, trajectories + k, &result, &error));
     }
     struct cs_trajectory_error early, late;
     const struct cs_system *system = &recordings[0].session.system;
-    cs_trajectory_error_compute(&early, system, tracks, tracks + 1, 1, 1);
-    cs_trajectory_error_compute(&late, system, tracks, tracks + 1, 6, 6);
+    cs_trajectory_error_compute(&early, system, trajectories, trajectories + 1, 1, 1);
+    cs_trajectory_error_compute(&late, system, trajectories, trajectories + 1, 6, 6);
     ck_assert_double_eq_tol(early.end, 0.025 * 0.05, 1e-12);
     ck_assert_double_eq_tol(late.end, 0.025 * sqrt((0.3 * 0.3 + 0.2 * 0.2) / 2), 1e-12);
     for (int k = 0; k < 2; k++) {
-        cs_trajectory_finish(tracks + k);
+        cs_trajectory_finish(trajectories + k);
         cs_recorded_run_close(recordings + k);
     }
 }
@@ -261,8 +262,8 @@ TEST(events_are_hit_again_in_every_run) {
     struct cs_error error = {0};
     struct cs_compare_reference reference;
     struct cs_recorded_run recording;
-    struct cs_recorded_run_result end;
-    struct cs_trajectory tracks[2];
+    struct cs_recorded_run_result result;
+    struct cs_trajectory trajectories[2];
     scene_write(path, EVENTS, "0.02");
     const struct cs_recorded_run_settings asked = {.session = {.scene = path},
                                                    .frames = FRAMES};
@@ -275,17 +276,17 @@ TEST(events_are_hit_again_in_every_run) {
     ck_assert_double_lt(reference.error_bar, 1e-9);
     ck_assert(!cs_recorded_run_open(&recording, &asked, "rk4:dt=1e-3", &error));
     for (int k = 0; k < 2; k++) {
-        ck_assert(!cs_trajectory_init(tracks + k, &recording, &error));
-        ck_assert(!cs_recorded_run_execute(&recording, 0, tracks + k, &end, &error));
-        ck_assert_double_lt(cs_distance_rms(&recording.session.system, tracks, FRAMES,
-                                            cs_trajectory_state(tracks + k, FRAMES),
+        ck_assert(!cs_trajectory_init(trajectories + k, &recording, &error));
+        ck_assert(!cs_recorded_run_execute(&recording, 0, trajectories + k, &result, &error));
+        ck_assert_double_lt(cs_distance_rms(&recording.session.system, trajectories, FRAMES,
+                                            cs_trajectory_state(trajectories + k, FRAMES),
                                             cs_trajectory_state(&reference.trajectory, FRAMES)),
                             1e-5);
     }
-    const size_t bytes = (FRAMES + 1) * 6 * tracks->n * sizeof(double);
-    ck_assert_mem_eq(tracks[0].states, tracks[1].states, bytes);
+    const size_t bytes = (FRAMES + 1) * 6 * trajectories->n * sizeof(double);
+    ck_assert_mem_eq(trajectories[0].states, trajectories[1].states, bytes);
     for (int k = 0; k < 2; k++)
-        cs_trajectory_finish(tracks + k);
+        cs_trajectory_finish(trajectories + k);
     cs_recorded_run_close(&recording);
     cs_compare_reference_finish(&reference);
 }

@@ -2,17 +2,17 @@
  * itself, each value that a ramp may change has a ramp, and the reference that methods are held
  * against is the closed form where there is one. */
 #include "../suite.h"
-#include "model/force/terms.h"
 #include "conform/conform_checks.h"
+#include "model/force/terms.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const struct cs_conform card = {.method = &cs_conform_reference};
+static const struct cs_conform conform = {.method = &cs_conform_reference};
 
 static void open_scene(struct cs_probe *probe, const struct cs_force_scene *scene) {
-    ck_assert_msg(cs_probe_open(probe, &card, &cs_conform_reference, "%s", scene->json),
+    ck_assert_msg(cs_probe_open(probe, &conform, &cs_conform_reference, "%s", scene->json),
                   "%s: %s", scene->description, probe->error.message);
 }
 

@@ -12,37 +12,37 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length);
 
-static const struct cs_checkpoint_key facts[] = {{"scene", "{\n  \"dt\": 0.001\n}"},
-                                                 {"method", "rk4"}};
-enum { FACTS = sizeof facts / sizeof *facts };
+static const struct cs_checkpoint_key keys[] = {{"scene", "{\n  \"dt\": 0.001\n}"},
+                                                {"method", "rk4"}};
+enum { FACTS = sizeof keys / sizeof *keys };
 
 /* values of all kinds until there is none left */
-static void take_all(struct cs_serialiser *record) {
-    while (!record->failed && !cs_serialiser_is_done(record)) {
+static void take_all(struct cs_serialiser *serialiser) {
+    while (!serialiser->failed && !cs_serialiser_is_done(serialiser)) {
         double real = 0;
-        const size_t before = record->position;
-        CS_SERIALISER(record, real);
-        CS_ASSERT(record->failed || record->position == before + sizeof real);
-        CS_ASSERT(record->position <= record->length);
+        const size_t before = serialiser->position;
+        CS_SERIALISER(serialiser, real);
+        CS_ASSERT(serialiser->failed || serialiser->position == before + sizeof real);
+        CS_ASSERT(serialiser->position <= serialiser->length);
     }
 }
 
 /* no more than one file, which is in memory */
 static void read_file(const char *bytes, size_t length) {
     char path[64];
-    struct cs_serialiser record;
+    struct cs_serialiser serialiser;
     struct cs_error error = {0};
     const int file = memfd_create("fuzz", MFD_CLOEXEC);
     if (file < 0 || write(file, bytes, length) != (ssize_t)length)
         abort();
     snprintf(path, sizeof path, "/proc/self/fd/%d", file);
-    const enum cs_status status = cs_checkpoint_read(path, facts, FACTS, &record, &error);
+    const enum cs_status status = cs_checkpoint_read(path, keys, FACTS, &serialiser, &error);
     CS_ASSERT(status == error.status);
     if (status)
         CS_ASSERT(status == CS_ERR_FILE && error.message[0] == '"');
     else
-        take_all(&record);
-    cs_serialiser_finish(&record);
+        take_all(&serialiser);
+    cs_serialiser_finish(&serialiser);
     close(file);
 }
 

@@ -50,14 +50,14 @@ static void check_value(const struct cs_args *args, const struct cs_arg_value *g
     const struct cs_arg *row = given->row;
     const void *field = (const char *)args->options + row->offset;
     struct cs_error error = {0};
-    struct cs_checkpoint_interval pace;
+    struct cs_checkpoint_interval interval;
     if (row->kind == CS_ARG_REAL)
         CS_ASSERT(*(const double *)field >= 0 && *(const double *)field <= 1e9);
     if (row->kind == CS_ARG_SHARD)
         CS_ASSERT(((const struct cs_shard *)field)->index <=
                   ((const struct cs_shard *)field)->count);
     if (!strcmp(row->name, "checkpoint"))
-        expect(cs_checkpointer_read_interval(given->value, &pace, &error), &error);
+        expect(cs_checkpointer_read_interval(given->value, &interval, &error), &error);
 }
 
 static void read_as(const struct cs_command *command, int argc, char **argv) {

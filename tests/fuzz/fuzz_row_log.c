@@ -16,29 +16,29 @@ static void add(struct cs_row_log *log, const char *line, size_t length) {
 }
 
 /* adds the rows, and leaves their record: the log is broken off */
-static void leave(const char *rows, size_t length, struct cs_serialiser *record) {
+static void leave(const char *rows, size_t length, struct cs_serialiser *serialiser) {
     struct cs_row_log log = {0};
     struct cs_error error = {0};
     CS_ASSERT(!cs_row_log_create(&log, fuzz_path("log"), &error));
     for (const char *at = rows, *end; (end = memchr(at, '\n', (size_t)(rows + length - at)));
          at = end + 1)
         add(&log, at, (size_t)(end - at));
-    cs_row_log_record(&log, record);
+    cs_row_log_record(&log, serialiser);
     CS_ASSERT(log.length <= length);
     fclose(log.file);
 }
 
 /* goes on and adds a row; the file is then the rows and this one */
 static void go_on(const char *rows, const char *bytes, size_t length,
-                  struct cs_serialiser *record) {
+                  struct cs_serialiser *serialiser) {
     struct cs_row_log log = {0};
     struct cs_error error = {0};
     char *found;
     size_t n;
-    record->is_reading = true;
-    record->position = 0;
-    cs_row_log_record(&log, record);
-    CS_ASSERT(!record->failed);
+    serialiser->is_reading = true;
+    serialiser->position = 0;
+    cs_row_log_record(&log, serialiser);
+    CS_ASSERT(!serialiser->failed);
     const size_t whole = log.length;
     const bool same = length >= whole && !memcmp(bytes, rows, whole);
     const enum cs_status status = cs_row_log_resume(&log, fuzz_path("log"), &error);
@@ -54,16 +54,16 @@ static void go_on(const char *rows, const char *bytes, size_t length,
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length) {
-    struct cs_serialiser record = {0};
+    struct cs_serialiser serialiser = {0};
     const char *rows = (const char *)bytes;
     const char *end = length ? memchr(rows, 0, length) : NULL;
     if (!end)
         return 0;
     const size_t after = (size_t)(end + 1 - rows);
-    leave(rows, after - 1, &record);
+    leave(rows, after - 1, &serialiser);
     fuzz_write("log.part", end + 1, length - after);
-    go_on(rows, end + 1, length - after, &record);
-    cs_serialiser_finish(&record);
+    go_on(rows, end + 1, length - after, &serialiser);
+    cs_serialiser_finish(&serialiser);
     unlink(fuzz_path("log"));
     unlink(fuzz_path("log.part"));
     return 0;

@@ -131,14 +131,15 @@ static bool run_frames(struct cs_session *session, uint32_t frames) {
 }
 
 /* the same run from its record */
-static void go_on(const struct cs_session *whole, struct cs_serialiser *record,
+static void go_on(const struct cs_session *whole, struct cs_serialiser *serialiser,
                   const char *text, struct choices choices) {
     struct cs_session resumed;
     struct counter counter = {0};
     struct cs_error error = {0};
     CS_ASSERT(open_run(&resumed, text, choices, &counter));
-    record->is_reading = true;
-    CS_ASSERT(!cs_run_load(&resumed.run, record, &error) && cs_serialiser_is_done(record));
+    serialiser->is_reading = true;
+    CS_ASSERT(!cs_run_load(&resumed.run, serialiser, &error) &&
+              cs_serialiser_is_done(serialiser));
     counter = (struct counter){0};
     CS_ASSERT(run_frames(&resumed, FRAMES));
     CS_ASSERT(!memcmp(resumed.run.x, whole->run.x,
@@ -154,16 +155,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length) {
     struct cs_text text = {0};
     struct cs_session whole;
     struct counter counter = {0};
-    struct cs_serialiser record = {0};
+    struct cs_serialiser serialiser = {0};
     struct cs_error error = {0};
     make_scene(&rest, &text);
     if (open_run(&whole, cs_text_get(&text), method, &counter)) {
-        if (run_frames(&whole, 1) && !cs_run_save(&whole.run, &record, &error) &&
+        if (run_frames(&whole, 1) && !cs_run_save(&whole.run, &serialiser, &error) &&
             run_frames(&whole, FRAMES))
-            go_on(&whole, &record, cs_text_get(&text), method);
+            go_on(&whole, &serialiser, cs_text_get(&text), method);
         cs_session_close(&whole);
     }
-    cs_serialiser_finish(&record);
+    cs_serialiser_finish(&serialiser);
     cs_text_finish(&text);
     return 0;
 }

@@ -10,11 +10,11 @@
 #include <stdio.h>
 
 /* x of a vertex p of the shape at t */
-typedef void motion(double t, const double p[3], double x[3]);
+typedef void point_motion(double t, const double p[3], double x[3]);
 
 /* Writes `keys` key frames of a shape to an NPZ file in doubles. */
 static inline void write_keys(const char *file, enum cs_mesh_shape shape, uint32_t detail,
-                              motion *moved, uint32_t keys, double rate) {
+                              point_motion *moved, uint32_t keys, double rate) {
     struct cs_arena arena = {0};
     struct cs_trimesh mesh = {0};
     struct cs_error error = {0};

@@ -79,18 +79,18 @@ TEST(carried_particles_are_on_their_arc) {
 
 /* A point at radius r goes r w t along its arc, and the sphere itself too. */
 TEST(a_hinge_is_the_centre_of_arcs) {
-    struct cs_posed_collider at;
+    struct cs_posed_collider collider;
     struct fixture cloth;
     double x[3], v[3], found[3];
     check_all(HINGED, hinge);
     fixture_open(&cloth, "rk4", HINGED, "", 60);
     fixture_start(&cloth);
     fixture_frames(&cloth, 40);
-    cs_posed_collider_at(cloth.system, 0, 40 / 60.0, &at);
-    cs_posed_collider_velocity(&at, at.centre, found);
+    cs_posed_collider_at(cloth.system, 0, 40 / 60.0, &collider);
+    cs_posed_collider_velocity(&collider, collider.centre, found);
     carried_at(hinge, sphere, 40 / 60.0, x, v);
     for (int c = 0; c < 3; c++) {
-        ck_assert_double_eq_tol(at.centre[c], x[c], 1e-14);
+        ck_assert_double_eq_tol(collider.centre[c], x[c], 1e-14);
         ck_assert_double_eq_tol(found[c], v[c], 1e-13);
     }
     fixture_close(&cloth);

@@ -166,14 +166,14 @@ TEST(damping_is_chosen_where_nobody_names_law_or_damping) {
  * with the force and the stiffness of the begin, by halving */
 static double height_that_misses(const struct fixture *sheet, double ratio) {
     const double range = 0.1, k = 100, d = sheet->x[sheet->n];
-    const struct cs_barrier law = cs_barrier_at(d, range, k);
+    const struct cs_barrier barrier = cs_barrier_at(d, range, k);
     const double held = cs_barrier_energy(d, range, k);
     const double spare = CS_SPARE_BESIDE_REBOUNDS * cs_barrier_energy(0.5 * range, range, k);
     double low = 1e-3, high = d;
     for (int halving = 0; halving < 60; halving++) {
         const double at = 0.5 * (low + high), s = d - at;
-        const double missed = cs_barrier_energy(at, range, k) - held - law.force * s -
-                              0.5 * law.stiffness * s * s;
+        const double missed = cs_barrier_energy(at, range, k) - held - barrier.force * s -
+                              0.5 * barrier.stiffness * s * s;
         const double energy = 0.5 * sheet->system->mass[0] * s * s / (STEP * STEP) + held;
         *(missed > ratio * (energy + spare) ? &low : &high) = at;
     }

@@ -154,8 +154,8 @@ TEST(a_camera_that_nobody_placed_shows_all_of_a_run) {
             cs_posed_colliders_at(cloth.system, cloth.session.run.t, posed);
             const struct cs_bounding_sphere solid =
                 cs_scene_extent_solid(cloth.system, cloth.x, posed);
-            cs_view_move(&view, &cloth.session.scene, &solid, cloth.session.run.t, cloth.n,
-                         cloth.x);
+            const struct cs_frame frame = {.t = cloth.session.run.t, .x = cloth.x};
+            cs_view_move(&view, &cloth.session.scene, &solid, cloth.n, &frame);
             const uint32_t hidden = count_hidden(&cloth, &view, posed);
             if (s >= SQUEEZED)
                 ck_assert_msg(hidden == 0, "scene %zu, frame %d: %u hidden", s, k, hidden);

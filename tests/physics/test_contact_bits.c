@@ -57,16 +57,16 @@ static void open(struct cs_session *session, const struct meeting *params, struc
 static void break_off(struct cs_session *session, const struct meeting *params,
                       struct how how) {
     struct cs_error error = {0};
-    struct cs_serialiser record = {0};
-    cs_run_save(&session->run, &record, &error);
+    struct cs_serialiser serialiser = {0};
+    cs_run_save(&session->run, &serialiser, &error);
     if (how.broken) {
         cs_session_close(session);
         open(session, params, how);
-        record.is_reading = true;
-        cs_run_load(&session->run, &record, &error);
+        serialiser.is_reading = true;
+        cs_run_load(&session->run, &serialiser, &error);
     }
     ck_assert_msg(!error.status, "%s", error.message);
-    cs_serialiser_finish(&record);
+    cs_serialiser_finish(&serialiser);
 }
 
 /* Returns the state at the end, which the caller frees. */

@@ -18,7 +18,7 @@
 TEST(law_is_one_function) {
     const double range = 0.02, k = 700, e = 2e-9;
     for (double d = -0.01; d < 1.2 * range; d += 1.7e-4) {
-        const struct cs_barrier law = cs_barrier_at(d, range, k);
+        const struct cs_barrier barrier = cs_barrier_at(d, range, k);
         const double slope =
             (cs_barrier_energy(d - e, range, k) - cs_barrier_energy(d + e, range, k)) / (2 * e);
         const double bend =
@@ -27,8 +27,8 @@ TEST(law_is_one_function) {
         const double turn = (cs_barrier_at(d + e, range, k).stiffness -
                              cs_barrier_at(d - e, range, k).stiffness) /
                             (2 * e);
-        ck_assert_double_eq_tol(law.force, slope, 1e-6 * (law.force + 1e-3));
-        ck_assert_double_eq_tol(law.stiffness, bend, 1e-4 * law.stiffness + 1e-3);
+        ck_assert_double_eq_tol(barrier.force, slope, 1e-6 * (barrier.force + 1e-3));
+        ck_assert_double_eq_tol(barrier.stiffness, bend, 1e-4 * barrier.stiffness + 1e-3);
         // the stiffness has a bend where its core begins
         if (fabs(d - CS_BARRIER_CORE * range) > 2 * e)
             ck_assert_double_eq_tol(cs_barrier_slope(d, range, k), turn,
@@ -194,7 +194,7 @@ static bool move_is_seen(const struct cs_system *system, double h, const double 
     double g[3], hessian[6], move[3], worst = 0;
     cs_posed_collider_at(system, 0, h, &collider);
     const double d = cs_posed_collider_smooth_distance(&collider, from, g, hessian);
-    const struct cs_barrier law = cs_barrier_at(d, params->range, params->k);
+    const struct cs_barrier barrier = cs_barrier_at(d, params->range, params->k);
     const double held = cs_barrier_energy(d, params->range, params->k);
     for (int c = 0; c < 3; c++)
         move[c] = to[c] - from[c];
@@ -206,7 +206,7 @@ static bool move_is_seen(const struct cs_system *system, double h, const double 
             p[c] = from[c] + j / (double)points * move[c];
         const double s = d - cs_posed_collider_smooth_distance(&collider, p, g, hessian);
         worst = fmax(worst, fabs(cs_barrier_energy(d - s, params->range, params->k) - held -
-                                 law.force * s - 0.5 * law.stiffness * s * s));
+                                 barrier.force * s - 0.5 * barrier.stiffness * s * s));
     }
     return worst <= 0.02 * (0.5 * system->mass[0] * way * way / (h * h) + held);
 }

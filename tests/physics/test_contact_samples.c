@@ -49,9 +49,9 @@ static const struct {
 static double nearest(const struct fixture *cloth, const struct cs_surfaces *surfaces,
                       double t) {
     enum { FINE = 8 };
-    struct cs_posed_collider pose;
+    struct cs_posed_collider collider;
     double least = HUGE_VAL;
-    cs_posed_collider_at(cloth->system, 0, t, &pose);
+    cs_posed_collider_at(cloth->system, 0, t, &collider);
     for (uint32_t item = 0; item < surfaces->n_triangles; item++)
         for (int a = 0; a <= FINE; a++)
             for (int b = 0; a + b <= FINE; b++) {
@@ -61,7 +61,7 @@ static double nearest(const struct fixture *cloth, const struct cs_surfaces *sur
                     const double *x = cloth->x + c * cloth->n;
                     p[c] = ((FINE - a - b) * x[at[0]] + a * x[at[1]] + b * x[at[2]]) / FINE;
                 }
-                least = fmin(least, cs_posed_collider_distance(&pose, p, n));
+                least = fmin(least, cs_posed_collider_distance(&collider, p, n));
             }
     return least;
 }
@@ -181,7 +181,7 @@ TEST(energy_is_kept) {
 /* --- point by point --- */
 
 /* f += the law at one point, its moment about the origin too */
-static uint32_t add_point(const struct fixture *sheet, const struct cs_posed_collider_law *near,
+static uint32_t add_point(const struct fixture *sheet, const struct cs_posed_collider_law *law,
                           const uint32_t *at, const double w[3], double f[6]) {
     double p[3] = {0}, v[3] = {0}, push[3], turn[3];
     struct cs_point_contact contact;
@@ -190,7 +190,7 @@ static uint32_t add_point(const struct fixture *sheet, const struct cs_posed_col
             p[c] += w[k] * sheet->x[c * N + at[k]];
             v[c] += w[k] * sheet->v[c * N + at[k]];
         }
-    if (!cs_posed_collider_law_in_range(near, p, v, &contact))
+    if (!cs_posed_collider_law_in_range(law, p, v, &contact))
         return 0;
     cs_point_contact_force(&contact, (struct cs_contact_force_parts){1, 1}, push);
     cs_vec3_cross(p, push, turn);
@@ -204,25 +204,25 @@ static uint32_t add_point(const struct fixture *sheet, const struct cs_posed_col
  * which are cut at their middles. */
 TEST(force_is_that_of_points) {
     struct fixture sheet;
-    struct cs_posed_collider_law near;
+    struct cs_posed_collider_law law;
     double f[3 * N], sum[6] = {0}, one[6] = {0};
     uint32_t points = 0;
     open_sheet(&sheet, "rk4", 1e-3, 0.3);
     fixture_frames(&sheet, 1);
     const struct cs_surfaces *surfaces = sheet.system->surfaces;
-    cs_posed_collider_law_at(sheet.system, 0, 0.1, &near);
+    cs_posed_collider_law_at(sheet.system, 0, 0.1, &law);
     for (uint32_t i = 0; i < N; i++)
-        add_point(&sheet, &near, &i, (double[3]){1, 0, 0}, one);
+        add_point(&sheet, &law, &i, (double[3]){1, 0, 0}, one);
     for (size_t e = 0; e < surfaces->n_edges; e++) {
         const uint32_t *at = surfaces->edges + 2 * e;
         const bool across = at[1] - at[0] == 3;
         for (int k = 1; k < (across ? 3 : 2); k++) {
             const double w = k / (across ? 3.0 : 2.0);
-            points += add_point(&sheet, &near, at, (double[3]){1 - w, w, 0}, one);
+            points += add_point(&sheet, &law, at, (double[3]){1 - w, w, 0}, one);
         }
     }
     for (size_t t = 0; t < surfaces->n_triangles; t++)
-        points += add_point(&sheet, &near, surfaces->triangles + 3 * t,
+        points += add_point(&sheet, &law, surfaces->triangles + 3 * t,
                             (double[3]){1 / 3.0, 1 / 3.0, 1 / 3.0}, one);
     ck_assert_uint_ge(points, 6);
 

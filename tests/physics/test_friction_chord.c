@@ -201,16 +201,16 @@ TEST(friction_chord_is_exact_for_one_contact) {
     for (size_t i = 0; i < LENGTH(speeds); i++)
         for (size_t k = 0; k < LENGTH(forces); k++) {
             const double v = speeds[i], now = mu * load * v / sqrt(v * v + ev * ev);
-            const struct cs_sliding_contact slides = {.n = {0, 1, 0},
-                                                      .v = {0.6 * v, 0.2, 0.8 * v},
-                                                      .force = load,
-                                                      .friction = mu,
-                                                      .friction_speed = ev};
+            const struct cs_sliding_contact contacts = {.n = {0, 1, 0},
+                                                        .v = {0.6 * v, 0.2, 0.8 * v},
+                                                        .force = load,
+                                                        .friction = mu,
+                                                        .friction_speed = ev};
             const double net = forces[k] - now;
             const struct cs_contact_pull pull = {
                 .h = h, .inverse = 1 / m, .motion = {0.6 * net / m, 3, 0.8 * net / m}};
             double b[6] = {0};
-            cs_friction_chord_add(&pull, &slides, b);
+            cs_friction_chord_add(&pull, &contacts, b);
             // along the sliding
             const double slope = 0.36 * b[0] + 2 * 0.48 * b[2] + 0.64 * b[5];
             const double end = v + h * net / (m + slope);

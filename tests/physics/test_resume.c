@@ -49,15 +49,15 @@ static void compare(const struct cs_session *whole, const struct cs_session *res
     ck_assert_mem_eq(a->notes, b->notes, sizeof a->notes);
 }
 
-static void go_on(const struct broken *broken, struct cs_serialiser *record,
+static void go_on(const struct broken *broken, struct cs_serialiser *serialiser,
                   const struct cs_session *whole, uint32_t at) {
     struct cs_error error = {0};
     struct cs_session resumed;
     open_session(&resumed, broken);
-    record->is_reading = true;
-    cs_run_load(&resumed.run, record, &error);
+    serialiser->is_reading = true;
+    cs_run_load(&resumed.run, serialiser, &error);
     ck_assert_msg(!error.status, "%s", error.message);
-    ck_assert(cs_serialiser_is_done(record));
+    ck_assert(cs_serialiser_is_done(serialiser));
     ck_assert_uint_eq(resumed.run.frame, at);
     run_to(&resumed, broken->frames);
     compare(whole, &resumed, broken, at);
@@ -144,15 +144,15 @@ TEST(foreign_records_are_refused) {
     static const struct broken two = {SCENES "/swing.json", "velocity-verlet", 3, {1, 2, 3}};
     struct cs_error error = {0};
     struct cs_session session;
-    struct cs_serialiser record = {0};
+    struct cs_serialiser serialiser = {0};
     open_session(&session, &one);
     run_to(&session, 1);
-    cs_run_save(&session.run, &record, &error);
+    cs_run_save(&session.run, &serialiser, &error);
     cs_session_close(&session);
     open_session(&session, &two);
-    record.is_reading = true;
-    cs_run_load(&session.run, &record, &error);
-    ck_assert(error.status == CS_ERR_FILE || !cs_serialiser_is_done(&record));
-    cs_serialiser_finish(&record);
+    serialiser.is_reading = true;
+    cs_run_load(&session.run, &serialiser, &error);
+    ck_assert(error.status == CS_ERR_FILE || !cs_serialiser_is_done(&serialiser));
+    cs_serialiser_finish(&serialiser);
     cs_session_close(&session);
 }

@@ -84,7 +84,7 @@ static double longest(const struct pair *pair) {
 /* A pair as a whole by force and stiffness at the start. */
 struct start {
     double range, k, d, approach, kinetic;
-    struct cs_barrier law;
+    struct cs_barrier barrier;
 };
 
 /* J, what these do not foretell, at the worst of some points */
@@ -98,9 +98,10 @@ static double unseen_of(const struct pair *pair, const struct start *at) {
         for (int l = 0; l < 12; l++)
             p[l / 3][l % 3] = pair->from[l / 3][l % 3] + share * pair->by[l / 3][l % 3];
         const double d = cs_pair_contact_measure_whole(&s, pair->kind, at->range, p);
-        most = fmax(most, fabs(cs_barrier_energy(d, at->range, at->k) -
-                               cs_barrier_energy(at->d, at->range, at->k) -
-                               at->law.force * come - 0.5 * at->law.stiffness * come * come));
+        most = fmax(most,
+                    fabs(cs_barrier_energy(d, at->range, at->k) -
+                         cs_barrier_energy(at->d, at->range, at->k) - at->barrier.force * come -
+                         0.5 * at->barrier.stiffness * come * come));
     }
     return most;
 }
@@ -110,7 +111,7 @@ static void begin(const struct fixture *cloth, struct pair *pair, struct start *
     struct cs_pair_contact contact;
     double v[3] = {0, 0, 0}, inverse = 0;
     at->d = cs_pair_contact_measure_whole(&contact, pair->kind, at->range, pair->from);
-    at->law = cs_barrier_at(at->d, at->range, at->k);
+    at->barrier = cs_barrier_at(at->d, at->range, at->k);
     at->approach = 0;
     for (int k = 0; k < 4; k++) {
         const double w = contact.weight[k];
@@ -143,7 +144,7 @@ static double features_of(const struct fixture *cloth, const double *to, uint32_
         const uint32_t *at = s->triangles + 3 * (size_t)t;
         const struct cs_body_pair_params *params = params_of(cloth, point, at[0]);
         const double range = CS_FEATURE_RANGE_RATIO * params->range;
-        struct cs_weighted_feature uses[CS_FEATURES_PER_TRIANGLE];
+        struct cs_weighted_feature features[CS_FEATURES_PER_TRIANGLE];
         const struct cs_feature_query query = {.points = {point, at[0], at[1], at[2]},
                                                .triangle = t,
                                                .same_body =
@@ -151,19 +152,20 @@ static double features_of(const struct fixture *cloth, const double *to, uint32_
                                                .range = params->range};
         if (!(range > 0) || point == at[0] || point == at[1] || point == at[2])
             continue;
-        const uint32_t n =
-            cs_feature_weights_find(&cloth->system->pairs->feature_weights, &query, 1, x, uses);
+        const uint32_t n = cs_feature_weights_find(&cloth->system->pairs->feature_weights,
+                                                   &query, 1, x, features);
         for (uint32_t u = 0; u < n; u++) {
             struct cs_pair_contact contact;
             double p[4][3], come = 0;
             for (size_t l = 0; l < 12; l++)
-                p[l / 3][l % 3] = x[l % 3 * cloth->n + uses[u].points[l / 3]];
-            cs_pair_contact_measure(&contact, CS_PAIR_POINT_TRIANGLE, uses[u].form, range, p);
+                p[l / 3][l % 3] = x[l % 3 * cloth->n + features[u].points[l / 3]];
+            cs_pair_contact_measure(&contact, CS_PAIR_POINT_TRIANGLE, features[u].kind, range,
+                                    p);
             for (size_t l = 0; l < 12; l++) {
-                const size_t i = l % 3 * cloth->n + uses[u].points[l / 3];
+                const size_t i = l % 3 * cloth->n + features[u].points[l / 3];
                 come -= contact.g[l / 3][l % 3] * (to[i] - cloth->x[i]);
             }
-            const double d = contact.feature.d, k = uses[u].weight * params->k;
+            const double d = contact.feature.d, k = features[u].weight * params->k;
             energy += cs_barrier_energy(d, range, k);
             foretold[0] += cs_barrier_at(d, range, k).force * come;
             foretold[1] += 0.5 * cs_barrier_at(d, range, k).stiffness * come * come;

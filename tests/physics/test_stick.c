@@ -251,18 +251,18 @@ TEST(resumed_run_has_the_same_hash) {
     for (size_t m = 0; m < LENGTH(methods); m++) {
         struct fixture whole, resumed;
         struct cs_error error = {0};
-        struct cs_serialiser record = {0};
+        struct cs_serialiser serialiser = {0};
         char a[CS_HASH_DIGITS], b[CS_HASH_DIGITS];
         fixture_open(&whole, methods[m], TURNS, 3, 3, 0.0, BALL, 0.2);
         fixture_start(&whole);
         fixture_frames(&whole, 14);
-        cs_run_save(&whole.session.run, &record, &error);
+        cs_run_save(&whole.session.run, &serialiser, &error);
         fixture_frames(&whole, 4);
         fixture_open(&resumed, methods[m], TURNS, 3, 3, 0.0, BALL, 0.2);
         fixture_start(&resumed);
-        record.is_reading = true;
-        cs_run_load(&resumed.session.run, &record, &error);
-        ck_assert_msg(!error.status && cs_serialiser_is_done(&record), "%s", error.message);
+        serialiser.is_reading = true;
+        cs_run_load(&resumed.session.run, &serialiser, &error);
+        ck_assert_msg(!error.status && cs_serialiser_is_done(&serialiser), "%s", error.message);
         fixture_frames(&resumed, 4);
         cs_run_hash(&whole.session.run, a);
         cs_run_hash(&resumed.session.run, b);
@@ -270,7 +270,7 @@ TEST(resumed_run_has_the_same_hash) {
         resumed.system->friction_anchors->values[0] += 1e-9;
         cs_run_hash(&resumed.session.run, b);
         ck_assert_str_ne(a, b);
-        cs_serialiser_finish(&record);
+        cs_serialiser_finish(&serialiser);
         fixture_close(&resumed);
         fixture_close(&whole);
     }

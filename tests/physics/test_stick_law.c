@@ -202,10 +202,10 @@ TEST(friction_limits_explicit_steps_so_far) {
         const struct cs_eval at = {.x = plate.x, .v = plate.v, .parts = CS_PART_ALL};
         cs_spectral_bounds_rate(plate.system, &at, false, work, &w, &all);
         cs_spectral_bounds_rate(plate.system, &at, true, work, &w, &step);
-        const struct cs_barrier law = cs_barrier_at(0.009, 0.02, 80);
-        const double damper = of[k].tau * law.stiffness / (2 * 0.025);
-        const double friction = 0.3 * law.force / of[k].ev / (2 * 0.025);
-        ck_assert_double_eq_tol(w, sqrt(law.stiffness / 0.025), 1e-9 * w);
+        const struct cs_barrier barrier = cs_barrier_at(0.009, 0.02, 80);
+        const double damper = of[k].tau * barrier.stiffness / (2 * 0.025);
+        const double friction = 0.3 * barrier.force / of[k].ev / (2 * 0.025);
+        ck_assert_double_eq_tol(w, sqrt(barrier.stiffness / 0.025), 1e-9 * w);
         ck_assert_double_eq_tol(all, damper + friction, 1e-9 * all);
         ck_assert_double_eq_tol(step, damper + fmin(friction, 32 * w), 1e-9 * step);
         ck_assert(k == 0 ? friction < 32 * w : friction > 32 * w);

@@ -126,18 +126,18 @@ TEST(limit_does_not_grow_with_time) {
                                    .workers = 1};
         cs_advise_run(&advise, &error);
         ck_assert_msg(!error.status, "%s", error.message);
-        const struct cs_advice *row = advise.rows;
+        const struct cs_advice *advice = advise.rows;
         printf("%g s: limit %.6g s at %g s, %.6g s at the end, advised %.6g s\n", seconds[k],
-               row->limit, row->time, row->end_limit, row->safe);
+               advice->limit, advice->time, advice->end_limit, advice->safe);
         // steps end on samples, which differ by rounding
-        ck_assert_double_le(row->limit, before * (1 + 1e-6));
-        ck_assert(cs_stability_is_stable(row->verdict));
-        ck_assert_double_gt(row->checked_seconds, row->time);
+        ck_assert_double_le(advice->limit, before * (1 + 1e-6));
+        ck_assert(cs_stability_is_stable(advice->verdict));
+        ck_assert_double_gt(advice->checked_seconds, advice->time);
         if (seconds[k] >= 1) {
-            ck_assert_double_lt(row->limit, 0.6 * row->end_limit);
-            ck_assert(row->time > 0.3 && row->time < 0.5);
+            ck_assert_double_lt(advice->limit, 0.6 * advice->end_limit);
+            ck_assert(advice->time > 0.3 && advice->time < 0.5);
         }
-        before = row->limit;
+        before = advice->limit;
         cs_advise_finish(&advise);
     }
 }
@@ -165,18 +165,18 @@ TEST(friction_limits_no_step) {
     cs_advise_run(&advise, &error);
     ck_assert_msg(!error.status, "%s", error.message);
     for (uint32_t k = 0; k < advise.n; k++) {
-        const struct cs_advice *row = advise.rows + k;
+        const struct cs_advice *advice = advise.rows + k;
         struct cs_sampled_run_settings longer = {.session = advise.session, .seconds = 0.6};
-        struct cs_sampled_run trial;
-        longer.session.integrator = row->method;
-        longer.session.dt = 1.5 * row->safe;
+        struct cs_sampled_run sample;
+        longer.session.integrator = advice->method;
+        longer.session.dt = 1.5 * advice->safe;
         longer.samples = 32;
-        ck_assert_int_eq(cs_sampled_run_execute(&trial, &longer, &error), CS_OK);
-        printf("%s: advised %.6g s, %s; 1.5 times that: %s\n", row->method, row->safe,
-               cs_stability_word(row->verdict), cs_outcome_text(trial.result.outcome));
-        ck_assert_double_gt(row->safe, 1e-3);
-        ck_assert_int_eq(row->verdict, CS_STABILITY_BOUNDED);
-        ck_assert(!cs_stability_is_stable(cs_stability_judge(&trial, NULL, true)));
+        ck_assert_int_eq(cs_sampled_run_execute(&sample, &longer, &error), CS_OK);
+        printf("%s: advised %.6g s, %s; 1.5 times that: %s\n", advice->method, advice->safe,
+               cs_stability_word(advice->verdict), cs_outcome_text(sample.result.outcome));
+        ck_assert_double_gt(advice->safe, 1e-3);
+        ck_assert_int_eq(advice->verdict, CS_STABILITY_BOUNDED);
+        ck_assert(!cs_stability_is_stable(cs_stability_judge(&sample, NULL, true)));
     }
     cs_advise_finish(&advise);
 }

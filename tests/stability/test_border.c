@@ -18,16 +18,16 @@ static double border_of(const struct row *row, struct cs_reference *reference) {
     const struct cs_override grid = {"bodies[0].cloth.grid", row->grid};
     double border = (double)NAN;
     snprintf(path, sizeof path, SCENES "/%s.json", row->scene);
-    const struct cs_sampled_run_settings trial = {.session = {.scene = path,
-                                                              .integrator = row->method,
-                                                              .overrides = &grid,
-                                                              .n_overrides = 1,
-                                                              .perturbation = 1e-6},
-                                                  .seconds = row->seconds,
-                                                  .samples = 32};
-    ck_assert_msg(!cs_reference_run(reference, &trial, &error), "%s", error.message);
+    const struct cs_sampled_run_settings settings = {.session = {.scene = path,
+                                                                 .integrator = row->method,
+                                                                 .overrides = &grid,
+                                                                 .n_overrides = 1,
+                                                                 .perturbation = 1e-6},
+                                                     .seconds = row->seconds,
+                                                     .samples = 32};
+    ck_assert_msg(!cs_reference_run(reference, &settings, &error), "%s", error.message);
     ck_assert_msg(reference->exists, "%s", reference->message);
-    cs_stability_boundary(&trial, reference, reference->smallest_limit.dt / 3,
+    cs_stability_boundary(&settings, reference, reference->smallest_limit.dt / 3,
                           reference->smallest_limit.dt * 2, &border, &error);
     ck_assert_msg(!error.status, "%s", error.message);
     printf("%-10s %-18s %-9s border %.5g s, worst on the way %.5g, at the start %.5g: %.3f\n",
@@ -76,8 +76,9 @@ static const char over_a_box[] =
     "{\"translate\": [0, -0.5, 0]}}, \"thickness\": 0.01}], \"contact\": {\"law\": "
     "\"force\", \"stiffness\": 0.02}, \"crossings\": \"limit\"}";
 
-static void map_over_a_box(struct cs_stability *map, struct cs_stability_settings *settings,
-                           double softest, double stiffest, struct cs_error *error) {
+static void map_over_a_box(struct cs_stability *stability,
+                           struct cs_stability_settings *settings, double softest,
+                           double stiffest, struct cs_error *error) {
     *settings = (struct cs_stability_settings){
         .session = {.scene = "box", .text = over_a_box, .integrator = "symplectic-euler"},
         .axis = CS_AXIS_STIFFNESS,
@@ -88,30 +89,30 @@ static void map_over_a_box(struct cs_stability *map, struct cs_stability_setting
         .seconds = 0.01,
         .budget = 60,
         .workers = 1};
-    if (!cs_stability_open(map, settings, error))
-        cs_stability_run(map, error);
+    if (!cs_stability_open(stability, settings, error))
+        cs_stability_run(stability, error);
 }
 
 TEST(column_without_a_reference_is_not_judged) {
-    struct cs_stability map;
+    struct cs_stability stability;
     struct cs_stability_settings settings;
     struct cs_error error = {0};
     struct cs_text table = {0};
-    map_over_a_box(&map, &settings, 0.02, 1e4, &error);
+    map_over_a_box(&stability, &settings, 0.02, 1e4, &error);
     ck_assert_msg(!error.status, "%s", error.message);
     for (uint32_t r = 0; r < 2; r++) {
-        ck_assert_int_eq(map.columns[0].cells[r].verdict, CS_STABILITY_UNJUDGED);
-        ck_assert(map.columns[1].cells[r].verdict < CS_STABILITY_OVER_BUDGET);
+        ck_assert_int_eq(stability.columns[0].cells[r].verdict, CS_STABILITY_UNJUDGED);
+        ck_assert(stability.columns[1].cells[r].verdict < CS_STABILITY_OVER_BUDGET);
     }
-    ck_assert(isnan(map.columns[0].boundary) && !isnan(map.columns[1].boundary));
-    cs_stability_print_table(&map, &table);
+    ck_assert(isnan(stability.columns[0].boundary) && !isnan(stability.columns[1].boundary));
+    cs_stability_print_table(&stability, &table);
     ck_assert_ptr_nonnull(
         strstr(cs_text_get(&table), "stiffness = 0.02: the reference run failed"));
     cs_text_finish(&table);
-    cs_stability_finish(&map);
+    cs_stability_finish(&stability);
     // none has one
-    map_over_a_box(&map, &settings, 0.02, 0.03, &error);
+    map_over_a_box(&stability, &settings, 0.02, 0.03, &error);
     ck_assert_int_eq(error.status, CS_ERR_USAGE);
     ck_assert_ptr_nonnull(strstr(error.message, "the reference run failed"));
-    cs_stability_finish(&map);
+    cs_stability_finish(&stability);
 }

@@ -16,9 +16,9 @@ static double limit_of(const char *method, double square, double rate) {
     struct cs_error error = {0};
     double limit = (double)NAN;
     fixture_open(&pair, method, PAIR);
-    const struct cs_amplification amplify = {pair.session.method.integrator,
-                                             pair.session.method.options, 0, NULL};
-    cs_amplification_limit(&amplify, square, rate, &limit, &error);
+    const struct cs_amplification amplification = {pair.session.method.integrator,
+                                                   pair.session.method.options, 0, NULL};
+    cs_amplification_limit(&amplification, square, rate, &limit, &error);
     ck_assert_msg(!error.status, "%s", error.message);
     fixture_close(&pair);
     return limit;

@@ -15,7 +15,7 @@ import tree
 HERE = Path(__file__).resolve().parent
 TEN = "".join(f"    total += part[{i}];\n" for i in range(10))
 TORN = "one two three four five six seven eight nine ten eleven twelve thirteen\n"
-PARTS = {"tests/tools/retired_words.txt": "lot chunk\n"}
+PARTS = {"tests/tools/retired_words.txt": "lot chunk\n", "tests/tools/retired_names.txt": "cs_chunk lot chunk\n"}
 PUBLIC = {"include/clothsim/c.h": ""}
 LIMIT = {name: limit for name, _, limit, _ in tree.LIMITS}
 UNIT = {f"src/base/u{i}.h": "int a;\n" for i in range(LIMIT["units"] + 1)}
@@ -62,7 +62,9 @@ FAULTS = (
      "src/base/a.c:1: CS_LOT: 'lot' is retired, say chunk"),
     ("retired.py", {"src/base/a_lot.c": "", **PARTS},
      "src/base/a_lot.c: a_lot.c: 'lot' is retired, say chunk"),
-    ("retired.py", {"src/base/a.c": "int cs_slot, lot, cs_lots; /* cs_lot */\n", **PARTS}, None),
+    ("retired.py", {"src/base/a.c": "void f(const struct cs_chunk *lot);\n", **PARTS},
+     "src/base/a.c:1: a cs_chunk is named 'lot', say chunk"),
+    ("retired.py", {"src/base/a.c": "int cs_slot, lot, cs_lots; struct cs_spring lot; /* cs_lot */\n", **PARTS}, None),
     ("english.py", {"src/base/a.c": "/* How the width\n * is to\n * be read. */\n"},
      "src/base/a.c:2: is to be"),
     ("english.py", {"src/base/a.h": "/* a.h - what a width is. */\n"},
@@ -85,7 +87,8 @@ def run(tool, files):
     """Exit code and lines of the tool on a tree of these files alone."""
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
-        for name, text in {"tests/tools/retired_words.txt": "", **files}.items():
+        for name, text in {"tests/tools/retired_words.txt": "", "tests/tools/retired_names.txt": "",
+                           **files}.items():
             (root / name).parent.mkdir(parents=True, exist_ok=True)
             (root / name).write_text(text)
         for tree in sources.PRODUCT:

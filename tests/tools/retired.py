@@ -3,6 +3,8 @@
 
 Looked at are cs_* and CS_* identifiers and names of files in src, tools, plugins, include, part by part
 between underscores, without regard to case. retired_words.txt has the words with what the field says.
+Parameters, members and locals have their type's word, or that of their role: retired_names.txt has a
+type, a name that such a thing had, and the name that it has now.
 """
 import re
 import sys
@@ -12,6 +14,7 @@ import sources
 
 HERE = Path("tests/tools")
 NAME = re.compile(r"\b(?:cs|CS)_\w+")
+DECLARED = re.compile(r"\b(?:struct|enum) (cs_\w+) (?:const )?\**(\w+)")
 
 
 def entries(path):
@@ -37,6 +40,16 @@ def retired_part(name, words):
     return next((part for part in re.split(r"[_.]", name.lower()) if part in words), None)
 
 
+def declared(root):
+    """(type, name) of each thing that a struct or an enum is declared by, with its first place."""
+    found = {}
+    for path in sources.files(root):
+        text = sources.code_of(path.read_text())
+        for m in DECLARED.finditer(text):
+            found.setdefault(m.groups(), f"{path.relative_to(root)}:{text.count(chr(10), 0, m.start()) + 1}")
+    return found
+
+
 def main():
     root = Path(sys.argv[1])
     words = entries(root / HERE / "retired_words.txt")
@@ -45,6 +58,10 @@ def main():
     for name, place in sorted(found.items()):
         word = retired_part(name, words)
         checks.check(not word, f"{place}: {name}: '{word}' is retired, say {words.get(word, '').strip()}")
+    retired = dict(line.rsplit(" ", 1) for line in (root / HERE / "retired_names.txt").read_text().splitlines())
+    for (kind, name), place in sorted(declared(root).items()):
+        now = retired.get(f"{kind} {name}")
+        checks.check(not now, f"{place}: a {kind} is named '{name}', say {now}")
     return checks.end()
 
 

@@ -45,8 +45,8 @@ TEST(clusters_have_all_items) {
     const uint32_t first[3] = {0, EDGES - 40, EDGES}; // the last ones as if of a mesh
     connect(&grid);
     ck_assert_uint_eq(grid.n_edges, EDGES);
-    const struct cs_cluster_input order = {grid.edges, 2, first, 2, &range, 1};
-    ck_assert_int_eq(cs_cluster_input_build(&order, &clusters, &arena, &error), CS_OK);
+    const struct cs_cluster_input input = {grid.edges, 2, first, 2, &range, 1};
+    ck_assert_int_eq(cs_cluster_input_build(&input, &clusters, &arena, &error), CS_OK);
     for (uint32_t k = 0; k < clusters.n; k++) {
         uint32_t low[2] = {SIDE, SIDE}, high[2] = {0, 0};
         for (uint32_t l = 0; l < CS_AABB_CLUSTER; l++) {
@@ -89,25 +89,25 @@ TEST(clusters_near_a_box_are_found) {
     static uint32_t last[BOXES], body[BOXES];
     struct cs_aabb_clusters clusters = {
         .n = BOXES, .max_item = last, .body = body, .cluster_boxes = boxes};
-    struct cs_nearby_clusters near = {0};
+    struct cs_nearby_clusters nearby = {0};
     uint64_t seed = 3;
     for (uint32_t k = 0; k < BOXES; k++)
         boxes[k] = draw_box(&seed, k);
     ck_assert(cs_aabb_clusters_sort(&clusters));
-    ck_assert(clusters.cells[1].dim[0] && 1 / clusters.cells[0].inverse_cell_size < 0.2);
+    ck_assert(clusters.grid[1].dim[0] && 1 / clusters.grid[0].inverse_cell_size < 0.2);
     for (uint32_t q = 0; q < QUERIES; q++) {
         const struct cs_aabb box = draw_box(&seed, q);
         uint32_t meets[BOXES] = {0}, n = 0;
-        ck_assert(cs_nearby_clusters_find(&near, &clusters, &box));
-        for (size_t k = 0; k < near.n; k++)
-            meets[near.clusters[k]]++;
+        ck_assert(cs_nearby_clusters_find(&nearby, &clusters, &box));
+        for (size_t k = 0; k < nearby.n; k++)
+            meets[nearby.clusters[k]]++;
         for (uint32_t k = 0; k < BOXES; k++) {
             const bool empty = q % 50 == 8 || k % 50 == 8;
             UNIT_ASSERT_OFTEN(meets[k] == (!empty && cs_aabbs_overlap(&box, boxes + k)));
             n += meets[k];
         }
-        ck_assert_uint_eq(n, near.n);
+        ck_assert_uint_eq(n, nearby.n);
     }
-    cs_nearby_clusters_finish(&near);
+    cs_nearby_clusters_finish(&nearby);
     cs_aabb_clusters_finish(&clusters);
 }

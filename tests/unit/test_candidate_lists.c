@@ -11,26 +11,26 @@
 
 /* adds what two edges, or a point and a feature, do to each other; false: out of range */
 static bool add_one(const struct sheet *sheet, enum cs_pair_kind kind, const uint32_t at[4],
-                    const struct cs_weighted_feature *use, double *f) {
+                    const struct cs_weighted_feature *feature, double *f) {
     const struct cs_system *system = &sheet->system;
     const uint32_t *body = system->pairs->candidates.body;
     struct cs_body_pair_params params =
         *cs_body_pair_params_of(&system->pairs->body_pairs, body[at[0]], body[at[2]]);
-    struct cs_pair_contact reaction;
+    struct cs_pair_contact contact;
     double p[4][3], v[4][3], push[4][3];
     for (size_t k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++) {
             p[k][c] = sheet->x[c * sheet->n + at[k]];
             v[k][c] = sheet->v[c * sheet->n + at[k]];
         }
-    params.range *= use ? CS_FEATURE_RANGE_RATIO : CS_EDGE_RANGE_RATIO;
-    params.k *= use ? use->weight : 4;
-    cs_pair_contact_measure(&reaction, kind, use ? use->form : (struct cs_feature_kind){0},
-                            params.range, p);
-    if (kind == CS_PAIR_EDGE_EDGE && !(reaction.distance.d < params.range))
+    params.range *= feature ? CS_FEATURE_RANGE_RATIO : CS_EDGE_RANGE_RATIO;
+    params.k *= feature ? feature->weight : 4;
+    cs_pair_contact_measure(
+        &contact, kind, feature ? feature->kind : (struct cs_feature_kind){0}, params.range, p);
+    if (kind == CS_PAIR_EDGE_EDGE && !(contact.distance.d < params.range))
         return false;
-    cs_pair_contact_set(&reaction, &params, &system->scene->contact, v);
-    cs_pair_contact_force(&reaction, (struct cs_contact_force_parts){1, 1}, push);
+    cs_pair_contact_set(&contact, &params, &system->scene->contact, v);
+    cs_pair_contact_force(&contact, (struct cs_contact_force_parts){1, 1}, push);
     for (size_t k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++)
             f[c * sheet->n + at[k]] += push[k][c];

@@ -27,26 +27,26 @@ static const struct cs_system rest = {.scene = &scene};
 static const float camera[4] = {0, 0, 5, 1};
 
 static struct cs_arena arena;
-static struct cs_collider_geometry solids;
+static struct cs_collider_geometry geometries;
 
 /* the vertices of one collider under cells of 0.02 m, in the arena; returns their number */
 static uint32_t fill(const struct cs_posed_collider *of, const float eye[4]) {
     struct cs_error error = {0};
     struct cs_scene alone = {.colliders = {colliders, 1}};
     static const struct cs_ground no_ground = {.style.radius = RADIUS};
-    cs_collider_geometry_init(&solids, &(struct cs_system){.scene = &alone}, of, &no_ground,
+    cs_collider_geometry_init(&geometries, &(struct cs_system){.scene = &alone}, of, &no_ground,
                               &arena, &error);
     UNIT_ASSERT_OK(&error);
-    solids.cell = 0.02;
-    if (solids.of[0].n)
-        cs_solids_fill(&solids, 0, eye);
-    return solids.of[0].n;
+    geometries.cell = 0.02;
+    if (geometries.of[0].n)
+        cs_solids_fill(&geometries, 0, eye);
+    return geometries.of[0].n;
 }
 
 static struct cs_vertex *make(uint32_t k, struct cs_posed_collider *of, uint32_t *n) {
     cs_posed_collider_at(&rest, k, 0, of);
     *n = fill(of, camera);
-    return solids.vertices;
+    return geometries.vertices;
 }
 
 /* distance 0 but for the floats, and the normal of the surface there */
@@ -151,7 +151,7 @@ TEST(a_ball_covers_its_outline) {
     double sum = 0;
     cs_posed_collider_at(&rest, SPHERE, 0, &of);
     ck_assert_uint_eq(fill(&of, light), CS_SPHERE_CAP_VERTICES);
-    v = solids.vertices;
+    v = geometries.vertices;
     for (uint32_t i = 0; i < CS_SPHERE_CAP_VERTICES; i += 3) {
         double p[3][3], area[3];
         take(v + i, p);
@@ -172,7 +172,7 @@ TEST(a_ball_ends_where_sight_touches_it) {
     uint32_t outline = 0;
     cs_posed_collider_at(&rest, SPHERE, 0, &of);
     fill(&of, eye);
-    v = solids.vertices;
+    v = geometries.vertices;
     for (uint32_t i = 0; i < CS_SPHERE_CAP_VERTICES; i += 3) {
         double p[3][3];
         take(v + i, p);
@@ -199,7 +199,7 @@ TEST(a_ball_is_whole_from_within) {
     double six = 0;
     cs_posed_collider_at(&rest, SPHERE, 0, &of);
     fill(&of, eye);
-    v = solids.vertices;
+    v = geometries.vertices;
     for (uint32_t i = 0; i < CS_SPHERE_CAP_VERTICES; i += 3) {
         double p[3][3], area[3];
         take(v + i, p);
@@ -229,7 +229,7 @@ TEST(a_mesh_is_as_it_is) {
     cs_posed_collider_at(&(struct cs_system){.scene = &of_mesh}, 0, 0, &of);
     const uint32_t n = fill(&of, camera);
     ck_assert_uint_eq(n, 3 * mesh.n_triangles);
-    const struct cs_vertex *vertices = solids.vertices;
+    const struct cs_vertex *vertices = geometries.vertices;
     double volume = 0;
     for (uint32_t t = 0; t < n; t += 3) {
         double p[3][3], height = 0, cross[3];

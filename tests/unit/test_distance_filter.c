@@ -66,12 +66,12 @@ static void fill(uint64_t *state, bool edges, double away, double scale, double 
 static uint32_t sift(const double *x, double scale, bool edges, double share,
                      const struct cs_exact_distance_lanes *lanes) {
     static struct cs_distance_filter filter;
-    struct cs_scaled_point places[1 + POINTS];
+    struct cs_scaled_point points[1 + POINTS];
     uint32_t bits = 0;
-    cs_distance_filter_scale_points(x, 1 + POINTS, 1 / scale, 0, 1 + POINTS, places);
+    cs_distance_filter_scale_points(x, 1 + POINTS, 1 / scale, 0, 1 + POINTS, points);
     for (uint32_t l = 0; l < CS_EXACT_DISTANCE_LANES; l++) {
         const uint32_t at[4] = {1 + 4 * l, 2 + 4 * l, 3 + 4 * l, 4 + 4 * l};
-        cs_distance_filter_add(&filter, places, at, share * sqrt(lanes->squared[l]) / scale,
+        cs_distance_filter_add(&filter, points, at, share * sqrt(lanes->squared[l]) / scale,
                                (const uint32_t[2]){l, l + 1});
     }
     const uint32_t kept = cs_distance_filter_run(&filter, edges);
@@ -140,11 +140,11 @@ TEST(not_finite_is_let_through) {
     for (int edges = 0; edges < 2; edges++)
         for (size_t k = 0; k < 12; k++) {
             static struct cs_distance_filter filter;
-            struct cs_scaled_point places[5];
+            struct cs_scaled_point points[5];
             double x[15] = {0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 9, 5, 5, 5};
             x[5 * (k % 3) + 1 + k / 3] = bad[k % 3];
-            cs_distance_filter_scale_points(x, 5, 1, 0, 5, places);
-            cs_distance_filter_add(&filter, places, (const uint32_t[4]){1, 2, 3, 4}, 0.1,
+            cs_distance_filter_scale_points(x, 5, 1, 0, 5, points);
+            cs_distance_filter_add(&filter, points, (const uint32_t[4]){1, 2, 3, 4}, 0.1,
                                    (const uint32_t[2]){0, 1});
             ck_assert_uint_eq(cs_distance_filter_run(&filter, edges), 1);
         }

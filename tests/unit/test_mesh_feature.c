@@ -14,9 +14,9 @@
 
 static const struct cs_feature_kind forms[] = {{1, 1, 0.2}, {0, 1, 0.2}, {0, 0, 0.2}};
 
-static double distance_at(struct cs_feature_kind form, double p[4][3], double g[4][3]) {
+static double distance_at(struct cs_feature_kind kind, double p[4][3], double g[4][3]) {
     struct cs_mesh_feature feature;
-    cs_mesh_feature_set(&feature, form, p);
+    cs_mesh_feature_set(&feature, kind, p);
     cs_mesh_feature_to_points(feature.g, g);
     return feature.d;
 }
@@ -26,7 +26,7 @@ struct slopes {
     double d, weight[4], g[4][3], scale;
 };
 
-static void differ(struct cs_feature_kind form, double p[4][3], double dp[4][3],
+static void differ(struct cs_feature_kind kind, double p[4][3], double dp[4][3],
                    struct slopes *by) {
     static const double at[4] = {-2, -1, 1, 2},
                         share[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
@@ -37,7 +37,7 @@ static void differ(struct cs_feature_kind form, double p[4][3], double dp[4][3],
         struct cs_mesh_feature feature;
         for (int k = 0; k < 12; k++)
             moved[k / 3][k % 3] = p[k / 3][k % 3] + at[j] * step * dp[k / 3][k % 3];
-        cs_mesh_feature_set(&feature, form, moved);
+        cs_mesh_feature_set(&feature, kind, moved);
         cs_mesh_feature_to_points(feature.g, g);
         cs_mesh_feature_weights(&feature, weight);
         by->d += share[j] / step * feature.d;
@@ -53,17 +53,17 @@ TEST(derivatives_are_those_of_differences) {
     uint64_t state = 1;
     double worst[3] = {0};
     for (int k = 0; k < 30000; k++) {
-        const struct cs_feature_kind form = forms[k % 3];
+        const struct cs_feature_kind kind = forms[k % 3];
         double p[4][3], dp[4][3], g[4][3], dg[4][3], dw[4], along = 0;
         struct cs_mesh_feature feature;
         struct slopes by;
         place_facet(&state, k, p);
         for (int i = 0; i < 12; i++)
             dp[i / 3][i % 3] = draw(&state);
-        cs_mesh_feature_set(&feature, form, p);
+        cs_mesh_feature_set(&feature, kind, p);
         cs_mesh_feature_to_points(feature.g, g);
         cs_mesh_feature_tangent(&feature, dp, dg, dw);
-        differ(form, p, dp, &by);
+        differ(kind, p, dp, &by);
         for (int i = 0; i < 4; i++) {
             along += cs_vec3_dot(g[i], dp[i]);
             worst[1] = fmax(worst[1], fabs(by.weight[i] - dw[i]) / 40);
@@ -90,14 +90,13 @@ TEST(gradient_keeps_momentum) {
 }
 
 /* --- a mesh --- */
-
 enum { CELLS = 4, POINTS = (CELLS + 1) * (CELLS + 1) + 1, TRIANGLES = 2 * CELLS * CELLS };
 
 /* a point over a field of triangles, of which the point is number 0 */
 struct field {
     struct cs_arena arena;
     struct cs_surfaces surfaces;
-    struct cs_feature_weights facets;
+    struct cs_feature_weights weights;
     uint32_t triangles[3 * TRIANGLES], edges[6 * TRIANGLES], owners[6 * TRIANGLES];
     double x[3 * POINTS];
 };
@@ -164,7 +163,7 @@ static void open(struct field *field, double jitter, uint64_t *state) {
         }
     }
     sort_edges(s);
-    ck_assert_int_eq(cs_feature_weights_init(&field->facets, s, &field->arena, &error), CS_OK);
+    ck_assert_int_eq(cs_feature_weights_init(&field->weights, s, &field->arena, &error), CS_OK);
 }
 
 static void place_of(const struct field *field, const uint32_t at[4], double p[4][3]) {
@@ -174,11 +173,11 @@ static void place_of(const struct field *field, const uint32_t at[4], double p[4
 }
 
 /* what one feature has of energy and force */
-static double add(const struct field *field, const uint32_t at[4], struct cs_feature_kind form,
+static double add(const struct field *field, const uint32_t at[4], struct cs_feature_kind kind,
                   double within, double count, double force[3]) {
     double p[4][3], g[4][3];
     place_of(field, at, p);
-    const double d = distance_at(form, p, g);
+    const double d = distance_at(kind, p, g);
     for (int i = 0; i < 3; i++)
         force[i] += count * cs_barrier_at(d, within, 1).force * g[0][i];
     return count * cs_barrier_energy(d, within, 1);
@@ -187,7 +186,7 @@ static double add(const struct field *field, const uint32_t at[4], struct cs_fea
 /* energy of the point, k = 1, and the force on it */
 static double energy_at(struct field *field, double range, double force[3]) {
     const struct cs_surfaces *s = &field->surfaces;
-    static struct cs_weighted_feature uses[CS_FEATURES_PER_TRIANGLE * TRIANGLES];
+    static struct cs_weighted_feature features[CS_FEATURES_PER_TRIANGLE * TRIANGLES];
     double energy = 0;
     uint32_t n = 0;
     memset(force, 0, 3 * sizeof *force);
@@ -196,11 +195,12 @@ static double energy_at(struct field *field, double range, double force[3]) {
         const struct cs_feature_query pair = {
             .points = {0, c[0], c[1], c[2]}, .triangle = t, .range = range};
         n = cs_feature_weights_join(
-            uses, n, cs_feature_weights_find(&field->facets, &pair, 1, field->x, uses + n));
+            features, n,
+            cs_feature_weights_find(&field->weights, &pair, 1, field->x, features + n));
     }
     for (uint32_t k = 0; k < n; k++)
-        energy += add(field, uses[k].points, uses[k].form, CS_FEATURE_RANGE_RATIO * range,
-                      uses[k].weight, force);
+        energy += add(field, features[k].points, features[k].kind,
+                      CS_FEATURE_RANGE_RATIO * range, features[k].weight, force);
     return energy;
 }
 
@@ -310,12 +310,12 @@ static double plain_triangle(struct field *field, uint32_t t, double range, doub
                          plane.unclamped[1]};
     for (uint32_t k = 0; k < 3; k++) {
         const uint32_t at[4] = {0, c[k], c[(k + 1) % 3], c[(k + 2) % 3]};
-        const bool inner = field->facets.opposite_vertex[3 * t + (k + 2) % 3] != CS_NO_POINT;
+        const bool inner = field->weights.opposite_vertex[3 * t + (k + 2) % 3] != CS_NO_POINT;
         struct cs_mesh_feature feature;
         place_of(field, at, p);
         cs_mesh_feature_set(&feature, rim, p);
         energy += add(field, at, rim, within, inner ? -0.5 : 0, force);
-        energy += add(field, at, corner, within, field->facets.vertex_share[c[k]], force);
+        energy += add(field, at, corner, within, field->weights.vertex_share[c[k]], force);
         const double squared = cs_vec3_dot(feature.from_edge, feature.from_edge);
         if (l[(k + 2) % 3] < 0 && squared < least) {
             least = squared;
@@ -332,9 +332,9 @@ static void check_reach(struct field *field, double range) {
         const uint32_t *c = field->triangles + 3 * t;
         const struct cs_feature_query pair = {
             .points = {0, c[0], c[1], c[2]}, .triangle = t, .range = range};
-        struct cs_weighted_feature uses[CS_FEATURES_PER_TRIANGLE];
+        struct cs_weighted_feature features[CS_FEATURES_PER_TRIANGLE];
         double to[3];
-        if (cs_feature_weights_find(&field->facets, &pair, 1, field->x, uses))
+        if (cs_feature_weights_find(&field->weights, &pair, 1, field->x, features))
             UNIT_ASSERT_OFTEN(nearest_on(field, c, to) < range);
     }
 }

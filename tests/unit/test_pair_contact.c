@@ -18,15 +18,15 @@ static const struct cs_feature_kind forms[] = {{1, 1, 0.2}, {0, 1, 0.2}, {0, 0, 
 struct place {
     enum cs_pair_kind kind;
     struct cs_feature_kind form;
-    struct cs_body_pair_params meeting;
+    struct cs_body_pair_params params;
     double p[4][3], v[4][3], dp[4][3], dv[4][3];
 };
 
 static void react(const struct place *place, double p[4][3], double v[4][3],
-                  struct cs_pair_contact *reaction) {
-    cs_pair_contact_measure(reaction, place->kind, place->form, place->meeting.range, p);
-    cs_pair_contact_set(reaction, &place->meeting, &keys, v);
-    reaction->contact.rate = 15;
+                  struct cs_pair_contact *contact) {
+    cs_pair_contact_measure(contact, place->kind, place->form, place->params.range, p);
+    cs_pair_contact_set(contact, &place->params, &keys, v);
+    contact->contact.rate = 15;
 }
 
 static void draw_four(uint64_t *state, double to[4][3]) {
@@ -36,7 +36,7 @@ static void draw_four(uint64_t *state, double to[4][3]) {
 
 /* in a range that it is anywhere in, but for the innermost tenth; false: not to be measured */
 static bool put(uint64_t *state, int pair, struct place *place,
-                struct cs_pair_contact *reaction) {
+                struct cs_pair_contact *contact) {
     place->kind = pair % 2 ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE;
     place->form = forms[pair / 2 % 3];
     if (place->kind == CS_PAIR_EDGE_EDGE)
@@ -47,16 +47,16 @@ static bool put(uint64_t *state, int pair, struct place *place,
     draw_four(state, place->dp);
     draw_four(state, place->dv);
     const double y = 0.54 + 0.44 * draw(state);
-    place->meeting = (struct cs_body_pair_params){.range = 1, .k = 10, .friction = 0.4};
+    place->params = (struct cs_body_pair_params){.range = 1, .k = 10, .friction = 0.4};
     const bool edges = place->kind == CS_PAIR_EDGE_EDGE;
     // the distance of edges depends on their range a little
     for (int round = 0; round < 8; round++) {
-        react(place, place->p, place->v, reaction);
-        place->meeting.range = (edges ? reaction->distance.d : reaction->feature.d) / y;
+        react(place, place->p, place->v, contact);
+        place->params.range = (edges ? contact->distance.d : contact->feature.d) / y;
     }
-    react(place, place->p, place->v, reaction);
-    const double at = reaction->contact.d / place->meeting.range;
-    return !edges || (place_is_good(&reaction->distance) && at > 0.1 && at < 0.98);
+    react(place, place->p, place->v, contact);
+    const double at = contact->contact.d / place->params.range;
+    return !edges || (place_is_good(&contact->distance) && at > 0.1 && at < 0.98);
 }
 
 static double energy(const struct cs_pair_contact *reaction) {
@@ -66,19 +66,19 @@ static double energy(const struct cs_pair_contact *reaction) {
 
 /* by the best of several steps: of the energy against the elastic force, and of the whole force
  * against its change; relative to these */
-static void differ(const struct place *place, const struct cs_pair_contact *reaction,
+static void differ(const struct place *place, const struct cs_pair_contact *contact,
                    double best[2]) {
-    struct cs_pair_contact_motion move;
+    struct cs_pair_contact_motion motion;
     double f[4][3], push[4][3], df[4][3], along = 0;
-    memcpy(move.p, place->p, sizeof move.p);
-    memcpy(move.v, place->v, sizeof move.v);
-    memcpy(move.dp, place->dp, sizeof move.dp);
-    memcpy(move.dv, place->dv, sizeof move.dv);
-    cs_pair_contact_force(reaction, (struct cs_contact_force_parts){1, 1}, f);
-    cs_pair_contact_force(reaction, (struct cs_contact_force_parts){1, 0}, push);
-    cs_pair_contact_jvp(reaction, (struct cs_contact_force_parts){1, 1}, &move, df);
+    memcpy(motion.p, place->p, sizeof motion.p);
+    memcpy(motion.v, place->v, sizeof motion.v);
+    memcpy(motion.dp, place->dp, sizeof motion.dp);
+    memcpy(motion.dv, place->dv, sizeof motion.dv);
+    cs_pair_contact_force(contact, (struct cs_contact_force_parts){1, 1}, f);
+    cs_pair_contact_force(contact, (struct cs_contact_force_parts){1, 0}, push);
+    cs_pair_contact_jvp(contact, (struct cs_contact_force_parts){1, 1}, &motion, df);
     for (int k = 0; k < 4; k++)
-        along += cs_vec3_dot(push[k], move.dp[k]);
+        along += cs_vec3_dot(push[k], motion.dp[k]);
     for (int i = 0; i < PLACE_STEPS; i++) {
         double slope = 0, off[4][3] = {{0}}, p[4][3], v[4][3], there[4][3];
         place_add(off, -1, df);
@@ -86,8 +86,8 @@ static void differ(const struct place *place, const struct cs_pair_contact *reac
             const double by = place_at[j] * place_steps[i];
             const double share = place_share[j] / place_steps[i];
             struct cs_pair_contact moved;
-            place_move(move.p, by, move.dp, p);
-            place_move(move.v, by, move.dv, v);
+            place_move(motion.p, by, motion.dp, p);
+            place_move(motion.v, by, motion.dv, v);
             react(place, p, v, &moved);
             cs_pair_contact_force(&moved, (struct cs_contact_force_parts){1, 1}, there);
             slope += share * energy(&moved);
@@ -104,11 +104,11 @@ TEST(derivatives_are_those_of_differences) {
     int tried = 0;
     for (int pair = 0; pair < n_pairs(); pair++) {
         struct place place;
-        struct cs_pair_contact reaction;
+        struct cs_pair_contact contact;
         double best[2] = {HUGE_VAL, HUGE_VAL};
-        if (!put(&state, pair, &place, &reaction))
+        if (!put(&state, pair, &place, &contact))
             continue;
-        differ(&place, &reaction, best);
+        differ(&place, &contact, best);
         for (int k = 0; k < 2; k++)
             worst[k] = fmax(worst[k], best[k]);
         tried++;
@@ -123,12 +123,12 @@ TEST(nothing_is_pushed_as_a_whole) {
     double worst[2] = {0};
     for (int pair = 0; pair < n_pairs(); pair++) {
         struct place place;
-        struct cs_pair_contact reaction;
+        struct cs_pair_contact contact;
         double f[4][3], here[4][3] = {{0}};
-        put(&state, pair, &place, &reaction);
-        cs_pair_contact_force(&reaction, (struct cs_contact_force_parts){1, 1}, f);
+        put(&state, pair, &place, &contact);
+        cs_pair_contact_force(&contact, (struct cs_contact_force_parts){1, 1}, f);
         worst[0] = fmax(worst[0], place_whole(here, f) / place_size(f));
-        cs_pair_contact_force(&reaction, (struct cs_contact_force_parts){1, 0}, f);
+        cs_pair_contact_force(&contact, (struct cs_contact_force_parts){1, 0}, f);
         worst[1] = fmax(worst[1], place_whole(place.p, f) / place_size(f));
     }
     ck_assert_msg(worst[0] < 1e-12 && worst[1] < 1e-12, "%g %g", worst[0], worst[1]);
@@ -142,12 +142,12 @@ TEST(all_is_finite_at_distance_zero) {
     for (int k = 0; k < 12; k++) {
         struct place place = {.kind = k < 9 ? CS_PAIR_POINT_TRIANGLE : CS_PAIR_EDGE_EDGE,
                               .form = forms[k / 3 % 3],
-                              .meeting = {.range = 1, .k = 2, .friction = 0.5},
+                              .params = {.range = 1, .k = 2, .friction = 0.5},
                               .v = {{0.3, -0.2, 0.1}},
                               .dp = {{-0.1, 0.3, 0.2}},
                               .dv = {{0.2, 0.1, -0.3}}};
-        struct cs_pair_contact reaction;
-        struct cs_pair_contact_motion move;
+        struct cs_pair_contact contact;
+        struct cs_pair_contact_motion motion;
         double f[4][3], df[4][3], stiffness[4], damping[4], sum = 0;
         for (int c = 0; c < 9; c++)
             place.p[1 + c / 3][c % 3] = triangle[c / 3][c % 3];
@@ -155,19 +155,19 @@ TEST(all_is_finite_at_distance_zero) {
         if (k >= 9) // edges that cross, from a vertex, in one line
             for (int c = 0; c < 3; c++)
                 place.p[1][c] = on[k % 3][c] + (k == 11 ? c == 0 : c == 2);
-        react(&place, place.p, place.v, &reaction);
-        memcpy(move.p, place.p, sizeof move.p);
-        memcpy(move.v, place.v, sizeof move.v);
-        memcpy(move.dp, place.dp, sizeof move.dp);
-        memcpy(move.dv, place.dv, sizeof move.dv);
+        react(&place, place.p, place.v, &contact);
+        memcpy(motion.p, place.p, sizeof motion.p);
+        memcpy(motion.v, place.v, sizeof motion.v);
+        memcpy(motion.dp, place.dp, sizeof motion.dp);
+        memcpy(motion.dv, place.dv, sizeof motion.dv);
         const struct cs_contact_force_parts parts = {1, 1};
-        cs_pair_contact_force(&reaction, parts, f);
-        cs_pair_contact_jvp(&reaction, parts, &move, df);
-        cs_pair_contact_bound(&reaction, stiffness, damping);
+        cs_pair_contact_force(&contact, parts, f);
+        cs_pair_contact_jvp(&contact, parts, &motion, df);
+        cs_pair_contact_bound(&contact, stiffness, damping);
         for (int j = 0; j < 4; j++) {
             sum += stiffness[j] + damping[j];
             for (int c = 0; c < 3; c++)
-                sum += f[j][c] + df[j][c] + reaction.g[j][c];
+                sum += f[j][c] + df[j][c] + contact.g[j][c];
         }
         ck_assert_msg(isfinite(sum), "case %d: %g", k, sum);
     }

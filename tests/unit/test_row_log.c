@@ -24,12 +24,12 @@ static void assert_file(const char *path, const char *expected) {
 }
 
 /* Writes two rows, a record, and a third row; the log stays open. */
-static void write_three(struct cs_row_log *log, struct cs_serialiser *record) {
+static void write_three(struct cs_row_log *log, struct cs_serialiser *serialiser) {
     struct cs_error error = {0};
     cs_row_log_create(log, "log", &error);
     add(log, "a\n", &error);
     add(log, "bc\n", &error);
-    cs_row_log_record(log, record);
+    cs_row_log_record(log, serialiser);
     add(log, "d\n", &error);
     UNIT_ASSERT_OK(&error);
     // a row is there before the file is closed
@@ -37,61 +37,61 @@ static void write_three(struct cs_row_log *log, struct cs_serialiser *record) {
 }
 
 /* Loads the record, and resumes. */
-static enum cs_status resume(struct cs_row_log *log, struct cs_serialiser *record,
+static enum cs_status resume(struct cs_row_log *log, struct cs_serialiser *serialiser,
                              struct cs_error *error) {
     *log = (struct cs_row_log){0};
-    record->is_reading = true;
-    record->position = 0;
-    cs_row_log_record(log, record);
-    ck_assert(!record->failed);
+    serialiser->is_reading = true;
+    serialiser->position = 0;
+    cs_row_log_record(log, serialiser);
+    ck_assert(!serialiser->failed);
     return cs_row_log_resume(log, "log", error);
 }
 
 TEST(a_killed_log_is_cut_to_its_record) {
     struct cs_row_log killed, log;
-    struct cs_serialiser record = {0};
+    struct cs_serialiser serialiser = {0};
     struct cs_error error = {0};
-    write_three(&killed, &record);
+    write_three(&killed, &serialiser);
     fclose(killed.file);
-    resume(&log, &record, &error);
+    resume(&log, &serialiser, &error);
     add(&log, "e\n", &error);
     cs_row_log_finish(&log, &error);
     UNIT_ASSERT_OK(&error);
     assert_file("log", "a\nbc\ne\n");
     ck_assert(access("log.part", F_OK));
-    cs_serialiser_finish(&record);
+    cs_serialiser_finish(&serialiser);
 }
 
 TEST(a_whole_log_stays_until_the_end) {
     struct cs_row_log log;
-    struct cs_serialiser record = {0};
+    struct cs_serialiser serialiser = {0};
     struct cs_error error = {0};
-    write_three(&log, &record);
+    write_three(&log, &serialiser);
     cs_row_log_finish(&log, &error);
-    resume(&log, &record, &error);
+    resume(&log, &serialiser, &error);
     add(&log, "f\n", &error);
     assert_file("log", "a\nbc\nd\n");
     cs_row_log_finish(&log, &error);
     UNIT_ASSERT_OK(&error);
     assert_file("log", "a\nbc\nf\n");
-    cs_serialiser_finish(&record);
+    cs_serialiser_finish(&serialiser);
 }
 
 TEST(changed_rows_are_refused) {
     static const char *const changed[] = {"a\nbd\n", "a\nb", "ab\nc\n", ""};
     struct cs_row_log log;
-    struct cs_serialiser record = {0};
-    write_three(&log, &record);
+    struct cs_serialiser serialiser = {0};
+    write_three(&log, &serialiser);
     ck_assert(!cs_row_log_remove(&log, &(struct cs_error){0}));
     ck_assert(access("log.part", F_OK));
     for (size_t k = 0; k < sizeof changed / sizeof *changed; k++) {
         struct cs_error error = {0};
         cs_file_write("log", changed[k], strlen(changed[k]), &error);
         UNIT_ASSERT_OK(&error);
-        ck_assert_int_eq(resume(&log, &record, &error), CS_ERR_FILE);
+        ck_assert_int_eq(resume(&log, &serialiser, &error), CS_ERR_FILE);
         assert_file("log", changed[k]);
     }
-    cs_serialiser_finish(&record);
+    cs_serialiser_finish(&serialiser);
 }
 
 TEST(rows_are_copied) {

@@ -25,9 +25,9 @@ static void make(struct cs_trimesh *mesh, enum cs_mesh_shape shape, uint32_t det
 TEST(draws_are_splitmix) {
     static const uint64_t expected[] = {6457827717110365317u, 3203168211198807973u,
                                         9817491932198370423u, 4593380528125082431u};
-    struct cs_rng draws = {1234567};
+    struct cs_rng rng = {1234567};
     for (size_t k = 0; k < sizeof expected / sizeof *expected; k++)
-        ck_assert(cs_rng_next(&draws) == expected[k]);
+        ck_assert(cs_rng_next(&rng) == expected[k]);
 }
 
 static double distance(const struct cs_trimesh *mesh, const uint32_t *ends) {

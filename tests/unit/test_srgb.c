@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static struct cs_srgb tone;
+static struct cs_srgb srgb;
 
 static double encode(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
@@ -21,14 +21,14 @@ static double decode(double c) {
  * colour to a tenth of a byte. */
 TEST(dither_keeps_the_mean) {
     uint32_t seen = 0;
-    cs_srgb_make(&tone);
+    cs_srgb_make(&srgb);
     for (int byte = 20; byte < 240; byte++) {
-        const float part = 0.3f * tone.threshold[byte] + 0.7f * tone.threshold[byte + 1];
+        const float part = 0.3f * srgb.threshold[byte] + 0.7f * srgb.threshold[byte + 1];
         double sum = 0;
         for (int i = 0; i < 16; i++) {
             const float threshold = cs_srgb_dither(i + 80);
             seen |= 1u << (int)(16 * threshold);
-            sum += cs_srgb_encode(&tone, cs_srgb_dithered(part, threshold));
+            sum += cs_srgb_encode(&srgb, cs_srgb_dithered(part, threshold));
         }
         ck_assert_double_eq_tol(sum / 16, byte + 0.2, 0.1);
     }
@@ -38,22 +38,22 @@ TEST(dither_keeps_the_mean) {
 /* the nearest byte, but where the formula is within its own rounding of the middle of two */
 TEST(a_byte_is_the_nearest_of_the_curve) {
     double most = 0;
-    cs_srgb_make(&tone);
+    cs_srgb_make(&srgb);
     for (int i = 0; i <= 1000000; i++) {
         const float linear = (float)i / 1000000;
         const double exact = 255 * encode((double)linear);
-        most = fmax(most, fabs(exact - cs_srgb_encode(&tone, linear)));
+        most = fmax(most, fabs(exact - cs_srgb_encode(&srgb, linear)));
     }
     ck_assert_double_le(most, 0.5 + 1e-5);
 }
 
 TEST(bytes_come_back) {
-    cs_srgb_make(&tone);
+    cs_srgb_make(&srgb);
     for (uint32_t byte = 0; byte < 256; byte++) {
-        ck_assert_uint_eq(cs_srgb_encode(&tone, tone.linear[byte]), byte);
-        ck_assert_double_le(fabs(255 * encode((double)tone.linear[byte]) - byte), 1e-4);
+        ck_assert_uint_eq(cs_srgb_encode(&srgb, srgb.linear[byte]), byte);
+        ck_assert_double_le(fabs(255 * encode((double)srgb.linear[byte]) - byte), 1e-4);
     }
-    ck_assert_uint_eq(cs_srgb_pack(&tone, 1, 0, 1), 0xff00ff);
+    ck_assert_uint_eq(cs_srgb_pack(&srgb, 1, 0, 1), 0xff00ff);
 }
 
 /* all or nothing is exact; between, at most one off the exact mean, and nothing overflows */
@@ -77,19 +77,19 @@ TEST(blending_is_a_mean) {
 /* Four samples give the byte of the mean of their light; whoever of them comes first. */
 TEST(samples_give_the_mean_of_their_light) {
     uint32_t wrong = 0;
-    cs_srgb_make(&tone);
+    cs_srgb_make(&srgb);
     for (uint32_t a = 0; a < 256; a++)
         for (uint32_t b = 0; b < 256; b += 3) {
             const uint32_t pair[2] = {a << 16 | b << 8 | 255, b << 16 | a << 8};
             const double light = 0.75 * decode(a / 255.0) + 0.25 * decode(b / 255.0);
             for (uint32_t odd = 0; odd < 4; odd++) {
                 uint32_t samples[4] = {pair[0], pair[0], pair[0], pair[0]};
-                wrong += cs_srgb_mean(&tone, samples) != pair[0];
+                wrong += cs_srgb_mean(&srgb, samples) != pair[0];
                 samples[odd] = pair[1];
-                const double found = cs_srgb_mean(&tone, samples) >> 16;
+                const double found = cs_srgb_mean(&srgb, samples) >> 16;
                 wrong += fabs(found - 255 * encode(light)) > 0.5 + 1e-4;
                 // three parts of white light and one of none
-                wrong += (cs_srgb_mean(&tone, samples) & 255) != 225;
+                wrong += (cs_srgb_mean(&srgb, samples) & 255) != 225;
             }
         }
     ck_assert_uint_eq(wrong, 0);
@@ -113,17 +113,17 @@ TEST(samples_of_nothing_leave_the_colour) {
     const uint32_t nothing = 0xff000000, colour = 0x4080c0, white = 0xffffff;
     const uint32_t none[4] = {nothing, nothing, nothing, nothing};
     uint32_t some[4] = {colour, nothing, colour, colour}, on_white[4];
-    cs_srgb_make(&tone);
-    ck_assert_uint_eq(cs_srgb_mean(&tone, some), colour | (255u - 191) << 24);
-    ck_assert_uint_eq(cs_srgb_mean(&tone, none), nothing);
-    ck_assert_uint_eq(cs_srgb_blend_on_white(&tone, nothing), white);
+    cs_srgb_make(&srgb);
+    ck_assert_uint_eq(cs_srgb_mean(&srgb, some), colour | (255u - 191) << 24);
+    ck_assert_uint_eq(cs_srgb_mean(&srgb, none), nothing);
+    ck_assert_uint_eq(cs_srgb_blend_on_white(&srgb, nothing), white);
     for (uint32_t covered = 0; covered <= 4; covered++) {
         for (uint32_t s = 0; s < 4; s++) {
             some[s] = s < covered ? colour : nothing;
             on_white[s] = s < covered ? colour : white;
         }
-        const uint32_t found = cs_srgb_blend_on_white(&tone, cs_srgb_mean(&tone, some));
-        const uint32_t expected = cs_srgb_mean(&tone, on_white);
+        const uint32_t found = cs_srgb_blend_on_white(&srgb, cs_srgb_mean(&srgb, some));
+        const uint32_t expected = cs_srgb_mean(&srgb, on_white);
         for (int k = 0; k < 24; k += 8)
             ck_assert_int_le(abs((int)(found >> k & 255) - (int)(expected >> k & 255)), 1);
     }
@@ -139,11 +139,11 @@ static void make(struct cs_mipmap *mips, struct cs_arena *arena, int (*value)(in
     struct cs_error error = {0};
     uint8_t rgb[3 * WIDE * HIGH];
     const struct cs_image image = {WIDE, HIGH, rgb, NULL};
-    cs_srgb_make(&tone);
+    cs_srgb_make(&srgb);
     for (int i = 0; i < WIDE * HIGH; i++)
         for (int k = 0; k < 3; k++)
             rgb[3 * i + k] = (uint8_t)value(i % WIDE, i / WIDE);
-    ck_assert_int_eq(cs_mipmap_make(mips, &image, &tone, arena, &error), CS_OK);
+    ck_assert_int_eq(cs_mipmap_make(mips, &image, &srgb, arena, &error), CS_OK);
 }
 
 static int columns(int x, int y) {
@@ -209,8 +209,8 @@ TEST(odd_copies_are_means_too) {
         uint8_t rgb[27] = {0};
         const struct cs_image image = {3, 3, rgb, NULL};
         rgb[3 * lit] = 255;
-        cs_srgb_make(&tone);
-        ck_assert_int_eq(cs_mipmap_make(&mips, &image, &tone, &arena, &error), CS_OK);
+        cs_srgb_make(&srgb);
+        ck_assert_int_eq(cs_mipmap_make(&mips, &image, &srgb, &arena, &error), CS_OK);
         ck_assert_int_eq(mips.n, 2);
         near(mips.levels[1].light[0], 65535.0f / 9, 0.6);
         cs_arena_finish(&arena);

@@ -27,12 +27,13 @@ TEST(tunnelling_is_judged_by_the_side_of_entry) {
     };
     struct cs_scene thin = {.colliders = {&plate, 1}};
     const struct cs_system system = {.scene = &thin};
-    struct cs_posed_collider at;
-    cs_posed_collider_at(&system, 0, 0, &at);
-    ck_assert_double_eq_tol(cs_tunnelling_inner_radius(&at), 0.01, 1e-15);
+    struct cs_posed_collider collider;
+    cs_posed_collider_at(&system, 0, 0, &collider);
+    ck_assert_double_eq_tol(cs_tunnelling_inner_radius(&collider), 0.01, 1e-15);
     for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
         double gap = 1, n[3];
-        const bool passes = cs_tunnelling_find(&at, &at, ways[k].from, ways[k].to, &gap, n);
+        const bool passes =
+            cs_tunnelling_find(&collider, &collider, ways[k].from, ways[k].to, &gap, n);
         ck_assert_msg(passes == ways[k].passes, "way %zu: %d", k, passes);
         if (!passes)
             continue;

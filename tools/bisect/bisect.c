@@ -11,7 +11,7 @@
 /* One running program and its trace. */
 struct side {
     const struct cs_bisect_side *asked;
-    struct cs_subprocess program;
+    struct cs_subprocess process;
     struct cs_trace_stream trail;
     bool there; /* the trail has a point */
 };
@@ -27,8 +27,8 @@ static enum cs_status start(struct side *side, const struct cs_bisect_side *aske
     memcpy(arguments, asked->arguments, asked->n_arguments * sizeof *arguments);
     arguments[asked->n_arguments] = "--trace";
     arguments[asked->n_arguments + 1] = trace;
-    if (!cs_subprocess_open(&side->program, ".", arguments, 1, error))
-        side->trail.file = side->program.output;
+    if (!cs_subprocess_open(&side->process, ".", arguments, 1, error))
+        side->trail.file = side->process.output;
     free(arguments);
     return error->status;
 }
@@ -62,21 +62,21 @@ static void compare_values(struct cs_bisect_difference *found, const double *a, 
 
 /* Describes a trace record. */
 static void print_point(const struct side *side, char out[120]) {
-    const struct cs_trace_record *point = &side->trail.point;
+    const struct cs_trace_record *record = &side->trail.record;
     if (!side->there)
         snprintf(out, 120, "nothing more");
-    else if (!strcmp(point->phase, "start") || !strcmp(point->phase, "frame"))
-        snprintf(out, 120, "%s %" PRIu32 " at t = %.17g s, %zu numbers of %s", point->phase,
-                 point->frame, point->t, point->n, point->name);
+    else if (!strcmp(record->phase, "start") || !strcmp(record->phase, "frame"))
+        snprintf(out, 120, "%s %" PRIu32 " at t = %.17g s, %zu numbers of %s", record->phase,
+                 record->frame, record->t, record->n, record->name);
     else
-        snprintf(out, 120,
-                 "frame %" PRIu32 ", step %" PRIu64 ", %s %s at t = %.17g s, %zu numbers",
-                 point->frame, point->step, point->phase, point->name, point->t, point->n);
+        snprintf(
+            out, 120, "frame %" PRIu32 ", step %" PRIu64 ", %s %s at t = %.17g s, %zu numbers",
+            record->frame, record->step, record->phase, record->name, record->t, record->n);
 }
 
 /* True if two records describe the same number of the same phase. */
 static bool is_same_point(const struct side sides[2], double tolerance) {
-    const struct cs_trace_record *a = &sides[0].trail.point, *b = &sides[1].trail.point;
+    const struct cs_trace_record *a = &sides[0].trail.record, *b = &sides[1].trail.record;
     return sides[0].there == sides[1].there && a->frame == b->frame && a->step == b->step &&
            is_same(a->t, b->t, tolerance) && a->n == b->n && !strcmp(a->phase, b->phase) &&
            !strcmp(a->name, b->name);
@@ -86,11 +86,11 @@ static bool is_same_point(const struct side sides[2], double tolerance) {
 static void compare(const struct side sides[2], double tolerance,
                     struct cs_bisect_difference *found) {
     const struct side *side = sides + !sides[0].there;
-    const struct cs_trace_record *point = &side->trail.point;
+    const struct cs_trace_record *record = &side->trail.record;
     *found = (struct cs_bisect_difference){
-        .frame = point->frame, .step = point->step, .t = point->t, .n = point->n};
-    snprintf(found->phase, sizeof found->phase, "%s", point->phase);
-    snprintf(found->name, sizeof found->name, "%.15s", point->name);
+        .frame = record->frame, .step = record->step, .t = record->t, .n = record->n};
+    snprintf(found->phase, sizeof found->phase, "%s", record->phase);
+    snprintf(found->name, sizeof found->name, "%.15s", record->name);
     if (is_same_point(sides, tolerance)) {
         compare_values(found, sides[0].trail.values, sides[1].trail.values, tolerance);
         return;
@@ -108,7 +108,7 @@ static void take_point(struct side *side, bool states, struct cs_error *error) {
     if (said.status)
         cs_fail(error, said.status, "%s: %s", side->asked->name, said.message);
     if (states && side->there)
-        side->trail.point.step = 0;
+        side->trail.record.step = 0;
 }
 
 /* The status of an end that is not the comparison's own: lack of memory, or of a file. */
@@ -124,9 +124,9 @@ static void end(struct side *side, struct cs_bisect_difference *found, int k,
                 struct cs_error *error) {
     const bool wrote = side->trail.values;
     const bool ended = !side->there;
-    if (!side->program.pid)
+    if (!side->process.pid)
         return;
-    const int code = cs_subprocess_close(&side->program);
+    const int code = cs_subprocess_close(&side->process);
     if (!wrote && !error->status)
         cs_fail(error, status_of(code, CS_ERR_FILE), "%s: %s wrote no trace, exit code %d",
                 side->asked->name, side->asked->arguments[0], code);
@@ -134,7 +134,7 @@ static void end(struct side *side, struct cs_bisect_difference *found, int k,
         cs_fail(error, status_of(code, CS_ERR_MODULE),
                 "%s ended with exit code %d after frame %" PRIu32
                 ": both are equal up to there",
-                side->asked->name, code, side->trail.point.frame);
+                side->asked->name, code, side->trail.record.frame);
     else if (found->exists && !found->values_differ && ended)
         snprintf(found->value_b[k], sizeof found->value_b[k], "its end, with exit code %d",
                  code);

@@ -58,7 +58,7 @@ struct line {
     uint32_t n;
 };
 
-static void add(struct line *line, const char *word) {
+static void add_word(struct line *line, const char *word) {
     line->words[line->n++] = word;
 }
 
@@ -66,8 +66,8 @@ static enum cs_status add_named(struct line *line, const char *key, size_t lengt
                                 const char *value, struct cs_error *error) {
     char option[32];
     snprintf(option, sizeof option, "--%.*s", (int)length, key);
-    add(line, cs_arena_copy_text(&line->args->arena, option, error));
-    add(line, value);
+    add_word(line, cs_arena_copy_text(&line->args->arena, option, error));
+    add_word(line, value);
     return error->status;
 }
 
@@ -124,11 +124,11 @@ static enum cs_status make_line(struct line *line, const struct own *own,
                                        sizeof *line->words, error);
     if (!line->words)
         return error->status;
-    add(line, cs_program_path());
-    add(line, "run");
-    add(line, line->args->operands[0]);
-    add(line, "--no-render");
-    add(line, "--quiet");
+    add_word(line, cs_program_path());
+    add_word(line, "run");
+    add_word(line, line->args->operands[0]);
+    add_word(line, "--no-render");
+    add_word(line, "--quiet");
     add_common(line, own, error);
     for (uint32_t k = 0; k < own->n && !error->status; k++)
         add_own(line, own->items[k], error);

@@ -65,8 +65,8 @@ struct progress {
 struct output {
     const struct cs_args *args;
     const struct options *options;
-    const struct cs_conform *card; /* that is being made */
-    const char *settings;          /* options as given after the method's name */
+    const struct cs_conform *conform; /* that is being made */
+    const char *settings;             /* options as given after the method's name */
     struct progress *progress;
     uint32_t n_rows, n_cards;      /* met by this process */
     FILE *json;                    /* a file without a name; NULL: none was asked for */
@@ -125,7 +125,7 @@ static bool has_text(const struct output *output) {
 
 /* Name, options, order and fidelity of a method, before its first row. */
 static void print_head(struct output *output) {
-    const struct cs_integrator *method = output->card->method;
+    const struct cs_integrator *method = output->conform->method;
     struct cs_text json = {0};
     cs_text_add(&json, output->n_cards > 1 ? ",\n" : "\n");
     cs_json_write(&json, "  {'integrator': %s, 'settings': %s, 'checks': [", method->name,
@@ -136,8 +136,8 @@ static void print_head(struct output *output) {
     if (has_text(output))
         printf("%s%s%s: order %u (%u with damping), fidelity: %s\n", method->name,
                *output->settings ? ":" : "", output->settings,
-               cs_method_order(method, output->card->options, false),
-               cs_method_order(method, output->card->options, true),
+               cs_method_order(method, output->conform->options, false),
+               cs_method_order(method, output->conform->options, true),
                fidelity_text(method->fidelity));
     fflush(stdout);
 }
@@ -191,7 +191,7 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
     /* not finding it is no failure: the check that needs it is then skipped */
     if (method->fidelity != CS_FIDELITY_ODE)
         cs_registry_find(registry, "backward-euler", &euler, &ignored);
-    struct cs_conform card = {
+    struct cs_conform conform = {
         .method = method,
         .options = options,
         .implicit_euler = euler ? euler->integrator : NULL,
@@ -203,10 +203,10 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
         .report = report,
         .ctx = output,
     };
-    output->card = &card;
+    output->conform = &conform;
     output->n_cards++;
-    cs_conform_check(&card, error);
-    output->card = NULL;
+    cs_conform_check(&conform, error);
+    output->conform = NULL;
     if (!error->status && output->progress->ends < output->n_cards)
         end_card(output);
     return error->status;

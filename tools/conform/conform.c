@@ -11,7 +11,7 @@
 static const struct {
     const char *name, *what;
     enum cs_conform_of of;
-    void (*run)(const struct cs_conform *card, struct cs_conform_row *row);
+    void (*run)(const struct cs_conform *conform, struct cs_conform_row *row);
 } checks[] = {
 #define X(name, function, of, what) {name, what, CS_CONFORM_##of, cs_check_##function},
     CS_CONFORM_LIST(X)
@@ -75,38 +75,39 @@ static enum cs_status check_names(const char *list, struct cs_error *error) {
 }
 
 /* Runs check k. One whose scene the method refuses does not apply. */
-static void run(const struct cs_conform *card, uint32_t k, struct cs_conform_row *row) {
-    *card->refused = false;
-    checks[k].run(card, row);
-    if (*card->refused)
+static void run(const struct cs_conform *conform, uint32_t k, struct cs_conform_row *row) {
+    *conform->refused = false;
+    checks[k].run(conform, row);
+    if (*conform->refused)
         cs_row_skip(row, "it is refused with contact and events");
 }
 
-enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error) {
+enum cs_status cs_conform_check(struct cs_conform *conform, struct cs_error *error) {
     bool refused;
-    card->card_error = error;
-    card->refused = &refused;
-    check_names(card->only_checks, error);
+    conform->card_error = error;
+    conform->refused = &refused;
+    check_names(conform->only_checks, error);
     for (uint32_t k = 0; k < CHECKS && !error->status; k++) {
-        if (card->only_checks && !is_in(card->only_checks, checks[k].name))
+        if (conform->only_checks && !is_in(conform->only_checks, checks[k].name))
             continue;
         // another process may have reported it
-        if (card->begin && !card->begin(card->ctx, checks[k].name))
+        if (conform->begin && !conform->begin(conform->ctx, checks[k].name))
             continue;
         struct cs_conform_row row = {
             .check = checks[k].name, .figure = (double)NAN, .bound = (double)NAN};
-        if (checks[k].of == CS_CONFORM_SPRINGS && card->method->fidelity == CS_FIDELITY_OTHER)
+        if (checks[k].of == CS_CONFORM_SPRINGS &&
+            conform->method->fidelity == CS_FIDELITY_OTHER)
             cs_row_skip(&row, "another model: it does not follow the motion of springs");
         else
-            run(card, k, &row);
-        apply_expected_failures(card->method, &row);
+            run(conform, k, &row);
+        apply_expected_failures(conform->method, &row);
         if (!error->status)
-            card->report(card->ctx, &row);
-        if (card->fail_fast &&
+            conform->report(conform->ctx, &row);
+        if (conform->fail_fast &&
             (row.verdict == CS_VERDICT_FAIL || row.verdict == CS_VERDICT_STALE))
             break;
     }
-    card->refused = NULL;
+    conform->refused = NULL;
     return error->status;
 }
 

@@ -15,7 +15,7 @@
 /* Runs the checks in order and reports each row; claims that do not hold are no error. Returns
  * CS_ERR_USAGE if only_checks has a name that is no check, before any is run, and CS_ERR_MEMORY
  * if memory ran out in a check, CS_ERR_INTERRUPT if a run in one was interrupted. */
-enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error);
+enum cs_status cs_conform_check(struct cs_conform *conform, struct cs_error *error);
 
 /* Adds the name of every check and what it shows, one per line, for --list. */
 void cs_conform_print_checks(struct cs_text *out);

@@ -117,7 +117,7 @@ struct cs_probe {
  * one. The card's own method gets the card's options. The first body gets shape matching if the
  * method needs clusters. Returns false on failure: the probe has ended and error says why; all
  * further calls then do nothing. cs_probe_close must be called in any case. */
-bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
+bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *conform,
                    const struct cs_integrator *method, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 /* Closes the session. Lack of memory is passed on to the card, because it is no fault of the
@@ -144,10 +144,10 @@ void cs_probe_set_frames(struct cs_probe *probe, double dt);
 
 /* The tolerance at which an adaptive method is compared with the solution. A hundred thousand
  * steps of order 2 are within the bound at a looser tolerance already. */
-double cs_probe_tightest_tolerance(const struct cs_conform *card);
+double cs_probe_tightest_tolerance(const struct cs_conform *conform);
 
 /* True if the accuracy can be set; else the row is skipped. */
-bool cs_probe_can_be_set(const struct cs_conform *card, struct cs_conform_row *row);
+bool cs_probe_can_be_set(const struct cs_conform *conform, struct cs_conform_row *row);
 
 /* Sets level 0 or 1 of accuracy: h and h/8, or relative tolerances of 1e-5 and 1e-7. Returns
  * the expected error as a fraction of a motion of rate w (1/s) for a method of that order: (h
@@ -200,7 +200,7 @@ double cs_drum_step(void);
 
 /* Opens the scene; the accuracy must still be set. Returns false if it cannot be opened:
  * probe->error says why. cs_probe_close must be called in any case. */
-bool cs_drum_open(struct cs_probe *probe, const struct cs_conform *card,
+bool cs_drum_open(struct cs_probe *probe, const struct cs_conform *conform,
                   const struct cs_integrator *method, const struct cs_drum *drum);
 
 /* Runs the given method, of the card or another one, over CS_DRUM_FRAMES. step_or_rtol: the
@@ -208,15 +208,15 @@ bool cs_drum_open(struct cs_probe *probe, const struct cs_conform *card,
  * drum->fixed_steps. state: (2, CS_DRUM_VALUES), positions then velocities at the end. Returns
  * false if the run ended early, or took more steps than the given length asks for: the row says
  * why. */
-bool cs_drum_state(const struct cs_conform *card, const struct cs_integrator *method,
+bool cs_drum_state(const struct cs_conform *conform, const struct cs_integrator *method,
                    const struct cs_drum *drum, double step_or_rtol, double *state,
                    struct cs_conform_row *row);
 
 /* Reference state at the end, from the cache or by a run. scale: root mean square of its
  * displacement (m) and of its change of velocity (m/s) since the start, which make errors
  * relative. Returns false if there is none: the row says why. */
-bool cs_drum_reference(const struct cs_conform *card, const struct cs_drum *drum, double *state,
-                       double scale[2], struct cs_conform_row *row);
+bool cs_drum_reference(const struct cs_conform *conform, const struct cs_drum *drum,
+                       double *state, double scale[2], struct cs_conform_row *row);
 
 /* CS_CONFORM_SPRINGS: the check compares with the motion of springs, which a method of another
  * model (CS_FIDELITY_OTHER) does not follow. It is skipped for such a method. */
@@ -279,7 +279,7 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     X("cuts", cuts, ANY, "the same bits however parallel_for cuts its items")                  \
     X("resume", resume, ANY, "a resumed run equals the uninterrupted one")
 #define X(name, function, of, what)                                                            \
-    void cs_check_##function(const struct cs_conform *card, struct cs_conform_row *row);
+    void cs_check_##function(const struct cs_conform *conform, struct cs_conform_row *row);
 
 CS_CONFORM_LIST(X)
 #undef X

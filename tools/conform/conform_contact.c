@@ -88,12 +88,12 @@ enum { THIN_FRAMES = 6, THIN_BELOW = 25 };
 enum { BOUNCE_FRAMES = 25 };
 
 /* Skips methods that do not support contact by force, or whose accuracy cannot be set. */
-static bool takes_contact(const struct cs_conform *card, struct cs_conform_row *row) {
-    if (card->method->traits & CS_EXPLICIT_OUTER) {
+static bool takes_contact(const struct cs_conform *conform, struct cs_conform_row *row) {
+    if (conform->method->traits & CS_EXPLICIT_OUTER) {
         cs_row_skip(row, "it is refused with contact by force");
         return false;
     }
-    return cs_probe_can_be_set(card, row);
+    return cs_probe_can_be_set(conform, row);
 }
 
 /* Mean velocity in m/s down the slope, towards +x. */
@@ -106,11 +106,12 @@ static double sliding(const struct cs_probe *block, double a) {
 
 /* One slope of the given tangent. The first five frames let the start decay; the mean
  * acceleration (t > mu) or the velocity (t < mu) of the next five is compared. */
-static void slide(const struct cs_conform *card, struct cs_conform_row *row, double tangent) {
+static void slide(const struct cs_conform *conform, struct cs_conform_row *row,
+                  double tangent) {
     const double a = atan(tangent),
                  d = cs_barrier_loaded_distance(RANGE, STIFF, MASS * G * cos(a));
     struct cs_probe block;
-    cs_probe_open(&block, card, card->method, BLOCK, sin(a) * d, cos(a) * d, -sin(a / 2),
+    cs_probe_open(&block, conform, conform->method, BLOCK, sin(a) * d, cos(a) * d, -sin(a / 2),
                   cos(a / 2), sin(a), cos(a));
     cs_probe_set_level(&block, STEP, 1, 1, 0);
     cs_probe_run(&block, 5);
@@ -133,21 +134,21 @@ static void slide(const struct cs_conform *card, struct cs_conform_row *row, dou
     cs_probe_close(&block);
 }
 
-void cs_check_contact_incline(const struct cs_conform *card, struct cs_conform_row *row) {
-    if (!takes_contact(card, row))
+void cs_check_contact_incline(const struct cs_conform *conform, struct cs_conform_row *row) {
+    if (!takes_contact(conform, row))
         return;
-    slide(card, row, 0.2);
-    slide(card, row, 0.5);
+    slide(conform, row, 0.2);
+    slide(conform, row, 0.5);
 }
 
 /* A stretched sheet dropped on a floor: only friction and damping can stop it. A step too long
  * for friction shows as chatter of the size of friction_speed. */
-void cs_check_contact_rest(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_contact_rest(const struct cs_conform *conform, struct cs_conform_row *row) {
     struct cs_probe sheet;
     double squares = 0;
-    if (!takes_contact(card, row))
+    if (!takes_contact(conform, row))
         return;
-    cs_probe_open(&sheet, card, card->method, SHEET);
+    cs_probe_open(&sheet, conform, conform->method, SHEET);
     cs_probe_set_level(&sheet, STEP, 1, 1, 0);
     if (!cs_probe_run(&sheet, 30))
         cs_row_fail(row, "%s", sheet.error.message);
@@ -169,15 +170,15 @@ static double lowest(const struct cs_probe *sheet) {
 
 /* Contact without friction and damping is conservative: the total energy may not grow by more
  * than half the expected error. The check fails if the sheet never came near the plane. */
-void cs_check_contact_energy(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_contact_energy(const struct cs_conform *conform, struct cs_conform_row *row) {
     struct cs_probe sheet;
     double start = (double)NAN, worst = 0, low = HUGE_VAL;
-    if (!takes_contact(card, row))
+    if (!takes_contact(conform, row))
         return;
-    if (cs_probe_open(&sheet, card, card->method, BOUNCE))
+    if (cs_probe_open(&sheet, conform, conform->method, BOUNCE))
         start = cs_probe_energy(&sheet);
     const double share = cs_probe_set_level(&sheet, 0.05 / BOUNCE_RATE, BOUNCE_RATE,
-                                            card->method->order > 1 ? 2 : 1, 0);
+                                            conform->method->order > 1 ? 2 : 1, 0);
     for (int k = 0; k < BOUNCE_FRAMES && cs_probe_run(&sheet, 1); k++) {
         worst = fmax(worst, (cs_probe_energy(&sheet) - start) / start);
         low = fmin(low, lowest(&sheet));
@@ -202,7 +203,7 @@ static bool takes_given_step(const struct cs_integrator *method) {
 
 /* Least and largest fraction of the energy that throws at a speed keep, over phases: where in a
  * step the sheet meets the floor. Returns false if a run ended. */
-static bool throw_sheets(const struct cs_conform *card, struct cs_conform_row *row,
+static bool throw_sheets(const struct cs_conform *conform, struct cs_conform_row *row,
                          double speed, double kept[2]) {
     bool done = true;
     kept[0] = HUGE_VAL, kept[1] = 0;
@@ -212,9 +213,9 @@ static bool throw_sheets(const struct cs_conform *card, struct cs_conform_row *r
         const double height = THROW_RANGE + speed * (1 + phase) / 60;
         struct cs_probe sheet;
         double start = (double)NAN;
-        if (cs_probe_open(&sheet, card, card->method, THROW, -speed, height))
+        if (cs_probe_open(&sheet, conform, conform->method, THROW, -speed, height))
             start = cs_probe_energy(&sheet);
-        if (takes_given_step(card->method))
+        if (takes_given_step(conform->method))
             cs_probe_set_level(&sheet, 0.03 * THROW_RANGE / speed, 1, 1, 0);
         done = cs_probe_run(&sheet, THROW_FRAMES);
         if (done) {
@@ -229,11 +230,11 @@ static bool throw_sheets(const struct cs_conform *card, struct cs_conform_row *r
 }
 
 /* The law keeps all; what a method keeps at its own step is stated, and a large gain fails. */
-void cs_check_restitution(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_restitution(const struct cs_conform *conform, struct cs_conform_row *row) {
     double slow[2], fast[2];
-    if (card->method->traits & CS_EXPLICIT_OUTER)
+    if (conform->method->traits & CS_EXPLICIT_OUTER)
         cs_row_skip(row, "it is refused with contact by force");
-    else if (throw_sheets(card, row, 2, slow) && throw_sheets(card, row, 10, fast))
+    else if (throw_sheets(conform, row, 2, slow) && throw_sheets(conform, row, 10, fast))
         cs_row_state(row, fmax(0, fmax(slow[1], fast[1]) - 1), GAIN_MAX,
                      "of the energy gained; impacts keep %.3f to %.3f at 2 m/s, %.3f to %.3f "
                      "at 10 m/s",
@@ -255,13 +256,13 @@ static uint32_t count_passed(const struct cs_probe *sheets) {
 /* A method that asks max_step_fraction claims to shorten its step. One that never asks claims
  * nothing, and is right as it is: the guard is then nobody's. Where the step is the user's to
  * choose, the sheets may well fly apart too fast: that is for `restitution` to judge. */
-void cs_check_crossing(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_crossing(const struct cs_conform *conform, struct cs_conform_row *row) {
     struct cs_probe sheets;
-    if (card->method->traits & CS_EXPLICIT_OUTER) {
+    if (conform->method->traits & CS_EXPLICIT_OUTER) {
         cs_row_skip(row, "it is refused with contact by force");
         return;
     }
-    if (cs_probe_open(&sheets, card, card->method, THIN))
+    if (cs_probe_open(&sheets, conform, conform->method, THIN))
         sheets.trace.enabled = true;
     const bool ended = !cs_probe_run(&sheets, THIN_FRAMES);
     if (!sheets.asks_step_fraction && sheets.session.run.outcome != CS_GAVE_UP) {

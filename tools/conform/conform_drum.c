@@ -49,10 +49,10 @@ static bool reverse_velocities(struct cs_probe *probe, double t, double dt, doub
 }
 
 /* Opens the scene with frames that are a whole part of CS_DRUM_FRAME. */
-static bool open_frames(struct cs_probe *probe, const struct cs_conform *card,
+static bool open_frames(struct cs_probe *probe, const struct cs_conform *conform,
                         const struct cs_integrator *method, const struct cs_drum *drum,
                         double frame) {
-    if (!cs_probe_open(probe, card, method, DRUM, drum->damping, 1 / frame,
+    if (!cs_probe_open(probe, conform, method, DRUM, drum->damping, 1 / frame,
                        drum->has_contact ? PLANE : ""))
         return false;
     if (drum->has_velocity_jump)
@@ -60,12 +60,12 @@ static bool open_frames(struct cs_probe *probe, const struct cs_conform *card,
     return true;
 }
 
-bool cs_drum_open(struct cs_probe *probe, const struct cs_conform *card,
+bool cs_drum_open(struct cs_probe *probe, const struct cs_conform *conform,
                   const struct cs_integrator *method, const struct cs_drum *drum) {
-    return open_frames(probe, card, method, drum, CS_DRUM_FRAME);
+    return open_frames(probe, conform, method, drum, CS_DRUM_FRAME);
 }
 
-bool cs_drum_state(const struct cs_conform *card, const struct cs_integrator *method,
+bool cs_drum_state(const struct cs_conform *conform, const struct cs_integrator *method,
                    const struct cs_drum *drum, double step_or_rtol, double *state,
                    struct cs_conform_row *row) {
     const bool by_tolerance = method->traits & CS_ADAPTIVE && !drum->fixed_steps;
@@ -73,7 +73,7 @@ bool cs_drum_state(const struct cs_conform *card, const struct cs_integrator *me
     const double frame = by_frames ? step_or_rtol : CS_DRUM_FRAME;
     const uint32_t frames = (uint32_t)lround(CS_DRUM_FRAMES * CS_DRUM_FRAME / frame);
     struct cs_probe probe;
-    open_frames(&probe, card, method, drum, frame);
+    open_frames(&probe, conform, method, drum, frame);
     if (by_tolerance)
         cs_probe_set_tolerance(&probe, step_or_rtol);
     else
@@ -94,16 +94,16 @@ bool cs_drum_state(const struct cs_conform *card, const struct cs_integrator *me
 
 /* Runs the reference, and opens the scene once more for the start that the scale is taken from.
  */
-static bool run_reference(const struct cs_conform *card, const struct cs_drum *drum,
+static bool run_reference(const struct cs_conform *conform, const struct cs_drum *drum,
                           double *state, double scale[2], struct cs_conform_row *row) {
     struct cs_probe start;
     double coarse[2 * CS_DRUM_VALUES];
-    if (!cs_drum_state(card, &cs_conform_reference, drum, 2 * REFERENCE_STEP, coarse, row) ||
-        !cs_drum_state(card, &cs_conform_reference, drum, REFERENCE_STEP, state, row))
+    if (!cs_drum_state(conform, &cs_conform_reference, drum, 2 * REFERENCE_STEP, coarse, row) ||
+        !cs_drum_state(conform, &cs_conform_reference, drum, REFERENCE_STEP, state, row))
         return false;
     for (size_t i = 0; i < 2 * CS_DRUM_VALUES; i++)
         state[i] += (state[i] - coarse[i]) / 15;
-    const bool opened = cs_drum_open(&start, card, &cs_conform_reference, drum);
+    const bool opened = cs_drum_open(&start, conform, &cs_conform_reference, drum);
     if (opened) {
         scale[0] = cs_rms_difference(state, start.x, CS_DRUM_VALUES);
         scale[1] = cs_rms_difference(state + CS_DRUM_VALUES, start.v, CS_DRUM_VALUES);
@@ -113,18 +113,18 @@ static bool run_reference(const struct cs_conform *card, const struct cs_drum *d
     return opened;
 }
 
-bool cs_drum_reference(const struct cs_conform *card, const struct cs_drum *drum, double *state,
-                       double scale[2], struct cs_conform_row *row) {
+bool cs_drum_reference(const struct cs_conform *conform, const struct cs_drum *drum,
+                       double *state, double scale[2], struct cs_conform_row *row) {
     enum { STATE = 2 * CS_DRUM_VALUES };
     double made[STATE + 2];
     char name[64];
     snprintf(name, sizeof name, "drum, damping %g%s%s", drum->damping,
              drum->has_velocity_jump ? ", kicked" : "", drum->has_contact ? ", touching" : "");
-    const double *kept = cs_conform_cache_find(card->cache, name, STATE + 2);
+    const double *kept = cs_conform_cache_find(conform->cache, name, STATE + 2);
     if (!kept) {
-        if (!run_reference(card, drum, made, made + STATE, row))
+        if (!run_reference(conform, drum, made, made + STATE, row))
             return false;
-        cs_conform_cache_store(card->cache, name, made, STATE + 2);
+        cs_conform_cache_store(conform->cache, name, made, STATE + 2);
         kept = made;
     }
     memcpy(state, kept, STATE * sizeof *state);

@@ -63,14 +63,14 @@ enum { LINKS = 5, PARTICLES = 2 * LINKS, Y = PARTICLES, Z = 2 * PARTICLES };
 #define LEAST 1e-9  /* N/m, the smallest stiffness that a scene takes */
 
 /* False, and the row says why, if the check does not apply. */
-static bool applies(const struct cs_conform *card, struct cs_conform_row *row) {
-    const struct cs_integrator *method = card->method;
+static bool applies(const struct cs_conform *conform, struct cs_conform_row *row) {
+    const struct cs_integrator *method = conform->method;
     if (method->fidelity != CS_FIDELITY_ODE)
         cs_row_skip(row, "it claims another fidelity");
     else if (method->traits & CS_ADAPTIVE && method->traits & CS_MULTISTEP)
         cs_row_skip(row, "it begins at a lower order than its own");
     else
-        return cs_probe_can_be_set(card, row);
+        return cs_probe_can_be_set(conform, row);
     return false;
 }
 
@@ -80,9 +80,9 @@ struct claim {
     bool one_step;
 };
 
-static struct claim claim_of(const struct cs_conform *card, bool damped) {
-    return (struct claim){cs_method_order(card->method, card->options, damped),
-                          !(card->method->traits & CS_MULTISTEP)};
+static struct claim claim_of(const struct cs_conform *conform, bool damped) {
+    return (struct claim){cs_method_order(conform->method, conform->options, damped),
+                          !(conform->method->traits & CS_MULTISTEP)};
 }
 
 /* Runs the scene. A method without dt takes a step a frame, or shorter ones as it likes. */
@@ -108,10 +108,10 @@ static void state(struct cs_conform_row *row, const struct claim *claim, uint32_
                      "of the %s of particle %u, a polynomial of degree %u", what, link, degree);
 }
 
-static void fall(const struct cs_conform *card, struct cs_conform_row *row, bool grows) {
-    const struct claim claim = claim_of(card, false);
+static void fall(const struct cs_conform *conform, struct cs_conform_row *row, bool grows) {
+    const struct claim claim = claim_of(conform, false);
     struct cs_probe sheet;
-    cs_probe_open(&sheet, card, card->method, FALLING, grows ? RAMP : "");
+    cs_probe_open(&sheet, conform, conform->method, FALLING, grows ? RAMP : "");
     if (run(&sheet, &claim, row)) {
         const double g = GRAVITY, j = grows ? GROWTH : 0, v = 2;
         const double path = sheet.x[sheet.n] - sheet.session.system.start[sheet.n];
@@ -125,23 +125,23 @@ static void fall(const struct cs_conform *card, struct cs_conform_row *row, bool
     cs_probe_close(&sheet);
 }
 
-void cs_check_polynomials(const struct cs_conform *card, struct cs_conform_row *row) {
-    if (!applies(card, row))
+void cs_check_polynomials(const struct cs_conform *conform, struct cs_conform_row *row) {
+    if (!applies(conform, row))
         return;
-    fall(card, row, false);
+    fall(conform, row, false);
     struct cs_conform_row growing = *row;
-    fall(card, &growing, true);
+    fall(conform, &growing, true);
     // a method may refuse events
-    if (!*card->refused)
+    if (!*conform->refused)
         *row = growing;
-    *card->refused = false;
+    *conform->refused = false;
 }
 
 /* State (6, PARTICLES) of the chain, with a stiffness in N/m and a damping in N s/m. */
-static bool run_chain(const struct cs_conform *card, struct cs_conform_row *row,
+static bool run_chain(const struct cs_conform *conform, struct cs_conform_row *row,
                       const struct claim *claim, double k, double d, double *state) {
     struct cs_probe chain;
-    cs_probe_open(&chain, card, card->method, CHAIN, k, d, k, d, k, d, k, d);
+    cs_probe_open(&chain, conform, conform->method, CHAIN, k, d, k, d, k, d, k, d);
     const bool done = run(&chain, claim, row);
     if (done)
         memcpy(state, chain.x, 6 * PARTICLES * sizeof *state);
@@ -151,10 +151,10 @@ static bool run_chain(const struct cs_conform *card, struct cs_conform_row *row,
 
 /* By stitches the place along y and the speed along z of the first link reach the others in two
  * degrees each. */
-static void pull(const struct cs_conform *card, struct cs_conform_row *row) {
-    const struct claim claim = claim_of(card, false);
+static void pull(const struct cs_conform *conform, struct cs_conform_row *row) {
+    const struct claim claim = claim_of(conform, false);
     double links[6 * PARTICLES], share = 1;
-    if (!run_chain(card, row, &claim, SOFT * MASS, 0, links))
+    if (!run_chain(conform, row, &claim, SOFT * MASS, 0, links))
         return;
     for (uint32_t j = 1; j < LINKS; j++) {
         const double *x = links + 2 * j, *v = x + 3 * PARTICLES;
@@ -170,11 +170,11 @@ static void pull(const struct cs_conform *card, struct cs_conform_row *row) {
 
 /* By dampers the speed reaches them in one degree. A stitch has some stiffness: its part, which
  * is linear in it where it is small, is taken out by a run with twice as much. */
-static void drag(const struct cs_conform *card, struct cs_conform_row *row) {
-    const struct claim claim = claim_of(card, true);
+static void drag(const struct cs_conform *conform, struct cs_conform_row *row) {
+    const struct claim claim = claim_of(conform, true);
     double links[6 * PARTICLES], stiffer[6 * PARTICLES], share = 1;
-    if (!run_chain(card, row, &claim, LEAST, SOFT * MASS, links) ||
-        !run_chain(card, row, &claim, 2 * LEAST, SOFT * MASS, stiffer))
+    if (!run_chain(conform, row, &claim, LEAST, SOFT * MASS, links) ||
+        !run_chain(conform, row, &claim, 2 * LEAST, SOFT * MASS, stiffer))
         return;
     for (size_t i = 0; i < 6 * PARTICLES; i++)
         links[i] = 2 * links[i] - stiffer[i];
@@ -188,13 +188,13 @@ static void drag(const struct cs_conform *card, struct cs_conform_row *row) {
     }
 }
 
-void cs_check_order_conditions(const struct cs_conform *card, struct cs_conform_row *row) {
-    if (!applies(card, row))
+void cs_check_order_conditions(const struct cs_conform *conform, struct cs_conform_row *row) {
+    if (!applies(conform, row))
         return;
-    if (card->method->traits & CS_IMPLICIT) {
+    if (conform->method->traits & CS_IMPLICIT) {
         cs_row_skip(row, "its solves leave more than these motions");
         return;
     }
-    pull(card, row);
-    drag(card, row);
+    pull(conform, row);
+    drag(conform, row);
 }

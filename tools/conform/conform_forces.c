@@ -33,7 +33,7 @@ enum { TRUTH = sizeof(struct truth) / sizeof(double) };
 
 /* A scene that a card's method is compared in. Pointers are borrowed. */
 struct trial {
-    const struct cs_conform *card;
+    const struct cs_conform *conform;
     struct cs_conform_row *row;
     const struct cs_force_scene *scene;
     struct truth truth;
@@ -47,7 +47,7 @@ struct trial {
 static bool run_to(struct trial *trial, const struct cs_integrator *method, double accuracy,
                    double *state) {
     struct cs_probe probe;
-    if (cs_probe_open(&probe, trial->card, method, "%s", trial->scene->json))
+    if (cs_probe_open(&probe, trial->conform, method, "%s", trial->scene->json))
         memcpy(trial->start, probe.x, 6 * probe.n * sizeof *state);
     if (accuracy > 0)
         cs_probe_set_step(&probe, accuracy);
@@ -81,7 +81,7 @@ static bool run_reference(struct trial *trial) {
 
 /* Takes the reference from the cache or runs it. The description is the key: it is unique. */
 static bool compute_reference(struct trial *trial) {
-    struct cs_conform_cache *cache = trial->card->cache;
+    struct cs_conform_cache *cache = trial->conform->cache;
     const char *key = trial->scene->description;
     const double *kept = cs_conform_cache_find(cache, key, TRUTH);
     if (kept)
@@ -125,7 +125,7 @@ enum { LEVELS = 6, HIGH_ORDER_LEVELS = 5 };
  * at most 1.2e-5, 5e-9 and 2e-10 were measured. */
 static void follow_steps(struct trial *trial) {
     static const double bounds[] = {2e-5, 2e-8, 1e-9};
-    const struct cs_integrator *method = trial->card->method;
+    const struct cs_integrator *method = trial->conform->method;
     const double w = trial->scene->rate,
                  longest = LIMIT_PART / ceil(LIMIT_PART * w / LIMIT_COARSE);
     const uint32_t order = trial->order;
@@ -152,8 +152,8 @@ static void follow_steps(struct trial *trial) {
  * tightest one a few times that are allowed. */
 static void follow_tolerances(struct trial *trial) {
     static const char *const texts[] = {"coarse", "fine", "in the limit"};
-    const struct cs_integrator *method = trial->card->method;
-    const double tight = cs_probe_tightest_tolerance(trial->card), p = trial->order;
+    const struct cs_integrator *method = trial->conform->method;
+    const double tight = cs_probe_tightest_tolerance(trial->conform), p = trial->order;
     const double rtol[] = {1e-5, 1e-7, tight};
     const double allowed[] = {CS_TOLERANCE_FACTOR * rtol[0], CS_TOLERANCE_FACTOR * rtol[1],
                               5 * pow(tight, p / (p + 1))};
@@ -164,19 +164,19 @@ static void follow_tolerances(struct trial *trial) {
 }
 
 /* A trial without runs. */
-static struct trial trial_of(const struct cs_conform *card, struct cs_conform_row *row,
+static struct trial trial_of(const struct cs_conform *conform, struct cs_conform_row *row,
                              const struct cs_force_scene *scene) {
-    return (struct trial){
-        .card = card,
-        .row = row,
-        .scene = scene,
-        .order = cs_method_order(card->method, card->options, scene->depends_on_velocity)};
+    return (struct trial){.conform = conform,
+                          .row = row,
+                          .scene = scene,
+                          .order = cs_method_order(conform->method, conform->options,
+                                                   scene->depends_on_velocity)};
 }
 
 /* At fixed steps, or at tolerances. */
-static void follow(const struct cs_conform *card, struct cs_conform_row *row,
+static void follow(const struct cs_conform *conform, struct cs_conform_row *row,
                    const struct cs_force_scene *scene, bool fixed) {
-    struct trial trial = trial_of(card, row, scene);
+    struct trial trial = trial_of(conform, row, scene);
     if (!compute_reference(&trial))
         return;
     if (fixed)
@@ -186,33 +186,33 @@ static void follow(const struct cs_conform *card, struct cs_conform_row *row,
 }
 
 /* True if the scene belongs to the check and suits the model of the method. */
-static bool is_for(const struct cs_conform *card, const struct cs_force_scene *scene,
+static bool is_for(const struct cs_conform *conform, const struct cs_force_scene *scene,
                    const char *check) {
     return !strcmp(scene->check, check) &&
-           !(scene->deforms && card->method->fidelity == CS_FIDELITY_OTHER) &&
-           !(strstr(scene->json, "\"elastic\"") && cs_plan_has_own_springs(card->method));
+           !(scene->deforms && conform->method->fidelity == CS_FIDELITY_OTHER) &&
+           !(strstr(scene->json, "\"elastic\"") && cs_plan_has_own_springs(conform->method));
 }
 
 /* Runs all scenes of a check, at the order that the method claims for forces of that kind. */
-static void check_scenes(const struct cs_conform *card, struct cs_conform_row *row) {
+static void check_scenes(const struct cs_conform *conform, struct cs_conform_row *row) {
     bool any = false;
-    if (!cs_probe_can_be_set(card, row))
+    if (!cs_probe_can_be_set(conform, row))
         return;
     for (uint32_t k = 0; k < cs_n_force_scenes; k++) {
-        if (!is_for(card, cs_force_scenes + k, row->check))
+        if (!is_for(conform, cs_force_scenes + k, row->check))
             continue;
         any = true;
-        follow(card, row, cs_force_scenes + k, !(card->method->traits & CS_ADAPTIVE));
+        follow(conform, row, cs_force_scenes + k, !(conform->method->traits & CS_ADAPTIVE));
     }
     if (!any)
-        cs_row_skip(row, card->method->fidelity == CS_FIDELITY_OTHER
+        cs_row_skip(row, conform->method->fidelity == CS_FIDELITY_OTHER
                              ? "another model: it does not follow the motion of springs"
                              : "springs of its own: it refuses elastic bodies");
 }
 
 #define X(function)                                                                            \
-    void cs_check_##function(const struct cs_conform *card, struct cs_conform_row *row) {      \
-        check_scenes(card, row);                                                               \
+    void cs_check_##function(const struct cs_conform *conform, struct cs_conform_row *row) {   \
+        check_scenes(conform, row);                                                            \
     }
 X(force_gravity)
 X(force_springs)
@@ -228,42 +228,42 @@ X(mixed_laws)
 #undef X
 
 /* True if the order is measured by fixed steps. */
-static bool has_stage_times(const struct cs_conform *card) {
-    return cs_method_has(card->method, "dt") &&
-           cs_method_order(card->method, card->options, false) > 1;
+static bool has_stage_times(const struct cs_conform *conform) {
+    return cs_method_has(conform->method, "dt") &&
+           cs_method_order(conform->method, conform->options, false) > 1;
 }
 
 /* Tests whether forces are followed in time at all: at order 1, which also a method passes that
  * evaluates a force at the wrong end of the step. stage-times tests the order. */
-void cs_check_time_dependence(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_time_dependence(const struct cs_conform *conform, struct cs_conform_row *row) {
     double state[2 * CS_FORCE_VALUES];
-    if (!cs_probe_can_be_set(card, row))
+    if (!cs_probe_can_be_set(conform, row))
         return;
     for (uint32_t k = 0; k < cs_n_force_scenes; k++) {
         const struct cs_force_scene *scene = cs_force_scenes + k;
-        struct trial trial = trial_of(card, row, scene);
-        if (!is_for(card, scene, row->check))
+        struct trial trial = trial_of(conform, row, scene);
+        if (!is_for(conform, scene, row->check))
             continue;
-        if (!has_stage_times(card))
-            follow(card, row, scene, !(card->method->traits & CS_ADAPTIVE));
+        if (!has_stage_times(conform))
+            follow(conform, row, scene, !(conform->method->traits & CS_ADAPTIVE));
         else if (compute_reference(&trial) &&
-                 run_to(&trial, card->method, FINE / scene->rate, state))
+                 run_to(&trial, conform->method, FINE / scene->rate, state))
             state_errors(&trial, state, bound_of(scene, FINE), "fine");
     }
 }
 
 /* A stage that evaluates forces at a time other than its own reduces the order to 1. Steps are
  * fixed: a method that chooses its steps would compensate for the lost order. */
-void cs_check_stage_times(const struct cs_conform *card, struct cs_conform_row *row) {
-    if (!has_stage_times(card)) {
-        cs_row_skip(row, cs_method_has(card->method, "dt")
+void cs_check_stage_times(const struct cs_conform *conform, struct cs_conform_row *row) {
+    if (!has_stage_times(conform)) {
+        cs_row_skip(row, cs_method_has(conform->method, "dt")
                              ? "its order is 1: see time-dependence"
-                         : card->method->traits & CS_ADAPTIVE
+                         : conform->method->traits & CS_ADAPTIVE
                              ? "it chooses its own steps: see time-dependence"
                              : "it has no option dt");
         return;
     }
     for (uint32_t k = 0; k < cs_n_force_scenes; k++)
-        if (is_for(card, cs_force_scenes + k, "time-dependence"))
-            follow(card, row, cs_force_scenes + k, true);
+        if (is_for(conform, cs_force_scenes + k, "time-dependence"))
+            follow(conform, row, cs_force_scenes + k, true);
 }

@@ -31,7 +31,7 @@
 enum { FRAMES = 2, CUT_FRAMES = 5, CUTS = 8 };
 
 /* Hash of the state after FRAMES. Returns false if there is none: the row says why. */
-static bool hash_with(uint32_t threads, const struct cs_conform *card,
+static bool hash_with(uint32_t threads, const struct cs_conform *conform,
                       struct cs_conform_row *row, char hash[CS_HASH_DIGITS]) {
     struct cs_probe probe = {0};
     struct cs_error error = {0};
@@ -39,7 +39,7 @@ static bool hash_with(uint32_t threads, const struct cs_conform *card,
         cs_row_fail(row, "%s", error.message);
         return false;
     }
-    if (cs_probe_open(&probe, card, card->method, SHARED) && cs_probe_run(&probe, FRAMES))
+    if (cs_probe_open(&probe, conform, conform->method, SHARED) && cs_probe_run(&probe, FRAMES))
         cs_hash_doubles(probe.x, 6 * probe.n, hash);
     else
         cs_row_fail(row, "with %u thread%s: %s", threads, threads == 1 ? "" : "s",
@@ -50,14 +50,14 @@ static bool hash_with(uint32_t threads, const struct cs_conform *card,
     return !ended;
 }
 
-void cs_check_threads(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_threads(const struct cs_conform *conform, struct cs_conform_row *row) {
     static const uint32_t threads[] = {2, 3, 7};
     char one[CS_HASH_DIGITS], several[CS_HASH_DIGITS];
-    if (!hash_with(1, card, row, one))
+    if (!hash_with(1, conform, row, one))
         return;
     uint32_t differ = 0;
     for (size_t k = 0; k < sizeof threads / sizeof *threads; k++) {
-        if (!hash_with(threads[k], card, row, several))
+        if (!hash_with(threads[k], conform, row, several))
             return;
         differ += strcmp(one, several) != 0;
     }
@@ -95,7 +95,7 @@ static void cut_all(size_t n, void (*part)(void *arg, size_t begin, size_t end),
 
 /* The host cuts loops into pieces that depend on the threads, but not by every number of items:
  * here they are cut at random. A sum over pieces would show. */
-void cs_check_cuts(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_cuts(const struct cs_conform *conform, struct cs_conform_row *row) {
     struct cs_vector_kernels kernels = cs_vector_kernels;
     char hash[CS_HASH_DIGITS], first[CS_HASH_DIGITS];
     uint32_t differ = 0;
@@ -103,7 +103,7 @@ void cs_check_cuts(const struct cs_conform *card, struct cs_conform_row *row) {
     for (seed = 0; seed <= CUTS && row->verdict != CS_VERDICT_FAIL;) {
         const uint32_t layout = seed;
         struct cs_probe sheet;
-        cs_probe_open(&sheet, card, card->method, SHEET);
+        cs_probe_open(&sheet, conform, conform->method, SHEET);
         sheet.session.settings.run.vector = layout > 0 ? &kernels : NULL;
         if (cs_probe_run(&sheet, CUT_FRAMES)) {
             cs_hash_doubles(sheet.x, 6 * sheet.n, layout > 0 ? hash : first);
@@ -172,7 +172,7 @@ static bool watched_frame(struct cs_probe *probe, struct ledger *ledger) {
 }
 
 /* Some frames run first: the host and libraries may allocate at their first use. */
-void cs_check_allocation(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_allocation(const struct cs_conform *conform, struct cs_conform_row *row) {
     /* without an account nothing can be seen, which is no pass */
     if (bytes_allocated() == 0) {
         cs_row_skip(row, "this C library does not report its memory use");
@@ -180,7 +180,7 @@ void cs_check_allocation(const struct cs_conform *card, struct cs_conform_row *r
     }
     struct cs_probe sheet;
     struct ledger ledger = {.most = 0};
-    cs_probe_open(&sheet, card, card->method, SHEET);
+    cs_probe_open(&sheet, conform, conform->method, SHEET);
     sheet.on_commit = count_allocations;
     cs_probe_run(&sheet, WARM_UP);
     for (int k = 0; k < WATCHED && !sheet.has_ended; k++)
@@ -218,12 +218,12 @@ void cs_check_allocation(const struct cs_conform *card, struct cs_conform_row *r
 enum { RESUME_FRAMES = 10, BROKEN = 5 };
 
 /* Writes a record after BROKEN frames, or restores the run from one. */
-static bool pass_break(struct cs_probe *probe, struct cs_serialiser *record) {
+static bool pass_break(struct cs_probe *probe, struct cs_serialiser *serialiser) {
     struct cs_run *run = &probe->session.run;
-    if (!probe->has_ended && record->is_reading)
-        probe->has_ended = cs_run_load(run, record, &probe->error);
+    if (!probe->has_ended && serialiser->is_reading)
+        probe->has_ended = cs_run_load(run, serialiser, &probe->error);
     else if (!probe->has_ended)
-        probe->has_ended = cs_run_save(run, record, &probe->error);
+        probe->has_ended = cs_run_save(run, serialiser, &probe->error);
     return !probe->has_ended;
 }
 
@@ -235,18 +235,18 @@ static bool is_same(const struct cs_probe *one, const struct cs_probe *two) {
            a->method.rejected == b->method.rejected && a->method.newton == b->method.newton;
 }
 
-static void resume_in(const struct cs_conform *card, struct cs_conform_row *row,
+static void resume_in(const struct cs_conform *conform, struct cs_conform_row *row,
                       const char *scene) {
     struct cs_probe whole, resumed;
-    struct cs_serialiser record = {0};
+    struct cs_serialiser serialiser = {0};
     uint32_t differ = 0;
-    cs_probe_open(&whole, card, card->method, "%s", scene);
-    cs_probe_open(&resumed, card, card->method, "%s", scene);
-    if (cs_probe_run(&whole, BROKEN) && pass_break(&whole, &record) &&
+    cs_probe_open(&whole, conform, conform->method, "%s", scene);
+    cs_probe_open(&resumed, conform, conform->method, "%s", scene);
+    if (cs_probe_run(&whole, BROKEN) && pass_break(&whole, &serialiser) &&
         cs_probe_run(&resumed, 0)) {
-        record.is_reading = true;
-        pass_break(&resumed, &record);
-        if (!resumed.has_ended && !cs_serialiser_is_done(&record))
+        serialiser.is_reading = true;
+        pass_break(&resumed, &serialiser);
+        if (!resumed.has_ended && !cs_serialiser_is_done(&serialiser))
             cs_row_fail(row, "load reads less than save wrote");
     }
     for (int k = BROKEN;
@@ -257,19 +257,19 @@ static void resume_in(const struct cs_conform *card, struct cs_conform_row *row,
     else
         cs_row_state(
             row, differ, 0, "of %d frames with other bits (%s)", RESUME_FRAMES - BROKEN,
-            cs_run_method_has_history(card->method) ? "it saves its memory"
-                                                    : "it is restarted at checkpoints");
-    cs_serialiser_finish(&record);
+            cs_run_method_has_history(conform->method) ? "it saves its memory"
+                                                       : "it is restarted at checkpoints");
+    cs_serialiser_finish(&serialiser);
     cs_probe_close(&whole);
     cs_probe_close(&resumed);
 }
 
 /* A scene that the method refuses is left out. */
-void cs_check_resume(const struct cs_conform *card, struct cs_conform_row *row) {
-    resume_in(card, row, QUIET);
+void cs_check_resume(const struct cs_conform *conform, struct cs_conform_row *row) {
+    resume_in(conform, row, QUIET);
     struct cs_conform_row eventful = *row;
-    resume_in(card, &eventful, EVENTFUL);
-    if (!*card->refused)
+    resume_in(conform, &eventful, EVENTFUL);
+    if (!*conform->refused)
         *row = eventful;
-    *card->refused = false;
+    *conform->refused = false;
 }

@@ -38,11 +38,11 @@ static double farthest_copies(const struct cs_probe *probe, const double *values
 
 /* A loop that leaves out a range of particles, or takes other values for it, treats the copies
  * differently. */
-void cs_check_copies(const struct cs_conform *card, struct cs_conform_row *row) {
-    const bool clusters = card->method->needs & CS_NEED_CLUSTERS;
+void cs_check_copies(const struct cs_conform *conform, struct cs_conform_row *row) {
+    const bool clusters = conform->method->needs & CS_NEED_CLUSTERS;
     const char *matched = clusters ? ", \"shape_matching\": {\"alpha\": 0.5}" : "";
     struct cs_probe sheets;
-    cs_probe_open(&sheets, card, card->method, COPIES, matched, matched, matched);
+    cs_probe_open(&sheets, conform, conform->method, COPIES, matched, matched, matched);
     cs_probe_set_level(&sheets, 0.1 / RATE, RATE, 1, 0);
     if (!cs_probe_run(&sheets, FRAMES))
         cs_row_fail(row, "%s", sheets.error.message);
@@ -75,11 +75,11 @@ struct units {
 };
 
 /* State (6,n) and mean displacement, both in these units. Returns false if the run ended. */
-static bool run_scaled(const struct cs_conform *card, struct cs_conform_row *row,
+static bool run_scaled(const struct cs_conform *conform, struct cs_conform_row *row,
                        const struct units *units, double *state, double *move) {
     const double m = units->mass, l = units->length, t = units->time, rate = m / t;
     struct cs_probe sheet;
-    cs_probe_open(&sheet, card, card->method, SCALED, l, l, l / 16, l / t / 8, l / t / 4,
+    cs_probe_open(&sheet, conform, conform->method, SCALED, l, l, l / 16, l / t / 8, l / t / 4,
                   l / t / 2, m / 16, 32 * rate / t, 16 * rate / t, 4 * rate / t, rate / 32,
                   -8 * l / t / t, rate / 64, 64 / t);
     cs_probe_set_level(&sheet, t / 512, RATE / t, 1, 0);
@@ -95,19 +95,19 @@ static bool run_scaled(const struct cs_conform *card, struct cs_conform_row *row
 }
 
 /* A force or speed that is clamped, or compared with a constant, does not scale. */
-void cs_check_units(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_units(const struct cs_conform *conform, struct cs_conform_row *row) {
     static const struct units all[] = {{"1 kg, 1 m, 1 s", 1, 1, 1},
                                        {"2^20 kg", 1048576, 1, 1},
                                        {"2^-20 kg", 1 / 1048576.0, 1, 1},
                                        {"2^-10 s", 1, 1, 1 / 1024.0}};
     /* the steps of methods that choose them, and those of shape matching, know the second */
-    const bool any_time =
-        !(card->method->traits & CS_ADAPTIVE) && card->method->fidelity != CS_FIDELITY_OTHER;
+    const bool any_time = !(conform->method->traits & CS_ADAPTIVE) &&
+                          conform->method->fidelity != CS_FIDELITY_OTHER;
     double plain[SCALED_VALUES], scaled[SCALED_VALUES], move;
-    if (!run_scaled(card, row, all, plain, &move))
+    if (!run_scaled(conform, row, all, plain, &move))
         return;
     for (size_t k = 1; k < sizeof all / sizeof *all; k++)
-        if ((all[k].time == 1 || any_time) && run_scaled(card, row, all + k, scaled, &move))
+        if ((all[k].time == 1 || any_time) && run_scaled(conform, row, all + k, scaled, &move))
             cs_row_state(row, cs_rms_difference(plain, scaled, SCALED_VALUES) / move, SMALL,
                          "of the motion changed in units of %s", all[k].text);
 }

@@ -11,20 +11,20 @@ enum { FRAMES = 50 }; /* five seconds: 50 periods of the fastest mode, 10 of the
  * -h undoes a step of h (Hairer, Lubich, Wanner 2006); the equations are reversible, so a
  * symmetric method returns to the start up to rounding. A symplectic method of order 1 is not
  * symmetric. */
-void cs_check_reversible(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_reversible(const struct cs_conform *conform, struct cs_conform_row *row) {
     static const struct cs_drum drum = {0};
     struct cs_probe there, back;
-    if (!(card->method->traits & CS_SYMPLECTIC)) {
+    if (!(conform->method->traits & CS_SYMPLECTIC)) {
         cs_row_skip(row, "it does not claim to be symplectic");
         return;
     }
-    if (card->method->order < 2) {
+    if (conform->method->order < 2) {
         cs_row_skip(row, "a symplectic method of order 1 is not symmetric in time");
         return;
     }
-    cs_drum_open(&there, card, card->method, &drum);
+    cs_drum_open(&there, conform, conform->method, &drum);
     cs_probe_set_level(&there, cs_drum_step(), CS_DRUM_OMEGA, 1, 0);
-    if (cs_drum_open(&back, card, card->method, &drum) &&
+    if (cs_drum_open(&back, conform, conform->method, &drum) &&
         cs_probe_run(&there, CS_DRUM_FRAMES)) {
         double start[CS_DRUM_VALUES];
         /* kept before the run back overwrites it with the end of the run there */
@@ -47,10 +47,10 @@ void cs_check_reversible(const struct cs_conform *card, struct cs_conform_row *r
 
 /* Energy in J of the drum at rest: stretched, without its bump and velocity. It is subtracted
  * to measure gains against the energy of the motion alone. */
-static double rest_energy(const struct cs_conform *card) {
+static double rest_energy(const struct cs_conform *conform) {
     struct cs_probe rest;
     double energy = (double)NAN;
-    if (cs_drum_open(&rest, card, card->method, &(struct cs_drum){0})) {
+    if (cs_drum_open(&rest, conform, conform->method, &(struct cs_drum){0})) {
         memset(rest.x + 2 * rest.n, 0, rest.n * sizeof *rest.x);
         memset(rest.v, 0, 3 * rest.n * sizeof *rest.v);
         energy = cs_probe_energy(&rest);
@@ -65,15 +65,15 @@ static double rest_energy(const struct cs_conform *card) {
  * (Hairer, Lubich, Wanner 2006). The bound is (h w)^2, or h w for order 1. The run is 17 times
  * as long as that of `tolerance`, so an adaptive method is allowed ten times its error there.
  */
-void cs_check_energy(const struct cs_conform *card, struct cs_conform_row *row) {
-    const struct cs_integrator *method = card->method;
+void cs_check_energy(const struct cs_conform *conform, struct cs_conform_row *row) {
+    const struct cs_integrator *method = conform->method;
     const bool both = method->traits & CS_SYMPLECTIC;
     struct cs_probe drum;
     double start = (double)NAN, motion = (double)NAN, worst = 0;
-    if (cs_drum_open(&drum, card, method, &(struct cs_drum){0})) {
+    if (cs_drum_open(&drum, conform, method, &(struct cs_drum){0})) {
         start = cs_probe_energy(&drum);
         /* the energy of the motion alone: the tension of the sheet at rest holds some too */
-        motion = start - rest_energy(card);
+        motion = start - rest_energy(conform);
     }
     const bool adaptive = method->traits & CS_ADAPTIVE;
     const double share = cs_probe_set_level(&drum, cs_drum_step(), CS_DRUM_OMEGA,
@@ -137,11 +137,11 @@ static double mean_shift(const struct cs_probe *probe, size_t component) {
 
 /* One second from rest: the mean must fall by g/2, and no spring may deform. Step sums of a
  * constant acceleration are exact to (h/T)^2, or h/T for order 1. Twice that is allowed. */
-static void check_free_fall(const struct cs_conform *card, struct cs_conform_row *row,
+static void check_free_fall(const struct cs_conform *conform, struct cs_conform_row *row,
                             int level) {
     struct cs_probe sheet;
-    cs_probe_open(&sheet, card, card->method, SHEET, 0.0, 0.0, 0.0, -G);
-    const uint32_t order = lower_order(card->method) > 1 ? 2 : 1;
+    cs_probe_open(&sheet, conform, conform->method, SHEET, 0.0, 0.0, 0.0, -G);
+    const uint32_t order = lower_order(conform->method) > 1 ? 2 : 1;
     const double share = cs_probe_set_level(&sheet, 1.0 / 240, 1, order, level);
     if (!cs_probe_run(&sheet, 60))
         cs_row_fail(row, "%s", sheet.error.message);
@@ -155,20 +155,20 @@ static void check_free_fall(const struct cs_conform *card, struct cs_conform_row
     cs_probe_close(&sheet);
 }
 
-void cs_check_free_fall(const struct cs_conform *card, struct cs_conform_row *row) {
-    if (!cs_probe_can_be_set(card, row))
+void cs_check_free_fall(const struct cs_conform *conform, struct cs_conform_row *row) {
+    if (!cs_probe_can_be_set(conform, row))
         return;
-    check_free_fall(card, row, 0);
-    check_free_fall(card, row, 1);
+    check_free_fall(conform, row, 0);
+    check_free_fall(conform, row, 1);
 }
 
 /* Galilean invariance: a uniform velocity must not change anything, however large. The path
  * must be straight and undeformed to 1e-8 m at any step; methods that damp absolute velocity
  * fail. */
-static void translate(const struct cs_conform *card, struct cs_conform_row *row,
+static void translate(const struct cs_conform *conform, struct cs_conform_row *row,
                       const double speed[3]) {
     struct cs_probe sheet;
-    cs_probe_open(&sheet, card, card->method, SHEET, speed[0], speed[1], speed[2], 0.0);
+    cs_probe_open(&sheet, conform, conform->method, SHEET, speed[0], speed[1], speed[2], 0.0);
     cs_probe_set_level(&sheet, 1.0 / 60, 1, 1, 0);
     if (!cs_probe_run(&sheet, 60))
         cs_row_fail(row, "%s", sheet.error.message);
@@ -185,18 +185,18 @@ static void translate(const struct cs_conform *card, struct cs_conform_row *row,
     cs_probe_close(&sheet);
 }
 
-void cs_check_translation(const struct cs_conform *card, struct cs_conform_row *row) {
-    translate(card, row, (const double[3]){1, 2, 3});
-    translate(card, row, (const double[3]){60, -120, 180});
+void cs_check_translation(const struct cs_conform *conform, struct cs_conform_row *row) {
+    translate(conform, row, (const double[3]){1, 2, 3});
+    translate(conform, row, (const double[3]){60, -120, 180});
 }
 
 /* Two particles on a circle: the spring force k (l - 1) provides the centripetal force m w^2
  * l/2. This gives w^2 = 2 k (l - 1) / (l m). */
-static void check_rotation(const struct cs_conform *card, struct cs_conform_row *row,
+static void check_rotation(const struct cs_conform *conform, struct cs_conform_row *row,
                            int level) {
     const double length = 1.1, w = sqrt(2 * 25 * (length - 1) / length / 0.5), time = 0.5;
     struct cs_probe pair;
-    if (cs_probe_open(&pair, card, card->method, PAIR)) {
+    if (cs_probe_open(&pair, conform, conform->method, PAIR)) {
         for (size_t i = 0; i < 2; i++) {
             const double side = (i ? 0.5 : -0.5) * length;
             pair.x[i] = side;
@@ -204,7 +204,8 @@ static void check_rotation(const struct cs_conform *card, struct cs_conform_row 
             pair.v[2 + i] = w * side;
         }
     }
-    const double share = cs_probe_set_level(&pair, 2e-3, 10, lower_order(card->method), level);
+    const double share =
+        cs_probe_set_level(&pair, 2e-3, 10, lower_order(conform->method), level);
     if (!cs_probe_run(&pair, 10))
         cs_row_fail(row, "%s", pair.error.message);
     else {
@@ -217,11 +218,11 @@ static void check_rotation(const struct cs_conform *card, struct cs_conform_row 
     cs_probe_close(&pair);
 }
 
-void cs_check_rotation(const struct cs_conform *card, struct cs_conform_row *row) {
-    if (!cs_probe_can_be_set(card, row))
+void cs_check_rotation(const struct cs_conform *conform, struct cs_conform_row *row) {
+    if (!cs_probe_can_be_set(conform, row))
         return;
-    check_rotation(card, row, 0);
-    check_rotation(card, row, 1);
+    check_rotation(conform, row, 0);
+    check_rotation(conform, row, 1);
 }
 
 /* A free pair of masses m: the elongation s obeys s'' + 2 d s' + w^2 s = 0 with w^2 = 2 k/m =
@@ -241,15 +242,16 @@ static double elongation(double t) {
 
 /* Compares the elongation at T = 1 s with s(T) from s0 = 0.1 m. The phase error of order (h
  * w)^p accumulates over w T = 10 radians; half of that product is allowed. */
-static void check_oscillator(const struct cs_conform *card, struct cs_conform_row *row,
+static void check_oscillator(const struct cs_conform *conform, struct cs_conform_row *row,
                              const char *model, int level) {
     const double w = 10, expected = REACH * elongation(1);
     struct cs_probe pair;
-    if (cs_probe_open(&pair, card, card->method, OSCILLATOR, model)) {
+    if (cs_probe_open(&pair, conform, conform->method, OSCILLATOR, model)) {
         pair.x[0] -= REACH / 2;
         pair.x[1] += REACH / 2;
     }
-    const double share = cs_probe_set_level(&pair, 5e-3, w, card->method->order_damped, level);
+    const double share =
+        cs_probe_set_level(&pair, 5e-3, w, conform->method->order_damped, level);
     if (!cs_probe_run(&pair, 20))
         cs_row_fail(row, "%s", pair.error.message);
     else {
@@ -263,10 +265,10 @@ static void check_oscillator(const struct cs_conform *card, struct cs_conform_ro
 }
 
 /* Elongation, as a fraction of the reach, after one period, in steps of h. */
-static bool elongation_at(const struct cs_conform *card, struct cs_conform_row *row,
+static bool elongation_at(const struct cs_conform *conform, struct cs_conform_row *row,
                           const char *model, double h, double *found) {
     struct cs_probe pair;
-    if (cs_probe_open(&pair, card, card->method, OSCILLATOR, model)) {
+    if (cs_probe_open(&pair, conform, conform->method, OSCILLATOR, model)) {
         pair.x[0] -= REACH / 2;
         pair.x[1] += REACH / 2;
     }
@@ -282,13 +284,13 @@ static bool elongation_at(const struct cs_conform *card, struct cs_conform_row *
 
 /* Fixed steps are extrapolated to h = 0. The equation is linear and the pair small, so that
  * more digits are left than in other scenes. */
-static void oscillator_limit(const struct cs_conform *card, struct cs_conform_row *row,
+static void oscillator_limit(const struct cs_conform *conform, struct cs_conform_row *row,
                              const char *model) {
-    const uint32_t order = card->method->order_damped;
+    const uint32_t order = conform->method->order_damped;
     const int levels = order > 3 ? 5 : 7;
     double found[7];
     for (int k = 0; k < levels; k++)
-        if (!elongation_at(card, row, model, ldexp(0.025, -k), found + k))
+        if (!elongation_at(conform, row, model, ldexp(0.025, -k), found + k))
             return;
     cs_extrapolate(found, levels, 1, 1, order);
     cs_row_state(row, fabs(found[levels - 1] - elongation(0.6)), order < 2 ? 1e-9 : 1e-12,
@@ -296,22 +298,23 @@ static void oscillator_limit(const struct cs_conform *card, struct cs_conform_ro
 }
 
 /* Both levels of accuracy, and the limit. */
-static void oscillator(const struct cs_conform *card, struct cs_conform_row *row,
+static void oscillator(const struct cs_conform *conform, struct cs_conform_row *row,
                        const char *model) {
-    if (!cs_probe_can_be_set(card, row))
+    if (!cs_probe_can_be_set(conform, row))
         return;
-    check_oscillator(card, row, model, 0);
-    check_oscillator(card, row, model, 1);
-    if (card->method->fidelity == CS_FIDELITY_ODE && cs_method_has(card->method, "dt"))
-        oscillator_limit(card, row, model);
+    check_oscillator(conform, row, model, 0);
+    check_oscillator(conform, row, model, 1);
+    if (conform->method->fidelity == CS_FIDELITY_ODE && cs_method_has(conform->method, "dt"))
+        oscillator_limit(conform, row, model);
 }
 
-void cs_check_oscillator_axial(const struct cs_conform *card, struct cs_conform_row *row) {
-    oscillator(card, row, "axial");
+void cs_check_oscillator_axial(const struct cs_conform *conform, struct cs_conform_row *row) {
+    oscillator(conform, row, "axial");
 }
 
-void cs_check_oscillator_relative(const struct cs_conform *card, struct cs_conform_row *row) {
-    oscillator(card, row, "relative");
+void cs_check_oscillator_relative(const struct cs_conform *conform,
+                                  struct cs_conform_row *row) {
+    oscillator(conform, row, "relative");
 }
 
 /* p: momentum in kg m/s; l: angular momentum about the origin in kg m2/s. scale: the sums of
@@ -339,17 +342,17 @@ static double farthest(const double a[3], const double b[3]) {
 
 /* Relative changes of momentum and angular momentum in half a second without external forces.
  * Returns the error that the method's order explains, NAN if the run ended early. */
-static double drift(const struct cs_conform *card, struct cs_conform_row *row, int level,
+static double drift(const struct cs_conform *conform, struct cs_conform_row *row, int level,
                     double change[2]) {
     double before[2][3], after[2][3], scale[2];
     struct cs_probe sheet;
-    if (cs_probe_open(&sheet, card, card->method, FREE)) {
+    if (cs_probe_open(&sheet, conform, conform->method, FREE)) {
         /* from rest at rest length the momenta would stay 0 with any method */
         cs_perturb_smooth(&sheet.session.system, 0.01, 0.2);
         momenta(&sheet, before[0], before[1], scale);
     }
     double share = cs_probe_set_level(&sheet, 0.1 / FREE_OMEGA, FREE_OMEGA,
-                                      lower_order(card->method), level);
+                                      lower_order(conform->method), level);
     if (!cs_probe_run(&sheet, 5)) {
         cs_row_fail(row, "%s", sheet.error.message);
         share = (double)NAN;
@@ -364,20 +367,20 @@ static double drift(const struct cs_conform *card, struct cs_conform_row *row, i
 }
 
 /* Inner forces cancel in pairs, so any method that adds forces linearly conserves momentum. */
-void cs_check_momentum(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_momentum(const struct cs_conform *conform, struct cs_conform_row *row) {
     double change[2];
-    if (!isnan(drift(card, row, 0, change)))
+    if (!isnan(drift(conform, row, 0, change)))
         cs_row_state(row, change[0], SMALL, "of the momentum lost or gained in 0.5 s");
 }
 
 /* Symplectic methods conserve the quadratic invariant exactly; other methods to their order. */
-void cs_check_angular_momentum(const struct cs_conform *card, struct cs_conform_row *row) {
-    const bool exact = card->method->traits & CS_SYMPLECTIC;
-    if (!exact && !cs_probe_can_be_set(card, row))
+void cs_check_angular_momentum(const struct cs_conform *conform, struct cs_conform_row *row) {
+    const bool exact = conform->method->traits & CS_SYMPLECTIC;
+    if (!exact && !cs_probe_can_be_set(conform, row))
         return;
     for (int level = 0; level < (exact ? 1 : 2); level++) {
         double change[2];
-        const double share = drift(card, row, level, change);
+        const double share = drift(conform, row, level, change);
         if (!isnan(share))
             cs_row_state(row, change[1], exact ? SMALL : fmax(share, 1e-11),
                          "of the angular momentum lost or gained in 0.5 s%s",

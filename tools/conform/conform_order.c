@@ -38,10 +38,10 @@ struct slopes {
 };
 
 /* Runs with a step, and updates errors and slopes. Returns false if the run ended early. */
-static bool add_step(struct slopes *slopes, const struct cs_conform *card,
+static bool add_step(struct slopes *slopes, const struct cs_conform *conform,
                      const struct cs_drum *drum, double h, struct cs_conform_row *row) {
     double state[2 * CS_DRUM_VALUES];
-    if (!cs_drum_state(card, card->method, drum, h, state, row))
+    if (!cs_drum_state(conform, conform->method, drum, h, state, row))
         return false;
     double error[2];
     for (int part = 0; part < 2; part++)
@@ -73,7 +73,7 @@ static uint32_t more_parts(uint32_t parts, bool high) {
  * above rounding is. Positions and velocities are both measured, each relative to its own
  * change. A single slope is not enough: it can cross the value by chance. A high order is at
  * rounding where the others begin: it starts from the longest step that holds. */
-static void measure_order(const struct cs_conform *card, struct cs_conform_row *row,
+static void measure_order(const struct cs_conform *conform, struct cs_conform_row *row,
                           uint32_t order, const struct cs_drum *drum) {
     const bool high = order >= HIGH_ORDER;
     const double bound = high ? HIGH_ORDER_BOUND : 0.1;
@@ -81,12 +81,13 @@ static void measure_order(const struct cs_conform *card, struct cs_conform_row *
     struct slopes slopes = {.reference = reference, .scale = scale, .joined = high};
     uint32_t parts = high ? FIRST_PARTS : (uint32_t)lround(CS_DRUM_FRAME / cs_drum_step());
     bool near = false, settled = false;
-    if (!cs_drum_reference(card, drum, reference, scale, row))
+    if (!cs_drum_reference(conform, drum, reference, scale, row))
         return;
     for (int steps = 0; steps < STEPS_MAX && !settled; parts = more_parts(parts, high)) {
         struct cs_conform_row unstable = *row;
         const bool may_fail = high && slopes.h == 0 && parts < PARTS_MAX;
-        if (!add_step(&slopes, card, drum, CS_DRUM_FRAME / parts, may_fail ? &unstable : row)) {
+        if (!add_step(&slopes, conform, drum, CS_DRUM_FRAME / parts,
+                      may_fail ? &unstable : row)) {
             if (may_fail && unstable.verdict == CS_VERDICT_FAIL)
                 continue;
             *row = unstable.verdict == CS_VERDICT_NONE ? unstable : *row;
@@ -114,16 +115,16 @@ static void measure_order(const struct cs_conform *card, struct cs_conform_row *
 /* Error over tolerance at four tolerances, and the decrease of the error between the first and
  * the third. Where stability limits the step, the error at a loose tolerance is small already:
  * then it need not fall, as long as it stays below the tolerance. */
-static void measure_tolerance(const struct cs_conform *card, struct cs_conform_row *row,
+static void measure_tolerance(const struct cs_conform *conform, struct cs_conform_row *row,
                               const struct cs_drum *drum) {
     static const double tolerances[] = {1e-3, 1e-5, 1e-7, 1e-9};
     enum { TOLERANCES = sizeof tolerances / sizeof *tolerances };
     double reference[2 * CS_DRUM_VALUES], state[2 * CS_DRUM_VALUES], scale[2];
     double error[TOLERANCES];
-    if (!cs_drum_reference(card, drum, reference, scale, row))
+    if (!cs_drum_reference(conform, drum, reference, scale, row))
         return;
     for (int k = 0; k < TOLERANCES; k++) {
-        if (!cs_drum_state(card, card->method, drum, tolerances[k], state, row))
+        if (!cs_drum_state(conform, conform->method, drum, tolerances[k], state, row))
             return;
         error[k] = cs_rms_difference(state, reference, CS_DRUM_VALUES) / scale[0];
         cs_row_state(row, error[k] / tolerances[k], CS_TOLERANCE_FACTOR,
@@ -138,59 +139,61 @@ static void measure_tolerance(const struct cs_conform *card, struct cs_conform_r
 /* An adaptive method has two code paths, fixed and controlled steps, by an option dt. Here the
  * fixed one is tested; `tolerance` tests the other. One without dt takes a step a frame at its
  * loosest tolerance, if no history ties it to its steps. */
-static void order_on(const struct cs_conform *card, struct cs_conform_row *row,
+static void order_on(const struct cs_conform *conform, struct cs_conform_row *row,
                      double damping) {
     const struct cs_drum drum = {.damping = damping, .fixed_steps = true};
-    const uint32_t traits = card->method->traits;
-    if (cs_method_has(card->method, "dt") || (traits & CS_ADAPTIVE && !(traits & CS_MULTISTEP)))
-        measure_order(card, row, cs_method_order(card->method, card->options, damping > 0),
-                      &drum);
+    const uint32_t traits = conform->method->traits;
+    if (cs_method_has(conform->method, "dt") ||
+        (traits & CS_ADAPTIVE && !(traits & CS_MULTISTEP)))
+        measure_order(conform, row,
+                      cs_method_order(conform->method, conform->options, damping > 0), &drum);
     else
         cs_row_skip(row, traits & CS_ADAPTIVE ? "it chooses its own steps: see tolerance"
                                               : "it has no option dt");
 }
 
-void cs_check_order(const struct cs_conform *card, struct cs_conform_row *row) {
-    order_on(card, row, 0);
+void cs_check_order(const struct cs_conform *conform, struct cs_conform_row *row) {
+    order_on(conform, row, 0);
 }
 
-void cs_check_order_damped(const struct cs_conform *card, struct cs_conform_row *row) {
-    order_on(card, row, 0.05);
+void cs_check_order_damped(const struct cs_conform *conform, struct cs_conform_row *row) {
+    order_on(conform, row, 0.05);
 }
 
 /* On the damped drum. */
-void cs_check_tolerance(const struct cs_conform *card, struct cs_conform_row *row) {
-    if (!(card->method->traits & CS_ADAPTIVE))
+void cs_check_tolerance(const struct cs_conform *conform, struct cs_conform_row *row) {
+    if (!(conform->method->traits & CS_ADAPTIVE))
         cs_row_skip(row, "its step is fixed: see order");
-    else if (cs_probe_can_be_set(card, row))
-        measure_tolerance(card, row, &(struct cs_drum){.damping = 0.05});
+    else if (cs_probe_can_be_set(conform, row))
+        measure_tolerance(conform, row, &(struct cs_drum){.damping = 0.05});
 }
 
 /* On the drum whose velocities jump at the end of the first frame. A multistep method must
  * discard its history there. */
-void cs_check_event(const struct cs_conform *card, struct cs_conform_row *row) {
-    const uint32_t order = cs_method_order(card->method, card->options, false);
+void cs_check_event(const struct cs_conform *conform, struct cs_conform_row *row) {
+    const uint32_t order = cs_method_order(conform->method, conform->options, false);
     /* damped, where that keeps the order: a force that is kept is then another one */
-    const bool damped = cs_method_order(card->method, card->options, true) == order;
+    const bool damped = cs_method_order(conform->method, conform->options, true) == order;
     const struct cs_drum kicked = {.damping = damped ? 0.05 : 0, .has_velocity_jump = true};
-    if (!cs_probe_can_be_set(card, row))
+    if (!cs_probe_can_be_set(conform, row))
         return;
-    if (card->method->traits & CS_ADAPTIVE)
-        measure_tolerance(card, row, &kicked);
+    if (conform->method->traits & CS_ADAPTIVE)
+        measure_tolerance(conform, row, &kicked);
     else
-        measure_order(card, row, order, &kicked);
+        measure_order(conform, row, order, &kicked);
 }
 
 /* The contact law is smooth in range: contact must cost neither order nor tolerance. Friction
  * depends on the velocity, hence the damped order. */
-void cs_check_contact_order(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_contact_order(const struct cs_conform *conform, struct cs_conform_row *row) {
     static const struct cs_drum drum = {.has_contact = true};
-    if (card->method->traits & CS_EXPLICIT_OUTER)
+    if (conform->method->traits & CS_EXPLICIT_OUTER)
         cs_row_skip(row, "it is refused with contact by force");
-    else if (cs_probe_can_be_set(card, row) && card->method->traits & CS_ADAPTIVE)
-        measure_tolerance(card, row, &drum);
-    else if (cs_method_has(card->method, "dt"))
-        measure_order(card, row, cs_method_order(card->method, card->options, true), &drum);
+    else if (cs_probe_can_be_set(conform, row) && conform->method->traits & CS_ADAPTIVE)
+        measure_tolerance(conform, row, &drum);
+    else if (cs_method_has(conform->method, "dt"))
+        measure_order(conform, row, cs_method_order(conform->method, conform->options, true),
+                      &drum);
 }
 
 enum { LEVELS = 6 };
@@ -199,21 +202,21 @@ enum { LEVELS = 6 };
  * solution of another equation. Six steps are extrapolated; an adaptive method runs once with a
  * tight tolerance. The bounds are well above the error of the reference, 1e-12: right methods
  * of order 1 leave 1e-9, others 1e-12. */
-void cs_check_solution(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_solution(const struct cs_conform *conform, struct cs_conform_row *row) {
     static const struct cs_drum drum = {.damping = 0.05};
-    const struct cs_integrator *method = card->method;
+    const struct cs_integrator *method = conform->method;
     const bool adaptive = method->traits & CS_ADAPTIVE;
-    const double rtol = cs_probe_tightest_tolerance(card);
+    const double rtol = cs_probe_tightest_tolerance(conform);
     double reference[2 * CS_DRUM_VALUES], states[LEVELS][2 * CS_DRUM_VALUES], scale[2];
     if (method->fidelity != CS_FIDELITY_ODE) {
         cs_row_skip(row, "it claims another fidelity");
         return;
     }
-    if (!cs_probe_can_be_set(card, row) ||
-        !cs_drum_reference(card, &drum, reference, scale, row))
+    if (!cs_probe_can_be_set(conform, row) ||
+        !cs_drum_reference(conform, &drum, reference, scale, row))
         return;
     for (int k = adaptive ? LEVELS - 1 : 0; k < LEVELS; k++)
-        if (!cs_drum_state(card, method, &drum, adaptive ? rtol : ldexp(cs_drum_step(), -k),
+        if (!cs_drum_state(conform, method, &drum, adaptive ? rtol : ldexp(cs_drum_step(), -k),
                            states[k], row))
             return;
     if (!adaptive)
@@ -234,10 +237,10 @@ static const struct cs_drum drum = {.damping = 0};
 
 /* Positions after CS_DRUM_FRAMES with a number of iterations per step. Returns false if the run
  * ended early: the row says why. */
-static bool state_at(const struct cs_conform *card, const struct cs_integrator *method,
+static bool state_at(const struct cs_conform *conform, const struct cs_integrator *method,
                      double iterations, double *state, struct cs_conform_row *row) {
     struct cs_probe probe;
-    cs_drum_open(&probe, card, method, &drum);
+    cs_drum_open(&probe, conform, method, &drum);
     cs_probe_set_step(&probe, STEP);
     cs_probe_set(&probe, "iterations", iterations);
     const bool done = cs_probe_run(&probe, CS_DRUM_FRAMES);
@@ -252,35 +255,35 @@ static bool state_at(const struct cs_conform *card, const struct cs_integrator *
 
 /* The claim of implicit Euler: after 1000 iterations the state must agree to 1e-6 of the
  * motion. */
-static void meets_implicit_euler(const struct cs_conform *card, struct cs_conform_row *row,
+static void meets_implicit_euler(const struct cs_conform *conform, struct cs_conform_row *row,
                                  const double *target, double motion) {
     double state[CS_DRUM_VALUES];
-    if (!state_at(card, card->method, 1000, state, row))
+    if (!state_at(conform, conform->method, 1000, state, row))
         return;
     cs_row_state(row, cs_rms_difference(state, target, CS_DRUM_VALUES) / motion, 1e-6,
                  "of the motion away from %s after 1000 iterations",
-                 card->implicit_euler->name);
+                 conform->implicit_euler->name);
 }
 
 /* The claim of a limit other than implicit Euler: four times the iterations may change at most
  * a tenth of the distance to implicit Euler. Then the distance is that of the limit, not of
  * unfinished iterations. */
-static void has_converged(const struct cs_conform *card, struct cs_conform_row *row,
+static void has_converged(const struct cs_conform *conform, struct cs_conform_row *row,
                           const double *target, double motion) {
     double many[CS_DRUM_VALUES], more[CS_DRUM_VALUES];
-    if (!state_at(card, card->method, 500, many, row) ||
-        !state_at(card, card->method, 2000, more, row))
+    if (!state_at(conform, conform->method, 500, many, row) ||
+        !state_at(conform, conform->method, 2000, more, row))
         return;
     const double left = cs_rms_difference(more, target, CS_DRUM_VALUES);
     cs_row_state(row, cs_rms_difference(more, many, CS_DRUM_VALUES) / left, 0.1,
                  "of the distance to %s, %.3g of the motion, changed by four times the "
                  "iterations",
-                 card->implicit_euler->name, left / motion);
+                 conform->implicit_euler->name, left / motion);
 }
 
 /* Both claims need implicit Euler at the same step as the target. */
-void cs_check_fidelity(const struct cs_conform *card, struct cs_conform_row *row) {
-    const struct cs_integrator *method = card->method;
+void cs_check_fidelity(const struct cs_conform *conform, struct cs_conform_row *row) {
+    const struct cs_integrator *method = conform->method;
     double start[CS_DRUM_VALUES] = {0}, target[CS_DRUM_VALUES];
     if (method->fidelity == CS_FIDELITY_ODE) {
         cs_row_skip(row, "an ODE method: see solution");
@@ -294,21 +297,21 @@ void cs_check_fidelity(const struct cs_conform *card, struct cs_conform_row *row
         cs_row_skip(row, "it has no option iterations");
         return;
     }
-    if (!card->implicit_euler) {
+    if (!conform->implicit_euler) {
         cs_row_skip(row, "there is no integrator backward-euler to compare with");
         return;
     }
     /* the start gives the scale: distances are fractions of the motion */
     struct cs_probe probe;
-    if (cs_drum_open(&probe, card, method, &drum))
+    if (cs_drum_open(&probe, conform, method, &drum))
         for (size_t i = 0; i < CS_DRUM_VALUES; i++)
             start[i] = probe.x[i];
     cs_probe_close(&probe);
-    if (!state_at(card, card->implicit_euler, 1000, target, row))
+    if (!state_at(conform, conform->implicit_euler, 1000, target, row))
         return;
     const double motion = cs_rms_difference(target, start, CS_DRUM_VALUES);
     if (method->fidelity == CS_FIDELITY_IMPLICIT_EULER)
-        meets_implicit_euler(card, row, target, motion);
+        meets_implicit_euler(conform, row, target, motion);
     else
-        has_converged(card, row, target, motion);
+        has_converged(conform, row, target, motion);
 }

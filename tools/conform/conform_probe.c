@@ -132,13 +132,13 @@ void cs_probe_set_frames(struct cs_probe *probe, double dt) {
     set_claimed_order(&probe->session.method);
 }
 
-double cs_probe_tightest_tolerance(const struct cs_conform *card) {
-    return cs_method_order(card->method, card->options, true) > 2 ? 1e-11 : 1e-10;
+double cs_probe_tightest_tolerance(const struct cs_conform *conform) {
+    return cs_method_order(conform->method, conform->options, true) > 2 ? 1e-11 : 1e-10;
 }
 
-bool cs_probe_can_be_set(const struct cs_conform *card, struct cs_conform_row *row) {
-    const bool adaptive = card->method->traits & CS_ADAPTIVE;
-    if (cs_method_has(card->method, adaptive ? "rtol" : "dt"))
+bool cs_probe_can_be_set(const struct cs_conform *conform, struct cs_conform_row *row) {
+    const bool adaptive = conform->method->traits & CS_ADAPTIVE;
+    if (cs_method_has(conform->method, adaptive ? "rtol" : "dt"))
         return true;
     cs_row_skip(row, adaptive ? "it has no option rtol" : "it has no option dt");
     return false;
@@ -163,14 +163,14 @@ static bool observe(void *ctx, double t, double dt, double *x, double *v) {
 }
 
 /* Notes which calls of the host the method makes. */
-static void note_call(void *ctx, const struct cs_trace_record *point) {
+static void note_call(void *ctx, const struct cs_trace_record *record) {
     struct cs_probe *probe = ctx;
-    probe->asks_step_fraction |= !strcmp(point->phase, "longest move");
+    probe->asks_step_fraction |= !strcmp(record->phase, "longest move");
 }
 
-bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
+bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *conform,
                    const struct cs_integrator *method, const char *format, ...) {
-    *probe = (struct cs_probe){.card_error = card->card_error,
+    *probe = (struct cs_probe){.card_error = conform->card_error,
                                .trace = {.emit = note_call, .ctx = probe}};
     va_list args;
     va_start(args, format);
@@ -184,10 +184,10 @@ bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
         .overrides = &matched,
         .n_overrides = method->needs & CS_NEED_CLUSTERS ? 1 : 0,
         .method = method,
-        .options = method == card->method ? card->options : NULL,
+        .options = method == conform->method ? conform->options : NULL,
         .run = {.skip_advance_check = true,
                 .budget = BUDGET,
-                .stop = card->stop,
+                .stop = conform->stop,
                 .after_commit = observe,
                 .trace = &probe->trace,
                 .ctx = probe}};
@@ -196,7 +196,7 @@ bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
         return false;
     if (method->traits & CS_SMOOTH_ONLY &&
         cs_plan_check(&probe->session.scene, method, &probe->error)) {
-        *card->refused = probe->has_ended = true;
+        *conform->refused = probe->has_ended = true;
         return false;
     }
     probe->n = probe->session.system.view.n;

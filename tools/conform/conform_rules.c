@@ -27,8 +27,8 @@ static bool is_check(const char *name) {
 }
 
 /* Checks the descriptor where opening a module does not, because a run does not need it. */
-void cs_check_abi(const struct cs_conform *card, struct cs_conform_row *row) {
-    const struct cs_integrator *method = card->method;
+void cs_check_abi(const struct cs_conform *conform, struct cs_conform_row *row) {
+    const struct cs_integrator *method = conform->method;
     // all bits up to the last one of enum cs_need and of enum cs_trait
     const uint32_t needs = 2 * CS_NEED_BOUNDS - 1, traits = 2 * CS_SMOOTH_ONLY - 1;
     bool falls_off = false;
@@ -98,8 +98,8 @@ static const char *const forbidden[] = {"time",
 
 /* Looks at the symbols that the module asks the dynamic linker for. What a check sees of their
  * effect depends on the hour: that of a date does not change within a card. */
-void cs_check_imports(const struct cs_conform *card, struct cs_conform_row *row) {
-    const void *address = (const void *)(uintptr_t)card->method->create;
+void cs_check_imports(const struct cs_conform *conform, struct cs_conform_row *row) {
+    const void *address = (const void *)(uintptr_t)conform->method->create;
     const char *symbol;
     if (!cs_module_find_import(address, forbidden, &symbol))
         cs_row_skip(row, "it is not in a module");
@@ -116,10 +116,10 @@ void cs_check_imports(const struct cs_conform *card, struct cs_conform_row *row)
 
 /* Creates the method with one option at an end of its range. It must succeed, or fail with a
  * reason. */
-static void try_option(const struct cs_conform *card, struct cs_conform_row *row,
+static void try_option(const struct cs_conform *conform, struct cs_conform_row *row,
                        const struct cs_option *option, double value) {
     struct cs_probe probe;
-    cs_probe_open(&probe, card, card->method, HANGING, "axial");
+    cs_probe_open(&probe, conform, conform->method, HANGING, "axial");
     cs_probe_set(&probe, option->name, value);
     if (!cs_probe_run(&probe, 0) && strstr(probe.error.message, "it gave no reason"))
         cs_row_fail(row, "%s = %g: create fails without a reason", option->name, value);
@@ -127,10 +127,10 @@ static void try_option(const struct cs_conform *card, struct cs_conform_row *row
 }
 
 /* Runs the method with its defaults, then creates it with each numeric option at both ends. */
-void cs_check_options(const struct cs_conform *card, struct cs_conform_row *row) {
-    const struct cs_integrator *method = card->method;
+void cs_check_options(const struct cs_conform *conform, struct cs_conform_row *row) {
+    const struct cs_integrator *method = conform->method;
     struct cs_probe plain;
-    cs_probe_open(&plain, card, method, HANGING, "axial");
+    cs_probe_open(&plain, conform, method, HANGING, "axial");
     if (!cs_probe_run(&plain, HANGING_FRAMES))
         cs_row_fail(row, "with its defaults: %s", plain.error.message);
     cs_probe_close(&plain);
@@ -138,8 +138,8 @@ void cs_check_options(const struct cs_conform *card, struct cs_conform_row *row)
         const struct cs_option *option = method->options + k;
         if (!cs_method_has(method, option->name))
             continue;
-        try_option(card, row, option, option->min);
-        try_option(card, row, option, option->max);
+        try_option(conform, row, option, option->min);
+        try_option(conform, row, option, option->max);
     }
     if (row->verdict == CS_VERDICT_PASS)
         cs_row_state(row, 0, 0, "options that failed without a reason, of %u",
@@ -162,10 +162,10 @@ static bool store_account(struct cs_probe *probe, double t, double dt, double *x
 }
 
 /* The committed steps must fill the time: each begins where the last one ended, to 1e-12 s. */
-void cs_check_commit(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_commit(const struct cs_conform *conform, struct cs_conform_row *row) {
     struct cs_probe sheet;
     struct ledger ledger = {0};
-    cs_probe_open(&sheet, card, card->method, HANGING, "axial");
+    cs_probe_open(&sheet, conform, conform->method, HANGING, "axial");
     sheet.on_commit = store_account;
     sheet.on_commit_ctx = &ledger;
     if (!cs_probe_run(&sheet, HANGING_FRAMES))
@@ -177,10 +177,10 @@ void cs_check_commit(const struct cs_conform *card, struct cs_conform_row *row) 
 }
 
 /* Pinned particles must keep the bits of their positions, and zero velocities. */
-void cs_check_pins(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_pins(const struct cs_conform *conform, struct cs_conform_row *row) {
     struct cs_probe sheet;
     uint32_t moved = 0;
-    cs_probe_open(&sheet, card, card->method, HANGING, "relative");
+    cs_probe_open(&sheet, conform, conform->method, HANGING, "relative");
     if (!cs_probe_run(&sheet, HANGING_FRAMES))
         cs_row_fail(row, "%s", sheet.error.message);
     else {
@@ -207,7 +207,7 @@ static bool hides(struct cs_probe *probe) {
     return !finite;
 }
 
-void cs_check_not_finite(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_not_finite(const struct cs_conform *conform, struct cs_conform_row *row) {
     static const char *const cases[] = {"a position that is not a number",
                                         "a speed of 1e200 m/s", "a step far too large"};
     uint32_t hidden = 0;
@@ -215,7 +215,7 @@ void cs_check_not_finite(const struct cs_conform *card, struct cs_conform_row *r
     /* a state that is not finite from the start, by overflow, or by an unstable step */
     for (int k = 0; k < 3; k++) {
         struct cs_probe sheet;
-        cs_probe_open(&sheet, card, card->method, HANGING, "axial");
+        cs_probe_open(&sheet, conform, conform->method, HANGING, "axial");
         if (k == 0 && !sheet.has_ended)
             sheet.x[sheet.n / 2] = (double)NAN;
         if (k == 1 && !sheet.has_ended)
@@ -232,13 +232,13 @@ void cs_check_not_finite(const struct cs_conform *card, struct cs_conform_row *r
 }
 
 /* The host lets every linear solve fail: no frame may then be finished. */
-void cs_check_failed_solve(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_failed_solve(const struct cs_conform *conform, struct cs_conform_row *row) {
     struct cs_probe sheet;
-    if (!(card->method->needs & CS_NEED_SOLVE)) {
+    if (!(conform->method->needs & CS_NEED_SOLVE)) {
         cs_row_skip(row, "it does not use the host's solver");
         return;
     }
-    cs_probe_open(&sheet, card, card->method, HANGING, "axial");
+    cs_probe_open(&sheet, conform, conform->method, HANGING, "axial");
     if (!cs_probe_run(&sheet, 0))
         cs_row_fail(row, "%s", sheet.error.message);
     else {
@@ -271,10 +271,10 @@ static void wait_for_next_second(void) {
 
 /* Runs in alternation must agree in all bits, and with a run in another second: no method may
  * depend on addresses, uninitialised memory, static variables, or a clock. */
-void cs_check_same_bits(const struct cs_conform *card, struct cs_conform_row *row) {
+void cs_check_same_bits(const struct cs_conform *conform, struct cs_conform_row *row) {
     struct cs_probe runs[3];
     for (int k = 0; k < 3; k++)
-        cs_probe_open(runs + k, card, card->method, HANGING, "axial");
+        cs_probe_open(runs + k, conform, conform->method, HANGING, "axial");
     const uint32_t differ = compare_runs(runs, runs + 1);
     const uint32_t frame = runs[0].session.run.frame;
     if (!differ && !runs[0].has_ended && !runs[1].has_ended) {

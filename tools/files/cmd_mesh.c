@@ -25,7 +25,7 @@ static const struct cs_arg rows[] = {
 };
 
 /* Sets the sides of the box of all positions; returns the longest. */
-static double measure(const struct cs_trimesh *mesh, double sides[3]) {
+static double measure_sides(const struct cs_trimesh *mesh, double sides[3]) {
     for (size_t c = 0; c < 3; c++) {
         const double *x = mesh->positions + c * mesh->n;
         double low = x[0], high = x[0];
@@ -79,7 +79,7 @@ static enum cs_status add_names(const struct cs_trimesh *mesh, struct cs_text *o
 
 static void add_report(const struct cs_trimesh *mesh, struct cs_text *out) {
     double sides[3];
-    const double longest = measure(mesh, sides);
+    const double longest = measure_sides(mesh, sides);
     cs_text_add(out, "vertices    %u, in the file %u\ntriangles   %u\n", mesh->n, mesh->n_file,
                 mesh->n_triangles);
     cs_text_add(out, "edges       %u, %u of them open, %.3g long in the mean\n", mesh->n_edges,

@@ -38,9 +38,9 @@ static double middle_of(const struct cs_body_range *body, const double *x) {
 }
 
 /* Fills the rows. */
-static enum cs_status measure(const struct cs_system *system, double low, double high,
-                              struct cs_arena *arena, struct cs_number_table *table,
-                              struct cs_error *error) {
+static enum cs_status measure_force(const struct cs_system *system, double low, double high,
+                                    struct cs_arena *arena, struct cs_number_table *table,
+                                    struct cs_error *error) {
     const size_t n = 3 * (size_t)system->view.n;
     const double *start = system->state;
     const double middle = middle_of(system->bodies, start);
@@ -76,7 +76,7 @@ enum cs_status cs_force_length_measure(const char *scene, double low, double hig
         .names = {cs_arena_copy_text(arena, "length over start", error),
                   cs_arena_copy_text(arena, "force in N", error)}};
     if (!error->status && !cs_session_open_system(&session, &settings, error)) {
-        measure(&session.system, low, high, arena, table, error);
+        measure_force(&session.system, low, high, arena, table, error);
         cs_session_close(&session);
     }
     return error->status;

@@ -86,10 +86,10 @@ static void transform_column(const struct cs_number_table *table, uint32_t colum
 }
 
 /* out's column of amplitudes; added: as a component of the vector there. */
-static void set_amplitudes(struct cs_number_table *out, uint32_t column,
+static void set_amplitudes(struct cs_number_table *table, uint32_t column,
                            const double complex *line, double window, bool added) {
-    for (uint32_t r = 0; r < out->rows; r++) {
-        double *at = out->values + (size_t)r * out->columns + column;
+    for (uint32_t r = 0; r < table->rows; r++) {
+        double *at = table->values + (size_t)r * table->columns + column;
         const double amplitude = 2 * cabs(line[r]) / window;
         *at = added ? hypot(*at, amplitude) : amplitude;
     }

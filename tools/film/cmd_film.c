@@ -154,8 +154,8 @@ static void add_word(struct cs_text *line, const char *word) {
     cs_text_add(line, "'");
 }
 
-static enum cs_status refuse(const struct film *film, const char *const *arguments,
-                             struct cs_error *error) {
+static enum cs_status refuse_film(const struct film *film, const char *const *arguments,
+                                  struct cs_error *error) {
     struct cs_text line = {0};
     add_word(&line, film->folder);
     cs_text_add(&line, " &&");
@@ -185,7 +185,7 @@ static enum cs_status make(struct film *film, struct cs_error *error) {
     if (!end.was_found) {
         film->awaits_ffmpeg = true;
         fill(film, rate, film->out, arguments);
-        return refuse(film, arguments, error);
+        return refuse_film(film, arguments, error);
     }
     if (done)
         return CS_OK;

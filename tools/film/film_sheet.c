@@ -35,8 +35,8 @@ struct layout {
     const struct cs_film_report *report;
     struct cs_image *image;
     uint32_t width, height; /* of a shrunk picture */
-    struct cs_srgb tone;
-    struct cs_image_lines pen;
+    struct cs_srgb srgb;
+    struct cs_image_lines lines;
 };
 
 /* Chooses a full rectangle of at most as many tiles as there are pictures; of equal ones that
@@ -75,12 +75,12 @@ static bool has_one_range(const struct cs_film_report *report) {
 }
 
 static enum cs_status read_picture(const struct layout *layout, const char *folder,
-                                   uint32_t tile, struct cs_image *picture,
+                                   uint32_t tile, struct cs_image *image,
                                    struct cs_error *error) {
     char path[PATH_BYTES];
     snprintf(path, sizeof path, "%.4000s/frame_%05u.png", folder,
              picture_of(layout, tile)->number);
-    return cs_png_read_on_white(path, picture, error);
+    return cs_png_read_on_white(path, image, error);
 }
 
 /* Takes the paper, for pictures of the first one's size. */
@@ -111,9 +111,9 @@ static void write_text(struct layout *layout, const char *text, double right, do
     struct cs_line_style style = {.alpha = 0.85, .half_width = 0.6, .flat = true};
     const double white[3] = {1, 1, 1};
     cs_colour_ink(white, style.colour);
-    layout->pen.left = layout->pen.top = 0;
-    cs_glyph_add(&layout->pen.lines, text, right, top + CAPTION - 4.0, LETTER);
-    cs_lines_draw(&layout->pen.lines, &style);
+    layout->lines.left = layout->lines.top = 0;
+    cs_glyph_add(&layout->lines.lines, text, right, top + CAPTION - 4.0, LETTER);
+    cs_lines_draw(&layout->lines.lines, &style);
 }
 
 static void write_time(struct layout *layout, uint32_t tile, uint32_t left, uint32_t top) {
@@ -128,19 +128,18 @@ static enum cs_status put_tile(struct layout *layout, const char *folder, uint32
     const uint32_t columns = layout->sheet->columns;
     const uint32_t left = GAP + tile % columns * (layout->width + GAP),
                    top = GAP + tile / columns * (layout->height + CAPTION + GAP);
-    struct cs_image picture;
-    if (read_picture(layout, folder, tile, &picture, error))
+    struct cs_image image;
+    if (read_picture(layout, folder, tile, &image, error))
         return error->status;
-    if (picture.width == first->width && picture.height == first->height)
-        cs_srgb_shrink(&layout->tone, &picture,
-                       (const uint32_t[]){layout->width, layout->height},
+    if (image.width == first->width && image.height == first->height)
+        cs_srgb_shrink(&layout->srgb, &image, (const uint32_t[]){layout->width, layout->height},
                        (size_t)top * layout->image->width + left, layout->image);
     else
         cs_fail(error, CS_ERR_FILE,
                 "%s/frame_%05u.png: found %u x %u pixels, expected %u x %u as in the first",
-                folder, picture_of(layout, tile)->number, picture.width, picture.height,
+                folder, picture_of(layout, tile)->number, image.width, image.height,
                 first->width, first->height);
-    free(picture.rgb);
+    free(image.rgb);
     write_time(layout, tile, left, top + layout->height);
     return error->status;
 }
@@ -157,12 +156,12 @@ static void put_bar(struct layout *layout) {
                                    .factor = cs_look_of(look)->factor};
     struct cs_colour_bar bar;
     cs_colour_bar_init(&bar, &paper);
-    layout->pen.look = look;
-    layout->pen.left = layout->image->width - (double)BAR_WIDTH;
+    layout->lines.look = look;
+    layout->lines.left = layout->image->width - (double)BAR_WIDTH;
     /* the bar stands at the foot of its picture */
     const double length = 0.39 * height + 18 * fmax(height / 480, 0.75);
-    layout->pen.top = floor((layout->image->height + length) / 2 - height);
-    cs_colour_bar_draw(&bar, &layout->pen.lines, &frame);
+    layout->lines.top = floor((layout->image->height + length) / 2 - height);
+    cs_colour_bar_draw(&bar, &layout->lines.lines, &frame);
 }
 
 static enum cs_status put_tiles(struct layout *layout, const char *folder,
@@ -185,10 +184,10 @@ enum cs_status cs_contact_sheet_make(struct cs_contact_sheet *sheet, const char 
     sheet->captions = 1;
     choose_grid(sheet, report->n);
     sheet->colour_bar = has_one_range(report);
-    cs_srgb_make(&layout.tone);
+    cs_srgb_make(&layout.srgb);
     if (!read_picture(&layout, folder, 0, &first, error) &&
         !init_sheet_image(&layout, &first, error) &&
-        !cs_image_lines_init(&layout.pen, CS_COLOUR_BAR_LINES, image, &layout.tone, &arena,
+        !cs_image_lines_init(&layout.lines, CS_COLOUR_BAR_LINES, image, &layout.srgb, &arena,
                              error))
         put_tiles(&layout, folder, &first, error);
     free(first.rgb);
@@ -254,13 +253,13 @@ static enum cs_status put_run(struct layout *layout, const struct cs_film_tiles 
     const uint32_t head = tiles->titles ? 2 * CAPTION : 0;
     const uint32_t left = GAP + run * (layout->width + GAP);
     char path[PATH_BYTES];
-    struct cs_image picture;
+    struct cs_image image;
     snprintf(path, sizeof path, "%.4000s/frame_%05u.png", tiles->folders[run], at->number);
-    if (cs_png_read_on_white(path, &picture, error))
+    if (cs_png_read_on_white(path, &image, error))
         return error->status;
-    cs_srgb_shrink(&layout->tone, &picture, (const uint32_t[]){layout->width, layout->height},
+    cs_srgb_shrink(&layout->srgb, &image, (const uint32_t[]){layout->width, layout->height},
                    (size_t)(GAP + head) * layout->image->width + left, layout->image);
-    free(picture.rgb);
+    free(image.rgb);
     if (tiles->titles)
         write_title(layout, tiles, run, at->frame, left);
     return CS_OK;
@@ -274,10 +273,10 @@ enum cs_status cs_film_tiles_make(const struct cs_film_tiles *tiles, uint32_t k,
     struct cs_arena arena = {0};
     struct cs_image first = {0};
     *image = (struct cs_image){0};
-    cs_srgb_make(&layout.tone);
+    cs_srgb_make(&layout.srgb);
     if (!read_picture(&layout, tiles->folders[0], 0, &first, error) &&
         !init_sheet_image(&layout, &first, error) &&
-        !cs_image_lines_init(&layout.pen, CS_COLOUR_BAR_LINES, image, &layout.tone, &arena,
+        !cs_image_lines_init(&layout.lines, CS_COLOUR_BAR_LINES, image, &layout.srgb, &arena,
                              error))
         for (uint32_t run = 0; run < tiles->n && !error->status; run++)
             put_run(&layout, tiles, run, k, error);

@@ -15,8 +15,8 @@ struct cs_image_lines {
 };
 
 /* Prepares for so many lines at a time. CS_ERR_MEMORY. */
-enum cs_status cs_image_lines_init(struct cs_image_lines *pen, uint32_t capacity,
-                                   struct cs_image *image, const struct cs_srgb *tone,
+enum cs_status cs_image_lines_init(struct cs_image_lines *lines, uint32_t capacity,
+                                   struct cs_image *image, const struct cs_srgb *srgb,
                                    struct cs_arena *arena, struct cs_error *error);
 
 #endif

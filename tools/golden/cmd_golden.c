@@ -17,51 +17,51 @@
 #include <string.h>
 
 struct options {
-    struct cs_golden check;
+    struct cs_golden golden;
     const struct cs_override *sets;
     uint32_t n_sets;
     double seconds; /* of the run that is added; 0: not given */
     const char *json, *junit, *html;
     bool image, github, quiet;
 };
-static const struct options defaults = {.check = {.threads = 1}};
+static const struct options defaults = {.golden = {.threads = 1}};
 
 static const struct cs_arg rows[] = {
     {"add", 0, "SCENE", "add a run of that scene to the golden tables, made if there are none",
-     CS_ARG_INTO(struct options, check.add.scene)},
+     CS_ARG_INTO(struct options, golden.add.scene)},
     {"frames", 'n', "N", "frames of the run that is added",
-     CS_ARG_INTO(struct options, check.add.frames), .min = 1, .max = UINT32_MAX},
+     CS_ARG_INTO(struct options, golden.add.frames), .min = 1, .max = UINT32_MAX},
     {"time", 't', "SECONDS", "its simulated time, instead of -n",
      CS_ARG_INTO(struct options, seconds)},
     {"integrator", 'i', "NAME[:KEY=VALUE,...]",
      "its integrator and options (default: the scene's)",
-     CS_ARG_INTO(struct options, check.add.integrator), .methods = true},
+     CS_ARG_INTO(struct options, golden.add.integrator), .methods = true},
     {"set", 's', "PATH=VALUE", "override a scene value in it; may be repeated",
      CS_ARG_LIST(struct options, sets, n_sets)},
     {"image", 0, NULL, "add a picture of its last frame too",
      CS_ARG_INTO(struct options, image)},
     {"keep", 0, "N",
      "keep positions of N of its frames too (default: 4); with --accept of rows that have none",
-     CS_ARG_INTO(struct options, check.states), .max = CS_GOLDEN_STATES_MAX},
+     CS_ARG_INTO(struct options, golden.states), .max = CS_GOLDEN_STATES_MAX},
     {"tolerance", 0, "METRES",
      "judge it by these positions, instead of by bits (bits: by bits again)",
-     CS_ARG_INTO(struct options, check.add_tolerance)},
+     CS_ARG_INTO(struct options, golden.add_tolerance)},
     {"accept", 0, NULL, "replace the golden files with the new results: look at them first",
-     CS_ARG_INTO(struct options, check.accept_all)},
-    {"hashes", 0, NULL, "state hashes only", CS_ARG_INTO(struct options, check.hashes)},
-    {"images", 0, NULL, "images only", CS_ARG_INTO(struct options, check.images)},
+     CS_ARG_INTO(struct options, golden.accept_all)},
+    {"hashes", 0, NULL, "state hashes only", CS_ARG_INTO(struct options, golden.hashes)},
+    {"images", 0, NULL, "images only", CS_ARG_INTO(struct options, golden.images)},
     {"only", 0, "TEXT", "only rows whose scene or integrator contains TEXT",
-     CS_ARG_INTO(struct options, check.only_rows)},
+     CS_ARG_INTO(struct options, golden.only_rows)},
     {"folder", 0, "DIR", "the golden folder (default: golden here, else the installed one)",
-     CS_ARG_INTO(struct options, check.folder)},
-    CS_ARG_PLUGIN(struct options, check),
+     CS_ARG_INTO(struct options, golden.folder)},
+    CS_ARG_PLUGIN(struct options, golden),
     {"renderer", 0, "NAME", "cpu, osmesa or auto (default: auto); may be repeated",
-     CS_ARG_INTO(struct options, check.renderers), .names = cs_renderer_names,
+     CS_ARG_INTO(struct options, golden.renderers), .names = cs_renderer_names,
      .repeatable = true},
     {"threads", 0, "N", "threads that step each scene, 1 to 64 (default: 1)",
-     CS_ARG_INTO(struct options, check.threads), .min = 1, .max = CS_POOL_THREADS_MAX},
+     CS_ARG_INTO(struct options, golden.threads), .min = 1, .max = CS_POOL_THREADS_MAX},
     {"jobs", 'j', "N", "rows in parallel, each in a process (default: one per processor)",
-     CS_ARG_INTO(struct options, check.jobs), .min = 1, .max = CS_PROCESS_POOL_MAX},
+     CS_ARG_INTO(struct options, golden.jobs), .min = 1, .max = CS_PROCESS_POOL_MAX},
     {"json", 0, "FILE", "write the rows as JSON too; -: to standard output",
      CS_ARG_INTO(struct options, json)},
     {"junit", 0, "FILE", "write the rows as a JUnit report too",
@@ -82,16 +82,16 @@ struct sink {
 static void print_row(void *ctx, const struct cs_golden_row *row) {
     struct sink *sink = ctx;
     const struct options *options = sink->options;
-    const char *verdict = cs_golden_verdict(&options->check, row);
+    const char *verdict = cs_golden_verdict(&options->golden, row);
     const bool is_quiet =
         options->quiet && (!strcmp(verdict, "ok") || !strcmp(verdict, "skip"));
     struct cs_text name = {0}, line = {0};
     cs_golden_add_name(row, &name);
-    cs_golden_report_add(&sink->report, &options->check, row);
+    cs_golden_report_add(&sink->report, &options->golden, row);
     if (!cs_print_is_stdout(options->json) && !is_quiet)
         cs_text_add(&line, "%-8s   %s%s%s\n", verdict, cs_text_get(&name),
                     row->message.length ? ": " : "", cs_text_get(&row->message));
-    if (options->github && cs_golden_is_failure(&options->check, row))
+    if (options->github && cs_golden_is_failure(&options->golden, row))
         cs_text_add(&line, "::error file=%s,title=clothsim golden::%s: %s\n", row->run.scene,
                     cs_text_get(&name), cs_text_get(&row->message));
     struct cs_error unseen = {0}; /* the end of the output reports a closed one */
@@ -100,11 +100,11 @@ static void print_row(void *ctx, const struct cs_golden_row *row) {
 }
 
 /* Writes the reports that were asked for. */
-static enum cs_status write_reports(const struct cs_golden *check, const struct sink *sink,
+static enum cs_status write_reports(const struct cs_golden *golden, const struct sink *sink,
                                     struct cs_error *error) {
     const struct {
         const char *path;
-        void (*print)(const struct cs_golden_report *report, const struct cs_golden *check,
+        void (*print)(const struct cs_golden_report *report, const struct cs_golden *golden,
                       struct cs_text *out);
     } all[] = {{sink->options->json, cs_golden_report_print_json},
                {sink->options->junit, cs_golden_report_print_junit},
@@ -113,7 +113,7 @@ static enum cs_status write_reports(const struct cs_golden *check, const struct 
         struct cs_text out = {0};
         if (!all[k].path)
             continue;
-        all[k].print(&sink->report, check, &out);
+        all[k].print(&sink->report, golden, &out);
         cs_print_file(all[k].path, &out, error);
     }
     return error->status;
@@ -122,7 +122,7 @@ static enum cs_status write_reports(const struct cs_golden *check, const struct 
 /* Frames of the run to be added, as given or by the time. */
 static enum cs_status take_frames(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
-    struct cs_golden_run *run = &options->check.add;
+    struct cs_golden_run *run = &options->golden.add;
     const struct cs_session_settings session = {
         .scene = run->scene, .overrides = options->sets, .n_overrides = options->n_sets};
     if (cs_args_refuse_both(args, "frames", "time", error) || !run->scene ||
@@ -134,20 +134,20 @@ static enum cs_status take_frames(struct cs_args *args, struct cs_error *error) 
 /* Sets how many states are kept, and checks how they are to be judged. */
 static enum cs_status take_states(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
-    struct cs_golden *check = &options->check;
-    const char *tolerance = check->add_tolerance, *method = check->add.integrator;
+    struct cs_golden *golden = &options->golden;
+    const char *tolerance = golden->add_tolerance, *method = golden->add.integrator;
     const bool is_given = cs_args_is_given(args, "keep");
     double m = 0;
-    if (check->add.scene && !is_given)
-        check->states = CS_GOLDEN_STATES;
-    if (is_given && !check->accept_all && !check->add.scene)
+    if (golden->add.scene && !is_given)
+        golden->states = CS_GOLDEN_STATES;
+    if (is_given && !golden->accept_all && !golden->add.scene)
         cs_fail(error, CS_ERR_USAGE, "--keep is for --add SCENE or --accept");
     else if (tolerance && strcmp(tolerance, "bits") != 0 &&
              !(cs_parse_real(tolerance, &m) && m > 0))
         cs_fail(error, CS_ERR_USAGE,
                 "--tolerance: found \"%.60s\", expected bits or METRES > 0", tolerance);
     // a distance is measured from something that is kept
-    else if (m > 0 && !check->states)
+    else if (m > 0 && !golden->states)
         cs_fail(error, CS_ERR_USAGE, "--tolerance needs states, found --keep 0");
     else if (method && cs_program_is_named(method))
         cs_fail(error, CS_ERR_USAGE,
@@ -159,9 +159,9 @@ static enum cs_status take_states(struct cs_args *args, struct cs_error *error) 
 /* Fills the run to be added from the options: overrides joined by semicolons, "-" for none. */
 static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
-    struct cs_golden_run *run = &options->check.add;
+    struct cs_golden_run *run = &options->golden.add;
     const bool asked = run->frames || options->seconds > 0 || run->integrator ||
-                       options->n_sets || options->image || options->check.add_tolerance;
+                       options->n_sets || options->image || options->golden.add_tolerance;
     if (take_frames(args, error))
         return error->status;
     struct cs_text sets = {0};
@@ -194,35 +194,35 @@ static enum cs_status take_run(struct cs_args *args, struct cs_error *error) {
         run->integrator = run->integrator ? run->integrator : "-";
         run->overrides =
             options->n_sets ? cs_arena_copy_text(&args->arena, cs_text_get(&sets), error) : "-";
-        options->check.accept_all = options->check.hashes = true;
-        options->check.images = options->image;
-        options->check.renderers = 1u << CS_RENDERER_CPU;
+        options->golden.accept_all = options->golden.hashes = true;
+        options->golden.images = options->image;
+        options->golden.renderers = 1u << CS_RENDERER_CPU;
     }
     cs_text_finish(&sets);
     return error->status;
 }
 
-static enum cs_status report(const struct cs_golden *check, struct sink *sink,
+static enum cs_status report(const struct cs_golden *golden, struct sink *sink,
                              struct cs_error *error) {
-    if (write_reports(check, sink, error))
+    if (write_reports(golden, sink, error))
         return error->status;
     if (!cs_print_is_stdout(sink->options->json))
-        printf("%u agree, %u differ, %u accepted, %u skipped\n", check->passed, check->failed,
-               check->accepted, check->skipped);
+        printf("%u agree, %u differ, %u accepted, %u skipped\n", golden->passed, golden->failed,
+               golden->accepted, golden->skipped);
     /* a misspelt --only must not look like success */
-    if (check->passed + check->failed + check->accepted + check->skipped == 0)
+    if (golden->passed + golden->failed + golden->accepted + golden->skipped == 0)
         return cs_fail(error, CS_ERR_USAGE, "no golden row matches");
-    if (check->broken > 0)
+    if (golden->broken > 0)
         return cs_fail(error, CS_ERR_CHECK,
-                       "%u golden row%s differ%s, of which %u cannot be run", check->failed,
-                       check->failed == 1 ? "" : "s", check->failed == 1 ? "s" : "",
-                       check->broken);
-    if (check->failed > 0)
+                       "%u golden row%s differ%s, of which %u cannot be run", golden->failed,
+                       golden->failed == 1 ? "" : "s", golden->failed == 1 ? "s" : "",
+                       golden->broken);
+    if (golden->failed > 0)
         return cs_fail(error, CS_ERR_CHECK,
                        "%u golden row%s differ%s; if the change is intended, look at it, then "
                        "use --accept",
-                       check->failed, check->failed == 1 ? "" : "s",
-                       check->failed == 1 ? "s" : "");
+                       golden->failed, golden->failed == 1 ? "" : "s",
+                       golden->failed == 1 ? "s" : "");
     return CS_OK;
 }
 
@@ -234,7 +234,7 @@ static enum cs_status check_reports(const struct options *options, struct cs_err
                                    options->junit, options->html};
     for (int k = 0; k < 6 && !error->status; k++) {
         char path[CS_DATA_PATH_MAX + 16];
-        snprintf(path, sizeof path, "%.*s/%s", CS_DATA_PATH_MAX - 1, options->check.folder,
+        snprintf(path, sizeof path, "%.*s/%s", CS_DATA_PATH_MAX - 1, options->golden.folder,
                  tables[k / 3]);
         cs_file_conflicts_pair(reports[k % 3], names[k % 3], path, "a golden table", error);
     }
@@ -243,7 +243,7 @@ static enum cs_status check_reports(const struct options *options, struct cs_err
 
 static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
-    struct cs_golden *check = &options->check;
+    struct cs_golden *check = &options->golden;
     char installed[CS_DATA_PATH_MAX];
     struct sink sink = {.options = options};
     if (take_states(args, error) || take_run(args, error))

@@ -151,7 +151,7 @@ static enum cs_status check_rows(struct cs_golden *golden, const struct kind *ki
                                  struct cs_golden_table *table, struct cs_error *error) {
     struct rows rows = {.golden = golden, .kind = kind, .table = table};
     const size_t bytes = golden->jobs * sizeof *rows.answers;
-    const struct cs_isolate_queue queue = {.limits = {.is_cell = true, .stop = golden->stop},
+    const struct cs_isolate_queue queue = {.isolate = {.is_cell = true, .stop = golden->stop},
                                            .n_slots = golden->jobs,
                                            .ctx = &rows,
                                            .next = next_row,
@@ -172,8 +172,8 @@ static enum cs_status check_rows(struct cs_golden *golden, const struct kind *ki
 }
 
 /* Checks and adds the run of --add. */
-static enum cs_status add_row(struct cs_golden *golden, const struct kind *kind,
-                              struct cs_golden_table *table, struct cs_error *error) {
+static enum cs_status append_golden_row(struct cs_golden *golden, const struct kind *kind,
+                                        struct cs_golden_table *table, struct cs_error *error) {
     struct cs_golden_row *row = cs_golden_table_add(table, &golden->add);
     struct cs_error own = {0};
     const bool is_other = golden->add_tolerance && !row->image &&
@@ -214,7 +214,7 @@ static enum cs_status check_table(struct cs_golden *golden, const struct kind *k
     const bool may_lack = golden->add.scene || golden->any_table;
     cs_golden_table_read(&table, golden->folder, kind->name, may_lack, error);
     if (!error->status)
-        (golden->add.scene ? add_row : check_rows)(golden, kind, &table, error);
+        (golden->add.scene ? append_golden_row : check_rows)(golden, kind, &table, error);
     // a run that cannot be added leaves no folder
     if (!error->status && golden->accepted > before && !make_folder(golden, error))
         cs_golden_table_write(&table, error);

@@ -14,15 +14,15 @@ static bool is_different(const struct cs_golden_row *row) {
     return row->message.length > 0 && (row->added || !row->finding.skipped);
 }
 
-bool cs_golden_is_failure(const struct cs_golden *check, const struct cs_golden_row *row) {
-    return is_different(row) && (row->failed || !check->accept_all);
+bool cs_golden_is_failure(const struct cs_golden *golden, const struct cs_golden_row *row) {
+    return is_different(row) && (row->failed || !golden->accept_all);
 }
 
-const char *cs_golden_verdict(const struct cs_golden *check, const struct cs_golden_row *row) {
+const char *cs_golden_verdict(const struct cs_golden *golden, const struct cs_golden_row *row) {
     if (row->failed)
         return "FAILED";
-    if (is_different(row) && check->accept_all)
-        return check->add.scene ? "added" : "accepted";
+    if (is_different(row) && golden->accept_all)
+        return golden->add.scene ? "added" : "accepted";
     return row->finding.skipped ? "skip" : is_different(row) ? "DIFFERS" : "ok";
 }
 
@@ -78,12 +78,12 @@ static void add_junit(const struct cs_golden_row *row, const char *name, const c
 }
 
 /* Adds a picture as part of the page. */
-static void add_picture(const struct cs_golden *check, const struct cs_golden_row *row,
+static void add_picture(const struct cs_golden *golden, const struct cs_golden_row *row,
                         const char *ending, const char *caption, struct cs_text *out) {
     char path[1024], *bytes;
     size_t length;
     struct cs_error unread = {0};
-    cs_golden_image_path(check->folder, row, ending, path);
+    cs_golden_image_path(golden->folder, row, ending, path);
     if (cs_file_read(path, PICTURE_MAX, &bytes, &length, &unread))
         return;
     cs_text_add(out, "<figure><img alt=\"%s\" src=\"data:image/png;base64,", caption);
@@ -100,21 +100,21 @@ static void add_offset(const char *name, const struct cs_golden_offset *offset, 
 }
 
 /* Adds a section for a row that is not equal, and a line for any other. */
-static void add_html(const struct cs_golden *check, const struct cs_golden_row *row,
+static void add_html(const struct cs_golden *golden, const struct cs_golden_row *row,
                      const char *name, struct cs_text *out) {
     const struct cs_golden_where *where = &row->finding.where;
     const bool is_bad = is_different(row);
     cs_text_add(out, is_bad ? "<section class=bad><h2>" : "<p>");
-    cs_text_add(out, "%s: ", cs_golden_verdict(check, row));
+    cs_text_add(out, "%s: ", cs_golden_verdict(golden, row));
     cs_text_add_html(out, name);
     cs_text_add(out, is_bad ? "</h2>\n<p>" : " ");
     cs_text_add_html(out, cs_text_get(&row->message));
     cs_text_add(out, "</p>\n");
     // side by side, as far as a window is wide
     if (is_bad && row->image) {
-        add_picture(check, row, ".png", "expected", out);
-        add_picture(check, row, ".actual.png", "actual", out);
-        add_picture(check, row, ".difference.png", "where: 16 times the difference", out);
+        add_picture(golden, row, ".png", "expected", out);
+        add_picture(golden, row, ".actual.png", "actual", out);
+        add_picture(golden, row, ".difference.png", "where: 16 times the difference", out);
     }
     if (is_bad && where->first.frame) {
         cs_text_add(out, "<table><tr><th><th>frame<th>particle<th>off by<th>particles</tr>\n");
@@ -126,45 +126,45 @@ static void add_html(const struct cs_golden *check, const struct cs_golden_row *
         cs_text_add(out, "</section>\n");
 }
 
-void cs_golden_report_add(struct cs_golden_report *report, const struct cs_golden *check,
+void cs_golden_report_add(struct cs_golden_report *report, const struct cs_golden *golden,
                           const struct cs_golden_row *row) {
     struct cs_text name = {0};
     cs_golden_add_name(row, &name);
     report->seconds += row->finding.seconds;
-    add_json(row, cs_golden_verdict(check, row), &report->json);
+    add_json(row, cs_golden_verdict(golden, row), &report->json);
     add_junit(row, cs_text_get(&name),
-              cs_golden_is_failure(check, row) ? "failure"
-              : row->finding.skipped           ? "skipped"
-                                               : NULL,
+              cs_golden_is_failure(golden, row) ? "failure"
+              : row->finding.skipped            ? "skipped"
+                                                : NULL,
               &report->junit);
-    add_html(check, row, cs_text_get(&name), &report->html);
+    add_html(golden, row, cs_text_get(&name), &report->html);
     report->json.failed |= name.failed;
     cs_text_finish(&name);
 }
 
 void cs_golden_report_print_json(const struct cs_golden_report *report,
-                                 const struct cs_golden *check, struct cs_text *out) {
+                                 const struct cs_golden *golden, struct cs_text *out) {
     cs_json_write(out,
                   "{\n  'agree': %u, 'differ': %u, 'accepted': %u, 'skipped': %u,\n"
                   "  'rows': [",
-                  check->passed, check->failed, check->accepted, check->skipped);
+                  golden->passed, golden->failed, golden->accepted, golden->skipped);
     cs_text_add(out, "%s\n  ]\n}\n", cs_text_get(&report->json));
     out->failed |= report->json.failed;
 }
 
 void cs_golden_report_print_junit(const struct cs_golden_report *report,
-                                  const struct cs_golden *check, struct cs_text *out) {
+                                  const struct cs_golden *golden, struct cs_text *out) {
     cs_text_add(
         out,
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"clothsim golden\" "
         "tests=\"%u\" failures=\"%u\" skipped=\"%u\" time=\"%.3f\">\n%s</testsuite>\n",
-        check->passed + check->failed + check->accepted + check->skipped, check->failed,
-        check->skipped, report->seconds, cs_text_get(&report->junit));
+        golden->passed + golden->failed + golden->accepted + golden->skipped, golden->failed,
+        golden->skipped, report->seconds, cs_text_get(&report->junit));
     out->failed |= report->junit.failed;
 }
 
 void cs_golden_report_print_html(const struct cs_golden_report *report,
-                                 const struct cs_golden *check, struct cs_text *out) {
+                                 const struct cs_golden *golden, struct cs_text *out) {
     cs_text_add(out,
                 "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\">"
                 "<title>clothsim golden</title>\n<style>body{font-family:sans-serif;margin:2em}"
@@ -173,7 +173,7 @@ void cs_golden_report_print_html(const struct cs_golden_report *report,
                 "img{min-width:320px;image-rendering:pixelated}td,th{padding:0 1em;"
                 "text-align:right}</style>\n"
                 "<h1>%u agree, %u differ, %u accepted, %u skipped</h1>\n%s</html>\n",
-                check->passed, check->failed, check->accepted, check->skipped,
+                golden->passed, golden->failed, golden->accepted, golden->skipped,
                 cs_text_get(&report->html));
     out->failed |= report->html.failed;
 }

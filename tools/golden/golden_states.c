@@ -46,7 +46,7 @@ void cs_golden_states_add(struct cs_golden_states *states, const struct cs_run *
 }
 
 /* m between two points; 0 for equal bits, infinite where a number is not finite. */
-static double distance(const float a[3], const float b[3]) {
+static double state_distance(const float a[3], const float b[3]) {
     double sum = 0;
     if (!memcmp(a, b, 3 * sizeof *a))
         return 0;
@@ -62,7 +62,7 @@ static struct cs_golden_offset compare_frame(const struct cs_golden_states *foun
     struct cs_golden_offset offset = {.frame = found->frames[k]};
     for (uint32_t i = 0; i < found->n; i++) {
         const double d =
-            distance(found->x + at + 3 * (size_t)i, expected->x + at + 3 * (size_t)i);
+            state_distance(found->x + at + 3 * (size_t)i, expected->x + at + 3 * (size_t)i);
         offset.count += d > tolerance;
         if (d > offset.distance) {
             offset.distance = d;

@@ -62,22 +62,22 @@ static enum cs_status print_manifest(const char *folder, struct cs_text *notes,
 }
 
 /* Chooses the reproduction by the file's name; a folder stands for the report in it. */
-static enum cs_status reproduce_file(struct cs_reproduction *again,
+static enum cs_status reproduce_file(struct cs_reproduction *reproduction,
                                      struct cs_reproduction_settings *settings,
                                      char path[PATH_BYTES], struct cs_error *error) {
     struct stat info;
     const uint32_t row = split_row(path);
     if (!stat(path, &info) && S_ISDIR(info.st_mode)) {
-        if (print_manifest(path, &again->notes, error))
+        if (print_manifest(path, &reproduction->notes, error))
             return error->status;
         strncat(path, "/run.json", PATH_BYTES - strlen(path) - 1);
     }
     settings->file = path;
-    return row ? cs_compare_reproduce_row(again, settings, row, error)
+    return row ? cs_compare_reproduce_row(reproduction, settings, row, error)
            : ends_in(path, ".csv")
                ? cs_fail(error, CS_ERR_USAGE, "%s: expected a row, as in %s:1", path, path)
-           : ends_in(path, ".png") ? cs_reproduction_of_picture(again, settings, error)
-                                   : cs_reproduction_of_run(again, settings, error);
+           : ends_in(path, ".png") ? cs_reproduction_of_picture(reproduction, settings, error)
+                                   : cs_reproduction_of_run(reproduction, settings, error);
 }
 
 static void print_notes(char *notes, struct cs_text *out) {
@@ -87,28 +87,30 @@ static void print_notes(char *notes, struct cs_text *out) {
 }
 
 /* Prints what was run, what has changed, and what is equal. */
-static enum cs_status print(struct cs_reproduction *again, struct cs_error *error) {
+static enum cs_status print(struct cs_reproduction *reproduction, struct cs_error *error) {
     struct cs_text out = {0};
-    cs_print_hanging("again", cs_text_get(&again->description), VALUE_COLUMN, &out);
-    if (again->notes.length)
-        print_notes(again->notes.bytes, &out);
+    cs_print_hanging("again", cs_text_get(&reproduction->description), VALUE_COLUMN, &out);
+    if (reproduction->notes.length)
+        print_notes(reproduction->notes.bytes, &out);
     cs_print_hanging("equal",
-                     again->equal_items.length ? cs_text_get(&again->equal_items) : "nothing",
+                     reproduction->equal_items.length ? cs_text_get(&reproduction->equal_items)
+                                                      : "nothing",
                      VALUE_COLUMN, &out);
     return cs_print_out(stdout, &out, error);
 }
 
 /* A difference must not be lost with the text that says it. */
-static enum cs_status check_texts(const struct cs_reproduction *again, struct cs_error *error) {
-    return again->description.failed || again->notes.failed || again->equal_items.failed ||
-                   again->first_difference.failed
+static enum cs_status check_texts(const struct cs_reproduction *reproduction,
+                                  struct cs_error *error) {
+    return reproduction->description.failed || reproduction->notes.failed ||
+                   reproduction->equal_items.failed || reproduction->first_difference.failed
                ? cs_fail(error, CS_ERR_MEMORY, "out of memory for what was found")
                : CS_OK;
 }
 
 static enum cs_status reproduce(struct cs_args *args, struct cs_error *error) {
     char path[PATH_BYTES];
-    struct cs_reproduction again = {0};
+    struct cs_reproduction reproduction = {0};
     struct cs_progress progress;
     struct options *options = args->options;
     struct cs_reproduction_settings *settings = &options->again;
@@ -117,13 +119,14 @@ static enum cs_status reproduce(struct cs_args *args, struct cs_error *error) {
     settings->progress = cs_progress_show;
     settings->ctx = &progress;
     cs_progress_begin(&progress, "frame", options->quiet);
-    reproduce_file(&again, settings, path, error);
+    reproduce_file(&reproduction, settings, path, error);
     cs_progress_end(&progress);
-    if (!error->status && !check_texts(&again, error) &&
-        (options->quiet || !print(&again, error)) && again.first_difference.length)
+    if (!error->status && !check_texts(&reproduction, error) &&
+        (options->quiet || !print(&reproduction, error)) &&
+        reproduction.first_difference.length)
         cs_fail(error, CS_ERR_CHECK, "%s: %s", args->operands[0],
-                cs_text_get(&again.first_difference));
-    cs_reproduction_finish(&again);
+                cs_text_get(&reproduction.first_difference));
+    cs_reproduction_finish(&reproduction);
     return error->status;
 }
 

@@ -72,42 +72,42 @@ static enum cs_status describe_row(const struct cs_provenance *provenance,
 }
 
 /* Exact comparison, where none equals none; only the first difference is reported. */
-static void compare_numbers(struct cs_reproduction *again, const char *what, double then,
+static void compare_numbers(struct cs_reproduction *reproduction, const char *what, double then,
                             double now) {
-    if (!again->first_difference.length && then != now && !(isnan(then) && isnan(now)))
-        cs_text_add(&again->first_difference, "%s was %.17g, is %.17g", what, then, now);
+    if (!reproduction->first_difference.length && then != now && !(isnan(then) && isnan(now)))
+        cs_text_add(&reproduction->first_difference, "%s was %.17g, is %.17g", what, then, now);
 }
 
-static void compare_texts(struct cs_reproduction *again, const char *what, const char *then,
-                          const char *now) {
-    if (!again->first_difference.length && strcmp(then, now) != 0)
-        cs_text_add(&again->first_difference, "%s was %s, is %s", what, then, now);
+static void compare_texts(struct cs_reproduction *reproduction, const char *what,
+                          const char *then, const char *now) {
+    if (!reproduction->first_difference.length && strcmp(then, now) != 0)
+        cs_text_add(&reproduction->first_difference, "%s was %s, is %s", what, then, now);
 }
 
 /* Compares in the order outcome, time, steps, state: the first difference says most. */
-static void compare_ends(struct cs_reproduction *again, const struct cs_cell *then,
+static void compare_ends(struct cs_reproduction *reproduction, const struct cs_cell *then,
                          const struct cs_cell *now, bool errors) {
     static const char *const names[] = {"error",          "max_error",      "path_error",
                                         "max_path_error", "velocity_error", "energy_error",
                                         "centre_error",   "box_error",      "bar"};
-    compare_texts(again, "the outcome", then->outcome, now->outcome);
-    compare_numbers(again, "the time", then->time, now->time);
-    compare_numbers(again, "the number of steps", then->steps, now->steps);
-    compare_texts(again, "the state at the end", then->state_hash, now->state_hash);
+    compare_texts(reproduction, "the outcome", then->outcome, now->outcome);
+    compare_numbers(reproduction, "the time", then->time, now->time);
+    compare_numbers(reproduction, "the number of steps", then->steps, now->steps);
+    compare_texts(reproduction, "the state at the end", then->state_hash, now->state_hash);
     for (size_t k = 0; k < sizeof names / sizeof *names && errors; k++) {
         const struct cs_column *column = cs_column_find(names[k]);
-        compare_numbers(again, names[k], cs_cell_number(then, column),
+        compare_numbers(reproduction, names[k], cs_cell_number(then, column),
                         cs_cell_number(now, column));
     }
-    if (!again->first_difference.length)
-        cs_text_add(&again->equal_items, "outcome, time, steps%s the state at the end%s",
+    if (!reproduction->first_difference.length)
+        cs_text_add(&reproduction->equal_items, "outcome, time, steps%s the state at the end%s",
                     errors ? "," : " and", errors ? " and the errors" : "");
 }
 
 /* Gets the reference of the comparison, from beside the file or computed. Another one than that
  * of the row is noted, and *same is false. */
 static enum cs_status get_reference(struct cs_compare *compare, const struct cs_cell *cell,
-                                    struct cs_reproduction *again, bool *same,
+                                    struct cs_reproduction *reproduction, bool *same,
                                     struct cs_error *error) {
     const struct cs_compare_reference_settings asked =
         cs_compare_reference_query(compare->settings);
@@ -118,12 +118,12 @@ static enum cs_status get_reference(struct cs_compare *compare, const struct cs_
     if (*same)
         return cs_compare_reference_get(&compare->reference, &asked, error);
     cs_text_add(
-        &again->notes,
+        &reproduction->notes,
         "the reference: it is of another version or scene, and errors are not compared\n");
     return CS_OK;
 }
 
-static enum cs_status run(struct cs_reproduction *again,
+static enum cs_status run(struct cs_reproduction *reproduction,
                           const struct cs_compare_settings *settings,
                           const struct cs_provenance *provenance, const struct cs_cell *cell,
                           struct cs_error *error) {
@@ -133,15 +133,15 @@ static enum cs_status run(struct cs_reproduction *again,
     struct cs_cell now = *cell;
     bool errors = false;
     cs_cell_integrator(cell, integrator, sizeof integrator);
-    cs_text_add(&again->description, "%u frames of %s by %s", settings->run.frames,
+    cs_text_add(&reproduction->description, "%u frames of %s by %s", settings->run.frames,
                 provenance->scene_file, integrator);
     if (!cs_recorded_run_open(&recording, &settings->run, integrator, error))
-        describe_row(provenance, &recording.session, cell, &again->notes, error);
+        describe_row(provenance, &recording.session, cell, &reproduction->notes, error);
     cs_recorded_run_close(&recording);
     if (!error->status && !isnan(cell->bar))
-        get_reference(&compare, cell, again, &errors, error);
+        get_reference(&compare, cell, reproduction, &errors, error);
     if (!error->status && !cs_compare_measure(&compare, &now, error))
-        compare_ends(again, cell, &now, errors);
+        compare_ends(reproduction, cell, &now, errors);
     cs_compare_reference_finish(&compare.reference);
     return error->status;
 }
@@ -157,7 +157,7 @@ static void read_reference(const struct cs_provenance *provenance,
     settings->reference_budget = cs_provenance_number(provenance->json, "reference_budget");
 }
 
-enum cs_status cs_compare_reproduce_row(struct cs_reproduction *again,
+enum cs_status cs_compare_reproduce_row(struct cs_reproduction *reproduction,
                                         const struct cs_reproduction_settings *settings,
                                         uint32_t row, struct cs_error *error) {
     struct cs_compare_settings asked = {.run.session = settings->session};
@@ -169,7 +169,7 @@ enum cs_status cs_compare_reproduce_row(struct cs_reproduction *again,
         !cs_provenance_to_session(&provenance, settings->folder, &asked.run.session, error)) {
         read_reference(&provenance, &asked);
         asked.cache = dirname(path);
-        run(again, &asked, &provenance, &cell, error);
+        run(reproduction, &asked, &provenance, &cell, error);
     }
     cs_provenance_finish(&provenance);
     return error->status;

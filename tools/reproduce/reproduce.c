@@ -14,20 +14,20 @@
 
 /* A reproduction in progress; zeroed: nothing. */
 struct work {
-    struct cs_reproduction *again;
+    struct cs_reproduction *reproduction;
     const struct cs_reproduction_settings *settings;
     struct cs_provenance carried;
     struct cs_session session;
-    struct cs_serialiser record; /* for methods that restart at each checkpoint */
+    struct cs_serialiser serialiser; /* for methods that restart at each checkpoint */
 };
 
 /* Records the first difference; everything after it is skipped. */
 static void differ(struct work *work, const char *what, const char *then, const char *now) {
-    cs_text_add(&work->again->first_difference, "%s was %s, is %s", what, then, now);
+    cs_text_add(&work->reproduction->first_difference, "%s was %s, is %s", what, then, now);
 }
 
 static bool has_differed(const struct work *work) {
-    return work->again->first_difference.length;
+    return work->reproduction->first_difference.length;
 }
 
 /* Opens a session from the provenance, and notes changes since the result was made. */
@@ -37,12 +37,12 @@ static enum cs_status begin(struct work *work, bool render, struct cs_error *err
     if (cs_provenance_to_session(&work->carried, work->settings->folder, &asked, error) ||
         cs_session_open(&work->session, &asked, error))
         return error->status;
-    return cs_provenance_add_changes(&work->carried, &work->session, &work->again->notes,
+    return cs_provenance_add_changes(&work->carried, &work->session, &work->reproduction->notes,
                                      error);
 }
 
 static void finish(struct work *work) {
-    cs_serialiser_finish(&work->record);
+    cs_serialiser_finish(&work->serialiser);
     cs_session_close(&work->session);
     cs_provenance_finish(&work->carried);
 }
@@ -54,8 +54,8 @@ static enum cs_status restart(struct work *work, struct cs_error *error) {
     const uint32_t every = work->carried.restarts;
     if (!every || run->frame % every != 0 || cs_run_method_has_history(run->integrator))
         return CS_OK;
-    cs_serialiser_begin(&work->record);
-    return cs_run_save(run, &work->record, error);
+    cs_serialiser_begin(&work->serialiser);
+    return cs_run_save(run, &work->serialiser, error);
 }
 
 /* Runs one frame. Returns false if the run has ended or failed. */
@@ -105,7 +105,7 @@ static enum cs_status compare_end(struct work *work, uint32_t total, struct cs_e
     else if (cs_outcome_has_reason(now.outcome) && !strstr(detail, now.message))
         differ(work, "the reason", detail, now.message);
     else
-        cs_text_add(&work->again->equal_items, " and the outcome");
+        cs_text_add(&work->reproduction->equal_items, " and the outcome");
     return CS_OK;
 }
 
@@ -136,20 +136,20 @@ static enum cs_status compare_frames(struct work *work, struct cs_error *error) 
         equal += !has_differed(work);
         restart(work, error);
     }
-    cs_text_add(&work->again->equal_items, "%u of %u states", equal, total);
+    cs_text_add(&work->reproduction->equal_items, "%u of %u states", equal, total);
     return error->status || has_differed(work) ? error->status
                                                : compare_end(work, total, error);
 }
 
 static void describe(struct work *work, uint32_t frames) {
-    cs_text_add(&work->again->description, "%u frame%s of %s by %s", frames,
+    cs_text_add(&work->reproduction->description, "%u frame%s of %s by %s", frames,
                 frames == 1 ? "" : "s", work->carried.scene_file, work->carried.method);
 }
 
-enum cs_status cs_reproduction_of_run(struct cs_reproduction *again,
+enum cs_status cs_reproduction_of_run(struct cs_reproduction *reproduction,
                                       const struct cs_reproduction_settings *settings,
                                       struct cs_error *error) {
-    struct work work = {.again = again, .settings = settings};
+    struct work work = {.reproduction = reproduction, .settings = settings};
     if (!cs_provenance_read(&work.carried, settings->file, error)) {
         const struct cs_json *frames = cs_json_find(work.carried.json, "frames");
         describe(&work, frames ? cs_json_count(frames) : 0);
@@ -179,26 +179,27 @@ static enum cs_renderer_kind renderer_of(const struct cs_provenance *provenance)
  * must be within a tolerance (cs_image_difference_passes). */
 static void compare_pixels(struct work *work, const struct cs_image *then,
                            const struct cs_image *now, const char *drawn_by) {
-    struct cs_reproduction *again = work->again;
+    struct cs_reproduction *reproduction = work->reproduction;
     const bool same = !work->carried.fast_render && !strcmp(drawn_by, work->carried.renderer);
     if (then->width != now->width || then->height != now->height) {
-        cs_text_add(&again->first_difference, "it has %u x %u pixels, the scene says %u x %u",
-                    then->width, then->height, now->width, now->height);
+        cs_text_add(&reproduction->first_difference,
+                    "it has %u x %u pixels, the scene says %u x %u", then->width, then->height,
+                    now->width, now->height);
         return;
     }
     const struct cs_image_difference d = cs_image_compare(then, now);
     if (!same)
-        cs_text_add(&again->notes, "the renderer was %s, is %s\n", work->carried.renderer,
-                    drawn_by);
+        cs_text_add(&reproduction->notes, "the renderer was %s, is %s\n",
+                    work->carried.renderer, drawn_by);
     if (d.pixels && (same || !cs_image_difference_passes(&d)))
-        cs_text_add(&again->first_difference,
+        cs_text_add(&reproduction->first_difference,
                     "%llu of %llu pixels differ, by at most %d levels of 255",
                     (unsigned long long)d.pixels,
                     (unsigned long long)then->width * then->height, d.largest);
     else
-        cs_text_add(&again->equal_items, d.pixels
-                                             ? ", pixels within the tolerance between renderers"
-                                             : " and all pixels");
+        cs_text_add(&reproduction->equal_items,
+                    d.pixels ? ", pixels within the tolerance between renderers"
+                             : " and all pixels");
 }
 
 /* Draws the state and compares it with the pixels of the file. */
@@ -209,7 +210,7 @@ static enum cs_status draw(struct work *work, const struct cs_image *then, const
     char hash[CS_HASH_DIGITS];
     cs_hash_bytes(then->rgb, cs_image_bytes(then), hash);
     if (strcmp(hash, pixels) != 0)
-        cs_text_add(&work->again->notes,
+        cs_text_add(&work->reproduction->notes,
                     "the pixels in the file have changed since it was written\n");
     const struct cs_render *render = &work->session.scene.render;
     /* as the run had it: colours are not laid on white then */
@@ -239,14 +240,14 @@ static enum cs_status compare_picture(struct work *work, uint32_t frame, char **
     compare_state(work, texts[STATE]);
     if (has_differed(work))
         return CS_OK;
-    cs_text_add(&work->again->equal_items, "the state");
+    cs_text_add(&work->reproduction->equal_items, "the state");
     return draw(work, image, texts[PIXELS], error);
 }
 
-enum cs_status cs_reproduction_of_picture(struct cs_reproduction *again,
+enum cs_status cs_reproduction_of_picture(struct cs_reproduction *reproduction,
                                           const struct cs_reproduction_settings *settings,
                                           struct cs_error *error) {
-    struct work work = {.again = again, .settings = settings};
+    struct work work = {.reproduction = reproduction, .settings = settings};
     struct cs_image image;
     char *texts[TEXTS];
     double frame = 0;
@@ -260,7 +261,7 @@ enum cs_status cs_reproduction_of_picture(struct cs_reproduction *again,
                     keys[k]);
     if (!error->status &&
         !cs_provenance_read_text(&work.carried, settings->file, texts[RUN], error)) {
-        cs_text_add(&again->description, "frame %.0f of %s by %s", frame,
+        cs_text_add(&reproduction->description, "frame %.0f of %s by %s", frame,
                     work.carried.scene_file, work.carried.method);
         if (!begin(&work, true, error))
             compare_picture(&work, (uint32_t)frame, texts, &image, error);
@@ -272,9 +273,9 @@ enum cs_status cs_reproduction_of_picture(struct cs_reproduction *again,
     return error->status;
 }
 
-void cs_reproduction_finish(struct cs_reproduction *again) {
-    cs_text_finish(&again->description);
-    cs_text_finish(&again->notes);
-    cs_text_finish(&again->equal_items);
-    cs_text_finish(&again->first_difference);
+void cs_reproduction_finish(struct cs_reproduction *reproduction) {
+    cs_text_finish(&reproduction->description);
+    cs_text_finish(&reproduction->notes);
+    cs_text_finish(&reproduction->equal_items);
+    cs_text_finish(&reproduction->first_difference);
 }

@@ -25,15 +25,15 @@ struct cs_reproduction {
 /* Reruns the scene stored in run.json, and compares the state of each frame and the outcome. A
  * difference is a result in first_difference. CS_ERR_FILE, CS_ERR_SCENE, CS_ERR_MODULE,
  * CS_ERR_MEMORY, CS_ERR_INTERRUPT. */
-enum cs_status cs_reproduction_of_run(struct cs_reproduction *again,
+enum cs_status cs_reproduction_of_run(struct cs_reproduction *reproduction,
                                       const struct cs_reproduction_settings *settings,
                                       struct cs_error *error);
 /* Reruns the scene stored in a picture up to its frame, compares the state, draws it with the
  * same renderer, and compares the pixels. */
-enum cs_status cs_reproduction_of_picture(struct cs_reproduction *again,
+enum cs_status cs_reproduction_of_picture(struct cs_reproduction *reproduction,
                                           const struct cs_reproduction_settings *settings,
                                           struct cs_error *error);
 /* Frees the texts. */
-void cs_reproduction_finish(struct cs_reproduction *again);
+void cs_reproduction_finish(struct cs_reproduction *reproduction);
 
 #endif

@@ -49,39 +49,39 @@ struct cs_subprocess_result cs_subprocess_run(const char *folder, const char *co
                                                     WEXITSTATUS(status) == 0};
 }
 
-enum cs_status cs_subprocess_open(struct cs_subprocess *program, const char *folder,
+enum cs_status cs_subprocess_open(struct cs_subprocess *process, const char *folder,
                                   const char *const *arguments, int stream,
                                   struct cs_error *error) {
     int ends[2];
-    *program = (struct cs_subprocess){0};
+    *process = (struct cs_subprocess){0};
     if (pipe2(ends, O_CLOEXEC))
         return cs_fail(error, cs_file_status(errno), "cannot make a pipe: %s", strerror(errno));
     /* the stream first, because a program that is started could already do something */
-    program->output = fdopen(ends[0], "r");
+    process->output = fdopen(ends[0], "r");
     const int reason =
-        program->output ? spawn(folder, arguments, ends[1], stream, &program->pid) : errno;
+        process->output ? spawn(folder, arguments, ends[1], stream, &process->pid) : errno;
     close(ends[1]);
     if (!reason)
         return CS_OK;
-    if (program->output)
-        fclose(program->output);
+    if (process->output)
+        fclose(process->output);
     else
         close(ends[0]);
-    *program = (struct cs_subprocess){.reason = reason};
+    *process = (struct cs_subprocess){.reason = reason};
     return cs_fail(error, cs_file_status(reason), "cannot run %s: %s", arguments[0],
                    strerror(reason));
 }
 
-int cs_subprocess_close(struct cs_subprocess *program) {
+int cs_subprocess_close(struct cs_subprocess *process) {
     int status = -1;
-    if (program->pid <= 0)
+    if (process->pid <= 0)
         return -1;
-    if (!program->output || !feof(program->output))
-        kill(program->pid, SIGKILL);
-    if (program->output)
-        fclose(program->output);
-    while (waitpid(program->pid, &status, 0) < 0 && errno == EINTR)
+    if (!process->output || !feof(process->output))
+        kill(process->pid, SIGKILL);
+    if (process->output)
+        fclose(process->output);
+    while (waitpid(process->pid, &status, 0) < 0 && errno == EINTR)
         ;
-    *program = (struct cs_subprocess){0};
+    *process = (struct cs_subprocess){0};
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }

@@ -33,12 +33,12 @@ struct cs_subprocess {
 /* Starts arguments[0], searched on PATH, in the working directory `folder`; arguments end with
  * NULL. stream: 1 to read its standard output, 2 its standard error. CS_ERR_FILE,
  * CS_ERR_MEMORY. */
-enum cs_status cs_subprocess_open(struct cs_subprocess *program, const char *folder,
+enum cs_status cs_subprocess_open(struct cs_subprocess *process, const char *folder,
                                   const char *const *arguments, int stream,
                                   struct cs_error *error);
 
 /* Waits for its end; kills it first if its output was not read to the end. Returns its exit
  * code, or -1 if a signal ended it. Safe on a zeroed one. */
-int cs_subprocess_close(struct cs_subprocess *program);
+int cs_subprocess_close(struct cs_subprocess *process);
 
 #endif

@@ -61,7 +61,7 @@ static enum cs_status prepare(const struct options *options, struct cs_error *er
     return cs_folder_create(options->folder, error);
 }
 
-static enum cs_status measure(struct cs_soft *soft, bool quiet, struct cs_error *error) {
+static enum cs_status measure_series(struct cs_soft *soft, bool quiet, struct cs_error *error) {
     struct cs_progress progress;
     cs_progress_begin(&progress, "body", quiet);
     soft->progress = cs_progress_show;
@@ -78,7 +78,7 @@ static enum cs_status soft_bench(struct cs_args *args, struct cs_error *error) {
     soft->session.scene = args->operands[0];
     soft->session.run.stop = cs_interrupt_catch();
     if (prepare(options, error) ||
-        (measure(soft, options->quiet, error) && error->status != CS_ERR_INTERRUPT))
+        (measure_series(soft, options->quiet, error) && error->status != CS_ERR_INTERRUPT))
         return error->status;
     /* what was measured before an interrupt is kept */
     struct cs_error later = {0};

@@ -150,8 +150,9 @@ static enum cs_status run_row(const struct cs_soft *soft, struct cs_soft_row *ro
 }
 
 /* Measures one row and appends it. */
-static enum cs_status add_row(struct cs_soft *soft, enum cs_soft_series series, uint32_t detail,
-                              uint32_t density, struct cs_error *error) {
+static enum cs_status append_soft_row(struct cs_soft *soft, enum cs_soft_series series,
+                                      uint32_t detail, uint32_t density,
+                                      struct cs_error *error) {
     struct cs_soft_row *row = soft->rows + soft->n;
     *row = (struct cs_soft_row){.series = series};
     if (run_row(soft, row, detail, density, error))
@@ -183,17 +184,17 @@ enum cs_status cs_soft_check(const struct cs_soft *soft, struct cs_error *error)
 enum cs_status cs_soft_run(struct cs_soft *soft, struct cs_error *error) {
     soft->n = 0;
     for (uint32_t k = 0; k < DENSITIES && !error->status; k++)
-        add_row(soft, CS_SOFT_SMALL, SMALL, densities[k], error);
+        append_soft_row(soft, CS_SOFT_SMALL, SMALL, densities[k], error);
     for (uint32_t k = 0; k < DENSITIES && !error->status; k++)
-        add_row(soft, CS_SOFT_LARGE, LARGE, densities[k], error);
+        append_soft_row(soft, CS_SOFT_LARGE, LARGE, densities[k], error);
     for (uint32_t k = 0; k < DETAILS && !error->status; k++)
-        add_row(soft, CS_SOFT_SURFACE, details[k], 0, error);
+        append_soft_row(soft, CS_SOFT_SURFACE, details[k], 0, error);
     for (uint32_t k = 0; k < DETAILS && !error->status; k++)
-        add_row(soft, CS_SOFT_NETWORK, details[k], UINT32_MAX, error);
+        append_soft_row(soft, CS_SOFT_NETWORK, details[k], UINT32_MAX, error);
     for (uint32_t k = 0; k < DETAILS && !error->status; k++)
-        add_row(soft, CS_SOFT_IMPLICIT, details[k], UINT32_MAX, error);
+        append_soft_row(soft, CS_SOFT_IMPLICIT, details[k], UINT32_MAX, error);
     for (uint32_t k = 0; k < DETAILS && !error->status; k++)
-        add_row(soft, CS_SOFT_MATCHED, details[k], 0, error);
+        append_soft_row(soft, CS_SOFT_MATCHED, details[k], 0, error);
     return error->status;
 }
 
@@ -248,8 +249,8 @@ static void report_add_row(const struct cs_soft_row *row, bool drawn, struct cs_
 }
 
 /* The row of a series with that number of vertices, or NULL. */
-static const struct cs_soft_row *find(const struct cs_soft *soft, enum cs_soft_series series,
-                                      uint32_t vertices) {
+static const struct cs_soft_row *find_row(const struct cs_soft *soft,
+                                          enum cs_soft_series series, uint32_t vertices) {
     for (uint32_t k = 0; k < soft->n; k++)
         if (soft->rows[k].series == series && soft->rows[k].vertices == vertices &&
             soft->rows[k].step_seconds > 0)
@@ -273,7 +274,7 @@ static const struct cs_soft_row *largest(const struct cs_soft *soft) {
         const struct cs_soft_row *row = soft->rows + k;
         bool all = row->series == CS_SOFT_MATCHED;
         for (int s = CS_SOFT_SURFACE; s <= CS_SOFT_MATCHED; s++)
-            all &= find(soft, (enum cs_soft_series)s, row->vertices) != NULL;
+            all &= find_row(soft, (enum cs_soft_series)s, row->vertices) != NULL;
         if (all)
             return row;
     }
@@ -285,9 +286,9 @@ static void add_ratios(const struct cs_soft *soft, struct cs_text *out) {
     const struct cs_soft_row *matched = largest(soft);
     if (!matched)
         return;
-    const struct cs_soft_row *surface = find(soft, CS_SOFT_SURFACE, matched->vertices);
-    const struct cs_soft_row *network = find(soft, CS_SOFT_NETWORK, matched->vertices);
-    const struct cs_soft_row *implicit = find(soft, CS_SOFT_IMPLICIT, matched->vertices);
+    const struct cs_soft_row *surface = find_row(soft, CS_SOFT_SURFACE, matched->vertices);
+    const struct cs_soft_row *network = find_row(soft, CS_SOFT_NETWORK, matched->vertices);
+    const struct cs_soft_row *implicit = find_row(soft, CS_SOFT_IMPLICIT, matched->vertices);
     const double frame = matched->step_seconds * matched->steps;
     cs_text_add(out,
                 "%u vertices: one step of shape matching takes %.2f times one with springs on "

@@ -14,15 +14,14 @@
 #include <string.h>
 
 struct options {
-    struct cs_parameter_sweep product;
+    struct cs_parameter_sweep sweep;
     const char *const *keys; /* (n_keys) as they were typed */
     uint32_t n_keys;
     double seconds; /* 0: not given */
     double cell_megabytes;
     bool status, strict, quiet;
 };
-static const struct options defaults = {
-    .product = {.frames = 60, .folder = "sweep", .jobs = 1}};
+static const struct options defaults = {.sweep = {.frames = 60, .folder = "sweep", .jobs = 1}};
 
 /* s for one call into a module from outside, where cells have no limit. */
 enum { PATIENCE_SECONDS = 600 };
@@ -31,29 +30,29 @@ static const struct cs_arg rows[] = {
     {"integrators", 'i', "LIST",
      "methods, NAME:KEY=VALUE,...,NAME...; all: every method; may be repeated (default: the "
      "scene's own)",
-     CS_ARG_LIST(struct options, product.methods, product.n_methods), .methods = true},
+     CS_ARG_LIST(struct options, sweep.methods, sweep.n_methods), .methods = true},
     {"set", 's', "PATH=VALUE,VALUE,...",
      "values of a key of the scene; repeated: every combination is run",
      CS_ARG_LIST(struct options, keys, n_keys)},
     {"frames", 'n', "N", "simulate frames 1 to N (default: 60)",
-     CS_ARG_INTO(struct options, product.frames), .min = 1, .max = 10000000},
+     CS_ARG_INTO(struct options, sweep.frames), .min = 1, .max = 10000000},
     {"time", 't', "SECONDS", "simulated time, instead of -n",
      CS_ARG_INTO(struct options, seconds)},
-    CS_ARG_PLUGIN(struct options, product.session),
+    CS_ARG_PLUGIN(struct options, sweep.session),
     {"out", 'o', "DIR", "folder of sweep.csv (default: sweep)",
-     CS_ARG_INTO(struct options, product.folder)},
+     CS_ARG_INTO(struct options, sweep.folder)},
     {"overwrite", 'y', NULL, "replace an existing sweep.csv",
-     CS_ARG_INTO(struct options, product.overwrite)},
+     CS_ARG_INTO(struct options, sweep.overwrite)},
     {"shard", 0, "K/N", "run shard K of N of the cells; see: clothsim merge",
-     CS_ARG_INTO(struct options, product.shard)},
+     CS_ARG_INTO(struct options, sweep.shard)},
     {"jobs", 'j', "N", "run N cells at a time, each by one thread (default: 1)",
-     CS_ARG_INTO(struct options, product.jobs), .min = 1, .max = CS_PROCESS_POOL_MAX},
+     CS_ARG_INTO(struct options, sweep.jobs), .min = 1, .max = CS_PROCESS_POOL_MAX},
     {"cell-seconds", 0, "SECONDS", "end a cell after this time; its row says failed",
-     CS_ARG_INTO(struct options, product.cell_seconds)},
+     CS_ARG_INTO(struct options, sweep.cell_seconds)},
     {"cell-memory", 0, "MB", "address space of a cell; a row that needs more says failed",
      CS_ARG_INTO(struct options, cell_megabytes)},
     {"retry-failed", 0, NULL, "run failed cells again",
-     CS_ARG_INTO(struct options, product.retry_failed)},
+     CS_ARG_INTO(struct options, sweep.retry_failed)},
     {"status", 0, NULL, "count the cells that are there, and run none",
      CS_ARG_INTO(struct options, status)},
     {"strict", 0, NULL, "exit with 8 if a cell blew up, was refused or failed",
@@ -95,30 +94,30 @@ static enum cs_status read_key(struct cs_args *args, char *text, struct cs_param
 }
 
 static enum cs_status read_keys(struct cs_args *args, const struct options *options,
-                                struct cs_parameter_sweep *product, struct cs_error *error) {
-    product->n_keys = options->n_keys;
-    if (product->n_keys > CS_PARAMETER_AXES_MAX)
+                                struct cs_parameter_sweep *sweep, struct cs_error *error) {
+    sweep->n_keys = options->n_keys;
+    if (sweep->n_keys > CS_PARAMETER_AXES_MAX)
         return cs_fail(error, CS_ERR_USAGE, "--set: found %u keys, expected at most %d",
-                       product->n_keys, CS_PARAMETER_AXES_MAX);
-    for (uint32_t k = 0; k < product->n_keys && !error->status; k++) {
+                       sweep->n_keys, CS_PARAMETER_AXES_MAX);
+    for (uint32_t k = 0; k < sweep->n_keys && !error->status; k++) {
         char *copy = cs_arena_copy_text(&args->arena, options->keys[k], error);
         if (copy)
-            read_key(args, copy, product->keys + k, error);
+            read_key(args, copy, sweep->keys + k, error);
         for (uint32_t other = 0; other < k && !error->status; other++)
-            if (!strcmp(product->keys[other].path, product->keys[k].path))
+            if (!strcmp(sweep->keys[other].path, sweep->keys[k].path))
                 cs_fail(error, CS_ERR_USAGE, "--set: %.60s is given twice",
-                        product->keys[k].path);
+                        sweep->keys[k].path);
     }
     return error->status;
 }
 
 /* Puts the names of all methods in place of "all". */
-static enum cs_status name_methods(struct cs_args *args, struct cs_parameter_sweep *product,
+static enum cs_status name_methods(struct cs_args *args, struct cs_parameter_sweep *sweep,
                                    struct cs_error *error) {
-    const struct cs_session_settings *session = &product->session;
+    const struct cs_session_settings *session = &sweep->session;
     struct cs_registry registry = {0};
     uint32_t n = 0;
-    if (product->n_methods != 1 || strcmp(product->methods[0], "all") != 0)
+    if (sweep->n_methods != 1 || strcmp(sweep->methods[0], "all") != 0)
         return CS_OK;
     cs_registry_add_files(&registry, session->plugins, session->n_plugins, error);
     const char *const *names =
@@ -127,8 +126,8 @@ static enum cs_status name_methods(struct cs_args *args, struct cs_parameter_swe
         names ? cs_arena_alloc_array(&args->arena, n, sizeof *methods, error) : NULL;
     for (uint32_t k = 0; methods && k < n; k++)
         methods[k] = cs_arena_copy_text(&args->arena, names[k], error);
-    product->methods = methods;
-    product->n_methods = n;
+    sweep->methods = methods;
+    sweep->n_methods = n;
     cs_registry_finish(&registry);
     return error->status;
 }
@@ -136,68 +135,68 @@ static enum cs_status name_methods(struct cs_args *args, struct cs_parameter_swe
 /* Frames as given, or those of the time, which cells of other frame rates would not share. */
 static enum cs_status count_frames(struct cs_args *args, struct options *options,
                                    struct cs_error *error) {
-    struct cs_parameter_sweep *product = &options->product;
+    struct cs_parameter_sweep *sweep = &options->sweep;
     if (cs_args_refuse_both(args, "frames", "time", error) || !(options->seconds > 0))
         return error->status;
-    for (uint32_t k = 0; k < product->n_keys; k++)
-        if (!strcmp(product->keys[k].path, "time.fps"))
+    for (uint32_t k = 0; k < sweep->n_keys; k++)
+        if (!strcmp(sweep->keys[k].path, "time.fps"))
             return cs_fail(error, CS_ERR_USAGE,
                            "--time: cells of other time.fps have other frames; use --frames");
-    product->frames = 0;
-    return cs_session_fit_frames(&product->session, &product->frames, &options->seconds, error);
+    sweep->frames = 0;
+    return cs_session_fit_frames(&sweep->session, &sweep->frames, &options->seconds, error);
 }
 
 /* Prints the counts, the first refusal and the failed cells; these also if quiet. */
 static enum cs_status print_counts(const struct options *options, struct cs_error *error) {
-    const struct cs_parameter_sweep *product = &options->product;
-    const struct cs_parameter_sweep_counts *counts = &product->counts;
-    struct cs_text out = {.failed = product->failed.failed};
+    const struct cs_parameter_sweep *sweep = &options->sweep;
+    const struct cs_parameter_sweep_counts *counts = &sweep->counts;
+    struct cs_text out = {.failed = sweep->failed.failed};
     if (options->status)
         cs_text_add(&out, "%u of %u cells are in %s/sweep.csv, %u are being run\n",
-                    counts->done, counts->cells, product->folder, counts->running);
+                    counts->done, counts->cells, sweep->folder, counts->running);
     else if (!options->quiet)
         cs_text_add(&out, "%u of %u cells are in %s/sweep.csv, %u of them from earlier runs\n",
-                    counts->done, counts->cells, product->folder, counts->reused);
+                    counts->done, counts->cells, sweep->folder, counts->reused);
     if (counts->refused && !options->quiet)
         cs_text_add(&out, "warning: %u of them were refused; the first message: %s\n",
                     counts->refused, counts->first_refusal);
-    cs_text_add(&out, "%s", cs_text_get(&product->failed));
+    cs_text_add(&out, "%s", cs_text_get(&sweep->failed));
     return cs_print_out(stdout, &out, error);
 }
 
-static enum cs_status sweep(struct cs_args *args, struct cs_error *error) {
+static enum cs_status run_sweep(struct cs_args *args, struct cs_error *error) {
     struct cs_progress progress;
     struct options *options = args->options;
-    struct cs_parameter_sweep *product = &options->product;
-    const struct cs_parameter_sweep_counts *counts = &product->counts;
+    struct cs_parameter_sweep *sweep = &options->sweep;
+    const struct cs_parameter_sweep_counts *counts = &sweep->counts;
     struct cs_error unseen = {0};
-    product->session.scene = args->operands[0];
-    product->session.run.stop = cs_interrupt_catch();
-    product->progress = cs_progress_show;
-    product->ctx = &progress;
-    product->cell_bytes = 1e6 * options->cell_megabytes;
-    if (cs_external_modules_requested(args, product->methods, product->n_methods))
-        product->call_seconds = PATIENCE_SECONDS;
-    if (read_keys(args, options, product, error) || name_methods(args, product, error) ||
+    sweep->session.scene = args->operands[0];
+    sweep->session.run.stop = cs_interrupt_catch();
+    sweep->progress = cs_progress_show;
+    sweep->ctx = &progress;
+    sweep->cell_bytes = 1e6 * options->cell_megabytes;
+    if (cs_external_modules_requested(args, sweep->methods, sweep->n_methods))
+        sweep->call_seconds = PATIENCE_SECONDS;
+    if (read_keys(args, options, sweep, error) || name_methods(args, sweep, error) ||
         count_frames(args, options, error) ||
-        cs_study_folder_check(&product->session, product->folder, error))
+        cs_study_folder_check(&sweep->session, sweep->folder, error))
         return error->status;
     cs_progress_begin(&progress, "cell", options->quiet);
     if (options->status)
-        cs_parameter_sweep_count(product, error);
+        cs_parameter_sweep_count(sweep, error);
     else {
-        cs_parameter_sweep_run(product, error);
-        cs_manifest_write_study(product->folder, error);
+        cs_parameter_sweep_run(sweep, error);
+        cs_manifest_write_study(sweep->folder, error);
     }
     cs_progress_end(&progress);
     if (counts->done || (options->status && !error->status))
         print_counts(options, error->status ? &unseen : error);
-    cs_text_finish(&product->failed);
+    cs_text_finish(&sweep->failed);
     const uint32_t bad = counts->refused + counts->failed + counts->blown_up;
     if (options->strict && bad)
         cs_fail(error, CS_ERR_UNSTABLE, "%u of %u cells blew up, were refused or failed", bad,
                 counts->cells);
-    const struct cs_error *failure = &product->cell_failure;
+    const struct cs_error *failure = &sweep->cell_failure;
     return failure->status ? cs_fail(error, failure->status, "%s", failure->message)
                            : error->status;
 }
@@ -216,5 +215,5 @@ const struct cs_command cs_command_sweep = {
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
     .operands_max = 1,
-    .main = sweep,
+    .main = run_sweep,
 };

@@ -19,7 +19,7 @@ struct cell_row {
 
 /* A sweep under way. */
 struct sweep_work {
-    struct cs_parameter_sweep *product;
+    struct cs_parameter_sweep *sweep;
     struct cs_sweep_rows *rows;
     uint32_t at;      /* the next cell to look at */
     size_t row_bytes; /* that a row may have */
@@ -28,15 +28,15 @@ struct sweep_work {
 };
 
 /* Bytes of the longest row: quotes double at most, and the rest is bounded. */
-static size_t longest_row(const struct cs_parameter_sweep *product) {
+static size_t longest_row(const struct cs_parameter_sweep *sweep) {
     size_t bytes = 8192, longest = 0;
-    for (uint32_t k = 0; k < product->n_keys; k++, bytes += 2 * longest + 3, longest = 0)
-        for (uint32_t v = 0; v < product->keys[k].n; v++)
-            if (strlen(product->keys[k].values[v]) > longest)
-                longest = strlen(product->keys[k].values[v]);
-    for (uint32_t m = 0; m < product->n_methods; m++)
-        if (2 * strlen(product->methods[m]) > longest)
-            longest = 2 * strlen(product->methods[m]);
+    for (uint32_t k = 0; k < sweep->n_keys; k++, bytes += 2 * longest + 3, longest = 0)
+        for (uint32_t v = 0; v < sweep->keys[k].n; v++)
+            if (strlen(sweep->keys[k].values[v]) > longest)
+                longest = strlen(sweep->keys[k].values[v]);
+    for (uint32_t m = 0; m < sweep->n_methods; m++)
+        if (2 * strlen(sweep->methods[m]) > longest)
+            longest = 2 * strlen(sweep->methods[m]);
     return bytes + longest;
 }
 
@@ -44,11 +44,11 @@ static size_t longest_row(const struct cs_parameter_sweep *product) {
  */
 static bool next_cell(void *ctx, uint32_t slot, struct cs_error *error) {
     struct sweep_work *work = ctx;
-    const struct cs_parameter_sweep *product = work->product;
-    while (work->at < product->counts.cells && !error->status) {
+    const struct cs_parameter_sweep *sweep = work->sweep;
+    while (work->at < sweep->counts.cells && !error->status) {
         const uint32_t number = work->at++;
-        if (work->rows->lines[number] || !cs_shard_holds(&product->shard, number) ||
-            !cs_sweep_rows_lock_cell(work->rows, number, product->folder, error))
+        if (work->rows->lines[number] || !cs_shard_holds(&sweep->shard, number) ||
+            !cs_sweep_rows_lock_cell(work->rows, number, sweep->folder, error))
             continue;
         work->cells[slot] = number;
         memset(work->slots[slot], 0, sizeof *work->slots[slot]);
@@ -63,10 +63,10 @@ static enum cs_status run_cell(void *ctx, uint32_t slot, struct cs_error *error)
     struct cell_row *row = work->slots[slot];
     struct cs_sweep_cell cell;
     struct cs_text line = {0};
-    if (cs_sweep_cell_open(&cell, work->product, work->cells[slot], error))
+    if (cs_sweep_cell_open(&cell, work->sweep, work->cells[slot], error))
         return error->status;
     memcpy(row->key, cell.key, sizeof row->key);
-    cs_sweep_cell_run(&cell, work->product, cs_text_get(&work->rows->names), &line, error);
+    cs_sweep_cell_run(&cell, work->sweep, cs_text_get(&work->rows->names), &line, error);
     cs_sweep_cell_close(&cell);
     if (!error->status && line.length > work->row_bytes)
         cs_fail(error, CS_ERR_INTERNAL, "a row of %zu bytes", line.length);
@@ -84,13 +84,13 @@ static void end_cell(void *ctx, uint32_t slot, const struct cs_error *result,
                      struct cs_error *error) {
     struct sweep_work *work = ctx;
     const struct cell_row *row = work->slots[slot];
-    struct cs_parameter_sweep *product = work->product;
-    const volatile sig_atomic_t *stop = product->session.run.stop;
+    struct cs_parameter_sweep *sweep = work->sweep;
+    const volatile sig_atomic_t *stop = sweep->session.run.stop;
     const uint32_t number = work->cells[slot];
     const enum cs_status failure = result->status ? result->status : row->failure;
     struct cs_text line = {0};
     if (result->status)
-        cs_sweep_cell_add_lost(number, product, result->message, row->key,
+        cs_sweep_cell_add_lost(number, sweep, result->message, row->key,
                                cs_text_get(&work->rows->names), &line);
     else
         cs_text_add(&line, "%.*s", (int)row->length, row->line);
@@ -101,22 +101,22 @@ static void end_cell(void *ctx, uint32_t slot, const struct cs_error *result,
     cs_text_finish(&line);
     if (failure && failure != CS_ERR_SCENE && failure != CS_ERR_MODULE &&
         failure != CS_ERR_INTERRUPT)
-        cs_fail(&product->cell_failure, failure, "cell %u failed%s%s", number,
+        cs_fail(&sweep->cell_failure, failure, "cell %u failed%s%s", number,
                 result->status ? ": " : "; its row says why", result->message);
-    if (product->progress)
-        product->progress(product->ctx, work->at, product->counts.cells);
+    if (sweep->progress)
+        sweep->progress(sweep->ctx, work->at, sweep->counts.cells);
 }
 
 /* In a process of its own: compares the keys of the rows that are there with the cells. */
 static enum cs_status verify_rows(void *ctx, struct cs_error *error) {
     const struct sweep_work *work = ctx;
-    for (uint32_t k = 0; k < work->product->counts.cells && !error->status; k++) {
+    for (uint32_t k = 0; k < work->sweep->counts.cells && !error->status; k++) {
         const char *line = work->rows->lines[k];
         struct cs_sweep_cell cell;
         /* a cell that failed before it was read has no key */
         if (!line || !*cs_sweep_row_key(line))
             continue;
-        if (!cs_sweep_cell_open(&cell, work->product, k, error) &&
+        if (!cs_sweep_cell_open(&cell, work->sweep, k, error) &&
             strcmp(cs_sweep_row_key(line), cell.key) != 0)
             cs_fail(error, CS_ERR_USAGE,
                     "%s belongs to a different sweep; choose another folder with --out, or "
@@ -129,46 +129,46 @@ static enum cs_status verify_rows(void *ctx, struct cs_error *error) {
 
 /* Runs all cells that are left. */
 static enum cs_status run_cells(struct sweep_work *work, struct cs_error *error) {
-    const struct cs_parameter_sweep *product = work->product;
-    struct cs_isolate_queue queue = {.limits = {.seconds = product->call_seconds,
-                                                .task_seconds = product->cell_seconds,
-                                                .stop_seconds = 0.5,
-                                                .bytes = product->cell_bytes,
-                                                .is_cell = true,
-                                                .stop = product->session.run.stop},
-                                     .n_slots = product->jobs ? product->jobs : 1,
+    const struct cs_parameter_sweep *sweep = work->sweep;
+    struct cs_isolate_queue queue = {.isolate = {.seconds = sweep->call_seconds,
+                                                 .task_seconds = sweep->cell_seconds,
+                                                 .stop_seconds = 0.5,
+                                                 .bytes = sweep->cell_bytes,
+                                                 .is_cell = true,
+                                                 .stop = sweep->session.run.stop},
+                                     .n_slots = sweep->jobs ? sweep->jobs : 1,
                                      .ctx = work,
                                      .next = next_cell,
                                      .task = run_cell,
                                      .ended = end_cell};
-    const size_t bytes = sizeof **work->slots + (work->row_bytes = longest_row(product));
+    const size_t bytes = sizeof **work->slots + (work->row_bytes = longest_row(sweep));
     for (uint32_t k = 0; k < queue.n_slots && !error->status; k++)
         work->slots[k] = cs_process_pool_shared_alloc(bytes, error);
     if (!error->status)
         cs_isolate_queue_run(&queue, error);
     for (uint32_t k = 0; k < queue.n_slots; k++)
         cs_process_pool_shared_free(work->slots[k], bytes);
-    return queue.limits.stop && *queue.limits.stop
+    return queue.isolate.stop && *queue.isolate.stop
                ? cs_fail(error, CS_ERR_INTERRUPT, "interrupted; finished rows are saved")
                : error->status;
 }
 
 /* Writes the first line of a new file, or adds the rows of an old one. */
-static enum cs_status begin(struct cs_parameter_sweep *product, struct cs_sweep_rows *rows,
+static enum cs_status begin(struct cs_parameter_sweep *sweep, struct cs_sweep_rows *rows,
                             struct cs_error *error) {
-    cs_sweep_add_names(product, &rows->names);
-    if (cs_sweep_rows_reserve(rows, product->counts.cells, error) ||
+    cs_sweep_add_names(sweep, &rows->names);
+    if (cs_sweep_rows_reserve(rows, sweep->counts.cells, error) ||
         cs_row_table_lock(&rows->table, error))
         return error->status;
-    if (!product->overwrite)
-        cs_sweep_rows_read(rows, product->folder, error);
-    if (product->retry_failed)
-        cs_sweep_rows_drop_failed(rows, product->n_keys);
+    if (!sweep->overwrite)
+        cs_sweep_rows_read(rows, sweep->folder, error);
+    if (sweep->retry_failed)
+        cs_sweep_rows_drop_failed(rows, sweep->n_keys);
     if (!error->status)
         cs_sweep_rows_write(rows, error);
     cs_row_table_unlock(&rows->table);
-    product->counts.reused = cs_sweep_rows_count(rows);
-    if (!error->status && rows->n > product->counts.cells)
+    sweep->counts.reused = cs_sweep_rows_count(rows);
+    if (!error->status && rows->n > sweep->counts.cells)
         cs_fail(error, CS_ERR_USAGE,
                 "%s belongs to a different sweep; choose another folder with --out, or "
                 "--overwrite to replace it",
@@ -177,65 +177,65 @@ static enum cs_status begin(struct cs_parameter_sweep *product, struct cs_sweep_
 }
 
 /* Counts the rows by their outcomes, and describes the first failed ones. */
-static void count_rows(struct cs_parameter_sweep *product, const struct cs_sweep_rows *rows) {
+static void count_rows(struct cs_parameter_sweep *sweep, const struct cs_sweep_rows *rows) {
     enum { SHOWN = 10 };
-    struct cs_parameter_sweep_counts *counts = &product->counts;
+    struct cs_parameter_sweep_counts *counts = &sweep->counts;
     counts->done = cs_sweep_rows_count(rows);
     for (uint32_t k = 0; k < rows->n; k++) {
         struct cs_sweep_fields fields;
         char *line = rows->lines[k] ? strdup(rows->lines[k]) : NULL;
-        if (line && cs_sweep_row_cut(line, product->n_keys, &fields)) {
+        if (line && cs_sweep_row_cut(line, sweep->n_keys, &fields)) {
             counts->blown_up += !strncmp(fields.outcome, "blew up", 7);
             if (!strcmp(fields.outcome, "refused") && !counts->refused++)
                 snprintf(counts->first_refusal, sizeof counts->first_refusal, "%s",
                          fields.note);
             if (!strcmp(fields.outcome, "failed") && ++counts->failed <= SHOWN) {
-                cs_text_add(&product->failed, "failed: cell %u (", k);
-                for (uint32_t v = 0; v < product->n_keys; v++)
-                    cs_text_add(&product->failed, "%s%s=%s", v ? ", " : "",
-                                product->keys[v].path, fields.values[v]);
-                cs_text_add(&product->failed, "%s%s): %s\n",
-                            product->n_keys && *fields.method ? ", " : "", fields.method,
+                cs_text_add(&sweep->failed, "failed: cell %u (", k);
+                for (uint32_t v = 0; v < sweep->n_keys; v++)
+                    cs_text_add(&sweep->failed, "%s%s=%s", v ? ", " : "", sweep->keys[v].path,
+                                fields.values[v]);
+                cs_text_add(&sweep->failed, "%s%s): %s\n",
+                            sweep->n_keys && *fields.method ? ", " : "", fields.method,
                             fields.note);
             }
         }
         free(line);
     }
     if (counts->failed > SHOWN)
-        cs_text_add(&product->failed, "failed: %u more\n", counts->failed - SHOWN);
+        cs_text_add(&sweep->failed, "failed: %u more\n", counts->failed - SHOWN);
 }
 
 /* Adds what this and other processes have appended since; the rows are written in order when
  * all are there. */
-static enum cs_status end(struct cs_parameter_sweep *product, struct cs_sweep_rows *rows,
+static enum cs_status end(struct cs_parameter_sweep *sweep, struct cs_sweep_rows *rows,
                           struct cs_error *error) {
     if (cs_row_table_lock(&rows->table, error))
         return error->status;
-    cs_sweep_rows_read(rows, product->folder, error);
-    count_rows(product, rows);
-    if (!error->status && product->counts.done == product->counts.cells)
+    cs_sweep_rows_read(rows, sweep->folder, error);
+    count_rows(sweep, rows);
+    if (!error->status && sweep->counts.done == sweep->counts.cells)
         cs_sweep_rows_write(rows, error);
     cs_row_table_unlock(&rows->table);
     return error->status;
 }
 
-static enum cs_status count(struct cs_parameter_sweep *product, struct cs_error *error) {
-    double cells = product->n_methods ? product->n_methods : 1;
-    for (uint32_t k = 0; k < product->n_keys; k++)
-        cells *= product->keys[k].n;
+static enum cs_status count(struct cs_parameter_sweep *sweep, struct cs_error *error) {
+    double cells = sweep->n_methods ? sweep->n_methods : 1;
+    for (uint32_t k = 0; k < sweep->n_keys; k++)
+        cells *= sweep->keys[k].n;
     if (cells > CS_PARAMETER_SWEEP_CELLS_MAX)
         return cs_fail(error, CS_ERR_USAGE, "%.0f cells, expected at most %d", cells,
                        CS_PARAMETER_SWEEP_CELLS_MAX);
-    product->counts = (struct cs_parameter_sweep_counts){.cells = (uint32_t)cells};
+    sweep->counts = (struct cs_parameter_sweep_counts){.cells = (uint32_t)cells};
     return CS_OK;
 }
 
 /* Reads the scene with one key set or with none, by a method; a refusal by the scene is left in
  * *refusal. */
-static enum cs_status try_override(const struct cs_parameter_sweep *product,
+static enum cs_status try_override(const struct cs_parameter_sweep *sweep,
                                    const struct cs_override *key, const char *method,
                                    struct cs_error *refusal, struct cs_error *error) {
-    struct cs_session_settings asked = product->session;
+    struct cs_session_settings asked = sweep->session;
     struct cs_session session = {0};
     asked.overrides = key;
     asked.n_overrides = key != NULL;
@@ -251,18 +251,18 @@ static enum cs_status try_override(const struct cs_parameter_sweep *product,
  * misspelt, or its values are; and a method that cannot be loaded. Of a scene that is refused
  * by itself nothing can be said. */
 static enum cs_status check_keys(void *ctx, struct cs_error *error) {
-    const struct cs_parameter_sweep *product = ctx;
-    const char *method = product->n_methods ? product->methods[0] : NULL;
+    const struct cs_parameter_sweep *sweep = ctx;
+    const char *method = sweep->n_methods ? sweep->methods[0] : NULL;
     struct cs_error refusal;
-    for (uint32_t k = product->n_methods; k-- > 1 && !error->status;)
-        try_override(product, NULL, product->methods[k], &refusal, error);
-    if (error->status || try_override(product, NULL, method, &refusal, error) || refusal.status)
+    for (uint32_t k = sweep->n_methods; k-- > 1 && !error->status;)
+        try_override(sweep, NULL, sweep->methods[k], &refusal, error);
+    if (error->status || try_override(sweep, NULL, method, &refusal, error) || refusal.status)
         return error->status;
-    for (uint32_t k = 0; k < product->n_keys && !error->status; k++) {
-        const struct cs_parameter_axis *key = product->keys + k;
+    for (uint32_t k = 0; k < sweep->n_keys && !error->status; k++) {
+        const struct cs_parameter_axis *key = sweep->keys + k;
         bool taken = false;
         for (uint32_t v = 0; v < key->n && !error->status; v++) {
-            try_override(product, &(struct cs_override){key->path, key->values[v]}, method,
+            try_override(sweep, &(struct cs_override){key->path, key->values[v]}, method,
                          &refusal, error);
             taken |= !refusal.status;
         }
@@ -273,53 +273,53 @@ static enum cs_status check_keys(void *ctx, struct cs_error *error) {
 }
 
 /* Runs a check that may load modules in a process of its own. */
-static enum cs_status check_apart(const struct cs_parameter_sweep *product,
+static enum cs_status check_apart(const struct cs_parameter_sweep *sweep,
                                   enum cs_status (*check)(void *ctx, struct cs_error *error),
                                   void *ctx, struct cs_error *error) {
-    const struct cs_isolate isolate = {.seconds = product->call_seconds,
+    const struct cs_isolate isolate = {.seconds = sweep->call_seconds,
                                        .stop_seconds = 0.5,
                                        .is_cell = true,
                                        .task = check,
                                        .ctx = ctx,
-                                       .stop = product->session.run.stop};
+                                       .stop = sweep->session.run.stop};
     return cs_isolate_run(&isolate, error);
 }
 
 /* Standard input is read once, and processes begun later have it too. */
-static void read_input(const struct cs_parameter_sweep *product) {
+static void read_input(const struct cs_parameter_sweep *sweep) {
     struct cs_scene scene;
     struct cs_error unseen = {0};
-    if (!strcmp(product->session.scene, "-") &&
-        !cs_scene_read(&scene, product->session.scene, NULL, 0, &unseen))
+    if (!strcmp(sweep->session.scene, "-") &&
+        !cs_scene_read(&scene, sweep->session.scene, NULL, 0, &unseen))
         cs_scene_finish(&scene);
 }
 
-enum cs_status cs_parameter_sweep_run(struct cs_parameter_sweep *product,
+enum cs_status cs_parameter_sweep_run(struct cs_parameter_sweep *sweep,
                                       struct cs_error *error) {
-    read_input(product);
+    read_input(sweep);
     struct cs_sweep_rows rows = {0};
-    struct sweep_work work = {.product = product, .rows = &rows};
-    if (count(product, error) || check_apart(product, check_keys, product, error))
+    struct sweep_work work = {.sweep = sweep, .rows = &rows};
+    if (count(sweep, error) || check_apart(sweep, check_keys, sweep, error))
         return error->status;
-    if (!cs_sweep_rows_open(&rows, product->folder, error) && !begin(product, &rows, error) &&
-        !(product->counts.reused && check_apart(product, verify_rows, &work, error)) &&
+    if (!cs_sweep_rows_open(&rows, sweep->folder, error) && !begin(sweep, &rows, error) &&
+        !(sweep->counts.reused && check_apart(sweep, verify_rows, &work, error)) &&
         !run_cells(&work, error))
-        end(product, &rows, error);
+        end(sweep, &rows, error);
     cs_sweep_rows_finish(&rows);
     return error->status;
 }
 
-enum cs_status cs_parameter_sweep_count(struct cs_parameter_sweep *product,
+enum cs_status cs_parameter_sweep_count(struct cs_parameter_sweep *sweep,
                                         struct cs_error *error) {
     struct cs_sweep_rows rows = {0};
-    cs_sweep_add_names(product, &rows.names);
-    if (!count(product, error) && !access(product->folder, F_OK) &&
-        !cs_sweep_rows_reserve(&rows, product->counts.cells, error) &&
-        !cs_sweep_rows_open(&rows, product->folder, error) &&
-        !cs_sweep_rows_read(&rows, product->folder, error)) {
-        count_rows(product, &rows);
-        for (uint32_t k = 0; k < product->counts.cells; k++)
-            product->counts.running += cs_sweep_rows_is_locked(&rows, k);
+    cs_sweep_add_names(sweep, &rows.names);
+    if (!count(sweep, error) && !access(sweep->folder, F_OK) &&
+        !cs_sweep_rows_reserve(&rows, sweep->counts.cells, error) &&
+        !cs_sweep_rows_open(&rows, sweep->folder, error) &&
+        !cs_sweep_rows_read(&rows, sweep->folder, error)) {
+        count_rows(sweep, &rows);
+        for (uint32_t k = 0; k < sweep->counts.cells; k++)
+            sweep->counts.running += cs_sweep_rows_is_locked(&rows, k);
     }
     cs_sweep_rows_finish(&rows);
     return error->status;

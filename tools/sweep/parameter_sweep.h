@@ -10,12 +10,11 @@
  * that is refused, fails or reaches its limit is a row. CS_ERR_USAGE if the file belongs to
  * another sweep, or values cannot be read; CS_ERR_MODULE if a method cannot be loaded;
  * CS_ERR_FILE, CS_ERR_MEMORY, CS_ERR_INTERRUPT. */
-enum cs_status cs_parameter_sweep_run(struct cs_parameter_sweep *product,
-                                      struct cs_error *error);
+enum cs_status cs_parameter_sweep_run(struct cs_parameter_sweep *sweep, struct cs_error *error);
 
 /* Counts the cells that are there or being run, and runs none. CS_ERR_USAGE, CS_ERR_FILE,
  * CS_ERR_MEMORY. */
-enum cs_status cs_parameter_sweep_count(struct cs_parameter_sweep *product,
+enum cs_status cs_parameter_sweep_count(struct cs_parameter_sweep *sweep,
                                         struct cs_error *error);
 
 /* Merges the sweep.csv of folders, as far as they have one, into that of `out`; *n: rows.

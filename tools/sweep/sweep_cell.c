@@ -199,15 +199,14 @@ uint32_t cs_sweep_rows_count(const struct cs_sweep_rows *rows) {
     return n;
 }
 
-static void choose_values(struct cs_sweep_cell *cell,
-                          const struct cs_parameter_sweep *product) {
+static void choose_values(struct cs_sweep_cell *cell, const struct cs_parameter_sweep *sweep) {
     uint32_t rest = cell->number;
-    for (uint32_t k = product->n_keys; k-- > 0;) {
-        const struct cs_parameter_axis *key = product->keys + k;
+    for (uint32_t k = sweep->n_keys; k-- > 0;) {
+        const struct cs_parameter_axis *key = sweep->keys + k;
         cell->overrides[k] = (struct cs_override){key->path, key->values[rest % key->n]};
         rest /= key->n;
     }
-    cell->method = product->n_methods ? product->methods[rest] : NULL;
+    cell->method = sweep->n_methods ? sweep->methods[rest] : NULL;
 }
 
 /* Adds hashes of scene and module, which identify equal cells whatever their text. */
@@ -232,12 +231,11 @@ static void add_refusal(const struct cs_sweep_cell *cell, uint32_t n_keys,
 }
 
 static enum cs_status make_key(struct cs_sweep_cell *cell,
-                               const struct cs_parameter_sweep *product,
-                               struct cs_error *error) {
+                               const struct cs_parameter_sweep *sweep, struct cs_error *error) {
     struct cs_text all = {0};
-    cs_text_add(&all, "%s|%u", CS_VERSION, product->frames);
+    cs_text_add(&all, "%s|%u", CS_VERSION, sweep->frames);
     if (cell->refusal.status)
-        add_refusal(cell, product->n_keys, &all);
+        add_refusal(cell, sweep->n_keys, &all);
     else
         add_meaning(cell, &all, error);
     if (all.failed)
@@ -249,16 +247,16 @@ static enum cs_status make_key(struct cs_sweep_cell *cell,
 }
 
 enum cs_status cs_sweep_cell_open(struct cs_sweep_cell *cell,
-                                  const struct cs_parameter_sweep *product, uint32_t number,
+                                  const struct cs_parameter_sweep *sweep, uint32_t number,
                                   struct cs_error *error) {
-    struct cs_session_settings asked = product->session;
+    struct cs_session_settings asked = sweep->session;
     *cell = (struct cs_sweep_cell){.number = number};
-    choose_values(cell, product);
+    choose_values(cell, sweep);
     asked.overrides = cell->overrides;
-    asked.n_overrides = product->n_keys;
+    asked.n_overrides = sweep->n_keys;
     asked.integrator = cell->method;
     cs_session_open_plan(&cell->session, &asked, &cell->refusal);
-    return make_key(cell, product, error);
+    return make_key(cell, sweep, error);
 }
 
 void cs_sweep_cell_close(struct cs_sweep_cell *cell) {
@@ -287,10 +285,10 @@ const struct cs_column cs_parameter_sweep_columns[] = {
 const uint32_t cs_parameter_sweep_n_columns =
     sizeof cs_parameter_sweep_columns / sizeof *cs_parameter_sweep_columns;
 
-void cs_sweep_add_names(const struct cs_parameter_sweep *product, struct cs_text *out) {
+void cs_sweep_add_names(const struct cs_parameter_sweep *sweep, struct cs_text *out) {
     cs_text_add(out, "cell");
-    for (uint32_t k = 0; k < product->n_keys; k++)
-        cs_csv_add_text(out, product->keys[k].path);
+    for (uint32_t k = 0; k < sweep->n_keys; k++)
+        cs_csv_add_text(out, sweep->keys[k].path);
     cs_columns_add_names(cs_parameter_sweep_columns, cs_parameter_sweep_n_columns, out);
 }
 
@@ -332,10 +330,10 @@ static double run_frames(struct cs_sweep_cell *cell, uint32_t frames) {
     return follow.cpu;
 }
 
-static void add_begin(const struct cs_sweep_cell *cell,
-                      const struct cs_parameter_sweep *product, struct cs_text *out) {
+static void add_begin(const struct cs_sweep_cell *cell, const struct cs_parameter_sweep *sweep,
+                      struct cs_text *out) {
     cs_text_add(out, "%u", cell->number);
-    for (uint32_t k = 0; k < product->n_keys; k++)
+    for (uint32_t k = 0; k < sweep->n_keys; k++)
         cs_csv_add_text(out, cell->overrides[k].value);
 }
 
@@ -350,11 +348,11 @@ static void add_end(const char *note, const char *key, const char *names, struct
 }
 
 enum cs_status cs_sweep_cell_run(struct cs_sweep_cell *cell,
-                                 const struct cs_parameter_sweep *product, const char *names,
+                                 const struct cs_parameter_sweep *sweep, const char *names,
                                  struct cs_text *out, struct cs_error *error) {
     const struct cs_session *session = &cell->session;
-    add_begin(cell, product, out);
-    const double cpu = run_frames(cell, product->frames);
+    add_begin(cell, sweep, out);
+    const double cpu = run_frames(cell, sweep->frames);
     const struct cs_integrator *integrator = session->method.integrator;
     cs_csv_add_text(out, cell->method ? cell->method : integrator ? integrator->name : "");
     cs_follow_check(&session->run, "; finished rows are saved", error);
@@ -368,12 +366,12 @@ enum cs_status cs_sweep_cell_run(struct cs_sweep_cell *cell,
                        : error->status;
 }
 
-void cs_sweep_cell_add_lost(uint32_t number, const struct cs_parameter_sweep *product,
+void cs_sweep_cell_add_lost(uint32_t number, const struct cs_parameter_sweep *sweep,
                             const char *note, const char *key, const char *names,
                             struct cs_text *out) {
     struct cs_sweep_cell cell = {.number = number};
-    choose_values(&cell, product);
-    add_begin(&cell, product, out);
+    choose_values(&cell, sweep);
+    add_begin(&cell, sweep, out);
     cs_csv_add_text(out, cell.method ? cell.method : "");
     add_failure(&(struct cs_error){.status = CS_ERR_MODULE}, out);
     add_end(note, key, names, out);

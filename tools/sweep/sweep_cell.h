@@ -119,25 +119,25 @@ struct cs_sweep_cell {
 };
 
 /* Adds the names of the columns, without the end of the line. */
-void cs_sweep_add_names(const struct cs_parameter_sweep *product, struct cs_text *out);
+void cs_sweep_add_names(const struct cs_parameter_sweep *sweep, struct cs_text *out);
 
 /* Reads the scene with the cell's values and computes its key: a hash of the resolved scene
  * with its mesh files, of method, options and module, of frames and version. The key of a
  * refused cell hashes the request and the reason. A refusal is no error here. CS_ERR_FILE,
  * CS_ERR_MEMORY. */
 enum cs_status cs_sweep_cell_open(struct cs_sweep_cell *cell,
-                                  const struct cs_parameter_sweep *product, uint32_t number,
+                                  const struct cs_parameter_sweep *sweep, uint32_t number,
                                   struct cs_error *error);
 
 /* Runs the cell and adds its row, under these names. A failure is a row. CS_ERR_INTERRUPT,
  * CS_ERR_MEMORY. */
 enum cs_status cs_sweep_cell_run(struct cs_sweep_cell *cell,
-                                 const struct cs_parameter_sweep *product, const char *names,
+                                 const struct cs_parameter_sweep *sweep, const char *names,
                                  struct cs_text *out, struct cs_error *error);
 void cs_sweep_cell_close(struct cs_sweep_cell *cell);
 
 /* Adds the row of a cell whose process left none, with the reason as its note. */
-void cs_sweep_cell_add_lost(uint32_t number, const struct cs_parameter_sweep *product,
+void cs_sweep_cell_add_lost(uint32_t number, const struct cs_parameter_sweep *sweep,
                             const char *note, const char *key, const char *names,
                             struct cs_text *out);
 

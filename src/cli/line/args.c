@@ -13,7 +13,7 @@
 
 enum { HELP_COLUMN = 28 };
 
-static void add_row(const struct cs_arg *row, struct cs_text *out) {
+static void add_option_row(const struct cs_arg *row, struct cs_text *out) {
     struct cs_text left = {0};
     if (row->short_name)
         cs_text_add(&left, "  -%c, --%s", row->short_name, row->name);
@@ -34,8 +34,8 @@ void cs_command_print_help(const struct cs_command *command, struct cs_text *out
     cs_text_add(out, "\n");
     for (uint32_t r = 0; r < command->n_rows; r++)
         if (command->rows[r].help)
-            add_row(command->rows + r, out);
-    add_row(&help, out);
+            add_option_row(command->rows + r, out);
+    add_option_row(&help, out);
     if (command->notes)
         cs_text_add(out, "\n%s", command->notes);
 }

@@ -76,7 +76,7 @@ static inline bool cs_job_makes_checkpoints(const struct cs_job_settings *settin
 }
 
 /* Reads --trace: "frames", or the number of a frame. CS_ERR_USAGE. */
-enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *trail,
+enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *trace,
                                  struct cs_error *error);
 
 /* Reads --export and --export-values, lists with commas between; NULL: not given. CS_ERR_USAGE.
@@ -170,7 +170,7 @@ struct cs_run_output {
     /* By stage. */
     enum cs_status (*at[CS_RUN_STAGES])(struct cs_job *job, struct cs_error *error);
     /* Stores its state between frames in a checkpoint, or loads it. */
-    void (*record)(struct cs_job *job, struct cs_serialiser *record);
+    void (*record)(struct cs_job *job, struct cs_serialiser *serialiser);
 };
 
 extern const struct cs_run_output cs_run_output_export, cs_run_output_hash, cs_run_output_json,
@@ -220,7 +220,7 @@ enum cs_status cs_run_outputs_at(struct cs_job *job, enum cs_run_stage stage,
                                  struct cs_error *error);
 
 /* Serialises the outputs' state in the order of the list. */
-void cs_run_outputs_record(struct cs_job *job, struct cs_serialiser *record);
+void cs_run_outputs_record(struct cs_job *job, struct cs_serialiser *serialiser);
 
 /* Writes the manifest of each folder of the run. All files must be complete. */
 enum cs_status cs_run_outputs_sign(const struct cs_job *job, struct cs_error *error);

@@ -130,7 +130,8 @@ static enum cs_status find_camera_path(struct motion *motion, struct cs_scene *s
     return error->status;
 }
 
-static enum cs_status take(struct motion *motion, uint32_t frames, struct cs_error *error) {
+static enum cs_status allocate_path(struct motion *motion, uint32_t frames,
+                                    struct cs_error *error) {
     motion->places =
         calloc((size_t)frames + 1, 3 * CS_CAMERA_FIT_EXTREMES * sizeof *motion->places);
     motion->keys = calloc((size_t)frames + 1, sizeof *motion->keys);
@@ -157,7 +158,7 @@ void cs_run_camera_find(struct cs_scene *scene, void *camera) {
     once.threads = 0;
     cs_camera_fit_begin(&motion.fit, &scene->camera, &scene->render);
     if (!cs_session_open(&session, &once, &of->error) &&
-        !take(&motion, frames / every, &of->error) &&
+        !allocate_path(&motion, frames / every, &of->error) &&
         !record(&session, frames, every, &motion, &of->error))
         find_camera_path(&motion, scene, &of->error);
     cs_session_close(&session);

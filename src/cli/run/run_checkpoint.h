@@ -41,33 +41,35 @@ struct cs_checkpointer {
 
 /* Reads K (frames) or Ks (seconds). CS_ERR_USAGE. */
 enum cs_status cs_checkpointer_read_interval(const char *value,
-                                             struct cs_checkpoint_interval *pace,
+                                             struct cs_checkpoint_interval *interval,
                                              struct cs_error *error);
 
 /* Refuses an interval in seconds for a method that restarts at checkpoints. CS_ERR_USAGE. */
 enum cs_status cs_checkpointer_check_interval(const struct cs_session *session,
-                                              const struct cs_checkpoint_interval *pace,
+                                              const struct cs_checkpoint_interval *interval,
                                               struct cs_error *error);
 
 /* Called before the first frame. Nothing is written. CS_ERR_FILE if the path is too long. */
-enum cs_status cs_checkpointer_begin(struct cs_checkpointer *resume, struct cs_session *session,
+enum cs_status cs_checkpointer_begin(struct cs_checkpointer *checkpointer,
+                                     struct cs_session *session,
                                      const struct cs_checkpoint_source *of, const char *folder,
-                                     const struct cs_checkpoint_interval *pace,
+                                     const struct cs_checkpoint_interval *interval,
                                      struct cs_error *error);
 
 /* Resumes from the checkpoint in the folder, with its interval. CS_ERR_FILE names the fact that
  * differs; CS_ERR_USAGE if it is beyond `frames`. */
-enum cs_status cs_checkpointer_load(struct cs_checkpointer *resume, uint32_t frames,
+enum cs_status cs_checkpointer_load(struct cs_checkpointer *checkpointer, uint32_t frames,
                                     struct cs_error *error);
 
 /* Called after each frame: captures the state if needed; *due: it should be written. */
-enum cs_status cs_checkpointer_capture(struct cs_checkpointer *resume, bool *due,
+enum cs_status cs_checkpointer_capture(struct cs_checkpointer *checkpointer, bool *due,
                                        struct cs_error *error);
 /* Writes the captured state once the files of its frame are complete, and at the end of a run.
  * Does nothing if it is already written. */
-enum cs_status cs_checkpointer_write(struct cs_checkpointer *resume, struct cs_error *error);
+enum cs_status cs_checkpointer_write(struct cs_checkpointer *checkpointer,
+                                     struct cs_error *error);
 
 /* Frees the captured state; the file stays. */
-void cs_checkpointer_finish(struct cs_checkpointer *resume);
+void cs_checkpointer_finish(struct cs_checkpointer *checkpointer);
 
 #endif

@@ -11,8 +11,8 @@ static uint32_t bit_of(const char *word, size_t length, const char *const *names
     return 0;
 }
 
-static enum cs_status refuse(const char *option, const char *list, const char *const *names,
-                             struct cs_error *error) {
+static enum cs_status refuse_name(const char *option, const char *list,
+                                  const char *const *names, struct cs_error *error) {
     char known[64] = "";
     for (size_t k = 0, at = 0; names[k] && at < sizeof known; k++)
         at += (size_t)snprintf(known + at, sizeof known - at, k ? ", %s" : "%s", names[k]);
@@ -28,7 +28,7 @@ static enum cs_status read_set(const char *option, const char *list, const char 
         const size_t length = strcspn(word, ",");
         const uint32_t bit = bit_of(word, length, names);
         if (!bit)
-            return refuse(option, list, names, error);
+            return refuse_name(option, list, names, error);
         *set |= bit;
         word = word[length] ? word + length + 1 : NULL;
     }
@@ -61,7 +61,7 @@ void cs_run_export_print(const struct cs_export_settings *settings, struct cs_te
 }
 
 /* Opens the export at the start of the run, or at the frame where it resumes. */
-static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
+static enum cs_status begin_export(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     const bool goes_on = job->settings->resume;
     struct cs_export_settings settings = job->settings->export;
@@ -92,7 +92,7 @@ static enum cs_status end(struct cs_job *job, struct cs_error *error) {
     return cs_export_finish(&job->export, cs_job_makes_checkpoints(job->settings), error);
 }
 
-const struct cs_run_output cs_run_output_export = {.at = {[CS_RUN_BEGIN] = begin,
+const struct cs_run_output cs_run_output_export = {.at = {[CS_RUN_BEGIN] = begin_export,
                                                           [CS_RUN_FRAME] = frame,
                                                           [CS_RUN_SETTLE] = settle,
                                                           [CS_RUN_END] = end}};

@@ -54,13 +54,13 @@ static enum cs_status make_checkpoint(struct cs_job *job, struct cs_error *error
 }
 
 /* Serialises what the job accumulates over frames; one function for both directions. */
-static void record_job(void *ctx, struct cs_serialiser *record) {
+static void record_job(void *ctx, struct cs_serialiser *serialiser) {
     struct cs_job *job = ctx;
-    CS_SERIALISER(record, job->monitor);
-    CS_SERIALISER(record, job->crossings);
-    CS_SERIALISER(record, job->hash);
-    CS_SERIALISER(record, job->n_drawn);
-    cs_run_outputs_record(job, record);
+    CS_SERIALISER(serialiser, job->monitor);
+    CS_SERIALISER(serialiser, job->crossings);
+    CS_SERIALISER(serialiser, job->hash);
+    CS_SERIALISER(serialiser, job->n_drawn);
+    cs_run_outputs_record(job, serialiser);
 }
 
 /* "yes" or "no". */
@@ -195,7 +195,7 @@ static void finish_files(struct cs_job *job, struct cs_error *error) {
 }
 
 /* Begins or resumes. A refused checkpoint leaves the rows of its own run untouched. */
-static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
+static enum cs_status begin_job(struct cs_job *job, struct cs_error *error) {
     if (cs_job_makes_checkpoints(job->settings) && begin_checkpoints(job, error))
         return error->status;
     if (job->settings->resume
@@ -254,7 +254,7 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
         return cs_fail(error, CS_ERR_USAGE, "--time: %g s are more than %d frames",
                        settings->seconds, (int)CS_FRAMES_MAX);
     job->frames = cs_job_frames(settings, &job->session.scene);
-    if (warn(job, error) || begin(job, error))
+    if (warn(job, error) || begin_job(job, error))
         return error->status;
     job->failure = run_frames(job, error) == CS_ERR_MODULE ? error->message : NULL;
     finish_files(job, error);

@@ -121,16 +121,16 @@ static void add_crossings(const struct cs_job *job, struct cs_text *out) {
 
 /* Only with contact by force. */
 static void add_contact(const struct cs_system *system, struct cs_text *out) {
-    struct cs_contact_capacity at;
+    struct cs_contact_capacity capacity;
     const uint32_t n_bodies = system->scene->bodies.n;
-    if (!cs_contact_capacity_find(system, &at))
+    if (!cs_contact_capacity_find(system, &capacity))
         return;
-    cs_json_write(out, "  'contact': {'body': %u", at.a);
-    cs_json_write(out, at.b < n_bodies ? ", 'other_body': %u" : ", 'collider': %u",
-                  at.b < n_bodies ? at.b : at.b - n_bodies);
-    cs_json_write(out, ", 'range': %g, 'stiffness': %g", at.range, at.k);
-    cs_json_write(out, ", 'holds': %g, 'comes': %g, 'stiffness_needed': %g},\n", at.holds,
-                  at.comes, at.k_needed);
+    cs_json_write(out, "  'contact': {'body': %u", capacity.a);
+    cs_json_write(out, capacity.b < n_bodies ? ", 'other_body': %u" : ", 'collider': %u",
+                  capacity.b < n_bodies ? capacity.b : capacity.b - n_bodies);
+    cs_json_write(out, ", 'range': %g, 'stiffness': %g", capacity.range, capacity.k);
+    cs_json_write(out, ", 'holds': %g, 'comes': %g, 'stiffness_needed': %g},\n", capacity.holds,
+                  capacity.comes, capacity.k_needed);
 }
 
 static void add_measures(const struct cs_job *job, struct cs_text *out) {
@@ -244,7 +244,7 @@ enum cs_status cs_run_json_close(struct cs_job *job, struct cs_error *error) {
 }
 
 /* Opens the rows: beside the pictures or checkpoints, or without a name. */
-static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
+static enum cs_status begin_json(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     struct cs_text path = {0};
     if (!cs_job_wants_json(settings))
@@ -285,13 +285,13 @@ static enum cs_status settle(struct cs_job *job, struct cs_error *error) {
                                                    : CS_OK;
 }
 
-static void record_rows(struct cs_job *job, struct cs_serialiser *record) {
-    cs_row_log_record(&job->frame_log, record);
+static void record_rows(struct cs_job *job, struct cs_serialiser *serialiser) {
+    cs_row_log_record(&job->frame_log, serialiser);
 }
 
 const struct cs_run_output cs_run_output_json = {.option = "--json",
                                                  .path = offsetof(struct cs_job_settings, json),
-                                                 .at = {[CS_RUN_BEGIN] = begin,
+                                                 .at = {[CS_RUN_BEGIN] = begin_json,
                                                         [CS_RUN_START] = frame,
                                                         [CS_RUN_FRAME] = frame,
                                                         [CS_RUN_SETTLE] = settle},

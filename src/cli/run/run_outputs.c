@@ -123,10 +123,10 @@ enum cs_status cs_run_outputs_consume(const struct cs_job *job, struct cs_error 
     return error->status;
 }
 
-void cs_run_outputs_record(struct cs_job *job, struct cs_serialiser *record) {
+void cs_run_outputs_record(struct cs_job *job, struct cs_serialiser *serialiser) {
     for (int k = 0; k < OUTPUTS; k++)
         if (outputs[k]->record)
-            outputs[k]->record(job, record);
+            outputs[k]->record(job, serialiser);
 }
 
 enum cs_status cs_run_outputs_sign(const struct cs_job *job, struct cs_error *error) {

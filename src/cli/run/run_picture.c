@@ -32,7 +32,7 @@ static enum cs_status open_renderer(struct cs_job *job, struct cs_error *error) 
 
 /* The provenance of pictures is known once the run has begun, because a resumed run has the
  * interval of its checkpoint. */
-static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
+static enum cs_status begin_picture(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     const struct cs_render *render = &job->session.scene.render;
     if (!settings->session.render)
@@ -40,14 +40,14 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     const struct cs_frame_writer_settings frames = {
         (uint32_t)render->size[0], (uint32_t)render->size[1],
         render->background.kind == CS_BACKGROUND_NONE, (int)settings->level, has_processors()};
-    const struct cs_picture_provenance recipe = {.provenance = cs_text_get(&job->provenance),
-                                                 .scene = cs_text_get(&job->scene),
-                                                 .renderer = job->picture.renderer->name,
-                                                 .renderer_description =
-                                                     cs_text_get(&job->renderer),
-                                                 .fast_render = settings->fast_render,
-                                                 .restarts = cs_job_restarts(job)};
-    cs_provenance_out_print_recipe(&recipe, &job->picture_provenance);
+    const struct cs_picture_provenance provenance = {
+        .provenance = cs_text_get(&job->provenance),
+        .scene = cs_text_get(&job->scene),
+        .renderer = job->picture.renderer->name,
+        .renderer_description = cs_text_get(&job->renderer),
+        .fast_render = settings->fast_render,
+        .restarts = cs_job_restarts(job)};
+    cs_provenance_out_print_recipe(&provenance, &job->picture_provenance);
     return job->picture_provenance.failed
                ? cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of pictures")
                : cs_frame_writer_create(settings->folder, &frames, &job->writer, error);
@@ -156,7 +156,7 @@ const struct cs_run_output cs_run_output_pictures = {
     .path = offsetof(struct cs_job_settings, folder),
     .is_ours = cs_output_is_result,
     .at = {[CS_RUN_OPEN] = open_renderer,
-           [CS_RUN_BEGIN] = begin,
+           [CS_RUN_BEGIN] = begin_picture,
            [CS_RUN_START] = frame,
            [CS_RUN_FRAME] = frame,
            [CS_RUN_SETTLE] = settle}};

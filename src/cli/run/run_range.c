@@ -20,7 +20,8 @@ struct search {
     uint32_t n;
 };
 
-static enum cs_status take(struct search *search, uint32_t frames, struct cs_error *error) {
+static enum cs_status allocate_bounds(struct search *search, uint32_t frames,
+                                      struct cs_error *error) {
     const size_t n = search->session.system.view.n;
     search->scalar = calloc(n + 1, sizeof *search->scalar);
     search->work = calloc(n + 1, 3 * sizeof *search->work);
@@ -65,7 +66,8 @@ static enum cs_status search_range(const struct cs_job_settings *settings, char 
     if (cs_session_open(session, &settings->session, error))
         return error->status;
     const uint32_t frames = cs_job_frames(settings, &session->scene);
-    if (!check(session, error) && !take(&search, frames / settings->frame_interval, error) &&
+    if (!check(session, error) &&
+        !allocate_bounds(&search, frames / settings->frame_interval, error) &&
         !sample_frame(&search, frames, settings->frame_interval, error)) {
         cs_picture_range(&session->scene, cs_diagnostics_magnitude(search.most, search.n),
                          range);

@@ -12,10 +12,10 @@
 
 enum { VALUE_COLUMN = 16, STAGE_COLUMN = 24 };
 
-static void add_row(struct cs_text *out, const char *name, const char *format, ...)
+static void add_report_row(struct cs_text *out, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-static void add_row(struct cs_text *out, const char *name, const char *format, ...) {
+static void add_report_row(struct cs_text *out, const char *name, const char *format, ...) {
     char value[512];
     va_list args;
     va_start(args, format);
@@ -69,7 +69,7 @@ static void add_frames(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     struct cs_text outcome = {0};
     cs_report_print_outcome(job, &outcome);
-    add_row(out, "frames", "%u of %u, t = %.6g s", run->frame, job->frames, run->t);
+    add_report_row(out, "frames", "%u of %u, t = %.6g s", run->frame, job->frames, run->t);
     cs_print_hanging("outcome", cs_text_get(&outcome), VALUE_COLUMN, out);
     cs_text_finish(&outcome);
 }
@@ -109,23 +109,23 @@ static void add_contact(const struct cs_job *job, struct cs_text *out) {
 /* Only parts that were active have a row. */
 static void add_counts(const struct cs_job *job, struct cs_text *out) {
     const struct cs_counts *c = &job->session.run.counts;
-    add_row(out, "steps", "%llu, %llu rejected", (unsigned long long)c->steps,
-            (unsigned long long)c->method.rejected);
-    add_row(out, "evaluations", "%llu of the force, %llu of its derivatives",
-            (unsigned long long)c->forces, (unsigned long long)(c->jvps + c->diagonals));
-    add_row(out, "iterations", "%llu linear (%llu solves), %llu Newton",
-            (unsigned long long)c->solve_iterations, (unsigned long long)c->solves,
-            (unsigned long long)c->method.newton);
+    add_report_row(out, "steps", "%llu, %llu rejected", (unsigned long long)c->steps,
+                   (unsigned long long)c->method.rejected);
+    add_report_row(out, "evaluations", "%llu of the force, %llu of its derivatives",
+                   (unsigned long long)c->forces, (unsigned long long)(c->jvps + c->diagonals));
+    add_report_row(out, "iterations", "%llu linear (%llu solves), %llu Newton",
+                   (unsigned long long)c->solve_iterations, (unsigned long long)c->solves,
+                   (unsigned long long)c->method.newton);
     if (c->clamped_setups)
-        add_row(out, "clamped", "%llu indefinite matrices made definite",
-                (unsigned long long)c->clamped_setups);
+        add_report_row(out, "clamped", "%llu indefinite matrices made definite",
+                       (unsigned long long)c->clamped_setups);
     if (c->contact_tests)
-        add_row(out, "contacts", "%llu in %llu tests",
-                (unsigned long long)c->projected_particles,
-                (unsigned long long)c->contact_tests);
+        add_report_row(out, "contacts", "%llu in %llu tests",
+                       (unsigned long long)c->projected_particles,
+                       (unsigned long long)c->contact_tests);
     if (c->strain_limit_moves)
-        add_row(out, "strain limit", "%llu springs shortened",
-                (unsigned long long)c->strain_limit_moves);
+        add_report_row(out, "strain limit", "%llu springs shortened",
+                       (unsigned long long)c->strain_limit_moves);
 }
 
 /* The error of the end as it was measured. Local errors, added up, are no measure of it:
@@ -156,18 +156,19 @@ static void add_error(const struct cs_job *job, struct cs_text *out) {
 static void add_measures(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
-    add_row(out, "energy", "%.6g J kinetic, %.6g J elastic, %.6g J gravity", energy.kinetic,
-            energy.elastic, energy.gravity);
+    add_report_row(out, "energy", "%.6g J kinetic, %.6g J elastic, %.6g J gravity",
+                   energy.kinetic, energy.elastic, energy.gravity);
     if (energy.other != 0)
-        add_row(out, "other energy", "%.6g J", energy.other);
-    add_row(out, "largest strain", "%.4g %%", 100 * cs_diagnostics_strain(run->system, run->x));
+        add_report_row(out, "other energy", "%.6g J", energy.other);
+    add_report_row(out, "largest strain", "%.4g %%",
+                   100 * cs_diagnostics_strain(run->system, run->x));
     if (run->system->scene->colliders.n)
-        add_row(out, "largest depth", "%.3g m in a collider after a frame",
-                job->monitor.cloth[CS_CLOTH_DEPTH].value);
-    add_row(out, "memory", "%zu bytes in arrays, %.1f per particle", cs_run_bytes(run),
-            (double)cs_run_bytes(run) / run->system->view.n);
-    add_row(out, "wall time", "%.3g s, %.3g s of it in the integrator", job->wall_seconds,
-            run->advance_seconds);
+        add_report_row(out, "largest depth", "%.3g m in a collider after a frame",
+                       job->monitor.cloth[CS_CLOTH_DEPTH].value);
+    add_report_row(out, "memory", "%zu bytes in arrays, %.1f per particle", cs_run_bytes(run),
+                   (double)cs_run_bytes(run) / run->system->view.n);
+    add_report_row(out, "wall time", "%.3g s, %.3g s of it in the integrator",
+                   job->wall_seconds, run->advance_seconds);
 }
 
 /* cpu: NAN where it is not measured. */
@@ -210,24 +211,25 @@ static void add_stages(const struct cs_job *job, struct cs_text *out) {
     add_stage(job, "draw", job->picture.seconds, (double)NAN, out);
     add_stage(job, "encode", job->encode_seconds, (double)NAN, out);
     add_stage(job, "waiting for pictures", job->wait_seconds, (double)NAN, out);
-    add_row(out, "peak memory", "%.1f MiB of the whole process",
-            (double)peak_memory() / (1 << 20));
+    add_report_row(out, "peak memory", "%.1f MiB of the whole process",
+                   (double)peak_memory() / (1 << 20));
 }
 
 /* Where the outputs are. */
 static void add_files(const struct cs_job *job, struct cs_text *out) {
     const struct cs_job_settings *settings = job->settings;
     if (job->n_drawn)
-        add_row(out, "pictures", "%u in %s", job->n_drawn, settings->folder);
+        add_report_row(out, "pictures", "%u in %s", job->n_drawn, settings->folder);
     if (settings->export.formats)
-        add_row(out, "exports", "%u samples in %s", job->export.n_samples, settings->folder);
+        add_report_row(out, "exports", "%u samples in %s", job->export.n_samples,
+                       settings->folder);
     if (settings->states)
-        add_row(out, "states", "%u in %s", job->session.run.frame + 1, settings->states);
+        add_report_row(out, "states", "%u in %s", job->session.run.frame + 1, settings->states);
 }
 
 static void add_rows(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
-    add_row(out, "scene", "%s", job->session.scene.path);
+    add_report_row(out, "scene", "%s", job->session.scene.path);
     cs_print_hanging("method", cs_text_get(&job->method), VALUE_COLUMN, out);
     struct cs_text choice = {0};
     cs_session_print_choice(&job->session, &choice);
@@ -242,13 +244,13 @@ static void add_rows(const struct cs_job *job, struct cs_text *out) {
     add_error(job, out);
     add_measures(job, out);
     if (job->settings->session.run.timed) {
-        add_row(out, "threads", "%u", cs_pool_threads());
+        add_report_row(out, "threads", "%u", cs_pool_threads());
         add_stages(job, out);
     }
     for (uint32_t i = 0; i < run->n_notes; i++)
         cs_print_hanging("note", run->notes[i], VALUE_COLUMN, out);
     add_files(job, out);
-    add_row(out, "state hash", "%s", job->hash);
+    add_report_row(out, "state hash", "%s", job->hash);
 }
 
 enum cs_status cs_report_print(const struct cs_job *job, struct cs_error *error) {

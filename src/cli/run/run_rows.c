@@ -7,19 +7,19 @@
 #include <string.h>
 #include <unistd.h>
 
-static void take(void *ctx, const struct cs_trace_record *point) {
-    cs_trace_stream_write(ctx, point);
+static void write_record(void *ctx, const struct cs_trace_record *record) {
+    cs_trace_stream_write(ctx, record);
 }
 
 /* Frames have at most 8 digits here, which strtoul reads without overflow. */
-enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *trail,
+enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *trace,
                                  struct cs_error *error) {
     const size_t length = strlen(value);
     const bool number = strspn(value, "0123456789") == length && length > 0 && length < 9;
-    trail->frame = number ? (uint32_t)strtoul(value, NULL, 10) : 0;
-    trail->is_requested = true;
-    trail->trace = (struct cs_trace){.emit = take};
-    return trail->frame || !strcmp(value, "frames")
+    trace->frame = number ? (uint32_t)strtoul(value, NULL, 10) : 0;
+    trace->is_requested = true;
+    trace->trace = (struct cs_trace){.emit = write_record};
+    return trace->frame || !strcmp(value, "frames")
                ? CS_OK
                : cs_fail(error, CS_ERR_USAGE,
                          "--trace: found \"%.60s\", expected \"frames\" or the number of a "
@@ -30,22 +30,22 @@ enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *trail,
 /* Writes x and v of the present frame as two records. */
 static void write_state(const struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
-    struct cs_trace_record point = {.frame = run->frame,
-                                    .step = run->counts.steps,
-                                    .t = run->t,
-                                    .phase = run->frame ? "frame" : "start",
-                                    .name = "x",
-                                    .values = run->x,
-                                    .n = 3 * (size_t)run->system->view.n};
-    cs_trace_stream_write(job->trace.trace.ctx, &point);
-    point.name = "v";
-    point.values = run->v;
-    cs_trace_stream_write(job->trace.trace.ctx, &point);
+    struct cs_trace_record record = {.frame = run->frame,
+                                     .step = run->counts.steps,
+                                     .t = run->t,
+                                     .phase = run->frame ? "frame" : "start",
+                                     .name = "x",
+                                     .values = run->x,
+                                     .n = 3 * (size_t)run->system->view.n};
+    cs_trace_stream_write(job->trace.trace.ctx, &record);
+    record.name = "v";
+    record.values = run->v;
+    cs_trace_stream_write(job->trace.trace.ctx, &record);
 }
 
 /* Enables the full trace for the requested frame only. */
-static void expect_frame(struct cs_run_trace *trail, const struct cs_run *run) {
-    trail->trace.enabled = trail->frame == run->frame + 1;
+static void expect_frame(struct cs_run_trace *trace, const struct cs_run *run) {
+    trace->trace.enabled = trace->frame == run->frame + 1;
 }
 
 static enum cs_status refuse_output(struct cs_error *error) {
@@ -54,7 +54,7 @@ static enum cs_status refuse_output(struct cs_error *error) {
 
 /* Begins the stream with the start state, before the first frame. It has a descriptor of its
  * own: during calls of a module from outside, standard output is diverted (sim/crash.h). */
-static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
+static enum cs_status begin_rows(struct cs_job *job, struct cs_error *error) {
     if (!job->trace.is_requested)
         return CS_OK;
     const int output = dup(STDOUT_FILENO);
@@ -73,38 +73,38 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
 /* Writes the state after a frame: after every frame, or after the traced one only. */
 static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
-    const struct cs_run_trace *trail = &job->trace;
-    if (!trail->is_requested)
+    const struct cs_run_trace *trace = &job->trace;
+    if (!trace->is_requested)
         return CS_OK;
-    if (!trail->frame || trail->frame == run->frame)
+    if (!trace->frame || trace->frame == run->frame)
         write_state(job);
     expect_frame(&job->trace, run);
-    return fflush(trail->trace.ctx) || ferror(trail->trace.ctx) ? refuse_output(error) : CS_OK;
+    return fflush(trace->trace.ctx) || ferror(trace->trace.ctx) ? refuse_output(error) : CS_OK;
 }
 
 /* Writes when and where a run blew up, and closes the stream. */
 static enum cs_status end(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     const double where[] = {run->blow_up.particle, run->blow_up.energy};
-    const struct cs_trace_record point = {.frame = run->frame + 1,
-                                          .step = run->counts.steps,
-                                          .t = run->blow_up.time,
-                                          .phase = cs_outcome_text(run->outcome),
-                                          .name = "end",
-                                          .values = where,
-                                          .n = 2};
+    const struct cs_trace_record record = {.frame = run->frame + 1,
+                                           .step = run->counts.steps,
+                                           .t = run->blow_up.time,
+                                           .phase = cs_outcome_text(run->outcome),
+                                           .name = "end",
+                                           .values = where,
+                                           .n = 2};
     FILE *file = job->trace.trace.ctx;
     if (!file)
         return error->status;
     if (cs_outcome_is_blow_up(run->outcome))
-        cs_trace_stream_write(file, &point);
+        cs_trace_stream_write(file, &record);
     const bool failed = ferror(file);
     job->trace.trace.ctx = NULL;
     return fclose(file) || failed ? refuse_output(error) : error->status;
 }
 
 const struct cs_run_output cs_run_output_trace = {
-    .at = {[CS_RUN_BEGIN] = begin, [CS_RUN_FRAME] = frame, [CS_RUN_END] = end}};
+    .at = {[CS_RUN_BEGIN] = begin_rows, [CS_RUN_FRAME] = frame, [CS_RUN_END] = end}};
 
 /* Opens the rows of a file; a resumed run goes on with those that its checkpoint has loaded. */
 static enum cs_status open_rows(const struct cs_job *job, struct cs_row_log *log,
@@ -138,8 +138,8 @@ static enum cs_status watch_begin(struct cs_job *job, struct cs_error *error) {
                                                          : watch_frame(job, error);
 }
 
-static void watch_record(struct cs_job *job, struct cs_serialiser *record) {
-    cs_row_log_record(&job->watch_log, record);
+static void watch_record(struct cs_job *job, struct cs_serialiser *serialiser) {
+    cs_row_log_record(&job->watch_log, serialiser);
 }
 
 static enum cs_status watch_settle(struct cs_job *job, struct cs_error *error) {
@@ -182,10 +182,10 @@ static enum cs_status ledger_begin(struct cs_job *job, struct cs_error *error) {
                                                           : ledger_frame(job, error);
 }
 
-static void ledger_record(struct cs_job *job, struct cs_serialiser *record) {
-    cs_row_log_record(&job->ledger_log, record);
-    CS_SERIALISER(record, job->ledger.work);
-    CS_SERIALISER(record, job->ledger.couple);
+static void ledger_record(struct cs_job *job, struct cs_serialiser *serialiser) {
+    cs_row_log_record(&job->ledger_log, serialiser);
+    CS_SERIALISER(serialiser, job->ledger.work);
+    CS_SERIALISER(serialiser, job->ledger.couple);
 }
 
 static enum cs_status ledger_settle(struct cs_job *job, struct cs_error *error) {

@@ -188,7 +188,7 @@ enum cs_status cs_screen_open(struct cs_screen *screen, bool images, struct cs_e
 }
 
 /* Squared distance of two colours 0xRRGGBB. */
-static uint32_t distance(uint32_t a, uint32_t b) {
+static uint32_t colour_distance(uint32_t a, uint32_t b) {
     uint32_t sum = 0;
     for (int k = 0; k < 24; k += 8) {
         const int d = (int)(a >> k & 255) - (int)(b >> k & 255);
@@ -209,8 +209,9 @@ static uint32_t number_of(uint32_t colour) {
         sum += c;
     }
     const uint32_t grey = sum < 24 ? 0 : sum > 714 ? 23 : (sum / 3 - 3) / 10;
-    return distance(colour, (8 + 10 * grey) * 0x010101) < distance(colour, cube) ? 232 + grey
-                                                                                 : number;
+    return colour_distance(colour, (8 + 10 * grey) * 0x010101) < colour_distance(colour, cube)
+               ? 232 + grey
+               : number;
 }
 
 /* layer: 3 for ink, 4 for paper. */

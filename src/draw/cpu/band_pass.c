@@ -7,14 +7,14 @@
 #include <math.h>
 #include <string.h>
 
-void cs_band_pass_bin(struct cs_band_pass *drawing) {
-    const struct cs_triangles *all = &drawing->triangles;
-    cs_bins_clear(&drawing->bins);
+void cs_band_pass_bin(struct cs_band_pass *pass) {
+    const struct cs_triangles *all = &pass->triangles;
+    cs_bins_clear(&pass->bins);
     for (size_t i = 0; i < all->n; i++)
-        cs_bins_count(&drawing->bins, all->items[i].top, all->items[i].bottom);
-    cs_bins_begin_put(&drawing->bins);
+        cs_bins_count(&pass->bins, all->items[i].top, all->items[i].bottom);
+    cs_bins_begin_put(&pass->bins);
     for (size_t i = 0; i < all->n; i++)
-        cs_bins_put(&drawing->bins, (uint32_t)i, all->items[i].top, all->items[i].bottom);
+        cs_bins_put(&pass->bins, (uint32_t)i, all->items[i].top, all->items[i].bottom);
 }
 
 static float value_at(const struct cs_plane_equation *slope, float x, float y) {
@@ -33,9 +33,9 @@ CS_INLINE void put_four(cs_f4 from, float *to) {
 /* Squared texels per pixel: the longer of the steps along a row and along a column (rho^2 of
  * mipmap.c). Differences are taken in blocks of 2 x 2 pixels from the bottom left, as OpenGL
  * does. */
-static float texels_of(const struct cs_band_pass *drawing, const struct cs_triangle *t,
+static float texels_of(const struct cs_band_pass *pass, const struct cs_triangle *t,
                        const struct cs_mipmap *mips, int x, int y) {
-    const int last = drawing->shading.height - 1;
+    const int last = pass->shading.height - 1;
     const float left = (float)((x & ~1) - t->left);
     const float low = (float)(last - ((last - y) & ~1) - t->top);
     const float places[3][2] = {{left, low}, {left + 1, low}, {left, low - 1}};
@@ -53,25 +53,25 @@ static float texels_of(const struct cs_band_pass *drawing, const struct cs_trian
 }
 
 // the slot of one side of a surface; its fragments are shaded first if it is full or another's
-static struct cs_fragments *slot_of(const struct cs_band_pass *drawing,
+static struct cs_fragments *slot_of(const struct cs_band_pass *pass,
                                     const struct cs_triangle *t, struct cs_tile_buffer *tiles) {
     const uint32_t key = 2u * t->surface + t->is_back_facing;
     struct cs_fragments *slot = tiles->slots + key % CS_FRAGMENT_SLOTS;
     if (slot->n == CS_FRAGMENTS || (slot->n && slot->key != key))
-        cs_shade(&drawing->shading, slot, tiles->colours);
+        cs_shade(&pass->shading, slot, tiles->colours);
     slot->key = key;
     slot->side = t->is_back_facing;
-    slot->material = drawing->materials + t->surface;
+    slot->material = pass->materials + t->surface;
     return slot;
 }
 
 // m along the view from the depth at a pixel's middle, without the depth bias
-static float along_of(const struct cs_band_pass *drawing, const struct cs_triangle *t,
-                      const struct cs_shading_material *coat, int x, int y) {
-    const float *depth = drawing->shading.rays.depth;
-    const float up = (float)(drawing->shading.height - 1 - y) + 0.5f;
+static float along_of(const struct cs_band_pass *pass, const struct cs_triangle *t,
+                      const struct cs_shading_material *material, int x, int y) {
+    const float *depth = pass->shading.rays.depth;
+    const float up = (float)(pass->shading.height - 1 - y) + 0.5f;
     const float z = value_at(&t->depth, (float)x + 0.5f, up);
-    return depth[0] + z * (depth[1] - depth[0]) - coat->depth_bias;
+    return depth[0] + z * (depth[1] - depth[0]) - material->depth_bias;
 }
 
 // n pixels of row y from x on
@@ -83,10 +83,10 @@ struct spot {
 
 /* Adds the fragments of a triangle at a spot; shading writes their colours to colours[out] and
  * those after it later. */
-static void add_fragments(const struct cs_band_pass *drawing, const struct cs_triangle *t,
+static void add_fragments(const struct cs_band_pass *pass, const struct cs_triangle *t,
                           const struct spot *spot, uint32_t out, struct cs_tile_buffer *tiles) {
     for (int x = spot->x, end = x + spot->n, y = spot->y, count; x < end; x += count) {
-        struct cs_fragments *f = slot_of(drawing, t, tiles);
+        struct cs_fragments *f = slot_of(pass, t, tiles);
         const int first = f->n;
         const float down = (float)(y - t->top);
         count = cs_min(end - x, CS_FRAGMENTS - first);
@@ -107,18 +107,18 @@ static void add_fragments(const struct cs_band_pass *drawing, const struct cs_tr
         }
         for (int i = 0; i < count; i++)
             f->colour_index[first + i] = out++;
-        for (int i = 0; drawing->shading.rays.parallel && i < count; i++)
-            f->view_depth[first + i] = along_of(drawing, t, f->material, x + i, y);
+        for (int i = 0; pass->shading.rays.parallel && i < count; i++)
+            f->view_depth[first + i] = along_of(pass, t, f->material, x + i, y);
         // both pixels of a block of 2 x 2 have the same
         for (int i = 0; f->material->mode == CS_SURFACE_TEXTURED && i < count; i++)
             f->texels[first + i] = i && ((x + i) & 1)
                                        ? f->texels[first + i - 1]
-                                       : texels_of(drawing, t, f->material->mips, x + i, y);
+                                       : texels_of(pass, t, f->material->mips, x + i, y);
     }
 }
 
 // a pixel whose samples show several triangles: one fragment of each, colours in a row
-static void add_mixed(const struct cs_band_pass *drawing, cs_i4 shown, const struct spot *spot,
+static void add_mixed(const struct cs_band_pass *pass, cs_i4 shown, const struct spot *spot,
                       struct cs_tile_buffer *tiles) {
     int samples[4]; // the first that shows each thing
     uint32_t n = 0, code = 0;
@@ -138,8 +138,8 @@ static void add_mixed(const struct cs_band_pass *drawing, cs_i4 shown, const str
         if (shown[samples[k]] == CS_NOTHING)
             tiles->colours[first + k] = tiles->colours[spot->sky];
         else
-            add_fragments(drawing, drawing->triangles.items + shown[samples[k]], spot,
-                          first + k, tiles);
+            add_fragments(pass, pass->triangles.items + shown[samples[k]], spot, first + k,
+                          tiles);
 }
 
 static bool shows_only(cs_i4 shown, int32_t id) {
@@ -148,7 +148,7 @@ static bool shows_only(cs_i4 shown, int32_t id) {
 
 /* Adds the pixel where the spot begins and all after it that show the same triangle or sky in
  * all samples, which is the usual case, with one colour each. Sets spot->n. */
-static void add_pixels(const struct cs_band_pass *drawing, struct spot *spot,
+static void add_pixels(const struct cs_band_pass *pass, struct spot *spot,
                        struct cs_tile_buffer *tiles) {
     const cs_i4 *shown = tiles->samples.triangle_ids + spot->pixel;
     const int32_t id = (*shown)[0];
@@ -156,7 +156,7 @@ static void add_pixels(const struct cs_band_pass *drawing, struct spot *spot,
     uint32_t *first = tiles->first_colour + spot->pixel;
     spot->n = 1;
     if (!shows_only(*shown, id)) {
-        add_mixed(drawing, *shown, spot, tiles);
+        add_mixed(pass, *shown, spot, tiles);
         return;
     }
     while (spot->n < tiles->samples.width - spot->x && shows_only(shown[spot->n], id))
@@ -167,45 +167,44 @@ static void add_pixels(const struct cs_band_pass *drawing, struct spot *spot,
     if (is_sky)
         return;
     tiles->n_colours += (uint32_t)spot->n;
-    add_fragments(drawing, drawing->triangles.items + id, spot, *first, tiles);
+    add_fragments(pass, pass->triangles.items + id, spot, *first, tiles);
 }
 
 // colour of the sky in a row, dithered; transparent without background
-static uint32_t sky_colour(const struct cs_band_pass *drawing, int y) {
+static uint32_t sky_colour(const struct cs_band_pass *pass, int y) {
     float c[3];
-    if (drawing->shading.view->top_colour[3] < 1)
+    if (pass->shading.view->top_colour[3] < 1)
         return 0xff000000;
-    cs_sky_colour(&drawing->shading, (float)y, c);
+    cs_sky_colour(&pass->shading, (float)y, c);
     for (int k = 0; k < 3; k++)
         c[k] = cs_srgb_dithered(c[k], cs_srgb_dither(y));
-    return cs_srgb_pack(drawing->shading.srgb, c[0], c[1], c[2]);
+    return cs_srgb_pack(pass->shading.srgb, c[0], c[1], c[2]);
 }
 
 // visibility, fragments and shading of a band
-static void show(const struct cs_band_pass *drawing, uint32_t band,
-                 struct cs_tile_buffer *tiles) {
+static void show(const struct cs_band_pass *pass, uint32_t band, struct cs_tile_buffer *tiles) {
     const struct cs_samples *on = &tiles->samples;
     size_t n;
-    const uint32_t *list = cs_bins_of(&drawing->bins, band, &n);
+    const uint32_t *list = cs_bins_of(&pass->bins, band, &n);
     for (size_t i = 0; i < n; i++)
-        cs_raster_fill(drawing->triangles.items + list[i], (int32_t)list[i],
-                       drawing->sample_pattern, on);
+        cs_raster_fill(pass->triangles.items + list[i], (int32_t)list[i], pass->sample_pattern,
+                       on);
     for (int row = 0; row < on->rows; row++) {
         const uint32_t sky = tiles->n_colours++;
-        tiles->colours[sky] = sky_colour(drawing, on->top + row);
+        tiles->colours[sky] = sky_colour(pass, on->top + row);
         struct spot spot = {0, on->top + row, 1, (size_t)row * (size_t)on->width, sky};
         for (; spot.x < on->width; spot.x += spot.n, spot.pixel += (size_t)spot.n)
-            add_pixels(drawing, &spot, tiles);
+            add_pixels(pass, &spot, tiles);
     }
     for (int i = 0; i < CS_FRAGMENT_SLOTS; i++)
-        cs_shade(&drawing->shading, tiles->slots + i, tiles->colours);
+        cs_shade(&pass->shading, tiles->slots + i, tiles->colours);
 }
 
-void cs_band_pass_draw(const struct cs_band_pass *drawing, uint32_t band,
+void cs_band_pass_draw(const struct cs_band_pass *pass, uint32_t band,
                        struct cs_tile_buffer *tiles) {
     const int top = (int)band * CS_ROWS;
-    cs_tile_buffer_clear(tiles, top, cs_min(CS_ROWS, drawing->shading.height - top));
-    show(drawing, band, tiles);
-    cs_thick_lines_draw(&drawing->thick_lines, band, drawing->sample_pattern, tiles);
-    cs_tile_buffer_resolve(tiles, drawing->shading.srgb, drawing->image);
+    cs_tile_buffer_clear(tiles, top, cs_min(CS_ROWS, pass->shading.height - top));
+    show(pass, band, tiles);
+    cs_thick_lines_draw(&pass->thick_lines, band, pass->sample_pattern, tiles);
+    cs_tile_buffer_resolve(tiles, pass->shading.srgb, pass->image);
 }

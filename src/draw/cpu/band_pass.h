@@ -19,11 +19,11 @@ struct cs_band_pass {
 };
 
 /* Sorts the triangles into bands, after the last was added. */
-void cs_band_pass_bin(struct cs_band_pass *drawing);
+void cs_band_pass_bin(struct cs_band_pass *pass);
 
 /* Draws one band into the image. Threads may draw bands at the same time, each in its own tile
  * buffer. */
-void cs_band_pass_draw(const struct cs_band_pass *drawing, uint32_t band,
+void cs_band_pass_draw(const struct cs_band_pass *pass, uint32_t band,
                        struct cs_tile_buffer *tiles);
 
 #endif

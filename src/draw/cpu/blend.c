@@ -103,23 +103,23 @@ static void blend_line(const struct cs_thick_line *s, int y, int height,
 }
 
 // packed colour of a value 0..1: linear between the six stops of the colour map
-static uint32_t ramp_colour(const struct cs_shading_context *easel, float value) {
+static uint32_t ramp_colour(const struct cs_shading_context *context, float value) {
     const float at = cs_clamp(value, 0, 1) * 5;
     const int low = cs_min((int)at, 4);
-    const float *a = easel->view->colour_stops[low], *b = easel->view->colour_stops[low + 1];
+    const float *a = context->view->colour_stops[low],
+                *b = context->view->colour_stops[low + 1];
     float c[3];
     for (int k = 0; k < 3; k++)
         c[k] = cs_clamp(a[k] + (b[k] - a[k]) * (at - (float)low), 0, 1);
-    return cs_srgb_pack(easel->srgb, c[0], c[1], c[2]);
+    return cs_srgb_pack(context->srgb, c[0], c[1], c[2]);
 }
 
 // blends a row of the colour bar: one colour, over the samples inside the rectangle
-static void blend_ramp(const struct cs_thick_lines *strokes, const struct cs_thick_line *s,
-                       int y, const struct cs_sample_pattern *pattern,
-                       struct cs_tile_buffer *tiles) {
+static void blend_ramp(const struct cs_thick_lines *lines, const struct cs_thick_line *s, int y,
+                       const struct cs_sample_pattern *pattern, struct cs_tile_buffer *tiles) {
     const size_t row = (size_t)(y - tiles->samples.top) * (size_t)tiles->samples.width;
     const uint32_t colour =
-        ramp_colour(strokes->shading, 1 - ((float)y + 0.5f - s->y) / s->direction[1]);
+        ramp_colour(lines->shading, 1 - ((float)y + 0.5f - s->y) / s->direction[1]);
     for (int x = s->left; x <= s->right; x++) {
         unsigned mask = 0;
         for (int k = 0; k < 4; k++) {
@@ -133,19 +133,19 @@ static void blend_ramp(const struct cs_thick_lines *strokes, const struct cs_thi
     }
 }
 
-CS_CLONES void cs_thick_lines_draw(const struct cs_thick_lines *strokes, uint32_t band,
+CS_CLONES void cs_thick_lines_draw(const struct cs_thick_lines *lines, uint32_t band,
                                    const struct cs_sample_pattern *pattern,
                                    struct cs_tile_buffer *tiles) {
     size_t n;
-    const uint32_t *list = cs_bins_of(&strokes->bins, band, &n);
+    const uint32_t *list = cs_bins_of(&lines->bins, band, &n);
     const int last = tiles->samples.top + tiles->samples.rows - 1;
     for (size_t i = 0; i < n; i++) {
-        const struct cs_thick_line *s = strokes->items + list[i];
+        const struct cs_thick_line *s = lines->items + list[i];
         for (int y = cs_max(s->top, tiles->samples.top); y <= cs_min(s->bottom, last); y++)
             if (s->uses_colour_map)
-                blend_ramp(strokes, s, y, pattern, tiles);
+                blend_ramp(lines, s, y, pattern, tiles);
             else
-                blend_line(s, y, strokes->shading->height, pattern, tiles);
+                blend_line(s, y, lines->shading->height, pattern, tiles);
     }
 }
 
@@ -193,7 +193,7 @@ void cs_tile_buffer_clear(struct cs_tile_buffer *tiles, int top, int rows) {
     tiles->n_colours = 0;
 }
 
-void cs_tile_buffer_resolve(const struct cs_tile_buffer *tiles, const struct cs_srgb *tone,
+void cs_tile_buffer_resolve(const struct cs_tile_buffer *tiles, const struct cs_srgb *srgb,
                             struct cs_image *image) {
     const size_t n = (size_t)tiles->samples.width * (size_t)tiles->samples.rows;
     const size_t first = (size_t)tiles->samples.top * (size_t)tiles->samples.width;
@@ -209,8 +209,8 @@ void cs_tile_buffer_resolve(const struct cs_tile_buffer *tiles, const struct cs_
         if (code) {
             const uint32_t samples[4] = {colours[code & 3], colours[code >> 2 & 3],
                                          colours[code >> 4 & 3], colours[code >> 6]};
-            c = cs_srgb_mean(tone, samples);
+            c = cs_srgb_mean(srgb, samples);
         }
-        cs_srgb_store(tone, c, &to, first + i);
+        cs_srgb_store(srgb, c, &to, first + i);
     }
 }

@@ -21,16 +21,16 @@ struct cs_canvas {
     struct cs_canvas_settings settings;
     struct cs_arena arena; /* owns all memory but that of growing lists */
     struct cs_view_state view;
-    struct cs_clip_transform lens; /* of the camera */
-    struct cs_srgb tone;
+    struct cs_clip_transform clip; /* of the camera */
+    struct cs_srgb srgb;
     struct cs_shadow_map lightmaps[CS_LIGHTS];
     struct cs_triangles light_fixed[CS_LIGHTS]; /* casters: colliders */
     struct cs_triangles light_moving;           /* bodies, for one light after the other */
     uint32_t light;                             /* that one */
     struct cs_ground ground;
-    struct cs_collider_geometry solids; /* colliders and the ground */
-    struct cs_body_geometry *bodies;    /* (scene->bodies.n) */
-    struct cs_band_pass drawing;
+    struct cs_collider_geometry geometries; /* colliders and the ground */
+    struct cs_body_geometry *bodies;        /* (scene->bodies.n) */
+    struct cs_band_pass pass;
     struct cs_overlay overlay;
     struct cs_tile_buffer *boards; /* (threads) one per thread */
     atomic_uint next_band;         /* first band that no thread has taken */
@@ -63,10 +63,10 @@ static void aim_rays(struct cs_rays *rays, const struct cs_view_state *view,
 /* Sets what depends on the camera: projection and rays. */
 static void aim_camera(struct cs_canvas *canvas) {
     const struct cs_render *render = &canvas->settings.scene->render;
-    cs_clip_transform_make(&canvas->lens, canvas->view.block.world_to_clip,
+    cs_clip_transform_make(&canvas->clip, canvas->view.block.world_to_clip,
                            canvas->view.block.size[2], (int)render->size[0],
                            (int)render->size[1]);
-    aim_rays(&canvas->drawing.shading.rays, &canvas->view, render);
+    aim_rays(&canvas->pass.shading.rays, &canvas->view, render);
 }
 
 /* Sets view, tables and the constant inputs of shading. */
@@ -74,50 +74,50 @@ static void init_view(struct cs_canvas *canvas) {
     const struct cs_scene *scene = canvas->settings.scene;
     const struct cs_system *system = canvas->settings.system;
     const int width = (int)scene->render.size[0], height = (int)scene->render.size[1];
-    const struct cs_bounding_sphere extent =
+    const struct cs_bounding_sphere sphere =
         cs_scene_extent_solid(system, system->view.start, canvas->settings.colliders);
-    struct cs_band_pass *drawing = &canvas->drawing;
-    cs_view_init(&canvas->view, system, canvas->settings.colliders, &extent);
+    struct cs_band_pass *pass = &canvas->pass;
+    cs_view_init(&canvas->view, system, canvas->settings.colliders, &sphere);
     aim_camera(canvas);
-    cs_srgb_make(&canvas->tone);
-    drawing->shading.width = width;
-    drawing->shading.height = height;
-    drawing->shading.view = &canvas->view.block;
-    drawing->shading.shadow_maps = canvas->lightmaps;
-    drawing->shading.srgb = &canvas->tone;
-    drawing->sample_pattern =
+    cs_srgb_make(&canvas->srgb);
+    pass->shading.width = width;
+    pass->shading.height = height;
+    pass->shading.view = &canvas->view.block;
+    pass->shading.shadow_maps = canvas->lightmaps;
+    pass->shading.srgb = &canvas->srgb;
+    pass->sample_pattern =
         scene->render.samples > 1 ? &cs_sample_pattern_four : &cs_sample_pattern_one;
-    cs_ground_make(&canvas->ground, system, canvas->settings.colliders, &extent);
+    cs_ground_make(&canvas->ground, system, canvas->settings.colliders, &sphere);
 }
 
 /* Makes the triangles of all colliders again; they come first in the list. */
 static void add_solids(struct cs_canvas *canvas) {
-    struct cs_band_pass *drawing = &canvas->drawing;
-    drawing->triangles.n = 0;
-    cs_collider_geometry_add(&canvas->solids, &canvas->lens, canvas->view.block.eye,
-                             drawing->materials, &drawing->triangles);
-    drawing->n_fixed = drawing->triangles.n;
+    struct cs_band_pass *pass = &canvas->pass;
+    pass->triangles.n = 0;
+    cs_collider_geometry_add(&canvas->geometries, &canvas->clip, canvas->view.block.eye,
+                             pass->materials, &pass->triangles);
+    pass->n_fixed = pass->triangles.n;
 }
 
 /* Makes materials and geometry of colliders, the ground, then bodies: surface number =
  * collider, or number of solids + body. */
 static enum cs_status init_surfaces(struct cs_canvas *canvas, struct cs_error *error) {
     const struct cs_canvas_settings *settings = &canvas->settings;
-    struct cs_band_pass *drawing = &canvas->drawing;
-    if (cs_collider_geometry_init(&canvas->solids, settings->system, settings->colliders,
+    struct cs_band_pass *pass = &canvas->pass;
+    if (cs_collider_geometry_init(&canvas->geometries, settings->system, settings->colliders,
                                   &canvas->ground, &canvas->arena, error))
         return error->status;
-    const uint32_t n = settings->scene->bodies.n, solids = canvas->solids.n;
+    const uint32_t n = settings->scene->bodies.n, solids = canvas->geometries.n;
     if (n + solids > UINT16_MAX)
         return cs_fail(error, CS_ERR_MODULE,
                        "renderer cpu draws at most %d bodies and colliders, not %u", UINT16_MAX,
                        n + solids);
-    drawing->materials =
-        cs_arena_alloc_array(&canvas->arena, n + solids, sizeof *drawing->materials, error);
+    pass->materials =
+        cs_arena_alloc_array(&canvas->arena, n + solids, sizeof *pass->materials, error);
     canvas->bodies = cs_arena_alloc_array(&canvas->arena, n, sizeof *canvas->bodies, error);
     for (uint32_t b = 0; b < n && error->status == CS_OK; b++) {
-        canvas->bodies[b].srgb = &canvas->tone;
-        cs_body_geometry_init(canvas->bodies + b, settings, b, drawing->materials + solids + b,
+        canvas->bodies[b].srgb = &canvas->srgb;
+        cs_body_geometry_init(canvas->bodies + b, settings, b, pass->materials + solids + b,
                               &canvas->arena, error);
     }
     if (error->status)
@@ -131,26 +131,25 @@ static enum cs_status init_boards(struct cs_canvas *canvas, struct cs_error *err
     const uint32_t n = canvas->settings.threads;
     canvas->boards = cs_arena_alloc_array(&canvas->arena, n, sizeof *canvas->boards, error);
     for (uint32_t i = 0; i < n && error->status == CS_OK; i++)
-        cs_tile_buffer_init(canvas->boards + i, canvas->drawing.shading.width, &canvas->arena,
+        cs_tile_buffer_init(canvas->boards + i, canvas->pass.shading.width, &canvas->arena,
                             error);
     return error->status;
 }
 
 static enum cs_status init(struct cs_canvas *canvas, struct cs_error *error) {
-    struct cs_band_pass *drawing = &canvas->drawing;
+    struct cs_band_pass *pass = &canvas->pass;
     init_view(canvas);
     for (uint32_t l = 0; l < canvas->view.n_lights; l++)
         if (canvas->view.casts[l])
             cs_shadow_map_init(canvas->lightmaps + l, &canvas->arena, error);
     if (error->status != CS_OK || init_surfaces(canvas, error) != CS_OK ||
         init_boards(canvas, error) != CS_OK ||
-        cs_bins_init(&drawing->bins, drawing->shading.height, error) != CS_OK ||
-        cs_thick_lines_init(&drawing->thick_lines, &drawing->shading, &canvas->lens, error) !=
-            CS_OK)
+        cs_bins_init(&pass->bins, pass->shading.height, error) != CS_OK ||
+        cs_thick_lines_init(&pass->thick_lines, &pass->shading, &canvas->clip, error) != CS_OK)
         return error->status;
     canvas->overlay.marks = canvas->settings.marks;
     return cs_overlay_init(&canvas->overlay, canvas->settings.system, canvas->view.pixels_per_m,
-                           &drawing->thick_lines.lines, &canvas->arena, error);
+                           &pass->thick_lines.lines, &canvas->arena, error);
 }
 
 static void destroy(struct cs_canvas *canvas) {
@@ -159,9 +158,9 @@ static void destroy(struct cs_canvas *canvas) {
     for (int l = 0; l < CS_LIGHTS; l++)
         cs_triangles_finish(canvas->light_fixed + l);
     cs_triangles_finish(&canvas->light_moving);
-    cs_triangles_finish(&canvas->drawing.triangles);
-    cs_bins_finish(&canvas->drawing.bins);
-    cs_thick_lines_finish(&canvas->drawing.thick_lines);
+    cs_triangles_finish(&canvas->pass.triangles);
+    cs_bins_finish(&canvas->pass.bins);
+    cs_thick_lines_finish(&canvas->pass.thick_lines);
     cs_arena_finish(&canvas->arena);
     free(canvas);
 }
@@ -199,9 +198,9 @@ static void draw_stripe(void *arg, uint32_t stripe) {
 
 /* Moves a camera that follows a path or fits the bodies. */
 static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
-                        const struct cs_bounding_sphere *solid) {
+                        const struct cs_bounding_sphere *sphere) {
     const struct cs_system *system = canvas->settings.system;
-    cs_view_move(&canvas->view, canvas->settings.scene, solid, system->view.n, frame);
+    cs_view_move(&canvas->view, canvas->settings.scene, sphere, system->view.n, frame);
     cs_overlay_aim(&canvas->overlay, canvas->view.pixels_per_m);
     aim_camera(canvas);
 }
@@ -217,7 +216,7 @@ static void draw_shadow(struct cs_canvas *canvas, uint32_t l, bool moved) {
         return;
     if (changed || moved) {
         canvas->light_fixed[l].n = 0;
-        cs_collider_geometry_add_shadow(&canvas->solids, &map->transform, light->place,
+        cs_collider_geometry_add_shadow(&canvas->geometries, &map->transform, light->place,
                                         canvas->light_fixed + l);
     }
     canvas->light = l;
@@ -230,17 +229,17 @@ static void draw_shadow(struct cs_canvas *canvas, uint32_t l, bool moved) {
 
 /* Appends the triangles of bodies after those of colliders, and bins all by band. */
 static void add_bodies(struct cs_canvas *canvas) {
-    struct cs_band_pass *drawing = &canvas->drawing;
-    drawing->triangles.n = drawing->n_fixed;
+    struct cs_band_pass *pass = &canvas->pass;
+    pass->triangles.n = pass->n_fixed;
     for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++) {
         struct cs_body_geometry *body = canvas->bodies + b;
-        const struct cs_triangle_kind kind = {.surface = (uint16_t)(canvas->solids.n + b),
+        const struct cs_triangle_kind kind = {.surface = (uint16_t)(canvas->geometries.n + b),
                                               .attributes =
                                                   (uint8_t)body->material->attributes};
         if (!body->hidden)
-            cs_body_geometry_add(body, &canvas->lens, &kind, &drawing->triangles);
+            cs_body_geometry_add(body, &canvas->clip, &kind, &pass->triangles);
     }
-    cs_band_pass_bin(drawing);
+    cs_band_pass_bin(pass);
 }
 
 // one thread: draws bands in its tile buffer as long as there are any
@@ -248,20 +247,20 @@ static void draw_bands(void *arg, uint32_t tiles) {
     struct cs_canvas *canvas = arg;
     for (;;) {
         const uint32_t band = atomic_fetch_add(&canvas->next_band, 1);
-        if (band >= canvas->drawing.bins.bands)
+        if (band >= canvas->pass.bins.bands)
             break;
-        cs_band_pass_draw(&canvas->drawing, band, canvas->boards + tiles);
+        cs_band_pass_draw(&canvas->pass, band, canvas->boards + tiles);
     }
 }
 
 // growing lists record a failure instead of reporting it: asked once per picture
 static bool out_of_memory(const struct cs_canvas *canvas) {
-    const struct cs_band_pass *drawing = &canvas->drawing;
+    const struct cs_band_pass *pass = &canvas->pass;
     for (int l = 0; l < CS_LIGHTS; l++)
         if (canvas->light_fixed[l].failed)
             return true;
-    return canvas->light_moving.failed || drawing->triangles.failed || drawing->bins.failed ||
-           drawing->thick_lines.failed || drawing->thick_lines.bins.failed;
+    return canvas->light_moving.failed || pass->triangles.failed || pass->bins.failed ||
+           pass->thick_lines.failed || pass->thick_lines.bins.failed;
 }
 
 /* Takes lights, background and materials of bodies from a scene whose values change; those of
@@ -275,30 +274,30 @@ static void restyle(struct cs_canvas *canvas) {
 
 static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *frame,
                             struct cs_image *image, struct cs_error *error) {
-    struct cs_band_pass *drawing = &canvas->drawing;
-    image->width = (uint32_t)drawing->shading.width;
-    image->height = (uint32_t)drawing->shading.height;
-    drawing->image = image;
+    struct cs_band_pass *pass = &canvas->pass;
+    image->width = (uint32_t)pass->shading.width;
+    image->height = (uint32_t)pass->shading.height;
+    pass->image = image;
     if (canvas->settings.scene_varies)
         restyle(canvas);
     for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++)
         cs_body_geometry_update(canvas->bodies + b, canvas->settings.system->view.n, frame);
-    const struct cs_bounding_sphere solid =
+    const struct cs_bounding_sphere sphere =
         cs_scene_extent_solid(canvas->settings.system, frame->x, frame->colliders);
     const bool varies = canvas->settings.scene_varies || cs_view_varies(canvas->settings.scene);
-    cs_ground_aim(&canvas->ground, &solid);
-    const bool moved = cs_collider_geometry_move(&canvas->solids, frame->colliders);
+    cs_ground_aim(&canvas->ground, &sphere);
+    const bool moved = cs_collider_geometry_move(&canvas->geometries, frame->colliders);
     if (varies)
-        move_camera(canvas, frame, &solid);
+        move_camera(canvas, frame, &sphere);
     if (moved || varies)
         add_solids(canvas);
-    cs_light_frusta_fit(&solid, &canvas->view);
+    cs_light_frusta_fit(&sphere, &canvas->view);
     for (uint32_t l = 0; l < canvas->view.n_lights; l++)
         draw_shadow(canvas, l, moved);
     add_bodies(canvas);
-    drawing->thick_lines.n = 0;
+    pass->thick_lines.n = 0;
     cs_overlay_draw(&canvas->overlay, frame);
-    cs_thick_lines_bin(&drawing->thick_lines);
+    cs_thick_lines_bin(&pass->thick_lines);
     atomic_store(&canvas->next_band, 0);
     share(canvas, canvas->settings.threads, draw_bands);
     return out_of_memory(canvas) ? cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture")

@@ -23,7 +23,7 @@ static void add_depth_bias(const struct cs_clip_transform *clip, const float pla
 
 // viewer and destination of triangles
 struct projection {
-    const struct cs_clip_transform *lens;
+    const struct cs_clip_transform *clip;
     const float *eye; // position and 1, or direction and 0
     bool sinks;       // apply the depth bias; not for a light
     struct cs_triangles *triangles;
@@ -39,51 +39,51 @@ static void add_vertices(const struct cs_vertex *vertices, uint32_t n,
         const struct cs_clip_vertex *three[3] = {corners, corners + 1, corners + 2};
         for (uint32_t i = 0; i < 3; i++) {
             const struct cs_vertex *vertex = vertices + v + i;
-            cs_clip_transform_corner(projection->lens, vertex->position, corners + i);
+            cs_clip_transform_corner(projection->clip, vertex->position, corners + i);
             memcpy(corners[i].attributes, vertex->normal, sizeof vertex->normal);
             if (projection->sinks && style->depth_bias > 0)
-                add_depth_bias(projection->lens, vertex->position, projection->eye,
+                add_depth_bias(projection->clip, vertex->position, projection->eye,
                                (float)style->depth_bias, corners + i);
         }
-        cs_triangles_add(projection->triangles, projection->lens, three, kind);
+        cs_triangles_add(projection->triangles, projection->clip, three, kind);
     }
 }
 
-static void add_obstacle(const struct cs_collider_geometry *solids, uint32_t i,
+static void add_obstacle(const struct cs_collider_geometry *geometries, uint32_t i,
                          const struct cs_surface_style *style,
                          const struct cs_triangle_kind *kind,
                          const struct projection *projection) {
-    cs_solids_fill(solids, i, projection->eye);
-    add_vertices(solids->vertices, solids->of[i].n, style, kind, projection);
+    cs_solids_fill(geometries, i, projection->eye);
+    add_vertices(geometries->vertices, geometries->of[i].n, style, kind, projection);
 }
 
-void cs_collider_geometry_add(const struct cs_collider_geometry *solids,
+void cs_collider_geometry_add(const struct cs_collider_geometry *geometries,
                               const struct cs_clip_transform *clip, const float eye[4],
-                              struct cs_shading_material *coats,
+                              struct cs_shading_material *materials,
                               struct cs_triangles *triangles) {
     const struct projection projection = {clip, eye, true, triangles};
-    for (uint32_t i = 0; i < solids->n; i++) {
+    for (uint32_t i = 0; i < geometries->n; i++) {
         const struct cs_triangle_kind kind = {.surface = (uint16_t)i, .attributes = 3};
         struct cs_surface_style style;
-        cs_collider_geometry_style(solids, i, &style);
-        cs_shading_material_make(coats + i, &style);
-        if (solids->of[i].at.collider->visible)
-            add_obstacle(solids, i, &style, &kind, &projection);
+        cs_collider_geometry_style(geometries, i, &style);
+        cs_shading_material_make(materials + i, &style);
+        if (geometries->of[i].collider.collider->visible)
+            add_obstacle(geometries, i, &style, &kind, &projection);
     }
 }
 
-void cs_collider_geometry_add_shadow(const struct cs_collider_geometry *solids,
+void cs_collider_geometry_add_shadow(const struct cs_collider_geometry *geometries,
                                      const struct cs_clip_transform *clip, const float light[4],
                                      struct cs_triangles *triangles) {
     const struct cs_triangle_kind kind = {.attributes = 0};
     const struct projection projection = {clip, light, false, triangles};
-    for (uint32_t i = 0; i < solids->n; i++) {
-        const struct cs_posed_collider *obstacle = &solids->of[i].at;
+    for (uint32_t i = 0; i < geometries->n; i++) {
+        const struct cs_posed_collider *collider = &geometries->of[i].collider;
         struct cs_surface_style style;
-        if (!obstacle->collider->visible || cs_shape_is_endless(obstacle->shape))
+        if (!collider->collider->visible || cs_shape_is_endless(collider->shape))
             continue;
-        cs_style_solid(&style, obstacle, solids->cell);
-        add_obstacle(solids, i, &style, &kind, &projection);
+        cs_style_solid(&style, collider, geometries->cell);
+        add_obstacle(geometries, i, &style, &kind, &projection);
     }
 }
 
@@ -107,8 +107,8 @@ static enum cs_status init_texture(struct cs_body_geometry *body, const struct c
 
 enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
                                      const struct cs_canvas_settings *settings, uint32_t b,
-                                     struct cs_shading_material *coat, struct cs_arena *arena,
-                                     struct cs_error *error) {
+                                     struct cs_shading_material *shading,
+                                     struct cs_arena *arena, struct cs_error *error) {
     static const struct cs_image none = {0, 0, NULL, NULL};
     const struct cs_image *image = settings->textures ? settings->textures + b : &none;
     const struct cs_material *material = &cs_scene_bodies(settings->scene)[b].material;
@@ -119,7 +119,7 @@ enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
     body->clip_vertices =
         cs_arena_alloc_array(arena, body->mesh.n_vertices, sizeof *body->clip_vertices, error);
     body->hidden = cs_overlay_hides(settings->scene, b);
-    body->material = coat;
+    body->material = shading;
     body->textured = textured;
     cs_body_geometry_restyle(body, settings->scene, b);
     if (error->status == CS_OK && has_uv)

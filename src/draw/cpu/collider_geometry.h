@@ -9,14 +9,14 @@
 
 /* Fills the materials of all colliders and the ground, and adds them as the camera sees them;
  * surface number = collider. */
-void cs_collider_geometry_add(const struct cs_collider_geometry *solids,
+void cs_collider_geometry_add(const struct cs_collider_geometry *geometries,
                               const struct cs_clip_transform *clip, const float eye[4],
-                              struct cs_shading_material *coats,
+                              struct cs_shading_material *materials,
                               struct cs_triangles *triangles);
 
 /* Adds the casters, all visible colliders but planes, as the light sees them. light: a position
  * and 1, or a direction and 0. */
-void cs_collider_geometry_add_shadow(const struct cs_collider_geometry *solids,
+void cs_collider_geometry_add_shadow(const struct cs_collider_geometry *geometries,
                                      const struct cs_clip_transform *clip, const float light[4],
                                      struct cs_triangles *triangles);
 
@@ -33,11 +33,11 @@ struct cs_body_geometry {
     bool textured;
 };
 
-/* Allocates from the arena and fills the material `coat`. CS_ERR_MEMORY. */
+/* Allocates from the arena and fills *material. CS_ERR_MEMORY. */
 enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
                                      const struct cs_canvas_settings *settings, uint32_t b,
-                                     struct cs_shading_material *coat, struct cs_arena *arena,
-                                     struct cs_error *error);
+                                     struct cs_shading_material *material,
+                                     struct cs_arena *arena, struct cs_error *error);
 
 /* Takes the colours of the material from the scene. */
 void cs_body_geometry_restyle(struct cs_body_geometry *body, const struct cs_scene *scene,

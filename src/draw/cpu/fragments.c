@@ -136,12 +136,12 @@ void cs_shade_shadows(const struct cs_shading_context *shading, const struct cs_
     const struct cs_ground_style *ground = &f->material->ground;
     for (int i = 0; i < N; i++)
         w->facing[i] = 1;
-    const struct cs_shadow_query lit = {.positions = {w->place[0], w->place[1], w->place[2]},
-                                        .normals = {w->normal[0], w->normal[1], w->normal[2]},
-                                        .n_dot_l = w->facing,
-                                        .visibility = w->share,
-                                        .n = f->n};
-    find_lit_fraction(shading, &lit);
+    const struct cs_shadow_query query = {.positions = {w->place[0], w->place[1], w->place[2]},
+                                          .normals = {w->normal[0], w->normal[1], w->normal[2]},
+                                          .n_dot_l = w->facing,
+                                          .visibility = w->share,
+                                          .n = f->n};
+    find_lit_fraction(shading, &query);
     for (int i = 0; i < f->n; i++) {
         const float dark = ground->shadow * (1 - w->share[i]);
         w->cover[i] = dark + (1 - dark) * w->cover[i];

@@ -25,28 +25,28 @@ enum { N = CS_FRAGMENTS };
 
 // shininess is rounded to 1/256; attributes are computed only as far as the mode reads them
 
-void cs_shading_material_make(struct cs_shading_material *coat,
+void cs_shading_material_make(struct cs_shading_material *material,
                               const struct cs_surface_style *style) {
     for (int i = 0; i < 3; i++) {
-        coat->base[0][i] = (float)style->front_colour[i];
-        coat->base[1][i] = (float)style->back_colour[i];
+        material->base[0][i] = (float)style->front_colour[i];
+        material->base[1][i] = (float)style->back_colour[i];
     }
-    coat->mode = style->mode;
-    coat->has_ambient_occlusion = style->has_ambient_occlusion;
+    material->mode = style->mode;
+    material->has_ambient_occlusion = style->has_ambient_occlusion;
     // the ground has one normal, which is in its style
-    coat->attributes = style->ground.radius > 0 ? 0
-                       : style->mode == CS_SURFACE_TEXTURED || style->mode == CS_SURFACE_UV
-                           ? CS_ATTRIBUTES
-                       : style->mode == CS_SURFACE_VALUE || style->has_ambient_occlusion ? 4
-                                                                                         : 3;
-    coat->ambient = (float)style->ambient;
-    coat->diffuse = (float)style->diffuse;
-    coat->specular = (float)style->specular;
+    material->attributes =
+        style->ground.radius > 0                                             ? 0
+        : style->mode == CS_SURFACE_TEXTURED || style->mode == CS_SURFACE_UV ? CS_ATTRIBUTES
+        : style->mode == CS_SURFACE_VALUE || style->has_ambient_occlusion    ? 4
+                                                                             : 3;
+    material->ambient = (float)style->ambient;
+    material->diffuse = (float)style->diffuse;
+    material->specular = (float)style->specular;
     const int parts = (int)(style->shininess * 256 + 0.5);
-    coat->shininess_int = parts / 256;
-    coat->shininess_fraction = parts % 256;
-    coat->ground = style->ground;
-    coat->depth_bias = (float)style->depth_bias;
+    material->shininess_int = parts / 256;
+    material->shininess_fraction = parts % 256;
+    material->ground = style->ground;
+    material->depth_bias = (float)style->depth_bias;
 }
 
 // positions and view directions of parallel rays, whose view depth is stored
@@ -116,7 +116,8 @@ CS_INLINE void find_light(const float lamp[4], struct cs_shading_work *w) {
  * of the roots x^(1/2), x^(1/4), ... x^(1/256) of its bits; rounding to 1/256 is an error of
  * the exponent of at most 1/512. Powers below 1e-18 become 0 before their squares are denormal,
  * because arithmetic on denormals is slow. */
-CS_INLINE void find_shine(const struct cs_shading_material *coat, struct cs_shading_work *w) {
+CS_INLINE void find_shine(const struct cs_shading_material *material,
+                          struct cs_shading_work *w) {
     float power[N];
     for (int i = 0; i < N; i++) {
         float h[3], square = 0, along = 0;
@@ -133,17 +134,17 @@ CS_INLINE void find_shine(const struct cs_shading_material *coat, struct cs_shad
         power[i] = cosine > 0 ? cosine : 0;
         w->shine[i] = 1;
     }
-    for (int bit = 128; bit && coat->shininess_fraction; bit >>= 1) {
+    for (int bit = 128; bit && material->shininess_fraction; bit >>= 1) {
         float root[N];
         // from the half on, each root is one of the one before
         for (int i = 0; i < N; i++)
             root[i] = bit == 128 ? power[i] : w->cover[i];
         for (int i = 0; i < N; i++)
             w->cover[i] = sqrtf(root[i]);
-        for (int i = 0; i < N && (coat->shininess_fraction & bit); i++)
+        for (int i = 0; i < N && (material->shininess_fraction & bit); i++)
             w->shine[i] *= w->cover[i];
     }
-    for (int left = coat->shininess_int; left; left >>= 1) {
+    for (int left = material->shininess_int; left; left >>= 1) {
         for (int i = 0; i < N && (left & 1); i++)
             w->shine[i] *= power[i];
         for (int i = 0; i < N; i++) {
@@ -186,27 +187,28 @@ CS_INLINE void find_folds(const struct cs_fragments *f, float folds[N]) {
 /* Adds the light number l of the view. */
 CS_INLINE void add_light(const struct cs_shading_context *shading, int l,
                          const struct cs_fragments *f, struct cs_shading_work *w) {
-    const struct cs_shading_material *coat = f->material;
+    const struct cs_shading_material *material = f->material;
     const struct cs_view_light *light = shading->view->lights + l;
     find_light(light->place, w);
-    const struct cs_shadow_query lit = {.positions = {w->place[0], w->place[1], w->place[2]},
-                                        .normals = {w->normal[0], w->normal[1], w->normal[2]},
-                                        .n_dot_l = w->facing,
-                                        .visibility = w->share,
-                                        .n = f->n};
-    cs_shadow_map_sample(shading->shadow_maps + l, &lit);
+    const struct cs_shadow_query query = {.positions = {w->place[0], w->place[1], w->place[2]},
+                                          .normals = {w->normal[0], w->normal[1], w->normal[2]},
+                                          .n_dot_l = w->facing,
+                                          .visibility = w->share,
+                                          .n = f->n};
+    cs_shadow_map_sample(shading->shadow_maps + l, &query);
     for (int i = f->n; i < N; i++)
         w->share[i] = 0;
-    if (coat->specular > 0)
-        find_shine(coat, w);
-    for (int i = 0; i < N && !(coat->specular > 0); i++)
+    if (material->specular > 0)
+        find_shine(material, w);
+    for (int i = 0; i < N && !(material->specular > 0); i++)
         w->shine[i] = 0;
     for (int k = 0; k < 3; k++) {
         const float diffuse = light->diffuse[k], specular = light->specular[k];
         for (int i = 0; i < N; i++) {
             const float facing = w->facing[i] > 0 ? w->facing[i] : 0;
-            w->colour[k][i] += w->share[i] * (coat->diffuse * facing * diffuse * w->base[k][i] +
-                                              coat->specular * w->shine[i] * specular);
+            w->colour[k][i] +=
+                w->share[i] * (material->diffuse * facing * diffuse * w->base[k][i] +
+                               material->specular * w->shine[i] * specular);
         }
     }
 }

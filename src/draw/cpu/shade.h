@@ -5,7 +5,7 @@
 #include "draw/cpu/fragments.h"
 
 /* Fills all but mips from a style. */
-void cs_shading_material_make(struct cs_shading_material *coat,
+void cs_shading_material_make(struct cs_shading_material *material,
                               const struct cs_surface_style *style);
 
 /* Shades the fragments into colours[colour_index[i]], then sets n to 0. Colours are packed:

@@ -160,21 +160,21 @@ CS_INLINE float sample_block(const struct cs_shadow_map *map, float x, float y,
 /* Moves the positions from..from + n off their surfaces and projects them: out[0], out[1] in
  * texels from the middle of the first, out[2] reversed depth. The slant is stored first because
  * a square root of a choice would not be vectorised. */
-CS_INLINE void project(const struct cs_shadow_map *map, const struct cs_shadow_query *lit,
+CS_INLINE void project(const struct cs_shadow_map *map, const struct cs_shadow_query *query,
                        int from, int n, float out[3][BLOCK]) {
     const struct cs_clip_transform clip = map->transform;
     const float texel = map->texel_size, side = CS_SHADOW_SIDE;
     float slant[BLOCK];
     for (int i = 0; i < n; i++) {
-        const float f = lit->n_dot_l[from + i], s = 1 - f * f;
+        const float f = query->n_dot_l[from + i], s = 1 - f * f;
         slant[i] = s > 0 ? s : 0;
     }
     for (int i = 0; i < n; i++) {
         // off the surface by as much as a slope rises under the texels that are read
         const float off = (1.9f + 5 * sqrtf(slant[i])) * texel;
-        const float a = lit->positions[0][from + i] + off * lit->normals[0][from + i];
-        const float b = lit->positions[1][from + i] + off * lit->normals[1][from + i];
-        const float c = lit->positions[2][from + i] + off * lit->normals[2][from + i];
+        const float a = query->positions[0][from + i] + off * query->normals[0][from + i];
+        const float b = query->positions[1][from + i] + off * query->normals[1][from + i];
+        const float c = query->positions[2][from + i] + off * query->normals[2][from + i];
         const float w = clip.w[0] * a + clip.w[1] * b + clip.w[2] * c + clip.w[3];
         const float z = clip.z[0] * a + clip.z[1] * b + clip.z[2] * c + clip.z[3];
         const float x = clip.x[0] * a + clip.x[1] * b + clip.x[2] * c + clip.x[3];
@@ -195,19 +195,21 @@ CS_INLINE void project(const struct cs_shadow_map *map, const struct cs_shadow_q
 
 // visibility of up to BLOCK positions
 CS_CLONES static void sample_block_bounds(const struct cs_shadow_map *map,
-                                          const struct cs_shadow_query *lit, int from, int n) {
+                                          const struct cs_shadow_query *query, int from,
+                                          int n) {
     float at[3][BLOCK];
-    project(map, lit, from, n, at);
+    project(map, query, from, n, at);
     for (int i = 0; i < n; i++) {
-        const bool lit_side = lit->n_dot_l[from + i] > 0;
-        lit->visibility[from + i] =
+        const bool lit_side = query->n_dot_l[from + i] > 0;
+        query->visibility[from + i] =
             lit_side ? sample_block(map, at[0][i], at[1][i], at[2][i]) : 0;
     }
 }
 
-void cs_shadow_map_sample(const struct cs_shadow_map *map, const struct cs_shadow_query *lit) {
-    for (int i = 0; !map->enabled && i < lit->n; i++)
-        lit->visibility[i] = lit->n_dot_l[i] > 0 ? 1 : 0;
-    for (int i = 0; map->enabled && i < lit->n; i += BLOCK)
-        sample_block_bounds(map, lit, i, lit->n - i < BLOCK ? lit->n - i : BLOCK);
+void cs_shadow_map_sample(const struct cs_shadow_map *map,
+                          const struct cs_shadow_query *query) {
+    for (int i = 0; !map->enabled && i < query->n; i++)
+        query->visibility[i] = query->n_dot_l[i] > 0 ? 1 : 0;
+    for (int i = 0; map->enabled && i < query->n; i += BLOCK)
+        sample_block_bounds(map, query, i, query->n - i < BLOCK ? query->n - i : BLOCK);
 }

@@ -47,6 +47,6 @@ struct cs_shadow_query {
     int n;
 };
 /* Fills lit->visibility. */
-void cs_shadow_map_sample(const struct cs_shadow_map *map, const struct cs_shadow_query *lit);
+void cs_shadow_map_sample(const struct cs_shadow_map *map, const struct cs_shadow_query *query);
 
 #endif

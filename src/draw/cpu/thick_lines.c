@@ -13,12 +13,12 @@
 #include <string.h>
 
 /* An unused item behind the last one, or NULL if out of memory. */
-static struct cs_thick_line *next(struct cs_thick_lines *strokes) {
-    if (!CS_ARENA_REALLOC(strokes->items, strokes->capacity, strokes->n + 1)) {
-        strokes->failed = true;
+static struct cs_thick_line *next(struct cs_thick_lines *lines) {
+    if (!CS_ARENA_REALLOC(lines->items, lines->capacity, lines->n + 1)) {
+        lines->failed = true;
         return NULL;
     }
-    return strokes->items + strokes->n;
+    return lines->items + lines->n;
 }
 
 // pixels from least - by to most + by inside the picture; false where there are none
@@ -29,20 +29,20 @@ static bool bound(float least, float most, float by, int size, int *from, int *t
 }
 
 /* Pixels within `reach` of the line, inside the picture; false if there are none. */
-static bool set_box(const struct cs_shading_context *easel, const float ends[4], float reach,
+static bool set_box(const struct cs_shading_context *context, const float ends[4], float reach,
                     struct cs_thick_line *s) {
     const float left = ends[0] < ends[2] ? ends[0] : ends[2];
     const float right = ends[0] < ends[2] ? ends[2] : ends[0];
     const float top = ends[1] < ends[3] ? ends[1] : ends[3];
     const float bottom = ends[1] < ends[3] ? ends[3] : ends[1];
-    return bound(left, right, reach, easel->width, &s->left, &s->right) &&
-           bound(top, bottom, reach, easel->height, &s->top, &s->bottom);
+    return bound(left, right, reach, context->width, &s->left, &s->right) &&
+           bound(top, bottom, reach, context->height, &s->top, &s->bottom);
 }
 
 // gives a corner the depth of its point moved towards the eye by `lift` m
-static void add_depth_offset(const struct cs_thick_lines *strokes, const float place[3],
+static void add_depth_offset(const struct cs_thick_lines *lines, const float place[3],
                              float lift, struct cs_clip_vertex *corner) {
-    const float *eye = strokes->shading->view->eye;
+    const float *eye = lines->shading->view->eye;
     float d[3], moved[3];
     for (int i = 0; i < 3; i++)
         d[i] = eye[i] - eye[3] * place[i];
@@ -50,17 +50,17 @@ static void add_depth_offset(const struct cs_thick_lines *strokes, const float p
     const float share = square > 0 ? 1 / sqrtf(square) : 0;
     for (int i = 0; i < 3; i++)
         moved[i] = place[i] + lift * (d[i] * share);
-    cs_clip_transform_move_depth(strokes->transform, moved, corner);
+    cs_clip_transform_move_depth(lines->transform, moved, corner);
 }
 
 /* Cuts a line at the near plane and projects it: ends in pixels from the bottom left. Returns
  * false if nothing is left. A cut at w = near is at t = (near - w_e) / (w_other - w_e). */
-static bool project(const struct cs_thick_lines *strokes, float p[2][3], float lift,
+static bool project(const struct cs_thick_lines *lines, float p[2][3], float lift,
                     float ends[4], struct cs_clip_vertex corners[2]) {
-    const struct cs_clip_transform *lens = strokes->transform;
-    cs_clip_transform_corner(lens, p[0], corners);
-    cs_clip_transform_corner(lens, p[1], corners + 1);
-    const float w[2] = {corners[0].clip[3], corners[1].clip[3]}, near = lens->near;
+    const struct cs_clip_transform *clip = lines->transform;
+    cs_clip_transform_corner(clip, p[0], corners);
+    cs_clip_transform_corner(clip, p[1], corners + 1);
+    const float w[2] = {corners[0].clip[3], corners[1].clip[3]}, near = clip->near;
     for (int e = 0; e < 2; e++) {
         const float share = (near - w[e]) / (w[1 - e] - w[e]);
         if (w[e] >= near)
@@ -72,12 +72,12 @@ static bool project(const struct cs_thick_lines *strokes, float p[2][3], float l
     }
     for (int e = 0; e < 2; e++) {
         struct cs_clip_vertex *c = corners + e;
-        cs_clip_transform_corner(lens, p[e], c);
+        cs_clip_transform_corner(clip, p[e], c);
         // places far beside the picture are lines' too
         const float inverse = 1 / c->clip[3];
-        ends[2 * e] = (c->clip[0] * inverse * 0.5f + 0.5f) * (float)lens->width;
-        ends[2 * e + 1] = (c->clip[1] * inverse * 0.5f + 0.5f) * (float)lens->height;
-        add_depth_offset(strokes, p[e], lift, c);
+        ends[2 * e] = (c->clip[0] * inverse * 0.5f + 0.5f) * (float)clip->width;
+        ends[2 * e + 1] = (c->clip[1] * inverse * 0.5f + 0.5f) * (float)clip->height;
+        add_depth_offset(lines, p[e], lift, c);
     }
     return true;
 }
@@ -121,11 +121,11 @@ static void set_line(const float ends[4], const struct cs_line_style *style,
 
 /* Corners of the quad around a line: behind the first end to the left and right, then beyond
  * the other end; w and z are those of the ends. */
-static void set_rectangle(const struct cs_thick_lines *strokes, const float ends[4],
+static void set_rectangle(const struct cs_thick_lines *lines, const float ends[4],
                           const struct cs_clip_vertex of[2], struct cs_thick_line *s,
                           struct cs_clip_vertex corners[4]) {
-    const struct cs_clip_transform *lens = strokes->transform;
-    const float size[2] = {(float)lens->width, (float)lens->height};
+    const struct cs_clip_transform *clip = lines->transform;
+    const float size[2] = {(float)clip->width, (float)clip->height};
     for (int k = 0; k < 4; k++) {
         const struct cs_clip_vertex *end = of + k / 2;
         const float on = k < 2 ? -s->extent : s->extent, side = k & 1 ? -1 : 1;
@@ -137,7 +137,7 @@ static void set_rectangle(const struct cs_thick_lines *strokes, const float ends
         }
         corners[k].clip[2] = end->clip[2];
         corners[k].clip[3] = end->clip[3];
-        cs_clip_transform_project(lens, corners + k);
+        cs_clip_transform_project(clip, corners + k);
         s->quad[0][k] = (int32_t)floor((double)corners[k].x * 256 + 0.5);
         s->quad[1][k] = (int32_t)floor(((double)size[1] - (double)corners[k].y) * 256 + 0.5);
     }
@@ -154,29 +154,28 @@ static void make_flat(const float *from, int height, float ends[4],
 }
 
 /* Adds a line from `from` (two ends of three numbers), unless nothing of it is visible. */
-static void add_line(struct cs_thick_lines *strokes, const float *from,
+static void add_line(struct cs_thick_lines *lines, const float *from,
                      const struct cs_line_style *style, uint32_t colour) {
-    const int height = strokes->shading->height;
+    const int height = lines->shading->height;
     float p[2][3], ends[4];
     struct cs_clip_vertex corners[2], rectangle[4];
-    struct cs_thick_line *s = next(strokes);
+    struct cs_thick_line *s = next(lines);
     memcpy(p, from, sizeof p);
     if (style->flat)
         make_flat(from, height, ends, corners);
-    if (!s ||
-        (!style->flat && !project(strokes, p, (float)style->depth_offset, ends, corners)) ||
+    if (!s || (!style->flat && !project(lines, p, (float)style->depth_offset, ends, corners)) ||
         !clip_far_ends(ends))
         return;
     *s = (struct cs_thick_line){.colour = colour, .on_top = style->on_top || style->flat};
     set_line(ends, style, s);
-    set_rectangle(strokes, ends, corners, s, rectangle);
+    set_rectangle(lines, ends, corners, s, rectangle);
     s->depth = cs_depth_of(rectangle + 1, rectangle, rectangle + 2);
     // from here on y is down, as in the picture
     s->y = (float)height - s->y;
     s->direction[1] = -s->direction[1];
     for (int e = 1; e < 4; e += 2)
         ends[e] = (float)height - ends[e];
-    strokes->n += set_box(strokes->shading, ends, s->extent, s);
+    lines->n += set_box(lines->shading, ends, s->extent, s);
 }
 
 static void draw_lines(struct cs_lines *lines, const struct cs_line_style *style) {
@@ -203,31 +202,30 @@ static void add_ramp(struct cs_lines *lines, const double box[4]) {
     strokes->n += set_box(strokes->shading, ends, 1, s);
 }
 
-enum cs_status cs_thick_lines_init(struct cs_thick_lines *strokes,
-                                   const struct cs_shading_context *easel,
-                                   const struct cs_clip_transform *lens,
+enum cs_status cs_thick_lines_init(struct cs_thick_lines *lines,
+                                   const struct cs_shading_context *context,
+                                   const struct cs_clip_transform *clip,
                                    struct cs_error *error) {
-    strokes->lines.draw = draw_lines;
-    strokes->lines.ramp = add_ramp;
-    strokes->shading = easel;
-    strokes->transform = lens;
-    return cs_bins_init(&strokes->bins, easel->height, error);
+    lines->lines.draw = draw_lines;
+    lines->lines.ramp = add_ramp;
+    lines->shading = context;
+    lines->transform = clip;
+    return cs_bins_init(&lines->bins, context->height, error);
 }
 
-void cs_thick_lines_bin(struct cs_thick_lines *strokes) {
-    cs_bins_clear(&strokes->bins);
-    for (size_t i = 0; i < strokes->n; i++)
-        cs_bins_count(&strokes->bins, strokes->items[i].top, strokes->items[i].bottom);
-    cs_bins_begin_put(&strokes->bins);
-    for (size_t i = 0; i < strokes->n; i++)
-        cs_bins_put(&strokes->bins, (uint32_t)i, strokes->items[i].top,
-                    strokes->items[i].bottom);
+void cs_thick_lines_bin(struct cs_thick_lines *lines) {
+    cs_bins_clear(&lines->bins);
+    for (size_t i = 0; i < lines->n; i++)
+        cs_bins_count(&lines->bins, lines->items[i].top, lines->items[i].bottom);
+    cs_bins_begin_put(&lines->bins);
+    for (size_t i = 0; i < lines->n; i++)
+        cs_bins_put(&lines->bins, (uint32_t)i, lines->items[i].top, lines->items[i].bottom);
 }
 
-void cs_thick_lines_finish(struct cs_thick_lines *strokes) {
-    free(strokes->items);
-    cs_bins_finish(&strokes->bins);
-    strokes->items = NULL;
+void cs_thick_lines_finish(struct cs_thick_lines *lines) {
+    free(lines->items);
+    cs_bins_finish(&lines->bins);
+    lines->items = NULL;
 }
 
 /* Lists of items by band, one after the other in one block of memory. */

@@ -61,7 +61,7 @@ CS_INLINE void cs_tile_buffer_blend(struct cs_tile_buffer *tiles, size_t pixel, 
 }
 
 /* Writes the mean of the samples of each pixel into the picture's rows. */
-void cs_tile_buffer_resolve(const struct cs_tile_buffer *tiles, const struct cs_srgb *tone,
+void cs_tile_buffer_resolve(const struct cs_tile_buffer *tiles, const struct cs_srgb *srgb,
                             struct cs_image *image);
 
 /* Lists of the items that touch each band of CS_ROWS rows, in their order.
@@ -136,19 +136,19 @@ struct cs_thick_lines {
 };
 
 /* Sets the calls of `lines`; shading and clip are borrowed. CS_ERR_MEMORY. */
-enum cs_status cs_thick_lines_init(struct cs_thick_lines *strokes,
-                                   const struct cs_shading_context *easel,
+enum cs_status cs_thick_lines_init(struct cs_thick_lines *lines,
+                                   const struct cs_shading_context *context,
                                    const struct cs_clip_transform *clip,
                                    struct cs_error *error);
 
 /* Sorts the lines into bands, after the last was added. */
-void cs_thick_lines_bin(struct cs_thick_lines *strokes);
+void cs_thick_lines_bin(struct cs_thick_lines *lines);
 
 /* Blends the lines of a band over its samples, in the order in which they were added. */
-void cs_thick_lines_draw(const struct cs_thick_lines *strokes, uint32_t band,
+void cs_thick_lines_draw(const struct cs_thick_lines *lines, uint32_t band,
                          const struct cs_sample_pattern *pattern, struct cs_tile_buffer *tiles);
 
 /* Frees the memory. */
-void cs_thick_lines_finish(struct cs_thick_lines *strokes);
+void cs_thick_lines_finish(struct cs_thick_lines *lines);
 
 #endif

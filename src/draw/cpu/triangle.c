@@ -156,9 +156,9 @@ static struct cs_triangle *next(struct cs_triangles *triangles) {
 }
 
 /* Adds one triangle that lies inside the clip volume; n grows only if it covers any pixel. */
-static void add(struct cs_triangles *triangles, const struct cs_clip_transform *clip,
-                const struct cs_clip_vertex *a, const struct cs_clip_vertex *b,
-                const struct cs_clip_vertex *c, const struct cs_triangle_kind *kind) {
+static void add_triangle(struct cs_triangles *triangles, const struct cs_clip_transform *clip,
+                         const struct cs_clip_vertex *a, const struct cs_clip_vertex *b,
+                         const struct cs_clip_vertex *c, const struct cs_triangle_kind *kind) {
     const struct cs_clip_vertex *const corners[3] = {a, b, c};
     const struct cs_clip_vertex *p[3] = {a, b, c};
     struct cs_triangle *t = next(triangles);
@@ -177,7 +177,7 @@ void cs_triangles_add(struct cs_triangles *triangles, const struct cs_clip_trans
                       const struct cs_triangle_kind *kind) {
     struct cs_clip_vertex polygon[CS_CLIP_VERTICES_MAX];
     if (!(corners[0]->clip_mask | corners[1]->clip_mask | corners[2]->clip_mask)) {
-        add(triangles, clip, corners[0], corners[1], corners[2], kind);
+        add_triangle(triangles, clip, corners[0], corners[1], corners[2], kind);
         return;
     }
     // all corners outside the same plane: nothing is visible
@@ -186,7 +186,7 @@ void cs_triangles_add(struct cs_triangles *triangles, const struct cs_clip_trans
     // the clipped polygon is convex: a fan about its first corner
     const int n = cs_clip_transform_clip(clip, corners, polygon);
     for (int i = 2; i < n; i++)
-        add(triangles, clip, polygon, polygon + i - 1, polygon + i, kind);
+        add_triangle(triangles, clip, polygon, polygon + i - 1, polygon + i, kind);
 }
 
 void cs_triangles_finish(struct cs_triangles *triangles) {
@@ -208,17 +208,17 @@ static const float guard = 16;
 
 enum { NEAR = 1, LEFT = 2, RIGHT = 4, BELOW = 8, ABOVE = 16, PLANES = 5 };
 
-void cs_clip_transform_make(struct cs_clip_transform *lens, const float matrix[16], float near,
+void cs_clip_transform_make(struct cs_clip_transform *clip, const float matrix[16], float near,
                             int width, int height) {
     for (int i = 0; i < 4; i++) {
-        lens->x[i] = matrix[4 * i];
-        lens->y[i] = matrix[4 * i + 1];
-        lens->z[i] = matrix[4 * i + 2];
-        lens->w[i] = matrix[4 * i + 3];
+        clip->x[i] = matrix[4 * i];
+        clip->y[i] = matrix[4 * i + 1];
+        clip->z[i] = matrix[4 * i + 2];
+        clip->w[i] = matrix[4 * i + 3];
     }
-    lens->near = near > 0 ? near : 0.5f;
-    lens->width = width;
-    lens->height = height;
+    clip->near = near > 0 ? near : 0.5f;
+    clip->width = width;
+    clip->height = height;
 }
 
 static float row(const float r[4], const float p[3]) {
@@ -226,12 +226,12 @@ static float row(const float r[4], const float p[3]) {
 }
 
 // signed distance to a plane, in units of w; w alone decides about the near one
-static float inside(const struct cs_clip_transform *lens, const struct cs_clip_vertex *c,
+static float inside(const struct cs_clip_transform *clip, const struct cs_clip_vertex *c,
                     int plane) {
     const float reach = guard * c->clip[3];
     switch (1 << plane) {
     case NEAR:
-        return c->clip[3] - lens->near;
+        return c->clip[3] - clip->near;
     case LEFT:
         return c->clip[0] + reach;
     case RIGHT:
@@ -244,39 +244,39 @@ static float inside(const struct cs_clip_transform *lens, const struct cs_clip_v
 }
 
 // viewport: clip coordinates -w..w to pixels, and depth to 0..1
-static void set_pixel(const struct cs_clip_transform *lens, struct cs_clip_vertex *c) {
-    const float half[2] = {0.5f * (float)lens->width, 0.5f * (float)lens->height};
+static void set_pixel(const struct cs_clip_transform *clip, struct cs_clip_vertex *c) {
+    const float half[2] = {0.5f * (float)clip->width, 0.5f * (float)clip->height};
     c->inverse = 1 / c->clip[3];
     c->x = c->clip[0] * c->inverse * half[0] + half[0];
     c->y = c->clip[1] * c->inverse * half[1] + half[1];
     c->z = c->clip[2] * c->inverse * 0.5f + 0.5f;
 }
 
-void cs_clip_transform_project(const struct cs_clip_transform *lens, struct cs_clip_vertex *c) {
+void cs_clip_transform_project(const struct cs_clip_transform *clip, struct cs_clip_vertex *c) {
     c->clip_mask = 0;
     for (int plane = 0; plane < PLANES; plane++)
         // true for NAN too
-        c->clip_mask |= (uint32_t)(!(inside(lens, c, plane) >= 0)) << plane;
+        c->clip_mask |= (uint32_t)(!(inside(clip, c, plane) >= 0)) << plane;
     if (!(c->clip_mask & NEAR))
-        set_pixel(lens, c);
+        set_pixel(clip, c);
 }
 
-void cs_clip_transform_corner(const struct cs_clip_transform *lens, const float place[3],
+void cs_clip_transform_corner(const struct cs_clip_transform *clip, const float place[3],
                               struct cs_clip_vertex *corner) {
-    corner->clip[0] = row(lens->x, place);
-    corner->clip[1] = row(lens->y, place);
-    corner->clip[2] = row(lens->z, place);
-    corner->clip[3] = row(lens->w, place);
-    cs_clip_transform_project(lens, corner);
+    corner->clip[0] = row(clip->x, place);
+    corner->clip[1] = row(clip->y, place);
+    corner->clip[2] = row(clip->z, place);
+    corner->clip[3] = row(clip->w, place);
+    cs_clip_transform_project(clip, corner);
 }
 
-void cs_clip_transform_move_depth(const struct cs_clip_transform *lens, const float place[3],
+void cs_clip_transform_move_depth(const struct cs_clip_transform *clip, const float place[3],
                                   struct cs_clip_vertex *corner) {
-    const float z = row(lens->z, place), w = row(lens->w, place);
+    const float z = row(clip->z, place), w = row(clip->w, place);
     if (!(w > 0 && corner->clip[3] > 0))
         return;
     corner->clip[2] = z / w * corner->clip[3];
-    cs_clip_transform_project(lens, corner);
+    cs_clip_transform_project(clip, corner);
 }
 
 // the point at fraction t from a to b; its pixel is not set yet
@@ -292,12 +292,12 @@ static struct cs_clip_vertex between(const struct cs_clip_vertex *a,
 
 /* Clips a polygon of n corners by one plane; returns the number of corners left. A corner
  * inside is copied, an edge that crosses the plane adds the crossing. */
-static int cut(const struct cs_clip_transform *lens, int plane, const struct cs_clip_vertex *in,
+static int cut(const struct cs_clip_transform *clip, int plane, const struct cs_clip_vertex *in,
                int n, struct cs_clip_vertex *out) {
     int kept = 0;
     for (int i = 0; i < n; i++) {
         const struct cs_clip_vertex *a = in + i, *b = in + (i + 1) % n;
-        const float at = inside(lens, a, plane), next = inside(lens, b, plane);
+        const float at = inside(clip, a, plane), next = inside(clip, b, plane);
         if (at >= 0)
             out[kept++] = *a;
         // from the inner end, so that both triangles of an edge find the same point
@@ -309,7 +309,7 @@ static int cut(const struct cs_clip_transform *lens, int plane, const struct cs_
     return kept;
 }
 
-int cs_clip_transform_clip(const struct cs_clip_transform *lens,
+int cs_clip_transform_clip(const struct cs_clip_transform *clip,
                            const struct cs_clip_vertex *const corners[3],
                            struct cs_clip_vertex out[CS_CLIP_VERTICES_MAX]) {
     struct cs_clip_vertex other[CS_CLIP_VERTICES_MAX];
@@ -317,12 +317,12 @@ int cs_clip_transform_clip(const struct cs_clip_transform *lens,
     for (int i = 0; i < 3; i++)
         out[i] = *corners[i];
     for (int plane = 0; plane < PLANES && n; plane++) {
-        const int kept = cut(lens, plane, out, n, other);
+        const int kept = cut(clip, plane, out, n, other);
         n = kept < 3 ? 0 : kept;
         memcpy(out, other, (size_t)n * sizeof *out);
     }
     // a cut lies on its plane but for rounding: w stays above 0
     for (int i = 0; i < n; i++)
-        set_pixel(lens, out + i);
+        set_pixel(clip, out + i);
     return n;
 }

@@ -80,27 +80,27 @@ CS_INLINE float cs_reversed_depth(float z) {
 
 /* Takes a matrix by columns, clip from world. near: smallest w of a perspective; 0: parallel
  * rays, where w is 1 and nothing is clipped by it. */
-void cs_clip_transform_make(struct cs_clip_transform *lens, const float matrix[16], float near,
+void cs_clip_transform_make(struct cs_clip_transform *clip, const float matrix[16], float near,
                             int width, int height);
 
 /* Transforms a point in m and sets all members of a corner but its attributes. */
-void cs_clip_transform_corner(const struct cs_clip_transform *lens, const float place[3],
+void cs_clip_transform_corner(const struct cs_clip_transform *clip, const float place[3],
                               struct cs_clip_vertex *corner);
 
 /* Sets clip_mask of a corner whose clip coordinates are set, and its pixel if w >= near. */
-void cs_clip_transform_project(const struct cs_clip_transform *lens,
+void cs_clip_transform_project(const struct cs_clip_transform *clip,
                                struct cs_clip_vertex *corner);
 
 /* Gives a corner the depth of another point in m, at its own pixel. Leaves it unchanged if one
  * of them is behind the eye. */
-void cs_clip_transform_move_depth(const struct cs_clip_transform *lens, const float place[3],
+void cs_clip_transform_move_depth(const struct cs_clip_transform *clip, const float place[3],
                                   struct cs_clip_vertex *corner);
 
 /* Clips a triangle: writes a convex polygon with pixels set and returns its number of corners;
  * 0: nothing is left. Each of five planes adds at most one corner to three; one is spare. */
 enum { CS_CLIP_VERTICES_MAX = 9 };
 
-int cs_clip_transform_clip(const struct cs_clip_transform *lens,
+int cs_clip_transform_clip(const struct cs_clip_transform *clip,
                            const struct cs_clip_vertex *const corners[3],
                            struct cs_clip_vertex out[CS_CLIP_VERTICES_MAX]);
 

@@ -20,7 +20,7 @@
 
 /* Geometry and buffers of all colliders. */
 struct cs_gl_colliders {
-    struct cs_collider_geometry solids;
+    struct cs_collider_geometry geometries;
     struct cs_surface *surfaces;      /* (n) as seen from the camera */
     struct cs_surface *shadows;       /* (n_lights, n) as seen from each light */
     const struct cs_view_state *view; /* borrowed, for camera and lights */
@@ -28,17 +28,18 @@ struct cs_gl_colliders {
 
 /* Fills and uploads a collider for the camera, and for the lights unless it is a plane. */
 static void upload(struct cs_gl_colliders *colliders, uint32_t i) {
-    const struct cs_collider_geometry *solids = &colliders->solids;
-    const struct cs_solid *solid = solids->of + i;
+    const struct cs_collider_geometry *geometries = &colliders->geometries;
+    const struct cs_solid *solid = geometries->of + i;
     if (solid->n == 0)
         return;
-    cs_solids_fill(solids, i, colliders->view->block.eye);
-    cs_surface_upload(colliders->surfaces + i, solids->vertices, solid->n);
-    if (cs_shape_is_endless(solid->at.shape))
+    cs_solids_fill(geometries, i, colliders->view->block.eye);
+    cs_surface_upload(colliders->surfaces + i, geometries->vertices, solid->n);
+    if (cs_shape_is_endless(solid->collider.shape))
         return;
     for (uint32_t l = 0; l < colliders->view->n_lights; l++) {
-        cs_solids_fill(solids, i, colliders->view->block.lights[l].place);
-        cs_surface_upload(colliders->shadows + l * solids->n + i, solids->vertices, solid->n);
+        cs_solids_fill(geometries, i, colliders->view->block.lights[l].place);
+        cs_surface_upload(colliders->shadows + l * geometries->n + i, geometries->vertices,
+                          solid->n);
     }
 }
 
@@ -46,13 +47,13 @@ static void upload(struct cs_gl_colliders *colliders, uint32_t i) {
  * `view` is set before. CS_ERR_MEMORY. */
 static enum cs_status gl_colliders_init(struct cs_gl_colliders *colliders,
                                         const struct cs_system *system,
-                                        const struct cs_posed_collider *obstacles,
+                                        const struct cs_posed_collider *posed,
                                         const struct cs_ground *ground, struct cs_arena *arena,
                                         struct cs_error *error) {
-    if (cs_collider_geometry_init(&colliders->solids, system, obstacles, ground, arena, error))
+    if (cs_collider_geometry_init(&colliders->geometries, system, posed, ground, arena, error))
         return error->status;
     const struct cs_view_state *view = colliders->view;
-    const uint32_t n = colliders->solids.n;
+    const uint32_t n = colliders->geometries.n;
     colliders->surfaces = cs_arena_alloc_array(arena, n, sizeof *colliders->surfaces, error);
     colliders->shadows = cs_arena_alloc_array(arena, (size_t)n * view->n_lights,
                                               sizeof *colliders->shadows, error);
@@ -70,19 +71,19 @@ static enum cs_status gl_colliders_init(struct cs_gl_colliders *colliders,
 /* Uploads them again if one has moved, or the camera (seen_anew). */
 static void gl_colliders_move(struct cs_gl_colliders *colliders,
                               const struct cs_posed_collider *obstacles, bool seen_anew) {
-    if (cs_collider_geometry_move(&colliders->solids, obstacles) || seen_anew)
-        for (uint32_t i = 0; i < colliders->solids.n; i++)
+    if (cs_collider_geometry_move(&colliders->geometries, obstacles) || seen_anew)
+        for (uint32_t i = 0; i < colliders->geometries.n; i++)
             upload(colliders, i);
 }
 
 /* Draws the visible ones with the given program. */
 static void gl_colliders_draw(const struct cs_gl_colliders *colliders,
                               const struct cs_surface_program *program) {
-    for (uint32_t i = 0; i < colliders->solids.n; i++) {
+    for (uint32_t i = 0; i < colliders->geometries.n; i++) {
         struct cs_surface_style style;
-        if (!colliders->solids.of[i].at.collider->visible)
+        if (!colliders->geometries.of[i].collider.collider->visible)
             continue;
-        cs_collider_geometry_style(&colliders->solids, i, &style);
+        cs_collider_geometry_style(&colliders->geometries, i, &style);
         cs_surface_program_use(program, &style);
         cs_surface_draw(colliders->surfaces + i);
     }
@@ -90,10 +91,10 @@ static void gl_colliders_draw(const struct cs_gl_colliders *colliders,
 
 /* Draws all but planes into the shadow map of light l, whose program is in use. */
 static void gl_colliders_draw_shadow(const struct cs_gl_colliders *colliders, uint32_t l) {
-    for (uint32_t i = 0; i < colliders->solids.n; i++) {
-        const struct cs_posed_collider *obstacle = &colliders->solids.of[i].at;
-        if (obstacle->collider->visible && !cs_shape_is_endless(obstacle->shape))
-            cs_surface_draw(colliders->shadows + l * colliders->solids.n + i);
+    for (uint32_t i = 0; i < colliders->geometries.n; i++) {
+        const struct cs_posed_collider *collider = &colliders->geometries.of[i].collider;
+        if (collider->collider->visible && !cs_shape_is_endless(collider->shape))
+            cs_surface_draw(colliders->shadows + l * colliders->geometries.n + i);
     }
 }
 
@@ -214,11 +215,11 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
              caps);
 
     /* by the start alone, so that the view is the same in every frame */
-    const struct cs_bounding_sphere extent =
+    const struct cs_bounding_sphere sphere =
         cs_scene_extent_solid(canvas->system, canvas->system->view.start, settings->colliders);
-    cs_view_init(&canvas->view, canvas->system, settings->colliders, &extent);
+    cs_view_init(&canvas->view, canvas->system, settings->colliders, &sphere);
     canvas->colliders.view = &canvas->view;
-    cs_ground_make(&canvas->ground, canvas->system, settings->colliders, &extent);
+    cs_ground_make(&canvas->ground, canvas->system, settings->colliders, &sphere);
     if (cs_framebuffer_init(&canvas->target, render, &canvas->arena, error) != CS_OK ||
         cs_sky_init(&canvas->sky, error) != CS_OK ||
         cs_surface_program_init(&canvas->program, error) != CS_OK ||
@@ -260,14 +261,14 @@ static enum cs_status create(const struct cs_canvas_settings *settings,
 }
 
 static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
-                        const struct cs_bounding_sphere *solid) {
-    cs_view_move(&canvas->view, canvas->scene, solid, canvas->system->view.n, frame);
+                        const struct cs_bounding_sphere *sphere) {
+    cs_view_move(&canvas->view, canvas->scene, sphere, canvas->system->view.n, frame);
     cs_overlay_aim(&canvas->overlay, canvas->view.pixels_per_m);
 }
 
 /* Places lights for the frame, uploads the view, and draws the shadow maps. */
-static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_sphere *solid) {
-    cs_light_frusta_fit(solid, &canvas->view);
+static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_sphere *sphere) {
+    cs_light_frusta_fit(sphere, &canvas->view);
     cs_view_upload(&canvas->view);
     for (uint32_t l = 0; l < canvas->view.n_lights; l++) {
         if (!(canvas->view.block.lights[l].shadow_params[2] > 0))
@@ -315,16 +316,16 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
         cs_mesh_update(&cloth->mesh, canvas->system->view.n, frame);
         cs_surface_upload(&cloth->surface, cloth->mesh.vertices, cloth->mesh.n_vertices);
     }
-    const struct cs_bounding_sphere solid =
+    const struct cs_bounding_sphere sphere =
         cs_scene_extent_solid(canvas->system, frame->x, frame->colliders);
     const bool varies = canvas->scene_varies || cs_view_varies(canvas->scene);
     if (canvas->scene_varies)
         restyle(canvas);
     if (varies)
-        move_camera(canvas, frame, &solid);
-    cs_ground_aim(&canvas->ground, &solid);
+        move_camera(canvas, frame, &sphere);
+    cs_ground_aim(&canvas->ground, &sphere);
     gl_colliders_move(&canvas->colliders, frame->colliders, varies);
-    draw_shadow(canvas, &solid);
+    draw_shadow(canvas, &sphere);
     draw_scene(canvas, frame);
     cs_framebuffer_read(&canvas->target, image);
     return cs_gl_check("drawing a frame", error);

@@ -62,13 +62,13 @@ static enum cs_status make_read(struct cs_framebuffer *target, struct cs_error *
 }
 
 /* Allocates the copies of the samples and the sRGB tables. */
-static enum cs_status take(struct cs_framebuffer *target, struct cs_arena *arena,
-                           struct cs_error *error) {
+static enum cs_status allocate_pixels(struct cs_framebuffer *target, struct cs_arena *arena,
+                                      struct cs_error *error) {
     const size_t n = (size_t)target->width * (size_t)target->height;
-    struct cs_srgb *tone = cs_arena_alloc(arena, sizeof *tone, error);
-    if (tone)
-        cs_srgb_make(tone);
-    target->srgb = tone;
+    struct cs_srgb *srgb = cs_arena_alloc(arena, sizeof *srgb, error);
+    if (srgb)
+        cs_srgb_make(srgb);
+    target->srgb = srgb;
     for (uint32_t s = 0; s < target->n_samples && !error->status; s++)
         target->rgba[s] = cs_arena_alloc_array(arena, n, sizeof *target->rgba[s], error);
     return error->status;
@@ -88,7 +88,7 @@ enum cs_status cs_framebuffer_init(struct cs_framebuffer *target,
     target->height = height;
     target->n_samples = render->samples > 1 ? 4 : 1;
     target->clear = render->background.kind == CS_BACKGROUND_NONE;
-    if (take(target, arena, error) || make_drawn(target, error))
+    if (allocate_pixels(target, arena, error) || make_drawn(target, error))
         return error->status;
     target->read_framebuffer = target->draw_framebuffer;
     return target->n_samples > 1 ? make_read(target, error) : CS_OK;

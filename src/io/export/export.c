@@ -58,7 +58,7 @@ static enum cs_status make_skins(struct cs_export *export, struct cs_error *erro
 enum cs_status cs_export_open(struct cs_export *export,
                               const struct cs_export_settings *settings,
                               const struct cs_system *system, struct cs_error *error) {
-    *export = (struct cs_export){.source = {.skins = {&export->bodies, &export->colliders},
+    *export = (struct cs_export){.source = {.meshes = {&export->bodies, &export->colliders},
                                             .settings = *settings,
                                             .seams = system->seams,
                                             .fps = system->scene->time.fps},
@@ -89,7 +89,8 @@ static void count_stitches(const struct cs_seams *seams, uint32_t n, double *cou
 }
 
 /* Sets all fields from the state at time t, in the order of add_fields. */
-static void measure(struct cs_export *export, double t, const double *x, const double *v) {
+static void measure_fields(struct cs_export *export, double t, const double *x,
+                           const double *v) {
     const struct cs_export_mesh *bodies = &export->bodies;
     const struct cs_export_field *field = bodies->fields + 1;
     cs_export_mesh_set(bodies, bodies->fields, x);
@@ -117,7 +118,7 @@ enum cs_status cs_export_write_sample(struct cs_export *export, uint32_t frame, 
     const struct cs_export_sample sample = {export->n_samples, frame, t};
     if (!export->source.settings.formats || frame % export->source.settings.frame_interval)
         return CS_OK;
-    measure(export, t, x, v);
+    measure_fields(export, t, x, v);
     for (uint32_t k = 0; k < CS_N_EXPORT_FORMATS; k++)
         if (export->states[k] &&
             cs_export_writers[k]->add(export->states[k], &export->source, &sample, error))

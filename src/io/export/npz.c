@@ -29,35 +29,35 @@ struct archive {
 enum { WHOLE, PART }; /* index of a file's name in cs_export_npz.files */
 
 /* Numbers of field f at one sample. */
-static size_t word_size(const struct cs_export_mesh *skin, uint32_t f) {
-    return (size_t)skin->n * skin->fields[f].components;
+static size_t word_size(const struct cs_export_mesh *mesh, uint32_t f) {
+    return (size_t)mesh->n * mesh->fields[f].components;
 }
 
 /* Colliders at rest are not sampled: the archive has their one position. */
-static bool is_sampled(const struct cs_export_mesh *skin) {
-    return skin->is_moving && skin->n > 0;
+static bool is_sampled(const struct cs_export_mesh *mesh) {
+    return mesh->is_moving && mesh->n > 0;
 }
 
 /* Calls `use` for each field of a sample in the order of the part. Size, writer and reader
  * share this order by sharing the function. */
-static enum cs_status each_field(const struct cs_export_mesh *const skins[2],
+static enum cs_status each_field(const struct cs_export_mesh *const meshes[2],
                                  enum cs_status (*use)(void *ctx,
-                                                       const struct cs_export_mesh *skin,
+                                                       const struct cs_export_mesh *mesh,
                                                        uint32_t f, struct cs_error *error),
                                  void *ctx, struct cs_error *error) {
     for (int k = 0; k < 2; k++)
-        for (uint32_t f = 0; is_sampled(skins[k]) && f < skins[k]->n_fields; f++)
-            if (use(ctx, skins[k], f, error))
+        for (uint32_t f = 0; is_sampled(meshes[k]) && f < meshes[k]->n_fields; f++)
+            if (use(ctx, meshes[k], f, error))
                 return error->status;
     return CS_OK;
 }
 
 /* Adds the size of a field to *ctx. */
-static enum cs_status count_field(void *ctx, const struct cs_export_mesh *skin, uint32_t f,
+static enum cs_status count_field(void *ctx, const struct cs_export_mesh *mesh, uint32_t f,
                                   struct cs_error *error) {
     uint64_t *bytes = ctx;
     (void)error;
-    *bytes += word_size(skin, f) * sizeof(uint64_t);
+    *bytes += word_size(mesh, f) * sizeof(uint64_t);
     return CS_OK;
 }
 
@@ -71,7 +71,7 @@ static enum cs_status open_part(void *state, const struct cs_export_source *sour
                             .every = settings->frame_interval,
                             .n_samples = settings->n_samples_before,
                             .sample_bytes = sizeof(uint64_t)};
-    each_field(source->skins, count_field, &npz->sample_bytes, error);
+    each_field(source->meshes, count_field, &npz->sample_bytes, error);
     return cs_export_name(path, npz->folder, cs_export_npz.files[PART], error)
                ? error->status
                : cs_append_file_open(&npz->part, path,
@@ -84,24 +84,24 @@ struct place {
     uint64_t at;
 };
 
-static enum cs_status add_field(void *ctx, const struct cs_export_mesh *skin, uint32_t f,
+static enum cs_status add_field(void *ctx, const struct cs_export_mesh *mesh, uint32_t f,
                                 struct cs_error *error) {
     struct place *place = ctx;
-    const size_t bytes = word_size(skin, f) * sizeof(uint64_t);
+    const size_t bytes = word_size(mesh, f) * sizeof(uint64_t);
     const uint64_t at = place->at;
     place->at += bytes;
-    return cs_append_file_write(&place->npz->part, at, skin->fields[f].words, bytes, error);
+    return cs_append_file_write(&place->npz->part, at, mesh->fields[f].words, bytes, error);
 }
 
-static enum cs_status add(void *state, const struct cs_export_source *source,
-                          const struct cs_export_sample *sample, struct cs_error *error) {
+static enum cs_status add_npz(void *state, const struct cs_export_source *source,
+                              const struct cs_export_sample *sample, struct cs_error *error) {
     struct archive *npz = state;
     const uint64_t time = cs_double_to_le64(sample->t);
     struct place place = {npz, npz->sample_bytes * npz->n_samples};
     if (cs_append_file_write(&npz->part, place.at, &time, sizeof time, error))
         return error->status;
     place.at += sizeof time;
-    if (!each_field(source->skins, add_field, &place, error))
+    if (!each_field(source->meshes, add_field, &place, error))
         npz->n_samples++;
     return error->status;
 }
@@ -150,8 +150,8 @@ static void put_integer(struct cs_zip *zip, const char *name, const uint32_t *va
 }
 
 /* Writes what does not change: faces, lines, offsets, texture coordinates. */
-static void put_meshes(struct cs_zip *zip, const struct cs_export_mesh *const skins[2]) {
-    const struct cs_export_mesh *bodies = skins[0], *colliders = skins[1];
+static void put_meshes(struct cs_zip *zip, const struct cs_export_mesh *const meshes[2]) {
+    const struct cs_export_mesh *bodies = meshes[0], *colliders = meshes[1];
     put_integer(zip, "faces", bodies->triangles, bodies->n_triangles, 3);
     put_integer(zip, "lines", bodies->lines, bodies->n_lines, 2);
     put_integer(zip, "body_offsets", bodies->first_point, bodies->n_items + 1, 0);
@@ -213,15 +213,15 @@ static enum cs_status put_times(const struct archive *npz, struct cs_zip *zip,
 }
 
 /* Begins the array of a field over all samples. */
-static void begin_field(struct cs_zip *zip, const struct cs_export_mesh *skin, uint32_t f,
+static void begin_field(struct cs_zip *zip, const struct cs_export_mesh *mesh, uint32_t f,
                         uint32_t n_samples) {
     char name[40];
-    const struct cs_export_field *field = skin->fields + f;
-    snprintf(name, sizeof name, "%s%s", skin->local_positions ? "collider_" : "",
+    const struct cs_export_field *field = mesh->fields + f;
+    snprintf(name, sizeof name, "%s%s", mesh->local_positions ? "collider_" : "",
              field->plural);
     begin_array(zip, &(struct array){name,
                                      "<f8",
-                                     {n_samples, skin->n, field->components},
+                                     {n_samples, mesh->n, field->components},
                                      field->components > 1 ? 3 : 2,
                                      8});
 }
@@ -233,13 +233,13 @@ struct series {
 };
 
 /* Writes a field over all samples, gathered from the part through the field's own array. */
-static enum cs_status put_field(void *ctx, const struct cs_export_mesh *skin, uint32_t f,
+static enum cs_status put_field(void *ctx, const struct cs_export_mesh *mesh, uint32_t f,
                                 struct cs_error *error) {
     struct series *series = ctx;
     const struct archive *npz = series->place.npz;
-    uint64_t *words = skin->fields[f].words;
-    const size_t bytes = word_size(skin, f) * sizeof *words;
-    begin_field(series->zip, skin, f, npz->n_samples);
+    uint64_t *words = mesh->fields[f].words;
+    const size_t bytes = word_size(mesh, f) * sizeof *words;
+    begin_field(series->zip, mesh, f, npz->n_samples);
     for (uint32_t k = 0; k < npz->n_samples; k++) {
         if (cs_append_file_read(&npz->part, series->place.at + npz->sample_bytes * k, words,
                                 bytes, error))
@@ -252,12 +252,12 @@ static enum cs_status put_field(void *ctx, const struct cs_export_mesh *skin, ui
 }
 
 static enum cs_status put_samples(struct archive *npz,
-                                  const struct cs_export_mesh *const skins[2],
+                                  const struct cs_export_mesh *const meshes[2],
                                   struct cs_zip *zip, struct cs_error *error) {
-    const struct cs_export_mesh *colliders = skins[1];
+    const struct cs_export_mesh *colliders = meshes[1];
     struct series series = {{npz, sizeof(uint64_t)}, zip};
     put_frames(npz, zip);
-    if (put_times(npz, zip, error) || each_field(skins, put_field, &series, error))
+    if (put_times(npz, zip, error) || each_field(meshes, put_field, &series, error))
         return error->status;
     if (colliders->n > 0 && !colliders->is_moving) {
         begin_field(zip, colliders, 0, 1);
@@ -274,8 +274,8 @@ static enum cs_status sync_part(const void *state, struct cs_error *error) {
 
 /* Writes the archive; overwrites the fields of the meshes. Removes the part unless the run may
  * be continued. */
-static enum cs_status finish(void *state, const struct cs_export_source *source, bool goes_on,
-                             struct cs_error *error) {
+static enum cs_status finish_npz(void *state, const struct cs_export_source *source,
+                                 bool goes_on, struct cs_error *error) {
     struct archive *npz = state;
     char path[CS_EXPORT_PATH];
     struct cs_file_out out;
@@ -285,10 +285,10 @@ static enum cs_status finish(void *state, const struct cs_export_source *source,
         cs_file_create(&out, path, error))
         return error->status;
     struct cs_zip zip = {.file = out.file};
-    put_meshes(&zip, source->skins);
+    put_meshes(&zip, source->meshes);
     if (source->seams)
         put_stitches(&zip, source->seams);
-    if (put_samples(npz, source->skins, &zip, error)) {
+    if (put_samples(npz, source->meshes, &zip, error)) {
         cs_file_abandon(&out);
         return error->status;
     }
@@ -313,8 +313,8 @@ const struct cs_export_writer cs_export_npz = {
     .files = {[WHOLE] = "run.npz", [PART] = "run.npz.part"},
     .size = sizeof(struct archive),
     .open = open_part,
-    .add = add,
+    .add = add_npz,
     .sync = sync_part,
-    .finish = finish,
+    .finish = finish_npz,
     .close = close_part,
 };

@@ -30,10 +30,10 @@ static void add_uv(struct uv_list *list, uint32_t point, const float uv[2],
 /* Prints one coordinate per point, in their order, even if a body has none. If no point has
  * two, position and coordinate of a corner then have the same number. Some readers require
  * this, and others would split the corners without it. */
-static void list_points(const struct cs_export_mesh *skin, struct uv_list *list,
+static void list_points(const struct cs_export_mesh *mesh, struct uv_list *list,
                         struct cs_text *out) {
-    cs_export_mesh_point_uv(skin, list->values);
-    for (uint32_t i = 0; i < skin->n; i++)
+    cs_export_mesh_point_uv(mesh, list->values);
+    for (uint32_t i = 0; i < mesh->n; i++)
         add_uv(list, i, list->values[i], out);
 }
 
@@ -46,12 +46,12 @@ static uint32_t number_uv(struct uv_list *list, uint32_t point, const float uv[2
 }
 
 /* Prints a face with numbers from 1; corners without a coordinate have the position alone. */
-static void add_face(const struct cs_export_mesh *skin, uint32_t t, struct uv_list *list,
+static void add_face(const struct cs_export_mesh *mesh, uint32_t t, struct uv_list *list,
                      struct cs_text *uvs, struct cs_text *faces) {
-    const float *uv = skin->uv ? skin->uv + 6 * (size_t)t : NULL;
+    const float *uv = mesh->uv ? mesh->uv + 6 * (size_t)t : NULL;
     cs_text_add(faces, "f");
     for (size_t k = 0; k < 3; k++) {
-        const uint32_t point = skin->triangles[3 * (size_t)t + k];
+        const uint32_t point = mesh->triangles[3 * (size_t)t + k];
         if (uv && !isnan(uv[2 * k]))
             cs_text_add(faces, " %u/%u", point + 1, number_uv(list, point, uv + 2 * k, uvs));
         else
@@ -62,30 +62,30 @@ static void add_face(const struct cs_export_mesh *skin, uint32_t t, struct uv_li
 
 /* Prints groups and no objects: readers then make one object of the file and keep the order of
  * its points, which a point cache needs. */
-static void add_items(const struct cs_export_mesh *skin, struct uv_list *list,
+static void add_items(const struct cs_export_mesh *mesh, struct uv_list *list,
                       struct cs_text *uvs, struct cs_text *faces) {
-    for (uint32_t b = 0; b < skin->n_items; b++) {
-        cs_text_add(faces, "g %s_%u\n", skin->item, skin->items[b]);
-        for (uint32_t t = skin->first_triangle[b]; t < skin->first_triangle[b + 1]; t++)
-            add_face(skin, t, list, uvs, faces);
-        for (uint32_t i = skin->first_line[b]; i < skin->first_line[b + 1]; i++)
-            cs_text_add(faces, "l %u %u\n", skin->lines[2 * (size_t)i] + 1,
-                        skin->lines[2 * (size_t)i + 1] + 1);
+    for (uint32_t b = 0; b < mesh->n_items; b++) {
+        cs_text_add(faces, "g %s_%u\n", mesh->item, mesh->items[b]);
+        for (uint32_t t = mesh->first_triangle[b]; t < mesh->first_triangle[b + 1]; t++)
+            add_face(mesh, t, list, uvs, faces);
+        for (uint32_t i = mesh->first_line[b]; i < mesh->first_line[b + 1]; i++)
+            cs_text_add(faces, "l %u %u\n", mesh->lines[2 * (size_t)i] + 1,
+                        mesh->lines[2 * (size_t)i + 1] + 1);
     }
 }
 
 /* Prints all that follows the positions: texture coordinates, a group per body, faces, lines.
  */
-static enum cs_status print_tail(const struct cs_export_mesh *skin, struct cs_text *tail,
+static enum cs_status print_tail(const struct cs_export_mesh *mesh, struct cs_text *tail,
                                  struct cs_error *error) {
     struct cs_text faces = {0};
-    struct uv_list list = {.last = calloc(skin->n + 1, sizeof *list.last),
-                           .values = calloc(skin->n + 1, sizeof *list.values)};
+    struct uv_list list = {.last = calloc(mesh->n + 1, sizeof *list.last),
+                           .values = calloc(mesh->n + 1, sizeof *list.values)};
     const bool capacity = list.last && list.values;
-    if (capacity && skin->uv)
-        list_points(skin, &list, tail);
+    if (capacity && mesh->uv)
+        list_points(mesh, &list, tail);
     if (capacity) {
-        add_items(skin, &list, tail, &faces);
+        add_items(mesh, &list, tail, &faces);
         cs_text_add(tail, "%s", cs_text_get(&faces));
     }
     if (!capacity || tail->failed || faces.failed)
@@ -96,20 +96,20 @@ static enum cs_status print_tail(const struct cs_export_mesh *skin, struct cs_te
     return error->status;
 }
 
-static enum cs_status write_sample(const struct cs_export_mesh *skin,
+static enum cs_status write_sample(const struct cs_export_mesh *mesh,
                                    const struct cs_text *tail, const char *folder,
                                    const struct cs_export_sample *sample,
                                    struct cs_error *error) {
     char path[CS_EXPORT_PATH];
     struct cs_file_out out;
-    const uint64_t *at = skin->fields[0].words;
-    if (cs_export_number(path, folder, skin->name, sample->number, cs_export_obj.ending,
+    const uint64_t *at = mesh->fields[0].words;
+    if (cs_export_number(path, folder, mesh->name, sample->number, cs_export_obj.ending,
                          error) ||
         cs_file_create(&out, path, error))
         return error->status;
     /* failures to write are seen by finish */
     fprintf(out.file, "# clothsim: frame %u, t = %.9g s\n", sample->frame, sample->t);
-    for (uint32_t i = 0; i < skin->n; i++, at += 3)
+    for (uint32_t i = 0; i < mesh->n; i++, at += 3)
         fprintf(out.file, "v %.9g %.9g %.9g\n", cs_double_from_le64(at[0]),
                 cs_double_from_le64(at[1]), cs_double_from_le64(at[2]));
     fwrite(tail->bytes, 1, tail->length, out.file);
@@ -121,17 +121,17 @@ static enum cs_status open_files(void *state, const struct cs_export_source *sou
     struct cs_text *tails = state;
     (void)arena;
     for (int k = 0; k < 2; k++)
-        if (source->skins[k]->n > 0 && print_tail(source->skins[k], tails + k, error))
+        if (source->meshes[k]->n > 0 && print_tail(source->meshes[k], tails + k, error))
             return error->status;
     return CS_OK;
 }
 
-static enum cs_status add(void *state, const struct cs_export_source *source,
-                          const struct cs_export_sample *sample, struct cs_error *error) {
+static enum cs_status add_obj(void *state, const struct cs_export_source *source,
+                              const struct cs_export_sample *sample, struct cs_error *error) {
     const struct cs_text *tails = state;
     for (int k = 0; k < 2; k++)
-        if (cs_export_mesh_has_sample(source->skins[k], sample) &&
-            write_sample(source->skins[k], tails + k, source->settings.folder, sample, error))
+        if (cs_export_mesh_has_sample(source->meshes[k], sample) &&
+            write_sample(source->meshes[k], tails + k, source->settings.folder, sample, error))
             return error->status;
     return CS_OK;
 }
@@ -146,6 +146,6 @@ const struct cs_export_writer cs_export_obj = {
     .ending = "obj",
     .size = 2 * sizeof(struct cs_text), /* what follows the points of bodies, of colliders */
     .open = open_files,
-    .add = add,
+    .add = add_obj,
     .close = close_files,
 };

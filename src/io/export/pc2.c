@@ -32,17 +32,17 @@ static void make_header(uint8_t header[HEADER], uint32_t n, uint32_t every, uint
 }
 
 /* Opens a cache: a new file, or the first `kept` samples of that of a continued run. */
-static enum cs_status open_cache(struct cache *cache, const struct cs_export_mesh *skin,
+static enum cs_status open_cache(struct cache *cache, const struct cs_export_mesh *mesh,
                                  const struct cs_export_settings *settings,
                                  struct cs_arena *arena, struct cs_error *error) {
     char name[32], path[CS_EXPORT_PATH];
     uint8_t header[HEADER];
     const uint32_t kept = settings->n_samples_before;
-    const uint64_t length = kept ? HEADER + 12 * (uint64_t)skin->n * kept : 0;
+    const uint64_t length = kept ? HEADER + 12 * (uint64_t)mesh->n * kept : 0;
     cache->n_samples = kept;
-    cache->floats = cs_arena_alloc_array(arena, skin->n, 3 * sizeof *cache->floats, error);
-    snprintf(name, sizeof name, "%s.%s", skin->name, cs_export_pc2.cache_ending);
-    make_header(header, skin->n, settings->frame_interval, kept);
+    cache->floats = cs_arena_alloc_array(arena, mesh->n, 3 * sizeof *cache->floats, error);
+    snprintf(name, sizeof name, "%s.%s", mesh->name, cs_export_pc2.cache_ending);
+    make_header(header, mesh->n, settings->frame_interval, kept);
     if (error->status || cs_export_name(path, settings->folder, name, error) ||
         cs_append_file_open(&cache->file, path, length, error))
         return error->status;
@@ -50,10 +50,10 @@ static enum cs_status open_cache(struct cache *cache, const struct cs_export_mes
 }
 
 /* Adds a sample: positions first, then the count that includes it. */
-static enum cs_status add_to(struct cache *cache, const struct cs_export_mesh *skin,
+static enum cs_status add_to(struct cache *cache, const struct cs_export_mesh *mesh,
                              struct cs_error *error) {
-    const uint64_t *words = skin->fields[0].words;
-    const size_t n = 3 * (size_t)skin->n;
+    const uint64_t *words = mesh->fields[0].words;
+    const size_t n = 3 * (size_t)mesh->n;
     for (size_t k = 0; k < n; k++)
         cache->floats[k] = cs_float_to_le32((float)cs_double_from_le64(words[k]));
     if (cs_append_file_write(&cache->file, HEADER + 4 * (uint64_t)n * cache->n_samples,
@@ -68,18 +68,18 @@ static enum cs_status open_files(void *state, const struct cs_export_source *sou
     struct cache *caches = state;
     /* what never moves needs no cache */
     for (int k = 0; k < 2; k++)
-        if (source->skins[k]->n > 0 && source->skins[k]->is_moving &&
-            open_cache(caches + k, source->skins[k], &source->settings, arena, error))
+        if (source->meshes[k]->n > 0 && source->meshes[k]->is_moving &&
+            open_cache(caches + k, source->meshes[k], &source->settings, arena, error))
             return error->status;
     return CS_OK;
 }
 
-static enum cs_status add(void *state, const struct cs_export_source *source,
-                          const struct cs_export_sample *sample, struct cs_error *error) {
+static enum cs_status add_pc2(void *state, const struct cs_export_source *source,
+                              const struct cs_export_sample *sample, struct cs_error *error) {
     struct cache *caches = state;
     (void)sample;
     for (int k = 0; k < 2; k++)
-        if (caches[k].file.file && add_to(caches + k, source->skins[k], error))
+        if (caches[k].file.file && add_to(caches + k, source->meshes[k], error))
             return error->status;
     return CS_OK;
 }
@@ -102,7 +102,7 @@ const struct cs_export_writer cs_export_pc2 = {
     .cache_ending = "pc2",
     .size = 2 * sizeof(struct cache), /* of bodies, of colliders */
     .open = open_files,
-    .add = add,
+    .add = add_pc2,
     .sync = sync_files,
     .close = close_files,
 };

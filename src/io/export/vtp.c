@@ -45,10 +45,10 @@ static void add_array(struct cs_text *head, const struct array *array, size_t *o
     *offset += sizeof(uint64_t) + array->bytes;
 }
 
-static void add_field(struct cs_text *head, const struct cs_export_mesh *skin, uint32_t f,
+static void add_field(struct cs_text *head, const struct cs_export_mesh *mesh, uint32_t f,
                       size_t *offset) {
-    const struct cs_export_field *field = skin->fields + f;
-    const size_t bytes = skin->n * field->components * sizeof(uint64_t);
+    const struct cs_export_field *field = mesh->fields + f;
+    const size_t bytes = mesh->n * field->components * sizeof(uint64_t);
     add_array(head, &(struct array){"Float64", field->name, field->components, bytes}, offset);
 }
 
@@ -63,7 +63,7 @@ static void add_cells(struct cs_text *head, const char *kind, uint32_t n, uint32
 }
 
 /* Prints the head; declares arrays in the order of the data: time, fields, constant part. */
-static void print_head(const struct cs_export_mesh *skin, struct cs_text *head) {
+static void print_head(const struct cs_export_mesh *mesh, struct cs_text *head) {
     size_t offset = 0;
     cs_text_add(head, "<?xml version=\"1.0\"?>\n"
                       "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
@@ -74,19 +74,19 @@ static void print_head(const struct cs_export_mesh *skin, struct cs_text *head) 
     cs_text_add(head,
                 "<Piece NumberOfPoints=\"%u\" NumberOfVerts=\"0\" NumberOfLines=\"%u\" "
                 "NumberOfStrips=\"0\" NumberOfPolys=\"%u\">\n<Points>\n",
-                skin->n, skin->n_lines, skin->n_triangles);
-    add_field(head, skin, 0, &offset);
-    cs_text_add(head, "</Points>\n<PointData%s>\n", skin->uv ? " TCoords=\"uv\"" : "");
-    for (uint32_t f = 1; f < skin->n_fields; f++)
-        add_field(head, skin, f, &offset);
-    add_array(head, &(struct array){"Int32", skin->item, 1, skin->n * sizeof(int32_t)},
+                mesh->n, mesh->n_lines, mesh->n_triangles);
+    add_field(head, mesh, 0, &offset);
+    cs_text_add(head, "</Points>\n<PointData%s>\n", mesh->uv ? " TCoords=\"uv\"" : "");
+    for (uint32_t f = 1; f < mesh->n_fields; f++)
+        add_field(head, mesh, f, &offset);
+    add_array(head, &(struct array){"Int32", mesh->item, 1, mesh->n * sizeof(int32_t)},
               &offset);
-    if (skin->uv)
-        add_array(head, &(struct array){"Float32", "uv", 2, skin->n * sizeof(float[2])},
+    if (mesh->uv)
+        add_array(head, &(struct array){"Float32", "uv", 2, mesh->n * sizeof(float[2])},
                   &offset);
     cs_text_add(head, "</PointData>\n");
-    add_cells(head, "Lines", skin->n_lines, 2, &offset);
-    add_cells(head, "Polys", skin->n_triangles, 3, &offset);
+    add_cells(head, "Lines", mesh->n_lines, 2, &offset);
+    add_cells(head, "Polys", mesh->n_triangles, 3, &offset);
     cs_text_add(head, "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_");
 }
 
@@ -112,10 +112,10 @@ static void fill_cells(uint8_t **at, const uint32_t *points, uint32_t n, uint32_
 }
 
 /* Writes a texture coordinate per point: that of its first corner. */
-static void fill_uv(const struct cs_export_mesh *skin, uint8_t **at) {
-    float(*uv)[2] = (float(*)[2])(void *)begin_array(at, 2 * (size_t)skin->n);
-    cs_export_mesh_point_uv(skin, uv);
-    for (size_t i = 0; i < skin->n; i++)
+static void fill_uv(const struct cs_export_mesh *mesh, uint8_t **at) {
+    float(*uv)[2] = (float(*)[2])(void *)begin_array(at, 2 * (size_t)mesh->n);
+    cs_export_mesh_point_uv(mesh, uv);
+    for (size_t i = 0; i < mesh->n; i++)
         for (size_t c = 0; c < 2; c++) {
             const uint32_t word = cs_float_to_le32(uv[i][c]);
             memcpy(uv[i] + c, &word, sizeof word);
@@ -123,31 +123,31 @@ static void fill_uv(const struct cs_export_mesh *skin, uint8_t **at) {
 }
 
 /* Writes the constant part, in the order of print_head. */
-static void fill_fixed(const struct cs_export_mesh *skin, uint8_t *at) {
-    uint32_t *item = begin_array(&at, skin->n);
-    for (uint32_t b = 0; b < skin->n_items; b++)
-        for (uint32_t i = skin->first_point[b]; i < skin->first_point[b + 1]; i++)
-            item[i] = htole32(skin->items[b]);
-    if (skin->uv)
-        fill_uv(skin, &at);
-    fill_cells(&at, skin->lines, skin->n_lines, 2);
-    fill_cells(&at, skin->triangles, skin->n_triangles, 3);
+static void fill_fixed(const struct cs_export_mesh *mesh, uint8_t *at) {
+    uint32_t *item = begin_array(&at, mesh->n);
+    for (uint32_t b = 0; b < mesh->n_items; b++)
+        for (uint32_t i = mesh->first_point[b]; i < mesh->first_point[b + 1]; i++)
+            item[i] = htole32(mesh->items[b]);
+    if (mesh->uv)
+        fill_uv(mesh, &at);
+    fill_cells(&at, mesh->lines, mesh->n_lines, 2);
+    fill_cells(&at, mesh->triangles, mesh->n_triangles, 3);
 }
 
 /* Makes head and constant part: five arrays with their lengths, and uv if there is one. */
-static enum cs_status make(struct common *vtp, const struct cs_export_mesh *skin,
+static enum cs_status make(struct common *vtp, const struct cs_export_mesh *mesh,
                            struct cs_arena *arena, struct cs_error *error) {
     vtp->fixed_bytes =
-        5 * sizeof(uint64_t) + sizeof(uint32_t) * (skin->n + 3 * (size_t)skin->n_lines +
-                                                   4 * (size_t)skin->n_triangles);
-    if (skin->uv)
-        vtp->fixed_bytes += sizeof(uint64_t) + skin->n * sizeof(float[2]);
+        5 * sizeof(uint64_t) + sizeof(uint32_t) * (mesh->n + 3 * (size_t)mesh->n_lines +
+                                                   4 * (size_t)mesh->n_triangles);
+    if (mesh->uv)
+        vtp->fixed_bytes += sizeof(uint64_t) + mesh->n * sizeof(float[2]);
     vtp->fixed = cs_arena_alloc(arena, vtp->fixed_bytes, error);
-    print_head(skin, &vtp->head);
+    print_head(mesh, &vtp->head);
     if (vtp->head.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for VTP files");
     if (!error->status)
-        fill_fixed(skin, vtp->fixed);
+        fill_fixed(mesh, vtp->fixed);
     return error->status;
 }
 
@@ -158,21 +158,21 @@ static void write_array(FILE *file, const uint64_t *words, size_t n) {
     fwrite(words, sizeof *words, n, file);
 }
 
-static enum cs_status write_sample(const struct common *vtp, const struct cs_export_mesh *skin,
+static enum cs_status write_sample(const struct common *vtp, const struct cs_export_mesh *mesh,
                                    const char *folder, const struct cs_export_sample *sample,
                                    struct cs_error *error) {
     char path[CS_EXPORT_PATH];
     struct cs_file_out out;
     const uint64_t time = cs_double_to_le64(sample->t);
-    if (cs_export_number(path, folder, skin->name, sample->number, cs_export_vtp.ending,
+    if (cs_export_number(path, folder, mesh->name, sample->number, cs_export_vtp.ending,
                          error) ||
         cs_file_create(&out, path, error))
         return error->status;
     fwrite(vtp->head.bytes, 1, vtp->head.length, out.file);
     write_array(out.file, &time, 1);
-    for (uint32_t f = 0; f < skin->n_fields; f++)
-        write_array(out.file, skin->fields[f].words,
-                    (size_t)skin->n * skin->fields[f].components);
+    for (uint32_t f = 0; f < mesh->n_fields; f++)
+        write_array(out.file, mesh->fields[f].words,
+                    (size_t)mesh->n * mesh->fields[f].components);
     fwrite(vtp->fixed, 1, vtp->fixed_bytes, out.file);
     fputs("\n</AppendedData>\n</VTKFile>\n", out.file);
     return cs_file_finish(&out, error);
@@ -208,17 +208,18 @@ static enum cs_status begin_list(struct list *pvd, const char *folder, struct cs
 
 /* Adds a sample of bodies and colliders, if they have points. Those that never move have one
  * file, of number 0. */
-static enum cs_status list_sample(struct list *pvd, const struct cs_export_mesh *const skins[2],
-                                  uint32_t number, double t, struct cs_error *error) {
+static enum cs_status list_sample(struct list *pvd,
+                                  const struct cs_export_mesh *const meshes[2], uint32_t number,
+                                  double t, struct cs_error *error) {
     struct cs_text entries = {0};
     for (uint32_t part = 0; part < 2; part++) {
-        const struct cs_export_mesh *skin = skins[part];
-        if (skin->n == 0)
+        const struct cs_export_mesh *mesh = meshes[part];
+        if (mesh->n == 0)
             continue;
         cs_text_add(&entries, "<DataSet timestep=\"");
         cs_text_add_real(&entries, t);
-        cs_text_add(&entries, "\" part=\"%u\" file=\"%s_%05u.vtp\"/>\n", part, skin->name,
-                    skin->is_moving ? number : 0);
+        cs_text_add(&entries, "\" part=\"%u\" file=\"%s_%05u.vtp\"/>\n", part, mesh->name,
+                    mesh->is_moving ? number : 0);
     }
     return put(pvd, &entries, error);
 }
@@ -230,7 +231,7 @@ static enum cs_status open_list(struct list *list, const struct cs_export_source
     if (begin_list(list, settings->folder, error))
         return error->status;
     for (uint32_t k = 0; k < settings->n_samples_before && !error->status; k++)
-        list_sample(list, source->skins, k, k * settings->frame_interval / source->fps, error);
+        list_sample(list, source->meshes, k, k * settings->frame_interval / source->fps, error);
     return error->status;
 }
 
@@ -238,20 +239,20 @@ static enum cs_status open_files(void *state, const struct cs_export_source *sou
                                  struct cs_arena *arena, struct cs_error *error) {
     struct files *files = state;
     for (int k = 0; k < 2; k++)
-        if (source->skins[k]->n > 0 && make(files->of + k, source->skins[k], arena, error))
+        if (source->meshes[k]->n > 0 && make(files->of + k, source->meshes[k], arena, error))
             return error->status;
     return open_list(&files->list, source, error);
 }
 
-static enum cs_status add(void *state, const struct cs_export_source *source,
-                          const struct cs_export_sample *sample, struct cs_error *error) {
+static enum cs_status add_vtp(void *state, const struct cs_export_source *source,
+                              const struct cs_export_sample *sample, struct cs_error *error) {
     struct files *files = state;
     for (int k = 0; k < 2; k++)
-        if (cs_export_mesh_has_sample(source->skins[k], sample) &&
-            write_sample(files->of + k, source->skins[k], source->settings.folder, sample,
+        if (cs_export_mesh_has_sample(source->meshes[k], sample) &&
+            write_sample(files->of + k, source->meshes[k], source->settings.folder, sample,
                          error))
             return error->status;
-    return list_sample(&files->list, source->skins, sample->number, sample->t, error);
+    return list_sample(&files->list, source->meshes, sample->number, sample->t, error);
 }
 
 static void close_files(void *state) {
@@ -267,6 +268,6 @@ const struct cs_export_writer cs_export_vtp = {
     .files = {"run.pvd"},
     .size = sizeof(struct files),
     .open = open_files,
-    .add = add,
+    .add = add_vtp,
     .close = close_files,
 };

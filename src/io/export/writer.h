@@ -74,33 +74,33 @@ struct cs_export_mesh {
 };
 
 /* Adds a field with so many components per point; returns it. On failure error is set. */
-struct cs_export_field *cs_export_mesh_add_field(struct cs_export_mesh *skin,
+struct cs_export_field *cs_export_mesh_add_field(struct cs_export_mesh *mesh,
                                                  const char *const names[2],
                                                  uint32_t components, struct cs_arena *arena,
                                                  struct cs_error *error);
 
 /* Makes the mesh of all bodies of a system: topology and texture coordinates. */
-enum cs_status cs_export_mesh_of_bodies(struct cs_export_mesh *skin,
+enum cs_status cs_export_mesh_of_bodies(struct cs_export_mesh *mesh,
                                         const struct cs_system *system, struct cs_arena *arena,
                                         struct cs_error *error);
 
 /* Makes the mesh of the visible colliders: meshes as they are, planes and floors as the square
  * that is drawn, spheres, boxes and capsules with points on their surface. Empty if no collider
  * is visible. */
-enum cs_status cs_export_mesh_of_colliders(struct cs_export_mesh *skin,
+enum cs_status cs_export_mesh_of_colliders(struct cs_export_mesh *mesh,
                                            const struct cs_system *system,
                                            struct cs_arena *arena, struct cs_error *error);
 
 /* Sets the positions of colliders at time t in s. */
-void cs_export_mesh_pose_colliders(struct cs_export_mesh *skin, const struct cs_system *system,
+void cs_export_mesh_pose_colliders(struct cs_export_mesh *mesh, const struct cs_system *system,
                                    double t);
 
 /* Fills uv (n) with one texture coordinate per point, if skin->uv exists: that of its first
  * corner, which differs from the others at seams only; 0 if it has none. */
-void cs_export_mesh_point_uv(const struct cs_export_mesh *skin, float (*uv)[2]);
+void cs_export_mesh_point_uv(const struct cs_export_mesh *mesh, float (*uv)[2]);
 
 /* Sets a field from an array (components, n). */
-void cs_export_mesh_set(const struct cs_export_mesh *skin, const struct cs_export_field *field,
+void cs_export_mesh_set(const struct cs_export_mesh *mesh, const struct cs_export_field *field,
                         const double *values);
 
 /* X(BIT, name): the formats. */
@@ -138,7 +138,7 @@ struct cs_export_sample {
 
 /* Data that all formats read; it must stay at its address while they are open. */
 struct cs_export_source {
-    const struct cs_export_mesh *skins[2]; /* bodies, colliders */
+    const struct cs_export_mesh *meshes[2]; /* bodies, colliders */
     struct cs_export_settings settings;
     double fps;
     const struct cs_seams *seams; /* NULL: none */
@@ -172,9 +172,9 @@ struct cs_export_writer {
 extern const struct cs_export_writer cs_export_obj, cs_export_pc2, cs_export_vtp, cs_export_npz;
 
 /* Returns true if a mesh has a value at a sample: one that never moves has the first alone. */
-static inline bool cs_export_mesh_has_sample(const struct cs_export_mesh *skin,
+static inline bool cs_export_mesh_has_sample(const struct cs_export_mesh *mesh,
                                              const struct cs_export_sample *sample) {
-    return skin->n > 0 && (skin->is_moving || sample->number == 0);
+    return mesh->n > 0 && (mesh->is_moving || sample->number == 0);
 }
 
 /* A file that grows sample by sample and is valid after each. It has its final
@@ -190,23 +190,23 @@ struct cs_append_file {
 /* Opens a new file; or, if kept > 0, an existing one, cut off after `kept` bytes: samples after
  * the checkpoint of a continued run are dropped. All calls fail with CS_ERR_FILE; this one also
  * if the existing file is shorter. Does not follow a symbolic link. */
-enum cs_status cs_append_file_open(struct cs_append_file *grown, const char *path,
-                                   uint64_t kept, struct cs_error *error);
+enum cs_status cs_append_file_open(struct cs_append_file *file, const char *path, uint64_t kept,
+                                   struct cs_error *error);
 
 /* Writes n bytes at offset `at`, at most the length. On failure the file is as long as
  * before. */
-enum cs_status cs_append_file_write(struct cs_append_file *grown, uint64_t at,
-                                    const void *bytes, size_t n, struct cs_error *error);
+enum cs_status cs_append_file_write(struct cs_append_file *file, uint64_t at, const void *bytes,
+                                    size_t n, struct cs_error *error);
 
 /* Reads n bytes at offset `at`; fewer are a failure. */
-enum cs_status cs_append_file_read(const struct cs_append_file *grown, uint64_t at, void *bytes,
+enum cs_status cs_append_file_read(const struct cs_append_file *file, uint64_t at, void *bytes,
                                    size_t n, struct cs_error *error);
 
 /* Returns when the disk has what was written. Does nothing if closed. */
-enum cs_status cs_append_file_sync(const struct cs_append_file *grown, struct cs_error *error);
+enum cs_status cs_append_file_sync(const struct cs_append_file *file, struct cs_error *error);
 
 /* Closes the file; safe on a closed one. */
-void cs_append_file_close(struct cs_append_file *grown);
+void cs_append_file_close(struct cs_append_file *file);
 
 /* Uncompressed ZIP archives of any size, written in one pass. */
 

@@ -65,12 +65,12 @@ static double inverse_mass_of(const struct cs_system *system, uint32_t body) {
 
 /* Stores the parameters of a pair in both orders. */
 static void meet(struct cs_body_pair_table *body_pairs, uint32_t a, uint32_t b,
-                 const struct cs_body_pair_params *meeting) {
-    body_pairs->params[(size_t)a * body_pairs->n_bodies + b] = *meeting;
-    body_pairs->params[(size_t)b * body_pairs->n_bodies + a] = *meeting;
+                 const struct cs_body_pair_params *params) {
+    body_pairs->params[(size_t)a * body_pairs->n_bodies + b] = *params;
+    body_pairs->params[(size_t)b * body_pairs->n_bodies + a] = *params;
     body_pairs->has_partner[a] = body_pairs->has_partner[b] = true;
-    body_pairs->range_max = fmax(body_pairs->range_max, meeting->range);
-    body_pairs->range_min = fmin(body_pairs->range_min, meeting->range);
+    body_pairs->range_max = fmax(body_pairs->range_max, params->range);
+    body_pairs->range_min = fmin(body_pairs->range_min, params->range);
 }
 
 /* Range, friction and, unless the scene gives it, stiffness differ from pair to pair. */
@@ -78,7 +78,7 @@ enum cs_status cs_body_pair_table_build(struct cs_system *system,
                                         struct cs_body_pair_table *body_pairs,
                                         struct cs_error *error) {
     const uint32_t n = system->surfaces->n_bodies;
-    struct cs_body_pair_params meeting;
+    struct cs_body_pair_params params;
     *body_pairs = (struct cs_body_pair_table){.n_bodies = n, .range_min = HUGE_VAL};
     body_pairs->params =
         cs_arena_alloc_array(&system->arena, (size_t)n * n, sizeof *body_pairs->params, error);
@@ -88,15 +88,15 @@ enum cs_status cs_body_pair_table_build(struct cs_system *system,
         return error->status;
     for (uint32_t a = 0; a < n; a++)
         for (uint32_t b = a; b < n && !error->status; b++) {
-            if (!cs_scene_bodies_collide(system->scene, a, b, &meeting.friction))
+            if (!cs_scene_bodies_collide(system->scene, a, b, &params.friction))
                 continue;
             // the stiffness depends on the range, and on what comes to these two
-            meeting.range = range_between(system, a, b, error);
-            meeting.k = cs_approach_stiffness(system, body_pairs->softest,
-                                              cs_approach_energy(system, a, b), meeting.range);
-            meeting.inverse_mass = (inverse_mass_of(system, a) + inverse_mass_of(system, b)) *
-                                   (b < system->scene->bodies.n ? 2 : 1);
-            meet(body_pairs, a, b, &meeting);
+            params.range = range_between(system, a, b, error);
+            params.k = cs_approach_stiffness(system, body_pairs->softest,
+                                             cs_approach_energy(system, a, b), params.range);
+            params.inverse_mass = (inverse_mass_of(system, a) + inverse_mass_of(system, b)) *
+                                  (b < system->scene->bodies.n ? 2 : 1);
+            meet(body_pairs, a, b, &params);
         }
     return error->status;
 }
@@ -104,11 +104,11 @@ enum cs_status cs_body_pair_table_build(struct cs_system *system,
 void cs_body_pair_table_set_range(const struct cs_system *system,
                                   struct cs_body_pair_table *body_pairs, uint32_t a, uint32_t b,
                                   double range) {
-    struct cs_body_pair_params meeting = *cs_body_pair_params_of(body_pairs, a, b);
-    meeting.range = range;
-    meeting.k = cs_approach_stiffness(system, body_pairs->softest,
-                                      cs_approach_energy(system, a, b), range);
-    meet(body_pairs, a, b, &meeting);
+    struct cs_body_pair_params params = *cs_body_pair_params_of(body_pairs, a, b);
+    params.range = range;
+    params.k = cs_approach_stiffness(system, body_pairs->softest,
+                                     cs_approach_energy(system, a, b), range);
+    meet(body_pairs, a, b, &params);
     body_pairs->params_version++;
 }
 

@@ -29,17 +29,17 @@ struct cs_body_pair_params {
 #define CS_EDGE_RANGE_RATIO 0.5
 
 /* m, range of point-triangle pairs, or of edge-edge pairs. */
-static inline double cs_body_pair_params_range(const struct cs_body_pair_params *meeting,
+static inline double cs_body_pair_params_range(const struct cs_body_pair_params *params,
                                                bool edges) {
-    return meeting->range * (edges ? CS_EDGE_RANGE_RATIO : 1);
+    return params->range * (edges ? CS_EDGE_RANGE_RATIO : 1);
 }
 
 /* N/m, stiffness of point-triangle pairs, or of edge-edge pairs. Edges have 4 k, because the
  * energy of the law at one fraction of the range is proportional to k D^2: both kinds then take
  * up the same before surfaces cross. */
-static inline double cs_body_pair_params_stiffness(const struct cs_body_pair_params *meeting,
+static inline double cs_body_pair_params_stiffness(const struct cs_body_pair_params *params,
                                                    bool edges) {
-    return meeting->k * (edges ? 1 / (CS_EDGE_RANGE_RATIO * CS_EDGE_RANGE_RATIO) : 1);
+    return params->k * (edges ? 1 / (CS_EDGE_RANGE_RATIO * CS_EDGE_RANGE_RATIO) : 1);
 }
 
 /* Parameters of all pairs; the system's arena owns the arrays. */

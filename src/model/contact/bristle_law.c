@@ -29,7 +29,7 @@ struct trial {
 
 static struct trial trial_of(const struct cs_point_contact *contact,
                              const struct cs_bristle *bristle) {
-    const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
+    const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
     struct trial trial = {.square = cs_point_contact_square(contact->g)};
     project(contact->g, trial.square, bristle->stretch, trial.stretch);
     project(contact->g, trial.square, contact->v, trial.sliding);
@@ -37,7 +37,7 @@ static struct trial trial_of(const struct cs_point_contact *contact,
         trial.force[c] =
             bristle->stiffness * trial.stretch[c] + bristle->damping * trial.sliding[c];
     trial.length = sqrt(cs_vec3_dot(trial.force, trial.force));
-    trial.load = bristle->friction * law.force * sqrt(trial.square);
+    trial.load = bristle->friction * barrier.force * sqrt(trial.square);
     trial.fraction = trial.length > trial.load ? trial.load / trial.length : 1;
     // a spring at the limit: in slip if the point goes on
     trial.slips = trial.length > trial.load * (1 + AT_LIMIT) ||
@@ -71,26 +71,26 @@ static void add_projected_change(const struct turn *turn, const double u[3], con
 
 void cs_bristle_add_jvp(const struct cs_point_contact *contact,
                         const struct cs_bristle *bristle,
-                        const struct cs_point_contact_motion *move, double df[3]) {
-    const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
+                        const struct cs_point_contact_motion *motion, double df[3]) {
+    const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
     const struct trial trial = trial_of(contact, bristle);
-    const double *g = contact->g, *dp = move->dp;
+    const double *g = contact->g, *dp = motion->dp;
     struct turn turn = {.g = g, .square = trial.square};
     cs_sym3_multiply(contact->h, dp, turn.dg);
     const double across = cs_vec3_dot(g, turn.dg), length = sqrt(trial.square);
     double dtrial[3] = {0};
     turn.dsquare = 2 * across;
     add_projected_change(&turn, bristle->stretch, dp, bristle->stiffness, dtrial);
-    add_projected_change(&turn, contact->v, move->dv, bristle->damping, dtrial);
+    add_projected_change(&turn, contact->v, motion->dv, bristle->damping, dtrial);
     if (!trial.slips || trial.length == 0) {
         for (int c = 0; c < 3; c++)
             df[c] -= dtrial[c];
         return;
     }
     // in slip f = -L e with e = trial/|trial|: L changes with the load, e across itself
-    const double dd = cs_vec3_dot(g, dp) + move->extra_dd;
+    const double dd = cs_vec3_dot(g, dp) + motion->extra_dd;
     const double dload =
-        bristle->friction * (law.force * across / length - law.stiffness * dd * length);
+        bristle->friction * (barrier.force * across / length - barrier.stiffness * dd * length);
     const double along = cs_vec3_dot(trial.force, dtrial) / (trial.length * trial.length);
     const double fraction = trial.load / trial.length;
     for (int c = 0; c < 3; c++)

@@ -48,7 +48,7 @@ void cs_bristle_add_force(const struct cs_point_contact *contact,
  * on sliding, else that of rest. */
 void cs_bristle_add_jvp(const struct cs_point_contact *contact,
                         const struct cs_bristle *bristle,
-                        const struct cs_point_contact_motion *move, double df[3]);
+                        const struct cs_point_contact_motion *motion, double df[3]);
 
 /* The same for any matrix. One with matrix->chord, of a method that is linear in a step, has
  * friction by the chord from now to the end of the step (friction_chord.h), and pull is what
@@ -119,10 +119,10 @@ void cs_friction_anchors_commit(const struct cs_system *system, double t, const 
 /* Sets the bristle of a particle at x (3,n), or of a contact sample at p, on a collider.
  * Returns false if there is no friction or the collider is a mesh. */
 bool cs_bristle_of_particle(const struct cs_system *system, uint32_t collider,
-                            const struct cs_posed_collider_law *near, const double *x,
+                            const struct cs_posed_collider_law *law, const double *x,
                             size_t particle, struct cs_bristle *bristle);
 bool cs_bristle_of_sample(const struct cs_system *system,
-                          const struct cs_posed_collider_law *near,
+                          const struct cs_posed_collider_law *law,
                           const struct cs_contact_sample_point *point, const double p[3],
                           struct cs_bristle *bristle);
 

@@ -53,18 +53,18 @@ static double default_range(const struct cs_system *system, uint32_t collider,
     const size_t n = system->view.n;
     const double *x = system->state;
     const double whole = CS_RANGE_FRACTION * shortest, least = CS_RANGE_SHRINK_MIN * whole;
-    struct cs_posed_collider obstacle;
+    struct cs_posed_collider posed;
     double range = whole, normal[3];
     // who asks for bodies to be moved out of the range means all of it
     if (system->scene->contact.start == CS_CONTACT_START_MOVE_OUT)
         return whole;
-    cs_posed_collider_at(system, collider, 0, &obstacle);
+    cs_posed_collider_at(system, collider, 0, &posed);
     for (size_t i = 0; i < n; i++) {
         const double p[3] = {x[i], x[n + i], x[2 * n + i]};
-        if (system->inv_mass[i] <= 0 || !cs_posed_collider_is_near(&obstacle, range, p))
+        if (system->inv_mass[i] <= 0 || !cs_posed_collider_is_near(&posed, range, p))
             continue;
         // one that starts inside or touches is refused, or moved out, by the whole range
-        const double distance = cs_posed_collider_distance(&obstacle, p, normal);
+        const double distance = cs_posed_collider_distance(&posed, p, normal);
         range = distance > least ? fmin(range, distance) : range;
     }
     return range;
@@ -152,64 +152,64 @@ enum cs_status cs_collider_params_table_build(struct cs_system *system,
 /* Range test, distance and relative velocity of a point against a collider. */
 
 void cs_posed_collider_law_at(const struct cs_system *system, uint32_t collider, double t,
-                              struct cs_posed_collider_law *near) {
+                              struct cs_posed_collider_law *law) {
     const struct cs_scene *scene = system->scene;
     const double friction = cs_scene_colliders(scene)[collider].friction;
     const bool sticks = scene->contact.friction_law == CS_FRICTION_BRISTLES;
-    *near = (struct cs_posed_collider_law){
+    *law = (struct cs_posed_collider_law){
         .params = system->collider_params[collider],
         .friction = sticks || cs_lagged_friction_acts(system) ? 0 : friction,
         .sticking_friction = sticks ? friction : 0,
         .friction_speed = scene->contact.friction_speed,
         .damping = scene->contact.damping,
         .loss = scene->contact.loss};
-    near->rate = near->loss > 0 ? near->params.k / scene->contact.mass : 0;
-    cs_posed_collider_at(system, collider, t, &near->collider);
+    law->rate = law->loss > 0 ? law->params.k / scene->contact.mass : 0;
+    cs_posed_collider_at(system, collider, t, &law->collider);
     // a ramp may change it
-    if (near->collider.collider->thickness > 0)
-        near->params.range = near->collider.collider->thickness;
+    if (law->collider.collider->thickness > 0)
+        law->params.range = law->collider.collider->thickness;
 }
 
-bool cs_posed_collider_law_is_plain(const struct cs_posed_collider_law *near) {
-    const struct cs_posed_collider *pose = &near->collider;
-    const double *spin = pose->spin;
-    const enum cs_shape_bounds bounds = pose->shape->bounds;
+bool cs_posed_collider_law_is_plain(const struct cs_posed_collider_law *law) {
+    const struct cs_posed_collider *collider = &law->collider;
+    const double *spin = collider->spin;
+    const enum cs_shape_bounds bounds = collider->shape->bounds;
     return (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE) && spin[0] == 0 &&
-           spin[1] == 0 && spin[2] == 0 && pose->growth == 0 && near->sticking_friction == 0;
+           spin[1] == 0 && spin[2] == 0 && collider->growth == 0 && law->sticking_friction == 0;
 }
 
 /* A bounding test precedes the smooth distance, which costs far more. */
-bool cs_posed_collider_law_in_range(const struct cs_posed_collider_law *near, const double p[3],
-                                    const double v[3], struct cs_point_contact *touch) {
+bool cs_posed_collider_law_in_range(const struct cs_posed_collider_law *law, const double p[3],
+                                    const double v[3], struct cs_point_contact *contact) {
     double surface[3];
-    if (!cs_posed_collider_is_near(&near->collider, near->params.range, p))
+    if (!cs_posed_collider_is_near(&law->collider, law->params.range, p))
         return false;
-    touch->d = cs_posed_collider_smooth_distance(&near->collider, p, touch->g, touch->h);
-    if (!(touch->d < near->params.range))
+    contact->d = cs_posed_collider_smooth_distance(&law->collider, p, contact->g, contact->h);
+    if (!(contact->d < law->params.range))
         return false;
-    cs_posed_collider_velocity(&near->collider, p, surface);
+    cs_posed_collider_velocity(&law->collider, p, surface);
     for (int c = 0; c < 3; c++)
-        touch->v[c] = v[c] - surface[c];
-    touch->range = near->params.range;
-    touch->k = near->params.k;
-    touch->friction = near->friction;
-    touch->friction_speed = near->friction_speed;
-    touch->damping = near->damping;
-    touch->loss = near->loss;
-    touch->rate = near->rate;
+        contact->v[c] = v[c] - surface[c];
+    contact->range = law->params.range;
+    contact->k = law->params.k;
+    contact->friction = law->friction;
+    contact->friction_speed = law->friction_speed;
+    contact->damping = law->damping;
+    contact->loss = law->loss;
+    contact->rate = law->rate;
     return true;
 }
 
 struct cs_point_contact_motion
-cs_posed_collider_law_motion(const struct cs_posed_collider_law *near, const double dp[3],
+cs_posed_collider_law_motion(const struct cs_posed_collider_law *law, const double dp[3],
                              const double dv[3]) {
-    struct cs_point_contact_motion move;
+    struct cs_point_contact_motion motion;
     double turned[3];
-    cs_vec3_cross(near->collider.spin, dp, turned);
+    cs_vec3_cross(law->collider.spin, dp, turned);
     for (int c = 0; c < 3; c++) {
-        move.dp[c] = dp[c];
-        move.dv[c] = dv[c] - turned[c];
+        motion.dp[c] = dp[c];
+        motion.dv[c] = dv[c] - turned[c];
     }
-    move.extra_dd = 0;
-    return move;
+    motion.extra_dd = 0;
+    return motion;
 }

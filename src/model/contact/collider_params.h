@@ -53,21 +53,21 @@ struct cs_posed_collider_law {
 
 /* Sets *near to a collider at t. The scene must have contact by force. */
 void cs_posed_collider_law_at(const struct cs_system *system, uint32_t collider, double t,
-                              struct cs_posed_collider_law *near);
+                              struct cs_posed_collider_law *law);
 
 /* Returns whether a collider is a plane or sphere without rotation, whose matter moves at one
  * velocity, and friction on it is smooth. */
-bool cs_posed_collider_law_is_plain(const struct cs_posed_collider_law *near);
+bool cs_posed_collider_law_is_plain(const struct cs_posed_collider_law *law);
 
 /* Sets *contact for a point at p (m) with velocity v (m/s); returns false if it is out of
  * range, and *contact is then unspecified. */
-bool cs_posed_collider_law_in_range(const struct cs_posed_collider_law *near, const double p[3],
+bool cs_posed_collider_law_in_range(const struct cs_posed_collider_law *law, const double p[3],
                                     const double v[3], struct cs_point_contact *contact);
 
 /* Converts a motion of a point into one relative to the collider. If the collider rotates, the
  * velocity of its matter differs at the moved point, by spin x dp. */
 struct cs_point_contact_motion
-cs_posed_collider_law_motion(const struct cs_posed_collider_law *near, const double dp[3],
+cs_posed_collider_law_motion(const struct cs_posed_collider_law *law, const double dp[3],
                              const double dv[3]);
 
 /* Parts of a force (enum cs_part) as factors 0 and 1. */

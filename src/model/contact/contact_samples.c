@@ -16,14 +16,14 @@ struct job {
 };
 
 /* J, the excess of one sample, with its effective mass; 0 of a pinned one. */
-static double excess_of(const struct cs_collider_step *passing,
+static double excess_of(const struct cs_collider_step *step,
                         const struct cs_contact_sample_point *point) {
-    const size_t n = passing->system->view.n;
-    const double mass = cs_contact_sample_mass(passing->system, point);
+    const size_t n = step->system->view.n;
+    const double mass = cs_contact_sample_mass(step->system, point);
     double from[3], to[3];
-    cs_contact_sample_interpolate(point, n, passing->x0, from);
-    cs_contact_sample_interpolate(point, n, passing->x1, to);
-    return mass < HUGE_VAL ? cs_collider_step_excess(passing, mass, from, to) : 0;
+    cs_contact_sample_interpolate(point, n, step->x0, from);
+    cs_contact_sample_interpolate(point, n, step->x1, to);
+    return mass < HUGE_VAL ? cs_collider_step_excess(step, mass, from, to) : 0;
 }
 
 /* J, the excess of the samples in the chunks [begin, end). */
@@ -32,15 +32,15 @@ static double sum_excess(const void *arg, size_t begin, size_t end) {
     double sum = 0;
     for (size_t l = begin; l < end; l++) {
         const struct cs_contact_sample_chunk *chunk = job->covers->chunks + l;
-        struct cs_collider_step passing = {.x0 = job->x0, .x1 = job->x1};
-        cs_collider_step_set(&passing, job->covers->system, chunk->collider, job->t0, job->t1);
-        if (cs_collider_step_is_far(&passing, chunk->first,
+        struct cs_collider_step step = {.x0 = job->x0, .x1 = job->x1};
+        cs_collider_step_set(&step, job->covers->system, chunk->collider, job->t0, job->t1);
+        if (cs_collider_step_is_far(&step, chunk->first,
                                     (size_t)chunk->last - chunk->first + 1))
             continue;
         for (uint32_t i = chunk->begin; i < chunk->end; i++) {
             struct cs_contact_sample_point point;
             for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
-                sum += excess_of(&passing, &point);
+                sum += excess_of(&step, &point);
         }
     }
     return sum;
@@ -55,9 +55,9 @@ bool cs_contact_samples_resolve_step(const struct cs_contact_samples *samples, d
 /* items per chunk */
 enum { LOT = 128 };
 
-double cs_contact_sample_spacing(const struct cs_posed_collider *obstacle, double range) {
-    return cs_shape_needs_points(obstacle->shape)
-               ? sqrt(range * (2 * obstacle->radius + 0.75 * range))
+double cs_contact_sample_spacing(const struct cs_posed_collider *collider, double range) {
+    return cs_shape_needs_points(collider->shape)
+               ? sqrt(range * (2 * collider->radius + 0.75 * range))
                : HUGE_VAL;
 }
 
@@ -192,10 +192,10 @@ static bool is_needed(const struct cs_system *system) {
     const double longest = cs_contact_sample_longest(system);
     bool needed = false;
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        struct cs_posed_collider pose;
-        cs_posed_collider_at(system, c, 0, &pose);
-        needed = needed ||
-                 longest > cs_contact_sample_spacing(&pose, system->collider_params[c].range);
+        struct cs_posed_collider collider;
+        cs_posed_collider_at(system, c, 0, &collider);
+        needed = needed || longest > cs_contact_sample_spacing(
+                                         &collider, system->collider_params[c].range);
     }
     return needed;
 }

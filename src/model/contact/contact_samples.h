@@ -61,7 +61,7 @@ struct cs_contact_samples {
 
 /* Longest part in m of an edge that a collider cannot pass, sqrt(D (2 R + 3/4 D)); HUGE_VAL for
  * planes and meshes, which need no samples. */
-double cs_contact_sample_spacing(const struct cs_posed_collider *obstacle, double range);
+double cs_contact_sample_spacing(const struct cs_posed_collider *collider, double range);
 
 /* Longest edge in m of a system at its start; needs no surfaces. */
 double cs_contact_sample_longest(const struct cs_system *system);

@@ -133,7 +133,7 @@ void cs_contact_set_add_bound(const struct cs_contact_set *set, double *stiffnes
 }
 
 /* Frees the arrays that grow; the arena calls it. */
-static void finish(void *object) {
+static void finish_contacts(void *object) {
     struct cs_contact_set *set = object;
     for (uint32_t l = 0; l < set->n_chunks; l++)
         free(set->chunks[l].pairs), free(set->chunks[l].parts);
@@ -148,7 +148,7 @@ enum cs_status cs_contact_set_init(struct cs_contact_set *set, uint32_t n_partic
     set->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *set->chunks, error);
     CS_ARENA_ARRAY(arena, set->starts, n_particles + (size_t)2, error);
     if (!error->status)
-        cs_arena_adopt(arena, finish, set, error);
+        cs_arena_adopt(arena, finish_contacts, set, error);
     return error->status;
 }
 

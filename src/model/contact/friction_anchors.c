@@ -32,49 +32,49 @@ static struct anchor anchor_of_sample(const struct cs_system *system, uint32_t n
 }
 
 /* Stores a point in the frame of the collider, which moves and turns with it. */
-static void store(struct anchor anchor, const struct cs_posed_collider *pose,
+static void store(struct anchor anchor, const struct cs_posed_collider *collider,
                   const double p[3]) {
     double arm[3];
     for (int c = 0; c < 3; c++)
-        arm[c] = p[c] - pose->rotation_centre[c];
+        arm[c] = p[c] - collider->rotation_centre[c];
     for (size_t k = 0; k < 3; k++)
-        anchor.at[k * anchor.stride] = cs_vec3_dot(pose->axes[k], arm);
+        anchor.at[k * anchor.stride] = cs_vec3_dot(collider->axes[k], arm);
 }
 
 /* Sets the bristle of a point of mass m in kg at p. */
-static bool set(const struct cs_posed_collider_law *near, struct anchor anchor,
+static bool set(const struct cs_posed_collider_law *law, struct anchor anchor,
                 const double p[3], double mass, struct cs_bristle *bristle) {
-    const struct cs_posed_collider *pose = &near->collider;
+    const struct cs_posed_collider *collider = &law->collider;
     if (!anchor.at)
         return false;
     for (int c = 0; c < 3; c++) {
-        double at = pose->rotation_centre[c];
+        double at = collider->rotation_centre[c];
         for (size_t k = 0; k < 3; k++)
-            at += pose->axes[k][c] * anchor.at[k * anchor.stride];
+            at += collider->axes[k][c] * anchor.at[k * anchor.stride];
         bristle->stretch[c] = p[c] - at;
     }
-    bristle->friction = near->sticking_friction;
-    bristle->stiffness = near->params.k;
-    bristle->damping = 2 * sqrt(near->params.k * mass);
+    bristle->friction = law->sticking_friction;
+    bristle->stiffness = law->params.k;
+    bristle->damping = 2 * sqrt(law->params.k * mass);
     return true;
 }
 
 bool cs_bristle_of_particle(const struct cs_system *system, uint32_t collider,
-                            const struct cs_posed_collider_law *near, const double *x,
+                            const struct cs_posed_collider_law *law, const double *x,
                             size_t particle, struct cs_bristle *bristle) {
     const size_t n = system->view.n;
     const double p[3] = {x[particle], x[n + particle], x[2 * n + particle]};
-    return near->sticking_friction > 0 &&
-           set(near, anchor_of_particle(system, collider, particle), p, system->mass[particle],
+    return law->sticking_friction > 0 &&
+           set(law, anchor_of_particle(system, collider, particle), p, system->mass[particle],
                bristle);
 }
 
 bool cs_bristle_of_sample(const struct cs_system *system,
-                          const struct cs_posed_collider_law *near,
+                          const struct cs_posed_collider_law *law,
                           const struct cs_contact_sample_point *point, const double p[3],
                           struct cs_bristle *bristle) {
-    return near->sticking_friction > 0 && set(near, anchor_of_sample(system, point->number), p,
-                                              cs_contact_sample_mass(system, point), bristle);
+    return law->sticking_friction > 0 && set(law, anchor_of_sample(system, point->number), p,
+                                             cs_contact_sample_mass(system, point), bristle);
 }
 
 /* --- what a step leaves --- */
@@ -85,7 +85,7 @@ struct job {
     double t;
     const double *x, *v;
     uint32_t collider;
-    struct cs_posed_collider_law near; /* of that collider */
+    struct cs_posed_collider_law law; /* of that collider */
 };
 
 /* A point and its bristle; anchor.at is NULL if it has none. */
@@ -100,17 +100,17 @@ static void follow(const struct job *job, const struct point *point) {
     struct cs_bristle bristle;
     double to[3];
     memcpy(to, point->p, sizeof to);
-    if (!set(&job->near, point->anchor, point->p, point->mass, &bristle))
+    if (!set(&job->law, point->anchor, point->p, point->mass, &bristle))
         return;
     // at the start, and out of range, the anchor is the point
-    if (job->v && cs_posed_collider_law_in_range(&job->near, point->p, point->v, &contact)) {
+    if (job->v && cs_posed_collider_law_in_range(&job->law, point->p, point->v, &contact)) {
         double back[3];
         if (!cs_bristle_slips(&contact, &bristle, back))
             return;
         for (int c = 0; c < 3; c++)
             to[c] -= back[c];
     }
-    store(point->anchor, &job->near.collider, to);
+    store(point->anchor, &job->law.collider, to);
 }
 
 /* Particles [begin, end) on one collider. */
@@ -133,7 +133,7 @@ static void follow_samples(void *arg, uint32_t number) {
     struct job job = *(const struct job *)arg;
     const struct cs_contact_sample_chunk *chunk = job.system->contact_samples->chunks + number;
     const size_t n = job.system->view.n;
-    cs_posed_collider_law_at(job.system, chunk->collider, job.t, &job.near);
+    cs_posed_collider_law_at(job.system, chunk->collider, job.t, &job.law);
     for (uint32_t i = chunk->begin; i < chunk->end; i++) {
         struct cs_contact_sample_point sample;
         for (cs_contact_sample_first(chunk, i, &sample); cs_contact_sample_next(&sample);) {
@@ -157,7 +157,7 @@ void cs_friction_anchors_commit(const struct cs_system *system, double t, const 
         if (!system->friction_anchors->particles[c])
             continue;
         job.collider = c;
-        cs_posed_collider_law_at(system, c, t, &job.near);
+        cs_posed_collider_law_at(system, c, t, &job.law);
         cs_vector_parallel_for(system->view.n, follow_particles, &job);
     }
     if (system->friction_anchors->samples)

@@ -73,24 +73,24 @@ struct cs_sliding_contact {
 /* The fraction that a contact has of all contact at its point, 0..1, by what both push along n.
  */
 CS_INLINE double cs_friction_chord_fraction(const struct cs_contact_pull *pull,
-                                            const struct cs_sliding_contact *slides) {
-    const double force = slides->force < 0 ? -slides->force : slides->force;
+                                            const struct cs_sliding_contact *contacts) {
+    const double force = contacts->force < 0 ? -contacts->force : contacts->force;
     const double own = force * pull->inverse + DBL_MIN;
-    return own / cs_fmax(own, cs_vec3_dot(slides->n, pull->push));
+    return own / cs_fmax(own, cs_vec3_dot(contacts->n, pull->push));
 }
 
 /* b (6) += h times the block p (P - e e^T) + c e e^T of a contact. */
 CS_INLINE void cs_friction_chord_add(const struct cs_contact_pull *pull,
-                                     const struct cs_sliding_contact *slides, double b[6]) {
-    const double *n = slides->n, *v = slides->v, ev = slides->friction_speed;
-    const double force = slides->force, mu = slides->friction;
+                                     const struct cs_sliding_contact *contacts, double b[6]) {
+    const double *n = contacts->n, *v = contacts->v, ev = contacts->friction_speed;
+    const double force = contacts->force, mu = contacts->friction;
     const double approach = cs_vec3_dot(n, v);
     const double off = cs_vec3_dot(n, pull->motion);
     const double t[3] = {v[0] - n[0] * approach, v[1] - n[1] * approach,
                          v[2] - n[2] * approach};
     const double speed = sqrt(cs_vec3_dot(t, t) + ev * ev);
     const double load =
-        mu * (force < 0 ? -force : force) / cs_friction_chord_fraction(pull, slides);
+        mu * (force < 0 ? -force : force) / cs_friction_chord_fraction(pull, contacts);
     const double a = pull->h * load * pull->inverse;
     double free[3], e[3];
     CS_UNROLLED
@@ -123,7 +123,7 @@ CS_INLINE void cs_friction_chord_add_block(const struct cs_point_contact *contac
                                            const struct cs_matrix *matrix,
                                            const struct cs_contact_pull *pull, double b[6]) {
     const double length = sqrt(cs_point_contact_square(contact->g));
-    const struct cs_sliding_contact slides = {
+    const struct cs_sliding_contact contacts = {
         .n = {contact->g[0] / length, contact->g[1] / length, contact->g[2] / length},
         .v = {contact->v[0], contact->v[1], contact->v[2]},
         .force = cs_barrier_at(contact->d, contact->range, contact->k).force * length,
@@ -132,7 +132,7 @@ CS_INLINE void cs_friction_chord_add_block(const struct cs_point_contact *contac
     struct cs_point_contact frictionless = *contact;
     frictionless.friction = 0;
     cs_point_contact_add_block(&frictionless, matrix, b);
-    cs_friction_chord_add(pull, &slides, b);
+    cs_friction_chord_add(pull, &contacts, b);
 }
 
 /* The pull of a point without particles yet; cd = -h. */

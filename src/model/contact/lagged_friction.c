@@ -250,7 +250,7 @@ static const struct cs_term term = {
 };
 
 /* Frees the arrays that grow; the arena calls it. */
-static void finish(void *object) {
+static void finish_friction(void *object) {
     struct cs_lagged_friction *lagged = object;
     for (uint32_t l = 0; l < lagged->set.n_chunks; l++)
         free(lagged->chunks[l].contacts);
@@ -268,7 +268,7 @@ enum cs_status cs_lagged_friction_build(struct cs_system *system, struct cs_aren
     lagged->system = system;
     lagged->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *lagged->chunks, error);
     if (!error->status)
-        cs_arena_adopt(arena, finish, lagged, error);
+        cs_arena_adopt(arena, finish_friction, lagged, error);
     if (error->status)
         return error->status;
     system->lagged_friction = lagged;

@@ -264,13 +264,15 @@ CS_INLINE void cs_pair_distance_set_slopes(const struct cs_pair_distance *s,
 
 /* Gradient by the differences u, v, w, component c. */
 CS_INLINE void cs_pair_distance_slope(const struct cs_pair_distance *s,
-                                      const struct cs_pair_distance_gradients *at, int c,
+                                      const struct cs_pair_distance_gradients *gradients, int c,
                                       double by[3]) {
     const double *l = s->unclamped;
     const double r = s->w[c] - l[0] * s->u[c] - l[1] * s->v[c];
-    by[0] = at->z[0] * r + at->stretch[0] * s->u[c] - l[0] * at->y[c] - s->clamped[0] * s->n[c];
-    by[1] = at->z[1] * r + at->stretch[1] * s->v[c] - l[1] * at->y[c] - s->clamped[1] * s->n[c];
-    by[2] = at->y[c] + s->n[c];
+    by[0] = gradients->z[0] * r + gradients->stretch[0] * s->u[c] - l[0] * gradients->y[c] -
+            s->clamped[0] * s->n[c];
+    by[1] = gradients->z[1] * r + gradients->stretch[1] * s->v[c] - l[1] * gradients->y[c] -
+            s->clamped[1] * s->n[c];
+    by[2] = gradients->y[c] + s->n[c];
 }
 
 /* Sets g (4,3) = the gradient of d by the four points. By the differences it is
@@ -282,11 +284,11 @@ CS_INLINE void cs_pair_distance_slope(const struct cs_pair_distance *s,
  * The sums of g and of p x g over the points are 0: forces along g have no resultant
  * or moment. */
 CS_INLINE void cs_pair_distance_gradient(const struct cs_pair_distance *s, double g[4][3]) {
-    struct cs_pair_distance_gradients at;
-    cs_pair_distance_set_slopes(s, &at);
+    struct cs_pair_distance_gradients gradients;
+    cs_pair_distance_set_slopes(s, &gradients);
     for (int c = 0; c < 3; c++) {
         double by[3], out[4];
-        cs_pair_distance_slope(s, &at, c, by);
+        cs_pair_distance_slope(s, &gradients, c, by);
         cs_pair_distance_to_points(CS_PAIR_EDGE_EDGE, by[0], by[1], by[2], out);
         for (int k = 0; k < 4; k++)
             g[k][c] = out[k];

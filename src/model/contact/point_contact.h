@@ -52,10 +52,10 @@ CS_INLINE double cs_restitution_square(double d, double range, double rate, doub
 
 /* N s/m, alpha F/s: beside tau K. */
 CS_INLINE double cs_point_contact_loss(const struct cs_point_contact *contact,
-                                       const struct cs_barrier *law, double approach) {
+                                       const struct cs_barrier *barrier, double approach) {
     const double square =
         cs_restitution_square(contact->d, contact->range, contact->rate, approach);
-    return contact->loss > 0 ? contact->loss * law->force / sqrt(square) : 0;
+    return contact->loss > 0 ? contact->loss * barrier->force / sqrt(square) : 0;
 }
 
 /* g.g, the divisor of projections on g. Two points that coincide have no direction, and g = 0
@@ -72,19 +72,20 @@ struct cs_contact_force_parts {
 /* f = force on the point in N. The law is evaluated once for all three parts. */
 CS_INLINE void cs_point_contact_force(const struct cs_point_contact *contact,
                                       struct cs_contact_force_parts parts, double f[3]) {
-    const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
+    const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
     const double square = cs_point_contact_square(contact->g);
     const double approach = cs_vec3_dot(contact->g, contact->v);
     const double along =
-        parts.elastic * law.force -
-        parts.friction * contact->damping * law.stiffness * approach -
-        parts.friction * cs_point_contact_loss(contact, &law, approach) * approach;
+        parts.elastic * barrier.force -
+        parts.friction * contact->damping * barrier.stiffness * approach -
+        parts.friction * cs_point_contact_loss(contact, &barrier, approach) * approach;
     double t[3];
     for (int c = 0; c < 3; c++)
         t[c] = contact->v[c] - contact->g[c] * (approach / square);
     const double speed =
         sqrt(cs_vec3_dot(t, t) + contact->friction_speed * contact->friction_speed);
-    const double rub = parts.friction * contact->friction * law.force * sqrt(square) / speed;
+    const double rub =
+        parts.friction * contact->friction * barrier.force * sqrt(square) / speed;
     for (int c = 0; c < 3; c++)
         f[c] = along * contact->g[c] - rub * t[c];
 }
@@ -99,39 +100,42 @@ struct cs_point_contact_motion {
 
 /* N s/m, change of alpha F/s with d and the approach: d(s^2)/2 = w dw - (F/M) dd. */
 CS_INLINE double cs_point_contact_loss_change(const struct cs_point_contact *contact,
-                                              const struct cs_barrier *law, double approach,
+                                              const struct cs_barrier *barrier, double approach,
                                               double dd, double dapproach) {
     if (!(contact->loss > 0))
         return 0;
     const double square =
         cs_restitution_square(contact->d, contact->range, contact->rate, approach);
-    const double half = approach * dapproach - contact->rate / contact->k * law->force * dd;
-    return contact->loss / sqrt(square) * (-law->stiffness * dd - law->force * half / square);
+    const double half = approach * dapproach - contact->rate / contact->k * barrier->force * dd;
+    return contact->loss / sqrt(square) *
+           (-barrier->stiffness * dd - barrier->force * half / square);
 }
 
 /* df = exact change of the force along a motion, in N. By the product rule, with dg = H dp, dd
  * = g.dp + extra_dd, dF = -K dd and dK = K' dd. */
 CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
                                     struct cs_contact_force_parts parts,
-                                    const struct cs_point_contact_motion *move, double df[3]) {
-    const double *g = contact->g, *v = contact->v, *dp = move->dp;
-    const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
+                                    const struct cs_point_contact_motion *motion,
+                                    double df[3]) {
+    const double *g = contact->g, *v = contact->v, *dp = motion->dp;
+    const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
     double dg[3];
     cs_sym3_multiply(contact->h, dp, dg);
-    const double dd = cs_vec3_dot(g, dp) + move->extra_dd;
+    const double dd = cs_vec3_dot(g, dp) + motion->extra_dd;
     const double square = cs_point_contact_square(g), dsquare = 2 * cs_vec3_dot(g, dg);
     const double approach = cs_vec3_dot(g, v);
-    const double dapproach = cs_vec3_dot(dg, v) + cs_vec3_dot(g, move->dv);
-    const double dforce = -law.stiffness * dd;
+    const double dapproach = cs_vec3_dot(dg, v) + cs_vec3_dot(g, motion->dv);
+    const double dforce = -barrier.stiffness * dd;
     const double dstiffness = cs_barrier_slope(contact->d, contact->range, contact->k) * dd;
-    const double loss = cs_point_contact_loss(contact, &law, approach);
-    const double dloss = cs_point_contact_loss_change(contact, &law, approach, dd, dapproach);
-    const double along = parts.elastic * law.force -
-                         parts.friction * contact->damping * law.stiffness * approach -
+    const double loss = cs_point_contact_loss(contact, &barrier, approach);
+    const double dloss =
+        cs_point_contact_loss_change(contact, &barrier, approach, dd, dapproach);
+    const double along = parts.elastic * barrier.force -
+                         parts.friction * contact->damping * barrier.stiffness * approach -
                          parts.friction * loss * approach;
     const double dalong = parts.elastic * dforce -
                           parts.friction * contact->damping *
-                              (dstiffness * approach + law.stiffness * dapproach) -
+                              (dstiffness * approach + barrier.stiffness * dapproach) -
                           parts.friction * (dloss * approach + loss * dapproach);
 
     // T = V - g a with a = (g.V)/g.g, and the slope of friction
@@ -139,15 +143,15 @@ CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
     double t[3], dt[3];
     for (int c = 0; c < 3; c++) {
         t[c] = v[c] - g[c] * a;
-        dt[c] = move->dv[c] - dg[c] * a - g[c] * da;
+        dt[c] = motion->dv[c] - dg[c] * a - g[c] * da;
     }
     const double speed =
         sqrt(cs_vec3_dot(t, t) + contact->friction_speed * contact->friction_speed);
     const double dspeed = cs_vec3_dot(t, dt) / speed;
     const double length = sqrt(square), dlength = 0.5 * dsquare / length;
-    const double load = parts.friction * contact->friction * law.force * length;
+    const double load = parts.friction * contact->friction * barrier.force * length;
     const double dload =
-        parts.friction * contact->friction * (dforce * length + law.force * dlength);
+        parts.friction * contact->friction * (dforce * length + barrier.force * dlength);
     const double rub = load / speed, drub = (dload - rub * dspeed) / speed;
     for (int c = 0; c < 3; c++)
         df[c] = dalong * g[c] + along * dg[c] - drub * t[c] - rub * dt[c];
@@ -165,7 +169,7 @@ CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
 CS_INLINE void cs_point_contact_add_block(const struct cs_point_contact *contact,
                                           const struct cs_matrix *matrix, double b[6]) {
     const double *g = contact->g;
-    const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
+    const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
     const double square = cs_point_contact_square(g);
     const double a = cs_vec3_dot(g, contact->v) / square;
     double t[3];
@@ -173,11 +177,11 @@ CS_INLINE void cs_point_contact_add_block(const struct cs_point_contact *contact
         t[c] = contact->v[c] - g[c] * a;
     const double speed =
         sqrt(cs_vec3_dot(t, t) + contact->friction_speed * contact->friction_speed);
-    const double rub = -matrix->cd * contact->friction * law.force * sqrt(square) / speed;
-    const double loss = cs_point_contact_loss(contact, &law, cs_vec3_dot(g, contact->v));
+    const double rub = -matrix->cd * contact->friction * barrier.force * sqrt(square) / speed;
+    const double loss = cs_point_contact_loss(contact, &barrier, cs_vec3_dot(g, contact->v));
     const double along =
-        -(matrix->ck + matrix->cd * contact->damping) * law.stiffness - matrix->cd * loss;
-    const double curve = matrix->psd ? 0 : matrix->ck * law.force;
+        -(matrix->ck + matrix->cd * contact->damping) * barrier.stiffness - matrix->cd * loss;
+    const double curve = matrix->psd ? 0 : matrix->ck * barrier.force;
     for (int e = 0; e < 6; e++) {
         const int r = cs_sym3_row[e], s = cs_sym3_column[e];
         // friction holds the plane at right angles to g; along T it grows less than with its
@@ -193,9 +197,9 @@ CS_INLINE void cs_point_contact_add_block(const struct cs_point_contact *contact
 CS_INLINE void cs_point_contact_approach(const struct cs_point_contact *contact,
                                          const struct cs_matrix *matrix, double y[3]) {
     const double *g = contact->g, *v = contact->v;
-    const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
-    const double along = -matrix->ck * law.stiffness * cs_vec3_dot(g, v);
-    const double curve = matrix->psd ? 0 : matrix->ck * law.force;
+    const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
+    const double along = -matrix->ck * barrier.stiffness * cs_vec3_dot(g, v);
+    const double curve = matrix->psd ? 0 : matrix->ck * barrier.force;
     cs_sym3_multiply(contact->h, v, y);
     for (int c = 0; c < 3; c++)
         y[c] = along * g[c] + curve * y[c];
@@ -205,16 +209,16 @@ CS_INLINE void cs_point_contact_approach(const struct cs_point_contact *contact,
  * and tau K |g|^2 + mu N / s. */
 CS_INLINE void cs_point_contact_bound(const struct cs_point_contact *contact, double *stiffness,
                                       double *damping) {
-    const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
+    const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
     const double square = cs_point_contact_square(contact->g);
     const double approach = cs_vec3_dot(contact->g, contact->v);
     const double sliding = cs_vec3_dot(contact->v, contact->v) - approach * approach / square;
     const double speed =
         sqrt((sliding > 0 ? sliding : 0) + contact->friction_speed * contact->friction_speed);
-    *stiffness = law.stiffness * square;
-    *damping = contact->damping * law.stiffness * square +
-               cs_point_contact_loss(contact, &law, approach) * square +
-               contact->friction * law.force * sqrt(square) / speed;
+    *stiffness = barrier.stiffness * square;
+    *damping = contact->damping * barrier.stiffness * square +
+               cs_point_contact_loss(contact, &barrier, approach) * square +
+               contact->friction * barrier.force * sqrt(square) / speed;
 }
 
 #endif

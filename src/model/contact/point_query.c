@@ -7,26 +7,26 @@
 
 #include <math.h>
 
-static void find_vector(const struct cs_point_query *job,
-                        const struct cs_posed_collider_law *near,
+static void find_vector(const struct cs_point_query *query,
+                        const struct cs_posed_collider_law *law,
                         const struct cs_contact_sample_point *point, const double v[3],
                         const struct cs_bristle *bristle, struct cs_point_answer *answer) {
-    const struct cs_contact_force_parts parts = cs_force_parts_of(job->eval.parts);
+    const struct cs_contact_force_parts parts = cs_force_parts_of(query->eval.parts);
     const struct cs_point_contact *contact = &answer->contact;
     const bool rubs = bristle && parts.friction > 0;
     double *f = answer->vector;
-    if (job->quantity == CS_POINT_JVP) {
+    if (query->quantity == CS_POINT_JVP) {
         double dp[3], dv[3];
-        cs_contact_sample_interpolate(point, job->system->view.n, job->eval.dx, dp);
-        cs_contact_sample_interpolate(point, job->system->view.n, job->eval.dv, dv);
-        const struct cs_point_contact_motion move = cs_posed_collider_law_motion(near, dp, dv);
-        cs_point_contact_jvp(contact, parts, &move, f);
+        cs_contact_sample_interpolate(point, query->system->view.n, query->eval.dx, dp);
+        cs_contact_sample_interpolate(point, query->system->view.n, query->eval.dv, dv);
+        const struct cs_point_contact_motion motion = cs_posed_collider_law_motion(law, dp, dv);
+        cs_point_contact_jvp(contact, parts, &motion, f);
         if (rubs)
-            cs_bristle_add_jvp(contact, bristle, &move, f);
-    } else if (job->quantity == CS_POINT_APPROACH) {
-        cs_point_contact_approach(contact, job->matrix, f);
+            cs_bristle_add_jvp(contact, bristle, &motion, f);
+    } else if (query->quantity == CS_POINT_APPROACH) {
+        cs_point_contact_approach(contact, query->matrix, f);
         if (bristle)
-            cs_bristle_add_approach(contact, bristle, job->matrix, f);
+            cs_bristle_add_approach(contact, bristle, query->matrix, f);
     } else {
         cs_point_contact_force(contact, parts, f);
         if (rubs)
@@ -38,22 +38,22 @@ static void find_vector(const struct cs_point_query *job,
     }
 }
 
-static void find_matrix(const struct cs_point_query *job,
+static void find_matrix(const struct cs_point_query *query,
                         const struct cs_contact_sample_point *point,
                         const struct cs_bristle *bristle, struct cs_point_answer *answer) {
-    const struct cs_system *system = job->system;
-    struct cs_contact_pull pull = cs_contact_pull_begin(job->matrix);
+    const struct cs_system *system = query->system;
+    struct cs_contact_pull pull = cs_contact_pull_begin(query->matrix);
     for (int e = 0; e < 6; e++)
         answer->block[e] = 0;
-    for (uint32_t k = 0; k < point->n && job->matrix->chord; k++)
-        cs_contact_pull_add(&pull, job->matrix, system->view.n, point->particles[k],
+    for (uint32_t k = 0; k < point->n && query->matrix->chord; k++)
+        cs_contact_pull_add(&pull, query->matrix, system->view.n, point->particles[k],
                             system->inv_mass[point->particles[k]], point->w[k]);
-    if (job->matrix->chord)
-        cs_friction_chord_add_block(&answer->contact, job->matrix, &pull, answer->block);
+    if (query->matrix->chord)
+        cs_friction_chord_add_block(&answer->contact, query->matrix, &pull, answer->block);
     else
-        cs_point_contact_add_block(&answer->contact, job->matrix, answer->block);
+        cs_point_contact_add_block(&answer->contact, query->matrix, answer->block);
     if (bristle)
-        cs_bristle_add_matrix(&answer->contact, bristle, job->matrix, &pull, answer->block);
+        cs_bristle_add_matrix(&answer->contact, bristle, query->matrix, &pull, answer->block);
 }
 
 static void find_bound(const struct cs_bristle *bristle, struct cs_point_answer *answer) {
@@ -62,17 +62,18 @@ static void find_bound(const struct cs_bristle *bristle, struct cs_point_answer 
         cs_bristle_raise_bound(bristle, &answer->stiffness, &answer->damping);
 }
 
-bool cs_point_evaluate(const struct cs_point_query *job,
-                       const struct cs_posed_collider_law *near, uint32_t number,
+bool cs_point_evaluate(const struct cs_point_query *query,
+                       const struct cs_posed_collider_law *law, uint32_t number,
                        const struct cs_contact_sample_point *point,
                        struct cs_point_answer *answer) {
-    const struct cs_system *system = job->system;
-    const bool stored = job->quantity == CS_POINT_ENERGY || job->quantity == CS_POINT_LAGGED;
+    const struct cs_system *system = query->system;
+    const bool stored =
+        query->quantity == CS_POINT_ENERGY || query->quantity == CS_POINT_LAGGED;
     struct cs_bristle found;
     double p[3], v[3];
-    cs_contact_sample_interpolate(point, system->view.n, job->eval.x, p);
-    cs_contact_sample_interpolate(point, system->view.n, stored ? NULL : job->eval.v, v);
-    if (!cs_posed_collider_law_in_range(near, p, v, &answer->contact))
+    cs_contact_sample_interpolate(point, system->view.n, query->eval.x, p);
+    cs_contact_sample_interpolate(point, system->view.n, stored ? NULL : query->eval.v, v);
+    if (!cs_posed_collider_law_in_range(law, p, v, &answer->contact))
         return false;
     if (stored) {
         const struct cs_point_contact *contact = &answer->contact;
@@ -80,15 +81,15 @@ bool cs_point_evaluate(const struct cs_point_query *job,
         return cs_contact_sample_mass(system, point) < HUGE_VAL;
     }
     const bool sticks = point->n == 1
-                            ? cs_bristle_of_particle(system, number, near, job->eval.x,
+                            ? cs_bristle_of_particle(system, number, law, query->eval.x,
                                                      point->particles[0], &found)
-                            : cs_bristle_of_sample(system, near, point, p, &found);
+                            : cs_bristle_of_sample(system, law, point, p, &found);
     const struct cs_bristle *bristle = sticks ? &found : NULL;
-    if (job->quantity == CS_POINT_MATRIX)
-        find_matrix(job, point, bristle, answer);
-    else if (job->quantity == CS_POINT_BOUND)
+    if (query->quantity == CS_POINT_MATRIX)
+        find_matrix(query, point, bristle, answer);
+    else if (query->quantity == CS_POINT_BOUND)
         find_bound(bristle, answer);
     else
-        find_vector(job, near, point, v, bristle, answer);
+        find_vector(query, law, point, v, bristle, answer);
     return true;
 }

@@ -37,8 +37,8 @@ struct cs_point_answer {
 /* Answers for a point, a sample or a particle, which is a sample of one vertex with the weight
  * 1, against collider `number`. Returns false if it is out of range, and for energies and
  * friction if it cannot move. */
-bool cs_point_evaluate(const struct cs_point_query *job,
-                       const struct cs_posed_collider_law *near, uint32_t number,
+bool cs_point_evaluate(const struct cs_point_query *query,
+                       const struct cs_posed_collider_law *law, uint32_t number,
                        const struct cs_contact_sample_point *point,
                        struct cs_point_answer *answer);
 

@@ -123,38 +123,38 @@ void cs_posed_colliders_at(const struct cs_system *system, double t,
         cs_posed_collider_at(system, k, t, out + k);
 }
 
-void cs_posed_collider_velocity(const struct cs_posed_collider *obstacle, const double p[3],
+void cs_posed_collider_velocity(const struct cs_posed_collider *collider, const double p[3],
                                 double v[3]) {
-    const double *w = obstacle->spin;
-    const double arm[3] = {p[0] - obstacle->rotation_centre[0],
-                           p[1] - obstacle->rotation_centre[1],
-                           p[2] - obstacle->rotation_centre[2]};
+    const double *w = collider->spin;
+    const double arm[3] = {p[0] - collider->rotation_centre[0],
+                           p[1] - collider->rotation_centre[1],
+                           p[2] - collider->rotation_centre[2]};
     double turned[3];
     cs_vec3_cross(w, arm, turned);
     for (int c = 0; c < 3; c++)
-        v[c] = obstacle->velocity[c] + turned[c];
-    if (obstacle->growth != 0) {
+        v[c] = collider->velocity[c] + turned[c];
+    if (collider->growth != 0) {
         double normal[3];
-        obstacle->shape->distance(obstacle, 0, p, normal);
+        collider->shape->distance(collider, 0, p, normal);
         for (int c = 0; c < 3; c++)
-            v[c] += obstacle->growth * normal[c];
+            v[c] += collider->growth * normal[c];
     }
 }
 
-void cs_posed_collider_vertex(const struct cs_posed_collider *obstacle, uint32_t i, double p[3],
+void cs_posed_collider_vertex(const struct cs_posed_collider *collider, uint32_t i, double p[3],
                               double v[3]) {
-    const struct cs_vertex_paths *paths = obstacle->collider->mesh.paths;
+    const struct cs_vertex_paths *paths = collider->collider->mesh.paths;
     double own[3], own_velocity[3], turned[3];
-    cs_collider_mesh_vertex(obstacle, i, own);
+    cs_collider_mesh_vertex(collider, i, own);
     for (int c = 0; c < 3; c++)
-        p[c] = obstacle->axes[0][c] * own[0] + obstacle->axes[1][c] * own[1] +
-               obstacle->axes[2][c] * own[2] + obstacle->centre[c];
+        p[c] = collider->axes[0][c] * own[0] + collider->axes[1][c] * own[1] +
+               collider->axes[2][c] * own[2] + collider->centre[c];
     if (v)
-        cs_posed_collider_velocity(obstacle, p, v);
+        cs_posed_collider_velocity(collider, p, v);
     if (!v || !paths)
         return;
-    cs_vertex_paths_sum(paths, &obstacle->path, obstacle->path.velocity, i, own_velocity);
-    cs_collider_rotate(obstacle, own_velocity, turned);
+    cs_vertex_paths_sum(paths, &collider->path, collider->path.velocity, i, own_velocity);
+    cs_collider_rotate(collider, own_velocity, turned);
     for (int c = 0; c < 3; c++)
         v[c] += turned[c];
 }

@@ -46,30 +46,30 @@ void cs_posed_collider_rotate(const struct cs_collider_motion *motion, double t,
 /* Signed distance in m of p from the surface without thickness, negative inside, exact on both
  * sides; n: outward unit normal of the nearest surface point. At the centre of a sphere and on
  * the axis of a capsule n points up. Not finite if p is not, and for a mesh. */
-static inline double cs_posed_collider_distance(const struct cs_posed_collider *obstacle,
+static inline double cs_posed_collider_distance(const struct cs_posed_collider *collider,
                                                 const double p[3], double n[3]) {
-    return obstacle->shape->distance(obstacle, 0, p, n);
+    return collider->shape->distance(collider, 0, p, n);
 }
 
 /* The same from the surface offset by the collider's thickness, onto which projection moves
  * particles. */
-static inline double cs_posed_collider_signed_distance(const struct cs_posed_collider *obstacle,
+static inline double cs_posed_collider_signed_distance(const struct cs_posed_collider *collider,
                                                        const double p[3], double n[3]) {
-    return obstacle->shape->distance(obstacle, obstacle->collider->thickness, p, n);
+    return collider->shape->distance(collider, collider->collider->thickness, p, n);
 }
 
 /* Returns whether p may be within `reach` (m, >= 0) of the surface or inside; a test of a few
  * nanoseconds before a distance is computed. False only if the distance, exact or smooth, is
  * larger. NaN may give either. */
-static inline bool cs_posed_collider_is_near(const struct cs_posed_collider *obstacle,
+static inline bool cs_posed_collider_is_near(const struct cs_posed_collider *collider,
                                              double reach, const double p[3]) {
-    const double d[3] = {p[0] - obstacle->centre[0], p[1] - obstacle->centre[1],
-                         p[2] - obstacle->centre[2]};
+    const double d[3] = {p[0] - collider->centre[0], p[1] - collider->centre[1],
+                         p[2] - collider->centre[2]};
     // far above the rounding of either side
-    const double all = (obstacle->radius + reach) * (1 + 1e-9);
-    const double *normal = obstacle->axes[1];
+    const double all = (collider->radius + reach) * (1 + 1e-9);
+    const double *normal = collider->axes[1];
     double squared = 0;
-    switch (obstacle->shape->bounds) {
+    switch (collider->shape->bounds) {
     case CS_BOUNDS_SPHERE:
         return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= all * all;
     case CS_BOUNDS_HALF_SPACE:
@@ -78,9 +78,9 @@ static inline bool cs_posed_collider_is_near(const struct cs_posed_collider *obs
         return false;
     case CS_BOUNDS_BOX:
         for (int k = 0; k < 3; k++) {
-            const double *axis = obstacle->axes[k];
+            const double *axis = collider->axes[k];
             const double x = axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2];
-            const double out = (x < 0 ? -x : x) - obstacle->half_sizes[k];
+            const double out = (x < 0 ? -x : x) - collider->half_sizes[k];
             squared += out > 0 ? out * out : 0;
         }
     }
@@ -96,22 +96,22 @@ static inline bool cs_posed_collider_is_near(const struct cs_posed_collider *obs
  * length is 1 where the distance is exact, never 0 hessian   1/m, of that function: xx, xy, xz,
  * yy, yz, zz; 0 where n points up by default Inside the core of a box it goes on as the
  * distance does, with the same bend where the nearest face changes. */
-static inline double cs_posed_collider_smooth_distance(const struct cs_posed_collider *obstacle,
+static inline double cs_posed_collider_smooth_distance(const struct cs_posed_collider *collider,
                                                        const double p[3], double gradient[3],
                                                        double hessian[6]) {
-    return obstacle->shape->smooth(obstacle, p, gradient, hessian);
+    return collider->shape->smooth(collider, p, gradient, hessian);
 }
 
 /* Returns whether the segment from `from` to from + share way enters the collider. */
-static inline bool cs_posed_collider_hits_segment(const struct cs_posed_collider *obstacle,
+static inline bool cs_posed_collider_hits_segment(const struct cs_posed_collider *collider,
                                                   const double from[3], const double way[3],
                                                   double share) {
-    return obstacle->shape->meets_line(obstacle, from, way, share);
+    return collider->shape->meets_line(collider, from, way, share);
 }
 
 /* v = velocity in m/s of the collider's matter at p: velocity + spin x (p - rotation_centre),
  * and growth along the normal. */
-void cs_posed_collider_velocity(const struct cs_posed_collider *obstacle, const double p[3],
+void cs_posed_collider_velocity(const struct cs_posed_collider *collider, const double p[3],
                                 double v[3]);
 
 /* Largest depth in m of a free particle behind the surface of a collider at t, by the law of
@@ -121,7 +121,7 @@ double cs_posed_colliders_depth(const struct cs_system *system, double t, const 
 
 /* Position in m of vertex i of a mesh, and its velocity in m/s, by its pose, its motion and its
  * key frames; v may be NULL. */
-void cs_posed_collider_vertex(const struct cs_posed_collider *obstacle, uint32_t i, double p[3],
+void cs_posed_collider_vertex(const struct cs_posed_collider *collider, uint32_t i, double p[3],
                               double v[3]);
 
 #endif

@@ -31,7 +31,8 @@ enum cs_status cs_rebounds_init(struct cs_system *system, struct cs_arena *arena
     struct cs_rebounds *rebounds = cs_arena_alloc_array(arena, 1, sizeof *rebounds, error);
     if (!rebounds)
         return error->status;
-    rebounds->list = cs_arena_alloc_array(arena, system->view.n, sizeof *rebounds->list, error);
+    rebounds->rebounds =
+        cs_arena_alloc_array(arena, system->view.n, sizeof *rebounds->rebounds, error);
     rebounds->change =
         cs_arena_alloc_array(arena, 3 * (size_t)system->view.n, sizeof(double), error);
     system->rebounds = rebounds;
@@ -73,29 +74,29 @@ static double flight_step(const struct flight *flight, double d, double w, doubl
 }
 
 /* N s/m, of the approach */
-static double drag_of(const struct flight *flight, const struct cs_barrier *law, double d,
+static double drag_of(const struct flight *flight, const struct cs_barrier *barrier, double d,
                       double w) {
     const double square = cs_restitution_square(d, flight->range, flight->rate, w);
-    return flight->damping * law->stiffness + flight->loss * law->force / sqrt(square);
+    return flight->damping * barrier->stiffness + flight->loss * barrier->force / sqrt(square);
 }
 
 /* Sets d1 and w1. Returns false if it takes too many steps. */
 static bool fly(struct flight *flight) {
     const double m = flight->mass;
     double d = flight->d, w = flight->u, t = 0;
-    struct cs_barrier law = cs_barrier_at(d, flight->range, flight->k);
-    double a = (law.force - drag_of(flight, &law, d, w) * w + flight->other) / m;
+    struct cs_barrier barrier = cs_barrier_at(d, flight->range, flight->k);
+    double a = (barrier.force - drag_of(flight, &barrier, d, w) * w + flight->other) / m;
     for (int step = 0; t < flight->h; step++) {
         if (step == FLIGHT_STEPS_MAX)
             return false;
-        const double dt = fmin(flight_step(flight, d, w, a, law.stiffness), flight->h - t);
+        const double dt = fmin(flight_step(flight, d, w, a, barrier.stiffness), flight->h - t);
         w += 0.5 * dt * a;
         d += dt * w;
         t = dt < flight->h - t ? t + dt : flight->h;
-        law = cs_barrier_at(d, flight->range, flight->k);
+        barrier = cs_barrier_at(d, flight->range, flight->k);
         // the damper's half of the second kick is implicit, so that a stiff one stays stable
-        const double drag = drag_of(flight, &law, d, w) / m;
-        a = (law.force + flight->other) / m;
+        const double drag = drag_of(flight, &barrier, d, w) / m;
+        a = (barrier.force + flight->other) / m;
         w = (w + 0.5 * dt * a) / (1 + 0.5 * dt * drag);
         a -= drag * w;
     }
@@ -105,21 +106,21 @@ static bool fly(struct flight *flight) {
 }
 
 /* Energy in J of contact that the second-order model at d misses after an approach by s. */
-static double missed(const struct flight *flight, const struct cs_barrier *law, double s) {
+static double missed(const struct flight *flight, const struct cs_barrier *barrier, double s) {
     const double range = flight->range, k = flight->k;
     return fabs(cs_barrier_energy(flight->d - s, range, k) -
-                cs_barrier_energy(flight->d, range, k) - law->force * s -
-                0.5 * law->stiffness * s * s);
+                cs_barrier_energy(flight->d, range, k) - barrier->force * s -
+                0.5 * barrier->stiffness * s * s);
 }
 
 /* Tells whether the particle is in impact, and flies it. energy: E. */
 static bool rebounds(struct flight *flight, double energy) {
     const double m = flight->mass, h = flight->h, range = flight->range, k = flight->k;
-    const struct cs_barrier law = cs_barrier_at(flight->d, range, k);
+    const struct cs_barrier barrier = cs_barrier_at(flight->d, range, k);
     const double load = fabs(flight->other) * h;
     // approach without contact, and by the linear step
     const double free = -h * (flight->u + h * flight->other / m);
-    const double linear = (m * free - h * h * law.force) / (m + h * h * law.stiffness);
+    const double linear = (m * free - h * h * barrier.force) / (m + h * h * barrier.stiffness);
     if ((flight->d >= range && flight->d - free >= range) ||
         !(load < 0.5 * m * (fabs(flight->u) + sqrt(2 * energy / m))) || !fly(flight))
         return false;
@@ -133,24 +134,24 @@ static bool rebounds(struct flight *flight, double energy) {
     const double by_flight = 0.5 * m * flight->w1 * flight->w1 +
                              cs_barrier_energy(flight->d1, range, k) +
                              flight->other * (flight->d - flight->d1);
-    return fmax(fmax(missed(flight, &law, free), missed(flight, &law, linear)),
+    return fmax(fmax(missed(flight, &barrier, free), missed(flight, &barrier, linear)),
                 fabs(by_step - by_flight)) > MISSED_MAX * energy;
 }
 
 /* T1/T: the fraction that friction of the impulse J leaves of a speed T along the surface. One
  * of friction that sticks is as small as that of smooth friction, not 0, for r to be finite. */
-static double speed_left(const struct cs_posed_collider_law *near, double mass, double impulse,
+static double speed_left(const struct cs_posed_collider_law *law, double mass, double impulse,
                          double speed) {
-    const double friction = near->friction + near->sticking_friction;
+    const double friction = law->friction + law->sticking_friction;
     const double lost = friction * fmax(impulse, 0) / mass;
-    const double soft = 1 / (1 + lost / near->friction_speed);
+    const double soft = 1 / (1 + lost / law->friction_speed);
     return lost > 0 ? fmax(soft, speed > 0 ? 1 - lost / speed : 0) : 1;
 }
 
 /* One collider and the step, for all particles. */
 struct search {
     const struct cs_system *system;
-    struct cs_posed_collider_law near;
+    struct cs_posed_collider_law law;
     uint32_t collider;
     double h;
     double fastest; /* m/s of the collider's matter near particles; HUGE_VAL: it turns */
@@ -176,7 +177,7 @@ static bool approach(const struct search *search, size_t i, struct start *start,
                      struct flight *flight) {
     const size_t n = search->system->view.n;
     const double h = search->h, m = search->system->mass[i];
-    const struct cs_posed_collider_law *near = &search->near;
+    const struct cs_posed_collider_law *law = &search->law;
     double p[3], v[3], w[3], f[3], hessian[6];
     for (size_t c = 0; c < 3; c++) {
         p[c] = search->x[c * n + i];
@@ -188,25 +189,25 @@ static bool approach(const struct search *search, size_t i, struct start *start,
     const double way =
         h * (sqrt(cs_vec3_dot(v, v)) + search->fastest) + h * h / m * sqrt(cs_vec3_dot(f, f));
     struct cs_point_contact contact;
-    if (cs_posed_collider_law_in_range(near, p, v, &contact)) {
+    if (cs_posed_collider_law_in_range(law, p, v, &contact)) {
         const struct cs_contact_force_parts parts = {1, 1};
         struct cs_bristle bristle;
         cs_point_contact_force(&contact, parts, start->own);
-        if (cs_bristle_of_particle(search->system, search->collider, near, search->x, i,
+        if (cs_bristle_of_particle(search->system, search->collider, law, search->x, i,
                                    &bristle))
             cs_bristle_add_force(&contact, &bristle, start->own);
-    } else if (!cs_posed_collider_is_near(&near->collider, near->params.range + way, p))
+    } else if (!cs_posed_collider_is_near(&law->collider, law->params.range + way, p))
         return false;
-    cs_posed_collider_velocity(&near->collider, p, w);
+    cs_posed_collider_velocity(&law->collider, p, w);
     for (int c = 0; c < 3; c++)
         start->v[c] = v[c] - w[c];
     *flight = (struct flight){.h = h,
-                              .range = near->params.range,
-                              .k = near->params.k,
-                              .damping = near->damping,
-                              .loss = near->loss,
-                              .rate = near->rate};
-    flight->d = cs_posed_collider_smooth_distance(&near->collider, p, start->g, hessian);
+                              .range = law->params.range,
+                              .k = law->params.k,
+                              .damping = law->damping,
+                              .loss = law->loss,
+                              .rate = law->rate};
+    flight->d = cs_posed_collider_smooth_distance(&law->collider, p, start->g, hessian);
     start->square = squared_gradient(start->g);
     if (!(start->square > 0))
         return false;
@@ -218,9 +219,9 @@ static bool approach(const struct search *search, size_t i, struct start *start,
 }
 
 /* Sets the impact and the change of velocity of particle i, if it is in impact. */
-static void find(const struct search *search, size_t i) {
+static void find_rebound(const struct search *search, size_t i) {
     const size_t n = search->system->view.n;
-    struct cs_rebound *rebound = search->system->rebounds->list + i;
+    struct cs_rebound *rebound = search->system->rebounds->rebounds + i;
     double *change = search->system->rebounds->change + i;
     struct flight flight;
     struct start start;
@@ -239,7 +240,7 @@ static void find(const struct search *search, size_t i) {
     memcpy(rebound->g, g, sizeof rebound->g);
     rebound->collider = search->collider + 1;
     rebound->stiffness = cs_barrier_at(flight.d1, flight.range, flight.k).stiffness;
-    const double left = speed_left(&search->near, m, sqrt(square) * impulse,
+    const double left = speed_left(&search->law, m, sqrt(square) * impulse,
                                    sqrt(cs_vec3_dot(tangent, tangent)));
     rebound->drag = m / h * (1 / left - 1);
     rebound->displacement = (flight.d1 - flight.d - h * flight.w1) / square;
@@ -255,10 +256,10 @@ static void find(const struct search *search, size_t i) {
 
 static void find_all(void *arg, size_t begin, size_t end) {
     const struct search *search = arg;
-    const struct cs_rebound *list = search->system->rebounds->list;
+    const struct cs_rebound *rebounds = search->system->rebounds->rebounds;
     for (size_t i = begin; i < end; i++)
-        if (search->system->inv_mass[i] > 0 && list[i].collider == 0)
-            find(search, i);
+        if (search->system->inv_mass[i] > 0 && rebounds[i].collider == 0)
+            find_rebound(search, i);
 }
 
 void cs_rebounds_find(const struct cs_system *system, double t, double h, const double *x,
@@ -266,23 +267,23 @@ void cs_rebounds_find(const struct cs_system *system, double t, double h, const 
     struct cs_rebounds *rebounds = system->rebounds;
     rebounds->judged = false;
     for (size_t i = 0; i < system->view.n; i++)
-        rebounds->list[i].collider = 0;
+        rebounds->rebounds[i].collider = 0;
     memset(rebounds->change, 0, 3 * sizeof *rebounds->change * system->view.n);
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         if (cs_scene_colliders(system->scene)[c].mesh.present)
             continue;
         struct search search = {
             .system = system, .collider = c, .h = h, .x = x, .v = v, .f = f};
-        cs_posed_collider_law_at(system, c, t, &search.near);
-        const struct cs_posed_collider *pose = &search.near.collider;
-        search.fastest = cs_vec3_dot(pose->spin, pose->spin) > 0
+        cs_posed_collider_law_at(system, c, t, &search.law);
+        const struct cs_posed_collider *collider = &search.law.collider;
+        search.fastest = cs_vec3_dot(collider->spin, collider->spin) > 0
                              ? HUGE_VAL
-                             : sqrt(cs_vec3_dot(pose->velocity, pose->velocity));
+                             : sqrt(cs_vec3_dot(collider->velocity, collider->velocity));
         cs_vector_parallel_for(system->view.n, find_all, &search);
     }
     rebounds->any = false;
     for (size_t i = 0; i < system->view.n; i++)
-        rebounds->any |= rebounds->list[i].collider > 0;
+        rebounds->any |= rebounds->rebounds[i].collider > 0;
 }
 
 void cs_rebounds_move(const struct cs_system *system, double h, double *x, double *v) {
@@ -290,7 +291,7 @@ void cs_rebounds_move(const struct cs_system *system, double h, double *x, doubl
     const double *change = system->rebounds->change;
     system->rebounds->judged = true;
     for (size_t i = 0; i < n; i++) {
-        const struct cs_rebound *rebound = system->rebounds->list + i;
+        const struct cs_rebound *rebound = system->rebounds->rebounds + i;
         for (size_t k = i, c = 0; c < 3 && rebound->collider; k += n, c++) {
             v[k] += change[k];
             x[k] += h * change[k] + rebound->displacement * rebound->g[c];
@@ -302,14 +303,14 @@ double cs_rebounds_work(const struct cs_system *system, double t, const double *
     const size_t n = system->view.n;
     double work = 0;
     for (uint32_t k = 0; system->rebounds->any && k < system->scene->colliders.n; k++) {
-        struct cs_posed_collider pose;
-        cs_posed_collider_at(system, k, t, &pose);
+        struct cs_posed_collider collider;
+        cs_posed_collider_at(system, k, t, &collider);
         for (size_t i = 0; i < n; i++) {
             const double p[3] = {x[i], x[n + i], x[2 * n + i]};
             double u[3];
-            if (system->rebounds->list[i].collider != k + 1)
+            if (system->rebounds->rebounds[i].collider != k + 1)
                 continue;
-            cs_posed_collider_velocity(&pose, p, u);
+            cs_posed_collider_velocity(&collider, p, u);
             for (size_t c = 0; c < 3; c++)
                 work += system->mass[i] * system->rebounds->change[c * n + i] * u[c];
         }

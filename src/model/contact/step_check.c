@@ -14,63 +14,63 @@ enum { POINTS_MAX = 64, ROW = 64 };
 
 /* m, distance at a fraction of the way; the rotation of the collider within the step is left
  * out */
-static double distance_at(const struct cs_collider_step *passing, const double from[3],
+static double distance_at(const struct cs_collider_step *step, const double from[3],
                           const double to[3], double share) {
     double p[3], g[3], h[6];
     for (int c = 0; c < 3; c++)
         p[c] = from[c] + share * (to[c] - from[c]);
-    return cs_posed_collider_smooth_distance(&passing->at_t1, p, g, h);
+    return cs_posed_collider_smooth_distance(&step->at_t1, p, g, h);
 }
 
 /* J: `missed` beyond the fraction that a point of this energy may miss. */
-static double excess(const struct cs_collider_step *passing, double missed, double fraction,
+static double excess(const struct cs_collider_step *step, double missed, double fraction,
                      double energy) {
-    const double whole = energy + passing->spare_energy;
-    return missed > passing->alone * whole ? HUGE_VAL : missed - fraction * whole;
+    const double whole = energy + step->spare_energy;
+    return missed > step->alone * whole ? HUGE_VAL : missed - fraction * whole;
 }
 
 /* Samples the straight way of a point relative to the collider, at most half a range apart. */
-double cs_collider_step_excess(const struct cs_collider_step *passing, double mass,
+double cs_collider_step_excess(const struct cs_collider_step *step, double mass,
                                const double start[3], const double to[3]) {
-    const double range = passing->params.range, k = passing->params.k;
+    const double range = step->params.range, k = step->params.k;
     // relative to the collider, which keeps its position after the step
     double from[3], squared = 0;
     for (int c = 0; c < 3; c++) {
-        from[c] = start[c] + passing->at_t1.centre[c] - passing->at_t0.centre[c];
+        from[c] = start[c] + step->at_t1.centre[c] - step->at_t0.centre[c];
         squared += (to[c] - from[c]) * (to[c] - from[c]);
     }
     const double move = sqrt(squared);
-    if (!cs_posed_collider_is_near(&passing->at_t1, range + move, to))
+    if (!cs_posed_collider_is_near(&step->at_t1, range + move, to))
         return 0;
-    const double d = distance_at(passing, from, to, 0);
+    const double d = distance_at(step, from, to, 0);
     if (!(d - move < range))
         return 0;
-    const struct cs_barrier law =
-        passing->impacts ? (struct cs_barrier){0} : cs_barrier_at(d, range, k);
+    const struct cs_barrier barrier =
+        step->impacts ? (struct cs_barrier){0} : cs_barrier_at(d, range, k);
     const double held = cs_barrier_energy(d, range, k);
     const int points =
         move < 0.5 * range * POINTS_MAX ? 1 + (int)(move / (0.5 * range)) : POINTS_MAX;
     double unseen = 0;
     for (int j = 1; j <= points; j++) {
-        const double s = d - distance_at(passing, from, to, j / (double)points);
-        unseen = fmax(unseen, fabs(cs_barrier_energy(d - s, range, k) - held - law.force * s -
-                                   0.5 * law.stiffness * s * s));
+        const double s = d - distance_at(step, from, to, j / (double)points);
+        unseen = fmax(unseen, fabs(cs_barrier_energy(d - s, range, k) - held -
+                                   barrier.force * s - 0.5 * barrier.stiffness * s * s));
     }
-    const double kinetic = 0.5 * mass * squared / (passing->h * passing->h);
-    return excess(passing, unseen, passing->unresolved_max, kinetic + held);
+    const double kinetic = 0.5 * mass * squared / (step->h * step->h);
+    return excess(step, unseen, step->unresolved_max, kinetic + held);
 }
 
 /* J, by how much psi at p, the end of a particle in impact, departs from its second-order model
  * about d1; HUGE_VAL deeper in the pole of psi than half the flight. */
 static double departure_of(const struct cs_rebound *rebound,
-                           const struct cs_collider_step *passing, const double p[3]) {
-    const double range = passing->params.range, k = passing->params.k, d1 = rebound->distance;
-    const double d = distance_at(passing, p, p, 0), s = d1 - d;
-    const struct cs_barrier law = cs_barrier_at(d1, range, k);
+                           const struct cs_collider_step *step, const double p[3]) {
+    const double range = step->params.range, k = step->params.k, d1 = rebound->distance;
+    const double d = distance_at(step, p, p, 0), s = d1 - d;
+    const struct cs_barrier barrier = cs_barrier_at(d1, range, k);
     return d1 > 0 && d < 0.5 * fmin(CS_BARRIER_CORE * range, d1)
                ? HUGE_VAL
                : fabs(cs_barrier_energy(d, range, k) - cs_barrier_energy(d1, range, k) -
-                      law.force * s - 0.5 * law.stiffness * s * s);
+                      barrier.force * s - 0.5 * barrier.stiffness * s * s);
 }
 
 /* Number of particles of a row that may be unresolved at a plane or sphere: a conservative test
@@ -82,18 +82,18 @@ static double departure_of(const struct cs_rebound *rebound,
  *
  * so that no particle that is_unresolved would reject is left out; a spare energy only makes it
  * reject fewer. */
-CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *passing, size_t begin,
+CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *step, size_t begin,
                                         size_t count) {
-    const struct cs_posed_collider *after = &passing->at_t1, *before = &passing->at_t0;
-    const size_t n = passing->system->view.n;
-    const double *a = passing->x0 + begin, *b = passing->x1 + begin;
-    const double *mass = passing->system->mass + begin, *c = after->centre;
-    const double *g = after->axes[1], range = passing->params.range;
+    const struct cs_posed_collider *after = &step->at_t1, *before = &step->at_t0;
+    const size_t n = step->system->view.n;
+    const double *a = step->x0 + begin, *b = step->x1 + begin;
+    const double *mass = step->system->mass + begin, *c = after->centre;
+    const double *g = after->axes[1], range = step->params.range;
     const bool sphere = after->shape->bounds == CS_BOUNDS_SPHERE;
     const double ux = c[0] - before->centre[0], uy = c[1] - before->centre[1];
     const double uz = c[2] - before->centre[2];
-    const double stiff = passing->params.k * passing->h * passing->h;
-    const double give = 6 * passing->unresolved_max * range;
+    const double stiff = step->params.k * step->h * step->h;
+    const double give = 6 * step->unresolved_max * range;
     uint32_t risky = 0;
     for (size_t i = 0; i < count; i++) {
         const double mx = b[i] - a[i] - ux, my = b[n + i] - a[n + i] - uy;
@@ -112,15 +112,14 @@ CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *passing, 
 
 /* Box of both ends of all particles, relative to the collider, as a sphere around its middle.
  */
-bool cs_collider_step_is_far(const struct cs_collider_step *passing, size_t begin,
-                             size_t count) {
-    const size_t n = passing->system->view.n;
-    double middle[3], reach = passing->params.range, squared = 0;
+bool cs_collider_step_is_far(const struct cs_collider_step *step, size_t begin, size_t count) {
+    const size_t n = step->system->view.n;
+    double middle[3], reach = step->params.range, squared = 0;
     for (size_t c = 0; c < 3; c++) {
-        const double shift = passing->at_t1.centre[c] - passing->at_t0.centre[c];
+        const double shift = step->at_t1.centre[c] - step->at_t0.centre[c];
         double low = HUGE_VAL, high = -HUGE_VAL;
         for (size_t i = c * n + begin; i < c * n + begin + count; i++) {
-            const double from = passing->x0[i] + shift, to = passing->x1[i];
+            const double from = step->x0[i] + shift, to = step->x1[i];
             low = from < low ? from : low, high = from > high ? from : high;
             low = to < low ? to : low, high = to > high ? to : high;
         }
@@ -128,102 +127,98 @@ bool cs_collider_step_is_far(const struct cs_collider_step *passing, size_t begi
         squared += 0.25 * (high - low) * (high - low);
     }
     reach += sqrt(squared);
-    return !cs_posed_collider_is_near(&passing->at_t1, reach, middle);
+    return !cs_posed_collider_is_near(&step->at_t1, reach, middle);
 }
 
 /* The impacts of the step that was finished last, if that is this one; NULL: none. */
-static const struct cs_rebound *impacts_of(const struct cs_collider_step *passing) {
-    const struct cs_rebounds *rebounds = passing->system->rebounds;
-    return rebounds && rebounds->judged && rebounds->any ? rebounds->list : NULL;
+static const struct cs_rebound *impacts_of(const struct cs_collider_step *step) {
+    const struct cs_rebounds *rebounds = step->system->rebounds;
+    return rebounds && rebounds->judged && rebounds->any ? rebounds->rebounds : NULL;
 }
 
 /* Returns whether a row needs no test particle by particle. */
-static bool row_is_resolved(const struct cs_collider_step *passing, size_t begin,
-                            size_t count) {
-    const enum cs_shape_bounds bounds = passing->at_t1.shape->bounds;
-    return !passing->impacts && !impacts_of(passing) &&
+static bool row_is_resolved(const struct cs_collider_step *step, size_t begin, size_t count) {
+    const enum cs_shape_bounds bounds = step->at_t1.shape->bounds;
+    return !step->impacts && !impacts_of(step) &&
                    (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE)
-               ? count_suspect(passing, begin, count) == 0
-               : cs_collider_step_is_far(passing, begin, count);
+               ? count_suspect(step, begin, count) == 0
+               : cs_collider_step_is_far(step, begin, count);
 }
 
 /* J, the excess of particle i. */
-static double excess_of(const struct cs_collider_step *passing, size_t i) {
-    const size_t n = passing->system->view.n;
-    const struct cs_rebound *rebound = impacts_of(passing);
+static double excess_of(const struct cs_collider_step *step, size_t i) {
+    const size_t n = step->system->view.n;
+    const struct cs_rebound *rebound = impacts_of(step);
     double from[3], to[3];
     for (size_t c = 0; c < 3; c++) {
-        from[c] = passing->x0[c * n + i];
-        to[c] = passing->x1[c * n + i];
+        from[c] = step->x0[c * n + i];
+        to[c] = step->x1[c * n + i];
     }
-    return rebound && rebound[i].collider == passing->collider + 1
-               ? excess(passing, departure_of(rebound + i, passing, to),
+    return rebound && rebound[i].collider == step->collider + 1
+               ? excess(step, departure_of(rebound + i, step, to),
                         CS_UNRESOLVED_BESIDE_REBOUNDS, rebound[i].energy)
-               : cs_collider_step_excess(passing, passing->system->mass[i], from, to);
+               : cs_collider_step_excess(step, step->system->mass[i], from, to);
 }
 
 /* J, the excess of the particles in [begin, end). */
 static double sum_excess(const void *arg, size_t begin, size_t end) {
-    const struct cs_collider_step *passing = arg;
+    const struct cs_collider_step *step = arg;
     double unseen = 0;
     for (size_t start = begin; start < end; start += ROW) {
         const size_t left = end - start, count = left < ROW ? left : ROW;
-        if (row_is_resolved(passing, start, count))
+        if (row_is_resolved(step, start, count))
             continue;
         for (size_t i = start; i < start + count; i++)
-            unseen += passing->system->inv_mass[i] > 0 ? excess_of(passing, i) : 0;
+            unseen += step->system->inv_mass[i] > 0 ? excess_of(step, i) : 0;
     }
     return unseen;
 }
 
-void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_system *system,
+void cs_collider_step_set(struct cs_collider_step *step, const struct cs_system *system,
                           uint32_t collider, double t0, double t1) {
-    passing->system = system;
-    passing->collider = collider;
-    passing->impacts = cs_impacts_are_resolved(system);
-    passing->unresolved_max =
-        passing->impacts ? CS_IMPACT_CHANGE_MAX : CS_UNRESOLVED_ENERGY_MAX;
-    passing->alone =
-        system->rebounds && !passing->impacts ? CS_UNRESOLVED_ALONE : passing->unresolved_max;
-    passing->spare_energy = 0;
-    passing->h = t1 - t0;
-    passing->params = system->collider_params[collider];
-    cs_posed_collider_at(system, collider, t0, &passing->at_t0);
-    cs_posed_collider_at(system, collider, t1, &passing->at_t1);
+    step->system = system;
+    step->collider = collider;
+    step->impacts = cs_impacts_are_resolved(system);
+    step->unresolved_max = step->impacts ? CS_IMPACT_CHANGE_MAX : CS_UNRESOLVED_ENERGY_MAX;
+    step->alone =
+        system->rebounds && !step->impacts ? CS_UNRESOLVED_ALONE : step->unresolved_max;
+    step->spare_energy = 0;
+    step->h = t1 - t0;
+    step->params = system->collider_params[collider];
+    cs_posed_collider_at(system, collider, t0, &step->at_t0);
+    cs_posed_collider_at(system, collider, t1, &step->at_t1);
 }
 
 /* J, the most that a free particle brings: by its mean velocity relative to the collider, and
  * by its weight over the range. */
-static double most_energy(const struct cs_collider_step *passing) {
-    const struct cs_system *system = passing->system;
+static double most_energy(const struct cs_collider_step *step) {
+    const struct cs_system *system = step->system;
     const size_t n = system->view.n;
     const double *g = system->scene->forces.gravity;
-    const double fall = sqrt(cs_vec3_dot(g, g)) * passing->params.range;
+    const double fall = sqrt(cs_vec3_dot(g, g)) * step->params.range;
     double most = 0, shift[3];
     for (int c = 0; c < 3; c++)
-        shift[c] = passing->at_t1.centre[c] - passing->at_t0.centre[c];
+        shift[c] = step->at_t1.centre[c] - step->at_t0.centre[c];
     for (size_t i = 0; i < n; i++) {
         double squared = 0;
         for (size_t c = 0, k = i; c < 3; c++, k += n) {
-            const double move = passing->x1[k] - passing->x0[k] - shift[c];
+            const double move = step->x1[k] - step->x0[k] - shift[c];
             squared += move * move;
         }
-        const double energy =
-            system->mass[i] * (0.5 * squared / (passing->h * passing->h) + fall);
+        const double energy = system->mass[i] * (0.5 * squared / (step->h * step->h) + fall);
         most = system->inv_mass[i] > 0 && energy > most ? energy : most;
     }
     return most;
 }
 
-void cs_collider_step_set_beside_rebounds(struct cs_collider_step *passing) {
-    const struct cs_collider_params *params = &passing->params;
-    if (!passing->system->rebounds || passing->impacts)
+void cs_collider_step_set_beside_rebounds(struct cs_collider_step *step) {
+    const struct cs_collider_params *params = &step->params;
+    if (!step->system->rebounds || step->impacts)
         return;
-    passing->unresolved_max = CS_UNRESOLVED_BESIDE_REBOUNDS;
-    passing->spare_energy =
-        CS_SPARE_BESIDE_REBOUNDS *
-        fmin(cs_barrier_energy(0.5 * params->range, params->range, params->k),
-             most_energy(passing));
+    step->unresolved_max = CS_UNRESOLVED_BESIDE_REBOUNDS;
+    step->spare_energy = CS_SPARE_BESIDE_REBOUNDS *
+                         fmin(cs_barrier_energy(0.5 * params->range, params->range, params->k),
+                              most_energy(step));
 }
 
 /* Ends at the first collider whose contact the step misses. The next step's impacts are others.
@@ -232,10 +227,10 @@ bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0
                                        const double *x0, double t1, const double *x1) {
     bool resolved = true;
     for (uint32_t c = 0; c < system->scene->colliders.n && resolved; c++) {
-        struct cs_collider_step passing = {.x0 = x0, .x1 = x1};
-        cs_collider_step_set(&passing, system, c, t0, t1);
-        cs_collider_step_set_beside_rebounds(&passing);
-        resolved = !(cs_vector_sum(system->view.n, sum_excess, &passing) > 0);
+        struct cs_collider_step step = {.x0 = x0, .x1 = x1};
+        cs_collider_step_set(&step, system, c, t0, t1);
+        cs_collider_step_set_beside_rebounds(&step);
+        resolved = !(cs_vector_sum(system->view.n, sum_excess, &step) > 0);
     }
     if (system->rebounds)
         system->rebounds->judged = false;

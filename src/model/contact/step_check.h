@@ -37,7 +37,7 @@ struct cs_rebound {
 
 /* The particles in impact of one step. */
 struct cs_rebounds {
-    struct cs_rebound *list; /* (n) by particle */
+    struct cs_rebound *rebounds; /* (n) by particle */
     double *change; /* (3,n) m/s, of the velocity in the flight; 0 where there is none */
     bool any;       /* a particle is in impact */
     bool judged;    /* the last step was finished: the next test of a step is its own */
@@ -85,21 +85,20 @@ struct cs_collider_step {
 };
 /* Sets all members but x0 and x1: unresolved_max to CS_UNRESOLVED_ENERGY_MAX, spare_energy to
  * 0; alone to CS_UNRESOLVED_ALONE in scenes with impacts, else to unresolved_max. */
-void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_system *system,
+void cs_collider_step_set(struct cs_collider_step *step, const struct cs_system *system,
                           uint32_t collider, double t0, double t1);
 /* Sets unresolved_max and spare_energy for the particles of a step with impacts that are not in
  * impact (struct cs_rebounds). Does nothing in scenes without impacts. */
-void cs_collider_step_set_beside_rebounds(struct cs_collider_step *passing);
+void cs_collider_step_set_beside_rebounds(struct cs_collider_step *step);
 
 /* Returns whether `count` particles from `begin` on, and all points between them, stay out of
  * range. */
-bool cs_collider_step_is_far(const struct cs_collider_step *passing, size_t begin,
-                             size_t count);
+bool cs_collider_step_is_far(const struct cs_collider_step *step, size_t begin, size_t count);
 
 /* J, by how much a point of `mass` kg that moves from `from` to `to` in m exceeds the limit of
  * e: negative below it; HUGE_VAL beyond what one point may miss. A step misses contact if the
  * sum over its points is positive. */
-double cs_collider_step_excess(const struct cs_collider_step *passing, double mass,
+double cs_collider_step_excess(const struct cs_collider_step *step, double mass,
                                const double from[3], const double to[3]);
 
 #endif

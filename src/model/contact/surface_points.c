@@ -48,14 +48,14 @@ static void copy_particles(const struct cs_system *system, const double *from, d
 }
 
 /* Returns whether an array has this pose already, and records it. */
-static bool is_posed(const struct cs_posed_collider *obstacle, struct pose *posed) {
+static bool is_posed(const struct cs_posed_collider *collider, struct pose *posed) {
     struct pose pose;
-    memcpy(pose.centre, obstacle->centre, sizeof pose.centre);
-    memcpy(pose.axes, obstacle->axes, sizeof pose.axes);
-    memcpy(pose.velocity, obstacle->velocity, sizeof pose.velocity);
-    memcpy(pose.spin, obstacle->spin, sizeof pose.spin);
-    memcpy(pose.pivot, obstacle->rotation_centre, sizeof pose.pivot);
-    pose.t = obstacle->path.t;
+    memcpy(pose.centre, collider->centre, sizeof pose.centre);
+    memcpy(pose.axes, collider->axes, sizeof pose.axes);
+    memcpy(pose.velocity, collider->velocity, sizeof pose.velocity);
+    memcpy(pose.spin, collider->spin, sizeof pose.spin);
+    memcpy(pose.pivot, collider->rotation_centre, sizeof pose.pivot);
+    pose.t = collider->path.t;
     const bool same = !memcmp(posed, &pose, sizeof pose);
     *posed = pose;
     return same;
@@ -63,13 +63,13 @@ static bool is_posed(const struct cs_posed_collider *obstacle, struct pose *pose
 
 /* Sets positions or velocities of the vertices of a collider. */
 static void set_vertices(const struct cs_surfaces *surfaces, uint32_t surface,
-                         const struct cs_posed_collider *obstacle, bool velocities,
+                         const struct cs_posed_collider *collider, bool velocities,
                          double *to) {
     const uint32_t first = surfaces->first_point[surface];
     const size_t n_points = surfaces->n_points;
     for (uint32_t i = first; i < surfaces->first_point[surface + 1]; i++) {
         double p[3], v[3];
-        cs_posed_collider_vertex(obstacle, i - first, p, velocities ? v : NULL);
+        cs_posed_collider_vertex(collider, i - first, p, velocities ? v : NULL);
         for (size_t c = 0; c < 3; c++)
             to[c * n_points + i] = velocities ? v[c] : p[c];
     }
@@ -81,10 +81,10 @@ static void set_obstacles(const struct cs_system *system, double t, int array) {
     const uint32_t n_bodies = system->scene->bodies.n;
     const uint32_t n = system->surfaces->n_bodies - n_bodies;
     for (uint32_t k = 0; k < n; k++) {
-        struct cs_posed_collider obstacle;
-        cs_posed_collider_at(system, k, t, &obstacle);
-        if (!is_posed(&obstacle, points->posed + (size_t)array * n + k))
-            set_vertices(system->surfaces, n_bodies + k, &obstacle, array == VELOCITIES,
+        struct cs_posed_collider collider;
+        cs_posed_collider_at(system, k, t, &collider);
+        if (!is_posed(&collider, points->posed + (size_t)array * n + k))
+            set_vertices(system->surfaces, n_bodies + k, &collider, array == VELOCITIES,
                          points->of[array]);
     }
 }

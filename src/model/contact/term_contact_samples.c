@@ -33,13 +33,13 @@ static void store_part(const struct job *job, const struct cs_contact_sample_poi
 }
 
 /* Evaluates one sample if it is in range and can move. */
-static void meet(const struct job *job, const struct cs_posed_collider_law *near,
+static void meet(const struct job *job, const struct cs_posed_collider_law *law,
                  const struct cs_contact_sample_point *point, uint32_t number) {
     struct cs_contact_chunk *chunk = job->set->chunks + number;
     const struct cs_system *system = job->query.system;
     const enum cs_point_quantity quantity = job->query.quantity;
     struct cs_point_answer answer;
-    if (!cs_point_evaluate(&job->query, near, job->samples->chunks[number].collider, point,
+    if (!cs_point_evaluate(&job->query, law, job->samples->chunks[number].collider, point,
                            &answer) ||
         cs_contact_sample_mass(system, point) == HUGE_VAL)
         return;
@@ -87,14 +87,14 @@ CS_INLINE double box_of(const double *x, size_t n, const uint32_t *listed, size_
 static void do_chunk(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_contact_sample_chunk *chunk = job->samples->chunks + number;
-    const struct cs_posed_collider_law *near = job->samples->colliders + chunk->collider;
+    const struct cs_posed_collider_law *law = job->samples->colliders + chunk->collider;
     const size_t n = job->query.system->view.n;
     double middle[3];
     cs_contact_chunk_clear(job->set->chunks + number);
     const double *x = job->query.eval.x;
     const double all =
         box_of(x, n, NULL, chunk->first, (size_t)chunk->last - chunk->first + 1, middle);
-    if (!cs_posed_collider_is_near(&near->collider, near->params.range + all, middle))
+    if (!cs_posed_collider_is_near(&law->collider, law->params.range + all, middle))
         return;
     for (uint32_t i = chunk->begin; i < chunk->end; i++) {
         struct cs_contact_sample_point point;
@@ -102,10 +102,10 @@ static void do_chunk(void *arg, uint32_t number) {
             continue;
         const uint32_t *vertices = chunk->vertices + (size_t)chunk->vertices_per_item * i;
         const double reach =
-            near->params.range + box_of(x, n, vertices, 0, chunk->vertices_per_item, middle);
-        if (cs_posed_collider_is_near(&near->collider, reach, middle))
+            law->params.range + box_of(x, n, vertices, 0, chunk->vertices_per_item, middle);
+        if (cs_posed_collider_is_near(&law->collider, reach, middle))
             for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
-                meet(job, near, &point, number);
+                meet(job, law, &point, number);
     }
 }
 
@@ -152,7 +152,7 @@ static bool any_round(const struct cs_scene *scene) {
 }
 
 /* The plan does not know lengths yet; reason_idle reports short edges later. */
-static struct cs_plan_row plan(const struct cs_scene *scene) {
+static struct cs_plan_row plan_samples(const struct cs_scene *scene) {
     const bool asked = scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n,
                built = asked && any_round(scene);
     return (struct cs_plan_row){.built = built,
@@ -171,7 +171,8 @@ static void prepare(const struct cs_system *system, const struct cs_eval *at) {
         run(system, at->dx || at->dv ? CS_POINT_JVP : CS_POINT_FORCE, at, NULL));
 }
 
-static void add(const struct cs_system *system, const struct cs_eval *at, double *f) {
+static void add_sample_forces(const struct cs_system *system, const struct cs_eval *at,
+                              double *f) {
     cs_contact_set_add(&system->contact_samples->current_set, at->block->begin, at->block->end,
                        f);
     if (at->power && at->block->begin == 0)
@@ -232,13 +233,13 @@ static const char *const ramps[] = {"colliders.friction", NULL};
 const struct cs_term cs_term_cover = {
     .name = "contact samples",
     .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
-    .plan = plan,
+    .plan = plan_samples,
     .build = cs_contact_samples_build,
     .reason_idle = idle_why,
     .rampable_keys = ramps,
     .prepare = prepare,
-    .add_force = add,
-    .add_jvp = add,
+    .add_force = add_sample_forces,
+    .add_jvp = add_sample_forces,
     .energy = energy,
     .energy_kind = CS_ENERGY_OTHER,
     .energy_column = "other",

@@ -282,42 +282,42 @@ void cs_bendings_add(const struct cs_system *system, const struct cs_eval *at, d
 /* A stencil of m points is at most m times its diagonal: what matrix->bound asks for. */
 void cs_bendings_prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
                                 bool kept) {
-    struct cs_bendings *all = system->bendings;
+    struct cs_bendings *bendings = system->bendings;
     const double factor = -matrix->ck * (matrix->bound && !kept ? CS_BENDING_POINTS : 1);
     cs_bendings_update_rows(system);
     for (uint32_t i = 0; i < system->view.n; i++)
-        all->blocks[i] = factor * all->diagonal[i];
+        bendings->blocks[i] = factor * bendings->diagonal[i];
     if (kept)
-        all->kept = -matrix->ck;
-    if (all->normal.x)
+        bendings->kept = -matrix->ck;
+    if (bendings->normal.x)
         cs_normal_curvature_prepare_matrix(system, matrix, kept);
 }
 
 void cs_bendings_add_blocks(const struct cs_system *system, size_t begin, size_t end,
                             double *blocks) {
-    const struct cs_bendings *all = system->bendings;
+    const struct cs_bendings *bendings = system->bendings;
     const size_t n = system->view.n;
     for (size_t c = 0; c < 6; c += c ? 2 : 3)
         for (size_t i = begin; i < end; i++)
-            blocks[c * n + i] += all->blocks[i];
-    for (size_t c = 0; all->normal.x && c < 6; c++)
+            blocks[c * n + i] += bendings->blocks[i];
+    for (size_t c = 0; bendings->normal.x && c < 6; c++)
         for (size_t i = begin; i < end; i++)
-            blocks[c * n + i] += all->normal.blocks[c * n + i];
+            blocks[c * n + i] += bendings->normal.blocks[c * n + i];
 }
 
 /* y -= the diagonal blocks of the kept matrix times p. */
 static void take_blocks_out(const struct job *job, const struct cs_block *block) {
     static const size_t entries[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
-    const struct cs_bendings *all = job->system->bendings;
+    const struct cs_bendings *bendings = job->system->bendings;
     const size_t n = job->system->view.n;
     for (size_t c = 0; c < 3; c++)
         for (size_t i = c * n + block->begin, k = block->begin; k < block->end; i++, k++)
-            job->y[i] -= all->kept * all->diagonal[k] * job->p[i];
-    for (size_t c = 0; all->normal.x && c < 3; c++)
+            job->y[i] -= bendings->kept * bendings->diagonal[k] * job->p[i];
+    for (size_t c = 0; bendings->normal.x && c < 3; c++)
         for (size_t d = 0; d < 3; d++)
             for (size_t k = block->begin; k < block->end; k++)
                 job->y[c * n + k] -=
-                    all->normal.kept[entries[c][d] * n + k] * job->p[d * n + k];
+                    bendings->normal.kept[entries[c][d] * n + k] * job->p[d * n + k];
 }
 
 static void product_block(void *arg, uint32_t number) {

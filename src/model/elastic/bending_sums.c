@@ -64,22 +64,24 @@ static void add_body_rows(const struct cs_bending *bending, const struct cs_modu
 }
 
 void cs_bendings_update_rows(const struct cs_system *system) {
-    struct cs_bendings *all = system->bendings;
-    for (uint32_t b = 0; b < all->n; b++) {
-        const struct cs_bending *bending = all->bodies + b;
+    struct cs_bendings *bendings = system->bendings;
+    for (uint32_t b = 0; b < bendings->n; b++) {
+        const struct cs_bending *bending = bendings->bodies + b;
         const struct cs_moduli moduli =
             cs_bending_moduli(&cs_scene_bodies(system->scene)[bending->body].elastic);
-        const struct cs_moduli *of = all->moduli + b;
+        const struct cs_moduli *of = bendings->moduli + b;
         if (bending->rest)
             continue;
         if (of->warp == moduli.warp && of->weft == moduli.weft &&
             of->coupling == moduli.coupling && of->shear == moduli.shear)
             continue;
-        memset(all->diagonal + bending->first, 0, bending->count * sizeof *all->diagonal);
-        memset(all->row_sums + bending->first, 0, bending->count * sizeof *all->row_sums);
-        add_body_rows(bending, &moduli, true, all->diagonal);
-        add_body_rows(bending, &moduli, false, all->row_sums);
-        all->moduli[b] = moduli;
+        memset(bendings->diagonal + bending->first, 0,
+               bending->count * sizeof *bendings->diagonal);
+        memset(bendings->row_sums + bending->first, 0,
+               bending->count * sizeof *bendings->row_sums);
+        add_body_rows(bending, &moduli, true, bendings->diagonal);
+        add_body_rows(bending, &moduli, false, bendings->row_sums);
+        bendings->moduli[b] = moduli;
     }
 }
 

@@ -275,19 +275,19 @@ enum cs_status cs_bendings_build(struct cs_system *system, struct cs_error *erro
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
     const uint32_t n_bodies = system->scene->bodies.n;
     struct cs_arena *arena = &system->arena;
-    struct cs_bendings *all = cs_arena_alloc_array(arena, 1, sizeof *all, error);
-    if (!all)
+    struct cs_bendings *bendings = cs_arena_alloc_array(arena, 1, sizeof *bendings, error);
+    if (!bendings)
         return error->status;
-    all->bodies = cs_arena_alloc_array(arena, n_bodies, sizeof *all->bodies, error);
-    all->moduli = cs_arena_alloc_array(arena, n_bodies, sizeof *all->moduli, error);
-    all->diagonal = cs_arena_alloc_array(arena, system->view.n, sizeof(double), error);
-    all->blocks = cs_arena_alloc_array(arena, system->view.n, sizeof(double), error);
-    all->row_sums = cs_arena_alloc_array(arena, system->view.n, sizeof(double), error);
+    bendings->bodies = cs_arena_alloc_array(arena, n_bodies, sizeof *bendings->bodies, error);
+    bendings->moduli = cs_arena_alloc_array(arena, n_bodies, sizeof *bendings->moduli, error);
+    bendings->diagonal = cs_arena_alloc_array(arena, system->view.n, sizeof(double), error);
+    bendings->blocks = cs_arena_alloc_array(arena, system->view.n, sizeof(double), error);
+    bendings->row_sums = cs_arena_alloc_array(arena, system->view.n, sizeof(double), error);
     for (uint32_t b = 0; b < n_bodies && !error->status; b++) {
         if (!cs_elastic_bends(&bodies[b].elastic))
             continue;
         // bodies without bending take no room
-        struct cs_bending *bending = all->bodies + all->n++;
+        struct cs_bending *bending = bendings->bodies + bendings->n++;
         *bending = (struct cs_bending){
             .body = b,
             .first = system->bodies[b].first,
@@ -299,7 +299,7 @@ enum cs_status cs_bendings_build(struct cs_system *system, struct cs_error *erro
         else
             build_grid(bending, &bodies[b].cloth, arena, error);
     }
-    system->bendings = all;
+    system->bendings = bendings;
     return error->status;
 }
 

@@ -305,9 +305,9 @@ static void compute_piece(void *arg, uint32_t piece) {
 }
 
 void cs_membrane_job_prepare(const struct membrane_job *job) {
-    const struct cs_membranes *all = job->system->membranes;
-    for (uint32_t b = 0; b < all->n; b++) {
-        struct mesh_loop loop = {.job = job, .membrane = all->bodies + b};
+    const struct cs_membranes *membranes = job->system->membranes;
+    for (uint32_t b = 0; b < membranes->n; b++) {
+        struct mesh_loop loop = {.job = job, .membrane = membranes->bodies + b};
         if (loop.membrane->columns)
             continue;
         loop.law = cs_membrane_law_of(job, loop.membrane);
@@ -329,9 +329,9 @@ static void add_mesh(const struct membrane_job *job, const struct cs_membrane *m
 }
 
 void cs_membrane_job_add(const struct membrane_job *job, const struct cs_block *block) {
-    const struct cs_membranes *all = job->system->membranes;
-    for (uint32_t b = 0; b < all->n; b++) {
-        const struct cs_membrane *membrane = all->bodies + b;
+    const struct cs_membranes *membranes = job->system->membranes;
+    for (uint32_t b = 0; b < membranes->n; b++) {
+        const struct cs_membrane *membrane = membranes->bodies + b;
         const uint32_t first = membrane->first, after = first + membrane->count;
         const uint32_t begin = block->begin > first ? block->begin - first : 0;
         const uint32_t end = block->end < after ? block->end : after;

@@ -76,10 +76,10 @@ static double energy_of(const struct cs_moduli *moduli, const struct triangle *a
 }
 
 double cs_membranes_energy(const struct cs_system *system, const double *x) {
-    const struct cs_membranes *all = system->membranes;
+    const struct cs_membranes *membranes = system->membranes;
     double sum = 0;
-    for (uint32_t b = 0; b < all->n; b++) {
-        const struct cs_membrane *membrane = all->bodies + b;
+    for (uint32_t b = 0; b < membranes->n; b++) {
+        const struct cs_membrane *membrane = membranes->bodies + b;
         const struct cs_moduli moduli = moduli_of(system, membrane);
         for (uint32_t t = 0; t < membrane->n; t++) {
             struct triangle at;
@@ -91,10 +91,10 @@ double cs_membranes_energy(const struct cs_system *system, const double *x) {
 }
 
 double cs_membranes_energy_at_twice(const struct cs_system *system) {
-    const struct cs_membranes *all = system->membranes;
+    const struct cs_membranes *membranes = system->membranes;
     double sum = 0;
-    for (uint32_t b = 0; all && b < all->n; b++) {
-        const struct cs_membrane *membrane = all->bodies + b;
+    for (uint32_t b = 0; membranes && b < membranes->n; b++) {
+        const struct cs_membrane *membrane = membranes->bodies + b;
         const struct cs_moduli moduli = moduli_of(system, membrane);
         for (uint32_t t = 0; t < membrane->n; t++) {
             struct triangle at;
@@ -174,9 +174,9 @@ static void add_triangle_bound(const struct membrane_law *law, const struct boun
 void cs_membranes_add_bound(const struct cs_system *system, const struct cs_eval *at,
                             double *stiffness, double *damping) {
     const struct membrane_job job = {.system = system, .elastic = 1, .damping = 1};
-    const struct cs_membranes *all = system->membranes;
-    for (uint32_t b = 0; b < all->n; b++) {
-        const struct cs_membrane *membrane = all->bodies + b;
+    const struct cs_membranes *membranes = system->membranes;
+    for (uint32_t b = 0; b < membranes->n; b++) {
+        const struct cs_membrane *membrane = membranes->bodies + b;
         const struct membrane_law law = cs_membrane_law_of(&job, membrane);
         for (uint32_t t = 0; t < membrane->n; t++) {
             struct bounded bounded = {.has_state = at};
@@ -185,7 +185,7 @@ void cs_membranes_add_bound(const struct cs_system *system, const struct cs_eval
                           &bounded.at);
             for (size_t k = 0; k < 3; k++) {
                 const uint32_t corner = bounded.at.corners[k];
-                bounded.masses[k] = system->mass[corner] / all->n_around[corner];
+                bounded.masses[k] = system->mass[corner] / membranes->n_around[corner];
             }
             add_triangle_bound(&law, &bounded, stiffness, damping);
         }
@@ -248,7 +248,7 @@ static void set_blocks(const struct setup *setup, const struct cs_membrane *memb
     const struct cs_matrix *matrix = setup->matrix;
     const struct membrane_job job = {.system = system, .damping = 1};
     const struct membrane_law law = cs_membrane_law_of(&job, membrane);
-    struct cs_membranes *all = system->membranes;
+    struct cs_membranes *membranes = system->membranes;
     const size_t n = system->view.n;
     const double kappa = -matrix->ck - matrix->cd * law.damping;
     const double factor = matrix->bound && !setup->kept ? 3 : 1;
@@ -267,10 +267,10 @@ static void set_blocks(const struct setup *setup, const struct cs_membrane *memb
             matrix_tensions(&at, &law.moduli, matrix, s);
             add_corner_block(&at, K, s, kappa, corner, block);
             for (size_t e = 0; setup->kept && corner == 0 && e < 3; e++)
-                all->tensions[e * all->n_triangles + membrane->begin + t] = s[e];
+                membranes->tensions[e * membranes->n_triangles + membrane->begin + t] = s[e];
         }
         for (size_t c = 0; c < 6; c++)
-            all->blocks[c * n + membrane->first + i] = factor * block[c];
+            membranes->blocks[c * n + membrane->first + i] = factor * block[c];
     }
 }
 
@@ -293,15 +293,15 @@ static void set_block(void *arg, uint32_t number) {
  * for a triangle, which is what matrix->bound asks for. */
 void cs_membranes_prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
                                  bool kept) {
-    struct cs_membranes *all = system->membranes;
+    struct cs_membranes *membranes = system->membranes;
     struct setup setup = {system, matrix, kept};
     cs_pool_run(system->springs.n_blocks, set_block, &setup);
     if (!kept)
         return;
-    memcpy(all->kept, all->blocks, 6 * sizeof *all->kept * system->view.n);
-    memcpy(all->x, matrix->x, 3 * sizeof *all->x * system->view.n);
-    all->cd = matrix->cd;
-    all->ck = matrix->ck;
+    memcpy(membranes->kept, membranes->blocks, 6 * sizeof *membranes->kept * system->view.n);
+    memcpy(membranes->x, matrix->x, 3 * sizeof *membranes->x * system->view.n);
+    membranes->cd = matrix->cd;
+    membranes->ck = matrix->ck;
 }
 
 /* Arguments of a product. */
@@ -331,14 +331,14 @@ static void product_block(void *arg, uint32_t number) {
 /* y += A p of the matrix kept last; damped: with its damping. */
 static void add_product(const struct cs_system *system, const double *p, bool damped,
                         double *y) {
-    const struct cs_membranes *all = system->membranes;
+    const struct cs_membranes *membranes = system->membranes;
     struct product product = {.job = {.system = system,
                                       .kind = MEMBRANE_PRODUCT,
-                                      .x = all->x,
+                                      .x = membranes->x,
                                       .dx = p,
-                                      .tensions = all->tensions,
-                                      .elastic = -all->ck,
-                                      .per_damping = damped ? -all->cd : 0,
+                                      .tensions = membranes->tensions,
+                                      .elastic = -membranes->ck,
+                                      .per_damping = damped ? -membranes->cd : 0,
                                       .to = y},
                               .p = p,
                               .y = y,

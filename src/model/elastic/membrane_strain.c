@@ -64,11 +64,11 @@ static double stress_of(const struct cs_system *system, const struct cs_membrane
 
 double cs_membranes_largest_strain(const struct cs_system *system, const double *x,
                                    bool extends) {
-    const struct cs_membranes *all = system->membranes;
+    const struct cs_membranes *membranes = system->membranes;
     double largest = 0;
-    for (uint32_t b = 0; all && b < all->n; b++)
-        for (uint32_t t = 0; t < all->bodies[b].n; t++) {
-            const double strain = strain_of(system, all->bodies + b, t, x);
+    for (uint32_t b = 0; membranes && b < membranes->n; b++)
+        for (uint32_t t = 0; t < membranes->bodies[b].n; t++) {
+            const double strain = strain_of(system, membranes->bodies + b, t, x);
             largest = fmax(largest, extends ? strain : fabs(strain));
         }
     return largest;
@@ -81,12 +81,12 @@ typedef double value_of(const struct cs_system *system, const struct cs_membrane
 /* out (n): the value of largest magnitude among a particle's triangles, where it is larger. */
 static void find_largest(const struct cs_system *system, value_of *find, const double *x,
                          double *out) {
-    const struct cs_membranes *all = system->membranes;
-    for (uint32_t b = 0; all && b < all->n; b++)
-        for (uint32_t t = 0; t < all->bodies[b].n; t++) {
-            const double value = find(system, all->bodies + b, t, x);
+    const struct cs_membranes *membranes = system->membranes;
+    for (uint32_t b = 0; membranes && b < membranes->n; b++)
+        for (uint32_t t = 0; t < membranes->bodies[b].n; t++) {
+            const double value = find(system, membranes->bodies + b, t, x);
             uint32_t corners[3];
-            cs_membrane_corners(all->bodies + b, t, corners);
+            cs_membrane_corners(membranes->bodies + b, t, corners);
             for (int k = 0; k < 3; k++)
                 if (fabs(value) > fabs(out[corners[k]]))
                     out[corners[k]] = value;

@@ -116,53 +116,53 @@ static double shortest_of(const struct cs_membrane *membrane) {
 }
 
 /* Allocates what bounds and the solver's matrix need. */
-static enum cs_status alloc_matrix(struct cs_membranes *all, struct cs_system *system,
+static enum cs_status alloc_matrix(struct cs_membranes *membranes, struct cs_system *system,
                                    struct cs_error *error) {
     struct cs_arena *arena = &system->arena;
     const size_t n = system->view.n;
-    all->blocks = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
-    all->n_around = cs_arena_alloc_array(arena, n, sizeof *all->n_around, error);
-    for (uint32_t b = 0; !error->status && b < all->n; b++)
-        for (uint32_t t = 0; t < all->bodies[b].n; t++) {
+    membranes->blocks = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
+    membranes->n_around = cs_arena_alloc_array(arena, n, sizeof *membranes->n_around, error);
+    for (uint32_t b = 0; !error->status && b < membranes->n; b++)
+        for (uint32_t t = 0; t < membranes->bodies[b].n; t++) {
             uint32_t corners[3];
-            cs_membrane_corners(all->bodies + b, t, corners);
+            cs_membrane_corners(membranes->bodies + b, t, corners);
             for (int k = 0; k < 3; k++)
-                all->n_around[corners[k]]++;
+                membranes->n_around[corners[k]]++;
         }
     if (!system->plan.rows[CS_FEATURE_SOLVER].built)
         return error->status;
-    all->x = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
-    all->kept = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
-    CS_ARENA_ARRAY(arena, all->tensions, 3 * (size_t)all->n_triangles, error);
+    membranes->x = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
+    membranes->kept = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
+    CS_ARENA_ARRAY(arena, membranes->tensions, 3 * (size_t)membranes->n_triangles, error);
     return error->status;
 }
 
 enum cs_status cs_membranes_build(struct cs_system *system, struct cs_error *error) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
     struct cs_arena *arena = &system->arena;
-    struct cs_membranes *all = cs_arena_alloc_array(arena, 1, sizeof *all, error);
-    if (!all)
+    struct cs_membranes *membranes = cs_arena_alloc_array(arena, 1, sizeof *membranes, error);
+    if (!membranes)
         return error->status;
-    CS_ARENA_ARRAY(arena, all->bodies, system->scene->bodies.n, error);
-    all->shortest = HUGE_VAL;
+    CS_ARENA_ARRAY(arena, membranes->bodies, system->scene->bodies.n, error);
+    membranes->shortest = HUGE_VAL;
     for (uint32_t b = 0; b < system->scene->bodies.n && !error->status; b++) {
         if (!bodies[b].elastic.present)
             continue;
         // triangles of all bodies are numbered one after the other
-        struct cs_membrane *membrane = all->bodies + all->n++;
+        struct cs_membrane *membrane = membranes->bodies + membranes->n++;
         *membrane = (struct cs_membrane){.body = b,
                                          .first = system->bodies[b].first,
                                          .count = system->bodies[b].count,
-                                         .begin = all->n_triangles};
+                                         .begin = membranes->n_triangles};
         if (bodies[b].mesh.present ? build_mesh(membrane, bodies[b].mesh.geometry, arena, error)
                                    : build_grid(membrane, &bodies[b].cloth, arena, error))
             break;
-        all->n_triangles += membrane->n;
+        membranes->n_triangles += membrane->n;
         membrane->shortest = shortest_of(membrane);
-        all->shortest = fmin(all->shortest, membrane->shortest);
+        membranes->shortest = fmin(membranes->shortest, membrane->shortest);
     }
-    system->membranes = all;
-    return error->status ? error->status : alloc_matrix(all, system, error);
+    system->membranes = membranes;
+    return error->status ? error->status : alloc_matrix(membranes, system, error);
 }
 
 /* Triangles of cell (r, c) are 2 k and 2 k + 1 with k = r (columns - 1) + c: top left, top

@@ -49,19 +49,19 @@ static void set_matrix_factors(struct job *job, double ck, double cd, bool psd) 
 static void find_forces(const struct job *job, const struct cs_bending_stencil *of,
                         struct cs_normal_factors by, double out[CS_NORMAL_FORCES]) {
     const size_t n = job->system->view.n;
-    struct cs_normal_state at;
+    struct cs_normal_state state;
     struct cs_normal_sums dx, dv;
     memset(out, 0, CS_NORMAL_FORCES * sizeof *out);
     if (of->n == 0)
         return;
-    cs_normal_stencil_state(of, n, job->x, job->v, &at);
+    cs_normal_stencil_state(of, n, job->x, job->v, &state);
     if (!job->is_change) {
-        cs_normal_stencil_force(of, &at, by, out);
+        cs_normal_stencil_force(of, &state, by, out);
         return;
     }
     cs_normal_stencil_sums(of, n, job->dx, &dx);
     cs_normal_stencil_sums(of, n, job->dv, &dv);
-    cs_normal_stencil_derivative(of, &at, by, &dx, &dv, out);
+    cs_normal_stencil_derivative(of, &state, by, &dx, &dv, out);
 }
 
 static uint32_t pieces_of(const struct cs_bending *bending) {
@@ -147,13 +147,13 @@ double cs_normal_curvature_energy(const struct cs_system *system, const double *
         const struct cs_moduli D = cs_bending_moduli(elastic_of(system, bending));
         for (uint32_t s = 0; bending->rest && s < bending->n; s++) {
             struct cs_bending_stencil of;
-            struct cs_normal_state at;
+            struct cs_normal_state state;
             double M[3];
             cs_bending_stencil_at(bending, &D, s, &of);
-            cs_normal_stencil_state(&of, system->view.n, x, NULL, &at);
-            cs_normal_stencil_moments(&of, &at, (struct cs_normal_factors){.kappa = 1}, M);
+            cs_normal_stencil_state(&of, system->view.n, x, NULL, &state);
+            cs_normal_stencil_moments(&of, &state, (struct cs_normal_factors){.kappa = 1}, M);
             for (int a = 0; a < 3; a++)
-                sum += 0.5 * M[a] * (at.kappa[a] - of.rest[a]);
+                sum += 0.5 * M[a] * (state.kappa[a] - of.rest[a]);
         }
     }
     return sum;
@@ -165,11 +165,11 @@ double cs_normal_curvature_energy(const struct cs_system *system, const double *
 static void find_entries(const struct job *job, const struct cs_bending_stencil *of,
                          struct cs_normal_factors by,
                          double K[CS_NORMAL_FORCES][CS_NORMAL_FORCES]) {
-    struct cs_normal_state at;
+    struct cs_normal_state state;
     memset(K, 0, CS_NORMAL_FORCES * sizeof *K);
     if (of->n == 0)
         return;
-    cs_normal_stencil_state(of, job->system->view.n, job->x, NULL, &at);
+    cs_normal_stencil_state(of, job->system->view.n, job->x, NULL, &state);
     for (size_t column = 0; column < 3 * (size_t)of->n; column++) {
         const size_t j = column / 3, c = column % 3;
         // a unit displacement of one number
@@ -178,7 +178,8 @@ static void find_entries(const struct job *job, const struct cs_bending_stencil 
             dx.k[a][c] = of->weights[a][j];
         for (size_t k = 0; k < 2; k++)
             dx.d[k][c] = (of->ends[2 * k + 1] == j) - (of->ends[2 * k] == j);
-        cs_normal_stencil_derivative(of, &at, by, &dx, &(struct cs_normal_sums){0}, K[column]);
+        cs_normal_stencil_derivative(of, &state, by, &dx, &(struct cs_normal_sums){0},
+                                     K[column]);
     }
 }
 
@@ -200,15 +201,15 @@ struct walk {
 };
 
 static bool next_stencil(const struct cs_system *system, struct walk *walk) {
-    const struct cs_bendings *all = system->bendings;
-    while (walk->body < all->n &&
-           (!all->bodies[walk->body].forces || walk->s == all->bodies[walk->body].n)) {
+    const struct cs_bendings *bendings = system->bendings;
+    while (walk->body < bendings->n && (!bendings->bodies[walk->body].forces ||
+                                        walk->s == bendings->bodies[walk->body].n)) {
         walk->body++;
         walk->s = 0;
     }
-    if (walk->body == all->n)
+    if (walk->body == bendings->n)
         return false;
-    walk->bending = all->bodies + walk->body;
+    walk->bending = bendings->bodies + walk->body;
     walk->D = cs_bending_moduli(elastic_of(system, walk->bending));
     cs_bending_stencil_at(walk->bending, &walk->D, walk->s++, &walk->stencil);
     return true;
@@ -264,11 +265,11 @@ void cs_normal_curvature_prepare_matrix(const struct cs_system *system,
 }
 
 enum cs_status cs_normal_curvature_build(struct cs_system *system, struct cs_error *error) {
-    struct cs_bendings *all = system->bendings;
+    struct cs_bendings *bendings = system->bendings;
     const size_t n = system->view.n;
     bool any = false;
-    for (uint32_t b = 0; b < all->n && !error->status; b++) {
-        struct cs_bending *bending = all->bodies + b;
+    for (uint32_t b = 0; b < bendings->n && !error->status; b++) {
+        struct cs_bending *bending = bendings->bodies + b;
         if (!bending->rest && !bending->damped)
             continue;
         // flat bodies without damping need nothing
@@ -278,8 +279,9 @@ enum cs_status cs_normal_curvature_build(struct cs_system *system, struct cs_err
     }
     if (!any)
         return error->status;
-    all->normal.x = cs_arena_alloc_array(&system->arena, 3 * n, sizeof(double), error);
-    all->normal.blocks = cs_arena_alloc_array(&system->arena, 6 * n, sizeof(double), error);
-    all->normal.kept = cs_arena_alloc_array(&system->arena, 6 * n, sizeof(double), error);
+    bendings->normal.x = cs_arena_alloc_array(&system->arena, 3 * n, sizeof(double), error);
+    bendings->normal.blocks =
+        cs_arena_alloc_array(&system->arena, 6 * n, sizeof(double), error);
+    bendings->normal.kept = cs_arena_alloc_array(&system->arena, 6 * n, sizeof(double), error);
     return error->status;
 }

@@ -36,32 +36,34 @@ static void product_rate(const struct cs_normal_sums *at, const struct cs_normal
 }
 
 /* Change of n with a change of the product. */
-static void normal_rate(const struct cs_normal_state *at, const double rate[3], double out[3]) {
-    const double along = at->length_slope * cs_vec3_dot(at->normal, rate);
+static void normal_rate(const struct cs_normal_state *state, const double rate[3],
+                        double out[3]) {
+    const double along = state->length_slope * cs_vec3_dot(state->normal, rate);
     for (int c = 0; c < 3; c++)
-        out[c] = (rate[c] - along * at->normal[c]) / at->length;
+        out[c] = (rate[c] - along * state->normal[c]) / state->length;
 }
 
 void cs_normal_stencil_state(const struct cs_bending_stencil *of, size_t n, const double *x,
-                             const double *v, struct cs_normal_state *at) {
-    cs_normal_stencil_sums(of, n, x, &at->x);
-    cs_normal_stencil_sums(of, n, v, &at->v);
-    cs_vec3_cross(at->x.d[0], at->x.d[1], at->normal);
+                             const double *v, struct cs_normal_state *state) {
+    cs_normal_stencil_sums(of, n, x, &state->x);
+    cs_normal_stencil_sums(of, n, v, &state->v);
+    cs_vec3_cross(state->x.d[0], state->x.d[1], state->normal);
     // of a curved body L is L0 at rest too
-    const double squared = cs_vec3_dot(at->normal, at->normal),
+    const double squared = cs_vec3_dot(state->normal, state->normal),
                  least = of->product * of->product;
-    at->length_slope = of->is_curved ? 1 / (1 + CS_NORMAL_FLOOR) : 0;
-    at->length = of->is_curved ? sqrt(at->length_slope * (squared + CS_NORMAL_FLOOR * least))
-                               : of->product;
+    state->length_slope = of->is_curved ? 1 / (1 + CS_NORMAL_FLOOR) : 0;
+    state->length = of->is_curved
+                        ? sqrt(state->length_slope * (squared + CS_NORMAL_FLOOR * least))
+                        : of->product;
     for (int c = 0; c < 3; c++)
-        at->normal[c] /= at->length;
+        state->normal[c] /= state->length;
     // rates over time
-    product_rate(&at->x, &at->v, at->rate);
-    normal_rate(at, at->rate, at->turn);
+    product_rate(&state->x, &state->v, state->rate);
+    normal_rate(state, state->rate, state->turn);
     for (int a = 0; a < 3; a++) {
-        at->kappa[a] = cs_vec3_dot(at->x.k[a], at->normal);
-        at->kappa_rate[a] =
-            cs_vec3_dot(at->v.k[a], at->normal) + cs_vec3_dot(at->x.k[a], at->turn);
+        state->kappa[a] = cs_vec3_dot(state->x.k[a], state->normal);
+        state->kappa_rate[a] =
+            cs_vec3_dot(state->v.k[a], state->normal) + cs_vec3_dot(state->x.k[a], state->turn);
     }
 }
 
@@ -73,33 +75,35 @@ static void multiply(const struct cs_moduli *D, const double s[3], double M[3]) 
 }
 
 void cs_normal_stencil_moments(const struct cs_bending_stencil *of,
-                               const struct cs_normal_state *at, struct cs_normal_factors by,
+                               const struct cs_normal_state *state, struct cs_normal_factors by,
                                double M[3]) {
     double s[3];
     for (int a = 0; a < 3; a++)
-        s[a] = by.kappa * (at->kappa[a] - of->rest[a]) + by.rate * at->kappa_rate[a];
+        s[a] = by.kappa * (state->kappa[a] - of->rest[a]) + by.rate * state->kappa_rate[a];
     multiply(&of->moduli, s, M);
 }
 
 /* m of the header. */
-static void find_lever(const struct cs_normal_state *at, const double M[3], double m[3]) {
+static void find_lever(const struct cs_normal_state *state, const double M[3], double m[3]) {
     for (int c = 0; c < 3; c++) {
         m[c] = 0;
         for (int a = 0; a < 3; a++)
-            m[c] += M[a] * (at->x.k[a][c] - at->length_slope * at->kappa[a] * at->normal[c]) /
-                    at->length;
+            m[c] +=
+                M[a] *
+                (state->x.k[a][c] - state->length_slope * state->kappa[a] * state->normal[c]) /
+                state->length;
     }
 }
 
-static void find_reaction(const struct cs_normal_state *at, const double M[3],
+static void find_reaction(const struct cs_normal_state *state, const double M[3],
                           struct reaction *out) {
     double m[3];
-    find_lever(at, M, m);
+    find_lever(state, M, m);
     for (int a = 0; a < 3; a++)
         for (int c = 0; c < 3; c++)
-            out->moment[a][c] = M[a] * at->normal[c];
-    cs_vec3_cross(at->x.d[1], m, out->end[0]);
-    cs_vec3_cross(m, at->x.d[0], out->end[1]);
+            out->moment[a][c] = M[a] * state->normal[c];
+    cs_vec3_cross(state->x.d[1], m, out->end[0]);
+    cs_vec3_cross(m, state->x.d[0], out->end[1]);
 }
 
 /* Change of the curvatures, and of their rates. */
@@ -108,61 +112,62 @@ struct change {
 };
 
 /* Change of the rate of the normal with changes of positions and velocities. */
-static void find_turn_change(const struct cs_normal_state *at, const struct cs_normal_sums *dx,
-                             const struct cs_normal_sums *dv, const struct change *by,
-                             double out[3]) {
+static void find_turn_change(const struct cs_normal_state *state,
+                             const struct cs_normal_sums *dx, const struct cs_normal_sums *dv,
+                             const struct change *by, double out[3]) {
     double by_velocity[3], by_position[3], product[3];
-    product_rate(&at->x, dv, by_velocity);
-    product_rate(&at->v, dx, by_position);
+    product_rate(&state->x, dv, by_velocity);
+    product_rate(&state->v, dx, by_position);
     for (int c = 0; c < 3; c++)
         product[c] = by_velocity[c] + by_position[c];
-    const double along = at->length_slope * cs_vec3_dot(at->normal, at->rate);
-    const double turned = at->length_slope * (cs_vec3_dot(by->normal, at->rate) +
-                                              cs_vec3_dot(at->normal, product));
+    const double along = state->length_slope * cs_vec3_dot(state->normal, state->rate);
+    const double turned = state->length_slope * (cs_vec3_dot(by->normal, state->rate) +
+                                                 cs_vec3_dot(state->normal, product));
     for (int c = 0; c < 3; c++)
-        out[c] = (product[c] - by->normal[c] * along - at->normal[c] * turned -
-                  at->turn[c] * by->length) /
-                 at->length;
+        out[c] = (product[c] - by->normal[c] * along - state->normal[c] * turned -
+                  state->turn[c] * by->length) /
+                 state->length;
 }
 
-static void find_change(const struct cs_normal_state *at, const struct cs_normal_sums *dx,
+static void find_change(const struct cs_normal_state *state, const struct cs_normal_sums *dx,
                         const struct cs_normal_sums *dv, struct change *by) {
     double turn[3];
-    product_rate(&at->x, dx, by->product);
-    by->length = at->length_slope * cs_vec3_dot(at->normal, by->product);
-    normal_rate(at, by->product, by->normal);
-    find_turn_change(at, dx, dv, by, turn);
+    product_rate(&state->x, dx, by->product);
+    by->length = state->length_slope * cs_vec3_dot(state->normal, by->product);
+    normal_rate(state, by->product, by->normal);
+    find_turn_change(state, dx, dv, by, turn);
     for (int a = 0; a < 3; a++) {
-        by->kappa[a] = cs_vec3_dot(dx->k[a], at->normal) + cs_vec3_dot(at->x.k[a], by->normal);
-        by->kappa_rate[a] = cs_vec3_dot(dv->k[a], at->normal) +
-                            cs_vec3_dot(at->v.k[a], by->normal) +
-                            cs_vec3_dot(dx->k[a], at->turn) + cs_vec3_dot(at->x.k[a], turn);
+        by->kappa[a] =
+            cs_vec3_dot(dx->k[a], state->normal) + cs_vec3_dot(state->x.k[a], by->normal);
+        by->kappa_rate[a] =
+            cs_vec3_dot(dv->k[a], state->normal) + cs_vec3_dot(state->v.k[a], by->normal) +
+            cs_vec3_dot(dx->k[a], state->turn) + cs_vec3_dot(state->x.k[a], turn);
     }
 }
 
 /* Change of the reaction to moments M that change by dM. */
-static void change_reaction(const struct cs_normal_state *at, const struct cs_normal_sums *dx,
-                            const struct change *by, const double M[3], const double dM[3],
-                            struct reaction *out) {
+static void change_reaction(const struct cs_normal_state *state,
+                            const struct cs_normal_sums *dx, const struct change *by,
+                            const double M[3], const double dM[3], struct reaction *out) {
     double m[3], dm[3], one[3], other[3];
-    find_lever(at, M, m);
-    find_lever(at, dM, dm);
+    find_lever(state, M, m);
+    find_lever(state, dM, dm);
     for (int c = 0; c < 3; c++) {
         for (int a = 0; a < 3; a++) {
             dm[c] += M[a] *
-                     (dx->k[a][c] - at->length_slope * (by->kappa[a] * at->normal[c] +
-                                                        at->kappa[a] * by->normal[c])) /
-                     at->length;
-            out->moment[a][c] = dM[a] * at->normal[c] + M[a] * by->normal[c];
+                     (dx->k[a][c] - state->length_slope * (by->kappa[a] * state->normal[c] +
+                                                           state->kappa[a] * by->normal[c])) /
+                     state->length;
+            out->moment[a][c] = dM[a] * state->normal[c] + M[a] * by->normal[c];
         }
         // the length divides m
-        dm[c] -= m[c] * by->length / at->length;
+        dm[c] -= m[c] * by->length / state->length;
     }
     cs_vec3_cross(dx->d[1], m, one);
-    cs_vec3_cross(at->x.d[1], dm, other);
+    cs_vec3_cross(state->x.d[1], dm, other);
     for (int c = 0; c < 3; c++)
         out->end[0][c] = one[c] + other[c];
-    cs_vec3_cross(dm, at->x.d[0], one);
+    cs_vec3_cross(dm, state->x.d[0], one);
     cs_vec3_cross(m, dx->d[0], other);
     for (int c = 0; c < 3; c++)
         out->end[1][c] = one[c] + other[c];
@@ -184,28 +189,28 @@ static void spread(const struct cs_bending_stencil *of, const struct reaction *b
 }
 
 void cs_normal_stencil_force(const struct cs_bending_stencil *of,
-                             const struct cs_normal_state *at, struct cs_normal_factors by,
+                             const struct cs_normal_state *state, struct cs_normal_factors by,
                              double out[CS_NORMAL_FORCES]) {
     struct reaction reaction;
     double M[3];
-    cs_normal_stencil_moments(of, at, by, M);
-    find_reaction(at, M, &reaction);
+    cs_normal_stencil_moments(of, state, by, M);
+    find_reaction(state, M, &reaction);
     spread(of, &reaction, out);
 }
 
 void cs_normal_stencil_derivative(const struct cs_bending_stencil *of,
-                                  const struct cs_normal_state *at, struct cs_normal_factors by,
-                                  const struct cs_normal_sums *dx,
+                                  const struct cs_normal_state *state,
+                                  struct cs_normal_factors by, const struct cs_normal_sums *dx,
                                   const struct cs_normal_sums *dv,
                                   double out[CS_NORMAL_FORCES]) {
     struct reaction reaction;
     struct change change;
     double M[3], dM[3], s[3];
-    find_change(at, dx, dv, &change);
-    cs_normal_stencil_moments(of, at, by, M);
+    find_change(state, dx, dv, &change);
+    cs_normal_stencil_moments(of, state, by, M);
     for (int a = 0; a < 3; a++)
         s[a] = by.change * change.kappa[a] + by.change_rate * change.kappa_rate[a];
     multiply(&of->moduli, s, dM);
-    change_reaction(at, dx, &change, M, dM, &reaction);
+    change_reaction(state, dx, &change, M, dM, &reaction);
     spread(of, &reaction, out);
 }

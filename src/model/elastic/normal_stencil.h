@@ -37,19 +37,19 @@ void cs_normal_stencil_sums(const struct cs_bending_stencil *of, size_t n, const
                             struct cs_normal_sums *sums);
 /* v may be NULL: 0. */
 void cs_normal_stencil_state(const struct cs_bending_stencil *of, size_t n, const double *x,
-                             const double *v, struct cs_normal_state *at);
+                             const double *v, struct cs_normal_state *state);
 /* A D times the curvatures less those at rest, and their rates, by the factors. */
 void cs_normal_stencil_moments(const struct cs_bending_stencil *of,
-                               const struct cs_normal_state *at, struct cs_normal_factors by,
+                               const struct cs_normal_state *state, struct cs_normal_factors by,
                                double M[3]);
 /* Forces on the points, times -1. */
 void cs_normal_stencil_force(const struct cs_bending_stencil *of,
-                             const struct cs_normal_state *at, struct cs_normal_factors by,
+                             const struct cs_normal_state *state, struct cs_normal_factors by,
                              double out[CS_NORMAL_FORCES]);
 /* Their change with positions by dx and velocities by dv. */
 void cs_normal_stencil_derivative(const struct cs_bending_stencil *of,
-                                  const struct cs_normal_state *at, struct cs_normal_factors by,
-                                  const struct cs_normal_sums *dx,
+                                  const struct cs_normal_state *state,
+                                  struct cs_normal_factors by, const struct cs_normal_sums *dx,
                                   const struct cs_normal_sums *dv,
                                   double out[CS_NORMAL_FORCES]);
 

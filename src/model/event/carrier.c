@@ -22,11 +22,11 @@ static void set_normal(struct cs_carrier *at) {
         at->rate[3][c] -= along * n[c];
 }
 
-void cs_carrier_at(const struct cs_posed_collider *surface, uint32_t triangle,
+void cs_carrier_at(const struct cs_posed_collider *collider, uint32_t triangle,
                    struct cs_carrier *out) {
-    const uint32_t *at = surface->collider->mesh.geometry->triangles + 3 * (size_t)triangle;
+    const uint32_t *at = collider->collider->mesh.geometry->triangles + 3 * (size_t)triangle;
     for (int k = 0; k < 3; k++)
-        cs_posed_collider_vertex(surface, at[k], out->place[k], out->rate[k]);
+        cs_posed_collider_vertex(collider, at[k], out->place[k], out->rate[k]);
     for (int k = 1; k < 3; k++)
         for (int c = 0; c < 3; c++) {
             out->place[k][c] -= out->place[0][c];

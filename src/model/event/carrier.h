@@ -13,7 +13,7 @@ struct cs_carrier {
 };
 
 /* The triangle of a surface at its pose. */
-void cs_carrier_at(const struct cs_posed_collider *surface, uint32_t triangle,
+void cs_carrier_at(const struct cs_posed_collider *collider, uint32_t triangle,
                    struct cs_carrier *out);
 
 /* (a, b, h) of p. Returns the squared distance in m2 of p from its point at a and b limited to

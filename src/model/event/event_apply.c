@@ -13,19 +13,19 @@
 #include <math.h>
 #include <string.h>
 
-void cs_event_mark(const struct cs_system *system, const struct cs_event_target *aim) {
+void cs_event_mark(const struct cs_system *system, const struct cs_event_target *target) {
     bool *marks = system->events->work;
     memset(marks, 0, system->view.n * sizeof *marks);
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_body_range *range = system->bodies + b;
-        if (aim->body >= 0 && aim->body != b)
+        if (target->body >= 0 && target->body != b)
             continue;
-        if (aim->particles.n == 0) {
+        if (target->particles.n == 0) {
             memset(marks + range->first, true, range->count * sizeof *marks);
             continue;
         }
         struct cs_body body = cs_scene_bodies(system->scene)[b];
-        body.pins = aim->particles;
+        body.pins = target->particles;
         cs_shape_pin(&body, system->view.n, range->first, system->start, marks + range->first);
     }
 }
@@ -92,14 +92,14 @@ static void unpin(struct cs_system *system, uint32_t i) {
 
 /* Stores strength and direction of the wind before and after a gust. A number that the gust
  * does not give (NaN) stays. */
-static void begin_gust(const struct cs_events *events, const struct cs_wind_change *gust,
+static void begin_gust(const struct cs_events *events, const struct cs_wind_change *change,
                        struct cs_event_state *state) {
     const struct cs_wind *wind = &events->scene.forces.wind;
-    const bool turns = !isnan(gust->direction[0]);
+    const bool turns = !isnan(change->direction[0]);
     state->first = wind->strength;
-    state->last = isnan(gust->strength) ? wind->strength : gust->strength;
+    state->last = isnan(change->strength) ? wind->strength : change->strength;
     memcpy(state->wind_ends[0], wind->direction, sizeof state->wind_ends[0]);
-    memcpy(state->wind_ends[1], turns ? gust->direction : wind->direction,
+    memcpy(state->wind_ends[1], turns ? change->direction : wind->direction,
            sizeof state->wind_ends[1]);
 }
 

@@ -49,12 +49,12 @@ void cs_event_show_moves(struct cs_system *system) {
     for (uint32_t k = 0; k < n; k++) {
         const double since = system->motions[k].t_begin;
         double *shown = system->collider_motion + 3 * (size_t)k;
-        struct cs_posed_collider at;
-        cs_posed_collider_at(system, k, since, &at);
+        struct cs_posed_collider collider;
+        cs_posed_collider_at(system, k, since, &collider);
         for (int c = 0; c < 3; c++) {
-            shown[c] = at.rotation_centre[c] - since * at.velocity[c];
-            shown[3 * n + c] = at.velocity[c];
-            shown[6 * n + c] = at.spin[c];
+            shown[c] = collider.rotation_centre[c] - since * collider.velocity[c];
+            shown[3 * n + c] = collider.velocity[c];
+            shown[6 * n + c] = collider.spin[c];
         }
     }
 }
@@ -88,12 +88,12 @@ static void stop(struct cs_collider_motion *motion, double t) {
 static void turn_about(const struct cs_system *system, const struct cs_move *move, double t,
                        struct cs_collider_motion *motion) {
     const double *m = motion->rotation;
-    struct cs_posed_collider at;
+    struct cs_posed_collider collider;
     if (isnan(move->centre[0]))
         return;
-    cs_posed_collider_at(system, (uint32_t)move->collider, t, &at);
+    cs_posed_collider_at(system, (uint32_t)move->collider, t, &collider);
     for (int c = 0; c < 3; c++)
-        motion->pivot[c] = move->centre[c] - at.centre[c];
+        motion->pivot[c] = move->centre[c] - collider.centre[c];
     for (int c = 0; c < 3; c++)
         motion->arm[c] = -(m[c] * motion->pivot[0] + m[3 + c] * motion->pivot[1] +
                            m[6 + c] * motion->pivot[2]);
@@ -104,15 +104,15 @@ static void turn_about(const struct cs_system *system, const struct cs_move *mov
 static void begin_path_at(const struct cs_system *system, const struct cs_move *move, double t,
                           const struct cs_collider_motion *motion,
                           struct cs_event_state *state) {
-    struct cs_posed_collider at;
+    struct cs_posed_collider collider;
     memcpy(state->origin, motion->shift_begin, sizeof state->origin);
     memset(state->chord_to, 0, sizeof state->chord_to);
     if (move->relative)
         return;
-    cs_posed_collider_at(system, (uint32_t)move->collider, t, &at);
+    cs_posed_collider_at(system, (uint32_t)move->collider, t, &collider);
     for (int c = 0; c < 3; c++) {
-        state->origin[c] = motion->shift_begin[c] - at.rotation_centre[c];
-        state->chord_to[c] = at.rotation_centre[c];
+        state->origin[c] = motion->shift_begin[c] - collider.rotation_centre[c];
+        state->chord_to[c] = collider.rotation_centre[c];
     }
 }
 
@@ -183,17 +183,17 @@ void cs_event_follow_growth(struct cs_system *system) {
 /* m, from the centre to the farthest point of a collider: the half diagonal of its core plus
  * its radius. Of a plane, which has none, to the farthest particle. */
 static double reach_of(const struct cs_system *system,
-                       const struct cs_posed_collider *obstacle) {
-    const double *core = obstacle->half_sizes, *x = system->state;
+                       const struct cs_posed_collider *collider) {
+    const double *core = collider->half_sizes, *x = system->state;
     const size_t n = system->view.n;
-    if (!cs_shape_is_endless(obstacle->shape))
+    if (!cs_shape_is_endless(collider->shape))
         return sqrt(core[0] * core[0] + core[1] * core[1] + core[2] * core[2]) +
-               obstacle->radius;
+               collider->radius;
     double squared = 0;
     for (size_t i = 0; i < n; i++) {
         double sum = 0;
         for (size_t c = 0; c < 3; c++) {
-            const double d = x[c * n + i] - obstacle->centre[c];
+            const double d = x[c * n + i] - collider->centre[c];
             sum += d * d;
         }
         squared = fmax(squared, sum);
@@ -207,11 +207,11 @@ double cs_event_angular_speed(const struct cs_system *system) {
         const struct cs_collider_motion *motion = system->motions + k;
         const double *w = motion->spin;
         const double rate = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-        struct cs_posed_collider obstacle;
+        struct cs_posed_collider collider;
         if (rate == 0)
             continue;
-        cs_posed_collider_at(system, k, motion->t_begin, &obstacle);
-        speed = fmax(speed, rate * (reach_of(system, &obstacle) +
+        cs_posed_collider_at(system, k, motion->t_begin, &collider);
+        speed = fmax(speed, rate * (reach_of(system, &collider) +
                                     sqrt(cs_vec3_dot(motion->arm, motion->arm))));
     }
     return speed;

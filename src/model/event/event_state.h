@@ -242,7 +242,7 @@ double cs_event_chord_end(const struct cs_events *events, uint32_t event, uint32
  * x and v: their own state, pins, masses, values, pushes, and colliders on paths. Springs
  * follow from the values. Does nothing for a system without events. A record that would lead
  * outside an array sets record->failed. */
-void cs_events_serialise(struct cs_system *system, struct cs_serialiser *record);
+void cs_events_serialise(struct cs_system *system, struct cs_serialiser *serialiser);
 
 /* Viewpoint forces: the particles that the events `viewpoint_force` act
  * on, and the times at which visibility is tested.
@@ -309,6 +309,6 @@ uint32_t cs_viewpoint_forces_cuts(const struct cs_scene *scene, double t);
 
 /* Marks in events->work (n) the particles that an event selects: of a body or of all, those
  * that a pin of the same description would hold. */
-void cs_event_mark(const struct cs_system *system, const struct cs_event_target *aim);
+void cs_event_mark(const struct cs_system *system, const struct cs_event_target *target);
 
 #endif

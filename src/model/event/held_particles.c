@@ -29,7 +29,7 @@ struct frame {
     double lever[3]; /* m, from the point of rotation, whose rate it is, to p */
     bool is_turned;  /* R is not the identity, or will not be */
     bool deforms;    /* it is `surface`, with key frames, and the above does not count */
-    struct cs_posed_collider surface;
+    struct cs_posed_collider collider;
 };
 
 static const double no_turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -52,19 +52,19 @@ static bool leads(const struct cs_events *events, uint32_t holder) {
 
 static void collider_frame(const struct cs_system *system, uint32_t k, double t,
                            struct frame *out) {
-    struct cs_posed_collider at;
-    cs_posed_collider_at(system, k, t, &at);
-    out->deforms = at.collider->mesh.paths;
-    out->surface = at;
-    memcpy(out->point, at.centre, sizeof out->point);
-    memcpy(out->rate, at.velocity, sizeof out->rate);
-    memcpy(out->spin, at.spin, sizeof out->spin);
+    struct cs_posed_collider collider;
+    cs_posed_collider_at(system, k, t, &collider);
+    out->deforms = collider.collider->mesh.paths;
+    out->collider = collider;
+    memcpy(out->point, collider.centre, sizeof out->point);
+    memcpy(out->rate, collider.velocity, sizeof out->rate);
+    memcpy(out->spin, collider.spin, sizeof out->spin);
     if (system->motions)
         cs_posed_collider_rotate(system->motions + k, t, out->turn);
     for (int c = 0; c < 3; c++)
-        out->lever[c] = at.centre[c] - at.rotation_centre[c];
-    out->is_turned =
-        memcmp(out->turn, no_turn, sizeof no_turn) || cs_vec3_dot(at.spin, at.spin) > 0;
+        out->lever[c] = collider.centre[c] - collider.rotation_centre[c];
+    out->is_turned = memcmp(out->turn, no_turn, sizeof no_turn) ||
+                     cs_vec3_dot(collider.spin, collider.spin) > 0;
 }
 
 /* Position chord_from + rate (t - chord_begin), and exactly chord_to at its end; with a spin
@@ -106,7 +106,7 @@ static void deformed_at(const struct cs_system *system, const struct frame *fram
     const size_t n = system->view.n;
     const double *own = system->events->offsets + i;
     struct cs_carrier at;
-    cs_carrier_at(&frame->surface, system->events->triangles[i], &at);
+    cs_carrier_at(&frame->collider, system->events->triangles[i], &at);
     for (int c = 0; c < 3; c++) {
         x[c] = at.place[0][c];
         v[c] = at.rate[0][c];
@@ -120,12 +120,12 @@ static void deformed_at(const struct cs_system *system, const struct frame *fram
 /* Gives particle i at p to the nearest triangle. */
 static void take_triangle(struct cs_system *system, const struct frame *frame, size_t i,
                           const double p[3]) {
-    const struct cs_trimesh *mesh = frame->surface.collider->mesh.geometry;
+    const struct cs_trimesh *mesh = frame->collider.collider->mesh.geometry;
     double least = HUGE_VAL;
     for (uint32_t k = 0; k < mesh->n_triangles; k++) {
         struct cs_carrier at;
         double own[3];
-        cs_carrier_at(&frame->surface, k, &at);
+        cs_carrier_at(&frame->collider, k, &at);
         const double squared = cs_carrier_find(&at, p, own);
         if (!(squared < least))
             continue;
@@ -323,7 +323,7 @@ static double deformed_speed(const struct cs_system *system, const struct frame 
     const double *own = system->events->offsets + i;
     const double weights = 1 + 2 * (fabs(own[0]) + fabs(own[system->view.n]));
     return weights *
-           (frame->surface.collider->mesh.paths->speed + cs_event_angular_speed(system));
+           (frame->collider.collider->mesh.paths->speed + cs_event_angular_speed(system));
 }
 
 void cs_event_find_held(struct cs_system *system, double t) {

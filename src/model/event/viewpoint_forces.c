@@ -75,8 +75,9 @@ static bool retest_visibility(const struct cs_system *system,
 
 /* out (3,n) += factor / mass along the direction of view, for selected free particles: a
  * force in N gives an acceleration in m/s2, an impulse in N s a velocity in m/s. */
-static void add(const struct cs_system *system, const struct cs_viewpoint_force_state *state,
-                double factor, double *out) {
+static void add_viewpoint_force(const struct cs_system *system,
+                                const struct cs_viewpoint_force_state *state, double factor,
+                                double *out) {
     const size_t n = system->view.n;
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
@@ -116,8 +117,8 @@ void cs_viewpoint_force_start(struct cs_system *system, uint32_t event) {
     if (state->active)
         plan_next(system, state, of->begin);
     else
-        add(system, state, viewpoint_force->force * viewpoint_force->duration,
-            system->state + 3 * (size_t)system->view.n);
+        add_viewpoint_force(system, state, viewpoint_force->force * viewpoint_force->duration,
+                            system->state + 3 * (size_t)system->view.n);
 }
 
 void cs_viewpoint_force_finish(struct cs_system *system, uint32_t event) {
@@ -149,7 +150,8 @@ void cs_viewpoint_forces_add_push(const struct cs_system *system, double *push) 
     const struct cs_viewpoint_forces *viewpoint_forces = system->events->viewpoint_forces;
     for (uint32_t k = 0; k < viewpoint_forces->n; k++)
         if (viewpoint_forces->states[k].active)
-            add(system, viewpoint_forces->states + k,
+            add_viewpoint_force(
+                system, viewpoint_forces->states + k,
                 viewpoint_force_of(system->scene, viewpoint_forces->states[k].event)->force,
                 push);
 }

@@ -106,14 +106,14 @@ static bool is_in_rectangle(const struct cs_visibility_query *visibility, const 
 
 /* Removes the candidates of a body that lie in or behind a collider. */
 static void hide_behind_collider(const struct cs_visibility_query *visibility,
-                                 const struct cs_posed_collider *obstacle, const double *x,
+                                 const struct cs_posed_collider *collider, const double *x,
                                  const struct cs_body_range *body, struct grid *grid) {
     const size_t n = grid->n, end = (size_t)body->first + body->count;
     for (size_t i = body->first; i < end; i++) {
         const double way[3] = {x[i] - visibility->eye[0], x[n + i] - visibility->eye[1],
                                x[2 * n + i] - visibility->eye[2]};
         grid->seen[i] = grid->seen[i] &&
-                        !cs_posed_collider_hits_segment(obstacle, visibility->eye, way, REACH);
+                        !cs_posed_collider_hits_segment(collider, visibility->eye, way, REACH);
     }
 }
 
@@ -132,10 +132,10 @@ static uint32_t mark(const struct cs_visibility_query *visibility,
     }
     /* colliders first: particles behind them would widen the bounds */
     for (uint32_t k = 0; k < colliders->n; k++) {
-        struct cs_posed_collider obstacle;
-        cs_posed_collider_at(system, k, t, &obstacle);
-        if (obstacle.collider->visible)
-            hide_behind_collider(visibility, &obstacle, x, body, grid);
+        struct cs_posed_collider collider;
+        cs_posed_collider_at(system, k, t, &collider);
+        if (collider.collider->visible)
+            hide_behind_collider(visibility, &collider, x, body, grid);
     }
     for (uint32_t i = body->first; i < end; i++) {
         position_of(grid->work, grid->n, i, p);

@@ -18,7 +18,7 @@
 
 #include <math.h>
 
-static struct cs_plan_row plan(const struct cs_scene *scene) {
+static struct cs_plan_row plan_airflow(const struct cs_scene *scene) {
     const bool flows = scene->forces.wind.present && !isnan(scene->forces.wind.velocity[0]);
     return (struct cs_plan_row){
         .built = flows, .reason = flows ? "forces.wind.velocity; it needs normals" : NULL};
@@ -156,7 +156,7 @@ static const char *const ramps[] = {"forces.wind.velocity", "forces.wind.density
 const struct cs_term cs_term_airflow = {
     .name = "airflow",
     .part_bits = CS_PART_WIND | CS_PART_DISSIPATIVE,
-    .plan = plan,
+    .plan = plan_airflow,
     .uses = uses,
     .rampable_keys = ramps,
     .add_force = add_force,

@@ -6,7 +6,7 @@
 #include <math.h>
 
 /* the plan has a line for events as such */
-static struct cs_plan_row plan(const struct cs_scene *scene) {
+static struct cs_plan_row plan_event_force(const struct cs_scene *scene) {
     const struct cs_event *events = cs_scene_events(scene);
     struct cs_plan_row row = {0};
     for (uint32_t e = 0; e < scene->events.n; e++)
@@ -37,7 +37,7 @@ static double max_acceleration(const struct cs_system *system, size_t i) {
 const struct cs_term cs_term_push = {
     .name = "pushes",
     .part_bits = CS_PART_EXTERNAL,
-    .plan = plan,
+    .plan = plan_event_force,
     .add_force = add_force,
     .work_column = "events_force",
     .max_acceleration = max_acceleration,

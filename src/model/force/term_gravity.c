@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-static struct cs_plan_row plan(const struct cs_scene *scene) {
+static struct cs_plan_row plan_gravity(const struct cs_scene *scene) {
     const double *g = scene->forces.gravity;
     const double size = fabs(g[0]) + fabs(g[1]) + fabs(g[2]);
     const bool acts = cs_event_key_acts(scene, size, "forces.gravity");
@@ -42,7 +42,7 @@ static const char *const ramps[] = {"forces.gravity", NULL};
 const struct cs_term cs_term_gravity = {
     .name = "gravity",
     .part_bits = CS_PART_GRAVITY,
-    .plan = plan,
+    .plan = plan_gravity,
     .rampable_keys = ramps,
     .add_force = add_force,
     .energy = energy,

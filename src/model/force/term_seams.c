@@ -15,7 +15,7 @@
 
 #include <math.h>
 
-static struct cs_plan_row plan(const struct cs_scene *scene) {
+static struct cs_plan_row plan_seams(const struct cs_scene *scene) {
     return (struct cs_plan_row){.built = scene->seams.n > 0,
                                 .reason = scene->seams.n ? "the scene has seams" : NULL};
 }
@@ -85,7 +85,7 @@ static void prepare(const struct cs_system *system, const struct cs_eval *at) {
 }
 
 /* f += weights times the stored forces at a block, in the order of the stitches. */
-static void add(const struct cs_system *system, const struct cs_eval *at, double *f) {
+static void add_seams(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const struct cs_seams *seams = system->seams;
     const size_t n = system->view.n;
     uint32_t low = 0;
@@ -217,11 +217,11 @@ static void add_bound(const struct cs_system *system, const struct cs_gershgorin
 const struct cs_term cs_term_seams = {
     .name = "seams",
     .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
-    .plan = plan,
+    .plan = plan_seams,
     .build = cs_seams_build,
     .prepare = prepare,
-    .add_force = add,
-    .add_jvp = add,
+    .add_force = add_seams,
+    .add_jvp = add_seams,
     .energy = energy,
     .energy_kind = CS_ENERGY_ELASTIC,
     .energy_column = "other",

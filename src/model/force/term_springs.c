@@ -2,7 +2,7 @@
 #include "model/force/term.h"
 
 /* the plan has a line for springs, with the bytes of their arrays */
-static struct cs_plan_row plan(const struct cs_scene *scene) {
+static struct cs_plan_row plan_springs(const struct cs_scene *scene) {
     uint32_t n_springs = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         cs_springs_of_body(cs_scene_bodies(scene) + b, b, 0, NULL, NULL, &n_springs);
@@ -55,7 +55,7 @@ static const char *const ramps[] = {"bodies.springs.stretch", "bodies.springs.sh
 const struct cs_term cs_term_springs = {
     .name = "springs",
     .part_bits = CS_PART_DAMPED_SPRINGS,
-    .plan = plan,
+    .plan = plan_springs,
     .rampable_keys = ramps,
     .prepare = prepare,
     .add_force = add_force,

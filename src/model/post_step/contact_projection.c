@@ -76,32 +76,30 @@ static bool absorb(const struct cs_collider *collider, const double n[3], double
  * alike, so that a particle that friction holds stays in its place. If it passes the collider,
  * n and d are those of the half-space at its entry. */
 static enum cs_project_result project_particle(const struct cs_posed_collider *before,
-                                               const struct cs_posed_collider *obstacle,
-                                               double dt, const double last[3], double p[3],
-                                               double v[3]) {
-    const struct cs_collider *collider = obstacle->collider;
-    double n[3], provenance[3], from[3], move[3], gap;
-    if (!cs_tunnelling_find(before, obstacle, last, p, &gap, n))
-        gap = cs_posed_collider_signed_distance(obstacle, p, n);
+                                               const struct cs_posed_collider *posed, double dt,
+                                               const double last[3], double p[3], double v[3]) {
+    const struct cs_collider *collider = posed->collider;
+    double n[3], surface_v[3], from[3], move[3], gap;
+    if (!cs_tunnelling_find(before, posed, last, p, &gap, n))
+        gap = cs_posed_collider_signed_distance(posed, p, n);
     if (!(gap < 0))
         return CS_PROJECT_NONE;
 
     /* position that the particle would have, had it moved with the collider */
-    cs_posed_collider_velocity(obstacle, p, provenance);
+    cs_posed_collider_velocity(posed, p, surface_v);
     for (int c = 0; c < 3; c++) {
-        from[c] = last[c] + dt * provenance[c];
+        from[c] = last[c] + dt * surface_v[c];
         move[c] = p[c] - from[c];
-        v[c] -= provenance[c];
+        v[c] -= surface_v[c];
     }
     const bool stopped = absorb(collider, n, v);
     const bool kept =
         apply_friction(move, n, collider->friction * fmin(fraction_of(collider), 1) * -gap);
     for (int c = 0; c < 3; c++) {
-        v[c] += provenance[c];
+        v[c] += surface_v[c];
         p[c] = from[c] + move[c] - gap * n[c];
     }
-    return stopped && kept && cs_vec3_is_zero(provenance) ? CS_PROJECT_STUCK
-                                                          : CS_PROJECT_PUSHED;
+    return stopped && kept && cs_vec3_is_zero(surface_v) ? CS_PROJECT_STUCK : CS_PROJECT_PUSHED;
 }
 
 /* One commit. */
@@ -119,7 +117,7 @@ static size_t count_of(const struct cs_contact_projection *contact) {
 }
 
 /* Reads, and below writes, one particle of (3,n). */
-static void take(const double *from, size_t n, size_t i, double out[3]) {
+static void copy_point(const double *from, size_t n, size_t i, double out[3]) {
     for (size_t c = 0; c < 3; c++)
         out[c] = from[c * n + i];
 }
@@ -153,16 +151,16 @@ static bool passes_any(const struct cs_contact_projection *contact, const double
 static bool is_behind_any(const struct step *step, size_t i) {
     const struct cs_contact_projection *contact = step->contact;
     double p[3], last[3], normal[3];
-    take(step->x, count_of(contact), i, p);
+    copy_point(step->x, count_of(contact), i, p);
     for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
-        const struct cs_posed_collider *obstacle = contact->colliders + k;
-        if (cs_posed_collider_is_near(obstacle, obstacle->collider->thickness, p) &&
-            cs_posed_collider_signed_distance(obstacle, p, normal) < 0)
+        const struct cs_posed_collider *collider = contact->colliders + k;
+        if (cs_posed_collider_is_near(collider, collider->collider->thickness, p) &&
+            cs_posed_collider_signed_distance(collider, p, normal) < 0)
             return true;
     }
     if (contact->shortest_tunnel == HUGE_VAL)
         return false;
-    take(contact->state_before, count_of(contact), i, last);
+    copy_point(contact->state_before, count_of(contact), i, last);
     return may_pass(contact, last, p) && passes_any(contact, last, p);
 }
 
@@ -173,9 +171,9 @@ static unsigned project_against_all(const struct step *step, size_t i) {
     const size_t n = count_of(contact);
     double p[3], v[3], last[3];
     unsigned pushed = 0;
-    take(step->x, n, i, p);
-    take(step->v, n, i, v);
-    take(contact->state_before, n, i, last);
+    copy_point(step->x, n, i, p);
+    copy_point(step->v, n, i, v);
+    copy_point(contact->state_before, n, i, last);
     for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
         const enum cs_project_result touch = project_particle(
             contact->colliders_before + k, contact->colliders + k, step->dt, last, p, v);
@@ -228,18 +226,18 @@ static void complete(const struct step *step) {
 static void push(const struct step *step) {
     struct cs_contact_projection *contact = step->contact;
     const size_t n3 = 3 * count_of(contact);
-    const struct cs_projection_step blow = {.t = step->t,
-                                            .dt = step->dt,
-                                            .colliders = contact->colliders,
-                                            .colliders_before = contact->colliders_before,
-                                            .before_step = contact->state_before,
-                                            .x = step->x,
-                                            .v = step->v,
-                                            .corrected = contact->state_after,
-                                            .is_pushed = contact->is_pushed};
+    const struct cs_projection_step pushed = {.t = step->t,
+                                              .dt = step->dt,
+                                              .colliders = contact->colliders,
+                                              .colliders_before = contact->colliders_before,
+                                              .before_step = contact->state_before,
+                                              .x = step->x,
+                                              .v = step->v,
+                                              .corrected = contact->state_after,
+                                              .is_pushed = contact->is_pushed};
     complete(step);
     // If the push was cut short, a particle may still be behind a surface and is not at rest.
-    if (!cs_projection_energy_limit(&contact->energy_limit, &blow))
+    if (!cs_projection_energy_limit(&contact->energy_limit, &pushed))
         cs_static_friction_reject(&contact->static_friction);
     memcpy(step->x, contact->state_after, n3 * sizeof *step->x);
     memcpy(step->v, contact->state_after + n3, n3 * sizeof *step->v);
@@ -289,8 +287,8 @@ double cs_contact_projection_fraction(struct cs_contact_projection *contact, dou
     for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++)
         for (size_t i = 0; i < n; i++) {
             double from[3], to[3];
-            take(x0, n, i, from);
-            take(x1, n, i, to);
+            copy_point(x0, n, i, from);
+            copy_point(x1, n, i, to);
             if (contact->system->inv_mass[i] > 0 &&
                 cs_tunnelling_is_deep(contact->colliders_before + k, contact->colliders + k,
                                       from, to))
@@ -300,12 +298,12 @@ double cs_contact_projection_fraction(struct cs_contact_projection *contact, dou
 }
 
 void cs_contact_projection_serialise(struct cs_contact_projection *contact,
-                                     struct cs_serialiser *record) {
-    cs_serialiser_bytes(record, contact->state_before,
+                                     struct cs_serialiser *serialiser) {
+    cs_serialiser_bytes(serialiser, contact->state_before,
                         6 * count_of(contact) * sizeof *contact->state_before);
-    CS_SERIALISER(record, contact->counts);
-    cs_static_friction_serialise(&contact->static_friction, record);
-    cs_projection_energy_serialise(&contact->energy_limit, record);
+    CS_SERIALISER(serialiser, contact->counts);
+    cs_static_friction_serialise(&contact->static_friction, serialiser);
+    cs_projection_energy_serialise(&contact->energy_limit, serialiser);
 }
 
 /* No energy is known yet, and no contact exists. */

@@ -58,7 +58,7 @@ void cs_contact_projection_store(struct cs_contact_projection *contact, const do
 
 /* Reads or writes all that one commit leaves to the next, for a checkpoint. */
 void cs_contact_projection_serialise(struct cs_contact_projection *contact,
-                                     struct cs_serialiser *record);
+                                     struct cs_serialiser *serialiser);
 
 /* Starts a run at (x, v) at t, or restarts it there after an event. */
 void cs_contact_start(struct cs_contact_projection *contact, double t, const double *x,
@@ -145,7 +145,7 @@ struct cs_initial_penetration {
  * edges of bodies with contact pierce triangles, unless crossings are ignored; or as
  * cs_initial_layer_resolve. The state may then have been changed in part. */
 enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
-                                              struct cs_initial_penetration *inside,
+                                              struct cs_initial_penetration *penetration,
                                               struct cs_error *error);
 
 /* Looks for surfaces with contact that touch at the start, so that no side can be told.
@@ -157,11 +157,11 @@ enum cs_status cs_touching_surfaces_check(struct cs_system *system, struct cs_er
  * contact.start "move-out" moves bodies to balance instead, and counts them in *inside.
  * CS_ERR_SCENE, with both surfaces, their energy and the move that would do; CS_ERR_MEMORY. */
 enum cs_status cs_initial_layer_resolve(struct cs_system *system,
-                                        struct cs_initial_penetration *inside,
+                                        struct cs_initial_penetration *penetration,
                                         struct cs_error *error);
 
 /* Adds what was moved as one line without an end; nothing if nothing was. */
-void cs_initial_penetration_print(const struct cs_initial_penetration *inside,
+void cs_initial_penetration_print(const struct cs_initial_penetration *penetration,
                                   struct cs_text *out);
 
 #endif

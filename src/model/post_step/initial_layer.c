@@ -67,9 +67,8 @@ static void add_contact(struct interface *at, const struct cs_point_contact *con
 }
 
 /* Adds the samples of body a that are in range of a collider. */
-static void add_samples(const struct cs_system *system,
-                        const struct cs_posed_collider_law *near, uint32_t collider,
-                        struct interface *at) {
+static void add_samples(const struct cs_system *system, const struct cs_posed_collider_law *law,
+                        uint32_t collider, struct interface *at) {
     const struct cs_contact_samples *samples = system->contact_samples;
     const uint32_t first = system->bodies[at->a].first, count = system->bodies[at->a].count;
     const double rest[3] = {0};
@@ -83,7 +82,7 @@ static void add_samples(const struct cs_system *system,
             while (point.particles[0] - first < count && cs_contact_sample_next(&point)) {
                 cs_contact_sample_interpolate(&point, system->view.n, system->state, p);
                 if (cs_contact_sample_mass(system, &point) < HUGE_VAL &&
-                    cs_posed_collider_law_in_range(near, p, rest, &contact))
+                    cs_posed_collider_law_in_range(law, p, rest, &contact))
                     add_contact(at, &contact);
             }
         }
@@ -95,17 +94,17 @@ static void measure_collider(const struct search *search, struct interface *at) 
     const uint32_t collider = at->b - system->scene->bodies.n;
     const size_t n = system->view.n, first = system->bodies[at->a].first;
     const double *x = system->state, rest[3] = {0};
-    struct cs_posed_collider_law near;
+    struct cs_posed_collider_law law;
     struct cs_point_contact contact;
-    cs_posed_collider_law_at(system, collider, 0, &near);
-    at->range = near.params.range;
-    at->k = near.params.k;
+    cs_posed_collider_law_at(system, collider, 0, &law);
+    at->range = law.params.range;
+    at->k = law.params.k;
     for (size_t i = first; i < first + system->bodies[at->a].count; i++) {
         const double p[3] = {x[i], x[n + i], x[2 * n + i]};
-        if (system->inv_mass[i] > 0 && cs_posed_collider_law_in_range(&near, p, rest, &contact))
+        if (system->inv_mass[i] > 0 && cs_posed_collider_law_in_range(&law, p, rest, &contact))
             add_contact(at, &contact);
     }
-    add_samples(system, &near, collider, at);
+    add_samples(system, &law, collider, at);
 }
 
 /* Contact in pairs: the energy and the forces with the stiffness of all other pairs at 0. */
@@ -141,7 +140,7 @@ static void measure_pairs(const struct search *search, struct interface *at) {
 }
 
 /* Sets all but a and b. */
-static void measure(const struct search *search, struct interface *at) {
+static void measure_layer(const struct search *search, struct interface *at) {
     const struct cs_collider *collider = cs_scene_collider_at(search->system->scene, at->b);
     *at = (struct interface){.a = at->a, .b = at->b};
     if (collider && !collider->mesh.present)
@@ -157,7 +156,7 @@ static double admitted(const struct search *search, const struct interface *at) 
 }
 
 /* Finds the first two surfaces from (a, b) on that store too much; returns false if none. */
-static bool find(const struct search *search, struct interface *at) {
+static bool find_interface(const struct search *search, struct interface *at) {
     const struct cs_scene *scene = search->system->scene;
     // mostly none stores anything, and then none is measured by itself
     const bool pairs = search->system->pairs &&
@@ -172,7 +171,7 @@ static bool find(const struct search *search, struct interface *at) {
                     : !pairs || !cs_scene_bodies_collide(scene, a, b, &friction))
                 continue;
             *at = (struct interface){.a = a, .b = b};
-            measure(search, at);
+            measure_layer(search, at);
             if (at->energy > admitted(search, at))
                 return true;
         }
@@ -220,7 +219,7 @@ static bool is_balanced(const struct search *search, const struct way *way, doub
     double *kept = search->f + 3 * (size_t)system->view.n;
     memcpy(kept, system->state, bytes);
     move(system, way, length);
-    measure(search, &at);
+    measure_layer(search, &at);
     memcpy(system->state, kept, bytes);
     double load = 0;
     for (int c = 0; c < 3; c++)
@@ -285,7 +284,7 @@ static bool is_open(const struct cs_scene *scene, const struct interface *at) {
 static bool is_free(const struct search *search, struct interface *at, double range) {
     cs_body_pair_table_set_range(search->system, &search->system->pairs->body_pairs, at->a,
                                  at->b, range);
-    measure(search, at);
+    measure_layer(search, at);
     return at->energy == 0;
 }
 
@@ -314,8 +313,8 @@ static bool shrink(const struct search *search, struct interface *at) {
 /* --- messages --- */
 
 /* Reports two surfaces, what they store, and the move that would do. */
-static enum cs_status refuse(const struct search *search, const struct interface *at,
-                             struct cs_error *error) {
+static enum cs_status refuse_layer(const struct search *search, const struct interface *at,
+                                   struct cs_error *error) {
     const struct cs_scene *scene = search->system->scene;
     const bool asked = scene->contact.start == CS_CONTACT_START_MOVE_OUT;
     struct cs_text other = {0}, cure = {0};
@@ -349,31 +348,31 @@ static double stored(const struct cs_system *system) {
 
 /* Shrinks ranges, or moves bodies if the scene asks for that, until no two surfaces store too
  * much; or refuses. */
-static enum cs_status balance(struct search *search, struct cs_initial_penetration *inside,
+static enum cs_status balance(struct search *search, struct cs_initial_penetration *penetration,
                               struct cs_error *error) {
     const bool asked = search->system->scene->contact.start == CS_CONTACT_START_MOVE_OUT;
     const uint32_t most = MOVES * search->system->scene->bodies.n;
     struct interface at;
     struct way way;
-    for (uint32_t k = 0; find(search, &at); k++) {
+    for (uint32_t k = 0; find_interface(search, &at); k++) {
         if (!asked && shrink(search, &at))
             continue;
         if (!asked || k == most || !find_way(search, &at, &way))
-            return refuse(search, &at, error);
+            return refuse_layer(search, &at, error);
         move(search->system, &way, way.length);
-        inside->n_moves++;
-        inside->shift = fmax(inside->shift, way.length);
+        penetration->n_moves++;
+        penetration->shift = fmax(penetration->shift, way.length);
     }
     return CS_OK;
 }
 
 enum cs_status cs_initial_layer_resolve(struct cs_system *system,
-                                        struct cs_initial_penetration *inside,
+                                        struct cs_initial_penetration *penetration,
                                         struct cs_error *error) {
     const double *g = system->scene->forces.gravity;
     const size_t n = system->view.n, n_bodies = system->pairs ? system->surfaces->n_bodies : 0;
-    inside->energy[0] = inside->energy[1] = stored(system);
-    if (!(inside->energy[0] > 0))
+    penetration->energy[0] = penetration->energy[1] = stored(system);
+    if (!(penetration->energy[0] > 0))
         return CS_OK;
     if (system->pairs && cs_touching_surfaces_check(system, error))
         return error->status;
@@ -385,12 +384,12 @@ enum cs_status cs_initial_layer_resolve(struct cs_system *system,
     for (size_t i = 0; i < n; i++)
         search.mass += system->mass[i];
     if (search.f && search.k)
-        balance(&search, inside, error);
+        balance(&search, penetration, error);
     else
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the contact energy of %zu particles",
                 n);
     free(search.f);
     free(search.k);
-    inside->energy[1] = stored(system);
+    penetration->energy[1] = stored(system);
     return error->status;
 }

@@ -22,17 +22,17 @@
 enum { PASSES = 16 };
 
 /* Sets *collider, n and *depth to the collider that p is deepest in; returns false if none. */
-static bool find(const struct cs_system *system, const double p[3], uint32_t *collider,
-                 double n[3], double *depth) {
+static bool find_penetration(const struct cs_system *system, const double p[3],
+                             uint32_t *collider, double n[3], double *depth) {
     *depth = TOLERANCE;
     bool found = false;
     for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
-        struct cs_posed_collider obstacle;
+        struct cs_posed_collider posed;
         double normal[3];
-        cs_posed_collider_at(system, k, 0, &obstacle);
+        cs_posed_collider_at(system, k, 0, &posed);
         const double gap = system->scene->contact.law == CS_CONTACT_PROJECT
-                               ? cs_posed_collider_signed_distance(&obstacle, p, normal)
-                               : cs_posed_collider_distance(&obstacle, p, normal);
+                               ? cs_posed_collider_signed_distance(&posed, p, normal)
+                               : cs_posed_collider_distance(&posed, p, normal);
         if (!(-gap > *depth))
             continue;
         *depth = -gap;
@@ -45,8 +45,9 @@ static bool find(const struct cs_system *system, const double p[3], uint32_t *co
 }
 
 /* Reports particle i with its depth. */
-static enum cs_status refuse(const struct cs_system *system, uint32_t i, uint32_t collider,
-                             double depth, struct cs_error *error) {
+static enum cs_status refuse_penetration(const struct cs_system *system, uint32_t i,
+                                         uint32_t collider, double depth,
+                                         struct cs_error *error) {
     struct cs_text text = {0};
     const bool asked = system->scene->contact.start == CS_CONTACT_START_MOVE_OUT;
     cs_system_print_particle(system, i, &text);
@@ -71,14 +72,15 @@ static double way_beyond(const struct cs_system *system, uint32_t i, uint32_t co
 
 /* Moves particle i out of all colliders, or refuses it. */
 static enum cs_status clear(struct cs_system *system, uint32_t i,
-                            struct cs_initial_penetration *inside, struct cs_error *error) {
+                            struct cs_initial_penetration *penetration,
+                            struct cs_error *error) {
     const size_t size = system->view.n;
     double *x = system->state;
     double p[3] = {x[i], x[size + i], x[2 * size + i]}, n[3] = {0}, depth, moved = 0;
     uint32_t collider = 0;
-    for (int pass = 0; find(system, p, &collider, n, &depth); pass++) {
+    for (int pass = 0; find_penetration(system, p, &collider, n, &depth); pass++) {
         if (pass == PASSES || system->scene->contact.start == CS_CONTACT_START_REFUSE)
-            return refuse(system, i, collider, depth, error);
+            return refuse_penetration(system, i, collider, depth, error);
         // one that is moved by contact by force carries its weight where it comes to lie
         depth += way_beyond(system, i, collider);
         for (int c = 0; c < 3; c++)
@@ -89,8 +91,8 @@ static enum cs_status clear(struct cs_system *system, uint32_t i,
         return CS_OK;
     for (size_t c = 0; c < 3; c++)
         x[c * size + i] = p[c];
-    inside->n++;
-    inside->depth = fmax(inside->depth, moved);
+    penetration->n++;
+    penetration->depth = fmax(penetration->depth, moved);
     return CS_OK;
 }
 
@@ -98,13 +100,13 @@ static enum cs_status clear(struct cs_system *system, uint32_t i,
 static enum cs_status check_between_particles(const struct cs_system *system,
                                               const struct cs_contact_sample_chunk *chunk,
                                               uint32_t item, struct cs_error *error) {
-    struct cs_posed_collider obstacle;
+    struct cs_posed_collider collider;
     struct cs_contact_sample_point point;
-    cs_posed_collider_at(system, chunk->collider, 0, &obstacle);
+    cs_posed_collider_at(system, chunk->collider, 0, &collider);
     for (cs_contact_sample_first(chunk, item, &point); cs_contact_sample_next(&point);) {
         double p[3], n[3];
         cs_contact_sample_interpolate(&point, system->view.n, system->state, p);
-        const double depth = -cs_posed_collider_distance(&obstacle, p, n);
+        const double depth = -cs_posed_collider_distance(&collider, p, n);
         if (!(depth > TOLERANCE) || cs_contact_sample_mass(system, &point) == HUGE_VAL)
             continue;
         struct cs_text first = {0}, second = {0};
@@ -151,12 +153,12 @@ static enum cs_status check_crossings(const struct cs_system *system, struct cs_
 
 /* Particles first, then samples, whose vertices may have been moved, then crossings. */
 static enum cs_status check_inside(struct cs_system *system,
-                                   struct cs_initial_penetration *inside,
+                                   struct cs_initial_penetration *penetration,
                                    struct cs_error *error) {
     for (uint32_t i = 0; i < system->view.n && system->scene->colliders.n && !error->status;
          i++)
         if (system->inv_mass[i] > 0)
-            clear(system, i, inside, error);
+            clear(system, i, penetration, error);
     if (!error->status && system->contact_samples)
         check_between(system, error);
     return error->status ? error->status : check_crossings(system, error);
@@ -164,33 +166,35 @@ static enum cs_status check_inside(struct cs_system *system,
 
 /* Bodies within range come last: no move of whole bodies cures what is inside or crossed. A
  * move may bring a body into another surface, and all is checked again. */
-static enum cs_status resolve(struct cs_system *system, struct cs_initial_penetration *inside,
+static enum cs_status resolve(struct cs_system *system,
+                              struct cs_initial_penetration *penetration,
                               struct cs_error *error) {
-    if (check_inside(system, inside, error))
+    if (check_inside(system, penetration, error))
         return error->status;
     if (system->scene->contact.law == CS_CONTACT_FORCE &&
-        cs_initial_layer_resolve(system, inside, error))
+        cs_initial_layer_resolve(system, penetration, error))
         return error->status;
-    return inside->n_moves ? check_inside(system, inside, error) : CS_OK;
+    return penetration->n_moves ? check_inside(system, penetration, error) : CS_OK;
 }
 
 enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
-                                              struct cs_initial_penetration *inside,
+                                              struct cs_initial_penetration *penetration,
                                               struct cs_error *error) {
-    *inside = (struct cs_initial_penetration){0};
+    *penetration = (struct cs_initial_penetration){0};
     return system->scene->contact.start == CS_CONTACT_START_ALLOW
                ? check_crossings(system, error)
-               : resolve(system, inside, error);
+               : resolve(system, penetration, error);
 }
 
-void cs_initial_penetration_print(const struct cs_initial_penetration *inside,
+void cs_initial_penetration_print(const struct cs_initial_penetration *penetration,
                                   struct cs_text *out) {
-    if (inside->n)
+    if (penetration->n)
         cs_text_add(out, "%u particle%s started inside colliders, moved out by at most %.3g m",
-                    inside->n, inside->n == 1 ? "" : "s", inside->depth);
-    if (inside->n_moves)
+                    penetration->n, penetration->n == 1 ? "" : "s", penetration->depth);
+    if (penetration->n_moves)
         cs_text_add(out,
                     "%sbodies moved to balance by at most %.3g m: contact energy at the start "
                     "%.3g J, now %.3g J",
-                    inside->n ? "; " : "", inside->shift, inside->energy[0], inside->energy[1]);
+                    penetration->n ? "; " : "", penetration->shift, penetration->energy[0],
+                    penetration->energy[1]);
 }

@@ -126,122 +126,122 @@ static struct cs_energy_with_scale energy_of(const struct cs_projection_energy *
 }
 
 /* energy of the corrected state */
-static struct cs_energy_with_scale energy_after(struct cs_projection_energy *balance,
-                                                const struct cs_projection_step *blow) {
-    return energy_of(balance, blow->t, blow->corrected,
-                     blow->corrected + 3 * balance->system->view.n);
+static struct cs_energy_with_scale energy_after(struct cs_projection_energy *energy,
+                                                const struct cs_projection_step *step) {
+    return energy_of(energy, step->t, step->corrected,
+                     step->corrected + 3 * energy->system->view.n);
 }
 
 /* Energy after moving colliders have done their work: particles displaced by their motion, with
  * the velocities that projection gives. */
-static double energy_with_collider_work(struct cs_projection_energy *balance,
-                                        const struct cs_projection_step *blow) {
-    const size_t n = balance->system->view.n;
-    memcpy(balance->work, blow->x, 3 * n * sizeof(double));
-    for (uint32_t k = 0; k < balance->system->scene->colliders.n; k++)
+static double energy_with_collider_work(struct cs_projection_energy *energy,
+                                        const struct cs_projection_step *step) {
+    const size_t n = energy->system->view.n;
+    memcpy(energy->work, step->x, 3 * n * sizeof(double));
+    for (uint32_t k = 0; k < energy->system->scene->colliders.n; k++)
         for (size_t i = 0; i < n; i++) {
             double p[3], from[3], normal[3], provenance[3], gap;
-            if (!blow->is_pushed[i])
+            if (!step->is_pushed[i])
                 continue;
             for (size_t c = 0; c < 3; c++) {
-                p[c] = balance->work[c * n + i];
-                from[c] = blow->before_step[c * n + i];
+                p[c] = energy->work[c * n + i];
+                from[c] = step->before_step[c * n + i];
             }
-            if (!cs_tunnelling_find(blow->colliders_before + k, blow->colliders + k, from, p,
+            if (!cs_tunnelling_find(step->colliders_before + k, step->colliders + k, from, p,
                                     &gap, normal))
-                gap = cs_posed_collider_signed_distance(blow->colliders + k, p, normal);
-            cs_posed_collider_velocity(blow->colliders + k, p, provenance);
+                gap = cs_posed_collider_signed_distance(step->colliders + k, p, normal);
+            cs_posed_collider_velocity(step->colliders + k, p, provenance);
             const double along =
-                blow->dt * (provenance[0] * normal[0] + provenance[1] * normal[1] +
+                step->dt * (provenance[0] * normal[0] + provenance[1] * normal[1] +
                             provenance[2] * normal[2]);
             for (size_t c = 0; c < 3 && gap < 0 && along > 0; c++)
-                balance->work[c * n + i] += fmin(along, -gap) * normal[c];
+                energy->work[c * n + i] += fmin(along, -gap) * normal[c];
         }
-    return energy_of(balance, blow->t, balance->work, blow->corrected + 3 * n).total;
+    return energy_of(energy, step->t, energy->work, step->corrected + 3 * n).total;
 }
 
 /* J, kinetic energy that the projections of this commit remove: sum m (v^2 - v'^2)/2, at least
  * 0. */
-static double energy_absorbed(struct cs_projection_energy *balance,
-                              const struct cs_projection_step *blow) {
-    const size_t n = balance->system->view.n;
-    const double *before = blow->v, *after = blow->corrected + 3 * n;
+static double energy_absorbed(struct cs_projection_energy *energy,
+                              const struct cs_projection_step *step) {
+    const size_t n = energy->system->view.n;
+    const double *before = step->v, *after = step->corrected + 3 * n;
     double sum = 0;
     for (size_t c = 0, k = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++, k++)
-            if (blow->is_pushed[i])
-                sum += balance->system->mass[i] *
-                       (before[k] * before[k] - after[k] * after[k]) / 2;
+            if (step->is_pushed[i])
+                sum +=
+                    energy->system->mass[i] * (before[k] * before[k] - after[k] * after[k]) / 2;
     return fmax(sum, 0);
 }
 
 /* J, energy of a fall through one step, m g^2 dt^2 / 2: energy alone cannot tell a body at rest
  * from one that falls so far. */
-static double find_fall(struct cs_projection_energy *balance,
-                        const struct cs_projection_step *blow) {
-    const struct cs_system *system = balance->system;
+static double find_fall(struct cs_projection_energy *energy,
+                        const struct cs_projection_step *step) {
+    const struct cs_system *system = energy->system;
     const double *g = system->scene->forces.gravity;
     double mass = 0;
     for (uint32_t i = 0; i < system->view.n; i++)
         mass += system->inv_mass[i] > 0 ? system->mass[i] : 0;
-    return mass * (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]) * blow->dt * blow->dt / 2;
+    return mass * (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]) * step->dt * step->dt / 2;
 }
 
 /* J, limit without external work: the energy of the last commit plus GIVEN_BACK of the loss, up
  * to that at first contact. */
-static double energy_allowed(const struct cs_projection_energy *balance) {
-    const double kept = balance->energy.total;
-    const double lost = fmax(balance->energy_limit - kept, balance->absorbed);
-    return fmin(kept + GIVEN_BACK * lost, fmax(balance->energy_limit, kept));
+static double energy_allowed(const struct cs_projection_energy *energy) {
+    const double kept = energy->energy.total;
+    const double lost = fmax(energy->energy_limit - kept, energy->absorbed);
+    return fmin(kept + GIVEN_BACK * lost, fmax(energy->energy_limit, kept));
 }
 
 /* J, limit with the work of this step from outside and by colliders, and room for rounding. */
-static double find_allowed(struct cs_projection_energy *balance,
-                           const struct cs_projection_step *blow) {
-    const struct cs_energy_with_scale before = energy_of(balance, blow->t, blow->x, blow->v);
-    balance->energy_limit = fmax(balance->energy_limit, before.total);
-    double allowed = fmax(before.total, energy_allowed(balance));
-    if (balance->system->motions)
-        allowed = fmax(allowed, energy_with_collider_work(balance, blow));
-    return allowed + ROUNDING * fmax(before.scale, balance->energy.scale);
+static double find_allowed(struct cs_projection_energy *energy,
+                           const struct cs_projection_step *step) {
+    const struct cs_energy_with_scale before = energy_of(energy, step->t, step->x, step->v);
+    energy->energy_limit = fmax(energy->energy_limit, before.total);
+    double allowed = fmax(before.total, energy_allowed(energy));
+    if (energy->system->motions)
+        allowed = fmax(allowed, energy_with_collider_work(energy, step));
+    return allowed + ROUNDING * fmax(before.scale, energy->energy.scale);
 }
 
 /* 1/s, change of velocity per displacement of the pushed particles, in the least-squares sense:
  * u.dv / u.u. A step of implicit Euler has g h for g h^2; one of second order g h for g h^2 /
  * 2, hence at most 2/dt. */
-static double find_rate(const struct cs_projection_step *blow, size_t n, const double *u) {
+static double find_rate(const struct cs_projection_step *step, size_t n, const double *u) {
     double along = 0, squared = 0;
     for (size_t c = 0, k = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++, k++) {
-            if (!blow->is_pushed[i])
+            if (!step->is_pushed[i])
                 continue;
-            along += u[k] * (blow->corrected[3 * n + k] - blow->v[k]);
+            along += u[k] * (step->corrected[3 * n + k] - step->v[k]);
             squared += u[k] * u[k];
         }
-    return along > 0 ? fmin(along / squared, 2 / blow->dt) : 0;
+    return along > 0 ? fmin(along / squared, 2 / step->dt) : 0;
 }
 
 /* Lets the other particles follow the pushes, in position and velocity. */
-static void apply_elastic_response(struct cs_projection_energy *balance,
-                                   const struct cs_projection_step *blow) {
-    const size_t n = balance->system->view.n;
-    double *u = balance->work;
-    const struct cs_matrix matrix = {.t = blow->t,
-                                     .x = blow->x,
-                                     .v = blow->v,
+static void apply_elastic_response(struct cs_projection_energy *energy,
+                                   const struct cs_projection_step *step) {
+    const size_t n = energy->system->view.n;
+    double *u = energy->work;
+    const struct cs_matrix matrix = {.t = step->t,
+                                     .x = step->x,
+                                     .v = step->v,
                                      .cm = 1,
-                                     .cd = -blow->dt,
-                                     .ck = -blow->dt * blow->dt,
+                                     .cd = -step->dt,
+                                     .ck = -step->dt * step->dt,
                                      .psd = true};
-    cs_vector_kernels.linear_sum(3 * n, 1, blow->corrected, -1, blow->x, u);
-    balance->velocity_per_push = find_rate(blow, n, u);
-    response_solve(&balance->elastic_response, &matrix, blow->is_pushed, u);
+    cs_vector_kernels.linear_sum(3 * n, 1, step->corrected, -1, step->x, u);
+    energy->velocity_per_push = find_rate(step, n, u);
+    response_solve(&energy->elastic_response, &matrix, step->is_pushed, u);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++) {
-            if (blow->is_pushed[i])
+            if (step->is_pushed[i])
                 continue;
-            blow->corrected[c * n + i] += u[c * n + i];
-            blow->corrected[(3 + c) * n + i] += balance->velocity_per_push * u[c * n + i];
+            step->corrected[c * n + i] += u[c * n + i];
+            step->corrected[(3 + c) * n + i] += energy->velocity_per_push * u[c * n + i];
         }
 }
 
@@ -253,94 +253,94 @@ struct share {
 
 /* Applies fractions of the correction to the state after the step, and returns its energy.
  * Pushed particles have their new velocity in any case. */
-static struct cs_energy_with_scale try_share(struct cs_projection_energy *balance,
-                                             const struct cs_projection_step *blow,
+static struct cs_energy_with_scale try_share(struct cs_projection_energy *energy,
+                                             const struct cs_projection_step *step,
                                              struct share share) {
-    const size_t n = balance->system->view.n;
-    const double *way = balance->work, speed = share.speed * balance->velocity_per_push;
-    cs_vector_kernels.linear_sum(3 * n, 1, blow->x, share.way, way, blow->corrected);
+    const size_t n = energy->system->view.n;
+    const double *way = energy->work, speed = share.speed * energy->velocity_per_push;
+    cs_vector_kernels.linear_sum(3 * n, 1, step->x, share.way, way, step->corrected);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
-            if (!blow->is_pushed[i])
-                blow->corrected[(3 + c) * n + i] = blow->v[c * n + i] + speed * way[c * n + i];
-    return energy_after(balance, blow);
+            if (!step->is_pushed[i])
+                step->corrected[(3 + c) * n + i] = step->v[c * n + i] + speed * way[c * n + i];
+    return energy_after(energy, step);
 }
 
 /* Bisects *part, one of the fractions in *share, for the largest value within the limit. */
-static void bisect_fraction(struct cs_projection_energy *balance,
-                            const struct cs_projection_step *blow, double allowed,
+static void bisect_fraction(struct cs_projection_energy *energy,
+                            const struct cs_projection_step *step, double allowed,
                             struct share *share, double *part) {
     double low = 0, high = 1;
     for (int k = 0; k < HALVINGS; k++) {
         *part = (low + high) / 2;
-        *(try_share(balance, blow, *share).total <= allowed ? &low : &high) = *part;
+        *(try_share(energy, step, *share).total <= allowed ? &low : &high) = *part;
     }
     *part = low;
 }
 
 /* Applies the correction all the way to the particles that a shorter one leaves deep. */
-static void lift_deep(const struct cs_projection_energy *balance,
-                      const struct cs_projection_step *blow) {
-    const size_t n = balance->system->view.n;
-    const double shortest = cs_diagnostics_shortest(balance->system);
-    for (uint32_t k = 0; k < balance->system->scene->colliders.n; k++) {
-        const double most = fmax(DEPTH_RADII * cs_tunnelling_inner_radius(blow->colliders + k),
+static void lift_deep(const struct cs_projection_energy *energy,
+                      const struct cs_projection_step *step) {
+    const size_t n = energy->system->view.n;
+    const double shortest = cs_diagnostics_shortest(energy->system);
+    for (uint32_t k = 0; k < energy->system->scene->colliders.n; k++) {
+        const double most = fmax(DEPTH_RADII * cs_tunnelling_inner_radius(step->colliders + k),
                                  DEPTH_SPRINGS * shortest);
         for (size_t i = 0; i < n; i++) {
-            double *x = blow->corrected + i, normal[3];
+            double *x = step->corrected + i, normal[3];
             const double p[3] = {x[0], x[n], x[2 * n]};
-            if (!blow->is_pushed[i] ||
-                cs_posed_collider_signed_distance(blow->colliders + k, p, normal) >= -most)
+            if (!step->is_pushed[i] ||
+                cs_posed_collider_signed_distance(step->colliders + k, p, normal) >= -most)
                 continue;
             for (size_t c = 0; c < 3 * n; c += n)
-                x[c] = blow->x[c + i] + balance->work[c + i];
+                x[c] = step->x[c + i] + energy->work[c + i];
         }
     }
 }
 
 /* Reduces the correction: first the velocities, which carry the momentum of the impact, then
  * the displacements. Returns the energy that results. */
-static struct cs_energy_with_scale shorten(struct cs_projection_energy *balance,
-                                           const struct cs_projection_step *blow,
+static struct cs_energy_with_scale shorten(struct cs_projection_energy *energy,
+                                           const struct cs_projection_step *step,
                                            double allowed) {
-    const size_t n = balance->system->view.n;
+    const size_t n = energy->system->view.n;
     struct share share = {0, 1};
-    cs_vector_kernels.linear_sum(3 * n, 1, blow->corrected, -1, blow->x, balance->work);
-    if (try_share(balance, blow, share).total > allowed)
-        bisect_fraction(balance, blow, allowed, &share, &share.speed);
-    bisect_fraction(balance, blow, allowed, &share, &share.way);
-    try_share(balance, blow, share);
-    lift_deep(balance, blow);
-    return energy_after(balance, blow);
+    cs_vector_kernels.linear_sum(3 * n, 1, step->corrected, -1, step->x, energy->work);
+    if (try_share(energy, step, share).total > allowed)
+        bisect_fraction(energy, step, allowed, &share, &share.speed);
+    bisect_fraction(energy, step, allowed, &share, &share.way);
+    try_share(energy, step, share);
+    lift_deep(energy, step);
+    return energy_after(energy, step);
 }
 
 /* Energies are computed lazily: the limit with external work only if the simple one is
  * exceeded, the elastic response only if that is exceeded too. */
-bool cs_projection_energy_limit(struct cs_projection_energy *balance,
-                                const struct cs_projection_step *blow) {
-    const size_t n = balance->system->view.n;
-    if (!balance->has_last_energy)
-        balance->energy =
-            energy_of(balance, blow->t, blow->before_step, blow->before_step + 3 * n);
-    balance->absorbed = energy_absorbed(balance, blow);
-    if (!balance->in_contact)
-        balance->energy_limit =
-            balance->energy.total + GIVEN_BACK * balance->absorbed + find_fall(balance, blow);
-    balance->has_last_energy = balance->in_contact = true;
-    balance->velocity_per_push = 0;
-    struct cs_energy_with_scale found = energy_after(balance, blow);
-    if (found.total > energy_allowed(balance)) {
-        const double allowed = find_allowed(balance, blow);
-        if (found.total > allowed && response_is_needed(&balance->elastic_response, blow->dt)) {
-            apply_elastic_response(balance, blow);
-            found = energy_after(balance, blow);
+bool cs_projection_energy_limit(struct cs_projection_energy *energy,
+                                const struct cs_projection_step *step) {
+    const size_t n = energy->system->view.n;
+    if (!energy->has_last_energy)
+        energy->energy =
+            energy_of(energy, step->t, step->before_step, step->before_step + 3 * n);
+    energy->absorbed = energy_absorbed(energy, step);
+    if (!energy->in_contact)
+        energy->energy_limit =
+            energy->energy.total + GIVEN_BACK * energy->absorbed + find_fall(energy, step);
+    energy->has_last_energy = energy->in_contact = true;
+    energy->velocity_per_push = 0;
+    struct cs_energy_with_scale found = energy_after(energy, step);
+    if (found.total > energy_allowed(energy)) {
+        const double allowed = find_allowed(energy, step);
+        if (found.total > allowed && response_is_needed(&energy->elastic_response, step->dt)) {
+            apply_elastic_response(energy, step);
+            found = energy_after(energy, step);
         }
         if (found.total > allowed) {
-            balance->energy = shorten(balance, blow, allowed);
+            energy->energy = shorten(energy, step, allowed);
             return false;
         }
     }
-    balance->energy = found;
+    energy->energy = found;
     return true;
 }
 
@@ -354,20 +354,20 @@ static double gravity_scale(const struct cs_system *system) {
     return sum;
 }
 
-enum cs_status cs_projection_energy_init(struct cs_projection_energy *balance,
+enum cs_status cs_projection_energy_init(struct cs_projection_energy *energy,
                                          struct cs_system *system, struct cs_arena *arena,
                                          struct cs_error *error) {
-    *balance =
+    *energy =
         (struct cs_projection_energy){.system = system, .energy_scale = gravity_scale(system)};
-    CS_ARENA_ARRAY(arena, balance->work, 3 * (size_t)system->view.n, error);
+    CS_ARENA_ARRAY(arena, energy->work, 3 * (size_t)system->view.n, error);
     return error->status ? error->status
-                         : response_init(&balance->elastic_response, system, arena, error);
+                         : response_init(&energy->elastic_response, system, arena, error);
 }
 
-void cs_projection_energy_serialise(struct cs_projection_energy *balance,
-                                    struct cs_serialiser *record) {
-    CS_SERIALISER(record, balance->energy);
-    CS_SERIALISER(record, balance->energy_limit);
-    CS_SERIALISER(record, balance->has_last_energy);
-    CS_SERIALISER(record, balance->in_contact);
+void cs_projection_energy_serialise(struct cs_projection_energy *energy,
+                                    struct cs_serialiser *serialiser) {
+    CS_SERIALISER(serialiser, energy->energy);
+    CS_SERIALISER(serialiser, energy->energy_limit);
+    CS_SERIALISER(serialiser, energy->has_last_energy);
+    CS_SERIALISER(serialiser, energy->in_contact);
 }

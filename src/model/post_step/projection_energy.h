@@ -70,17 +70,17 @@ struct cs_projection_step {
 };
 
 /* Allocates the arrays in the arena. CS_ERR_MEMORY. */
-enum cs_status cs_projection_energy_init(struct cs_projection_energy *balance,
+enum cs_status cs_projection_energy_init(struct cs_projection_energy *energy,
                                          struct cs_system *system, struct cs_arena *arena,
                                          struct cs_error *error);
 
 /* Corrects blow->corrected as described above. Returns false if particles are left behind a
  * surface. */
-bool cs_projection_energy_limit(struct cs_projection_energy *balance,
-                                const struct cs_projection_step *blow);
+bool cs_projection_energy_limit(struct cs_projection_energy *energy,
+                                const struct cs_projection_step *step);
 
 /* Reads or writes what it leaves to the next commit, for a checkpoint. */
-void cs_projection_energy_serialise(struct cs_projection_energy *balance,
-                                    struct cs_serialiser *record);
+void cs_projection_energy_serialise(struct cs_projection_energy *energy,
+                                    struct cs_serialiser *serialiser);
 
 #endif

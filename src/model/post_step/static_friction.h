@@ -70,39 +70,39 @@ struct cs_static_friction {
 };
 
 /* Prepares the arrays, which the arena owns; nobody sticks. CS_ERR_MEMORY. */
-enum cs_status cs_static_friction_init(struct cs_static_friction *stick,
+enum cs_status cs_static_friction_init(struct cs_static_friction *friction,
                                        struct cs_system *system, struct cs_arena *arena,
                                        struct cs_error *error);
 
 /* Pins the sticking particles before a step, if held, and unpins them after it: they are free
  * for the rest of the commit and for all that reads the state. */
-void cs_static_friction_pin(struct cs_static_friction *stick, bool held);
+void cs_static_friction_pin(struct cs_static_friction *friction, bool held);
 
 /* Moves the sticking particles back to their positions in `last` (3,n), at rest, and records
  * the load of the step of dt seconds. Returns whether one had moved. */
-bool cs_static_friction_restore(struct cs_static_friction *stick, double dt, const double *last,
-                                double *x, double *v);
+bool cs_static_friction_restore(struct cs_static_friction *friction, double dt,
+                                const double *last, double *x, double *v);
 
 /* Clears resting_on of all particles that do not stick: the push of this commit was cut short.
  */
-void cs_static_friction_reject(struct cs_static_friction *stick);
+void cs_static_friction_reject(struct cs_static_friction *friction);
 
 /* Decides at (x, v) at t which particles stick from now on, among those that stick or rest. f
  * (3,n) is work. Returns whether others do than before. */
-bool cs_static_friction_update(struct cs_static_friction *stick,
+bool cs_static_friction_update(struct cs_static_friction *friction,
                                const struct cs_posed_collider *colliders, double t,
                                const double *x, const double *v, double *f);
 
 /* The same at the start of a run or after an event, for particles at rest on a surface. */
-void cs_static_friction_start(struct cs_static_friction *stick,
+void cs_static_friction_start(struct cs_static_friction *friction,
                               const struct cs_posed_collider *colliders, double t,
                               const double *x, const double *v, double *f);
 
 /* Releases all particles: the state or the system was changed from outside. */
-void cs_static_friction_clear(struct cs_static_friction *stick);
+void cs_static_friction_clear(struct cs_static_friction *friction);
 
 /* Reads or writes what it leaves to the next commit, for a checkpoint. */
-void cs_static_friction_serialise(struct cs_static_friction *stick,
-                                  struct cs_serialiser *record);
+void cs_static_friction_serialise(struct cs_static_friction *friction,
+                                  struct cs_serialiser *serialiser);
 
 #endif

@@ -40,7 +40,7 @@ static double time_of(const struct cs_system *system, const struct cs_posed_coll
 
 /* Minimum over all free particles and colliders. */
 double cs_step_bound_step(const struct cs_system *system,
-                          const struct cs_posed_collider *obstacles, double depth,
+                          const struct cs_posed_collider *colliders, double depth,
                           const double *x, const double *v) {
     const size_t n = system->view.n;
     double least = HUGE_VAL;
@@ -49,7 +49,7 @@ double cs_step_bound_step(const struct cs_system *system,
             const double p[3] = {x[i], x[n + i], x[2 * n + i]};
             const double w[3] = {v[i], v[n + i], v[2 * n + i]};
             if (system->inv_mass[i] > 0)
-                least = fmin(least, time_of(system, obstacles + k, depth, p, w));
+                least = fmin(least, time_of(system, colliders + k, depth, p, w));
         }
     return least;
 }

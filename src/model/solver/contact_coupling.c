@@ -89,40 +89,42 @@ static void set_block(const double g[3], double along, double rub, const double 
  *
  * Where the distance is not bent, g_k = w_k n with one normal n, and both agree up to w_v^2. */
 static void set_blocks(double g[4][3], const struct cs_pair_matrix_terms *part,
-                       struct cs_pair_vertex_terms *share) {
-    const double *weight = part->weight, own = weight[share->vertex];
+                       struct cs_pair_vertex_terms *terms) {
+    const double *weight = part->weight, own = weight[terms->vertex];
     uint32_t most = 0;
     for (uint32_t k = 1; k < 4; k++)
         most = weight[k] * weight[k] > weight[most] * weight[most] ? k : most;
-    memcpy(share->weight, weight, sizeof share->weight);
-    set_block(g[share->vertex], part->gradient_weight, own * own, part->block,
-              share->diagonal_block);
+    memcpy(terms->weight, weight, sizeof terms->weight);
+    set_block(g[terms->vertex], part->gradient_weight, own * own, part->block,
+              terms->diagonal_block);
     set_block(g[most], part->gradient_weight / (weight[most] * weight[most]), 1, part->block,
-              share->unit_weight_block);
+              terms->unit_weight_block);
 }
 
 /* Adds the second derivative of the distance, which an exact matrix has, to the diagonal block.
  */
-static void add_turn(const struct cs_pair_hessian *full, struct cs_pair_vertex_terms *share) {
-    const uint32_t first = 3 * share->vertex;
+static void add_turn(const struct cs_pair_hessian *hessian,
+                     struct cs_pair_vertex_terms *terms) {
+    const uint32_t first = 3 * terms->vertex;
     for (int e = 0; e < 6; e++)
-        share->diagonal_block[e] += full->m[first + cs_sym3_row[e]][first + cs_sym3_column[e]];
+        terms->diagonal_block[e] +=
+            hessian->m[first + cs_sym3_row[e]][first + cs_sym3_column[e]];
 }
 
 /* Reads the terms of a pair, of either kind of stored matrix, for one of its vertices. */
-static void read_vertex(const struct cs_pairs *pairs, const struct cs_pair_vertex *corner,
-                        struct cs_pair_vertex_terms *share) {
+static void read_vertex(const struct cs_pairs *pairs, const struct cs_pair_vertex *vertex,
+                        struct cs_pair_vertex_terms *terms) {
     const struct cs_pair_matrix *kept = &pairs->solver_matrix;
     struct cs_pair_matrix_terms part;
     double g[4][3];
-    memcpy(share->points, points_of(pairs, corner->chunk, corner->pair), sizeof share->points);
-    share->vertex = corner->vertex;
-    cs_pair_factors_read(kept->contacts->chunks[corner->chunk].kind,
-                         kept->chunks[corner->chunk].factors + corner->pair / CS_PAIR_LANES,
-                         (int)(corner->pair % CS_PAIR_LANES), g, &part);
-    set_blocks(g, &part, share);
+    memcpy(terms->points, points_of(pairs, vertex->chunk, vertex->pair), sizeof terms->points);
+    terms->vertex = vertex->vertex;
+    cs_pair_factors_read(kept->contacts->chunks[vertex->chunk].kind,
+                         kept->chunks[vertex->chunk].factors + vertex->pair / CS_PAIR_LANES,
+                         (int)(vertex->pair % CS_PAIR_LANES), g, &part);
+    set_blocks(g, &part, terms);
     if (kept->exact)
-        add_turn(kept->chunks[corner->chunk].hessians + corner->pair, share);
+        add_turn(kept->chunks[vertex->chunk].hessians + vertex->pair, terms);
 }
 
 /* --- from pairs --- */
@@ -138,7 +140,7 @@ static bool is_inner(const struct cs_pairs *pairs, const uint32_t at[4]) {
 /* The joint number of the first level's cell of a particle. */
 static uint32_t cell_of(const struct cs_coupling *coupling, uint32_t particle) {
     const struct cs_hierarchy *hierarchy =
-        coupling->bodies + coupling->pairs->candidates.body[particle];
+        coupling->hierarchies + coupling->pairs->candidates.body[particle];
     const uint32_t i = particle - hierarchy->first, row = i / hierarchy->columns;
     return hierarchy->levels->first + hierarchy->levels->begin +
            row * hierarchy->levels->pitch + i % hierarchy->columns;
@@ -170,22 +172,22 @@ static void count_in(const struct cs_coupling *coupling, uint32_t particle,
  * costs every sweep of the smoother. A negative one of them is left out: the diagonal must stay
  * positive. Both ends decide alike, because the product of two weights has no order. */
 static void add_springs(const struct cs_coupling *coupling,
-                        struct cs_extra_springs_chunk *piece,
-                        const struct cs_pair_vertex_terms *share) {
-    const double *whole = share->unit_weight_block;
+                        struct cs_extra_springs_chunk *chunk,
+                        const struct cs_pair_vertex_terms *terms) {
+    const double *whole = terms->unit_weight_block;
     float block[6];
     for (int c = 0; c < 6; c++)
         block[c] = (float)(coupling->scale * whole[c]);
     for (uint32_t k = 0; k < 4; k++) {
-        const double stiff = -share->weight[share->vertex] * share->weight[k];
+        const double stiff = -terms->weight[terms->vertex] * terms->weight[k];
         const double trace = stiff * (whole[0] + whole[3] + whole[5]);
-        const uint32_t other = share->points[k];
-        if (k == share->vertex || stiff == 0)
+        const uint32_t other = terms->points[k];
+        if (k == terms->vertex || stiff == 0)
             continue;
         if (coupling->inv_mass[other] > 0 && fabs(trace) >= coupling->trace_min)
-            cs_extra_springs_add(piece, cell_of(coupling, other), block, (float)stiff);
+            cs_extra_springs_add(chunk, cell_of(coupling, other), block, (float)stiff);
         else if (trace > 0)
-            count_in(coupling, share->points[share->vertex], whole, -stiff);
+            count_in(coupling, terms->points[terms->vertex], whole, -stiff);
     }
 }
 
@@ -193,23 +195,23 @@ static void add_springs(const struct cs_coupling *coupling,
  * pairs, none of whose springs can be strong, are skipped, except those that are subtracted
  * (negative trace): they must not remain where the pairs that they are subtracted from do not.
  */
-static void add_corner(const struct cs_coupling *coupling, struct cs_extra_springs_chunk *piece,
-                       const struct cs_pair_vertex *corner) {
-    struct cs_pair_vertex_terms share;
-    read_vertex(coupling->pairs, corner, &share);
+static void add_corner(const struct cs_coupling *coupling, struct cs_extra_springs_chunk *chunk,
+                       const struct cs_pair_vertex *vertex) {
+    struct cs_pair_vertex_terms terms;
+    read_vertex(coupling->pairs, vertex, &terms);
     const double trace =
-        share.unit_weight_block[0] + share.unit_weight_block[3] + share.unit_weight_block[5];
-    if (!is_inner(coupling->pairs, share.points) || (trace >= 0 && trace < coupling->trace_min))
+        terms.unit_weight_block[0] + terms.unit_weight_block[3] + terms.unit_weight_block[5];
+    if (!is_inner(coupling->pairs, terms.points) || (trace >= 0 && trace < coupling->trace_min))
         return;
-    count_in(coupling, share.points[share.vertex], share.diagonal_block, 1);
-    add_springs(coupling, piece, &share);
+    count_in(coupling, terms.points[terms.vertex], terms.diagonal_block, 1);
+    add_springs(coupling, chunk, &terms);
 }
 
 /* Finds the springs of one cell of the first level. Each vertex of a pair is visited from its
  * own particle, so a thread writes to its own cells alone. Pinned particles have none. */
-static void find_links(void *arg, struct cs_extra_springs_chunk *piece, uint32_t cell) {
+static void find_links(void *arg, struct cs_extra_springs_chunk *chunk, uint32_t cell) {
     const struct cs_coupling *coupling = arg;
-    const struct cs_pair_vertices *corners = coupling->pair_vertices;
+    const struct cs_pair_vertices *vertices = coupling->pair_vertices;
     const size_t n = coupling->pairs->system->view.n;
     const uint32_t i = particle_of(coupling->hierarchy, cell);
     if (i == UINT32_MAX)
@@ -218,8 +220,8 @@ static void find_links(void *arg, struct cs_extra_springs_chunk *piece, uint32_t
         coupling->internal_blocks[c * n + i] = 0;
     if (!(coupling->inv_mass[i] > 0))
         return;
-    for (uint32_t e = corners->starts[i]; e < corners->starts[i + 1]; e++)
-        add_corner(coupling, piece, corners->items + e);
+    for (uint32_t e = vertices->starts[i]; e < vertices->starts[i + 1]; e++)
+        add_corner(coupling, chunk, vertices->items + e);
 }
 
 /* By all threads, cell by cell. */
@@ -238,7 +240,7 @@ struct coarsening {
 /* Sums the springs that leave the aggregate of a coarse cell, by the aggregates of their other
  * ends. Springs inside it vanish. Unused slots, where a cell is its own neighbour, are skipped.
  */
-static void sum_links(void *arg, struct cs_extra_springs_chunk *piece, uint32_t cell) {
+static void sum_links(void *arg, struct cs_extra_springs_chunk *chunk, uint32_t cell) {
     const struct coarsening *coarsening = arg;
     const struct cs_level *fine = coarsening->fine, *coarse = coarsening->coarse;
     const uint32_t begin = fine->children_begin[cell], end = fine->children_begin[cell + 1];
@@ -253,7 +255,7 @@ static void sum_links(void *arg, struct cs_extra_springs_chunk *piece, uint32_t 
             for (size_t c = 0; c < 6; c++)
                 block[c] = slots.springs[(6 * k + c) * CS_LANES + lane];
             if (to != fine->first + *child && fine->joint_parents[to] != coarse->first + cell)
-                cs_extra_springs_add(piece, fine->joint_parents[to], block, 1);
+                cs_extra_springs_add(chunk, fine->joint_parents[to], block, 1);
         }
     }
 }
@@ -269,16 +271,16 @@ bool cs_coupling_coarsen(const struct cs_level *fine, struct cs_level *coarse) {
 /* Indexes the solver's contact matrix by particle and reads its blocks. */
 
 /* Frees the arrays, which outgrow the arena. */
-static void finish(void *object) {
-    struct cs_pair_vertices *corners = object;
-    free(corners->starts);
-    free(corners->items);
+static void finish_coupling(void *object) {
+    struct cs_pair_vertices *vertices = object;
+    free(vertices->starts);
+    free(vertices->items);
 }
 
-enum cs_status cs_pair_vertices_init(struct cs_pair_vertices *corners, struct cs_arena *arena,
+enum cs_status cs_pair_vertices_init(struct cs_pair_vertices *vertices, struct cs_arena *arena,
                                      struct cs_error *error) {
-    *corners = (struct cs_pair_vertices){0};
-    cs_arena_adopt(arena, finish, corners, error);
+    *vertices = (struct cs_pair_vertices){0};
+    cs_arena_adopt(arena, finish_coupling, vertices, error);
     return error->status;
 }
 
@@ -289,12 +291,12 @@ size_t cs_pair_vertices_count(const struct cs_pairs *pairs) {
 /* --- by particles --- */
 
 /* Makes room for all vertices and zeroes the starts. Returns false if out of memory. */
-static bool reserve(struct cs_pair_vertices *corners, const struct cs_pairs *pairs) {
+static bool reserve(struct cs_pair_vertices *vertices, const struct cs_pairs *pairs) {
     const size_t n = pairs->system->view.n + (size_t)2;
-    if (!CS_ARENA_REALLOC(corners->starts, corners->starts_capacity, n))
+    if (!CS_ARENA_REALLOC(vertices->starts, vertices->starts_capacity, n))
         return false;
-    memset(corners->starts, 0, n * sizeof *corners->starts);
-    return CS_ARENA_REALLOC(corners->items, corners->items_capacity,
+    memset(vertices->starts, 0, n * sizeof *vertices->starts);
+    return CS_ARENA_REALLOC(vertices->items, vertices->items_capacity,
                             4 * cs_pair_vertices_count(pairs));
 }
 
@@ -317,13 +319,13 @@ static void visit(const struct cs_pairs *pairs, uint32_t *to, struct cs_pair_ver
 
 /* A counting sort. Counts are stored two places further on, so that filling moves the starts to
  * where they belong. */
-bool cs_pair_vertices_find(struct cs_pair_vertices *corners, const struct cs_pairs *pairs) {
-    if (!reserve(corners, pairs))
+bool cs_pair_vertices_find(struct cs_pair_vertices *vertices, const struct cs_pairs *pairs) {
+    if (!reserve(vertices, pairs))
         return false;
-    uint32_t *starts = corners->starts;
+    uint32_t *starts = vertices->starts;
     visit(pairs, starts + 2, NULL);
     for (uint32_t i = 0; i < pairs->system->view.n; i++)
         starts[i + 2] += starts[i + 1];
-    visit(pairs, starts + 1, corners->items);
+    visit(pairs, starts + 1, vertices->items);
     return true;
 }

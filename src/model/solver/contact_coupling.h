@@ -55,7 +55,7 @@ struct cs_pair_vertices {
 };
 
 /* Makes an empty index; the arena frees what grows. Returns CS_ERR_MEMORY if out of memory. */
-enum cs_status cs_pair_vertices_init(struct cs_pair_vertices *corners, struct cs_arena *arena,
+enum cs_status cs_pair_vertices_init(struct cs_pair_vertices *vertices, struct cs_arena *arena,
                                      struct cs_error *error);
 
 /* Number of pairs in the stored matrix. */
@@ -63,7 +63,7 @@ size_t cs_pair_vertices_count(const struct cs_pairs *pairs);
 
 /* Indexes the stored matrix. Returns false if out of memory; the index must not be used then.
  */
-bool cs_pair_vertices_find(struct cs_pair_vertices *corners, const struct cs_pairs *pairs);
+bool cs_pair_vertices_find(struct cs_pair_vertices *vertices, const struct cs_pairs *pairs);
 
 /* A pair's part of the matrix, seen from one of its vertices. */
 struct cs_pair_vertex_terms {
@@ -82,8 +82,8 @@ enum cs_status cs_coupling_init(struct cs_hierarchy *hierarchy, struct cs_arena 
 
 /* A matrix of pairs on its way into the first level. All pointers are borrowed. */
 struct cs_coupling {
-    struct cs_hierarchy *hierarchy;    /* the body that is loaded */
-    const struct cs_hierarchy *bodies; /* all of them */
+    struct cs_hierarchy *hierarchy;         /* the body that is loaded */
+    const struct cs_hierarchy *hierarchies; /* all of them */
     const struct cs_pairs *pairs;
     const struct cs_pair_vertices *pair_vertices; /* the pairs indexed by particle */
     const double *inv_mass;                       /* (n) of all particles; 0: pinned */

@@ -52,22 +52,22 @@ struct cs_extra_springs {
 
 /* Makes empty lists for n_cells cells, a multiple of 16, with joint numbers from `first` on.
  * The arena owns them, and frees what grows. Returns CS_ERR_MEMORY if out of memory. */
-enum cs_status cs_extra_springs_init(struct cs_extra_springs *links, uint32_t first,
+enum cs_status cs_extra_springs_init(struct cs_extra_springs *springs, uint32_t first,
                                      uint32_t n_cells, struct cs_arena *arena,
                                      struct cs_error *error);
 
 /* Replaces all lists. find adds the springs of one cell by cs_extra_springs_add; several
  * threads call it for different cells. Returns false if out of memory; there are no extra
  * springs then. */
-bool cs_extra_springs_make(struct cs_extra_springs *links,
-                           void (*find)(void *arg, struct cs_extra_springs_chunk *piece,
+bool cs_extra_springs_make(struct cs_extra_springs *springs,
+                           void (*find)(void *arg, struct cs_extra_springs_chunk *chunk,
                                         uint32_t cell),
                            void *arg);
 
 /* For find: adds a spring to cell `to` with the block times a factor, on top of those that the
  * list already has to that cell. The sign of the trace decides with which of them the block is
  * summed. */
-void cs_extra_springs_add(struct cs_extra_springs_chunk *piece, uint32_t to,
+void cs_extra_springs_add(struct cs_extra_springs_chunk *chunk, uint32_t to,
                           const float block[6], float factor);
 
 /* The slots of block b; n is 0 if it has none. */
@@ -77,14 +77,14 @@ struct cs_extra_springs_slots {
     uint32_t n;
 };
 static inline struct cs_extra_springs_slots
-cs_extra_springs_of(const struct cs_extra_springs *links, size_t b) {
-    const struct cs_extra_springs_chunk *piece = links->chunks + b / CS_EXTRA_SPRINGS_CHUNK;
-    const size_t begin = links->begins[b];
-    const uint32_t n = links->ends[b] - links->begins[b];
+cs_extra_springs_of(const struct cs_extra_springs *springs, size_t b) {
+    const struct cs_extra_springs_chunk *chunk = springs->chunks + b / CS_EXTRA_SPRINGS_CHUNK;
+    const size_t begin = springs->begins[b];
+    const uint32_t n = springs->ends[b] - springs->begins[b];
     if (!n) // a chunk without slots may have no arrays
         return (struct cs_extra_springs_slots){0};
-    return (struct cs_extra_springs_slots){piece->cells + CS_EXTRA_SPRINGS_LANES * begin,
-                                           piece->springs + 6 * CS_EXTRA_SPRINGS_LANES * begin,
+    return (struct cs_extra_springs_slots){chunk->cells + CS_EXTRA_SPRINGS_LANES * begin,
+                                           chunk->springs + 6 * CS_EXTRA_SPRINGS_LANES * begin,
                                            n};
 }
 

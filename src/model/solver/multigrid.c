@@ -349,39 +349,42 @@ bool cs_multigrid_setup(struct cs_multigrid *multigrid,
  *   3. Up: add the aggregates' solution to their cells, and smooth again.
  *
  * The smoother is the same symmetric map both times, which makes the cycle symmetric. */
-static void cycle(struct cs_multigrid *multigrid, struct cs_hierarchy *bodies, uint32_t n) {
-    const uint32_t last = bodies->n_levels - 1;
+static void cycle(struct cs_multigrid *multigrid, struct cs_hierarchy *hierarchies,
+                  uint32_t n) {
+    const uint32_t last = hierarchies->n_levels - 1;
     struct cs_level *one;
     for (uint32_t k = 0; k < last; k++) {
-        const struct cs_level_group group = group_of(multigrid, bodies, k, &one);
+        const struct cs_level_group group = group_of(multigrid, hierarchies, k, &one);
         cs_level_smooth_down(&group);
         for (uint32_t b = 0; b < n; b++)
-            bodies[b].kind->restrict_r(bodies[b].levels + k, bodies[b].levels + k + 1);
+            hierarchies[b].kind->restrict_r(hierarchies[b].levels + k,
+                                            hierarchies[b].levels + k + 1);
     }
     // bodies apart have no extra springs there, which leaves the diagonal
-    const struct cs_level_group coarsest = group_of(multigrid, bodies, last, &one);
+    const struct cs_level_group coarsest = group_of(multigrid, hierarchies, last, &one);
     if (cs_level_is_coupled(&coarsest))
         cs_coarsest_solve(&multigrid->coarsest, &coarsest);
     for (uint32_t b = 0; b < n && !cs_level_is_coupled(&coarsest); b++)
         cs_level_solve_diagonal(coarsest.levels[b]);
     for (uint32_t k = last; k-- > 0;) {
-        const struct cs_level_group group = group_of(multigrid, bodies, k, &one);
+        const struct cs_level_group group = group_of(multigrid, hierarchies, k, &one);
         for (uint32_t b = 0; b < n; b++)
-            bodies[b].kind->prolong_x(bodies[b].levels + k + 1, bodies[b].levels + k);
+            hierarchies[b].kind->prolong_x(hierarchies[b].levels + k + 1,
+                                           hierarchies[b].levels + k);
         cs_level_smooth_up(&group);
     }
 }
 
 /* Preconditions n bodies that are smoothed together. */
-static void apply_to(struct cs_multigrid *multigrid, struct cs_hierarchy *bodies, uint32_t n,
-                     const struct exchange *exchange, double size) {
+static void apply_to(struct cs_multigrid *multigrid, struct cs_hierarchy *hierarchies,
+                     uint32_t n, const struct exchange *exchange, double size) {
     for (uint32_t b = 0; b < n; b++) {
-        struct exchange in = {multigrid, bodies + b, exchange->from, NULL, 1 / size};
+        struct exchange in = {multigrid, hierarchies + b, exchange->from, NULL, 1 / size};
         run(&in, load_r);
     }
-    cycle(multigrid, bodies, n);
+    cycle(multigrid, hierarchies, n);
     for (uint32_t b = 0; b < n; b++) {
-        struct exchange out = {multigrid, bodies + b, NULL, exchange->to,
+        struct exchange out = {multigrid, hierarchies + b, NULL, exchange->to,
                                size / multigrid->scale};
         run(&out, store_x);
     }

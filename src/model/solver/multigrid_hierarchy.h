@@ -219,7 +219,7 @@ enum cs_status cs_hierarchy_of_mesh(struct cs_hierarchy *hierarchy, struct cs_ar
                                     struct cs_error *error);
 
 /* Gives n bodies as many levels as the one that has most. */
-void cs_hierarchies_make_equally_deep(struct cs_hierarchy *bodies, uint32_t n,
+void cs_hierarchies_make_equally_deep(struct cs_hierarchy *hierarchies, uint32_t n,
                                       struct cs_arena *arena, struct cs_error *error);
 
 /* Reads s and w of one spring from the solver's factors, whose rows have `count` numbers.

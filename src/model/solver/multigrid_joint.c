@@ -14,14 +14,14 @@
 enum { ROWS = 3 * CS_COARSEST_CELLS, LANES = CS_EXTRA_SPRINGS_LANES };
 
 /* Adds levels after the last ones. */
-void cs_hierarchies_make_equally_deep(struct cs_hierarchy *bodies, uint32_t n,
+void cs_hierarchies_make_equally_deep(struct cs_hierarchy *hierarchies, uint32_t n,
                                       struct cs_arena *arena, struct cs_error *error) {
     uint32_t most = 0;
     for (uint32_t b = 0; b < n; b++)
-        most = bodies[b].n_levels > most ? bodies[b].n_levels : most;
+        most = hierarchies[b].n_levels > most ? hierarchies[b].n_levels : most;
     for (uint32_t b = 0; b < n; b++)
-        while (bodies[b].n_levels < most && !error->status)
-            bodies[b].kind->extend(bodies + b, arena, error);
+        while (hierarchies[b].n_levels < most && !error->status)
+            hierarchies[b].kind->extend(hierarchies + b, arena, error);
 }
 
 /* Zeroed by the arena; dead cells stay 0 ever after. */

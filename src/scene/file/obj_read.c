@@ -59,7 +59,7 @@ static bool fault_at(struct reader *in, uint32_t line, const char *format, ...) 
 }
 
 /* Adds a zeroed item; NULL and CS_ERR_MEMORY if out of memory. */
-static void *add(struct reader *in, struct array *array, size_t size) {
+static void *append(struct reader *in, struct array *array, size_t size) {
     if (!cs_arena_realloc(&array->items, &array->capacity, array->n + 1, size)) {
         cs_fail(in->error, CS_ERR_MEMORY, "out of memory for \"%s\"", in->name);
         return NULL;
@@ -135,7 +135,7 @@ static void read_values(struct reader *in, const char *what, int least, int most
                         struct array *array) {
     double values[3] = {0};
     read_numbers(in, what, least, most, values);
-    double *to = add(in, array, (size_t)most * sizeof *to);
+    double *to = append(in, array, (size_t)most * sizeof *to);
     if (to)
         memcpy(to, values, (size_t)most * sizeof *to);
 }
@@ -175,14 +175,14 @@ static void read_face(struct reader *in) {
     bool is_good = true;
     for (next_word(in, word); *word && is_good && !in->error->status; next_word(in, word)) {
         is_good = read_corner(in, word, &corner);
-        struct cs_raw_corner *to = is_good ? add(in, &in->corners, sizeof corner) : NULL;
+        struct cs_raw_corner *to = is_good ? append(in, &in->corners, sizeof corner) : NULL;
         if (to)
             *to = corner;
     }
     const size_t n = in->corners.n - begin;
     if (is_good && n < 3)
         is_good = fault_at(in, in->line, "a face has %zu corners, expected 3 or more", n);
-    struct face *face = is_good ? add(in, &in->faces, sizeof *face) : NULL;
+    struct face *face = is_good ? append(in, &in->faces, sizeof *face) : NULL;
     if (!face) {
         in->corners.n = begin;
         return;
@@ -200,7 +200,7 @@ static void read_label(struct reader *in, enum cs_label_kind kind) {
         cs_text_add(&names, "%s%s", names.length ? " " : "", word);
     if (!names.length)
         return;
-    struct cs_mesh_label *label = add(in, &in->labels, sizeof *label);
+    struct cs_mesh_label *label = append(in, &in->labels, sizeof *label);
     char *copy = cs_arena_copy_text(in->arena, cs_text_get(&names), in->error);
     if (label && copy && !names.failed) {
         *label = (struct cs_mesh_label){copy, kind};

@@ -25,8 +25,8 @@ struct item {
 };
 
 /* Fails with a message at the position of a key of the item, with the status of the cause. */
-static enum cs_status refuse(const struct item *item, const char *key, enum cs_status status,
-                             const char *message) {
+static enum cs_status refuse_mesh(const struct item *item, const char *key,
+                                  enum cs_status status, const char *message) {
     struct cs_json_context *context = item->reader;
     const bool first = !context->error->status;
     context->path_length = (size_t)snprintf(context->path, sizeof context->path, "%s[%u].%s",
@@ -81,16 +81,16 @@ static enum cs_status make_mesh(const struct item *item, const struct cs_scene *
     struct cs_arena *arena = item->reader->arena;
     struct cs_error said = {0};
     if (source->shape == CS_MESH_LIMBS && source->detail < LIMBS_DETAIL_MIN)
-        return refuse(item, "mesh.detail", CS_ERR_SCENE,
-                      "limbs need at least 8, or some are lost");
+        return refuse_mesh(item, "mesh.detail", CS_ERR_SCENE,
+                           "limbs need at least 8, or some are lost");
     /* a bad file is blamed on its name; a degenerate shape can only come from its scale */
     if (*source->file ? read_file(scene, source, mesh, arena, &said)
                       : make_shape(source, mesh, arena, &said))
-        return refuse(item,
-                      *source->file                 ? "mesh.file"
-                      : said.status == CS_ERR_SCENE ? "mesh.scale"
-                                                    : "mesh.shape",
-                      said.status, said.message);
+        return refuse_mesh(item,
+                           *source->file                 ? "mesh.file"
+                           : said.status == CS_ERR_SCENE ? "mesh.scale"
+                                                         : "mesh.shape",
+                           said.status, said.message);
     return CS_OK;
 }
 
@@ -104,11 +104,11 @@ static enum cs_status make_network(const struct item *item,
             message, sizeof message,
             "the mesh is open: %u of its %u edges have one triangle, expected a closed one",
             mesh->n_open, mesh->n_edges);
-        return refuse(item, "network", CS_ERR_SCENE, message);
+        return refuse_mesh(item, "network", CS_ERR_SCENE, message);
     }
     if (mesh->n * network->springs > NETWORK_MAX)
-        return refuse(item, "network.springs", CS_ERR_SCENE,
-                      "more than 67108864 springs in total");
+        return refuse_mesh(item, "network.springs", CS_ERR_SCENE,
+                           "more than 67108864 springs in total");
     return cs_spring_network_make(network, mesh, item->reader->arena, item->reader->error);
 }
 
@@ -126,7 +126,7 @@ static enum cs_status split_body(const struct item *item, struct cs_body *body) 
                  "found %lld, expected at most %lld: a cluster has %d particles or more",
                  (long long)matching->clusters, (long long)(most > 1 ? most : 1),
                  CS_SHAPE_CLUSTER_SIZE_MIN);
-        return refuse(item, "shape_matching.clusters", CS_ERR_SCENE, message);
+        return refuse_mesh(item, "shape_matching.clusters", CS_ERR_SCENE, message);
     }
     struct cs_shape_clusters *parts =
         cs_arena_alloc(context->arena, sizeof *parts, context->error);
@@ -148,7 +148,7 @@ static enum cs_status read_key_frames(const struct item *item, const struct cs_s
     if (!paths)
         return item->reader->error->status;
     if (cs_key_frames_read(scene->folder, source, paths, arena, &said))
-        return refuse(item, "mesh.key_frames.file", said.status, said.message);
+        return refuse_mesh(item, "mesh.key_frames.file", said.status, said.message);
     paths->bytes = arena->used - before;
     source->paths = paths;
     return CS_OK;
@@ -183,8 +183,8 @@ static enum cs_status read_body(const struct item *item, const struct cs_scene *
         return item->reader->error->status;
     *particles += body->mesh.present ? body->mesh.geometry->n : 0;
     if (*particles > CS_PARTICLES_MAX)
-        return refuse(item, "mesh", CS_ERR_SCENE,
-                      "more particles in the meshes so far than a scene may have");
+        return refuse_mesh(item, "mesh", CS_ERR_SCENE,
+                           "more particles in the meshes so far than a scene may have");
     return split_body(item, body);
 }
 

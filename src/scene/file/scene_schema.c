@@ -122,7 +122,7 @@ static void add_default(const struct cs_option *row, struct cs_text *out) {
 
 static void add_table(const struct cs_table *table, int indent, struct cs_text *out);
 
-static void add_row(const struct cs_option *row, int indent, struct cs_text *out) {
+static void add_schema_row(const struct cs_option *row, int indent, struct cs_text *out) {
     cs_json_line(out, indent, row->type == CS_TABLE ? "%s: {" : "%s: { ", row->name);
     if (row->type == CS_LIST) {
         cs_json_write(out, "'type': 'array', 'items': {");
@@ -140,7 +140,7 @@ static void add_row(const struct cs_option *row, int indent, struct cs_text *out
 
 static void add_rows(const struct cs_table *table, int indent, struct cs_text *out) {
     for (uint32_t r = 0; r < table->n; r++)
-        add_row(table->rows + r, indent, out);
+        add_schema_row(table->rows + r, indent, out);
 }
 
 static void add_other_keys(int indent, struct cs_text *out) {

@@ -103,8 +103,8 @@ static void add_value(const struct cs_option *row, const void *object, struct cs
 }
 
 /* Adds the lines of one row: of a table, of a list, or of a value that is not the default. */
-static void add_row(const struct cs_option *row, const void *object, const char *path,
-                    struct cs_text *out) {
+static void add_scene_row(const struct cs_option *row, const void *object, const char *path,
+                          struct cs_text *out) {
     const void *field = (const char *)object + row->offset;
     struct cs_text inner = {0};
     if (row->type == CS_TABLE) {
@@ -139,7 +139,7 @@ void cs_scene_add_canonical(const struct cs_table *table, const void *object, co
                             struct cs_text *out) {
     for (uint32_t r = 0; r < table->n; r++)
         if (cs_option_is_set(table->rows + r, object))
-            add_row(table->rows + r, object, path, out);
+            add_scene_row(table->rows + r, object, path, out);
 }
 
 /* Adds the hash of a mesh's file, since its contents count. */

@@ -222,7 +222,7 @@ static bool find_relatives(const struct cs_candidate *candidate, const struct cs
 }
 
 /* Least work by theory: an evaluation per step, and the longest step. */
-static double least_by_theory(const struct cs_cheapest *search,
+static double least_by_theory(const struct cs_cheapest *cheapest,
                               const struct cs_candidate *candidate,
                               const struct cs_choice *choice) {
     double longest = 1 / choice->compare->fps;
@@ -230,8 +230,8 @@ static double least_by_theory(const struct cs_cheapest *search,
         longest = candidate->probe.high;
     else if (is_explicit(candidate)) {
         longest = 0;
-        for (const struct cs_candidate *other = search->candidates;
-             other < search->candidates + search->n; other++)
+        for (const struct cs_candidate *other = cheapest->candidates;
+             other < cheapest->candidates + cheapest->n; other++)
             if (is_explicit(other) && takes_steps(other))
                 longest = fmax(longest, other->probe.high);
         longest = longest > 0 ? longest : 1 / choice->compare->fps;
@@ -240,12 +240,13 @@ static double least_by_theory(const struct cs_cheapest *search,
 }
 
 /* Before its first cell. A method without a control has one cell, at any value. */
-static void judge_unrun(const struct cs_cheapest *search, const struct cs_candidate *candidate,
-                        const struct cs_choice *choice, struct prospect *out) {
+static void judge_unrun(const struct cs_cheapest *cheapest,
+                        const struct cs_candidate *candidate, const struct cs_choice *choice,
+                        struct prospect *out) {
     const double motion = choice->compare->reference.motion_scale;
     double value = takes_steps(candidate) ? candidate->probe.high : choice->bound / motion;
     struct prospect relatives;
-    out->expected = out->least = least_by_theory(search, candidate, choice);
+    out->expected = out->least = least_by_theory(cheapest, candidate, choice);
     if (find_relatives(candidate, choice, &relatives)) {
         out->expected = fmax(out->expected, relatives.expected);
         out->least = fmax(out->least, relatives.expected / GUESS);
@@ -255,7 +256,7 @@ static void judge_unrun(const struct cs_cheapest *search, const struct cs_candid
     out->value = round_value(candidate, value, choice->compare->fps);
 }
 
-static struct prospect judge(const struct cs_cheapest *search,
+static struct prospect judge(const struct cs_cheapest *cheapest,
                              const struct cs_candidate *candidate,
                              const struct cs_choice *choice) {
     struct prospect out = {(double)NAN, HUGE_VAL, HUGE_VAL, HUGE_VAL};
@@ -266,46 +267,46 @@ static struct prospect judge(const struct cs_cheapest *search,
     else if (record.failed)
         judge_by_failure(candidate, record.failed, choice, &out);
     else
-        judge_unrun(search, candidate, choice, &out);
+        judge_unrun(cheapest, candidate, choice, &out);
     return out;
 }
 
 /* Least work at the bound of the candidates with a cell that meets it: of a family; or, with
  * NULL, of all families, approximate methods among them or not. HUGE_VAL: there is none. */
-static double find_least(const struct cs_cheapest *search, const struct cs_choice *choice,
+static double find_least(const struct cs_cheapest *cheapest, const struct cs_choice *choice,
                          const char *family, bool approximate) {
     double least = HUGE_VAL;
-    for (uint32_t k = 0; k < search->n; k++) {
-        const struct cs_cell *probe = &search->candidates[k].probe;
+    for (uint32_t k = 0; k < cheapest->n; k++) {
+        const struct cs_cell *probe = &cheapest->candidates[k].probe;
         if (family ? !strcmp(probe->family, family) : approximate || !is_approximate(probe))
-            least = fmin(least, judge(search, search->candidates + k, choice).cost);
+            least = fmin(least, judge(cheapest, cheapest->candidates + k, choice).cost);
     }
     return least;
 }
 
 /* Work that a candidate may have to be of interest. Units of a family take equally long. */
-static double find_worth(const struct cs_cheapest *search, const struct cs_choice *choice,
+static double find_worth(const struct cs_cheapest *cheapest, const struct cs_choice *choice,
                          const struct cs_candidate *candidate) {
     const bool approximate = is_approximate(&candidate->probe);
-    const double worth = TIE * find_least(search, choice, NULL, approximate);
+    const double worth = TIE * find_least(cheapest, choice, NULL, approximate);
     return approximate
                ? worth
-               : fmin(worth, find_least(search, choice, candidate->probe.family, false));
+               : fmin(worth, find_least(cheapest, choice, candidate->probe.family, false));
 }
 
 /* The candidate of interest with the least expected work, of those that meet the bound already
  * or of the others; NULL: none. */
-static const struct cs_cell *find_best(const struct cs_cheapest *search,
+static const struct cs_cell *find_best(const struct cs_cheapest *cheapest,
                                        const struct cs_choice *choice, bool met,
                                        double *value) {
     const struct cs_cell *found = NULL;
     double expected = HUGE_VAL;
-    for (uint32_t k = 0; k < search->n; k++) {
-        const struct cs_candidate *candidate = search->candidates + k;
-        const struct prospect prospect = judge(search, candidate, choice);
+    for (uint32_t k = 0; k < cheapest->n; k++) {
+        const struct cs_candidate *candidate = cheapest->candidates + k;
+        const struct prospect prospect = judge(cheapest, candidate, choice);
         if (!isnan(prospect.value) && (prospect.cost < HUGE_VAL) == met &&
             prospect.expected < expected &&
-            prospect.least <= find_worth(search, choice, candidate)) {
+            prospect.least <= find_worth(cheapest, choice, candidate)) {
             expected = prospect.expected;
             *value = prospect.value;
             found = &candidate->probe;
@@ -315,47 +316,47 @@ static const struct cs_cell *find_best(const struct cs_cheapest *search,
 }
 
 /* Candidates without a cell at the error come first: it may show that others cost too much. */
-const struct cs_cell *cs_cheapest_find_next(struct cs_cheapest *search,
+const struct cs_cell *cs_cheapest_find_next(struct cs_cheapest *cheapest,
                                             const struct cs_compare *compare, double *value) {
     const struct cs_choice choice = {.compare = compare,
                                      .norm = compare->settings->ranking_norm,
                                      .bound = compare->settings->bound};
     const struct cs_cell *found;
     double target;
-    if (search->n_runs >= CS_CHEAPEST_RUNS ||
+    if (cheapest->n_runs >= CS_CHEAPEST_RUNS ||
         !cs_norm_is_known(choice.norm, &compare->reference))
         return NULL;
-    search->n_runs++;
-    found = find_best(search, &choice, false, value);
-    found = found ? found : find_best(search, &choice, true, value);
+    cheapest->n_runs++;
+    found = find_best(cheapest, &choice, false, value);
+    found = found ? found : find_best(cheapest, &choice, true, value);
     return found ? found : cs_equal_error_find_next(compare, value, &target);
 }
 
 /* Adds the series of a cell, or widens its range by the cell. */
-static void add_candidate(struct cs_cheapest *search, const struct cs_cell *cell) {
-    struct cs_candidate *last = search->candidates + search->n - 1;
-    if (search->n > 0 && cs_cell_same_series(cell, &last->probe)) {
+static void add_candidate(struct cs_cheapest *cheapest, const struct cs_cell *cell) {
+    struct cs_candidate *last = cheapest->candidates + cheapest->n - 1;
+    if (cheapest->n > 0 && cs_cell_same_series(cell, &last->probe)) {
         last->probe.low = fmin(last->probe.low, cell->low);
         last->probe.high = fmax(last->probe.high, cell->high);
     } else
-        search->candidates[search->n++].probe = *cell;
+        cheapest->candidates[cheapest->n++].probe = *cell;
 }
 
-enum cs_status cs_cheapest_begin(struct cs_cheapest *search, struct cs_compare *compare,
+enum cs_status cs_cheapest_begin(struct cs_cheapest *cheapest, struct cs_compare *compare,
                                  struct cs_error *error) {
     const struct cs_cell_list *cells = &compare->cells;
-    *search =
-        (struct cs_cheapest){.candidates = calloc(cells->n + 1, sizeof *search->candidates)};
-    if (!search->candidates)
+    *cheapest =
+        (struct cs_cheapest){.candidates = calloc(cells->n + 1, sizeof *cheapest->candidates)};
+    if (!cheapest->candidates)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the methods of a search");
     for (uint32_t k = 0; k < cells->n; k++)
         if (!*cells->cells[k].outcome)
-            add_candidate(search, cells->cells + k);
+            add_candidate(cheapest, cells->cells + k);
     cs_cell_list_drop_unrun(&compare->cells);
     return CS_OK;
 }
 
-void cs_cheapest_finish(struct cs_cheapest *search) {
-    free(search->candidates);
-    *search = (struct cs_cheapest){0};
+void cs_cheapest_finish(struct cs_cheapest *cheapest) {
+    free(cheapest->candidates);
+    *cheapest = (struct cs_cheapest){0};
 }

@@ -42,12 +42,12 @@ struct cs_cheapest {
 
 /* Makes the candidates from the cells of the comparison that have no outcome, and removes these
  * cells. CS_ERR_MEMORY. */
-enum cs_status cs_cheapest_begin(struct cs_cheapest *search, struct cs_compare *compare,
+enum cs_status cs_cheapest_begin(struct cs_cheapest *cheapest, struct cs_compare *compare,
                                  struct cs_error *error);
 
 /* Finds the next cell for the error settings->bound: *value of the control of a series. Returns
  * one of its cells, or NULL: the search is over. */
-const struct cs_cell *cs_cheapest_find_next(struct cs_cheapest *search,
+const struct cs_cell *cs_cheapest_find_next(struct cs_cheapest *cheapest,
                                             const struct cs_compare *compare, double *value);
 
 /* The search as settings->next of a comparison, with *ctx a zeroed struct cs_cheapest. Begins
@@ -55,6 +55,6 @@ const struct cs_cell *cs_cheapest_find_next(struct cs_cheapest *search,
 cs_compare_next cs_cheapest_choose;
 
 /* Frees the candidates; a zeroed search is allowed. */
-void cs_cheapest_finish(struct cs_cheapest *search);
+void cs_cheapest_finish(struct cs_cheapest *cheapest);
 
 #endif

@@ -19,15 +19,16 @@ enum { LOOKS = 8 };
 #define SAFE 0.95
 
 /* Tightens the limit at frames of the trajectory that are equally far apart. */
-static enum cs_status look_along(struct cs_theory *theory, const struct cs_trajectory *track,
-                                 double *limit, struct cs_error *error) {
+static enum cs_status look_along(struct cs_theory *theory,
+                                 const struct cs_trajectory *trajectory, double *limit,
+                                 struct cs_error *error) {
     struct cs_theory_limit found;
-    if (cs_theory_at(theory, cs_trajectory_state(track, 0), &found, error))
+    if (cs_theory_at(theory, cs_trajectory_state(trajectory, 0), &found, error))
         return error->status;
     for (uint32_t k = 1; k <= LOOKS && !error->status; k++) {
-        const uint32_t frame = (uint32_t)((uint64_t)track->frames * k / LOOKS);
-        theory->modes.t = frame / track->fps;
-        cs_theory_tighten(theory, cs_trajectory_state(track, frame), true, &found, error);
+        const uint32_t frame = (uint32_t)((uint64_t)trajectory->frames * k / LOOKS);
+        theory->modes.t = frame / trajectory->fps;
+        cs_theory_tighten(theory, cs_trajectory_state(trajectory, frame), true, &found, error);
     }
     *limit = found.dt;
     return error->status;
@@ -35,26 +36,26 @@ static enum cs_status look_along(struct cs_theory *theory, const struct cs_traje
 
 static enum cs_status find_limit(const struct cs_compare *compare, const char *integrator,
                                  double *limit, struct cs_error *error) {
-    const struct cs_trajectory *track = &compare->reference.trajectory;
+    const struct cs_trajectory *trajectory = &compare->reference.trajectory;
     struct cs_recorded_run recording = {0};
     struct cs_theory theory = {0};
     if (!cs_recorded_run_open(&recording, &compare->settings->run, integrator, error) &&
         !cs_theory_init(&theory, &recording.session.system, recording.session.method.integrator,
-                        recording.session.method.options, GROWTH * track->fps / track->frames,
-                        error))
-        look_along(&theory, track, limit, error);
+                        recording.session.method.options,
+                        GROWTH * trajectory->fps / trajectory->frames, error))
+        look_along(&theory, trajectory, limit, error);
     cs_theory_finish(&theory);
     cs_recorded_run_close(&recording);
     return error->status;
 }
 
 /* Lowers the longest steps of fixed explicit methods to their limits. */
-static enum cs_status find_limits(struct cs_cheapest *search, const struct cs_compare *compare,
-                                  struct cs_error *error) {
+static enum cs_status find_limits(struct cs_cheapest *cheapest,
+                                  const struct cs_compare *compare, struct cs_error *error) {
     char integrator[CS_CELL_INTEGRATOR];
     double limit = HUGE_VAL;
-    for (uint32_t k = 0; k < search->n && !error->status; k++) {
-        struct cs_cell *probe = &search->candidates[k].probe;
+    for (uint32_t k = 0; k < cheapest->n && !error->status; k++) {
+        struct cs_cell *probe = &cheapest->candidates[k].probe;
         if (strcmp(probe->family, "explicit") != 0 || strcmp(probe->control, "dt") != 0)
             continue;
         cs_cell_integrator(probe, integrator, sizeof integrator);
@@ -80,14 +81,14 @@ static void set_limits(struct cs_compare *compare, const struct cs_cell *probe) 
 enum cs_status cs_cheapest_choose(void *ctx, struct cs_compare *compare,
                                   const struct cs_cell **of, double *value,
                                   struct cs_error *error) {
-    struct cs_cheapest *search = ctx;
+    struct cs_cheapest *cheapest = ctx;
     *of = NULL;
-    if (!search->candidates &&
-        (cs_cheapest_begin(search, compare, error) ||
-         (compare->reference.pointwise && find_limits(search, compare, error))))
+    if (!cheapest->candidates &&
+        (cs_cheapest_begin(cheapest, compare, error) ||
+         (compare->reference.pointwise && find_limits(cheapest, compare, error))))
         return error->status;
-    for (uint32_t k = 0; search->n_runs == 0 && k < search->n; k++)
-        set_limits(compare, &search->candidates[k].probe);
-    *of = cs_cheapest_find_next(search, compare, value);
+    for (uint32_t k = 0; cheapest->n_runs == 0 && k < cheapest->n; k++)
+        set_limits(compare, &cheapest->candidates[k].probe);
+    *of = cs_cheapest_find_next(cheapest, compare, value);
     return CS_OK;
 }

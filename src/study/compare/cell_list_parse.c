@@ -77,7 +77,7 @@ static enum cs_status end_entry(struct cs_cell_list_entry *entry, const char *na
 }
 
 /* Reads one item of the list, with its options, into cells. */
-static enum cs_status read_method(struct cs_cell_list *sweep, struct cs_registry *registry,
+static enum cs_status read_method(struct cs_cell_list *list, struct cs_registry *registry,
                                   const struct cs_cell_list_settings *settings, char *item,
                                   struct cs_error *error) {
     struct cs_cell_list_entry entry = {0};
@@ -93,24 +93,24 @@ static enum cs_status read_method(struct cs_cell_list *sweep, struct cs_registry
                !cs_method_parse_pair(method.integrator->name, &rest, &key, &value, error))
             set_option(&entry, key, value, error);
         if (!error->status && !end_entry(&entry, name, error))
-            cs_cell_list_expand(sweep, &entry, settings, error);
+            cs_cell_list_expand(list, &entry, settings, error);
     }
     cs_method_finish(&entry.method);
     return error->status;
 }
 
 /* Makes the cells of a method with one of its variants; NULL: with its defaults. */
-static enum cs_status read_variant(struct cs_cell_list *sweep, struct cs_registry *registry,
+static enum cs_status read_variant(struct cs_cell_list *list, struct cs_registry *registry,
                                    const struct cs_cell_list_settings *settings,
                                    const char *name, const char *variant,
                                    struct cs_error *error) {
     char item[CS_CELL_INTEGRATOR];
     snprintf(item, sizeof item, "%s%s%s", name, variant ? ":" : "", variant ? variant : "");
-    return read_method(sweep, registry, settings, item, error);
+    return read_method(list, registry, settings, item, error);
 }
 
 /* Makes cells of all methods of the registry with their defaults, and of their variants. */
-static enum cs_status take_all(struct cs_cell_list *sweep, struct cs_registry *registry,
+static enum cs_status take_all(struct cs_cell_list *list, struct cs_registry *registry,
                                const struct cs_cell_list_settings *settings,
                                struct cs_error *error) {
     if (cs_registry_open_all(registry, error))
@@ -119,31 +119,31 @@ static enum cs_status take_all(struct cs_cell_list *sweep, struct cs_registry *r
         const struct cs_integrator *integrator = registry->entries[k].integrator;
         if (!integrator)
             continue;
-        read_variant(sweep, registry, settings, integrator->name, NULL, error);
+        read_variant(list, registry, settings, integrator->name, NULL, error);
         const char *const *variant = CS_HAS(integrator, variants) ? integrator->variants : NULL;
         for (; variant && *variant && !error->status; variant++)
-            read_variant(sweep, registry, settings, integrator->name, *variant, error);
+            read_variant(list, registry, settings, integrator->name, *variant, error);
     }
     return error->status;
 }
 
-enum cs_status cs_cell_list_parse(struct cs_cell_list *sweep,
+enum cs_status cs_cell_list_parse(struct cs_cell_list *cells,
                                   const struct cs_cell_list_settings *settings,
                                   struct cs_error *error) {
     struct cs_registry registry = {0};
     char *list = settings->list ? strdup(settings->list) : NULL;
-    *sweep = (struct cs_cell_list){0};
+    *cells = (struct cs_cell_list){0};
     cs_registry_add_files(&registry, settings->plugins, settings->n_plugins, error);
     if (settings->list && !list)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of methods");
     for (char *rest = list; rest && !error->status;)
-        read_method(sweep, &registry, settings, cs_method_split(&rest), error);
+        read_method(cells, &registry, settings, cs_method_split(&rest), error);
     if (!settings->list && !error->status)
-        take_all(sweep, &registry, settings, error);
+        take_all(cells, &registry, settings, error);
     free(list);
     cs_registry_finish(&registry);
     if (error->status)
-        cs_cell_list_finish(sweep);
+        cs_cell_list_finish(cells);
     return error->status;
 }
 
@@ -215,7 +215,7 @@ static void set_limits(struct cs_cell *cell, const struct cs_cell_list_entry *en
 }
 
 /* Adds the cell of one step or tolerance. */
-static enum cs_status add_point(struct cs_cell_list *sweep,
+static enum cs_status add_point(struct cs_cell_list *list,
                                 const struct cs_cell_list_entry *entry, double value,
                                 const struct cs_cell_list_settings *settings,
                                 struct cs_error *error) {
@@ -227,7 +227,7 @@ static enum cs_status add_point(struct cs_cell_list *sweep,
         cell.value = value;
         add_option(cell.options, sizeof cell.options, entry->control, value);
     }
-    return cs_cell_list_add(sweep, &cell, error);
+    return cs_cell_list_add(list, &cell, error);
 }
 
 void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value) {
@@ -266,7 +266,7 @@ static void default_range(const struct cs_cell_list_entry *entry,
     *low = fmax(*high / (1 << (DEFAULT_STEPS - 1)), row->min);
 }
 
-enum cs_status cs_cell_list_expand(struct cs_cell_list *sweep,
+enum cs_status cs_cell_list_expand(struct cs_cell_list *list,
                                    const struct cs_cell_list_entry *entry,
                                    const struct cs_cell_list_settings *settings,
                                    struct cs_error *error) {
@@ -277,10 +277,10 @@ enum cs_status cs_cell_list_expand(struct cs_cell_list *sweep,
         cs_cell_refuse(
             &cell,
             "its model is not the equation of motion: an error against it has no meaning");
-        return cs_cell_list_add(sweep, &cell, error);
+        return cs_cell_list_add(list, &cell, error);
     }
     if (!*entry->control)
-        return add_point(sweep, entry, (double)NAN, settings, error);
+        return add_point(list, entry, (double)NAN, settings, error);
     if (isnan(high))
         default_range(entry, settings, &high, &low);
     const bool adaptive = entry->method.integrator->traits & CS_ADAPTIVE;
@@ -288,25 +288,25 @@ enum cs_status cs_cell_list_expand(struct cs_cell_list *sweep,
         // powers, so that 1e-3 is 1e-3 to the bit and a step halves exactly
         const double value =
             adaptive ? high * pow(10, -0.5 * k) : high / (double)(UINT64_C(1) << k);
-        if (value < low * (1 - 1e-9) || add_point(sweep, entry, value, settings, error))
+        if (value < low * (1 - 1e-9) || add_point(list, entry, value, settings, error))
             break;
     }
     return error->status;
 }
 
 /* Inserts a copy at an index; the capacity doubles when it is used up. */
-static enum cs_status insert(struct cs_cell_list *sweep, uint32_t at,
-                             const struct cs_cell *cell, struct cs_error *error) {
-    if (sweep->n == sweep->capacity) {
-        const uint32_t capacity = sweep->capacity ? 2 * sweep->capacity : 64;
-        struct cs_cell *cells = realloc(sweep->cells, capacity * sizeof *cells);
+static enum cs_status insert(struct cs_cell_list *list, uint32_t at, const struct cs_cell *cell,
+                             struct cs_error *error) {
+    if (list->n == list->capacity) {
+        const uint32_t capacity = list->capacity ? 2 * list->capacity : 64;
+        struct cs_cell *cells = realloc(list->cells, capacity * sizeof *cells);
         if (!cells)
             return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u cells", capacity);
-        sweep->cells = cells;
-        sweep->capacity = capacity;
+        list->cells = cells;
+        list->capacity = capacity;
     }
-    struct cs_cell *place = sweep->cells + at;
-    memmove(place + 1, place, (sweep->n++ - at) * sizeof *place);
+    struct cs_cell *place = list->cells + at;
+    memmove(place + 1, place, (list->n++ - at) * sizeof *place);
     *place = *cell;
     return CS_OK;
 }
@@ -322,11 +322,11 @@ static enum cs_status refuse_series(const struct cs_cell *one, const struct cs_c
 
 /* Walks the whole series: a duplicate can be anywhere, and the place is before the first
  * smaller value. */
-enum cs_status cs_cell_list_add(struct cs_cell_list *sweep, const struct cs_cell *cell,
+enum cs_status cs_cell_list_add(struct cs_cell_list *list, const struct cs_cell *cell,
                                 struct cs_error *error) {
-    uint32_t at = sweep->n;
-    for (uint32_t k = 0; k < sweep->n; k++) {
-        const struct cs_cell *other = sweep->cells + k;
+    uint32_t at = list->n;
+    for (uint32_t k = 0; k < list->n; k++) {
+        const struct cs_cell *other = list->cells + k;
         if (!cs_cell_same_series(other, cell))
             continue;
         if (strcmp(other->method, cell->method) != 0 || strcmp(other->fixed, cell->fixed) != 0)
@@ -339,7 +339,7 @@ enum cs_status cs_cell_list_add(struct cs_cell_list *sweep, const struct cs_cell
             break;
         }
     }
-    return insert(sweep, at, cell, error);
+    return insert(list, at, cell, error);
 }
 
 void cs_cell_refuse(struct cs_cell *cell, const char *why) {
@@ -348,33 +348,33 @@ void cs_cell_refuse(struct cs_cell *cell, const char *why) {
 }
 
 /* Replaces the cells of the series in place; the cells after it move up. */
-void cs_cell_list_refuse(struct cs_cell_list *sweep, uint32_t first, const char *why) {
-    const struct cs_cell *of = sweep->cells + first;
+void cs_cell_list_refuse(struct cs_cell_list *list, uint32_t first, const char *why) {
+    const struct cs_cell *of = list->cells + first;
     struct cs_cell cell;
     uint32_t next = first + 1;
     cs_cell_init(&cell, of->method);
     memcpy(cell.series, of->series, sizeof cell.series);
     memcpy(cell.fixed, of->fixed, sizeof cell.fixed);
     cs_cell_refuse(&cell, why);
-    while (next < sweep->n && cs_cell_same_series(sweep->cells + next, &cell))
+    while (next < list->n && cs_cell_same_series(list->cells + next, &cell))
         next++;
-    memmove(sweep->cells + first + 1, sweep->cells + next,
-            (sweep->n - next) * sizeof *sweep->cells);
-    sweep->n -= next - first - 1;
-    sweep->cells[first] = cell;
+    memmove(list->cells + first + 1, list->cells + next,
+            (list->n - next) * sizeof *list->cells);
+    list->n -= next - first - 1;
+    list->cells[first] = cell;
 }
 
-void cs_cell_list_drop_unrun(struct cs_cell_list *sweep) {
+void cs_cell_list_drop_unrun(struct cs_cell_list *list) {
     uint32_t kept = 0;
-    for (uint32_t k = 0; k < sweep->n; k++)
-        if (*sweep->cells[k].outcome)
-            sweep->cells[kept++] = sweep->cells[k];
-    sweep->n = kept;
+    for (uint32_t k = 0; k < list->n; k++)
+        if (*list->cells[k].outcome)
+            list->cells[kept++] = list->cells[k];
+    list->n = kept;
 }
 
-void cs_cell_list_finish(struct cs_cell_list *sweep) {
-    free(sweep->cells);
-    *sweep = (struct cs_cell_list){0};
+void cs_cell_list_finish(struct cs_cell_list *list) {
+    free(list->cells);
+    *list = (struct cs_cell_list){0};
 }
 
 void cs_cell_integrator(const struct cs_cell *cell, char *out, size_t size) {

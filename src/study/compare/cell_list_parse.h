@@ -25,16 +25,16 @@ struct cs_cell_list {
 };
 
 /* Frees the cells; the list is then empty. */
-void cs_cell_list_finish(struct cs_cell_list *sweep);
+void cs_cell_list_finish(struct cs_cell_list *list);
 
 /* Inserts a cell into its series after those with longer steps or looser tolerances; an equal
  * one is left as it is. CS_ERR_USAGE if the series has another method or other options;
  * CS_ERR_MEMORY. The list is unchanged on failure. Pointers to cells become invalid. */
-enum cs_status cs_cell_list_add(struct cs_cell_list *sweep, const struct cs_cell *cell,
+enum cs_status cs_cell_list_add(struct cs_cell_list *list, const struct cs_cell *cell,
                                 struct cs_error *error);
 
 /* Removes the cells that were not run. */
-void cs_cell_list_drop_unrun(struct cs_cell_list *sweep);
+void cs_cell_list_drop_unrun(struct cs_cell_list *list);
 
 /* Makes a cell of the same series with another value of its control, without results or key. */
 void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value);
@@ -43,7 +43,7 @@ void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value
 void cs_cell_refuse(struct cs_cell *cell, const char *why);
 
 /* Replaces the series that begins at cell `first` by one refused cell with the reason. */
-void cs_cell_list_refuse(struct cs_cell_list *sweep, uint32_t first, const char *why);
+void cs_cell_list_refuse(struct cs_cell_list *list, uint32_t first, const char *why);
 
 /* "NAME:options" of a cell, of at most CS_CELL_INTEGRATOR characters. */
 enum { CS_CELL_INTEGRATOR = 336 };
@@ -72,7 +72,7 @@ struct cs_cell_list_entry {
 
 /* Adds the cells of the entry over its range, or over the default range. A method of another
  * model gets one refused cell. CS_ERR_USAGE, CS_ERR_MEMORY. */
-enum cs_status cs_cell_list_expand(struct cs_cell_list *sweep,
+enum cs_status cs_cell_list_expand(struct cs_cell_list *list,
                                    const struct cs_cell_list_entry *entry,
                                    const struct cs_cell_list_settings *settings,
                                    struct cs_error *error);
@@ -80,7 +80,7 @@ enum cs_status cs_cell_list_expand(struct cs_cell_list *sweep,
 /* Reads the list of methods into cells. A module file is found by the name of its first method,
  * hence cs_cell_list_add_modules comes first. CS_ERR_USAGE for a list that cannot be read or an
  * unknown method; CS_ERR_MODULE. The list is empty on failure. */
-enum cs_status cs_cell_list_parse(struct cs_cell_list *sweep,
+enum cs_status cs_cell_list_parse(struct cs_cell_list *list,
                                   const struct cs_cell_list_settings *settings,
                                   struct cs_error *error);
 

@@ -116,14 +116,14 @@ cs_compare_reference_query(const struct cs_compare_settings *settings) {
  * 1): twice the budget in total. One more run may exceed the budget: three per series.
  * of_reference: estimated nominal s, which do not depend on what the cache has. */
 static void divide_budget(struct cs_compare *compare, double of_reference) {
-    const struct cs_cell_list *sweep = &compare->cells;
+    const struct cs_cell_list *list = &compare->cells;
     const double asked = compare->settings->budget,
                  left = CS_COMPARE_ALL_SECONDS - CS_COMPARE_SECONDS - of_reference,
                  part = left / (CS_COMPARE_EQUAL_SECONDS + CS_COMPARE_ROUND_SECONDS),
                  bounded = fmin(fmax(part, CS_COMPARE_PART_MIN), 1);
     uint32_t n = 0;
-    for (uint32_t k = 0; k < sweep->n; k++)
-        n += k == 0 || !cs_cell_same_series(sweep->cells + k, sweep->cells + k - 1);
+    for (uint32_t k = 0; k < list->n; k++)
+        n += k == 0 || !cs_cell_same_series(list->cells + k, list->cells + k - 1);
     compare->budget =
         asked > 0 ? asked
                   : fmin(CS_COMPARE_SECONDS / (3 * fmax(n, 1)), CS_COMPARE_RUN_SECONDS_MAX);
@@ -132,28 +132,28 @@ static void divide_budget(struct cs_compare *compare, double of_reference) {
 }
 
 /* A method that refuses a scene which others accept becomes one row with the reason. */
-static void refuse(struct cs_cell_list *sweep, uint32_t first, struct cs_error *error) {
+static void refuse_cells(struct cs_cell_list *list, uint32_t first, struct cs_error *error) {
     if (error->status != CS_ERR_SCENE)
         return;
-    cs_cell_list_refuse(sweep, first, error->message);
+    cs_cell_list_refuse(list, first, error->message);
     *error = (struct cs_error){0};
 }
 
 /* Opens each series once without a run: unknown options and refusals are known before the
  * reference, which may take long. */
 static enum cs_status check_methods(struct cs_compare *compare, struct cs_error *error) {
-    struct cs_cell_list *sweep = &compare->cells;
+    struct cs_cell_list *list = &compare->cells;
     struct cs_session_settings asked = compare->settings->run.session;
     char integrator[CS_CELL_INTEGRATOR];
-    for (uint32_t k = 0; k < sweep->n && !error->status; k++) {
-        const struct cs_cell *cell = sweep->cells + k;
+    for (uint32_t k = 0; k < list->n && !error->status; k++) {
+        const struct cs_cell *cell = list->cells + k;
         struct cs_session session = {0};
         if (*cell->outcome || (k > 0 && cs_cell_same_series(cell, cell - 1)))
             continue;
         cs_cell_integrator(cell, integrator, sizeof integrator);
         asked.integrator = integrator;
         if (cs_session_open_plan(&session, &asked, error))
-            refuse(sweep, k, error);
+            refuse_cells(list, k, error);
         cs_session_close(&session);
     }
     return error->status;
@@ -161,12 +161,12 @@ static enum cs_status check_methods(struct cs_compare *compare, struct cs_error 
 
 /* Keeps the cells of this process's shard only. */
 static void store_shard(struct cs_compare *compare) {
-    struct cs_cell_list *sweep = &compare->cells;
+    struct cs_cell_list *list = &compare->cells;
     uint32_t kept = 0;
-    for (uint32_t k = 0; k < sweep->n; k++)
+    for (uint32_t k = 0; k < list->n; k++)
         if (cs_shard_holds(&compare->settings->shard, k))
-            sweep->cells[kept++] = sweep->cells[k];
-    sweep->n = kept;
+            list->cells[kept++] = list->cells[k];
+    list->n = kept;
 }
 
 /* Reads the list of methods and expands it to cells. */
@@ -267,11 +267,12 @@ static enum cs_status measure_apart(const struct cs_compare *compare, struct cs_
 }
 
 /* Runs a cell, appends its row and reports it. */
-static enum cs_status measure(struct cs_compare *compare, struct cs_compare_results *ledger,
-                              struct cs_cell *cell, struct cs_error *error) {
+static enum cs_status measure_list(struct cs_compare *compare,
+                                   struct cs_compare_results *results, struct cs_cell *cell,
+                                   struct cs_error *error) {
     const bool apart = compare->settings->isolates_cells;
     if (!(apart ? measure_apart : cs_compare_measure)(compare, cell, error) &&
-        !cs_compare_results_append(ledger, cell, error))
+        !cs_compare_results_append(results, cell, error))
         report_row(compare, cell, false);
     return error->status;
 }
@@ -284,7 +285,8 @@ static void report_old_rows(struct cs_compare *compare) {
 
 /* Runs the cells that no earlier run has, and appends each row at once. */
 static enum cs_status measure_cells(struct cs_compare *compare,
-                                    struct cs_compare_results *ledger, struct cs_error *error) {
+                                    struct cs_compare_results *results,
+                                    struct cs_error *error) {
     for (uint32_t k = 0; k < compare->cells.n && !error->status; k++) {
         struct cs_cell *cell = compare->cells.cells + k;
         if (*cell->outcome)
@@ -292,7 +294,7 @@ static enum cs_status measure_cells(struct cs_compare *compare,
         if (k > 0 && cs_cell_same_series(cell, cell - 1) && is_ended(compare, k - 1))
             compare->n_done++;
         else
-            measure(compare, ledger, cell, error);
+            measure_list(compare, results, cell, error);
     }
     cs_cell_list_drop_unrun(&compare->cells);
     return error->status;
@@ -300,14 +302,14 @@ static enum cs_status measure_cells(struct cs_compare *compare,
 
 /* Runs a cell of the series of another one and adds it to the cells. */
 static enum cs_status measure_further(struct cs_compare *compare,
-                                      struct cs_compare_results *ledger,
+                                      struct cs_compare_results *results,
                                       const struct cs_cell *of, double value, double target,
                                       struct cs_error *error) {
     struct cs_cell cell;
     cs_cell_derive(&cell, of, value);
     cell.target = target;
     make_key(&cell, of->key, of->module);
-    if (!measure(compare, ledger, &cell, error))
+    if (!measure_list(compare, results, &cell, error))
         cs_cell_list_add(&compare->cells, &cell, error);
     return error->status;
 }
@@ -325,34 +327,34 @@ static double searched_seconds(const struct cs_compare *compare) {
 /* Runs cells in between until the methods near the front have cells at the errors of the
  * verdict (equal_error.h). A shard has not all cells: that is left to the whole. */
 static enum cs_status equalise_errors(struct cs_compare *compare,
-                                      struct cs_compare_results *ledger,
+                                      struct cs_compare_results *results,
                                       struct cs_error *error) {
     const struct cs_cell *near;
     double value, target;
     while (compare->settings->shard.count < 2 && !error->status &&
            searched_seconds(compare) < compare->equal_seconds &&
            (near = cs_equal_error_find_next(compare, &value, &target)))
-        measure_further(compare, ledger, near, value, target, error);
+        measure_further(compare, results, near, value, target, error);
     return error->status;
 }
 
 /* Runs the cells of the default sweep, and those for equal errors. */
-static enum cs_status run_sweep(struct cs_compare *compare, struct cs_compare_results *ledger,
+static enum cs_status run_sweep(struct cs_compare *compare, struct cs_compare_results *results,
                                 struct cs_error *error) {
-    if (!measure_cells(compare, ledger, error) &&
-        !cs_compare_results_refresh(ledger, compare, error))
-        equalise_errors(compare, ledger, error);
+    if (!measure_cells(compare, results, error) &&
+        !cs_compare_results_refresh(results, compare, error))
+        equalise_errors(compare, results, error);
     return error->status;
 }
 
 /* Runs the cells that settings->next chooses. */
-static enum cs_status run_chosen(struct cs_compare *compare, struct cs_compare_results *ledger,
+static enum cs_status run_chosen(struct cs_compare *compare, struct cs_compare_results *results,
                                  struct cs_error *error) {
     const struct cs_compare_settings *settings = compare->settings;
     const struct cs_cell *of;
     double value;
     while (!settings->next(settings->ctx, compare, &of, &value, error) && of)
-        if (measure_further(compare, ledger, of, value, settings->bound, error))
+        if (measure_further(compare, results, of, value, settings->bound, error))
             break;
     cs_cell_list_drop_unrun(&compare->cells);
     return error->status;
@@ -361,7 +363,7 @@ static enum cs_status run_chosen(struct cs_compare *compare, struct cs_compare_r
 enum cs_status cs_compare_run(struct cs_compare *compare,
                               const struct cs_compare_settings *settings,
                               struct cs_error *error) {
-    struct cs_compare_results ledger = {0};
+    struct cs_compare_results results = {0};
     *compare = (struct cs_compare){.settings = settings};
     cs_machine_name(compare->machine);
     const struct cs_compare_reference_settings reference =
@@ -369,20 +371,20 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
     // the folder is checked before the reference, which may take long
     if (!read_scene_facts(compare, error) && !print_origin(compare, error) &&
         !make_cells(compare, error) && !make_keys(compare, error) &&
-        !cs_compare_results_open(&ledger, compare, error) && !write_origin(compare, error) &&
+        !cs_compare_results_open(&results, compare, error) && !write_origin(compare, error) &&
         !cs_compare_reference_get(&compare->reference, &reference, error)) {
         if (settings->on_begin)
             settings->on_begin(settings->ctx);
         report_old_rows(compare);
-        if (!(settings->next ? run_chosen : run_sweep)(compare, &ledger, error) &&
+        if (!(settings->next ? run_chosen : run_sweep)(compare, &results, error) &&
             !cs_compare_time(compare, error)) {
             cs_compare_find_orders(compare->cells.cells, compare->cells.n,
                                    compare->reference.error_bar,
                                    compare->reference.motion_scale);
-            cs_compare_results_rewrite(&ledger, compare, error);
+            cs_compare_results_rewrite(&results, compare, error);
         }
     }
-    cs_compare_results_close(&ledger);
+    cs_compare_results_close(&results);
     return error->status;
 }
 

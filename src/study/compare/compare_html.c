@@ -115,7 +115,7 @@ static void add_names(const struct cs_cell *cell, struct cs_text *out) {
 }
 
 /* One row of the table; bold if it is on the front. */
-static void add_row(const struct cs_cell *cell, bool front, struct cs_text *out) {
+static void add_table_row(const struct cs_cell *cell, bool front, struct cs_text *out) {
     const double numbers[] = {cell->error,          cell->path_error,   cell->max_error,
                               cell->velocity_error, cell->energy_error, cell->order,
                               cell->work,           1e3 * cell->cpu,    1e3 * cell->cpu_low,
@@ -139,7 +139,7 @@ static void add_table(const struct cs_compare *compare, const struct cs_ranking 
         cs_text_add(out, "<th>%s</th>", columns[k]);
     cs_text_add(out, "</tr>\n");
     for (uint32_t k = 0; k < compare->cells.n; k++)
-        add_row(compare->cells.cells + k, ranking->on_pareto_front[k], out);
+        add_table_row(compare->cells.cells + k, ranking->on_pareto_front[k], out);
     cs_text_add(out, "</table>\n");
 }
 

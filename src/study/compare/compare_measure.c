@@ -20,8 +20,8 @@
 #define STEADY 0.1
 
 /* Counts, costs and outcome of a run. */
-static void take_counts(struct cs_cell *cell, const struct cs_recorded_run_result *end) {
-    const struct cs_counts *counts = &end->counts;
+static void take_counts(struct cs_cell *cell, const struct cs_recorded_run_result *result) {
+    const struct cs_counts *counts = &result->counts;
     cell->steps = (double)counts->steps;
     cell->evals = (double)counts->forces;
     cell->jvps = (double)counts->jvps;
@@ -35,41 +35,42 @@ static void take_counts(struct cs_cell *cell, const struct cs_recorded_run_resul
     cell->work = cs_counts_work(counts);
     cs_machine_name(cell->machine);
     snprintf(cell->version, sizeof cell->version, "%s", CS_VERSION);
-    memcpy(cell->state_hash, end->hash, sizeof cell->state_hash);
-    cell->cpu = cell->cpu_low = cell->cpu_high = end->cpu;
-    cell->wall = end->wall;
+    memcpy(cell->state_hash, result->hash, sizeof cell->state_hash);
+    cell->cpu = cell->cpu_low = cell->cpu_high = result->cpu;
+    cell->wall = result->wall;
     cell->runs = 1;
     cell->outliers = 0;
     cell->crossings =
-        end->crossings.is_counted ? (double)end->crossings.max_count : (double)NAN;
-    cell->time = end->result.time;
-    cell->step = end->result.outcome == CS_RUNNING ? cell->time / cell->steps : (double)NAN;
-    snprintf(cell->outcome, sizeof cell->outcome, "%s", cs_outcome_text(end->result.outcome));
-    snprintf(cell->note, sizeof cell->note, "%s", end->note);
+        result->crossings.is_counted ? (double)result->crossings.max_count : (double)NAN;
+    cell->time = result->result.time;
+    cell->step = result->result.outcome == CS_RUNNING ? cell->time / cell->steps : (double)NAN;
+    snprintf(cell->outcome, sizeof cell->outcome, "%s",
+             cs_outcome_text(result->result.outcome));
+    snprintf(cell->note, sizeof cell->note, "%s", result->note);
 }
 
 /* Errors against the reference. achieved: the error over what the tolerance asks for, rtol
  * times the motion. */
 static void take_errors(const struct cs_compare *compare,
                         const struct cs_recorded_run *recording,
-                        const struct cs_trajectory *track, struct cs_cell *cell) {
+                        const struct cs_trajectory *trajectory, struct cs_cell *cell) {
     const struct cs_compare_reference *reference = &compare->reference;
-    struct cs_trajectory_error deviation;
+    struct cs_trajectory_error error;
     if (!reference->families_agree)
         return;
-    cs_trajectory_error_compute(&deviation, &recording->session.system, track,
-                                &reference->trajectory, track->frames,
+    cs_trajectory_error_compute(&error, &recording->session.system, trajectory,
+                                &reference->trajectory, trajectory->frames,
                                 cs_compare_reference_pointwise_frames(reference));
     cell->bar = reference->error_bar;
-    cell->error = deviation.end;
-    cell->max_error = deviation.end_max;
-    cell->path_error = deviation.path;
-    cell->max_path_error = deviation.path_max;
-    cell->velocity_error = deviation.velocity;
-    cell->energy_error = deviation.energy / reference->kinetic;
-    cell->centre_error = deviation.centre;
-    cell->box_error = deviation.box;
-    cell->strain = deviation.strain;
+    cell->error = error.end;
+    cell->max_error = error.end_max;
+    cell->path_error = error.path;
+    cell->max_path_error = error.path_max;
+    cell->velocity_error = error.velocity;
+    cell->energy_error = error.energy / reference->kinetic;
+    cell->centre_error = error.centre;
+    cell->box_error = error.box;
+    cell->strain = error.strain;
     cell->achieved =
         cell->adaptive ? cell->error / (cell->value * reference->motion_scale) : (double)NAN;
 }
@@ -91,12 +92,12 @@ static enum cs_status take_ledger(struct cs_recorded_run *recording, struct cs_c
                                   struct cs_error *error) {
     struct cs_system *system = &recording->session.system;
     struct cs_energy_ledger account = {0};
-    struct cs_recorded_run_result end;
+    struct cs_recorded_run_result result;
     memcpy(system->state, recording->initial_state,
            6 * (size_t)system->view.n * sizeof *recording->initial_state);
     if (!cs_energy_ledger_open(&account, system, 0, error)) {
         recording->session.settings.run.ledger = &account;
-        if (!cs_recorded_run_execute(recording, 0, NULL, &end, error))
+        if (!cs_recorded_run_execute(recording, 0, NULL, &result, error))
             memcpy(cell->ledger, account.work, sizeof cell->ledger);
         recording->session.settings.run.ledger = NULL;
     }
@@ -117,21 +118,21 @@ enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_ce
                                   struct cs_error *error) {
     char integrator[CS_CELL_INTEGRATOR];
     struct cs_recorded_run recording = {0};
-    struct cs_trajectory track = {0};
-    struct cs_recorded_run_result end;
+    struct cs_trajectory trajectory = {0};
+    struct cs_recorded_run_result result;
     cs_cell_integrator(cell, integrator, sizeof integrator);
     if (!cs_recorded_run_open(&recording, &compare->settings->run, integrator, error) &&
-        !cs_trajectory_init(&track, &recording, error) &&
-        !cs_recorded_run_execute(&recording, compare->budget, &track, &end, error)) {
-        take_counts(cell, &end);
+        !cs_trajectory_init(&trajectory, &recording, error) &&
+        !cs_recorded_run_execute(&recording, compare->budget, &trajectory, &result, error)) {
+        take_counts(cell, &result);
         if (!take_module(&recording.session, cell, error) && cs_cell_is_finished(cell)) {
-            take_verdict(&recording, &end.monitor, cell);
-            take_errors(compare, &recording, &track, cell);
+            take_verdict(&recording, &result.monitor, cell);
+            take_errors(compare, &recording, &trajectory, cell);
             if (compare->settings->ledger)
                 take_ledger(&recording, cell, error);
         }
     }
-    cs_trajectory_finish(&track);
+    cs_trajectory_finish(&trajectory);
     cs_recorded_run_close(&recording);
     return error->status;
 }

@@ -44,50 +44,50 @@ static bool has_step(const struct cs_cell *cell, double step) {
 
 /* Chooses the step with most finished methods, of two the longer one. */
 static void choose_step(struct sheet *sheet, const struct cs_compare *compare) {
-    const struct cs_cell_list *sweep = &compare->cells;
+    const struct cs_cell_list *list = &compare->cells;
     double best = (double)NAN;
     uint32_t most = 0;
-    for (uint32_t k = 0; k < sweep->n; k++) {
+    for (uint32_t k = 0; k < list->n; k++) {
         uint32_t n = 0;
-        for (uint32_t i = 0; i < sweep->n; i++)
-            n += has_step(sweep->cells + i, sweep->cells[k].value);
-        if (n > most || (n == most && sweep->cells[k].value > best)) {
+        for (uint32_t i = 0; i < list->n; i++)
+            n += has_step(list->cells + i, list->cells[k].value);
+        if (n > most || (n == most && list->cells[k].value > best)) {
             most = n;
-            best = sweep->cells[k].value;
+            best = list->cells[k].value;
         }
     }
-    for (uint32_t k = 0; k < sweep->n && sheet->n < TILES_MAX; k++)
-        if (has_step(sweep->cells + k, best))
-            sheet->cells[sheet->n++] = sweep->cells + k;
+    for (uint32_t k = 0; k < list->n && sheet->n < TILES_MAX; k++)
+        if (has_step(list->cells + k, best))
+            sheet->cells[sheet->n++] = list->cells + k;
 }
 
 /* Cost in s that every method can keep: the largest of the methods' cheapest cells. */
 static double common_cost(const struct cs_compare *compare) {
-    const struct cs_cell_list *sweep = &compare->cells;
+    const struct cs_cell_list *list = &compare->cells;
     double cost = 0, least = HUGE_VAL;
-    for (uint32_t k = 0; k <= sweep->n; k++) {
-        if (k == sweep->n || is_first_of_series(compare, k)) {
+    for (uint32_t k = 0; k <= list->n; k++) {
+        if (k == list->n || is_first_of_series(compare, k)) {
             cost = least < HUGE_VAL ? fmax(cost, least) : cost;
             least = HUGE_VAL;
         }
-        if (k < sweep->n && cs_cell_is_finished(sweep->cells + k))
-            least = fmin(least, sweep->cells[k].cpu);
+        if (k < list->n && cs_cell_is_finished(list->cells + k))
+            least = fmin(least, list->cells[k].cpu);
     }
     return cost;
 }
 
 /* Chooses the most expensive cell of each series within the common cost: its best result. */
 static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
-    const struct cs_cell_list *sweep = &compare->cells;
+    const struct cs_cell_list *list = &compare->cells;
     const double cost = common_cost(compare);
     const struct cs_cell *best = NULL;
-    for (uint32_t k = 0; k <= sweep->n; k++) {
-        if ((k == sweep->n || is_first_of_series(compare, k)) && best && sheet->n < TILES_MAX) {
+    for (uint32_t k = 0; k <= list->n; k++) {
+        if ((k == list->n || is_first_of_series(compare, k)) && best && sheet->n < TILES_MAX) {
             sheet->cells[sheet->n++] = best;
             best = NULL;
         }
-        const struct cs_cell *cell = sweep->cells + k;
-        if (k < sweep->n && cs_cell_is_finished(cell) && cell->cpu <= cost &&
+        const struct cs_cell *cell = list->cells + k;
+        if (k < list->n && cs_cell_is_finished(cell) && cell->cpu <= cost &&
             (!best || cell->cpu > best->cpu))
             best = cell;
     }
@@ -129,11 +129,11 @@ static enum cs_status draw_reference(const struct sheet *sheet,
                                      const struct cs_compare *compare,
                                      struct cs_recorded_run *recording, struct cs_frame frame,
                                      enum cs_renderer_kind kind, struct cs_error *error) {
-    const struct cs_trajectory *track = &compare->reference.trajectory;
+    const struct cs_trajectory *trajectory = &compare->reference.trajectory;
     char path[4400];
     snprintf(path, sizeof path, "%s/pictures/%s_reference.png", compare->settings->folder,
              sheet->kind);
-    frame.x = cs_trajectory_state(track, track->frames);
+    frame.x = cs_trajectory_state(trajectory, trajectory->frames);
     return paint(recording, &frame, kind, path, error);
 }
 
@@ -144,44 +144,45 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
                                 struct cs_error *error) {
     char integrator[CS_CELL_INTEGRATOR], path[4400];
     struct cs_recorded_run recording;
-    struct cs_trajectory track = {0};
-    struct cs_recorded_run_result end;
+    struct cs_trajectory trajectory = {0};
+    struct cs_recorded_run_result result;
     double *distance = calloc(compare->particles, sizeof *distance);
-    struct cs_posed_collider *obstacles = NULL;
+    struct cs_posed_collider *colliders = NULL;
     cs_cell_integrator(cell, integrator, sizeof integrator);
     tile_path(sheet, cell, compare, path, sizeof path);
     if (!distance)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours");
     else if (!cs_recorded_run_open(&recording, &compare->settings->run, integrator, error)) {
-        if (!cs_trajectory_init(&track, &recording, error) &&
-            !cs_recorded_run_execute(&recording, 0, &track, &end, error) &&
-            track.n_recorded == track.frames) {
-            const double *x = cs_trajectory_state(&track, track.frames);
-            cs_distance_each(track.n, x,
-                             cs_trajectory_state(&compare->reference.trajectory, track.frames),
-                             distance);
-            for (uint32_t i = 0; i < track.n; i++)
+        if (!cs_trajectory_init(&trajectory, &recording, error) &&
+            !cs_recorded_run_execute(&recording, 0, &trajectory, &result, error) &&
+            trajectory.n_recorded == trajectory.frames) {
+            const double *x = cs_trajectory_state(&trajectory, trajectory.frames);
+            cs_distance_each(
+                trajectory.n, x,
+                cs_trajectory_state(&compare->reference.trajectory, trajectory.frames),
+                distance);
+            for (uint32_t i = 0; i < trajectory.n; i++)
                 distance[i] = log10(fmax(distance[i], pow(10, sheet->range[0])));
             const struct cs_system *system = &recording.session.system;
-            obstacles = calloc(system->scene->colliders.n + 1, sizeof *obstacles);
-            if (obstacles)
-                cs_posed_colliders_at(system, compare->time, obstacles);
+            colliders = calloc(system->scene->colliders.n + 1, sizeof *colliders);
+            if (colliders)
+                cs_posed_colliders_at(system, compare->time, colliders);
             /* no time: what viewpoint forces saw was forgotten at the end of the run */
             const struct cs_frame frame = {.x = x,
                                            .scalar = distance,
                                            .range = {sheet->range[0], sheet->range[1]},
                                            .inv_mass = system->inv_mass,
-                                           .colliders = obstacles};
+                                           .colliders = colliders};
             paint(&recording, &frame, kind, path, error);
             for (uint32_t i = 0; i < compare->particles; i++)
                 distance[i] = sheet->range[0];
             if (!error->status && cell == sheet->cells[0])
                 draw_reference(sheet, compare, &recording, frame, kind, error);
         }
-        cs_trajectory_finish(&track);
+        cs_trajectory_finish(&trajectory);
         cs_recorded_run_close(&recording);
     }
-    free(obstacles);
+    free(colliders);
     free(distance);
     return error->status;
 }

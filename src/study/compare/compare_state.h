@@ -149,16 +149,16 @@ struct cs_compare_results {
  * reference. A row replaces the cell with its key; other rows are added as further cells.
  * Writes the rows back, without incomplete lines. CS_ERR_USAGE if the file belongs to another
  * comparison; CS_ERR_FILE, CS_ERR_MEMORY. */
-enum cs_status cs_compare_results_open(struct cs_compare_results *ledger,
+enum cs_status cs_compare_results_open(struct cs_compare_results *results,
                                        struct cs_compare *compare, struct cs_error *error);
 /* Appends one row, whole. CS_ERR_FILE, CS_ERR_MEMORY. */
-enum cs_status cs_compare_results_append(struct cs_compare_results *ledger,
+enum cs_status cs_compare_results_append(struct cs_compare_results *results,
                                          const struct cs_cell *cell, struct cs_error *error);
 /* Takes over the rows that other processes have appended since. */
-enum cs_status cs_compare_results_refresh(struct cs_compare_results *ledger,
+enum cs_status cs_compare_results_refresh(struct cs_compare_results *results,
                                           struct cs_compare *compare, struct cs_error *error);
 /* Writes all cells in their order, and after them rows of other processes. */
-enum cs_status cs_compare_results_rewrite(struct cs_compare_results *ledger,
+enum cs_status cs_compare_results_rewrite(struct cs_compare_results *results,
                                           const struct cs_compare *compare,
                                           struct cs_error *error);
 /* Merges the compare.csv of the folders, as far as they have one, into that of the folder
@@ -168,6 +168,6 @@ enum cs_status cs_compare_results_merge(const char *const *folders, uint32_t n_f
                                         const char *out, bool unchecked, uint32_t *n,
                                         struct cs_error *error);
 /* Frees the rows; the file stays. */
-void cs_compare_results_close(struct cs_compare_results *ledger);
+void cs_compare_results_close(struct cs_compare_results *results);
 
 #endif

@@ -149,11 +149,11 @@ static void add_series(const struct cs_cell *cells, uint32_t n, int width,
 }
 
 void cs_table_add_series(const struct cs_compare *compare, bool all, struct cs_text *out) {
-    const struct cs_cell_list *sweep = &compare->cells;
-    for (uint32_t first = 0, k = 1; k <= sweep->n; k++)
-        if (k == sweep->n || !cs_cell_same_series(sweep->cells + k, sweep->cells + first)) {
-            if (all || !strcmp(sweep->cells[first].outcome, "refused"))
-                add_series(sweep->cells + first, k - first, name_width(compare), out);
+    const struct cs_cell_list *list = &compare->cells;
+    for (uint32_t first = 0, k = 1; k <= list->n; k++)
+        if (k == list->n || !cs_cell_same_series(list->cells + k, list->cells + first)) {
+            if (all || !strcmp(list->cells[first].outcome, "refused"))
+                add_series(list->cells + first, k - first, name_width(compare), out);
             first = k;
         }
 }
@@ -165,17 +165,17 @@ const char *const cs_table_work_names[] = {
 };
 
 bool cs_table_shows_work(const struct cs_compare *compare, int work) {
-    const struct cs_cell_list *sweep = &compare->cells;
+    const struct cs_cell_list *list = &compare->cells;
     bool shown = false, any = false;
-    for (uint32_t k = 0; k < sweep->n; k++) {
-        any |= cs_cell_has_ledger(sweep->cells + k);
-        shown |= cs_cell_has_ledger(sweep->cells + k) && sweep->cells[k].ledger[work] != 0;
+    for (uint32_t k = 0; k < list->n; k++) {
+        any |= cs_cell_has_ledger(list->cells + k);
+        shown |= cs_cell_has_ledger(list->cells + k) && list->cells[k].ledger[work] != 0;
     }
     return shown || (any && work == CS_WORK_INTEGRATOR);
 }
 
 void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out) {
-    const struct cs_cell_list *sweep = &compare->cells;
+    const struct cs_cell_list *list = &compare->cells;
     const int width = name_width(compare);
     if (!cs_table_shows_work(compare, CS_WORK_INTEGRATOR))
         return;
@@ -184,8 +184,8 @@ void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out) 
         if (cs_table_shows_work(compare, w))
             cs_text_add(out, " %10s", cs_table_work_names[w]);
     cs_text_add(out, "\n");
-    for (uint32_t k = 0; k < sweep->n; k++) {
-        const struct cs_cell *cell = sweep->cells + k;
+    for (uint32_t k = 0; k < list->n; k++) {
+        const struct cs_cell *cell = list->cells + k;
         if (!cs_cell_has_ledger(cell))
             continue;
         add_control(cell, width, out);

@@ -39,15 +39,15 @@ enum { SHIFT_BYTES = 1 << 16 };
 /* Mean time in s of one run, over at least LEAST_SECONDS. expected: s, of earlier runs. */
 static enum cs_status run_warm(struct cs_recorded_run *recording, double expected,
                                double *seconds, struct cs_error *error) {
-    struct cs_recorded_run_result end;
+    struct cs_recorded_run_result result;
     double total = 0;
     uint32_t n = 0;
-    if (expected < WARM_SECONDS && cs_recorded_run_execute(recording, 0, NULL, &end, error))
+    if (expected < WARM_SECONDS && cs_recorded_run_execute(recording, 0, NULL, &result, error))
         return error->status;
     do {
-        if (cs_recorded_run_execute(recording, 0, NULL, &end, error))
+        if (cs_recorded_run_execute(recording, 0, NULL, &result, error))
             return error->status;
-        total += end.cpu;
+        total += result.cpu;
         n++;
     } while (total < LEAST_SECONDS && n < 1000);
     *seconds = total / n;

@@ -71,9 +71,9 @@ static double bar_of(const struct cs_choice *choice) {
 
 /* Index after the last cell of the series that begins at `first`. */
 uint32_t cs_choice_series_end(const struct cs_choice *choice, uint32_t first) {
-    const struct cs_cell_list *sweep = &choice->compare->cells;
+    const struct cs_cell_list *list = &choice->compare->cells;
     uint32_t k = first + 1;
-    while (k < sweep->n && cs_cell_same_series(sweep->cells + k, sweep->cells + first))
+    while (k < list->n && cs_cell_same_series(list->cells + k, list->cells + first))
         k++;
     return k;
 }

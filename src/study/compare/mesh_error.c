@@ -110,7 +110,7 @@ enum cs_status cs_mesh_study_begin(struct cs_mesh_study *study, const char *rang
 enum cs_status cs_mesh_level_store(struct cs_mesh_study *study, struct cs_mesh_level *level,
                                    const struct cs_compare *compare, struct cs_error *error) {
     const struct cs_compare_reference *reference = &compare->reference;
-    const struct cs_trajectory *track = &reference->trajectory;
+    const struct cs_trajectory *trajectory = &reference->trajectory;
     CS_ARENA_ARRAY(&study->arena, level->rows, compare->cells.n, error);
     for (uint32_t k = 0; k < compare->cells.n && !error->status; k++)
         if (cs_cell_is_finished(compare->cells.cells + k))
@@ -119,10 +119,10 @@ enum cs_status cs_mesh_level_store(struct cs_mesh_study *study, struct cs_mesh_l
     if (error->status || !reference->families_agree || !reference->pointwise)
         return error->status;
     level->bar = reference->error_bar;
-    CS_ARENA_ARRAY(&study->arena, level->x, 3 * (size_t)track->n, error);
+    CS_ARENA_ARRAY(&study->arena, level->x, 3 * (size_t)trajectory->n, error);
     if (level->x)
-        memcpy(level->x, cs_trajectory_state(track, track->frames),
-               3 * (size_t)track->n * sizeof *level->x);
+        memcpy(level->x, cs_trajectory_state(trajectory, trajectory->frames),
+               3 * (size_t)trajectory->n * sizeof *level->x);
     return error->status;
 }
 

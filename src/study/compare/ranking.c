@@ -60,12 +60,12 @@ static bool compare_costs(const struct cs_compare *compare, const struct cs_cell
 /* The series that passes at the least cost, of all except that of `but` (NULL: of all). */
 static void find_cheapest(const struct cs_choice *choice, cs_choice_passes *pass,
                           const struct cs_cell *but, struct cs_standing *found) {
-    const struct cs_cell_list *sweep = &choice->compare->cells;
+    const struct cs_cell_list *list = &choice->compare->cells;
     *found = (struct cs_standing){0};
-    for (uint32_t first = 0, end; first < sweep->n; first = end) {
+    for (uint32_t first = 0, end; first < list->n; first = end) {
         struct cs_standing standing;
         end = cs_choice_series_end(choice, first);
-        if (but && cs_cell_same_series(sweep->cells + first, but))
+        if (but && cs_cell_same_series(list->cells + first, but))
             continue;
         cs_standing_find(choice, pass, first, end, &standing);
         if (standing.cell && (!found->cell || cs_choice_cost(standing.cell, choice) <
@@ -77,19 +77,19 @@ static void find_cheapest(const struct cs_choice *choice, cs_choice_passes *pass
 /* Marks the cell of each series that is near the best, and the runner-up. */
 static void mark_contenders(struct cs_ranking *ranking, const struct cs_rank *rank,
                             const struct cs_choice *choice, cs_choice_passes *pass) {
-    const struct cs_cell_list *sweep = &choice->compare->cells;
+    const struct cs_cell_list *list = &choice->compare->cells;
     const double far = choice->compare->rounds.n > 0 ? FAR : FAR_NEXT;
-    for (uint32_t first = 0, end; first < sweep->n; first = end) {
+    for (uint32_t first = 0, end; first < list->n; first = end) {
         struct cs_standing standing;
         end = cs_choice_series_end(choice, first);
         cs_standing_find(choice, pass, first, end, &standing);
         if (standing.cell &&
             cs_choice_cost(standing.cell, choice) <= far * cs_choice_cost(rank->best, choice))
-            ranking->is_contender[standing.cell - sweep->cells] = true;
+            ranking->is_contender[standing.cell - list->cells] = true;
     }
     if (rank->runner_up && (rank->runner_up->cpu <= FAR_NEXT * rank->best->cpu ||
                             rank->runner_up->work <= FAR_NEXT * rank->best->work))
-        ranking->is_contender[rank->runner_up - sweep->cells] = true;
+        ranking->is_contender[rank->runner_up - list->cells] = true;
 }
 
 /* Finds the cheapest series that passes, the next one, and their factor. The interval of pairs

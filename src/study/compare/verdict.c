@@ -252,8 +252,8 @@ static struct tally count(const struct cs_compare *compare) {
     return stats;
 }
 
-static void add(struct cs_text *out, const char *bullet, uint32_t n, const char *what,
-                const char *advice) {
+static void add_bullet(struct cs_text *out, const char *bullet, uint32_t n, const char *what,
+                       const char *advice) {
     if (n > 0)
         cs_text_add(out, "%s%u cell%s %s%s\n", bullet, n, n == 1 ? "" : "s", what, advice);
 }
@@ -274,19 +274,20 @@ void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
     if (compare->by_work)
         cs_text_add(out, "%sranked by work: times of programs are not comparable\n", bullet);
     /* one line for all cells of a kind, however many there are */
-    add(out, bullet, stats.below, "below the reference's own error",
-        ": not drawn, and ranked as if at it");
-    add(out, bullet, stats.blown, "blew up", ": the step is beyond the stable one");
-    add(out, bullet, stats.over, "over budget",
-        ": their series end there (a larger --budget lets them go on)");
-    add(out, bullet, stats.failed, "failed or gave up", ": the notes in compare.csv say why");
+    add_bullet(out, bullet, stats.below, "below the reference's own error",
+               ": not drawn, and ranked as if at it");
+    add_bullet(out, bullet, stats.blown, "blew up", ": the step is beyond the stable one");
+    add_bullet(out, bullet, stats.over, "over budget",
+               ": their series end there (a larger --budget lets them go on)");
+    add_bullet(out, bullet, stats.failed, "failed or gave up",
+               ": the notes in compare.csv say why");
     add_failed(compare, bullet, out);
-    add(out, bullet, stats.brief, "ran for less than 5 ms",
-        ": trust the counts rather than the times, or take a longer --time");
-    add(out, bullet, stats.spread, "with quartiles further apart than 10 %",
-        ": close other programs, or take more --runs");
-    add(out, bullet, stats.unquiet, "with outliers in more than a fifth of the runs",
-        ": something else used the processor now and then");
+    add_bullet(out, bullet, stats.brief, "ran for less than 5 ms",
+               ": trust the counts rather than the times, or take a longer --time");
+    add_bullet(out, bullet, stats.spread, "with quartiles further apart than 10 %",
+               ": close other programs, or take more --runs");
+    add_bullet(out, bullet, stats.unquiet, "with outliers in more than a fifth of the runs",
+               ": something else used the processor now and then");
     if (*compare->undrawn)
         cs_text_add(out, "%sno diagrams: %s\n", bullet, compare->undrawn);
     if (getloadavg(&load, 1) == 1 && load > 0.75 * (double)processors)

@@ -43,23 +43,24 @@ static bool tell_step(void *ctx, double t, double dt, double *x, double *v) {
 /* Records run k of the four. *good: it reached its last frame. */
 static enum cs_status run_one(struct cs_compare_reference *reference, int k,
                               const struct cs_compare_reference_settings *settings,
-                              struct cs_trajectory *track, bool *good, struct cs_error *error) {
+                              struct cs_trajectory *trajectory, bool *good,
+                              struct cs_error *error) {
     struct cs_recorded_run recording;
     struct cs_recorded_run_settings asked = *settings->run;
-    struct cs_recorded_run_result end = {0};
+    struct cs_recorded_run_result result = {0};
     struct steps steps = {settings, k, 0};
     asked.session.run.after_commit = tell_step;
     asked.session.run.ctx = &steps;
     tell(settings, k, reference->methods[k]);
     if (!cs_recorded_run_open(&recording, &asked, reference->methods[k], error) &&
-        !cs_trajectory_init(track, &recording, error)) {
-        steps.rate = track->fps / track->frames;
-        cs_recorded_run_execute(&recording, 0, track, &end, error);
+        !cs_trajectory_init(trajectory, &recording, error)) {
+        steps.rate = trajectory->fps / trajectory->frames;
+        cs_recorded_run_execute(&recording, 0, trajectory, &result, error);
     }
-    *good = !error->status && end.result.outcome == CS_RUNNING;
+    *good = !error->status && result.result.outcome == CS_RUNNING;
     if (!error->status && !*good)
         snprintf(reference->reason, sizeof reference->reason, "%.100s: %.200s",
-                 reference->methods[k], end.result.message);
+                 reference->methods[k], result.result.message);
     cs_recorded_run_close(&recording);
     return error->status;
 }
@@ -78,31 +79,33 @@ static void compare(const struct cs_system *system, const struct cs_trajectory *
 /* Scales of the motion that make errors relative: displacement, kinetic energy, strain. */
 static void measure_motion(struct cs_compare_reference *reference,
                            const struct cs_system *system) {
-    const struct cs_trajectory *track = &reference->trajectory;
-    for (uint32_t k = 0; k <= track->frames; k++) {
-        const double *x = cs_trajectory_state(track, k);
+    const struct cs_trajectory *trajectory = &reference->trajectory;
+    for (uint32_t k = 0; k <= trajectory->frames; k++) {
+        const double *x = cs_trajectory_state(trajectory, k);
         const struct cs_energy energy = cs_diagnostics_energy(
-            system, k / system->scene->time.fps, x, x + 3 * (size_t)track->n);
+            system, k / system->scene->time.fps, x, x + 3 * (size_t)trajectory->n);
         reference->kinetic = fmax(reference->kinetic, energy.kinetic);
         reference->strain = fmax(reference->strain, cs_diagnostics_strain(system, x));
         reference->motion_scale =
             fmax(reference->motion_scale,
-                 cs_distance_rms(system, track, k, x, cs_trajectory_state(track, 0)));
+                 cs_distance_rms(system, trajectory, k, x, cs_trajectory_state(trajectory, 0)));
     }
 }
 
 /* Differences and error bars, as the header defines them. */
 static void measure_bar(struct cs_compare_reference *reference, const struct cs_system *system,
-                        const struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS]) {
+                        const struct cs_trajectory trajectories[CS_COMPARE_REFERENCE_RUNS]) {
     double largest[3];
-    compare(system, tracks, tracks + 1, reference->differences, largest);
+    compare(system, trajectories, trajectories + 1, reference->differences, largest);
     reference->error_bar = reference->differences[0];
     reference->error_bar_max = largest[0];
     reference->differences[1] = reference->differences[2] = (double)NAN;
     if (reference->has_one_family)
         return;
-    compare(system, tracks + 2, tracks + 3, reference->differences + 1, largest + 1);
-    compare(system, tracks + 1, tracks + 3, reference->differences + 2, largest + 2);
+    compare(system, trajectories + 2, trajectories + 3, reference->differences + 1,
+            largest + 1);
+    compare(system, trajectories + 1, trajectories + 3, reference->differences + 2,
+            largest + 2);
     // what the looser twin of the other family is off by is no error of the reference
     reference->error_bar = fmax(reference->differences[0], reference->differences[2]);
     reference->error_bar_max = fmax(largest[0], largest[2]);
@@ -143,11 +146,11 @@ static void judge(struct cs_compare_reference *reference) {
  */
 static bool run_some(struct cs_compare_reference *reference, int from, int to,
                      const struct cs_compare_reference_settings *settings,
-                     struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS],
+                     struct cs_trajectory trajectories[CS_COMPARE_REFERENCE_RUNS],
                      struct cs_error *error) {
     bool good = true;
     for (int k = from; k < to && good; k++)
-        run_one(reference, k, settings, tracks + k, &good, error);
+        run_one(reference, k, settings, trajectories + k, &good, error);
     return good;
 }
 
@@ -163,17 +166,17 @@ static enum cs_status name_twins(struct cs_compare_reference *reference, int fam
 /* Runs the second family; if it does not finish, the replacement. */
 static bool run_second(struct cs_compare_reference *reference,
                        const struct cs_compare_reference_settings *settings,
-                       struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS],
+                       struct cs_trajectory trajectories[CS_COMPARE_REFERENCE_RUNS],
                        struct cs_error *error) {
-    if (run_some(reference, 2, CS_COMPARE_REFERENCE_RUNS, settings, tracks, error))
+    if (run_some(reference, 2, CS_COMPARE_REFERENCE_RUNS, settings, trajectories, error))
         return true;
     if (error->status || !*reference->replacement ||
         name_twins(reference, 1, reference->replacement, error))
         return false;
     *reference->replacement = *reference->reason = 0;
-    cs_trajectory_finish(tracks + 2);
-    cs_trajectory_finish(tracks + 3);
-    return run_some(reference, 2, CS_COMPARE_REFERENCE_RUNS, settings, tracks, error);
+    cs_trajectory_finish(trajectories + 2);
+    cs_trajectory_finish(trajectories + 3);
+    return run_some(reference, 2, CS_COMPARE_REFERENCE_RUNS, settings, trajectories, error);
 }
 
 /* Tries the replacement as second family, and keeps it if it comes nearer. A method of fixed
@@ -182,10 +185,11 @@ static bool run_second(struct cs_compare_reference *reference,
 static enum cs_status ask_another(struct cs_compare_reference *reference,
                                   const struct cs_system *system,
                                   const struct cs_compare_reference_settings *settings,
-                                  struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS],
+                                  struct cs_trajectory trajectories[CS_COMPARE_REFERENCE_RUNS],
                                   struct cs_error *error) {
     struct cs_compare_reference other = *reference;
-    struct cs_trajectory own[CS_COMPARE_REFERENCE_RUNS] = {tracks[0], tracks[1], {0}, {0}};
+    struct cs_trajectory own[CS_COMPARE_REFERENCE_RUNS] = {
+        trajectories[0], trajectories[1], {0}, {0}};
     if (name_twins(&other, 1, reference->replacement, error))
         return error->status;
     if (run_some(&other, 2, CS_COMPARE_REFERENCE_RUNS, settings, own, error)) {
@@ -203,9 +207,9 @@ static enum cs_status ask_another(struct cs_compare_reference *reference,
  * Returns false if there is no reference. */
 static bool has_second(struct cs_compare_reference *reference,
                        const struct cs_compare_reference_settings *settings,
-                       struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS],
+                       struct cs_trajectory trajectories[CS_COMPARE_REFERENCE_RUNS],
                        struct cs_error *error) {
-    const bool good = run_second(reference, settings, tracks, error);
+    const bool good = run_second(reference, settings, trajectories, error);
     reference->has_one_family = !good && !error->status && reference->explicit_passes > 0;
     return good || reference->has_one_family;
 }
@@ -216,23 +220,23 @@ static enum cs_status compute(struct cs_compare_reference *reference,
                               const struct cs_compare_reference_settings *settings,
                               struct cs_error *error) {
     const struct cs_system *system = &probe->session.system;
-    struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS] = {0};
-    if (run_some(reference, 0, 2, settings, tracks, error) &&
-        has_second(reference, settings, tracks, error)) {
-        reference->trajectory = tracks[1];
+    struct cs_trajectory trajectories[CS_COMPARE_REFERENCE_RUNS] = {0};
+    if (run_some(reference, 0, 2, settings, trajectories, error) &&
+        has_second(reference, settings, trajectories, error)) {
+        reference->trajectory = trajectories[1];
         measure_motion(reference, system);
-        measure_bar(reference, system, tracks);
+        measure_bar(reference, system, trajectories);
         if (*reference->replacement && has_disagreement(reference))
-            ask_another(reference, system, settings, tracks, error);
+            ask_another(reference, system, settings, trajectories, error);
         judge(reference);
         /* its states now belong to the reference and must not be freed below */
-        tracks[1] = (struct cs_trajectory){0};
+        trajectories[1] = (struct cs_trajectory){0};
         tell(settings, CS_COMPARE_REFERENCE_RUNS, "horizon");
         if (!error->status)
             cs_compare_reference_judge_horizon(reference, settings->run, error);
     }
     for (int k = 0; k < CS_COMPARE_REFERENCE_RUNS; k++)
-        cs_trajectory_finish(tracks + k);
+        cs_trajectory_finish(trajectories + k);
     return error->status;
 }
 

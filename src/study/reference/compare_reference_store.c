@@ -80,27 +80,27 @@ bool cs_compare_reference_read(struct cs_compare_reference *reference, const cha
     file_path(folder, key, path, sizeof path);
     if (cs_file_read(path, FILE_BYTES_MAX, &bytes, &length, &missing))
         return false;
-    struct cs_trajectory track;
-    bool good = length > sizeof header && !cs_trajectory_init(&track, recording, &missing);
+    struct cs_trajectory trajectory;
+    bool good = length > sizeof header && !cs_trajectory_init(&trajectory, recording, &missing);
     /* a file that does not fit or was damaged is passed over, and the reference is computed */
     if (good) {
         memcpy(&header, bytes, sizeof header);
-        const size_t values = ((size_t)track.frames + 1) * 6 * track.n;
+        const size_t values = ((size_t)trajectory.frames + 1) * 6 * trajectory.n;
         good = !memcmp(header.magic, MAGIC, sizeof MAGIC) && header.one == 1 &&
-               header.n == track.n && header.frames == track.frames &&
+               header.n == trajectory.n && header.frames == trajectory.frames &&
                length == sizeof header + values * sizeof(double);
         if (good) {
-            memcpy(track.states, bytes + sizeof header, values * sizeof(double));
-            hash_file(&header, track.states, values, hash);
+            memcpy(trajectory.states, bytes + sizeof header, values * sizeof(double));
+            hash_file(&header, trajectory.states, values, hash);
             good = !memcmp(hash, header.hash, sizeof hash);
         }
         if (good) {
             *reference = header.reference;
-            track.n_recorded = track.frames;
-            reference->trajectory = track;
+            trajectory.n_recorded = trajectory.frames;
+            reference->trajectory = trajectory;
             reference->cached = true;
         } else
-            cs_trajectory_finish(&track);
+            cs_trajectory_finish(&trajectory);
     }
     free(bytes);
     return good;
@@ -109,8 +109,8 @@ bool cs_compare_reference_read(struct cs_compare_reference *reference, const cha
 enum cs_status cs_compare_reference_write(const struct cs_compare_reference *reference,
                                           const char *folder, const char *key,
                                           struct cs_error *error) {
-    const struct cs_trajectory *track = &reference->trajectory;
-    const size_t values = ((size_t)track->frames + 1) * 6 * track->n;
+    const struct cs_trajectory *trajectory = &reference->trajectory;
+    const size_t values = ((size_t)trajectory->frames + 1) * 6 * trajectory->n;
     struct header header;
     struct cs_file_out out = {0};
     char path[4096];
@@ -119,17 +119,17 @@ enum cs_status cs_compare_reference_write(const struct cs_compare_reference *ref
     file_path(folder, key, path, sizeof path);
     memcpy(header.magic, MAGIC, sizeof MAGIC);
     header.one = 1;
-    header.n = track->n;
-    header.frames = track->frames;
+    header.n = trajectory->n;
+    header.frames = trajectory->frames;
     header.reference = *reference;
     /* an address means nothing to the next run */
     header.reference.trajectory.states = NULL;
     header.reference.trajectory.free_from = NULL;
-    hash_file(&header, track->states, values, header.hash);
+    hash_file(&header, trajectory->states, values, header.hash);
     if (!cs_folder_create(folder, error) && !cs_file_create(&out, path, error)) {
         /* failures of fwrite are seen by cs_file_finish */
         fwrite(&header, sizeof header, 1, out.file);
-        fwrite(track->states, sizeof(double), values, out.file);
+        fwrite(trajectory->states, sizeof(double), values, out.file);
         cs_file_finish(&out, error);
     }
     return error->status;

@@ -47,22 +47,22 @@ static void compare(struct cs_horizon *horizon, const struct cs_recorded_run *re
 /* Runs the scene and its perturbed twin. *done: both reached their last frame. */
 static enum cs_status run_twins(struct cs_horizon *horizon, struct cs_recorded_run *recording,
                                 double accuracy, bool *done, struct cs_error *error) {
-    struct cs_trajectory tracks[2] = {0};
+    struct cs_trajectory trajectories[2] = {0};
     struct cs_recorded_run_result ends[2];
     *done = false;
     for (int k = 0; k < 2 && !error->status; k++) {
         if (k == 1)
             perturb_one(recording);
-        if (!cs_trajectory_init(tracks + k, recording, error))
-            cs_recorded_run_execute(recording, 0, tracks + k, ends + k, error);
+        if (!cs_trajectory_init(trajectories + k, recording, error))
+            cs_recorded_run_execute(recording, 0, trajectories + k, ends + k, error);
     }
-    if (!error->status && tracks[0].n_recorded == recording->frames &&
-        tracks[1].n_recorded == recording->frames) {
-        compare(horizon, recording, tracks, tracks + 1, accuracy);
+    if (!error->status && trajectories[0].n_recorded == recording->frames &&
+        trajectories[1].n_recorded == recording->frames) {
+        compare(horizon, recording, trajectories, trajectories + 1, accuracy);
         *done = true;
     }
-    cs_trajectory_finish(tracks);
-    cs_trajectory_finish(tracks + 1);
+    cs_trajectory_finish(trajectories);
+    cs_trajectory_finish(trajectories + 1);
     return error->status;
 }
 

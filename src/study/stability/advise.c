@@ -21,15 +21,15 @@ enum { SAMPLES = 32, HALVINGS = 6, STEPS_TESTED = 4 };
 /* Probe runs with the advised step, from the perturbed start and, if that is stable, from the
  * scene's own, as `run` takes it: a flag that hangs straight buckles in one of them only. Sets
  * the verdict, and steps and cost per frame. */
-static enum cs_status try_safe(struct cs_advice *row,
+static enum cs_status try_safe(struct cs_advice *advice,
                                const struct cs_sampled_run_settings *settings,
                                const struct cs_reference *reference, double frame,
                                struct cs_error *error) {
     struct cs_sampled_run_settings asked = *settings;
-    struct cs_sampled_run trial, run;
-    asked.session.dt = row->safe;
+    struct cs_sampled_run sample, run;
+    asked.session.dt = advice->safe;
     asked.seconds = reference->seconds;
-    for (int own = 0; own < 2 && (!own || cs_stability_is_stable(row->verdict)); own++) {
+    for (int own = 0; own < 2 && (!own || cs_stability_is_stable(advice->verdict)); own++) {
         if (cs_sampled_run_execute(&run, &asked, error))
             return error->status;
         const enum cs_stability_verdict verdict =
@@ -37,112 +37,114 @@ static enum cs_status try_safe(struct cs_advice *row,
         asked.session.perturbation = 0;
         if (own && cs_stability_is_stable(verdict))
             break;
-        trial = run;
-        row->verdict = verdict;
+        sample = run;
+        advice->verdict = verdict;
     }
-    row->checked_seconds = trial.result.reached;
-    row->speed = fmax(row->speed, trial.speed_max);
-    if (row->verdict == CS_STABILITY_OVER_BUDGET && trial.steps < STEPS_TESTED) {
-        row->kind = CS_ADVICE_REFUSED;
-        snprintf(row->message, sizeof row->message,
+    advice->checked_seconds = sample.result.reached;
+    advice->speed = fmax(advice->speed, sample.speed_max);
+    if (advice->verdict == CS_STABILITY_OVER_BUDGET && sample.steps < STEPS_TESTED) {
+        advice->kind = CS_ADVICE_REFUSED;
+        snprintf(advice->message, sizeof advice->message,
                  "the budget ended before %d steps were tested: a larger --budget is needed",
                  STEPS_TESTED);
     }
-    if (cs_outcome_has_reason(trial.result.outcome))
-        snprintf(row->message, sizeof row->message, "%.300s", trial.result.message);
-    if (row->checked_seconds > 0) {
-        row->frame_cost = trial.seconds / row->checked_seconds * frame;
-        row->steps = (double)trial.steps / row->checked_seconds * frame;
+    if (cs_outcome_has_reason(sample.result.outcome))
+        snprintf(advice->message, sizeof advice->message, "%.300s", sample.result.message);
+    if (advice->checked_seconds > 0) {
+        advice->frame_cost = sample.seconds / advice->checked_seconds * frame;
+        advice->steps = (double)sample.steps / advice->checked_seconds * frame;
     }
     return CS_OK;
 }
 
 /* Probes the safe step and halves it until a run is stable. After HALVINGS attempts no step is
  * advised. */
-static enum cs_status try_shorter(struct cs_advice *row,
+static enum cs_status try_shorter(struct cs_advice *advice,
                                   const struct cs_sampled_run_settings *settings,
                                   const struct cs_reference *reference, double frame,
                                   struct cs_error *error) {
     for (int k = 0; k < HALVINGS; k++) {
-        if (try_safe(row, settings, reference, frame, error) || !cs_advice_is_unstable(row))
+        if (try_safe(advice, settings, reference, frame, error) ||
+            !cs_advice_is_unstable(advice))
             return error->status;
-        *row->message = 0;
-        row->safe /= 2;
+        *advice->message = 0;
+        advice->safe /= 2;
     }
-    snprintf(row->message, sizeof row->message, "no step was found stable down to %.3g s: %s",
-             2 * row->safe, cs_stability_word(row->verdict));
-    row->kind = CS_ADVICE_NONE;
-    row->safe = 0;
+    snprintf(advice->message, sizeof advice->message,
+             "no step was found stable down to %.3g s: %s", 2 * advice->safe,
+             cs_stability_word(advice->verdict));
+    advice->kind = CS_ADVICE_NONE;
+    advice->safe = 0;
     return CS_OK;
 }
 
-static enum cs_status end_search(struct cs_advice *row) {
-    row->kind = CS_ADVICE_REFUSED;
-    snprintf(row->message, sizeof row->message,
+static enum cs_status end_search(struct cs_advice *advice) {
+    advice->kind = CS_ADVICE_REFUSED;
+    snprintf(advice->message, sizeof advice->message,
              "a step of %.3g s is unstable, and the budget ended the search for a smaller one",
-             row->safe);
+             advice->safe);
     return CS_OK;
 }
 
 /* Theory has no limit: probes one step per frame. If it is unstable, large motions limit the
  * step, and the border is bisected. */
-static enum cs_status try_frame(struct cs_advice *row,
+static enum cs_status try_frame(struct cs_advice *advice,
                                 const struct cs_sampled_run_settings *settings,
                                 const struct cs_reference *reference, double frame,
                                 struct cs_error *error) {
-    row->kind = CS_ADVICE_FRAME;
-    row->limit = HUGE_VAL;
-    row->safe = fmin(frame, 10);
-    if (try_safe(row, settings, reference, frame, error) || !cs_advice_is_unstable(row))
+    advice->kind = CS_ADVICE_FRAME;
+    advice->limit = HUGE_VAL;
+    advice->safe = fmin(frame, 10);
+    if (try_safe(advice, settings, reference, frame, error) || !cs_advice_is_unstable(advice))
         return error->status;
-    row->kind = CS_ADVICE_MEASURED;
-    if (cs_stability_boundary(settings, reference, 0, row->safe, &row->limit, error))
+    advice->kind = CS_ADVICE_MEASURED;
+    if (cs_stability_boundary(settings, reference, 0, advice->safe, &advice->limit, error))
         return error->status;
-    if (isnan(row->limit))
-        return end_search(row);
-    if (!(row->limit > 0)) {
-        row->kind = CS_ADVICE_NONE;
+    if (isnan(advice->limit))
+        return end_search(advice);
+    if (!(advice->limit > 0)) {
+        advice->kind = CS_ADVICE_NONE;
         return CS_OK;
     }
     /* the message is about the step of a frame, which is not advised */
-    *row->message = 0;
-    row->safe = MARGIN * row->limit;
-    return try_shorter(row, settings, reference, frame, error);
+    *advice->message = 0;
+    advice->safe = MARGIN * advice->limit;
+    return try_shorter(advice, settings, reference, frame, error);
 }
 
 /* The margin below the limit of theory is unstable: bisects the border. A motion that is large
  * from the start exceeds the verdict's limits with less growth than theory allows. */
-static enum cs_status try_lower(struct cs_advice *row,
+static enum cs_status try_lower(struct cs_advice *advice,
                                 const struct cs_sampled_run_settings *settings,
                                 const struct cs_reference *reference, double frame,
                                 struct cs_error *error) {
     double border;
-    if (cs_stability_boundary(settings, reference, 0, row->safe, &border, error))
+    if (cs_stability_boundary(settings, reference, 0, advice->safe, &border, error))
         return error->status;
     if (isnan(border))
-        return end_search(row);
+        return end_search(advice);
     if (!(border > 0 && border < HUGE_VAL)) {
-        row->safe /= 2;
-        return try_shorter(row, settings, reference, frame, error);
+        advice->safe /= 2;
+        return try_shorter(advice, settings, reference, frame, error);
     }
-    row->kind = CS_ADVICE_LOWERED;
-    row->limit = border;
-    row->safe = MARGIN * border;
-    *row->message = 0;
-    return try_shorter(row, settings, reference, frame, error);
+    advice->kind = CS_ADVICE_LOWERED;
+    advice->limit = border;
+    advice->safe = MARGIN * border;
+    *advice->message = 0;
+    return try_shorter(advice, settings, reference, frame, error);
 }
 
 /* Bisects the border for comparison with theory, up to 1.5 times its limit; a border there is
  * not known to be unstable, and the search goes on from it. */
-static enum cs_status check_limit(struct cs_advice *row,
+static enum cs_status check_limit(struct cs_advice *advice,
                                   const struct cs_sampled_run_settings *settings,
                                   const struct cs_reference *reference,
                                   struct cs_error *error) {
-    const double most = 1.5 * row->limit;
-    if (cs_stability_boundary(settings, reference, 0, most, &row->measured, error) ||
-        !(row->measured > 0.98 * most && row->measured < HUGE_VAL))
+    const double most = 1.5 * advice->limit;
+    if (cs_stability_boundary(settings, reference, 0, most, &advice->measured, error) ||
+        !(advice->measured > 0.98 * most && advice->measured < HUGE_VAL))
         return error->status;
-    return cs_stability_boundary(settings, reference, 0.98 * most, HUGE_VAL, &row->measured,
+    return cs_stability_boundary(settings, reference, 0.98 * most, HUGE_VAL, &advice->measured,
                                  error);
 }
 
@@ -159,82 +161,84 @@ static bool keep_cut_reference(struct cs_reference *reference) {
 
 /* Advice for a method with option dt, in the order of advise.h. Steps above 1e100 s stand for
  * no limit. */
-static enum cs_status advise_fixed(struct cs_advice *row,
+static enum cs_status advise_fixed(struct cs_advice *advice,
                                    const struct cs_sampled_run_settings *settings, double frame,
                                    bool check, struct cs_error *error) {
     struct cs_reference reference, none = {.seconds = settings->seconds};
     struct cs_sampled_run_settings half = *settings;
-    row->held = (1 - REFERENCE_SHARE) * row->pot;
-    half.session.run.budget = row->pot -= row->held;
+    advice->held = (1 - REFERENCE_SHARE) * advice->pot;
+    half.session.run.budget = advice->pot -= advice->held;
     cs_reference_run(&reference, &half, error);
-    row->pot = fmax(row->pot, 0) + row->held;
-    row->held = 0;
+    advice->pot = fmax(advice->pot, 0) + advice->held;
+    advice->held = 0;
     if (error->status)
         return error->status;
     const struct cs_reference *by = keep_cut_reference(&reference) ? &none : &reference;
-    row->cut = by == &none ? reference.seconds : 0;
-    row->steps_ahead = reference.steps_ahead;
-    row->limit = row->theory = HUGE_VAL;
+    advice->cut = by == &none ? reference.seconds : 0;
+    advice->steps_ahead = reference.steps_ahead;
+    advice->limit = advice->theory = HUGE_VAL;
     if (reference.steps_ahead > 0)
-        return try_frame(row, settings, &none, frame, error);
+        return try_frame(advice, settings, &none, frame, error);
     if (!reference.exists) {
-        row->kind = CS_ADVICE_REFUSED;
-        snprintf(row->message, sizeof row->message, "the reference run failed: %.280s",
+        advice->kind = CS_ADVICE_REFUSED;
+        snprintf(advice->message, sizeof advice->message, "the reference run failed: %.280s",
                  reference.message);
         return CS_OK;
     }
-    row->speed = reference.run.speed_max;
-    row->limit = row->theory = reference.smallest_limit.dt;
-    row->mode = reference.smallest_limit.mode;
-    row->time = reference.smallest_time;
-    row->end_limit = reference.end_limit.dt;
-    row->seconds = reference.seconds;
+    advice->speed = reference.run.speed_max;
+    advice->limit = advice->theory = reference.smallest_limit.dt;
+    advice->mode = reference.smallest_limit.mode;
+    advice->time = reference.smallest_time;
+    advice->end_limit = reference.end_limit.dt;
+    advice->seconds = reference.seconds;
     /* theory knows no limit */
-    if (row->limit > 1e100)
-        return try_frame(row, settings, by, frame, error);
-    row->kind = row->limit > 0 ? CS_ADVICE_THEORY : CS_ADVICE_NONE;
-    row->safe = fmin(MARGIN * row->limit, fmin(frame, 10));
-    if (row->kind == CS_ADVICE_NONE)
+    if (advice->limit > 1e100)
+        return try_frame(advice, settings, by, frame, error);
+    advice->kind = advice->limit > 0 ? CS_ADVICE_THEORY : CS_ADVICE_NONE;
+    advice->safe = fmin(MARGIN * advice->limit, fmin(frame, 10));
+    if (advice->kind == CS_ADVICE_NONE)
         return CS_OK;
-    if (check && check_limit(row, settings, by, error))
+    if (check && check_limit(advice, settings, by, error))
         return error->status;
-    if (try_safe(row, settings, by, frame, error) || !cs_advice_is_unstable(row))
+    if (try_safe(advice, settings, by, frame, error) || !cs_advice_is_unstable(advice))
         return error->status;
-    return try_lower(row, settings, by, frame, error);
+    return try_lower(advice, settings, by, frame, error);
 }
 
 /* Growth rate in 1/s of the worst mode at the advised step, ln(radius) / dt. Theory calls a
  * mode stable if it grows too slowly to show in the time of the advice; the growth is reported.
  */
-static enum cs_status measure_growth(struct cs_advice *row, const struct cs_method *method,
+static enum cs_status measure_growth(struct cs_advice *advice, const struct cs_method *method,
                                      struct cs_error *error) {
-    const struct cs_amplification amplify = {method->integrator, method->options, 0, NULL};
+    const struct cs_amplification amplification = {method->integrator, method->options, 0,
+                                                   NULL};
     double radius;
-    if (!(row->safe > 0) || !(row->theory > 0 && row->theory < HUGE_VAL) ||
-        cs_amplification_measure(&amplify, row->safe, fmax(row->mode.omega_squared, 0),
-                                 fmax(row->mode.damping_rate, 0), &radius, error))
+    if (!(advice->safe > 0) || !(advice->theory > 0 && advice->theory < HUGE_VAL) ||
+        cs_amplification_measure(&amplification, advice->safe,
+                                 fmax(advice->mode.omega_squared, 0),
+                                 fmax(advice->mode.damping_rate, 0), &radius, error))
         return error->status;
-    row->mode_growth =
-        radius > 1 + GROWTH_SEEN && isfinite(radius) ? log(radius) / row->safe : 0;
+    advice->mode_growth =
+        radius > 1 + GROWTH_SEEN && isfinite(radius) ? log(radius) / advice->safe : 0;
     return CS_OK;
 }
 
 /* Advice for a method that chooses its steps: a probe run without a reference. */
-static enum cs_status advise_adaptive(struct cs_advice *row,
+static enum cs_status advise_adaptive(struct cs_advice *advice,
                                       const struct cs_sampled_run_settings *settings,
                                       double frame, struct cs_error *error) {
     const struct cs_reference none = {.seconds = settings->seconds};
-    row->kind = CS_ADVICE_ADAPTIVE;
-    return try_safe(row, settings, &none, frame, error);
+    advice->kind = CS_ADVICE_ADAPTIVE;
+    return try_safe(advice, settings, &none, frame, error);
 }
 
 /* A method that refuses the scene becomes a row with the reason. The scene itself was accepted
  * before, with its own method. */
-static enum cs_status refuse(struct cs_advice *row, struct cs_error *error) {
+static enum cs_status refuse_advice(struct cs_advice *advice, struct cs_error *error) {
     if (error->status != CS_ERR_SCENE)
         return error->status;
-    row->kind = CS_ADVICE_REFUSED;
-    snprintf(row->message, sizeof row->message, "%.300s", error->message);
+    advice->kind = CS_ADVICE_REFUSED;
+    snprintf(advice->message, sizeof advice->message, "%.300s", error->message);
     *error = (struct cs_error){0};
     return CS_OK;
 }
@@ -242,26 +246,26 @@ static enum cs_status refuse(struct cs_advice *row, struct cs_error *error) {
 /* Runs in a worker process: advice for one method. */
 static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *error) {
     struct cs_advise *advise = ctx;
-    struct cs_advice *row = advise->rows + task;
+    struct cs_advice *advice = advise->rows + task;
     struct cs_session session;
-    struct cs_sampled_run_settings trial = {
+    struct cs_sampled_run_settings settings = {
         .session = advise->session, .seconds = advise->seconds, .samples = SAMPLES};
     const double frame = 1 / advise->was_opened.scene.time.fps;
-    trial.session.perturbation =
+    settings.session.perturbation =
         PERTURBATION * cs_diagnostics_shortest(&advise->was_opened.system);
-    trial.session.run.pot = &row->pot;
-    trial.session.integrator = row->method = advise->names[task];
+    settings.session.run.pot = &advice->pot;
+    settings.session.integrator = advice->method = advise->names[task];
     /* only to learn whether the method can follow the scene, and whether it takes dt */
-    if (cs_session_open_plan(&session, &trial.session, error)) {
-        row->pot = 0;
-        return refuse(row, error);
+    if (cs_session_open_plan(&session, &settings.session, error)) {
+        advice->pot = 0;
+        return refuse_advice(advice, error);
     }
     if (!cs_method_takes_dt(session.method.integrator))
-        advise_adaptive(row, &trial, frame, error);
-    else if (!advise_fixed(row, &trial, frame, advise->bisect_too, error))
-        measure_growth(row, &session.method, error);
+        advise_adaptive(advice, &settings, frame, error);
+    else if (!advise_fixed(advice, &settings, frame, advise->bisect_too, error))
+        measure_growth(advice, &session.method, error);
     cs_session_close(&session);
-    row->pot = 0;
+    advice->pot = 0;
     return error->status;
 }
 
@@ -288,23 +292,23 @@ static enum cs_status list_methods(struct cs_advise *advise, struct cs_error *er
 }
 
 enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error) {
-    struct cs_process_pool workers = {.n_workers = advise->workers,
-                                      .task = advise_task,
-                                      .ctx = advise,
-                                      .progress = report,
-                                      .progress_ctx = advise,
-                                      .stop = advise->stop};
+    struct cs_process_pool pool = {.n_workers = advise->workers,
+                                   .task = advise_task,
+                                   .ctx = advise,
+                                   .progress = report,
+                                   .progress_ctx = advise,
+                                   .stop = advise->stop};
     if (cs_session_open_system(&advise->was_opened, &advise->session, error) ||
         list_methods(advise, error))
         return error->status;
-    workers.n_tasks = advise->n;
+    pool.n_tasks = advise->n;
     advise->rows = cs_process_pool_shared_alloc(advise->n * sizeof *advise->rows, error);
     if (!(advise->budget > 0))
         advise->budget = fmin(fmax(CALL_BUDGET, METHOD_BUDGET * advise->n), MOST_BUDGET);
-    workers.silence_max = cs_hang_seconds(advise->budget / advise->n);
+    pool.silence_max = cs_hang_seconds(advise->budget / advise->n);
     for (uint32_t k = 0; advise->rows && k < advise->n; k++)
         advise->rows[k].pot = advise->budget / advise->n;
-    return advise->rows ? cs_process_pool_run(&workers, error) : error->status;
+    return advise->rows ? cs_process_pool_run(&pool, error) : error->status;
 }
 
 enum cs_status cs_advise_check(const struct cs_advise *advise, struct cs_error *error) {

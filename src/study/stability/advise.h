@@ -51,14 +51,15 @@ struct cs_advice {
 
 /* True if the probe run was unstable: such a step is never advised. A run out of budget is not.
  */
-static inline bool cs_advice_is_unstable(const struct cs_advice *row) {
-    return !cs_stability_is_stable(row->verdict) && row->verdict != CS_STABILITY_OVER_BUDGET;
+static inline bool cs_advice_is_unstable(const struct cs_advice *advice) {
+    return !cs_stability_is_stable(advice->verdict) &&
+           advice->verdict != CS_STABILITY_OVER_BUDGET;
 }
 
 /* True if a row names a step. */
-static inline bool cs_advice_has_step(const struct cs_advice *row) {
-    return row->kind != CS_ADVICE_ADAPTIVE && row->kind != CS_ADVICE_NONE &&
-           row->kind != CS_ADVICE_REFUSED;
+static inline bool cs_advice_has_step(const struct cs_advice *advice) {
+    return advice->kind != CS_ADVICE_ADAPTIVE && advice->kind != CS_ADVICE_NONE &&
+           advice->kind != CS_ADVICE_REFUSED;
 }
 
 /* Request and results; pointers of the request are borrowed. */

@@ -237,7 +237,7 @@ static enum cs_status run_all(struct catalogue *catalogue, struct cs_error *erro
         catalogue->rows[k].method = catalogue->methods[k % catalogue->n_methods];
         catalogue->rows[k].expected = "";
     }
-    struct cs_process_pool workers = {
+    struct cs_process_pool pool = {
         .n_workers = catalogue->extreme->n_workers,
         .n_tasks = n,
         .task = run_task,
@@ -248,7 +248,7 @@ static enum cs_status run_all(struct catalogue *catalogue, struct cs_error *erro
         .silence_max = cs_hang_seconds(catalogue->extreme->budget),
         .task_seconds_max = cs_hang_seconds(10 * catalogue->extreme->budget),
         .stop = catalogue->extreme->stop};
-    return cs_process_pool_run(&workers, error);
+    return cs_process_pool_run(&pool, error);
 }
 
 enum cs_status cs_extreme_run(struct cs_extreme *extreme, struct cs_error *error) {

@@ -16,28 +16,28 @@
 /* Reads scene and method, and names the series. Returns CS_ERR_USAGE if the integrator has no
  * fixed dt; further CS_ERR_SCENE, CS_ERR_FILE, CS_ERR_MEMORY. settings must outlive the map.
  * cs_stability_finish must be called in any case. */
-enum cs_status cs_stability_open(struct cs_stability *map,
+enum cs_status cs_stability_open(struct cs_stability *stability,
                                  const struct cs_stability_settings *settings,
                                  struct cs_error *error);
 /* Makes the map. Returns CS_ERR_USAGE if the scene has no value on the axis, or if no column
  * has a reference; further CS_ERR_SCENE, CS_ERR_FILE, CS_ERR_MEMORY, CS_ERR_INTERRUPT. */
-enum cs_status cs_stability_run(struct cs_stability *map, struct cs_error *error);
+enum cs_status cs_stability_run(struct cs_stability *stability, struct cs_error *error);
 /* Frees the map and closes its session; a zeroed map is allowed. */
-void cs_stability_finish(struct cs_stability *map);
+void cs_stability_finish(struct cs_stability *stability);
 
 /* Prints a map as text, CSV and JSON. */
 
 /* Adds the map as a table for readers: letters of verdicts, border and limits below, legend. */
-void cs_stability_print_table(const struct cs_stability *map, struct cs_text *out);
+void cs_stability_print_table(const struct cs_stability *stability, struct cs_text *out);
 /* The columns of both files behind the first, which is called like the axis. */
 extern const struct cs_column cs_stability_columns[], cs_stability_border_columns[];
 extern const uint32_t cs_stability_n_columns, cs_stability_n_border_columns;
 
 /* Adds one row per cell; cell_left .. cell_top are the edges of its rectangle in a diagram. */
-void cs_stability_print_csv(const struct cs_stability *map, struct cs_text *out);
+void cs_stability_print_csv(const struct cs_stability *stability, struct cs_text *out);
 /* Adds one row per column: border, limits of theory in s, and the mode that limits the step. */
-void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_text *out);
+void cs_stability_print_borders_csv(const struct cs_stability *stability, struct cs_text *out);
 /* Adds the whole map; limits that do not exist are null. */
-void cs_stability_print_json(const struct cs_stability *map, struct cs_text *out);
+void cs_stability_print_json(const struct cs_stability *stability, struct cs_text *out);
 
 #endif

@@ -63,7 +63,7 @@ struct growing {
 };
 
 /* Appends the override "bodies[body].key" = value; both texts are copied to the arena. */
-static void add(struct growing *to, const char *key, const char *value) {
+static void add_value(struct growing *to, const char *key, const char *value) {
     char path[64];
     snprintf(path, sizeof path, "bodies[%u].%s", to->body, key);
     to->list[to->n].path = cs_arena_copy_text(to->arena, path, to->error);
@@ -78,7 +78,7 @@ static void add_real(struct growing *to, const char *key, double value) {
     if (text.failed)
         cs_fail(to->error, CS_ERR_MEMORY, "out of memory");
     else
-        add(to, key, cs_text_get(&text));
+        add_value(to, key, cs_text_get(&text));
     cs_text_finish(&text);
 }
 
@@ -88,7 +88,7 @@ static void add_grid(struct growing *to, const int64_t *grid, double factor) {
     snprintf(value, sizeof value, "[%.0f, %.0f]",
              fmax(1, floor((double)grid[0] * factor + 0.5)),
              fmax(1, floor((double)grid[1] * factor + 0.5)));
-    add(to, "cloth.grid", value);
+    add_value(to, "cloth.grid", value);
 }
 
 /* Appends the constants of a measured cloth instead of its name, those of its membrane times
@@ -102,7 +102,7 @@ static void add_measured(struct growing *to, const struct cs_elastic *elastic, d
              "\"twist\": %.17g}, \"damping\": %.17g}",
              C.warp * factor, C.weft * factor, C.shear * factor, C.coupling * factor, D.warp,
              D.weft, D.shear, elastic->damping);
-    add(to, "elastic", value);
+    add_value(to, "elastic", value);
 }
 
 /* Appends the overrides of one body: its values on the axis times factor. Values that the scene

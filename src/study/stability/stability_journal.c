@@ -31,10 +31,10 @@ struct record {
 
 /* Hash of everything a result depends on: version, scene with the method's options, start
  * state, record size, axis, times, steps and values. */
-static enum cs_status make_key(const struct cs_stability *map, char key[CS_HASH_DIGITS],
+static enum cs_status make_key(const struct cs_stability *stability, char key[CS_HASH_DIGITS],
                                struct cs_error *error) {
-    const struct cs_stability_settings *settings = map->settings;
-    const struct cs_session *session = &map->session;
+    const struct cs_stability_settings *settings = stability->settings;
+    const struct cs_session *session = &stability->session;
     char scene[CS_HASH_DIGITS], start[CS_HASH_DIGITS];
     struct cs_text all = {0};
     if (cs_scene_hash(&session->scene, &session->method.table, session->method.options, scene,
@@ -44,10 +44,10 @@ static enum cs_status make_key(const struct cs_stability *map, char key[CS_HASH_
     cs_text_add(&all, "%s|%s|%s|%zu|%d|", CS_VERSION, scene, start, sizeof(struct record),
                 (int)settings->axis);
     cs_text_add(&all, "%.17g|%.17g", settings->seconds, settings->budget);
-    for (uint32_t r = 0; r < map->n_rows; r++)
-        cs_text_add(&all, "|%.17g", map->dt[r]);
-    for (uint32_t c = 0; c < map->n_columns; c++)
-        cs_text_add(&all, "|%.17g", map->columns[c].value);
+    for (uint32_t r = 0; r < stability->n_rows; r++)
+        cs_text_add(&all, "|%.17g", stability->dt[r]);
+    for (uint32_t c = 0; c < stability->n_columns; c++)
+        cs_text_add(&all, "|%.17g", stability->columns[c].value);
     if (all.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the key of a map");
     else
@@ -62,14 +62,14 @@ static void find_check(const struct record *record, char check[CS_HASH_DIGITS]) 
 
 /* Stores one record in the map. Records beyond its columns or rows, with another key, or
  * damaged, are ignored. */
-static void take(struct cs_stability *map, const struct record *record) {
+static void store_record(struct cs_stability *stability, const struct record *record) {
     char check[CS_HASH_DIGITS];
     find_check(record, check);
-    if (memcmp(record->check, check, sizeof check) != 0 || record->column >= map->n_columns ||
-        record->row >= map->n_rows ||
-        strncmp(record->key, map->journal.key, sizeof record->key) != 0)
+    if (memcmp(record->check, check, sizeof check) != 0 ||
+        record->column >= stability->n_columns || record->row >= stability->n_rows ||
+        strncmp(record->key, stability->journal.key, sizeof record->key) != 0)
         return;
-    struct cs_stability_column *column = map->columns + record->column;
+    struct cs_stability_column *column = stability->columns + record->column;
     if (record->kind == REFERENCE) {
         column->reference = record->of.reference;
         column->has_reference = true;
@@ -82,69 +82,70 @@ static void take(struct cs_stability *map, const struct record *record) {
 }
 
 /* Reads all records under the lock of the table. A missing file is an empty one. */
-static enum cs_status read_back(struct cs_stability *map, struct cs_error *error) {
+static enum cs_status read_back(struct cs_stability *stability, struct cs_error *error) {
     struct cs_rows rows;
     struct record record;
-    if (cs_rows_open(&rows, map->journal.table.path, sizeof record, error))
+    if (cs_rows_open(&rows, stability->journal.table.path, sizeof record, error))
         return error->status;
     for (const char *row; (row = cs_rows_next(&rows));) {
         memcpy(&record, row, sizeof record);
-        take(map, &record);
+        store_record(stability, &record);
     }
     cs_rows_close(&rows);
     return CS_OK;
 }
 
-enum cs_status cs_journal_open(struct cs_stability *map, struct cs_error *error) {
-    struct cs_row_table *table = &map->journal.table;
+enum cs_status cs_journal_open(struct cs_stability *stability, struct cs_error *error) {
+    struct cs_row_table *table = &stability->journal.table;
     char name[CS_SERIES_BYTES], file[CS_SERIES_BYTES + sizeof ENDING];
-    if (!map->settings->folder)
+    if (!stability->settings->folder)
         return CS_OK;
-    cs_series_file_name(map->series, name);
+    cs_series_file_name(stability->series, name);
     snprintf(file, sizeof file, "%s%s", name, ENDING);
-    if (!make_key(map, map->journal.key, error) &&
-        !cs_row_table_open(table, map->settings->folder, file, file, sizeof(struct record),
-                           error) &&
+    if (!make_key(stability, stability->journal.key, error) &&
+        !cs_row_table_open(table, stability->settings->folder, file, file,
+                           sizeof(struct record), error) &&
         !cs_row_table_lock(table, error)) {
-        read_back(map, error);
+        read_back(stability, error);
         cs_row_table_unlock(table);
     }
     return error->status;
 }
 
 /* Appends one record with the key of the map; nothing without a journal. */
-static enum cs_status append(const struct cs_stability *map, struct record *record,
+static enum cs_status append(const struct cs_stability *stability, struct record *record,
                              struct cs_error *error) {
-    if (!*map->journal.table.path)
+    if (!*stability->journal.table.path)
         return CS_OK;
-    memcpy(record->key, map->journal.key, sizeof record->key);
+    memcpy(record->key, stability->journal.key, sizeof record->key);
     find_check(record, record->check);
-    return cs_row_table_append(&map->journal.table, record, sizeof *record, error);
+    return cs_row_table_append(&stability->journal.table, record, sizeof *record, error);
 }
 
-enum cs_status cs_journal_append_reference(const struct cs_stability *map, uint32_t column,
-                                           struct cs_error *error) {
+enum cs_status cs_journal_append_reference(const struct cs_stability *stability,
+                                           uint32_t column, struct cs_error *error) {
     struct record record = {.kind = REFERENCE, .column = column};
-    record.of.reference = map->columns[column].reference;
-    return append(map, &record, error);
+    record.of.reference = stability->columns[column].reference;
+    return append(stability, &record, error);
 }
 
-enum cs_status cs_journal_append_cell(const struct cs_stability *map, uint32_t column,
+enum cs_status cs_journal_append_cell(const struct cs_stability *stability, uint32_t column,
                                       uint32_t row, struct cs_error *error) {
     struct record record = {.kind = CELL, .column = column, .row = row};
-    record.of.cell = map->columns[column].cells[row];
-    return append(map, &record, error);
+    record.of.cell = stability->columns[column].cells[row];
+    return append(stability, &record, error);
 }
 
-enum cs_status cs_journal_append_boundary(const struct cs_stability *map, uint32_t column,
+enum cs_status cs_journal_append_boundary(const struct cs_stability *stability, uint32_t column,
                                           struct cs_error *error) {
     struct record record = {.kind = BORDER, .column = column};
-    record.of.border = map->columns[column].boundary;
-    return append(map, &record, error);
+    record.of.border = stability->columns[column].boundary;
+    return append(stability, &record, error);
 }
 
-enum cs_status cs_journal_remove(const struct cs_stability *map, struct cs_error *error) {
-    return *map->journal.table.path ? cs_file_remove(map->journal.table.path, error) : CS_OK;
+enum cs_status cs_journal_remove(const struct cs_stability *stability, struct cs_error *error) {
+    return *stability->journal.table.path ? cs_file_remove(stability->journal.table.path, error)
+                                          : CS_OK;
 }
 
 /* True for a file name with the ending of journals and a stem. */

@@ -33,11 +33,12 @@ static void add_dt(struct cs_text *out, double dt) {
 }
 
 /* One row of the map: its dt and the letters of its cells. */
-static void add_row(const struct cs_stability *map, uint32_t row, struct cs_text *out) {
-    cs_text_add(out, "%-*.4g", NAME_WIDTH, map->dt[row]);
-    for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
+static void add_stability_row(const struct cs_stability *stability, uint32_t row,
+                              struct cs_text *out) {
+    cs_text_add(out, "%-*.4g", NAME_WIDTH, stability->dt[row]);
+    for (uint32_t c = 0; c < stability->n_columns; c += stride(stability->n_columns))
         cs_text_add(out, "%*c", CELL_WIDTH,
-                    cs_stability_letter(map->columns[c].cells[row].verdict));
+                    cs_stability_letter(stability->columns[c].cells[row].verdict));
     cs_text_add(out, "\n");
 }
 
@@ -59,19 +60,19 @@ static double value_of(const struct cs_stability_column *column, enum line line)
 }
 
 /* Border and limits of theory, and the ratio of measured to predicted border. */
-static void add_lines(const struct cs_stability *map, struct cs_text *out) {
+static void add_lines(const struct cs_stability *stability, struct cs_text *out) {
     static const char *const names[LINES] = {"border", "worst on way", "at the start",
                                              "Gershgorin"};
     for (enum line line = 0; line < LINES; line++) {
         cs_text_add(out, "%-*s", NAME_WIDTH, names[line]);
-        for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
-            add_dt(out, value_of(map->columns + c, line));
+        for (uint32_t c = 0; c < stability->n_columns; c += stride(stability->n_columns))
+            add_dt(out, value_of(stability->columns + c, line));
         cs_text_add(out, "\n");
     }
     cs_text_add(out, "%-*s", NAME_WIDTH, "border / worst");
-    for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns)) {
+    for (uint32_t c = 0; c < stability->n_columns; c += stride(stability->n_columns)) {
         const double ratio =
-            map->columns[c].boundary / map->columns[c].reference.smallest_limit.dt;
+            stability->columns[c].boundary / stability->columns[c].reference.smallest_limit.dt;
         if (isfinite(ratio) && ratio > 0)
             cs_text_add(out, "%*.3f", CELL_WIDTH, ratio);
         else
@@ -81,10 +82,10 @@ static void add_lines(const struct cs_stability *map, struct cs_text *out) {
 }
 
 /* Energy drift or crossings of the largest step that is stable with all below it; NAN: none. */
-static double last_stable(const struct cs_stability *map, uint32_t c, bool crossings) {
+static double last_stable(const struct cs_stability *stability, uint32_t c, bool crossings) {
     double last = (double)NAN;
-    for (uint32_t r = 0; r < map->n_rows; r++) {
-        const struct cs_stability_cell *cell = map->columns[c].cells + r;
+    for (uint32_t r = 0; r < stability->n_rows; r++) {
+        const struct cs_stability_cell *cell = stability->columns[c].cells + r;
         const double value = crossings ? cell->crossings : cell->drift;
         if (!cs_stability_is_sound(cell->verdict))
             break;
@@ -94,36 +95,36 @@ static double last_stable(const struct cs_stability *map, uint32_t c, bool cross
 }
 
 /* Energy drift of the largest stable step, in per cent. */
-static void add_drift(const struct cs_stability *map, struct cs_text *out) {
+static void add_drift(const struct cs_stability *stability, struct cs_text *out) {
     cs_text_add(out, "%-*s", NAME_WIDTH, "energy drift");
-    for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
-        if (isnan(last_stable(map, c, false)))
+    for (uint32_t c = 0; c < stability->n_columns; c += stride(stability->n_columns))
+        if (isnan(last_stable(stability, c, false)))
             cs_text_add(out, "%*s", CELL_WIDTH, "-");
         else
-            cs_text_add(out, "%*.1f%%", CELL_WIDTH - 1, 100 * last_stable(map, c, false));
+            cs_text_add(out, "%*.1f%%", CELL_WIDTH - 1, 100 * last_stable(stability, c, false));
     cs_text_add(out, "\n");
 }
 
 /* Crossings of the largest stable step, if the scene counts them. */
-static void add_crossings(const struct cs_stability *map, struct cs_text *out) {
-    if (!map->session.plan.rows[CS_FEATURE_CROSSINGS].built)
+static void add_crossings(const struct cs_stability *stability, struct cs_text *out) {
+    if (!stability->session.plan.rows[CS_FEATURE_CROSSINGS].built)
         return;
     cs_text_add(out, "%-*s", NAME_WIDTH, "crossings");
-    for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
-        if (isnan(last_stable(map, c, true)))
+    for (uint32_t c = 0; c < stability->n_columns; c += stride(stability->n_columns))
+        if (isnan(last_stable(stability, c, true)))
             cs_text_add(out, "%*s", CELL_WIDTH, "-");
         else
-            cs_text_add(out, "%*.0f", CELL_WIDTH, last_stable(map, c, true));
+            cs_text_add(out, "%*.0f", CELL_WIDTH, last_stable(stability, c, true));
     cs_text_add(out, "\n");
 }
 
 /* Explains the letters that occur. */
-static void add_legend(const struct cs_stability *map, struct cs_text *out) {
+static void add_legend(const struct cs_stability *stability, struct cs_text *out) {
     for (int v = 0; v < CS_STABILITY_VERDICTS; v++) {
         bool there = false;
-        for (uint32_t c = 0; c < map->n_columns; c++)
-            for (uint32_t r = 0; r < map->n_rows; r++)
-                there |= (int)map->columns[c].cells[r].verdict == v;
+        for (uint32_t c = 0; c < stability->n_columns; c++)
+            for (uint32_t r = 0; r < stability->n_rows; r++)
+                there |= (int)stability->columns[c].cells[r].verdict == v;
         if (there)
             cs_text_add(out, "  %c  %s: %s\n",
                         cs_stability_letter((enum cs_stability_verdict)v),
@@ -133,50 +134,51 @@ static void add_legend(const struct cs_stability *map, struct cs_text *out) {
 }
 
 /* Names the columns without a reference, and why. */
-static void add_unjudged(const struct cs_stability *map, struct cs_text *out) {
-    for (uint32_t c = 0; c < map->n_columns; c++)
-        if (!map->columns[c].reference.exists)
+static void add_unjudged(const struct cs_stability *stability, struct cs_text *out) {
+    for (uint32_t c = 0; c < stability->n_columns; c++)
+        if (!stability->columns[c].reference.exists)
             cs_text_add(out,
                         "  %s = %.4g: the reference run failed (%s); try a shorter --time or a "
                         "larger --budget\n",
-                        cs_axis_names[map->settings->axis], map->columns[c].value,
-                        map->columns[c].reference.message);
+                        cs_axis_names[stability->settings->axis], stability->columns[c].value,
+                        stability->columns[c].reference.message);
 }
 
 /* Duration of the runs of each column: at least 200 steps at the limit of its stiffest mode. */
-static void add_watch(const struct cs_stability *map, struct cs_text *out) {
+static void add_watch(const struct cs_stability *stability, struct cs_text *out) {
     cs_text_add(out, "%-*s", NAME_WIDTH, "watched for [s]");
-    for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
-        cs_text_add(out, "%*.4g", CELL_WIDTH, map->columns[c].reference.seconds);
+    for (uint32_t c = 0; c < stability->n_columns; c += stride(stability->n_columns))
+        cs_text_add(out, "%*.4g", CELL_WIDTH, stability->columns[c].reference.seconds);
     cs_text_add(out, "\n");
 }
 
-void cs_stability_print_table(const struct cs_stability *map, struct cs_text *out) {
-    const struct cs_stability_settings *settings = map->settings;
-    cs_text_add(out, "%s on ", map->series);
-    cs_text_add_plain(out, map->session.scene.path);
+void cs_stability_print_table(const struct cs_stability *stability, struct cs_text *out) {
+    const struct cs_stability_settings *settings = stability->settings;
+    cs_text_add(out, "%s on ", stability->series);
+    cs_text_add_plain(out, stability->session.scene.path);
     cs_text_add(out, ": %.6g s per cell, dt [s] against %s [%s]", settings->seconds,
                 cs_axis_names[settings->axis], cs_axis_unit(settings->axis));
-    cs_contact_note_add(&map->session.scene, "; ", out);
+    cs_contact_note_add(&stability->session.scene, "; ", out);
     cs_text_add(out, "\n\n");
     cs_text_add(out, "%-*s", NAME_WIDTH, cs_axis_names[settings->axis]);
-    for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
-        cs_text_add(out, "%*.4g", CELL_WIDTH, map->columns[c].value);
+    for (uint32_t c = 0; c < stability->n_columns; c += stride(stability->n_columns))
+        cs_text_add(out, "%*.4g", CELL_WIDTH, stability->columns[c].value);
     cs_text_add(out, "\n");
-    for (uint32_t r = map->n_rows; r-- > 0;)
-        if (r % stride(map->n_rows) == 0)
-            add_row(map, r, out);
-    if (stride(map->n_columns) > 1 || stride(map->n_rows) > 1)
+    for (uint32_t r = stability->n_rows; r-- > 0;)
+        if (r % stride(stability->n_rows) == 0)
+            add_stability_row(stability, r, out);
+    if (stride(stability->n_columns) > 1 || stride(stability->n_rows) > 1)
         cs_text_add(out, "(columns in steps of %u, rows of %u; all %u x %u are in the files)\n",
-                    stride(map->n_columns), stride(map->n_rows), map->n_columns, map->n_rows);
+                    stride(stability->n_columns), stride(stability->n_rows),
+                    stability->n_columns, stability->n_rows);
     cs_text_add(out, "\n");
-    add_watch(map, out);
-    add_lines(map, out);
-    add_drift(map, out);
-    add_crossings(map, out);
+    add_watch(stability, out);
+    add_lines(stability, out);
+    add_drift(stability, out);
+    add_crossings(stability, out);
     cs_text_add(out, "\n");
-    add_legend(map, out);
-    add_unjudged(map, out);
+    add_legend(stability, out);
+    add_unjudged(stability, out);
 }
 
 /* --- CSV and JSON --- */
@@ -190,22 +192,22 @@ static double edge(double before, double here, double after, double alone) {
 }
 
 /* Value of a column; 0 beyond the last one. */
-static double value_at(const struct cs_stability *map, uint32_t c) {
-    return c < map->n_columns ? map->columns[c].value : 0;
+static double value_at(const struct cs_stability *stability, uint32_t c) {
+    return c < stability->n_columns ? stability->columns[c].value : 0;
 }
 
 /* Step of a row; 0 beyond the last one. */
-static double dt_at(const struct cs_stability *map, uint32_t r) {
-    return r < map->n_rows ? map->dt[r] : 0;
+static double dt_at(const struct cs_stability *stability, uint32_t r) {
+    return r < stability->n_rows ? stability->dt[r] : 0;
 }
 
 /* One CSV row: value, dt, verdict, figures, and the rectangle of the cell. */
-static void add_cell(const struct cs_stability *map, uint32_t c, uint32_t r,
+static void add_cell(const struct cs_stability *stability, uint32_t c, uint32_t r,
                      struct cs_text *out) {
-    const struct cs_stability_cell *cell = map->columns[c].cells + r;
-    const double value = value_at(map, c), left = c ? value_at(map, c - 1) : 0;
-    const double right = value_at(map, c + 1), below = r ? dt_at(map, r - 1) : 0;
-    const double above = dt_at(map, r + 1);
+    const struct cs_stability_cell *cell = stability->columns[c].cells + r;
+    const double value = value_at(stability, c), left = c ? value_at(stability, c - 1) : 0;
+    const double right = value_at(stability, c + 1), below = r ? dt_at(stability, r - 1) : 0;
+    const double above = dt_at(stability, r + 1);
     cs_text_add_real(out, value);
     cs_csv_add_number(out, cell->dt);
     cs_text_add(out, ",%s,%d", cs_stability_word(cell->verdict), (int)cell->verdict);
@@ -248,21 +250,21 @@ const struct cs_column cs_stability_border_columns[] = {
 const uint32_t cs_stability_n_border_columns =
     sizeof cs_stability_border_columns / sizeof *cs_stability_border_columns;
 
-void cs_stability_print_csv(const struct cs_stability *map, struct cs_text *out) {
-    cs_text_add(out, "%s", cs_axis_names[map->settings->axis]);
+void cs_stability_print_csv(const struct cs_stability *stability, struct cs_text *out) {
+    cs_text_add(out, "%s", cs_axis_names[stability->settings->axis]);
     cs_columns_add_names(cs_stability_columns, cs_stability_n_columns, out);
     cs_text_add(out, "\n");
-    for (uint32_t c = 0; c < map->n_columns; c++)
-        for (uint32_t r = 0; r < map->n_rows; r++)
-            add_cell(map, c, r, out);
+    for (uint32_t c = 0; c < stability->n_columns; c++)
+        for (uint32_t r = 0; r < stability->n_rows; r++)
+            add_cell(stability, c, r, out);
 }
 
-void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_text *out) {
-    cs_text_add(out, "%s", cs_axis_names[map->settings->axis]);
+void cs_stability_print_borders_csv(const struct cs_stability *stability, struct cs_text *out) {
+    cs_text_add(out, "%s", cs_axis_names[stability->settings->axis]);
     cs_columns_add_names(cs_stability_border_columns, cs_stability_n_border_columns, out);
     cs_text_add(out, "\n");
-    for (uint32_t c = 0; c < map->n_columns; c++) {
-        const struct cs_stability_column *column = map->columns + c;
+    for (uint32_t c = 0; c < stability->n_columns; c++) {
+        const struct cs_stability_column *column = stability->columns + c;
         const struct cs_reference *reference = &column->reference;
         const struct cs_mode *mode = &reference->smallest_limit.mode;
         const double dts[] = {column->boundary, reference->smallest_limit.dt,
@@ -280,8 +282,9 @@ void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_te
 }
 
 /* One column with its limits and cells. */
-static void add_json_column(const struct cs_stability *map, uint32_t c, struct cs_text *out) {
-    const struct cs_stability_column *column = map->columns + c;
+static void add_json_column(const struct cs_stability *stability, uint32_t c,
+                            struct cs_text *out) {
+    const struct cs_stability_column *column = stability->columns + c;
     const struct cs_reference *reference = &column->reference;
     /* limits that do not exist are NAN or infinite, which are written as null */
     cs_json_write(out,
@@ -290,7 +293,7 @@ static void add_json_column(const struct cs_stability *map, uint32_t c, struct c
                   column->value, reference->seconds, column->boundary,
                   reference->smallest_limit.dt, reference->start_limit.dt,
                   reference->gershgorin_limit, reference->run.mean_step);
-    for (uint32_t r = 0; r < map->n_rows; r++) {
+    for (uint32_t r = 0; r < stability->n_rows; r++) {
         const struct cs_stability_cell *cell = column->cells + r;
         cs_json_write(out,
                       ",\n      {'dt': %g, 'verdict': %s, 'energy_drift': %g, 'time': %g, "
@@ -301,14 +304,14 @@ static void add_json_column(const struct cs_stability *map, uint32_t c, struct c
     cs_text_add(out, "]}");
 }
 
-void cs_stability_print_json(const struct cs_stability *map, struct cs_text *out) {
-    const struct cs_stability_settings *settings = map->settings;
+void cs_stability_print_json(const struct cs_stability *stability, struct cs_text *out) {
+    const struct cs_stability_settings *settings = stability->settings;
     cs_json_write(out,
                   "{\n  'scene': %s,\n  'series': %s,\n  'integrator': %s,\n  'axis': %s,\n"
                   "  'seconds': %g,\n  'columns': [",
-                  map->session.scene.path, map->series, map->integrator->name,
+                  stability->session.scene.path, stability->series, stability->integrator->name,
                   cs_axis_names[settings->axis], settings->seconds);
-    for (uint32_t c = 0; c < map->n_columns; c++)
-        add_json_column(map, c, out);
+    for (uint32_t c = 0; c < stability->n_columns; c++)
+        add_json_column(stability, c, out);
     cs_text_add(out, "\n  ]\n}\n");
 }

@@ -186,19 +186,19 @@ struct cs_stability {
  * start, method, axis, steps, values, times. Each record is appended whole, by the process that
  * has it. Without a folder there is no journal, and all other calls do nothing. CS_ERR_FILE,
  * CS_ERR_MEMORY. */
-enum cs_status cs_journal_open(struct cs_stability *map, struct cs_error *error);
+enum cs_status cs_journal_open(struct cs_stability *stability, struct cs_error *error);
 
 /* Append the reference of a column, one of its cells, or its border. Called by worker
  * processes; the table locks the file. CS_ERR_FILE. */
-enum cs_status cs_journal_append_reference(const struct cs_stability *map, uint32_t column,
-                                           struct cs_error *error);
-enum cs_status cs_journal_append_cell(const struct cs_stability *map, uint32_t column,
+enum cs_status cs_journal_append_reference(const struct cs_stability *stability,
+                                           uint32_t column, struct cs_error *error);
+enum cs_status cs_journal_append_cell(const struct cs_stability *stability, uint32_t column,
                                       uint32_t row, struct cs_error *error);
-enum cs_status cs_journal_append_boundary(const struct cs_stability *map, uint32_t column,
+enum cs_status cs_journal_append_boundary(const struct cs_stability *stability, uint32_t column,
                                           struct cs_error *error);
 
 /* Deletes the file of a complete map. CS_ERR_FILE. */
-enum cs_status cs_journal_remove(const struct cs_stability *map, struct cs_error *error);
+enum cs_status cs_journal_remove(const struct cs_stability *stability, struct cs_error *error);
 
 /* Appends the journals of the folders to those of the folder `out`; *n: journals read. A record
  * that is cut off at the end of a file is dropped. CS_ERR_FILE, CS_ERR_MEMORY. */

@@ -113,8 +113,8 @@ static bool measure_columns(struct cs_session *session, const uint32_t steps[2],
 /* Spectral radius per step; HUGE_VAL after a blow-up. First tries one step as the whole matrix;
  * a method with memory is measured between later steps. Four square roots take the 16th root.
  */
-static void measure(struct cs_session *session, double same, double *radius,
-                    struct cs_error *error) {
+static void measure_radius(struct cs_session *session, double same, double *radius,
+                           struct cs_error *error) {
     static const uint32_t first[2] = {1, 2};
     static const uint32_t late[2] = {STEPS_BEFORE, STEPS_BEFORE + STEPS_BETWEEN};
     double looks[2][2][2], m[2][2];
@@ -149,7 +149,7 @@ static void set_spring(struct cs_scene *scene, void *ctx) {
 /* The frame keeps its length because only h^2 square and h rate matter: both are scaled
  * instead. The tolerance of the squaring test shrinks with the step, because a short step does
  * little: a fixed one would take any method for one without memory. */
-enum cs_status cs_amplification_measure(const struct cs_amplification *amplify, double h,
+enum cs_status cs_amplification_measure(const struct cs_amplification *amplification, double h,
                                         double square, double rate, double *radius,
                                         struct cs_error *error) {
     /* only h^2 square and h rate decide: the frame keeps its length */
@@ -159,14 +159,14 @@ enum cs_status cs_amplification_measure(const struct cs_amplification *amplify, 
                                                  .text = SCENE,
                                                  .edit_scene = set_spring,
                                                  .ctx = &oscillator,
-                                                 .method = amplify->integrator,
-                                                 .options = amplify->options,
+                                                 .method = amplification->integrator,
+                                                 .options = amplification->options,
                                                  .dt = FRAME};
-    if (amplify->pot)
-        *amplify->pot -= MEASURE_SECONDS;
+    if (amplification->pot)
+        *amplification->pot -= MEASURE_SECONDS;
     if (cs_session_open_system(&session, &settings, error))
         return error->status;
-    measure(&session, SAME * fmin(1, h * h * square + h * rate), radius, error);
+    measure_radius(&session, SAME * fmin(1, h * h * square + h * rate), radius, error);
     cs_session_close(&session);
     return error->status;
 }
@@ -174,20 +174,21 @@ enum cs_status cs_amplification_measure(const struct cs_amplification *amplify, 
 /* *out: the radius exceeds 1 by more than rounding and the allowed growth per step, growth h.
  * The allowance for rounding was chosen by trial. It is larger for multistep methods, whose
  * matrix is a quotient of later states. */
-static enum cs_status is_growing(const struct cs_amplification *amplify, double h,
+static enum cs_status is_growing(const struct cs_amplification *amplification, double h,
                                  double square, double rate, bool *out,
                                  struct cs_error *error) {
-    const bool remembers = amplify->integrator->traits & CS_MULTISTEP;
+    const bool remembers = amplification->integrator->traits & CS_MULTISTEP;
     double radius = 0;
-    cs_amplification_measure(amplify, h, square, rate, &radius, error);
+    cs_amplification_measure(amplification, h, square, rate, &radius, error);
     const double rounding =
         (remembers ? 1e-9 : 1e-13) + (remembers ? 1e-6 : 1e-8) * h * h * square;
-    *out = !(radius <= 1 + rounding + amplify->growth * h);
+    *out = !(radius <= 1 + rounding + amplification->growth * h);
     return error->status;
 }
 
-enum cs_status cs_amplification_limit(const struct cs_amplification *amplify, double square,
-                                      double rate, double *limit, struct cs_error *error) {
+enum cs_status cs_amplification_limit(const struct cs_amplification *amplification,
+                                      double square, double rate, double *limit,
+                                      struct cs_error *error) {
     const double fast = fmax(sqrt(square > 0 ? square : 0), rate);
     double below = 0, above = 1e-4 / fast;
     bool unstable = false;
@@ -195,7 +196,7 @@ enum cs_status cs_amplification_limit(const struct cs_amplification *amplify, do
     if (!(fast > 0 && fast < HUGE_VAL))
         return CS_OK;
     while (above * fast < 1e4 && !unstable) {
-        if (is_growing(amplify, above, square, rate, &unstable, error))
+        if (is_growing(amplification, above, square, rate, &unstable, error))
             return error->status;
         if (!unstable) {
             below = above;
@@ -206,7 +207,7 @@ enum cs_status cs_amplification_limit(const struct cs_amplification *amplify, do
         return CS_OK;
     for (int k = 0; k < 12 && below > 0; k++) {
         const double middle = (below + above) / 2;
-        if (is_growing(amplify, middle, square, rate, &unstable, error))
+        if (is_growing(amplification, middle, square, rate, &unstable, error))
             return error->status;
         *(unstable ? &above : &below) = middle;
     }
@@ -217,15 +218,15 @@ enum cs_status cs_amplification_limit(const struct cs_amplification *amplify, do
 /* Outward normal of the stable set in the plane (h^2 square, h rate) near its border: the
  * gradient of the spectral radius by forward differences of 1 %. Not scaled; infinite or NAN
  * where the method blows up. square > 0. */
-static enum cs_status normal_amplification(const struct cs_amplification *amplify, double h,
-                                           double square, double rate, double normal[2],
-                                           struct cs_error *error) {
+static enum cs_status normal_amplification(const struct cs_amplification *amplification,
+                                           double h, double square, double rate,
+                                           double normal[2], struct cs_error *error) {
     const double step = 0.01;
     double here = 0, along_square = 0, along_rate = 0;
     const double extra = step * fmax(rate, sqrt(square > 0 ? square : 0));
-    cs_amplification_measure(amplify, h, square, rate, &here, error);
-    cs_amplification_measure(amplify, h, square * (1 + step), rate, &along_square, error);
-    cs_amplification_measure(amplify, h, square, rate + extra, &along_rate, error);
+    cs_amplification_measure(amplification, h, square, rate, &here, error);
+    cs_amplification_measure(amplification, h, square * (1 + step), rate, &along_square, error);
+    cs_amplification_measure(amplification, h, square, rate + extra, &along_rate, error);
     normal[0] = (along_square - here) / (h * h * square * step);
     normal[1] = (along_rate - here) / (h * extra);
     return error->status;

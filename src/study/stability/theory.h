@@ -64,7 +64,7 @@ struct cs_amplification {
 /* Measures the spectral radius of A for a step of h s, square in 1/s2, rate in 1/s: the largest
  * growth per step. *radius is HUGE_VAL if the method blows up or fails. Returns CS_ERR_SCENE if
  * the method refuses the scene, or CS_ERR_MEMORY. */
-enum cs_status cs_amplification_measure(const struct cs_amplification *amplify, double h,
+enum cs_status cs_amplification_measure(const struct cs_amplification *amplification, double h,
                                         double square, double rate, double *radius,
                                         struct cs_error *error);
 
@@ -72,8 +72,9 @@ enum cs_status cs_amplification_measure(const struct cs_amplification *amplify, 
  * 2^(1/4) from 1e-4 / w, where w = max(sqrt(square), rate), finds the first unstable step; 12
  * bisections refine it to (2^(1/4) - 1) / 2^12 = 5e-5 of itself. *limit is 0 if already the
  * shortest step is unstable, and HUGE_VAL if none is up to 1e4 / w. */
-enum cs_status cs_amplification_limit(const struct cs_amplification *amplify, double square,
-                                      double rate, double *limit, struct cs_error *error);
+enum cs_status cs_amplification_limit(const struct cs_amplification *amplification,
+                                      double square, double rate, double *limit,
+                                      struct cs_error *error);
 
 /* Search state of the limits of one method on one system. */
 struct cs_theory {

@@ -28,15 +28,15 @@ struct set {
 };
 
 /* Cell along one axis of a coordinate; those outside the grid have the first or last one. */
-static uint32_t index_of(const struct cs_uniform_grid *cells, double place, int axis) {
-    const double end = cells->dim[axis] - 1;
-    const double at = (place - cells->origin[axis]) * cells->inverse_cell_size;
+static uint32_t index_of(const struct cs_uniform_grid *grid, double place, int axis) {
+    const double end = grid->dim[axis] - 1;
+    const double at = (place - grid->origin[axis]) * grid->inverse_cell_size;
     return (uint32_t)(at > 0 ? at < end ? at : end : 0);
 }
 
 /* Number of a cell: x runs fastest. */
-static size_t cell_of(const struct cs_uniform_grid *cells, uint32_t x, uint32_t y, uint32_t z) {
-    return ((size_t)z * cells->dim[1] + y) * cells->dim[0] + x;
+static size_t cell_of(const struct cs_uniform_grid *grid, uint32_t x, uint32_t y, uint32_t z) {
+    return ((size_t)z * grid->dim[1] + y) * grid->dim[0] + x;
 }
 
 /* Limits per box: cells, and entries in cells; FEW is added to both. Beyond either the cells
@@ -53,7 +53,7 @@ static bool is_out(const struct set *boxes, uint32_t i) {
 
 /* Sets lower corner and extent of all boxes; returns their mean longest side, 0 without boxes.
  */
-static double measure(const struct set *boxes, double low[3], double extent[3]) {
+static double measure_boxes(const struct set *boxes, double low[3], double extent[3]) {
     double high[3], sum = 0;
     uint32_t count = 0;
     for (int c = 0; c < 3; c++) {
@@ -77,42 +77,42 @@ static double measure(const struct set *boxes, double low[3], double extent[3]) 
 }
 
 /* Sets the number of cells along each axis; returns false if there are more than `most`. */
-static bool divide(struct cs_uniform_grid *cells, const double extent[3], double size,
+static bool divide(struct cs_uniform_grid *grid, const double extent[3], double size,
                    double most) {
     double all = 1;
-    cells->inverse_cell_size = 1 / size;
+    grid->inverse_cell_size = 1 / size;
     for (int c = 0; c < 3; c++) {
-        const double number = floor(extent[c] * cells->inverse_cell_size) + 1;
+        const double number = floor(extent[c] * grid->inverse_cell_size) + 1;
         all *= number;
         if (!(all <= most))
             return false;
-        cells->dim[c] = (uint32_t)number;
+        grid->dim[c] = (uint32_t)number;
     }
     return true;
 }
 
 /* First and last cell along each axis that a box touches. */
-static void grid_range(const struct cs_uniform_grid *cells, const struct cs_aabb *box,
+static void grid_range(const struct cs_uniform_grid *grid, const struct cs_aabb *box,
                        uint32_t first[3], uint32_t last[3]) {
     for (int c = 0; c < 3; c++) {
-        first[c] = index_of(cells, box->low[c], c);
-        last[c] = index_of(cells, box->high[c], c);
+        first[c] = index_of(grid, box->low[c], c);
+        last[c] = index_of(grid, box->high[c], c);
     }
 }
 
 /* Adds 1 to each cell that a box touches, or stores the item at the position that the cell's
  * count gives; returns the number of cells. */
-static size_t visit(struct cs_uniform_grid *cells, const struct cs_aabb *box, uint32_t item,
+static size_t visit(struct cs_uniform_grid *grid, const struct cs_aabb *box, uint32_t item,
                     bool put) {
     uint32_t first[3], last[3];
     size_t places = 0;
-    grid_range(cells, box, first, last);
+    grid_range(grid, box, first, last);
     for (uint32_t z = first[2]; z <= last[2]; z++)
         for (uint32_t y = first[1]; y <= last[1]; y++)
             for (uint32_t x = first[0]; x <= last[0]; x++, places++) {
-                uint32_t *count = cells->cell_starts + cell_of(cells, x, y, z);
+                uint32_t *count = grid->cell_starts + cell_of(grid, x, y, z);
                 if (put)
-                    cells->items[--*count] = item;
+                    grid->items[--*count] = item;
                 else
                     ++*count;
             }
@@ -120,65 +120,65 @@ static size_t visit(struct cs_uniform_grid *cells, const struct cs_aabb *box, ui
 }
 
 /* Counts the entries of all cells; stops early at too many. Returns false if out of memory. */
-static bool count_all(struct cs_uniform_grid *cells, const struct set *boxes, size_t *places) {
-    const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
+static bool count_all(struct cs_uniform_grid *grid, const struct set *boxes, size_t *places) {
+    const size_t all = (size_t)grid->dim[0] * grid->dim[1] * grid->dim[2];
     *places = 0;
-    if (!CS_ARENA_REALLOC(cells->cell_starts, cells->starts_capacity, all + 1))
+    if (!CS_ARENA_REALLOC(grid->cell_starts, grid->starts_capacity, all + 1))
         return false;
-    memset(cells->cell_starts, 0, (all + 1) * sizeof *cells->cell_starts);
+    memset(grid->cell_starts, 0, (all + 1) * sizeof *grid->cell_starts);
     for (uint32_t i = 0; i < boxes->n && *places <= (size_t)PLACES_EACH * boxes->n + FEW; i++)
         if (!is_out(boxes, i))
-            *places += visit(cells, boxes->boxes + i, i, false);
+            *places += visit(grid, boxes->boxes + i, i, false);
     return true;
 }
 
 /* Stores the items. Running sums make each start the end of its cell; filling from the last box
  * to the first brings it down to the begin, with items in ascending order. */
-static bool fill_all(struct cs_uniform_grid *cells, const struct set *boxes, size_t places) {
-    const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
-    if (!CS_ARENA_REALLOC(cells->items, cells->items_capacity, places))
+static bool fill_all(struct cs_uniform_grid *grid, const struct set *boxes, size_t places) {
+    const size_t all = (size_t)grid->dim[0] * grid->dim[1] * grid->dim[2];
+    if (!CS_ARENA_REALLOC(grid->items, grid->items_capacity, places))
         return false;
     for (size_t c = 1; c < all; c++)
-        cells->cell_starts[c] += cells->cell_starts[c - 1];
-    cells->cell_starts[all] = (uint32_t)places;
+        grid->cell_starts[c] += grid->cell_starts[c - 1];
+    grid->cell_starts[all] = (uint32_t)places;
     for (uint32_t i = boxes->n; i--;)
         if (!is_out(boxes, i))
-            visit(cells, boxes->boxes + i, i, true);
+            visit(grid, boxes->boxes + i, i, true);
     return true;
 }
 
 /* Enlarges the cells until both limits hold; returns false if out of memory. */
-static bool fill(struct cs_uniform_grid *cells, const struct set *boxes, const double extent[3],
+static bool fill(struct cs_uniform_grid *grid, const struct set *boxes, const double extent[3],
                  double size) {
     size_t places;
     for (;; size *= LARGER) {
-        if (!divide(cells, extent, size, (double)CELLS_EACH * boxes->n + FEW))
+        if (!divide(grid, extent, size, (double)CELLS_EACH * boxes->n + FEW))
             continue;
-        if (!count_all(cells, boxes, &places))
+        if (!count_all(grid, boxes, &places))
             return false;
         if (places <= (size_t)PLACES_EACH * boxes->n + FEW)
-            return fill_all(cells, boxes, places);
+            return fill_all(grid, boxes, places);
     }
 }
 
 /* Puts each box into every cell that it touches; empty boxes into none. Cells are about as
  * large as the mean box, and larger if there would be too many. If boxes are not finite or all
  * are empty, there are no cells (dim 0). Returns false if out of memory, again with dim 0. */
-static bool grid_fill(struct cs_uniform_grid *cells, const struct set *boxes) {
+static bool grid_fill(struct cs_uniform_grid *grid, const struct set *boxes) {
     double extent[3];
-    const double size = measure(boxes, cells->origin, extent);
+    const double size = measure_boxes(boxes, grid->origin, extent);
     const bool some = size > 0 && extent[0] + extent[1] + extent[2] < HUGE_VAL;
-    const bool filled = !some || fill(cells, boxes, extent, size);
+    const bool filled = !some || fill(grid, boxes, extent, size);
     if (!some || !filled)
-        memset(cells->dim, 0, sizeof cells->dim);
+        memset(grid->dim, 0, sizeof grid->dim);
     return filled;
 }
 
 /* Frees the memory; the grid is empty afterwards. */
-static void grid_finish(struct cs_uniform_grid *cells) {
-    free(cells->cell_starts);
-    free(cells->items);
-    *cells = (struct cs_uniform_grid){0};
+static void grid_finish(struct cs_uniform_grid *grid) {
+    free(grid->cell_starts);
+    free(grid->items);
+    *grid = (struct cs_uniform_grid){0};
 }
 
 /* Multiple of the usual longest side above which a box goes into the second grid. Chosen by
@@ -198,25 +198,26 @@ void cs_aabb_cluster_set(struct cs_aabb_cluster *cluster, uint32_t lane,
 /* Two boxes may share several cells. The pair is taken in one of them only: the lower corner of
  * the intersection, which has the higher of both first cells along each axis. The other box is
  * in the cell `at`, so its first cell is not above it. */
-static bool is_first_cell(const struct cs_uniform_grid *cells, const struct cs_aabb *other,
+static bool is_first_cell(const struct cs_uniform_grid *grid, const struct cs_aabb *other,
                           const uint32_t first[3], const uint32_t at[3]) {
     bool counts = true;
     for (int c = 0; c < 3; c++)
-        counts = counts && (at[c] == first[c] || index_of(cells, other->low[c], c) == at[c]);
+        counts = counts && (at[c] == first[c] || index_of(grid, other->low[c], c) == at[c]);
     return counts;
 }
 
 /* Appends a cluster to the result; returns false if out of memory. */
-static bool add(struct cs_nearby_clusters *near, uint32_t cluster, const struct cs_aabb *box) {
+static bool add_cluster(struct cs_nearby_clusters *nearby, uint32_t cluster,
+                        const struct cs_aabb *box) {
     static const struct cs_aabb none = {{1, 1, 1}, {0, 0, 0}};
-    const size_t group = near->n / CS_AABB_CLUSTER;
-    if (!CS_ARENA_REALLOC(near->clusters, near->clusters_capacity, near->n + 1) ||
-        !CS_ARENA_REALLOC(near->boxes, near->boxes_capacity, group + 1))
+    const size_t group = nearby->n / CS_AABB_CLUSTER;
+    if (!CS_ARENA_REALLOC(nearby->clusters, nearby->clusters_capacity, nearby->n + 1) ||
+        !CS_ARENA_REALLOC(nearby->boxes, nearby->boxes_capacity, group + 1))
         return false;
-    for (uint32_t l = 0; l < CS_AABB_CLUSTER && near->n % CS_AABB_CLUSTER == 0; l++)
-        cs_aabb_cluster_set(near->boxes + group, l, &none);
-    cs_aabb_cluster_set(near->boxes + group, near->n % CS_AABB_CLUSTER, box);
-    near->clusters[near->n++] = cluster;
+    for (uint32_t l = 0; l < CS_AABB_CLUSTER && nearby->n % CS_AABB_CLUSTER == 0; l++)
+        cs_aabb_cluster_set(nearby->boxes + group, l, &none);
+    cs_aabb_cluster_set(nearby->boxes + group, nearby->n % CS_AABB_CLUSTER, box);
+    nearby->clusters[nearby->n++] = cluster;
     return true;
 }
 
@@ -240,72 +241,72 @@ bool cs_aabb_clusters_sort(struct cs_aabb_clusters *clusters) {
     const double most = LARGE * mean_side(clusters, mean_side(clusters, HUGE_VAL));
     const struct set small = {clusters->cluster_boxes, clusters->n, -1, most};
     const struct set large = {clusters->cluster_boxes, clusters->n, most, HUGE_VAL};
-    return grid_fill(clusters->cells, &small) && grid_fill(clusters->cells + 1, &large);
+    return grid_fill(clusters->grid, &small) && grid_fill(clusters->grid + 1, &large);
 }
 
 void cs_aabb_clusters_finish(struct cs_aabb_clusters *clusters) {
-    grid_finish(clusters->cells);
-    grid_finish(clusters->cells + 1);
+    grid_finish(clusters->grid);
+    grid_finish(clusters->grid + 1);
 }
 
 /* A query by one box in one grid. */
 struct looking {
     const struct cs_aabb_clusters *clusters;
-    const struct cs_uniform_grid *cells;
+    const struct cs_uniform_grid *grid;
     const struct cs_aabb *box;
     uint32_t first[3];
 };
 
 /* Appends the clusters of one cell that pass all restrictions, each from one cell only. */
-static bool add_cell(struct cs_nearby_clusters *near, const struct looking *looking,
+static bool add_cell(struct cs_nearby_clusters *nearby, const struct looking *looking,
                      const uint32_t at[3]) {
     const struct cs_aabb_clusters *clusters = looking->clusters;
-    const struct cs_uniform_grid *cells = looking->cells;
-    const size_t cell = cell_of(cells, at[0], at[1], at[2]);
+    const struct cs_uniform_grid *grid = looking->grid;
+    const size_t cell = cell_of(grid, at[0], at[1], at[2]);
     bool there = true;
-    for (uint32_t s = cells->cell_starts[cell]; s < cells->cell_starts[cell + 1]; s++) {
-        const uint32_t cluster = cells->items[s];
+    for (uint32_t s = grid->cell_starts[cell]; s < grid->cell_starts[cell + 1]; s++) {
+        const uint32_t cluster = grid->items[s];
         const struct cs_aabb *other = clusters->cluster_boxes + cluster;
-        if (clusters->max_item[cluster] >= near->first_item &&
-            clusters->body[cluster] == near->body && cs_aabbs_overlap(looking->box, other) &&
-            is_first_cell(cells, other, looking->first, at))
-            there = there && add(near, cluster, other);
+        if (clusters->max_item[cluster] >= nearby->first_item &&
+            clusters->body[cluster] == nearby->body && cs_aabbs_overlap(looking->box, other) &&
+            is_first_cell(grid, other, looking->first, at))
+            there = there && add_cluster(nearby, cluster, other);
     }
     return there;
 }
 
 /* Appends the clusters of all cells that the box touches. */
-static bool add_cells(struct cs_nearby_clusters *near, struct looking *looking) {
+static bool add_cells(struct cs_nearby_clusters *nearby, struct looking *looking) {
     uint32_t last[3], at[3];
     bool there = true;
-    if (!looking->cells->dim[0])
+    if (!looking->grid->dim[0])
         return true;
-    grid_range(looking->cells, looking->box, looking->first, last);
-    const struct cs_uniform_grid *cells = looking->cells;
-    const uint32_t *starts = cells->cell_starts;
+    grid_range(looking->grid, looking->box, looking->first, last);
+    const struct cs_uniform_grid *grid = looking->grid;
+    const uint32_t *starts = grid->cell_starts;
     for (at[2] = looking->first[2]; at[2] <= last[2]; at[2]++)
         for (at[1] = looking->first[1]; at[1] <= last[1]; at[1]++) {
             // most rows of cells are empty
-            const size_t begin = cell_of(cells, looking->first[0], at[1], at[2]);
+            const size_t begin = cell_of(grid, looking->first[0], at[1], at[2]);
             if (starts[begin] == starts[begin + last[0] - looking->first[0] + 1])
                 continue;
             for (at[0] = looking->first[0]; at[0] <= last[0]; at[0]++)
-                there = there && add_cell(near, looking, at);
+                there = there && add_cell(nearby, looking, at);
         }
     return there;
 }
 
-bool cs_nearby_clusters_find(struct cs_nearby_clusters *near,
+bool cs_nearby_clusters_find(struct cs_nearby_clusters *nearby,
                              const struct cs_aabb_clusters *clusters,
                              const struct cs_aabb *box) {
     bool there = true;
-    near->n = 0;
+    nearby->n = 0;
     for (int k = 0; k < 2 && box->high[0] >= box->low[0]; k++) {
-        struct looking looking = {clusters, clusters->cells + k, box, {0}};
-        there = there && add_cells(near, &looking);
+        struct looking looking = {clusters, clusters->grid + k, box, {0}};
+        there = there && add_cells(nearby, &looking);
     }
     return there &&
-           CS_ARENA_REALLOC(near->items, near->items_capacity, CS_AABB_CLUSTER * near->n);
+           CS_ARENA_REALLOC(nearby->items, nearby->items_capacity, CS_AABB_CLUSTER * nearby->n);
 }
 
 /* Bit mask of the lanes whose boxes overlap a box. Comparisons with NaN are false, so that
@@ -326,14 +327,14 @@ CS_INLINE uint32_t overlap_mask(const struct cs_aabb_cluster *restrict cluster,
 }
 
 /* Items by two levels of masks: clusters, then their items. */
-CS_CLONES static uint32_t find_items(const struct cs_nearby_clusters *near,
+CS_CLONES static uint32_t find_items(const struct cs_nearby_clusters *nearby,
                                      const struct cs_aabb_clusters *of, const float low[3],
                                      const float high[3], uint32_t *items) {
     uint32_t n = 0;
-    for (size_t k = 0; k < near->n; k += CS_AABB_CLUSTER)
-        for (uint32_t some = overlap_mask(near->boxes + k / CS_AABB_CLUSTER, low, high); some;
+    for (size_t k = 0; k < nearby->n; k += CS_AABB_CLUSTER)
+        for (uint32_t some = overlap_mask(nearby->boxes + k / CS_AABB_CLUSTER, low, high); some;
              some &= some - 1) {
-            const uint32_t cluster = near->clusters[k + (uint32_t)__builtin_ctz(some)];
+            const uint32_t cluster = nearby->clusters[k + (uint32_t)__builtin_ctz(some)];
             for (uint32_t bits = overlap_mask(of->clusters + cluster, low, high); bits;
                  bits &= bits - 1)
                 items[n++] =
@@ -342,7 +343,7 @@ CS_CLONES static uint32_t find_items(const struct cs_nearby_clusters *near,
     return n;
 }
 
-uint32_t cs_nearby_clusters_items(struct cs_nearby_clusters *near,
+uint32_t cs_nearby_clusters_items(struct cs_nearby_clusters *nearby,
                                   const struct cs_aabb_clusters *clusters,
                                   const struct cs_aabb *box) {
     float low[3], high[3];
@@ -350,11 +351,11 @@ uint32_t cs_nearby_clusters_items(struct cs_nearby_clusters *near,
         low[c] = (float)box->low[c];
         high[c] = (float)box->high[c];
     }
-    return find_items(near, clusters, low, high, near->items);
+    return find_items(nearby, clusters, low, high, nearby->items);
 }
 
-void cs_nearby_clusters_finish(struct cs_nearby_clusters *near) {
-    free(near->clusters);
-    free(near->boxes);
-    free(near->items);
+void cs_nearby_clusters_finish(struct cs_nearby_clusters *nearby) {
+    free(nearby->clusters);
+    free(nearby->boxes);
+    free(nearby->items);
 }

@@ -68,7 +68,7 @@ struct cs_aabb_clusters {
     /* (n) common box of each cluster; may be empty */
     struct cs_aabb *cluster_boxes;
     /* grids of the common boxes: usual ones, and those that are far larger than most */
-    struct cs_uniform_grid cells[2];
+    struct cs_uniform_grid grid[2];
 };
 
 /* Result of a query for clusters, and its restrictions. */
@@ -93,18 +93,18 @@ bool cs_aabb_clusters_sort(struct cs_aabb_clusters *clusters);
 
 /* Finds the clusters that a box overlaps, but for skipped ones. Returns false if out of memory.
  */
-bool cs_nearby_clusters_find(struct cs_nearby_clusters *near,
+bool cs_nearby_clusters_find(struct cs_nearby_clusters *nearby,
                              const struct cs_aabb_clusters *clusters,
                              const struct cs_aabb *box);
 
 /* Finds the items of these clusters whose boxes overlap a box, into near->items; returns their
  * number. */
-uint32_t cs_nearby_clusters_items(struct cs_nearby_clusters *near,
+uint32_t cs_nearby_clusters_items(struct cs_nearby_clusters *nearby,
                                   const struct cs_aabb_clusters *clusters,
                                   const struct cs_aabb *box);
 
 /* Free the memory. */
-void cs_nearby_clusters_finish(struct cs_nearby_clusters *near);
+void cs_nearby_clusters_finish(struct cs_nearby_clusters *nearby);
 void cs_aabb_clusters_finish(struct cs_aabb_clusters *clusters);
 
 /* Assigns items to clusters: items of a grid by blocks, others in their
@@ -123,7 +123,7 @@ struct cs_cluster_input {
 
 /* Allocates and fills all of the clusters but their boxes. The arena owns the arrays.
  * CS_ERR_MEMORY. */
-enum cs_status cs_cluster_input_build(const struct cs_cluster_input *order,
+enum cs_status cs_cluster_input_build(const struct cs_cluster_input *input,
                                       struct cs_aabb_clusters *clusters, struct cs_arena *arena,
                                       struct cs_error *error);
 

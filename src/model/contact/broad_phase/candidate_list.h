@@ -103,14 +103,13 @@ void cs_candidates_scale_points(struct cs_candidates *candidates, const double *
 /* m, range of a candidate. If all ranges are equal, the bodies of the points are not read. */
 static inline double cs_candidate_range_of(const struct cs_candidates *candidates,
                                            enum cs_pair_kind kind, const uint32_t at[4]) {
-    const struct cs_body_pair_table *meetings = candidates->body_pairs;
-    const struct cs_body_pair_params widest = {.range = meetings->range_max};
-    return cs_body_pair_params_range(meetings->range_min == meetings->range_max
-                                         ? &widest
-                                         : cs_body_pair_params_of(meetings,
-                                                                  candidates->body[at[0]],
-                                                                  candidates->body[at[2]]),
-                                     kind == CS_PAIR_EDGE_EDGE);
+    const struct cs_body_pair_table *table = candidates->body_pairs;
+    const struct cs_body_pair_params widest = {.range = table->range_max};
+    return cs_body_pair_params_range(
+        table->range_min == table->range_max
+            ? &widest
+            : cs_body_pair_params_of(table, candidates->body[at[0]], candidates->body[at[2]]),
+        kind == CS_PAIR_EDGE_EDGE);
 }
 
 /* Sets at[4] to the points of a pair: point and triangle, or both ends of both edges. */

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void finish(void *object) {
+static void finish_candidates(void *object) {
     struct cs_candidates *candidates = object;
     for (uint32_t l = 0; l < candidates->n_chunks; l++) {
         free(candidates->chunks[l].pairs);
@@ -33,7 +33,7 @@ static void cut(struct cs_candidate_chunk *chunks, enum cs_pair_kind kind, uint3
 /* Positions are scaled by the largest range, which is near the size of the primitives. Chunks
  * of points come before those of edges. */
 enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_system *system,
-                                  const struct cs_body_pair_table *meetings,
+                                  const struct cs_body_pair_table *table,
                                   struct cs_error *error) {
     struct cs_arena *arena = &system->arena;
     const struct cs_surfaces *surfaces = system->surfaces;
@@ -42,9 +42,9 @@ enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_sy
     const uint32_t edge_chunks =
         (surfaces->n_edges + CS_CANDIDATE_CHUNK - 1) / CS_CANDIDATE_CHUNK;
     *candidates = (struct cs_candidates){.system = system,
-                                         .body_pairs = meetings,
-                                         .margin = CS_CANDIDATES_MARGIN * meetings->range_min,
-                                         .inverse_unit = 1 / meetings->range_max,
+                                         .body_pairs = table,
+                                         .margin = CS_CANDIDATES_MARGIN * table->range_min,
+                                         .inverse_unit = 1 / table->range_max,
                                          .n_chunks = point_chunks + edge_chunks};
     candidates->body = cs_arena_alloc_array(arena, n, sizeof *candidates->body, error);
     CS_ARENA_ARRAY(arena, candidates->x_at_build, 3 * (size_t)n, error);
@@ -52,15 +52,15 @@ enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_sy
     CS_ARENA_ARRAY(arena, candidates->x_at_nearby, 3 * (size_t)n, error);
     CS_ARENA_ARRAY(arena, candidates->scaled_points, n, error);
     CS_ARENA_ARRAY(arena, candidates->chunks, candidates->n_chunks, error);
-    CS_ARENA_ARRAY(arena, candidates->body_motion, 4 * (size_t)meetings->n_bodies, error);
+    CS_ARENA_ARRAY(arena, candidates->body_motion, 4 * (size_t)table->n_bodies, error);
     if (error->status || cs_candidates_find_init(candidates, arena, error))
         return error->status;
-    for (uint32_t b = 0; b < meetings->n_bodies; b++)
+    for (uint32_t b = 0; b < table->n_bodies; b++)
         for (uint32_t i = surfaces->first_point[b]; i < surfaces->first_point[b + 1]; i++)
             candidates->body[i] = b;
     cut(candidates->chunks, CS_PAIR_POINT_TRIANGLE, n);
     cut(candidates->chunks + point_chunks, CS_PAIR_EDGE_EDGE, surfaces->n_edges);
-    cs_arena_adopt(arena, finish, candidates, error);
+    cs_arena_adopt(arena, finish_candidates, candidates, error);
     return error->status;
 }
 
@@ -142,13 +142,13 @@ static void measure_drifts(const struct cs_candidates *candidates, const double 
 
 /* Returns whether the list is valid at x. */
 static bool is_good(const struct cs_candidates *candidates, const double *x) {
-    const struct cs_body_pair_table *meetings = candidates->body_pairs;
+    const struct cs_body_pair_table *table = candidates->body_pairs;
     bool good = candidates->is_built;
     if (good)
         measure_drifts(candidates, candidates->x_at_build, x);
-    for (uint32_t a = 0; a < meetings->n_bodies && good; a++)
-        for (uint32_t b = a; b < meetings->n_bodies; b++)
-            good = good && (!(cs_body_pair_params_of(meetings, a, b)->range > 0) ||
+    for (uint32_t a = 0; a < table->n_bodies && good; a++)
+        for (uint32_t b = a; b < table->n_bodies; b++)
+            good = good && (!(cs_body_pair_params_of(table, a, b)->range > 0) ||
                             apart(candidates, a, b) <= 2 * candidates->margin_now);
     return good;
 }
@@ -201,14 +201,14 @@ static bool may_come_near(const struct cs_candidates *candidates, uint32_t a, ui
  * from each other do not count. *within: that of particles of one body. */
 static double largest_move(const struct cs_candidates *candidates, const double *x0,
                            const double *x1, double *within) {
-    const struct cs_body_pair_table *meetings = candidates->body_pairs;
+    const struct cs_body_pair_table *table = candidates->body_pairs;
     double most = 0;
     *within = 0;
     measure_drifts(candidates, x0, x1);
-    for (uint32_t a = 0; a < meetings->n_bodies; a++)
-        for (uint32_t b = a; b < meetings->n_bodies; b++) {
+    for (uint32_t a = 0; a < table->n_bodies; a++)
+        for (uint32_t b = a; b < table->n_bodies; b++) {
             // without a range the two do not push each other
-            const double range = cs_body_pair_params_of(meetings, a, b)->range;
+            const double range = cs_body_pair_params_of(table, a, b)->range;
             const double move = apart(candidates, a, b);
             if (range > 0 && move > most && (a == b || may_come_near(candidates, a, b, x0, x1)))
                 most = move;
@@ -268,12 +268,12 @@ bool cs_candidates_is_nearby(const struct cs_candidates *candidates, const doubl
 /* Comparisons are written so that NaN wins and stays. */
 double cs_candidates_max_motion(const struct cs_candidates *candidates, const double *x0,
                                 const double *x1) {
-    const struct cs_body_pair_table *meetings = candidates->body_pairs;
+    const struct cs_body_pair_table *table = candidates->body_pairs;
     double most = 0;
     measure_drifts(candidates, x0, x1);
-    for (uint32_t a = 0; a < meetings->n_bodies; a++)
-        for (uint32_t b = a; b < meetings->n_bodies; b++) {
-            const double range = cs_body_pair_params_of(meetings, a, b)->range;
+    for (uint32_t a = 0; a < table->n_bodies; a++)
+        for (uint32_t b = a; b < table->n_bodies; b++) {
+            const double range = cs_body_pair_params_of(table, a, b)->range;
             const double moves = apart(candidates, a, b) / range;
             // not a number stays
             most = range > 0 && !(moves <= most) ? moves : most;

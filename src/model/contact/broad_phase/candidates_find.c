@@ -54,7 +54,7 @@ static void store_pairs(struct cs_candidates *candidates, uint32_t number,
 }
 
 /* Takes pairs whose boxes overlap, unless they have a common point. */
-static void take(void *arg, uint32_t number, const uint32_t (*pairs)[2], size_t n) {
+static void store_chunk(void *arg, uint32_t number, const uint32_t (*pairs)[2], size_t n) {
     struct cs_candidates *candidates = arg;
     const bool edges = candidates->search.batches[number].edges;
     const enum cs_pair_kind kind = edges ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE;
@@ -157,7 +157,7 @@ bool cs_candidates_find(struct cs_candidates *candidates) {
         .reach = {reach_of(candidates, cs_body_pair_params_range(&widest, false)),
                   reach_of(candidates, cs_body_pair_params_range(&widest, true))},
         .may_meet = may_meet,
-        .take = take,
+        .take = store_chunk,
         .arg = candidates};
     for (uint32_t b = 0; b < search->n_batches; b++)
         candidates->batches[b].n = 0;

@@ -16,10 +16,10 @@
 
 CS_CLONES void cs_distance_filter_scale_points(const double *x, size_t n, double inverse,
                                                size_t begin, size_t end,
-                                               struct cs_scaled_point *places) {
+                                               struct cs_scaled_point *points) {
     const double low[3] = {x[0], x[n], x[2 * n]};
     for (size_t i = begin; i < end; i++) {
-        float *at = places[i].xyz0;
+        float *at = points[i].xyz0;
         at[0] = (float)((x[i] - low[0]) * inverse);
         at[1] = (float)((x[n + i] - low[1]) * inverse);
         at[2] = (float)((x[2 * n + i] - low[2]) * inverse);

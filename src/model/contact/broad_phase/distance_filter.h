@@ -60,17 +60,17 @@ struct cs_distance_filter {
 
 /* Sets places [begin, end) from x (3, n) in m; inverse: 1/unit in 1/m. */
 void cs_distance_filter_scale_points(const double *x, size_t n, double inverse, size_t begin,
-                                     size_t end, struct cs_scaled_point *places);
+                                     size_t end, struct cs_scaled_point *points);
 
 /* Adds a pair with the points at[4]; there must be room. Returns whether the filter is full. */
 static inline bool cs_distance_filter_add(struct cs_distance_filter *filter,
-                                          const struct cs_scaled_point *places,
+                                          const struct cs_scaled_point *points,
                                           const uint32_t at[4], double reach,
                                           const uint32_t pair[2]) {
     const uint32_t l = filter->n++;
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < 3; c++)
-            filter->points[k][c][l] = places[at[k]].xyz0[c];
+            filter->points[k][c][l] = points[at[k]].xyz0[c];
     filter->max_distance[l] = (float)reach;
     filter->pairs[l][0] = pair[0];
     filter->pairs[l][1] = pair[1];

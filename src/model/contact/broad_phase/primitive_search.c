@@ -30,10 +30,10 @@ static const struct cs_aabb empty = {{HUGE_VAL, HUGE_VAL, HUGE_VAL},
 
 /* --- made once --- */
 
-static void finish(void *object) {
+static void finish_search(void *object) {
     struct cs_primitive_search *search = object;
     for (uint32_t b = 0; b < search->n_batches; b++)
-        cs_nearby_clusters_finish(&search->batches[b].near);
+        cs_nearby_clusters_finish(&search->batches[b].nearby);
     cs_aabb_clusters_finish(&search->triangles);
     cs_aabb_clusters_finish(&search->edges);
 }
@@ -83,7 +83,7 @@ enum cs_status cs_primitive_search_init(struct cs_primitive_search *search,
         alloc_boxes(&search->edges, arena, error) ||
         alloc_boxes(&search->triangles, arena, error) || alloc_batches(search, arena, error))
         return error->status;
-    cs_arena_adopt(arena, finish, search, error);
+    cs_arena_adopt(arena, finish_search, search, error);
     return error->status;
 }
 
@@ -129,19 +129,19 @@ CS_INLINE struct cs_swept_aabb sweep_item(const struct move *move, uint32_t each
 static void sweep_body(void *arg, uint32_t body) {
     const struct move *move = arg;
     const uint32_t *first = move->search->surfaces->first_point;
-    struct cs_swept_aabb all = cs_swept_aabb_empty();
+    struct cs_swept_aabb boxes = cs_swept_aabb_empty();
     for (uint32_t i = first[body]; i < first[body + 1]; i++) {
         const struct cs_swept_aabb one = sweep_item(move, 1, i);
-        cs_swept_aabb_merge(&all, &one);
+        cs_swept_aabb_merge(&boxes, &one);
     }
-    move->search->body_sweeps[body] = all;
+    move->search->body_sweeps[body] = boxes;
 }
 
 /* Box of a swept box in the frame of a body, grown. */
 CS_INLINE struct cs_aabb box_in_frame(const struct move *move,
                                       const struct cs_swept_aabb *swept, uint32_t body,
                                       double grow) {
-    const struct cs_swept_aabb *all = move->search->body_sweeps + body;
+    const struct cs_swept_aabb *boxes = move->search->body_sweeps + body;
     struct cs_aabb box;
     if (!(swept->position_max[0] >= swept->position_min[0]))
         return empty;
@@ -150,7 +150,7 @@ CS_INLINE struct cs_aabb box_in_frame(const struct move *move,
         box.high[c] = swept->position_max[c] + grow;
     }
     for (int c = 0; c < 3 && move->query->x1; c++) {
-        const double middle = 0.5 * (all->motion_min[c] + all->motion_max[c]);
+        const double middle = 0.5 * (boxes->motion_min[c] + boxes->motion_max[c]);
         const double back = swept->motion_min[c] - middle, on = swept->motion_max[c] - middle;
         box.low[c] += (back < 0 ? back : 0);
         box.high[c] += (on > 0 ? on : 0);
@@ -226,19 +226,19 @@ static void find_in_body(struct work *work, const uint32_t *items,
     const bool once = work->batch->edges && !move->query->pierce;
     const struct cs_aabb_clusters *others =
         once ? &move->search->edges : &move->search->triangles;
-    struct cs_nearby_clusters *near = &work->batch->near;
-    near->body = body;
-    near->first_item = once ? items[0] : 0;
+    struct cs_nearby_clusters *nearby = &work->batch->nearby;
+    nearby->body = body;
+    nearby->first_item = once ? items[0] : 0;
     const struct cs_aabb box = box_in_frame(move, all, body, move->grow[once]);
-    if (!cs_nearby_clusters_find(near, others, &box)) {
+    if (!cs_nearby_clusters_find(nearby, others, &box)) {
         work->batch->failed = true;
         return;
     }
-    for (uint32_t k = 0; k < CS_AABB_CLUSTER && near->n; k++) {
+    for (uint32_t k = 0; k < CS_AABB_CLUSTER && nearby->n; k++) {
         const struct cs_aabb one = box_in_frame(move, sweeps + k, body, move->grow[once]);
         if (one.low[0] <= one.high[0])
-            collect(work, items[k], near->items, cs_nearby_clusters_items(near, others, &one),
-                    once);
+            collect(work, items[k], nearby->items,
+                    cs_nearby_clusters_items(nearby, others, &one), once);
     }
 }
 
@@ -277,11 +277,11 @@ static void find_batch(void *arg, uint32_t job) {
 static double largest(const struct move *move) {
     double most = 0;
     for (uint32_t b = 0; b < move->search->surfaces->n_bodies; b++) {
-        const struct cs_swept_aabb *all = move->search->body_sweeps + b;
-        for (int c = 0; c < 3 && all->position_max[c] >= all->position_min[c]; c++) {
-            most = fmax(most, fmax(fabs(all->position_min[c]), fabs(all->position_max[c])));
+        const struct cs_swept_aabb *boxes = move->search->body_sweeps + b;
+        for (int c = 0; c < 3 && boxes->position_max[c] >= boxes->position_min[c]; c++) {
+            most = fmax(most, fmax(fabs(boxes->position_min[c]), fabs(boxes->position_max[c])));
             if (move->query->x1)
-                most = fmax(most, fmax(fabs(all->motion_min[c]), fabs(all->motion_max[c])));
+                most = fmax(most, fmax(fabs(boxes->motion_min[c]), fabs(boxes->motion_max[c])));
         }
     }
     return most;

@@ -85,8 +85,8 @@ static inline bool cs_swept_aabbs_overlap(const struct cs_swept_aabb *a,
 struct cs_primitive_batch {
     bool edges;
     uint32_t begin, end;
-    struct cs_nearby_clusters near; /* clusters near the one at hand */
-    bool failed;                    /* there was no memory */
+    struct cs_nearby_clusters nearby; /* clusters near the one at hand */
+    bool failed;                      /* there was no memory */
 };
 
 /* All primitives of a system. */

@@ -111,7 +111,7 @@ static double two_product(double a, double b, double *lost) {
 
 /* Adds a double exactly: Shewchuk's GROW-EXPANSION, which keeps the order and the terms from
  * overlapping. Zeros are dropped. */
-static void add(struct expansion *sum, double value) {
+static void add_exactly(struct expansion *sum, double value) {
     int n = 0;
     for (int k = 0; k < sum->n; k++) {
         double lost;
@@ -130,8 +130,8 @@ static void add_product(struct expansion *sum, double a, double b, double sign) 
     if (a == 0 || b == 0)
         return;
     const double product = two_product(a, b, &lost);
-    add(sum, sign * lost);
-    add(sum, sign * product);
+    add_exactly(sum, sign * lost);
+    add_exactly(sum, sign * product);
 }
 
 /* sum += sign a b c, exactly: both parts of a b times c */

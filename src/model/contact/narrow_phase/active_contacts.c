@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void finish(void *object) {
+static void finish_active(void *object) {
     struct cs_active_contacts *active = object;
     for (uint32_t l = 0; l < active->candidates->n_chunks; l++)
         free(active->chunks[l].blocks), free(active->chunks[l].features),
@@ -19,12 +19,12 @@ static void finish(void *object) {
 
 enum cs_status cs_active_contacts_init(struct cs_active_contacts *active,
                                        const struct cs_candidates *search,
-                                       const struct cs_feature_weights *facets,
+                                       const struct cs_feature_weights *weights,
                                        struct cs_arena *arena, struct cs_error *error) {
-    *active = (struct cs_active_contacts){.candidates = search, .feature_weights = facets};
+    *active = (struct cs_active_contacts){.candidates = search, .feature_weights = weights};
     CS_ARENA_ARRAY(arena, active->chunks, search->n_chunks, error);
     if (!error->status)
-        cs_arena_adopt(arena, finish, active, error);
+        cs_arena_adopt(arena, finish_active, active, error);
     return error->status ? error->status
                          : cs_gather_init(&active->force_gather, search->n_chunks,
                                           search->system->view.n, arena, error);
@@ -56,24 +56,25 @@ static struct cs_active_lanes *next(struct cs_active_chunk *chunk) {
 }
 
 /* Appends a feature or edge pair. */
-static void put(const struct work *work, const struct cs_weighted_feature *use) {
+static void put(const struct work *work, const struct cs_weighted_feature *feature) {
     const bool edges = work->chunk->kind == CS_PAIR_EDGE_EDGE;
     struct cs_active_chunk *chunk = work->chunk;
-    const struct cs_body_pair_params params = meeting_of(work->active->candidates, use->points);
+    const struct cs_body_pair_params params =
+        meeting_of(work->active->candidates, feature->points);
     struct cs_active_lanes *to = next(chunk);
     const size_t l = chunk->n % CS_PAIR_LANES;
     if (!to)
         return;
-    memcpy(chunk->points + chunk->n++, use->points, sizeof *chunk->points);
+    memcpy(chunk->points + chunk->n++, feature->points, sizeof *chunk->points);
     to->range[l] = cs_pair_contact_range(&params, edges);
     to->k[l] = cs_body_pair_params_stiffness(&params, edges);
     to->friction[l] = params.friction;
-    to->weight[l] = use->weight;
-    to->psd_weight[l] = use->psd_weight;
-    to->is_edge[l] = use->form.is_edge;
-    to->is_off_plane[l] = use->form.is_off_plane;
-    to->blend_radius[l] = use->form.e;
-    to->d[l] = use->d;
+    to->weight[l] = feature->weight;
+    to->psd_weight[l] = feature->psd_weight;
+    to->is_edge[l] = feature->kind.is_edge;
+    to->is_off_plane[l] = feature->kind.is_off_plane;
+    to->blend_radius[l] = feature->kind.e;
+    to->d[l] = feature->d;
     to->rate[l] = to->k[l] * params.inverse_mass;
 }
 
@@ -89,30 +90,30 @@ static void finish_point(struct work *work) {
 }
 
 /* Merges n features of one point with those collected so far. */
-static void add_features(struct work *work, const struct cs_weighted_feature *uses,
+static void add_features(struct work *work, const struct cs_weighted_feature *features,
                          uint32_t n) {
     struct cs_active_chunk *chunk = work->chunk;
-    if (work->n_felt && chunk->features->points[0] != uses->points[0])
+    if (work->n_felt && chunk->features->points[0] != features->points[0])
         finish_point(work);
     if (!CS_ARENA_REALLOC(chunk->features, chunk->features_capacity,
                           (size_t)work->n_felt + n)) {
         chunk->failed = true;
         return;
     }
-    memcpy(chunk->features + work->n_felt, uses, n * sizeof *uses);
+    memcpy(chunk->features + work->n_felt, features, n * sizeof *features);
     work->n_felt = cs_feature_weights_join(chunk->features, work->n_felt, n);
 }
 
 /* Finds the features of the waiting queries, and hands them on point by point. */
 static void find_facets(struct work *work) {
-    struct cs_weighted_feature uses[CS_FEATURES_PER_TRIANGLE * CS_FEATURE_QUERY_PAIRS];
+    struct cs_weighted_feature features[CS_FEATURES_PER_TRIANGLE * CS_FEATURE_QUERY_PAIRS];
     const uint32_t n = cs_feature_weights_find(work->active->feature_weights, work->pairs,
-                                               work->waiting, work->x, uses);
+                                               work->waiting, work->x, features);
     for (uint32_t k = 0, end; k < n; k = end) {
         end = k + 1;
-        while (end < n && uses[end].points[0] == uses[k].points[0])
+        while (end < n && features[end].points[0] == features[k].points[0])
             end++;
-        add_features(work, uses + k, end - k);
+        add_features(work, features + k, end - k);
     }
     work->waiting = 0;
 }
@@ -146,7 +147,7 @@ static bool is_fixed(const struct cs_system *system, const uint32_t at[4]) {
 }
 
 /* Takes a pair in range: edges at once, a point and triangle into the queue. */
-static void take(struct work *work, const uint32_t pair[2]) {
+static void visit_pair(struct work *work, const uint32_t pair[2]) {
     const struct cs_candidates *search = work->active->candidates;
     struct cs_weighted_feature edges = {.weight = 1, .psd_weight = 1};
     cs_candidate_vertices(search->system->surfaces, work->chunk->kind, pair, edges.points);
@@ -175,7 +176,7 @@ static void find_chunk(void *arg, uint32_t number) {
     work.chunk->n = 0;
     work.chunk->failed = false;
     for (size_t k = 0; k < from->n_in_range; k++)
-        take(&work, from->in_range + 2 * k);
+        visit_pair(&work, from->in_range + 2 * k);
     find_facets(&work);
     finish_point(&work);
 }
@@ -230,18 +231,18 @@ bool cs_active_contacts_gather(struct cs_active_contacts *active) {
 /* Adds a feature at the start of the step to the model of its point. */
 static void add_slope(const struct cs_feature_positions *x, size_t n,
                       const struct cs_weighted_feature *use, double range, double k,
-                      struct cs_point_energy *sum) {
+                      struct cs_point_energy *energy) {
     struct cs_mesh_feature feature;
     double p[4][3], g[4][3], approach = 0;
     for (size_t j = 0; j < 12; j++)
         p[j / 3][j % 3] = x->from[j % 3 * n + use->points[j / 3]];
-    cs_mesh_feature_set(&feature, use->form, p);
+    cs_mesh_feature_set(&feature, use->kind, p);
     cs_mesh_feature_to_points(feature.g, g);
     for (size_t j = 0; j < 12; j++)
         approach -= g[j / 3][j % 3] * (x->to[j % 3 * n + use->points[j / 3]] - p[j / 3][j % 3]);
-    const struct cs_barrier law = cs_barrier_at(feature.d, range, use->weight * k);
-    sum->first += law.force * approach;
-    sum->second += 0.5 * law.stiffness * approach * approach;
+    const struct cs_barrier barrier = cs_barrier_at(feature.d, range, use->weight * k);
+    energy->first += barrier.force * approach;
+    energy->second += 0.5 * barrier.stiffness * approach * approach;
 }
 
 /* Index of the first candidate of a point; these are in the order of points. */
@@ -262,15 +263,15 @@ static void add_point_energy(const struct cs_feature_weights *features,
                              const struct cs_candidates *candidates,
                              const struct cs_feature_query *queries, uint32_t n,
                              const struct cs_feature_positions *x,
-                             struct cs_point_energy *sum) {
+                             struct cs_point_energy *energy) {
     struct cs_weighted_feature uses[CS_FEATURES_PER_TRIANGLE * CS_FEATURE_QUERY_PAIRS];
     const uint32_t found = cs_feature_weights_find_between(features, queries, n, x, uses);
     for (uint32_t u = 0; u < found; u++) {
         const struct cs_body_pair_params params = meeting_of(candidates, uses[u].points);
         const double range = cs_pair_contact_range(&params, false);
-        sum->energy += uses[u].weight * cs_barrier_energy(uses[u].d, range, params.k);
+        energy->energy += uses[u].weight * cs_barrier_energy(uses[u].d, range, params.k);
         if (x->fraction == 0)
-            add_slope(x, features->surfaces->n_points, uses + u, range, params.k, sum);
+            add_slope(x, features->surfaces->n_points, uses + u, range, params.k, energy);
     }
 }
 
@@ -280,15 +281,15 @@ struct cs_point_energy cs_point_energy_find(const struct cs_feature_weights *fea
                                             uint32_t point,
                                             const struct cs_feature_positions *x) {
     struct cs_feature_query queries[CS_FEATURE_QUERY_PAIRS];
-    struct cs_point_energy sum = {0, 0, 0};
+    struct cs_point_energy energy = {0, 0, 0};
     uint32_t n = 0;
     for (size_t k = first_of(chunk, point); k < chunk->n && chunk->pairs[2 * k] == point; k++) {
         queries[n++] = query_of(candidates, chunk->pairs + 2 * k);
         if (n < CS_FEATURE_QUERY_PAIRS)
             continue;
-        add_point_energy(features, candidates, queries, n, x, &sum);
+        add_point_energy(features, candidates, queries, n, x, &energy);
         n = 0;
     }
-    add_point_energy(features, candidates, queries, n, x, &sum);
-    return sum;
+    add_point_energy(features, candidates, queries, n, x, &energy);
+    return energy;
 }

@@ -57,7 +57,7 @@ struct cs_active_contacts {
  * all memory. CS_ERR_MEMORY. */
 enum cs_status cs_active_contacts_init(struct cs_active_contacts *active,
                                        const struct cs_candidates *search,
-                                       const struct cs_feature_weights *facets,
+                                       const struct cs_feature_weights *weights,
                                        struct cs_arena *arena, struct cs_error *error);
 
 /* Returns whether the cache still belongs to the close pairs and frictions in force. */

@@ -88,7 +88,7 @@ static enum cs_status build(struct cs_system *system, struct cs_error *error) {
 
 /* Active contacts at x: those of a list that fits, else found into the list that the solver's
  * matrix does not use; NULL if out of memory. */
-static struct cs_active_contacts *find(struct cs_pairs *pairs, const double *x) {
+static struct cs_active_contacts *find_active(struct cs_pairs *pairs, const double *x) {
     if (!cs_candidates_find_in_range(&pairs->candidates, x))
         return NULL;
     for (int k = 0; k < 2; k++)
@@ -105,7 +105,7 @@ static bool answer(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
     narrow->x = cs_surface_points_positions(pairs->system, CS_POINTS_BEGIN, at->t, at->x);
     narrow->v = cs_surface_points_velocities(pairs->system, at->t, at->v);
     cs_body_pair_table_update_friction(pairs->system, &pairs->body_pairs);
-    narrow->contacts = find(pairs, narrow->x);
+    narrow->contacts = find_active(pairs, narrow->x);
     if (!narrow->contacts)
         return false;
     pairs->current_contacts = narrow->contacts;
@@ -154,7 +154,8 @@ static double power_of(const struct cs_system *system, const struct cs_eval *at)
 }
 
 /* Adds the result at the particles of the block. */
-static void add(const struct cs_system *system, const struct cs_eval *at, double *f) {
+static void add_pair_forces(const struct cs_system *system, const struct cs_eval *at,
+                            double *f) {
     const struct cs_active_contacts *contacts = system->pairs->current_contacts;
     if (contacts->n)
         cs_gather_add(&contacts->force_gather, contacts->force_gather.row_sums, 3,
@@ -236,7 +237,7 @@ static void add_bound_at(const struct cs_system *system, const struct cs_eval *a
     cs_gather_add(gather, gather->row_sums + gather->n_rows, 1, 0, n, sums->damping);
 }
 
-static struct cs_plan_row plan(const struct cs_scene *scene) {
+static struct cs_plan_row plan_pairs(const struct cs_scene *scene) {
     const bool built = cs_scene_has_body_contact(scene);
     return (struct cs_plan_row){
         .built = built,
@@ -248,12 +249,12 @@ static const char *const ramps[] = {"colliders.friction", NULL};
 const struct cs_term cs_term_pairs = {
     .name = "contact pairs",
     .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
-    .plan = plan,
+    .plan = plan_pairs,
     .rampable_keys = ramps,
     .build = build,
     .prepare = prepare,
-    .add_force = add,
-    .add_jvp = add,
+    .add_force = add_pair_forces,
+    .add_jvp = add_pair_forces,
     .energy = energy,
     .energy_kind = CS_ENERGY_OTHER,
     .energy_column = "other",
@@ -274,14 +275,14 @@ const struct cs_term cs_term_pairs = {
 struct setting {
     const struct cs_system *system;
     const double *x0, *x1;
-    struct cs_point_motion *moves;
+    struct cs_point_motion *motion;
 };
 
 static void set_some(void *arg, size_t begin, size_t end) {
     const struct setting *setting = arg;
     const size_t n = setting->system->surfaces->n_points;
     for (size_t i = begin; i < end; i++) {
-        double *move = setting->moves[i].values;
+        double *move = setting->motion[i].values;
         for (size_t c = 0; c < 3; c++) {
             const double from = setting->x0[c * n + i];
             move[CS_POINT_MOVE_FROM + c] = from;
@@ -293,8 +294,8 @@ static void set_some(void *arg, size_t begin, size_t end) {
 }
 
 void cs_point_motion_set(const struct cs_system *system, const double *x0, const double *x1,
-                         struct cs_point_motion *moves) {
-    struct setting setting = {system, x0, x1, moves};
+                         struct cs_point_motion *motion) {
+    struct setting setting = {system, x0, x1, motion};
     cs_vector_parallel_for(system->surfaces->n_points, set_some, &setting);
 }
 
@@ -320,7 +321,7 @@ CS_INLINE uint32_t boxes_may_overlap(bool edges, const double *restrict p[4], do
     return meet;
 }
 
-CS_INLINE size_t filter(bool edges, const struct cs_point_motion *restrict moves,
+CS_INLINE size_t filter(bool edges, const struct cs_point_motion *restrict motion,
                         const struct cs_moving_pairs *pairs, double reach, uint32_t *out) {
     const uint32_t *of = edges ? pairs->surfaces->edges : pairs->surfaces->triangles;
     size_t n = 0;
@@ -328,10 +329,10 @@ CS_INLINE size_t filter(bool edges, const struct cs_point_motion *restrict moves
         const uint32_t i = pairs->items[k], j = pairs->items[k + 1];
         const uint32_t *first = edges ? of + 2 * (size_t)i : &i;
         const uint32_t *second = of + (edges ? 2 : 3) * (size_t)j;
-        const double *p[4] = {moves[first[0]].values,
-                              moves[edges ? first[1] : second[0]].values,
-                              moves[edges ? second[0] : second[1]].values,
-                              moves[edges ? second[1] : second[2]].values};
+        const double *p[4] = {motion[first[0]].values,
+                              motion[edges ? first[1] : second[0]].values,
+                              motion[edges ? second[0] : second[1]].values,
+                              motion[edges ? second[1] : second[2]].values};
         // Compaction without a branch: a rejected pair is overwritten by the next.
         out[2 * n] = i;
         out[2 * n + 1] = j;
@@ -340,21 +341,21 @@ CS_INLINE size_t filter(bool edges, const struct cs_point_motion *restrict moves
     return n;
 }
 
-CS_CLONES static size_t sieve_triangles(const struct cs_point_motion *moves,
+CS_CLONES static size_t sieve_triangles(const struct cs_point_motion *motion,
                                         const struct cs_moving_pairs *pairs, double reach,
                                         uint32_t *out) {
-    return filter(false, moves, pairs, reach, out);
+    return filter(false, motion, pairs, reach, out);
 }
 
-CS_CLONES static size_t sieve_edges(const struct cs_point_motion *moves,
+CS_CLONES static size_t sieve_edges(const struct cs_point_motion *motion,
                                     const struct cs_moving_pairs *pairs, double reach,
                                     uint32_t *out) {
-    return filter(true, moves, pairs, reach, out);
+    return filter(true, motion, pairs, reach, out);
 }
 
-size_t cs_point_motion_filter(const struct cs_point_motion *moves,
+size_t cs_point_motion_filter(const struct cs_point_motion *motion,
                               const struct cs_moving_pairs *pairs, double reach,
                               uint32_t *out) {
-    return pairs->edges ? sieve_edges(moves, pairs, reach, out)
-                        : sieve_triangles(moves, pairs, reach, out);
+    return pairs->edges ? sieve_edges(motion, pairs, reach, out)
+                        : sieve_triangles(motion, pairs, reach, out);
 }

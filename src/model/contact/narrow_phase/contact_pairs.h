@@ -36,7 +36,7 @@ struct cs_point_motion {
 
 /* Sets moves (n_points) for the straight motion from x0 to x1 (3,n_points). */
 void cs_point_motion_set(const struct cs_system *system, const double *x0, const double *x1,
-                         struct cs_point_motion *moves);
+                         struct cs_point_motion *motion);
 
 /* Pairs of a point and a triangle, or of two edges; borrowed. */
 struct cs_moving_pairs {
@@ -49,7 +49,7 @@ struct cs_moving_pairs {
 /* Copies to out (n, 2) the pairs whose primitives may come within `reach` in m at one fraction
  * of the move: cs_swept_aabbs_overlap (primitive_search.h) of their own points. Returns how
  * many; a few nanoseconds per pair. out must have room for all pairs. */
-size_t cs_point_motion_filter(const struct cs_point_motion *moves,
+size_t cs_point_motion_filter(const struct cs_point_motion *motion,
                               const struct cs_moving_pairs *pairs, double reach, uint32_t *out);
 
 /* All state of contact between surfaces; the system's arena owns it. */

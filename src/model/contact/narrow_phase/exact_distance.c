@@ -90,7 +90,7 @@ struct work {
     bool collects;                    /* pairs nearby, from the whole list */
     bool has_one_range;               /* of all pairs */
     double reach;                     /* of nearby pairs, in units */
-    struct cs_distance_filter sieve;  /* first: most are held back there */
+    struct cs_distance_filter filter; /* first: most are held back there */
     float excess[CS_DISTANCE_FILTER]; /* of the reach of nearby pairs over that of pairs in
                                          range */
     struct cs_pair_lanes lanes[TOGETHER];
@@ -127,7 +127,7 @@ static void range_measure(struct work *work) {
 }
 
 /* Adds a pair that passed the filter to the waiting ones. */
-static void take(struct work *work, const uint32_t pair[2]) {
+static void visit_pair(struct work *work, const uint32_t pair[2]) {
     const struct cs_candidates *candidates = work->search;
     const size_t n = candidates->system->surfaces->n_points;
     const uint32_t k = work->waiting++, l = k % CS_PAIR_LANES;
@@ -146,23 +146,23 @@ static void take(struct work *work, const uint32_t pair[2]) {
 /* Runs the filter on the pairs it holds: appends those nearby, and takes those that may be in
  * range. Without a branch: a removed pair is overwritten by the next. */
 static void filter_chunk(struct work *work) {
-    struct cs_distance_filter *sieve = &work->sieve;
+    struct cs_distance_filter *filter = &work->filter;
     struct cs_candidate_chunk *chunk = work->chunk;
     uint32_t taken[CS_DISTANCE_FILTER], n_taken = 0;
-    if (sieve->n)
-        cs_distance_filter_measure(sieve, chunk->kind == CS_PAIR_EDGE_EDGE);
-    for (uint32_t l = 0; l < sieve->n; l++) {
+    if (filter->n)
+        cs_distance_filter_measure(filter, chunk->kind == CS_PAIR_EDGE_EDGE);
+    for (uint32_t l = 0; l < filter->n; l++) {
         taken[n_taken] = l;
-        n_taken += !(sieve->ratio[l] + work->excess[l] > 0);
+        n_taken += !(filter->ratio[l] + work->excess[l] > 0);
     }
     // long steps have no use for these
-    for (uint32_t l = 0; work->collects && l < sieve->n; l++) {
-        memcpy(chunk->nearby + 2 * chunk->n_nearby, sieve->pairs[l], sizeof *sieve->pairs);
-        chunk->n_nearby += !(sieve->ratio[l] > 0);
+    for (uint32_t l = 0; work->collects && l < filter->n; l++) {
+        memcpy(chunk->nearby + 2 * chunk->n_nearby, filter->pairs[l], sizeof *filter->pairs);
+        chunk->n_nearby += !(filter->ratio[l] > 0);
     }
-    sieve->n = 0;
+    filter->n = 0;
     for (uint32_t k = 0; k < n_taken; k++)
-        take(work, sieve->pairs[taken[k]]);
+        visit_pair(work, filter->pairs[taken[k]]);
 }
 
 /* Sets the reach of nearby pairs, and its excess over that of pairs in range, for the pair that
@@ -175,7 +175,7 @@ static void set_reach(struct work *work, const uint32_t at[4]) {
     if (work->collects)
         work->reach += CS_CANDIDATES_NEARBY * unit *
                        cs_candidate_range_of(candidates, CS_PAIR_POINT_TRIANGLE, at);
-    work->excess[work->sieve.n] =
+    work->excess[work->filter.n] =
         cs_distance_filter_bound((float)work->reach) - cs_distance_filter_bound((float)range);
 }
 
@@ -187,7 +187,7 @@ CS_INLINE void put(struct work *work, enum cs_pair_kind kind, const uint32_t *pa
         cs_candidate_vertices(candidates->system->surfaces, kind, pairs + 2 * k, at);
         if (!work->has_one_range)
             set_reach(work, at);
-        if (cs_distance_filter_add(&work->sieve, candidates->scaled_points, at, work->reach,
+        if (cs_distance_filter_add(&work->filter, candidates->scaled_points, at, work->reach,
                                    pairs + 2 * k))
             filter_chunk(work);
     }
@@ -200,11 +200,11 @@ static void begin_work(struct work *work) {
     work->has_one_range =
         candidates->body_pairs->range_min == candidates->body_pairs->range_max;
     work->waiting = 0;
-    for (work->sieve.n = CS_DISTANCE_FILTER; work->has_one_range && work->sieve.n;) {
-        work->sieve.n--;
+    for (work->filter.n = CS_DISTANCE_FILTER; work->has_one_range && work->filter.n;) {
+        work->filter.n--;
         set_reach(work, any);
     }
-    work->sieve.n = 0;
+    work->filter.n = 0;
 }
 
 /* One search of all chunks: of the pairs nearby, or of the whole list. */

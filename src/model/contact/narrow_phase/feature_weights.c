@@ -101,7 +101,7 @@ CS_CLONES static void measure(struct lanes *restrict at) {
 
 /* The query at work; the weights are collected in `count` and `alone` by feature. */
 struct finding {
-    const struct cs_feature_weights *facets;
+    const struct cs_feature_weights *weights;
     const struct cs_feature_query *pair;
     const struct lanes *at;
     int lane;
@@ -147,7 +147,7 @@ static bool is_convex_edge(const struct finding *on, int k, uint32_t across) {
     for (size_t c = 0; c < 3; c++) {
         const double a = on->at->p[1 + k][c][on->lane];
         u[c] = on->at->p[1 + (k + 1) % 3][c][on->lane] - a;
-        v[c] = position(on->x, c * on->facets->surfaces->n_points + across) - a;
+        v[c] = position(on->x, c * on->weights->surfaces->n_points + across) - a;
         w[c] = on->at->p[0][c][on->lane] - a;
     }
     return cs_vec3_dot(w, v) * cs_vec3_dot(u, u) < cs_vec3_dot(w, u) * cs_vec3_dot(u, v);
@@ -156,7 +156,7 @@ static bool is_convex_edge(const struct finding *on, int k, uint32_t across) {
 /* Far vertex of the neighbour across edge k; CS_NO_POINT at a border, and if it is the point
  * itself: its own triangles are left out of the pairs, so the edge is a border to it. */
 static uint32_t across_rim(const struct finding *on, int k) {
-    const uint32_t *across = on->facets->opposite_vertex + 3 * (size_t)on->pair->triangle;
+    const uint32_t *across = on->weights->opposite_vertex + 3 * (size_t)on->pair->triangle;
     const uint32_t to = across[(k + 2) % 3];
     return to == on->pair->points[0] ? CS_NO_POINT : to;
 }
@@ -169,7 +169,7 @@ static double count_alone(const struct finding *on, int k) {
     const double t = on->at->t[k][on->lane];
     const uint32_t across = across_rim(on, k);
     const double share =
-        on->facets->vertex_share[on->pair->points[1 + (t < 0 ? k : (k + 1) % 3)]];
+        on->weights->vertex_share[on->pair->points[1 + (t < 0 ? k : (k + 1) % 3)]];
     if (across == CS_NO_POINT)
         return 1;
     if (!is_convex_edge(on, k, across))
@@ -206,9 +206,9 @@ static void count_rims(struct finding *on) {
 static void count_corners(struct finding *on) {
     for (int k = 0; k < 3; k++) {
         const uint32_t corner = on->pair->points[1 + k];
-        const double share = on->facets->vertex_share[corner];
+        const double share = on->weights->vertex_share[corner];
         if (is_in_range(on, CORNER + k) && share != 0 &&
-            !(on->pair->same_body && are_joined(on->facets, on->pair->points[0], corner)))
+            !(on->pair->same_body && are_joined(on->weights, on->pair->points[0], corner)))
             on->count[CORNER + k] += share;
     }
 }
@@ -254,13 +254,13 @@ static void fill(const struct finding *on, int feature, struct cs_weighted_featu
     use->d = sqrt(on->at->square[feature][on->lane]);
     use->weight = on->count[feature];
     use->psd_weight = on->alone[feature];
-    use->form = (struct cs_feature_kind){feature >= RIM && feature < CORNER, feature != PLANE,
+    use->kind = (struct cs_feature_kind){feature >= RIM && feature < CORNER, feature != PLANE,
                                          on->at->bend[on->lane]};
     name_whole(on, feature, use);
 }
 
 /* Writes the features of one query whose weight is not 0. */
-static uint32_t find(struct finding *on, struct cs_weighted_feature *uses) {
+static uint32_t find_weighted(struct finding *on, struct cs_weighted_feature *features) {
     uint32_t n = 0;
     memset(on->count, 0, sizeof on->count);
     memset(on->alone, 0, sizeof on->alone);
@@ -270,7 +270,7 @@ static uint32_t find(struct finding *on, struct cs_weighted_feature *uses) {
     flatten(on);
     for (int feature = PLANE; feature < CS_FEATURES_PER_TRIANGLE; feature++)
         if (on->count[feature] != 0 || on->alone[feature] != 0)
-            fill(on, feature, uses + n++);
+            fill(on, feature, features + n++);
     return n;
 }
 
@@ -295,7 +295,7 @@ uint32_t cs_feature_weights_find_between(const struct cs_feature_weights *featur
                                          const struct cs_feature_positions *x,
                                          struct cs_weighted_feature *uses) {
     struct lanes at[CS_FEATURE_QUERY_PAIRS / LANES];
-    struct finding on = {.facets = features, .x = x};
+    struct finding on = {.weights = features, .x = x};
     uint32_t found = 0;
     // all lanes are written first: a vector load right after scalar stores there would stall
     for (uint32_t k = 0; k < n; k += LANES)
@@ -305,7 +305,7 @@ uint32_t cs_feature_weights_find_between(const struct cs_feature_weights *featur
     for (uint32_t k = 0; k < n; k++) {
         on.pair = pairs + k;
         on.at = at + k / LANES, on.lane = (int)(k % LANES);
-        found += find(&on, uses + found);
+        found += find_weighted(&on, uses + found);
     }
     return found;
 }
@@ -320,17 +320,18 @@ static bool are_same(const struct cs_weighted_feature *a, const struct cs_weight
 
 /* Each new feature is compared with those before it: a point has few. Features that depend on
  * the plane of their triangle (CS_NO_POINT) are never merged. */
-uint32_t cs_feature_weights_join(struct cs_weighted_feature *uses, uint32_t n, uint32_t more) {
+uint32_t cs_feature_weights_join(struct cs_weighted_feature *features, uint32_t n,
+                                 uint32_t more) {
     for (uint32_t end = n + more, k = n; k < end; k++) {
-        uint32_t same = uses[k].shared_feature[0] == CS_NO_POINT ? n : 0;
-        while (same < n && !are_same(uses + same, uses + k))
+        uint32_t same = features[k].shared_feature[0] == CS_NO_POINT ? n : 0;
+        while (same < n && !are_same(features + same, features + k))
             same++;
         if (same == n) {
-            uses[n++] = uses[k];
+            features[n++] = features[k];
             continue;
         }
-        uses[same].weight += uses[k].weight;
-        uses[same].psd_weight += uses[k].psd_weight;
+        features[same].weight += features[k].weight;
+        features[same].psd_weight += features[k].psd_weight;
     }
     return n;
 }

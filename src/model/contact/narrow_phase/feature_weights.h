@@ -39,7 +39,7 @@ struct cs_weighted_feature {
     /* multiplicity in a positive semi-definite matrix: that of the nearest feature alone, never
      * negative. Over a flat mesh both weights have the same sums per point. */
     double psd_weight;
-    struct cs_feature_kind form;
+    struct cs_feature_kind kind;
     /* identity of a feature that all its triangles measure alike: both ends of an edge in
      * ascending order, or a vertex and CS_NO_POINT; CS_NO_POINT twice if it still depends on
      * the plane of its triangle */
@@ -86,12 +86,13 @@ static inline uint32_t cs_feature_weights_find(const struct cs_feature_weights *
 /* Merges `more` features behind the first n into these, and returns the new number. All are of
  * one point. Equal shared features are merged by adding their weights; the first n must contain
  * none twice. */
-uint32_t cs_feature_weights_join(struct cs_weighted_feature *uses, uint32_t n, uint32_t more);
+uint32_t cs_feature_weights_join(struct cs_weighted_feature *features, uint32_t n,
+                                 uint32_t more);
 
 /* Returns whether a feature has any weight left. Weights are multiples of a vertex share, far
  * above 1e-9, so that only the rounding of cancelled weights is below it. */
-static inline bool cs_feature_weights_counts(const struct cs_weighted_feature *use) {
-    return fabs(use->weight) > 1e-9 || fabs(use->psd_weight) > 1e-9;
+static inline bool cs_feature_weights_counts(const struct cs_weighted_feature *feature) {
+    return fabs(feature->weight) > 1e-9 || fabs(feature->psd_weight) > 1e-9;
 }
 
 #endif

@@ -7,7 +7,7 @@
 /* log2 of the slots of the smallest table */
 enum { BITS_MIN = 9 };
 
-static void finish(void *object) {
+static void finish_gather(void *object) {
     struct cs_gather *gather = object;
     for (uint32_t l = 0; l < gather->n_chunks; l++)
         free(gather->chunks[l].points), free(gather->chunks[l].slots);
@@ -22,7 +22,7 @@ enum cs_status cs_gather_init(struct cs_gather *gather, uint32_t n_chunks, uint3
     gather->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *gather->chunks, error);
     CS_ARENA_ARRAY(arena, gather->starts, n_particles + (size_t)2, error);
     if (!error->status)
-        cs_arena_adopt(arena, finish, gather, error);
+        cs_arena_adopt(arena, finish_gather, gather, error);
     return error->status;
 }
 
@@ -64,7 +64,7 @@ static bool make_room(struct cs_gather_chunk *chunk) {
     return 2 * chunk->n < 1u << chunk->bits || grow_table(chunk, chunk->bits + 1);
 }
 
-static uint32_t add_row(struct cs_gather_chunk *chunk, uint32_t point) {
+static uint32_t append_row(struct cs_gather_chunk *chunk, uint32_t point) {
     if (!make_room(chunk)) {
         chunk->failed = true;
         return 0;
@@ -76,7 +76,7 @@ static uint32_t add_row(struct cs_gather_chunk *chunk, uint32_t point) {
 
 uint32_t cs_gather_row(struct cs_gather_chunk *chunk, uint32_t point) {
     const uint32_t slot = chunk->n ? *slot_of(chunk, point) : 0;
-    return slot ? slot - 1 : add_row(chunk, point);
+    return slot ? slot - 1 : append_row(chunk, point);
 }
 
 /* --- by particles --- */

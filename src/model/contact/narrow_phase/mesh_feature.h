@@ -170,10 +170,10 @@ CS_INLINE double cs_mesh_feature_blend(struct cs_mesh_feature *s, double m) {
 
 /* Sets the distance, and all that its derivatives need. least is added to d^2 so that d has
  * derivatives at 0. */
-CS_INLINE void cs_mesh_feature_measure(struct cs_mesh_feature *s, struct cs_feature_kind form,
+CS_INLINE void cs_mesh_feature_measure(struct cs_mesh_feature *s, struct cs_feature_kind kind,
                                        double p[4][3]) {
     const double least = CS_PAIR_DISTANCE_MIN * CS_PAIR_DISTANCE_MIN;
-    s->kind = form;
+    s->kind = kind;
     cs_pair_distance_frame(&s->plane, CS_PAIR_POINT_TRIANGLE, 0, p);
     const double *u = s->plane.u, *v = s->plane.v, *w = s->plane.w, *l = s->plane.unclamped;
     cs_mesh_feature_clamp(s);
@@ -194,10 +194,10 @@ CS_INLINE void cs_mesh_feature_measure(struct cs_mesh_feature *s, struct cs_feat
  *
  * r joins the point to the contact point on the triangle, which moves from the foot to the edge
  * as f' goes from 0 to 1. Friction and damping act there. */
-CS_INLINE void cs_mesh_feature_set(struct cs_mesh_feature *s, struct cs_feature_kind form,
+CS_INLINE void cs_mesh_feature_set(struct cs_mesh_feature *s, struct cs_feature_kind kind,
                                    double p[4][3]) {
     const double least = CS_PAIR_DISTANCE_MIN * CS_PAIR_DISTANCE_MIN;
-    cs_mesh_feature_measure(s, form, p);
+    cs_mesh_feature_measure(s, kind, p);
     const double *l = s->plane.unclamped;
     cs_mesh_feature_gradients(s);
     const double in = 1 - s->f1, half = 0.5 / s->d;

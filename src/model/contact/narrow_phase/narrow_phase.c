@@ -52,14 +52,14 @@ static void contact_of(const struct work *work, const struct cs_pair_lanes *lane
     const struct cs_system *system = work->narrow->contacts->candidates->system;
     const struct cs_body_pair_params params = {
         .range = lanes->range[l], .k = lanes->k[l], .friction = lanes->friction[l]};
-    const struct cs_feature_kind form = {lanes->is_edge[l], lanes->is_off_plane[l],
+    const struct cs_feature_kind kind = {lanes->is_edge[l], lanes->is_off_plane[l],
                                          lanes->blend_radius[l]};
     double p[4][3], v[4][3];
     for (int k = 0; k < 12; k++) {
         p[k / 3][k % 3] = lanes->p[k / 3][k % 3][l];
         v[k / 3][k % 3] = lanes->v[k / 3][k % 3][l];
     }
-    cs_pair_contact_measure(contact, work->chunk->kind, form, params.range, p);
+    cs_pair_contact_measure(contact, work->chunk->kind, kind, params.range, p);
     cs_pair_contact_set(contact, &params, &system->scene->contact, v);
 }
 
@@ -100,13 +100,13 @@ static void add_energy(const struct work *work, struct cs_pair_lanes *lanes, siz
 /* Sets out of a block to forces or their change. */
 static void push(const struct work *work, struct cs_pair_lanes *lanes) {
     const struct cs_narrow_phase *narrow = work->narrow;
-    const struct cs_pair_lane_constants law = {
+    const struct cs_pair_lane_constants constants = {
         narrow->contacts->candidates->system->scene->contact,
         cs_force_parts_of(narrow->eval.parts)};
     if (narrow->query == CS_CONTACT_QUERY_JVP)
-        cs_pair_lanes_jvp(work->chunk->kind, lanes, &law);
+        cs_pair_lanes_jvp(work->chunk->kind, lanes, &constants);
     else
-        cs_pair_lanes_force(work->chunk->kind, lanes, &law);
+        cs_pair_lanes_force(work->chunk->kind, lanes, &constants);
 }
 
 /* Adds the results of a block to the rows of its points, pair by pair. */
@@ -265,14 +265,14 @@ static void do_some(const struct work *work, size_t first) {
 
 /* Clears the rows of one chunk. */
 static void clear_sums(const struct cs_narrow_phase *narrow,
-                       const struct cs_gather_chunk *rows) {
+                       const struct cs_gather_chunk *chunk) {
     const struct cs_gather *gather = &narrow->contacts->force_gather;
     if (is_force(narrow)) {
-        memset(cs_gather_of(rows, gather->row_sums, 3), 0, 3 * sizeof(double) * rows->n);
+        memset(cs_gather_of(chunk, gather->row_sums, 3), 0, 3 * sizeof(double) * chunk->n);
     } else if (narrow->query == CS_CONTACT_QUERY_BOUND) {
-        double *stiffness = cs_gather_of(rows, gather->row_sums, 1);
-        memset(stiffness, 0, sizeof *stiffness * rows->n);
-        memset(stiffness + gather->n_rows, 0, sizeof *stiffness * rows->n);
+        double *stiffness = cs_gather_of(chunk, gather->row_sums, 1);
+        memset(stiffness, 0, sizeof *stiffness * chunk->n);
+        memset(stiffness + gather->n_rows, 0, sizeof *stiffness * chunk->n);
     }
 }
 
@@ -280,11 +280,11 @@ static void clear_sums(const struct cs_narrow_phase *narrow,
 static bool begin(const struct work *work) {
     const struct cs_narrow_phase *narrow = work->narrow;
     const struct cs_gather *gather = &narrow->contacts->force_gather;
-    const struct cs_gather_chunk *rows = gather->chunks + work->number;
+    const struct cs_gather_chunk *chunk = gather->chunks + work->number;
     work->chunk->energy = 0;
     if (!work->chunk->n)
         return false;
-    clear_sums(narrow, rows);
+    clear_sums(narrow, chunk);
     return narrow->query != CS_CONTACT_QUERY_MATRIX ||
            cs_pair_matrix_chunk_begin(narrow->result, work->number);
 }

@@ -12,7 +12,7 @@
 /* The pair of one lane as one contact point. */
 struct point {
     double r[3]; /* m, between the contact points */
-    struct cs_sliding_contact slides;
+    struct cs_sliding_contact contacts;
     struct cs_contact_pull pull;
 };
 
@@ -23,7 +23,7 @@ CS_INLINE void add_vertex(const struct cs_pair_lanes *lanes, const struct cs_pai
     CS_UNROLLED
     for (int c = 0; c < 3; c++) {
         to->r[c] += w * lanes->p[k][c][l];
-        to->slides.v[c] += w * lanes->v[k][c][l];
+        to->contacts.v[c] += w * lanes->v[k][c][l];
         to->pull.motion[c] += moved * pulls->all[k][c][l];
         to->pull.push[c] += moved * pulls->contact[k][c][l];
     }
@@ -39,7 +39,7 @@ CS_INLINE void add_chord(enum cs_pair_kind kind, const struct cs_pair_lanes *res
         double weight[4], block[6] = {0};
         struct point at = {
             .pull = pull,
-            .slides = {.friction = lanes->friction[l], .friction_speed = friction_speed}};
+            .contacts = {.friction = lanes->friction[l], .friction_speed = friction_speed}};
         cs_pair_distance_to_points(kind, factors->weight[0][l], factors->weight[1][l], 1,
                                    weight);
         CS_UNROLLED
@@ -50,9 +50,9 @@ CS_INLINE void add_chord(enum cs_pair_kind kind, const struct cs_pair_lanes *res
         const double d = kind == CS_PAIR_EDGE_EDGE ? length : lanes->d[l];
         CS_UNROLLED
         for (int c = 0; c < 3; c++)
-            at.slides.n[c] = at.r[c] / length;
-        at.slides.force = cs_barrier_at(d, lanes->range[l], lanes->k[l]).force;
-        cs_friction_chord_add(&at.pull, &at.slides, block);
+            at.contacts.n[c] = at.r[c] / length;
+        at.contacts.force = cs_barrier_at(d, lanes->range[l], lanes->k[l]).force;
+        cs_friction_chord_add(&at.pull, &at.contacts, block);
         CS_UNROLLED
         for (int e = 0; e < 6; e++)
             factors->block[e][l] += block[e];

@@ -30,18 +30,18 @@ struct cs_pair_contact {
 
 /* Sets the distance, its gradient and the weights by the four points p. range: of edges, in m.
  */
-CS_INLINE void cs_pair_contact_measure(struct cs_pair_contact *reaction, enum cs_pair_kind kind,
-                                       struct cs_feature_kind form, double range,
+CS_INLINE void cs_pair_contact_measure(struct cs_pair_contact *contact, enum cs_pair_kind kind,
+                                       struct cs_feature_kind feature, double range,
                                        double p[4][3]) {
-    reaction->kind = kind;
+    contact->kind = kind;
     if (kind == CS_PAIR_EDGE_EDGE) {
-        cs_pair_distance_set(&reaction->distance, range, p);
-        cs_pair_distance_gradient(&reaction->distance, reaction->g);
-        cs_pair_distance_weights(&reaction->distance, reaction->weight);
+        cs_pair_distance_set(&contact->distance, range, p);
+        cs_pair_distance_gradient(&contact->distance, contact->g);
+        cs_pair_distance_weights(&contact->distance, contact->weight);
     } else {
-        cs_mesh_feature_set(&reaction->feature, form, p);
-        cs_mesh_feature_to_points(reaction->feature.g, reaction->g);
-        cs_mesh_feature_weights(&reaction->feature, reaction->weight);
+        cs_mesh_feature_set(&contact->feature, feature, p);
+        cs_mesh_feature_to_points(contact->feature.g, contact->g);
+        cs_mesh_feature_weights(&contact->feature, contact->weight);
     }
 }
 
@@ -54,15 +54,15 @@ CS_INLINE double cs_pair_contact_range(const struct cs_body_pair_params *params,
 /* As cs_pair_contact_measure for a pair as a whole, by which steps and starts are judged: a
  * point and a triangle have the feature that is nearest. range: that of the force. Returns the
  * distance in m. */
-CS_INLINE double cs_pair_contact_measure_whole(struct cs_pair_contact *reaction,
+CS_INLINE double cs_pair_contact_measure_whole(struct cs_pair_contact *contact,
                                                enum cs_pair_kind kind, double range,
                                                double p[4][3]) {
     const double e = CS_FEATURE_BLEND_RADIUS / CS_FEATURE_RANGE_RATIO * range;
-    struct cs_feature_kind form = {0, 0, e};
+    struct cs_feature_kind feature = {0, 0, e};
     double to[4][3];
     if (kind == CS_PAIR_EDGE_EDGE) {
-        cs_pair_contact_measure(reaction, kind, form, range, p);
-        return reaction->distance.d;
+        cs_pair_contact_measure(contact, kind, feature, range, p);
+        return contact->distance.d;
     }
     const double edge = cs_mesh_feature_nearest_edge(p), back = edge > 0.5 ? 3 - edge : 0;
     for (int c = 0; c < 3; c++) {
@@ -71,30 +71,29 @@ CS_INLINE double cs_pair_contact_measure_whole(struct cs_pair_contact *reaction,
         for (int k = 0; k < 4; k++)
             to[k][c] = x[k];
     }
-    form = cs_mesh_feature_nearest_form(e, to);
-    cs_pair_contact_measure(reaction, kind, form, range, to);
+    feature = cs_mesh_feature_nearest_form(e, to);
+    cs_pair_contact_measure(contact, kind, feature, range, to);
     for (int c = 0; c < 3; c++) {
-        double g[4] = {reaction->g[0][c], reaction->g[1][c], reaction->g[2][c],
-                       reaction->g[3][c]};
+        double g[4] = {contact->g[0][c], contact->g[1][c], contact->g[2][c], contact->g[3][c]};
         cs_mesh_feature_rotate(back, g);
         for (int k = 0; k < 4; k++)
-            reaction->g[k][c] = g[k];
+            contact->g[k][c] = g[k];
     }
-    cs_mesh_feature_rotate(back, reaction->weight);
-    return reaction->feature.d;
+    cs_mesh_feature_rotate(back, contact->weight);
+    return contact->feature.d;
 }
 
 /* Sets `contact` after the measurement; v (4,3) velocities in m/s. The vector between the
  * contact points has direction n and length l, so the Hessian of its length is (I - n n^T)/l.
  */
-CS_INLINE void cs_pair_contact_set(struct cs_pair_contact *reaction,
+CS_INLINE void cs_pair_contact_set(struct cs_pair_contact *contact,
                                    const struct cs_body_pair_params *params,
                                    const struct cs_contact_keys *keys, double v[4][3]) {
-    const bool edges = reaction->kind == CS_PAIR_EDGE_EDGE;
-    const double *n = edges ? reaction->distance.n : reaction->feature.n;
-    const double length = edges ? reaction->distance.d : reaction->feature.length;
-    reaction->contact = (struct cs_point_contact){
-        .d = edges ? reaction->distance.d : reaction->feature.d,
+    const bool edges = contact->kind == CS_PAIR_EDGE_EDGE;
+    const double *n = edges ? contact->distance.n : contact->feature.n;
+    const double length = edges ? contact->distance.d : contact->feature.length;
+    contact->contact = (struct cs_point_contact){
+        .d = edges ? contact->distance.d : contact->feature.d,
         .range = params->range,
         .g = {n[0], n[1], n[2]},
         .h = {(1 - n[0] * n[0]) / length, -n[0] * n[1] / length, -n[0] * n[2] / length,
@@ -106,28 +105,29 @@ CS_INLINE void cs_pair_contact_set(struct cs_pair_contact *reaction,
         .loss = keys->loss};
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < 3; c++)
-            reaction->contact.v[c] += reaction->weight[k] * v[k][c];
+            contact->contact.v[c] += contact->weight[k] * v[k][c];
 }
 
 /* Returns whether friction or damping act and are wanted. */
-CS_INLINE bool cs_pair_contact_has_friction(const struct cs_point_contact *touch,
+CS_INLINE bool cs_pair_contact_has_friction(const struct cs_point_contact *contact,
                                             struct cs_contact_force_parts parts) {
-    return parts.friction * (touch->friction + touch->damping + touch->loss) > 0;
+    return parts.friction * (contact->friction + contact->damping + contact->loss) > 0;
 }
 
 /* f_k = F g_k + w_k R in N, with R friction and damping of the contact points. */
-CS_INLINE void cs_pair_contact_force(const struct cs_pair_contact *reaction,
+CS_INLINE void cs_pair_contact_force(const struct cs_pair_contact *pair,
                                      struct cs_contact_force_parts parts, double f[4][3]) {
-    const struct cs_point_contact *touch = &reaction->contact;
-    const double push = parts.elastic * cs_barrier_at(touch->d, touch->range, touch->k).force;
+    const struct cs_point_contact *contact = &pair->contact;
+    const double push =
+        parts.elastic * cs_barrier_at(contact->d, contact->range, contact->k).force;
     double rub[3] = {0};
     // the elastic force acts along g, not along n
     parts.elastic = 0;
-    if (cs_pair_contact_has_friction(touch, parts))
-        cs_point_contact_force(touch, parts, rub);
+    if (cs_pair_contact_has_friction(contact, parts))
+        cs_point_contact_force(contact, parts, rub);
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < 3; c++)
-            f[k][c] = push * reaction->g[k][c] + reaction->weight[k] * rub[c];
+            f[k][c] = push * pair->g[k][c] + pair->weight[k] * rub[c];
 }
 
 /* State and direction of a Jacobian product. */
@@ -135,80 +135,80 @@ struct cs_pair_contact_motion {
     double p[4][3], v[4][3], dp[4][3], dv[4][3];
 };
 /* dg = H dp and dw = change of the weights, by the tangent of the distance in use. */
-CS_INLINE void cs_pair_contact_tangent(const struct cs_pair_contact *reaction, double dp[4][3],
+CS_INLINE void cs_pair_contact_tangent(const struct cs_pair_contact *contact, double dp[4][3],
                                        double dg[4][3], double dw[4]) {
-    if (reaction->kind == CS_PAIR_EDGE_EDGE)
-        cs_pair_distance_tangent(&reaction->distance, dp, dg, dw);
+    if (contact->kind == CS_PAIR_EDGE_EDGE)
+        cs_pair_distance_tangent(&contact->distance, dp, dg, dw);
     else
-        cs_mesh_feature_tangent(&reaction->feature, dp, dg, dw);
+        cs_mesh_feature_tangent(&contact->feature, dp, dg, dw);
 }
 
 /* df_k = -K dd g_k + F (H dp)_k + dw_k R + w_k dR, exact. The relative move of the contact
  * points includes the change of the weights: dp = sum dw_k p_k + w_k dp_k. */
-CS_INLINE void cs_pair_contact_jvp(const struct cs_pair_contact *reaction,
+CS_INLINE void cs_pair_contact_jvp(const struct cs_pair_contact *pair,
                                    struct cs_contact_force_parts parts,
-                                   struct cs_pair_contact_motion *move, double df[4][3]) {
-    const struct cs_point_contact *touch = &reaction->contact;
-    const double *w = reaction->weight;
+                                   struct cs_pair_contact_motion *motion, double df[4][3]) {
+    const struct cs_point_contact *contact = &pair->contact;
+    const double *w = pair->weight;
     double dg[4][3], dw[4], along = 0, rub[3] = {0}, drub[3] = {0};
     struct cs_point_contact_motion point = {0};
-    cs_pair_contact_tangent(reaction, move->dp, dg, dw);
+    cs_pair_contact_tangent(pair, motion->dp, dg, dw);
     for (int k = 0; k < 4; k++) {
-        along += cs_vec3_dot(reaction->g[k], move->dp[k]);
+        along += cs_vec3_dot(pair->g[k], motion->dp[k]);
         for (int c = 0; c < 3; c++) {
-            point.dp[c] += dw[k] * move->p[k][c] + w[k] * move->dp[k][c];
-            point.dv[c] += dw[k] * move->v[k][c] + w[k] * move->dv[k][c];
+            point.dp[c] += dw[k] * motion->p[k][c] + w[k] * motion->dp[k][c];
+            point.dv[c] += dw[k] * motion->v[k][c] + w[k] * motion->dv[k][c];
         }
     }
     // a bent distance changes otherwise than that of the contact points
-    point.extra_dd = along - cs_vec3_dot(touch->g, point.dp);
-    const struct cs_barrier law = cs_barrier_at(touch->d, touch->range, touch->k);
-    const double push = parts.elastic * law.force;
-    const double dpush = -parts.elastic * law.stiffness * along;
+    point.extra_dd = along - cs_vec3_dot(contact->g, point.dp);
+    const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
+    const double push = parts.elastic * barrier.force;
+    const double dpush = -parts.elastic * barrier.stiffness * along;
     parts.elastic = 0;
-    if (cs_pair_contact_has_friction(touch, parts)) {
-        cs_point_contact_force(touch, parts, rub);
-        cs_point_contact_jvp(touch, parts, &point, drub);
+    if (cs_pair_contact_has_friction(contact, parts)) {
+        cs_point_contact_force(contact, parts, rub);
+        cs_point_contact_jvp(contact, parts, &point, drub);
     }
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < 3; c++)
             df[k][c] =
-                dpush * reaction->g[k][c] + push * dg[k][c] + dw[k] * rub[c] + w[k] * drub[c];
+                dpush * pair->g[k][c] + push * dg[k][c] + dw[k] * rub[c] + w[k] * drub[c];
 }
 
 /* Weights and block of the matrix terms. ck F H is not among them (pair_matrix.h), nor is the
  * change of the weights. */
-CS_INLINE void cs_pair_contact_matrix(const struct cs_pair_contact *reaction,
+CS_INLINE void cs_pair_contact_matrix(const struct cs_pair_contact *contact,
                                       const struct cs_matrix *matrix,
-                                      struct cs_pair_matrix_terms *share) {
-    // the law's own slope has another gradient than the touch
+                                      struct cs_pair_matrix_terms *terms) {
+    // the law's own slope has another gradient than the contact
     struct cs_matrix rubbing = *matrix;
     rubbing.ck = 0;
     for (int k = 0; k < 4; k++)
-        share->weight[k] = reaction->weight[k];
+        terms->weight[k] = contact->weight[k];
     for (int e = 0; e < 6; e++)
-        share->block[e] = 0;
-    cs_point_contact_add_block(&reaction->contact, &rubbing, share->block);
+        terms->block[e] = 0;
+    cs_point_contact_add_block(&contact->contact, &rubbing, terms->block);
 }
 
 /* Gershgorin bounds in N/m and N s/m. The block of df/dx at points k and j is -K g_k g_j^T, of
  * norm K |g_k| |g_j|, so the row of k sums to K |g_k| sum |g_j|; likewise |w_k| sum |w_j| for
  * damping. F H is left out. */
-CS_INLINE void cs_pair_contact_bound(const struct cs_pair_contact *reaction,
-                                     double stiffness[4], double damping[4]) {
+CS_INLINE void cs_pair_contact_bound(const struct cs_pair_contact *pair, double stiffness[4],
+                                     double damping[4]) {
     double length[4], sum = 0, shares = 0, own, rub;
     // What is subtracted counts with its absolute value.
-    struct cs_point_contact touch = reaction->contact;
-    touch.k = fabs(touch.k);
-    cs_point_contact_bound(&touch, &own, &rub);
+    struct cs_point_contact contact = pair->contact;
+    contact.k = fabs(contact.k);
+    cs_point_contact_bound(&contact, &own, &rub);
     for (int k = 0; k < 4; k++) {
-        const double w = reaction->weight[k];
-        length[k] = sqrt(cs_vec3_dot(reaction->g[k], reaction->g[k]));
+        const double w = pair->weight[k];
+        length[k] = sqrt(cs_vec3_dot(pair->g[k], pair->g[k]));
         sum += length[k];
         shares += w < 0 ? -w : w;
     }
     for (int k = 0; k < 4; k++) {
-        const double w = reaction->weight[k];
+        const double w = pair->weight[k];
         stiffness[k] = own * length[k] * sum;
         damping[k] = rub * (w < 0 ? -w : w) * shares;
     }

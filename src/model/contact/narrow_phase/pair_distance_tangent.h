@@ -80,52 +80,53 @@ CS_INLINE void cs_pair_distance_jvp_direction(const struct cs_pair_distance *s,
 
 /* Changes of k_i = dd/dL_i L_l, the slopes of d before the clamp, and of z. */
 CS_INLINE void cs_pair_distance_jvp_slopes(const struct cs_pair_distance *s,
-                                           const struct cs_pair_distance_gradients *at,
+                                           const struct cs_pair_distance_gradients *gradients,
                                            struct cs_pair_distance_tangents *d) {
     for (int i = 0; i < 2; i++)
         d->k[i] = d->dd_dweight_dot[i] * s->blend[i][1] +
-                  at->dd_dweight[i] *
+                  gradients->dd_dweight[i] *
                       (s->blend_second[i][0] * d->l[i] + s->blend_second[i][1] * d->length[i]);
-    cs_pair_distance_jvp_solution(s, d, at->z, d->k, d->z);
+    cs_pair_distance_jvp_solution(s, d, gradients->z, d->k, d->z);
     for (int c = 0; c < 3; c++)
-        d->y[c] =
-            d->z[0] * s->u[c] + at->z[0] * d->u[c] + d->z[1] * s->v[c] + at->z[1] * d->v[c];
+        d->y[c] = d->z[0] * s->u[c] + gradients->z[0] * d->u[c] + d->z[1] * s->v[c] +
+                  gradients->z[1] * d->v[c];
 }
 
 /* Change of m_j / s_j, with dm_j by the product rule. */
 CS_INLINE void cs_pair_distance_jvp_stretch(const struct cs_pair_distance *s,
-                                            const struct cs_pair_distance_gradients *at,
+                                            const struct cs_pair_distance_gradients *gradients,
                                             struct cs_pair_distance_tangents *d) {
     const double *pi = s->pull_per_length, sum = d->length[0] + d->length[1];
     double lever[2], levers = 0;
     for (int i = 0; i < 2; i++) {
-        lever[i] = d->z[i] * (0.5 - s->unclamped[i]) - at->z[i] * d->l[i];
-        levers += lever[i] * s->length[i] + at->lever[i] * d->length[i];
+        lever[i] = d->z[i] * (0.5 - s->unclamped[i]) - gradients->z[i] * d->l[i];
+        levers += lever[i] * s->length[i] + gradients->lever[i] * d->length[i];
     }
     for (int i = 0; i < 2; i++) {
         const double by_length =
             s->blend_second[i][1] * d->l[i] + s->blend_second[i][2] * d->length[i];
-        const double m = pi[1] * levers + pi[2] * sum * at->levers + pi[0] * lever[i] +
-                         pi[1] * sum * at->lever[i] + d->dd_dweight_dot[i] * s->blend[i][2] +
-                         at->dd_dweight[i] * by_length;
-        d->stretch[i] = (m - at->stretch[i] * d->length[i]) / s->length[i];
+        const double m = pi[1] * levers + pi[2] * sum * gradients->levers + pi[0] * lever[i] +
+                         pi[1] * sum * gradients->lever[i] +
+                         d->dd_dweight_dot[i] * s->blend[i][2] +
+                         gradients->dd_dweight[i] * by_length;
+        d->stretch[i] = (m - gradients->stretch[i] * d->length[i]) / s->length[i];
     }
 }
 
 /* Component c of the change of the gradient at the four points. r is the component of w - l1 u
  * - l2 v without clamp. */
 CS_INLINE void cs_pair_distance_jvp_gradient(const struct cs_pair_distance *s,
-                                             const struct cs_pair_distance_gradients *at,
+                                             const struct cs_pair_distance_gradients *gradients,
                                              const struct cs_pair_distance_tangents *d, int c,
                                              double out[4]) {
-    const double *u = s->u, *v = s->v, *l = s->unclamped, *z = at->z;
+    const double *u = s->u, *v = s->v, *l = s->unclamped, *z = gradients->z;
     const double r = s->w[c] - l[0] * u[c] - l[1] * v[c];
     const double dr =
         d->w[c] - l[0] * d->u[c] - l[1] * d->v[c] - d->l[0] * u[c] - d->l[1] * v[c];
-    const double du = d->z[0] * r + z[0] * dr - d->l[0] * at->y[c] - l[0] * d->y[c] +
-                      d->stretch[0] * u[c] + at->stretch[0] * d->u[c];
-    const double dv = d->z[1] * r + z[1] * dr - d->l[1] * at->y[c] - l[1] * d->y[c] +
-                      d->stretch[1] * v[c] + at->stretch[1] * d->v[c];
+    const double du = d->z[0] * r + z[0] * dr - d->l[0] * gradients->y[c] - l[0] * d->y[c] +
+                      d->stretch[0] * u[c] + gradients->stretch[0] * d->u[c];
+    const double dv = d->z[1] * r + z[1] * dr - d->l[1] * gradients->y[c] - l[1] * d->y[c] +
+                      d->stretch[1] * v[c] + gradients->stretch[1] * d->v[c];
     cs_pair_distance_to_points(
         CS_PAIR_EDGE_EDGE, du - d->weight[0] * s->n[c] - s->clamped[0] * d->n[c],
         dv - d->weight[1] * s->n[c] - s->clamped[1] * d->n[c], d->y[c] + d->n[c], out);
@@ -135,17 +136,17 @@ CS_INLINE void cs_pair_distance_jvp_gradient(const struct cs_pair_distance *s,
  * s is a pair of edges at the state, after cs_pair_distance_set. */
 CS_INLINE void cs_pair_distance_tangent(const struct cs_pair_distance *s, double dp[4][3],
                                         double dg[4][3], double dweights[4]) {
-    struct cs_pair_distance_gradients at;
+    struct cs_pair_distance_gradients gradients;
     struct cs_pair_distance_tangents d;
     double out[4];
-    cs_pair_distance_set_slopes(s, &at);
+    cs_pair_distance_set_slopes(s, &gradients);
     cs_pair_distance_differences(CS_PAIR_EDGE_EDGE, dp, d.u, d.v, d.w);
     cs_pair_distance_jvp_positions(CS_PAIR_EDGE_EDGE, s, &d);
     cs_pair_distance_jvp_direction(s, &d);
-    cs_pair_distance_jvp_slopes(s, &at, &d);
-    cs_pair_distance_jvp_stretch(s, &at, &d);
+    cs_pair_distance_jvp_slopes(s, &gradients, &d);
+    cs_pair_distance_jvp_stretch(s, &gradients, &d);
     for (int c = 0; c < 3; c++) {
-        cs_pair_distance_jvp_gradient(s, &at, &d, c, out);
+        cs_pair_distance_jvp_gradient(s, &gradients, &d, c, out);
         for (int k = 0; k < 4; k++)
             dg[k][c] = out[k];
     }

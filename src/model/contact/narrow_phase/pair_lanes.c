@@ -45,18 +45,18 @@ CS_CLONES void cs_pair_lanes_measure_edges(struct cs_pair_lanes *restrict lanes)
 /* Measures the pair of one lane: distance, gradient, weights, relative velocity. The law is
  * evaluated afterwards by the function that needs it. */
 CS_INLINE void lane_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, int lane,
-                          const struct cs_pair_lane_constants *law,
-                          struct cs_pair_contact *reaction) {
+                          const struct cs_pair_lane_constants *constants,
+                          struct cs_pair_contact *contact) {
     double p[4][3], v[4][3];
     const struct cs_body_pair_params params = {
         .range = lanes->range[lane], .k = lanes->k[lane], .friction = lanes->friction[lane]};
     read_lane(lanes->p, lane, p);
     read_lane(lanes->v, lane, v);
-    const struct cs_feature_kind form = {lanes->is_edge[lane], lanes->is_off_plane[lane],
-                                         lanes->blend_radius[lane]};
-    cs_pair_contact_measure(reaction, kind, form, params.range, p);
-    cs_pair_contact_set(reaction, &params, &law->keys, v);
-    reaction->contact.rate = lanes->rate[lane];
+    const struct cs_feature_kind feature = {lanes->is_edge[lane], lanes->is_off_plane[lane],
+                                            lanes->blend_radius[lane]};
+    cs_pair_contact_measure(contact, kind, feature, params.range, p);
+    cs_pair_contact_set(contact, &params, &constants->keys, v);
+    contact->contact.rate = lanes->rate[lane];
 }
 
 /* out = f_k of every lane: cs_pair_contact_force */
@@ -64,10 +64,10 @@ CS_INLINE void force(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lane
                      const struct cs_pair_lane_constants *constants) {
     const struct cs_pair_lane_constants law = *constants;
     for (int l = 0; l < CS_PAIR_LANES; l++) {
-        struct cs_pair_contact reaction;
+        struct cs_pair_contact contact;
         double to[4][3];
-        lane_force(kind, lanes, l, &law, &reaction);
-        cs_pair_contact_force(&reaction, law.parts, to);
+        lane_force(kind, lanes, l, &law, &contact);
+        cs_pair_contact_force(&contact, law.parts, to);
         write_lane(to, l, lanes->out);
     }
 }
@@ -77,37 +77,39 @@ CS_INLINE void jvp(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
                    const struct cs_pair_lane_constants *constants) {
     const struct cs_pair_lane_constants law = *constants;
     for (int l = 0; l < CS_PAIR_LANES; l++) {
-        struct cs_pair_contact reaction;
-        struct cs_pair_contact_motion move;
+        struct cs_pair_contact contact;
+        struct cs_pair_contact_motion motion;
         double to[4][3];
-        lane_force(kind, lanes, l, &law, &reaction);
-        read_lane(lanes->p, l, move.p);
-        read_lane(lanes->v, l, move.v);
-        read_lane(lanes->dp, l, move.dp);
-        read_lane(lanes->dv, l, move.dv);
-        cs_pair_contact_jvp(&reaction, law.parts, &move, to);
+        lane_force(kind, lanes, l, &law, &contact);
+        read_lane(lanes->p, l, motion.p);
+        read_lane(lanes->v, l, motion.v);
+        read_lane(lanes->dp, l, motion.dp);
+        read_lane(lanes->dv, l, motion.dv);
+        cs_pair_contact_jvp(&contact, law.parts, &motion, to);
         write_lane(to, l, lanes->out);
     }
 }
 
 CS_PAIR_KERNEL(extern, cs_pair_lanes_force, force,
-               (struct cs_pair_lanes *restrict lanes, const struct cs_pair_lane_constants *law),
-               (lanes, law))
+               (struct cs_pair_lanes *restrict lanes,
+                const struct cs_pair_lane_constants *constants),
+               (lanes, constants))
 CS_PAIR_KERNEL(extern, cs_pair_lanes_jvp, jvp,
-               (struct cs_pair_lanes *restrict lanes, const struct cs_pair_lane_constants *law),
-               (lanes, law))
+               (struct cs_pair_lanes *restrict lanes,
+                const struct cs_pair_lane_constants *constants),
+               (lanes, constants))
 
 /* Row sums of block norms: stiffness K |g_k| sum |g_j| and damping |w_k| sum |w_j| times the
  * largest damping of the contact point. */
 CS_INLINE void find_bounds(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
                            const struct cs_contact_keys *keys,
                            struct cs_pair_bounds *restrict to) {
-    const struct cs_pair_lane_constants law = {.keys = *keys};
+    const struct cs_pair_lane_constants constants = {.keys = *keys};
     for (int l = 0; l < CS_PAIR_LANES; l++) {
-        struct cs_pair_contact reaction;
+        struct cs_pair_contact contact;
         double stiffness[4], damping[4];
-        lane_force(kind, lanes, l, &law, &reaction);
-        cs_pair_contact_bound(&reaction, stiffness, damping);
+        lane_force(kind, lanes, l, &constants, &contact);
+        cs_pair_contact_bound(&contact, stiffness, damping);
         CS_UNROLLED
         for (int k = 0; k < 4; k++)
             to->stiffness[k][l] = stiffness[k];
@@ -124,16 +126,16 @@ CS_PAIR_KERNEL(extern, cs_pair_lanes_bound, find_bounds,
 
 /* Stores the terms of one pair by the differences u, v, w; see struct cs_pair_factors. */
 CS_INLINE void write_factors(enum cs_pair_kind kind, double g[4][3],
-                             const struct cs_pair_matrix_terms *share, int lane,
+                             const struct cs_pair_matrix_terms *terms, int lane,
                              struct cs_pair_factors *factors) {
     double weight[3];
-    cs_pair_distance_from_points(kind, share->weight, weight);
+    cs_pair_distance_from_points(kind, terms->weight, weight);
     factors->weight[0][lane] = weight[0];
     factors->weight[1][lane] = weight[1];
-    factors->gradient_weight[lane] = share->gradient_weight;
+    factors->gradient_weight[lane] = terms->gradient_weight;
     CS_UNROLLED
     for (int e = 0; e < 6; e++)
-        factors->block[e][lane] = share->block[e];
+        factors->block[e][lane] = terms->block[e];
     CS_UNROLLED
     for (int c = 0; c < 3; c++) {
         const double four[4] = {g[0][c], g[1][c], g[2][c], g[3][c]};
@@ -150,16 +152,16 @@ CS_INLINE void write_factors(enum cs_pair_kind kind, double g[4][3],
 CS_INLINE void share_bound(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
                            struct cs_contact_keys keys, struct cs_matrix matrix,
                            struct cs_pair_factors *restrict factors) {
-    const struct cs_pair_lane_constants law = {.keys = keys};
+    const struct cs_pair_lane_constants constants = {.keys = keys};
     for (int l = 0; l < CS_PAIR_LANES; l++) {
-        struct cs_pair_contact reaction;
-        struct cs_pair_matrix_terms share;
-        lane_force(kind, lanes, l, &law, &reaction);
-        cs_pair_contact_matrix(&reaction, &matrix, &share);
-        share.gradient_weight = -matrix.ck * cs_barrier_at(reaction.contact.d, lanes->range[l],
+        struct cs_pair_contact contact;
+        struct cs_pair_matrix_terms terms;
+        lane_force(kind, lanes, l, &constants, &contact);
+        cs_pair_contact_matrix(&contact, &matrix, &terms);
+        terms.gradient_weight = -matrix.ck * cs_barrier_at(contact.contact.d, lanes->range[l],
                                                            lanes->psd_stiffness[l])
                                                  .stiffness;
-        write_factors(kind, reaction.g, &share, l, factors);
+        write_factors(kind, contact.g, &terms, l, factors);
     }
 }
 
@@ -225,14 +227,14 @@ CS_INLINE void multiply(enum cs_pair_kind kind, struct cs_pair_factors *restrict
 
 /* Converts the factors of one lane from differences to points by D^T. */
 CS_INLINE void read_factors(enum cs_pair_kind kind, const struct cs_pair_factors *factors,
-                            int lane, double g[4][3], struct cs_pair_matrix_terms *share) {
+                            int lane, double g[4][3], struct cs_pair_matrix_terms *terms) {
     const double(*by)[3][CS_PAIR_LANES] = factors->g;
-    share->gradient_weight = factors->gradient_weight[lane];
+    terms->gradient_weight = factors->gradient_weight[lane];
     CS_UNROLLED
     for (int e = 0; e < 6; e++)
-        share->block[e] = factors->block[e][lane];
+        terms->block[e] = factors->block[e][lane];
     cs_pair_distance_to_points(kind, factors->weight[0][lane], factors->weight[1][lane], 1,
-                               share->weight);
+                               terms->weight);
     CS_UNROLLED
     for (int c = 0; c < 3; c++) {
         double four[4];
@@ -244,8 +246,8 @@ CS_INLINE void read_factors(enum cs_pair_kind kind, const struct cs_pair_factors
 }
 
 void cs_pair_factors_read(enum cs_pair_kind kind, const struct cs_pair_factors *factors,
-                          int lane, double g[4][3], struct cs_pair_matrix_terms *share) {
-    read_factors(kind, factors, lane, g, share);
+                          int lane, double g[4][3], struct cs_pair_matrix_terms *terms) {
+    read_factors(kind, factors, lane, g, terms);
 }
 
 /* growth_k = (sum_j size_j) / size_k, by which the diagonal blocks must grow to bound the whole
@@ -266,14 +268,14 @@ CS_INLINE void find_growth(const double size[4], double growth[4]) {
 /* The six numbers of one diagonal block, written out: an inner loop would keep the loop over
  * lanes from being vectorised. */
 CS_INLINE void write_own(const double g[3], double along, double rub,
-                         const struct cs_pair_matrix_terms *share, int l,
+                         const struct cs_pair_matrix_terms *terms, int l,
                          double own[6][CS_PAIR_LANES]) {
-    own[0][l] = along * (g[0] * g[0]) + rub * share->block[0];
-    own[1][l] = along * (g[0] * g[1]) + rub * share->block[1];
-    own[2][l] = along * (g[0] * g[2]) + rub * share->block[2];
-    own[3][l] = along * (g[1] * g[1]) + rub * share->block[3];
-    own[4][l] = along * (g[1] * g[2]) + rub * share->block[4];
-    own[5][l] = along * (g[2] * g[2]) + rub * share->block[5];
+    own[0][l] = along * (g[0] * g[0]) + rub * terms->block[0];
+    own[1][l] = along * (g[0] * g[1]) + rub * terms->block[1];
+    own[2][l] = along * (g[0] * g[2]) + rub * terms->block[2];
+    own[3][l] = along * (g[1] * g[1]) + rub * terms->block[3];
+    own[4][l] = along * (g[1] * g[2]) + rub * terms->block[4];
+    own[5][l] = along * (g[2] * g[2]) + rub * terms->block[5];
 }
 
 /* Diagonal blocks of all lanes, times find_growth if `alone` is true. */
@@ -281,19 +283,19 @@ CS_INLINE void diagonal_blocks(enum cs_pair_kind kind, struct cs_pair_factors *r
                                bool alone, double own[restrict 4][6][CS_PAIR_LANES]) {
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         double g[4][3], size[4], weight[4], along[4], rub[4];
-        struct cs_pair_matrix_terms share;
-        read_factors(kind, factors, l, g, &share);
+        struct cs_pair_matrix_terms terms;
+        read_factors(kind, factors, l, g, &terms);
         CS_UNROLLED
         for (int k = 0; k < 4; k++) {
             size[k] = sqrt(cs_vec3_dot(g[k], g[k]));
-            weight[k] = fabs(share.weight[k]);
+            weight[k] = fabs(terms.weight[k]);
         }
         find_growth(size, along);
         find_growth(weight, rub);
         CS_UNROLLED
         for (int k = 0; k < 4; k++)
-            write_own(g[k], share.gradient_weight * (alone ? along[k] : 1),
-                      weight[k] * weight[k] * (alone ? rub[k] : 1), &share, l, own[k]);
+            write_own(g[k], terms.gradient_weight * (alone ? along[k] : 1),
+                      weight[k] * weight[k] * (alone ? rub[k] : 1), &terms, l, own[k]);
     }
 }
 

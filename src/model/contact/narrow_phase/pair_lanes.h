@@ -52,9 +52,9 @@ struct cs_pair_lane_constants {
 /* Sets `out` to the forces, or to their exact change along (dp, dv), for edges or for features
  * of triangles. Formulas: contact_pairs.h. */
 void cs_pair_lanes_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
-                         const struct cs_pair_lane_constants *law);
+                         const struct cs_pair_lane_constants *constants);
 void cs_pair_lanes_jvp(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
-                       const struct cs_pair_lane_constants *law);
+                       const struct cs_pair_lane_constants *constants);
 
 /* Gershgorin bounds of each pair's particles, as cs_pair_contact_bound. */
 struct cs_pair_bounds {
@@ -77,7 +77,7 @@ struct cs_pair_factors {
 
 /* Reads the factors of one lane by its points: gradient g and the other terms. */
 void cs_pair_factors_read(enum cs_pair_kind kind, const struct cs_pair_factors *factors,
-                          int lane, double g[4][3], struct cs_pair_matrix_terms *share);
+                          int lane, double g[4][3], struct cs_pair_matrix_terms *terms);
 
 /* Sets the factors to those of cs_pair_contact_matrix for a positive semi-definite matrix. */
 void cs_pair_lanes_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,

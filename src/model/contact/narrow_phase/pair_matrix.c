@@ -20,19 +20,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void finish(void *object) {
-    struct cs_pair_matrix *product = object;
-    for (uint32_t l = 0; l < product->n_chunks; l++)
-        free(product->chunks[l].factors), free(product->chunks[l].hessians);
-    free(product->diagonal);
+static void finish_matrix(void *object) {
+    struct cs_pair_matrix *matrix = object;
+    for (uint32_t l = 0; l < matrix->n_chunks; l++)
+        free(matrix->chunks[l].factors), free(matrix->chunks[l].hessians);
+    free(matrix->diagonal);
 }
 
-enum cs_status cs_pair_matrix_init(struct cs_pair_matrix *product, uint32_t n_chunks,
+enum cs_status cs_pair_matrix_init(struct cs_pair_matrix *matrix, uint32_t n_chunks,
                                    struct cs_arena *arena, struct cs_error *error) {
-    *product = (struct cs_pair_matrix){.n_chunks = n_chunks};
-    product->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *product->chunks, error);
+    *matrix = (struct cs_pair_matrix){.n_chunks = n_chunks};
+    matrix->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *matrix->chunks, error);
     if (!error->status)
-        cs_arena_adopt(arena, finish, product, error);
+        cs_arena_adopt(arena, finish_matrix, matrix, error);
     return error->status;
 }
 
@@ -49,21 +49,21 @@ static size_t blocks_of(const struct cs_active_chunk *chunk) {
 
 /* --- the matrix --- */
 
-bool cs_pair_matrix_begin(struct cs_pair_matrix *product, struct cs_active_contacts *active,
+bool cs_pair_matrix_begin(struct cs_pair_matrix *matrix, struct cs_active_contacts *active,
                           bool exact, bool alone) {
-    product->contacts = active;
-    product->exact = exact;
-    product->diagonal_bound = alone;
-    return CS_ARENA_REALLOC(product->diagonal, product->diagonal_capacity,
+    matrix->contacts = active;
+    matrix->exact = exact;
+    matrix->diagonal_bound = alone;
+    return CS_ARENA_REALLOC(matrix->diagonal, matrix->diagonal_capacity,
                             6 * (size_t)active->force_gather.n_rows);
 }
 
-bool cs_pair_matrix_chunk_begin(struct cs_pair_matrix *product, uint32_t number) {
-    struct cs_pair_matrix_chunk *chunk = product->chunks + number;
-    const struct cs_active_chunk *pairs = product->contacts->chunks + number;
+bool cs_pair_matrix_chunk_begin(struct cs_pair_matrix *matrix, uint32_t number) {
+    struct cs_pair_matrix_chunk *chunk = matrix->chunks + number;
+    const struct cs_active_chunk *pairs = matrix->contacts->chunks + number;
     chunk->failed = !CS_ARENA_REALLOC(chunk->factors, chunk->capacity, blocks_of(pairs)) ||
                     !CS_ARENA_REALLOC(chunk->hessians, chunk->hessians_capacity,
-                                      product->exact ? pairs->n : 0);
+                                      matrix->exact ? pairs->n : 0);
     return !chunk->failed;
 }
 
@@ -71,8 +71,8 @@ bool cs_pair_matrix_chunk_begin(struct cs_pair_matrix *product, uint32_t number)
  * both halves, so that rounding leaves it symmetric. */
 void cs_pair_matrix_set_hessian(const struct cs_pair_contact *contact,
                                 const struct cs_matrix *of, struct cs_pair_hessian *hessian) {
-    const struct cs_point_contact *touch = &contact->contact;
-    const double push = of->ck * cs_barrier_at(touch->d, touch->range, touch->k).force;
+    const struct cs_point_contact *point = &contact->contact;
+    const double push = of->ck * cs_barrier_at(point->d, point->range, point->k).force;
     for (int j = 0; j < 12; j++) {
         double unit[4][3] = {{0}}, column[4][3], dw[4];
         unit[j / 3][j % 3] = 1;
@@ -83,43 +83,44 @@ void cs_pair_matrix_set_hessian(const struct cs_pair_contact *contact,
 }
 
 /* Adds the diagonal blocks of eight pairs to the rows of their points. */
-static void add_own(struct cs_pair_matrix *product, uint32_t number, size_t block,
+static void add_own(struct cs_pair_matrix *matrix, uint32_t number, size_t block,
                     double *rows) {
-    const struct cs_active_chunk *chunk = product->contacts->chunks + number;
+    const struct cs_active_chunk *chunk = matrix->contacts->chunks + number;
     uint32_t(*to)[4] = chunk->rows + block * CS_PAIR_LANES;
-    const struct cs_pair_hessian *full =
-        product->exact ? product->chunks[number].hessians + block * CS_PAIR_LANES : NULL;
+    const struct cs_pair_hessian *hessian =
+        matrix->exact ? matrix->chunks[number].hessians + block * CS_PAIR_LANES : NULL;
     const uint32_t n = count_at(chunk, block);
     double own[4][6][CS_PAIR_LANES];
-    cs_pair_lanes_diagonal(chunk->kind, product->chunks[number].factors + block,
-                           product->diagonal_bound, own);
+    cs_pair_lanes_diagonal(chunk->kind, matrix->chunks[number].factors + block,
+                           matrix->diagonal_bound, own);
     for (uint32_t l = 0; l < n; l++)
         for (int k = 0; k < 4; k++)
             for (int e = 0; e < 6; e++)
                 rows[6 * (size_t)to[l][k] + (size_t)e] +=
                     own[k][e][l] +
-                    (full ? full[l].m[3 * k + cs_sym3_row[e]][3 * k + cs_sym3_column[e]] : 0);
+                    (hessian ? hessian[l].m[3 * k + cs_sym3_row[e]][3 * k + cs_sym3_column[e]]
+                             : 0);
 }
 
-void cs_pair_matrix_chunk_end(struct cs_pair_matrix *product, uint32_t number) {
-    const struct cs_gather_chunk *rows = product->contacts->force_gather.chunks + number;
-    const size_t blocks = blocks_of(product->contacts->chunks + number);
-    double *own = cs_gather_of(rows, product->diagonal, 6);
-    memset(own, 0, 6 * sizeof *own * rows->n);
+void cs_pair_matrix_chunk_end(struct cs_pair_matrix *matrix, uint32_t number) {
+    const struct cs_gather_chunk *chunk = matrix->contacts->force_gather.chunks + number;
+    const size_t blocks = blocks_of(matrix->contacts->chunks + number);
+    double *own = cs_gather_of(chunk, matrix->diagonal, 6);
+    memset(own, 0, 6 * sizeof *own * chunk->n);
     for (size_t b = 0; b < blocks; b++)
-        add_own(product, number, b, own);
+        add_own(matrix, number, b, own);
 }
 
-bool cs_pair_matrix_end(struct cs_pair_matrix *product) {
+bool cs_pair_matrix_end(struct cs_pair_matrix *matrix) {
     bool failed = false;
-    for (uint32_t l = 0; l < product->n_chunks; l++)
-        failed = failed || product->chunks[l].failed;
+    for (uint32_t l = 0; l < matrix->n_chunks; l++)
+        failed = failed || matrix->chunks[l].failed;
     return !failed;
 }
 
-void cs_pair_matrix_add_blocks(const struct cs_pair_matrix *product, size_t begin, size_t end,
+void cs_pair_matrix_add_blocks(const struct cs_pair_matrix *matrix, size_t begin, size_t end,
                                double *blocks) {
-    cs_gather_add(&product->contacts->force_gather, product->diagonal, 6, begin, end, blocks);
+    cs_gather_add(&matrix->contacts->force_gather, matrix->diagonal, 6, begin, end, blocks);
 }
 
 /* --- times a vector --- */
@@ -127,7 +128,7 @@ void cs_pair_matrix_add_blocks(const struct cs_pair_matrix *product, size_t begi
 /* One product: y += (A - diagonal) p for n points; or, for an approach, the elastic part of A
  * times p. */
 struct job {
-    const struct cs_pair_matrix *product;
+    const struct cs_pair_matrix *matrix;
     const double *p;
     size_t n;
     bool approach;
@@ -155,31 +156,31 @@ static void add_lanes(vectors by, uint32_t (*to)[4], uint32_t count, double *sum
 }
 
 /* out += H p for each pair of a block */
-static void add_hessians(const struct cs_pair_hessian *full, uint32_t n, vectors p,
+static void add_hessians(const struct cs_pair_hessian *hessian, uint32_t n, vectors p,
                          vectors out) {
     for (uint32_t l = 0; l < n; l++)
         for (int i = 0; i < 12; i++) {
             double sum = 0;
             for (int j = 0; j < 12; j++)
-                sum += full[l].m[i][j] * p[j / 3][j % 3][l];
+                sum += hessian[l].m[i][j] * p[j / 3][j % 3][l];
             out[i / 3][i % 3][l] += sum;
         }
 }
 
 /* Replaces p by the product of one block, for an approach without B. */
 static void multiply_block(const struct job *job, uint32_t number, size_t block, vectors p) {
-    const struct cs_active_chunk *chunk = job->product->contacts->chunks + number;
-    const struct cs_pair_matrix_chunk *terms = job->product->chunks + number;
+    const struct cs_active_chunk *chunk = job->matrix->contacts->chunks + number;
+    const struct cs_pair_matrix_chunk *terms = job->matrix->chunks + number;
     struct cs_pair_factors elastic;
     vectors at;
-    if (job->product->exact)
+    if (job->matrix->exact)
         memcpy(at, p, sizeof at);
     if (job->approach) {
         elastic = terms->factors[block];
         memset(elastic.block, 0, sizeof elastic.block);
     }
     cs_pair_lanes_multiply(chunk->kind, job->approach ? &elastic : terms->factors + block, p);
-    if (job->product->exact)
+    if (job->matrix->exact)
         add_hessians(terms->hessians + block * CS_PAIR_LANES, count_at(chunk, block), at, p);
 }
 
@@ -187,7 +188,7 @@ static void multiply_block(const struct job *job, uint32_t number, size_t block,
  * after scalar stores to the same addresses would stall. */
 static void multiply_some(const struct job *job, uint32_t number, size_t first, const double *p,
                           double *sums) {
-    const struct cs_active_chunk *chunk = job->product->contacts->chunks + number;
+    const struct cs_active_chunk *chunk = job->matrix->contacts->chunks + number;
     uint32_t(*to)[4] = chunk->rows + first * CS_PAIR_LANES;
     const size_t left = blocks_of(chunk) - first, n = left < TOGETHER ? left : TOGETHER;
     vectors by[TOGETHER];
@@ -213,42 +214,42 @@ static void take_own(const double *own, const double *p, size_t n, double *sums)
 /* Product of one chunk, into its rows. Points from job->n on have p = 0. */
 static void multiply_chunk(void *arg, uint32_t number) {
     const struct job *job = arg;
-    const struct cs_gather *gather = &job->product->contacts->force_gather;
-    const struct cs_gather_chunk *rows = gather->chunks + number;
-    const size_t blocks = blocks_of(job->product->contacts->chunks + number);
+    const struct cs_gather *gather = &job->matrix->contacts->force_gather;
+    const struct cs_gather_chunk *chunk = gather->chunks + number;
+    const size_t blocks = blocks_of(job->matrix->contacts->chunks + number);
     if (!blocks)
         return;
     const double *p = cs_gather_read(gather, number, 0, job->p, job->n);
-    double *sums = cs_gather_of(rows, gather->row_sums, 3);
+    double *sums = cs_gather_of(chunk, gather->row_sums, 3);
     if (job->approach)
-        memset(sums, 0, 3 * sizeof *sums * rows->n);
+        memset(sums, 0, 3 * sizeof *sums * chunk->n);
     else
-        take_own(cs_gather_of(rows, job->product->diagonal, 6), p, rows->n, sums);
+        take_own(cs_gather_of(chunk, job->matrix->diagonal, 6), p, chunk->n, sums);
     for (size_t b = 0; b < blocks; b += TOGETHER)
         multiply_some(job, number, b, p, sums);
 }
 
 static void add_part(void *arg, size_t begin, size_t end) {
     const struct job *job = arg;
-    const struct cs_gather *gather = &job->product->contacts->force_gather;
+    const struct cs_gather *gather = &job->matrix->contacts->force_gather;
     cs_gather_add(gather, gather->row_sums, 3, begin, end, job->y);
 }
 
 static void run(struct job *job) {
-    const struct cs_pair_matrix *product = job->product;
+    const struct cs_pair_matrix *matrix = job->matrix;
     // Never fails: the rows were at least 6 wide when the matrix was made.
-    if (!product->contacts->n || !cs_gather_reserve(&product->contacts->force_gather, 3))
+    if (!matrix->contacts->n || !cs_gather_reserve(&matrix->contacts->force_gather, 3))
         return;
-    cs_pool_run(product->n_chunks, multiply_chunk, job);
-    cs_vector_parallel_for(product->contacts->force_gather.n_particles, add_part, job);
+    cs_pool_run(matrix->n_chunks, multiply_chunk, job);
+    cs_vector_parallel_for(matrix->contacts->force_gather.n_particles, add_part, job);
 }
 
 /* Points of colliders have p = 0 and do not move. */
-void cs_pair_matrix_apply(const struct cs_pair_matrix *product, const double *p, double *y) {
-    run(&(struct job){product, p, product->contacts->force_gather.n_particles, false, y});
+void cs_pair_matrix_apply(const struct cs_pair_matrix *matrix, const double *p, double *y) {
+    run(&(struct job){matrix, p, matrix->contacts->force_gather.n_particles, false, y});
 }
 
-void cs_pair_matrix_approach(const struct cs_pair_matrix *product, size_t n_points,
+void cs_pair_matrix_approach(const struct cs_pair_matrix *matrix, size_t n_points,
                              const double *v, double *y) {
-    run(&(struct job){product, v, n_points, true, y});
+    run(&(struct job){matrix, v, n_points, true, y});
 }

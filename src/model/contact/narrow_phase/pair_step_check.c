@@ -32,8 +32,8 @@ struct cs_pair_motion {
 };
 
 /* m2, squared relative displacement of points i and j */
-CS_INLINE double pair_motion_relative_squared(struct cs_pair_motion *way, int i, int j) {
-    const double *a = way->displacement[i], *b = way->displacement[j];
+CS_INLINE double pair_motion_relative_squared(struct cs_pair_motion *motion, int i, int j) {
+    const double *a = motion->displacement[i], *b = motion->displacement[j];
     const double r[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
     return cs_vec3_dot(r, r);
 }
@@ -41,19 +41,19 @@ CS_INLINE double pair_motion_relative_squared(struct cs_pair_motion *way, int i,
 /* m, largest relative displacement of a point of one side and a point of the other. Contact
  * points are convex combinations of the points, so none moves further relative to the other
  * side. */
-CS_INLINE double pair_motion_longest(struct cs_pair_motion *way) {
-    const bool edges = way->kind == CS_PAIR_EDGE_EDGE;
-    double most = edges ? 0 : cs_fmax(pair_motion_relative_squared(way, 0, 1), 0);
-    most = cs_fmax(pair_motion_relative_squared(way, 0, 2), most);
-    most = cs_fmax(pair_motion_relative_squared(way, 0, 3), most);
-    most = edges ? cs_fmax(pair_motion_relative_squared(way, 1, 2), most) : most;
-    most = edges ? cs_fmax(pair_motion_relative_squared(way, 1, 3), most) : most;
+CS_INLINE double pair_motion_longest(struct cs_pair_motion *motion) {
+    const bool edges = motion->kind == CS_PAIR_EDGE_EDGE;
+    double most = edges ? 0 : cs_fmax(pair_motion_relative_squared(motion, 0, 1), 0);
+    most = cs_fmax(pair_motion_relative_squared(motion, 0, 2), most);
+    most = cs_fmax(pair_motion_relative_squared(motion, 0, 3), most);
+    most = edges ? cs_fmax(pair_motion_relative_squared(motion, 1, 2), most) : most;
+    most = edges ? cs_fmax(pair_motion_relative_squared(motion, 1, 3), most) : most;
     return sqrt(most);
 }
 
 /* The second-order model, at the start of a step. */
 struct cs_pair_motion_start {
-    struct cs_barrier law;
+    struct cs_barrier barrier;
     /* J: psi(d); and the energy of the pair, psi(d) + kinetic energy of the relative motion of
      * its contact points + psi(D/2) */
     double contact_energy, total_energy;
@@ -64,20 +64,20 @@ struct cs_pair_motion_start {
 /* Sets the model from the pair at the start, and returns its distance in m; h: seconds of the
  * whole step. The effective mass of the contact points is 1 / sum (w_k^2 / m_k), infinite if
  * all are pinned. psi(D/2) keeps pairs that barely touch from being judged. */
-CS_INLINE double pair_motion_begin(struct cs_pair_motion *way, double h, double range, double k,
-                                   struct cs_pair_motion_start *start) {
+CS_INLINE double pair_motion_begin(struct cs_pair_motion *motion, double h, double range,
+                                   double k, struct cs_pair_motion_start *start) {
     struct cs_pair_contact at;
-    const double d = cs_pair_contact_measure_whole(&at, way->kind, range, way->x0);
+    const double d = cs_pair_contact_measure_whole(&at, motion->kind, range, motion->x0);
     double v[3] = {0}, inverse = 0;
     start->approach = 0;
     for (int j = 0; j < 4; j++) {
-        inverse += at.weight[j] * at.weight[j] * way->inverse_mass[j];
-        start->approach -= cs_vec3_dot(at.g[j], way->displacement[j]);
+        inverse += at.weight[j] * at.weight[j] * motion->inverse_mass[j];
+        start->approach -= cs_vec3_dot(at.g[j], motion->displacement[j]);
         for (int c = 0; c < 3; c++)
-            v[c] += at.weight[j] * way->displacement[j][c] / h;
+            v[c] += at.weight[j] * motion->displacement[j][c] / h;
     }
     const double kinetic = 0.5 * cs_vec3_dot(v, v) / inverse;
-    start->law = cs_barrier_at(d, range, k);
+    start->barrier = cs_barrier_at(d, range, k);
     start->contact_energy = cs_barrier_energy(d, range, k);
     start->total_energy = (inverse > 0 ? kinetic : HUGE_VAL) + start->contact_energy +
                           cs_barrier_energy(0.5 * range, range, k);
@@ -109,27 +109,27 @@ struct lanes {
 };
 
 /* Copies one lane to a pair in point order. */
-CS_INLINE void read_motion(struct lanes *lanes, int lane, struct cs_pair_motion *way) {
+CS_INLINE void read_motion(struct lanes *lanes, int lane, struct cs_pair_motion *motion) {
     CS_UNROLLED
     for (int k = 0; k < 12; k++) {
-        way->x0[k / 3][k % 3] = lanes->x0[k / 3][k % 3][lane];
-        way->displacement[k / 3][k % 3] = lanes->displacement[k / 3][k % 3][lane];
+        motion->x0[k / 3][k % 3] = lanes->x0[k / 3][k % 3][lane];
+        motion->displacement[k / 3][k % 3] = lanes->displacement[k / 3][k % 3][lane];
     }
     CS_UNROLLED
     for (int k = 0; k < 4; k++)
-        way->inverse_mass[k] = lanes->inverse_mass[k][lane];
+        motion->inverse_mass[k] = lanes->inverse_mass[k][lane];
 }
 
 /* Samples one lane after the fraction `share` of the step. */
-CS_INLINE void sample_lane(struct lanes *lanes, int l, struct cs_pair_motion *way,
+CS_INLINE void sample_lane(struct lanes *lanes, int l, struct cs_pair_motion *motion,
                            double share) {
     struct cs_pair_contact at;
     double p[4][3];
     CS_UNROLLED
     for (int j = 0; j < 12; j++)
-        p[j / 3][j % 3] = way->x0[j / 3][j % 3] + share * way->displacement[j / 3][j % 3];
+        p[j / 3][j % 3] = motion->x0[j / 3][j % 3] + share * motion->displacement[j / 3][j % 3];
     const double range = lanes->range[l], k = lanes->k[l], come = share * lanes->approach[l];
-    const double d = cs_pair_contact_measure_whole(&at, way->kind, range, p);
+    const double d = cs_pair_contact_measure_whole(&at, motion->kind, range, p);
     const double seen = lanes->contact_energy[l] + lanes->force[l] * come +
                         0.5 * lanes->stiffness[l] * come * come;
     const double missed = fabs(cs_barrier_energy(d, range, k) - seen);
@@ -140,27 +140,27 @@ CS_INLINE void sample_lane(struct lanes *lanes, int l, struct cs_pair_motion *wa
 /* Sets the model of all lanes. */
 CS_INLINE void begin_all(enum cs_pair_kind kind, struct lanes *restrict lanes, double h) {
     for (int l = 0; l < LANES; l++) {
-        struct cs_pair_motion way = {.kind = kind};
+        struct cs_pair_motion motion = {.kind = kind};
         struct cs_pair_motion_start start;
-        read_motion(lanes, l, &way);
-        lanes->nearest[l] = pair_motion_begin(&way, h, lanes->range[l], lanes->k[l], &start);
+        read_motion(lanes, l, &motion);
+        lanes->nearest[l] = pair_motion_begin(&motion, h, lanes->range[l], lanes->k[l], &start);
         lanes->missed[l] = 0;
         lanes->contact_energy[l] = start.contact_energy;
         lanes->total_energy[l] = start.total_energy;
         lanes->approach[l] = start.approach;
-        lanes->force[l] = start.law.force;
-        lanes->stiffness[l] = start.law.stiffness;
-        lanes->parts[l] = pair_motion_parts(pair_motion_longest(&way), lanes->range[l]);
+        lanes->force[l] = start.barrier.force;
+        lanes->stiffness[l] = start.barrier.stiffness;
+        lanes->parts[l] = pair_motion_parts(pair_motion_longest(&motion), lanes->range[l]);
     }
 }
 
 /* Samples all lanes after part j of their steps; those of fewer parts at their end again. */
 CS_INLINE void sample_all(enum cs_pair_kind kind, struct lanes *restrict lanes, double j) {
     for (int l = 0; l < LANES; l++) {
-        struct cs_pair_motion way = {.kind = kind};
+        struct cs_pair_motion motion = {.kind = kind};
         const double share = j / lanes->parts[l];
-        read_motion(lanes, l, &way);
-        sample_lane(lanes, l, &way, share < 1 ? share : 1);
+        read_motion(lanes, l, &motion);
+        sample_lane(lanes, l, &motion, share < 1 ? share : 1);
     }
 }
 
@@ -227,14 +227,15 @@ static bool is_point_unresolved(struct work *work, uint32_t l) {
     if (point == work->resolved_point)
         return false;
     struct cs_feature_positions x = {work->job->from, work->job->to, 0};
-    const struct cs_point_energy sum = cs_point_energy_find(&work->job->pairs->feature_weights,
-                                                            candidates, work->chunk, point, &x);
+    const struct cs_point_energy energy = cs_point_energy_find(
+        &work->job->pairs->feature_weights, candidates, work->chunk, point, &x);
     const double total =
-        lanes->total_energy[l] - lanes->contact_energy[l] + fmax(sum.energy, 0);
+        lanes->total_energy[l] - lanes->contact_energy[l] + fmax(energy.energy, 0);
     for (double j = 1; j <= lanes->parts[l] && !unresolved; j++) {
         const double share = j / lanes->parts[l];
         const double seen =
-            sum.energy + (work->job->impacts ? 0 : share * (sum.first + share * sum.second));
+            energy.energy +
+            (work->job->impacts ? 0 : share * (energy.first + share * energy.second));
         x.fraction = share;
         const struct cs_point_energy at = cs_point_energy_find(
             &work->job->pairs->feature_weights, candidates, work->chunk, point, &x);
@@ -263,7 +264,7 @@ static void ask(struct work *work) {
 }
 
 /* Collects a pair until its block of lanes is full. */
-static void take(struct work *work, const uint32_t pair[2]) {
+static void visit_pair(struct work *work, const uint32_t pair[2]) {
     const struct cs_pairs *pairs = work->job->pairs;
     const struct cs_candidates *search = &pairs->candidates;
     struct lanes *lanes = &work->lanes;
@@ -303,7 +304,7 @@ static void check_chunk(struct work *work) {
         items.n = n_all - p < SOME ? n_all - p : SOME;
         const size_t n = cs_point_motion_filter(pairs->point_motion, &items, reach, some[0]);
         for (size_t k = 0; k < n && !work->unseen; k++)
-            take(work, some[k]);
+            visit_pair(work, some[k]);
     }
     ask(work);
 }
