@@ -99,12 +99,12 @@ static double power(double t, uint32_t k) {
     return k ? t / k * power(t, k - 1) : 1;
 }
 
-/* States how far a value is from its polynomial, where the order makes it exact. What a method
- * of several steps gives out may be off by O(h^p) that does not add up. */
+/* States how far the ratio of a value to its polynomial is from 1, where the order makes it 1.
+ * What a method of several steps gives out may be off by O(h^p) that does not add up. */
 static void state(struct cs_conform_row *row, const struct claim *claim, uint32_t degree,
-                  double found, double expected, const char *what, uint32_t link) {
+                  double ratio, const char *what, uint32_t link) {
     if (degree < claim->order || (degree == claim->order && claim->one_step))
-        cs_row_state(row, fabs(found / expected - 1), SMALL,
+        cs_row_state(row, fabs(ratio - 1), SMALL,
                      "of the %s of particle %u, a polynomial of degree %u", what, link, degree);
 }
 
@@ -115,11 +115,12 @@ static void fall(const struct cs_conform *conform, struct cs_conform_row *row, b
     if (run(&sheet, &claim, row)) {
         const double g = GRAVITY, j = grows ? GROWTH : 0, v = 2;
         const double path = sheet.x[sheet.n] - sheet.session.system.start[sheet.n];
-        state(row, &claim, grows ? 2 : 1, sheet.v[sheet.n],
-              v + g * power(FALL_TIME, 1) + j * power(FALL_TIME, 2),
+        state(row, &claim, grows ? 2 : 1,
+              sheet.v[sheet.n] / (v + g * power(FALL_TIME, 1) + j * power(FALL_TIME, 2)),
               grows ? "velocity while gravity grows" : "velocity", 0);
-        state(row, &claim, grows ? 3 : 2, path,
-              v * power(FALL_TIME, 1) + g * power(FALL_TIME, 2) + j * power(FALL_TIME, 3),
+        state(row, &claim, grows ? 3 : 2,
+              path /
+                  (v * power(FALL_TIME, 1) + g * power(FALL_TIME, 2) + j * power(FALL_TIME, 3)),
               grows ? "path while gravity grows" : "path", 0);
     }
     cs_probe_close(&sheet);
@@ -159,12 +160,13 @@ static void pull(const struct cs_conform *conform, struct cs_conform_row *row) {
     for (uint32_t j = 1; j < LINKS; j++) {
         const double *x = links + 2 * j, *v = x + 3 * PARTICLES;
         share *= SOFT;
-        state(row, &claim, 2 * j - 1, v[Y], PLACE * share * power(PULL_TIME, 2 * j - 1),
+        state(row, &claim, 2 * j - 1, v[Y] / (PLACE * share * power(PULL_TIME, 2 * j - 1)),
               "velocity", j);
-        state(row, &claim, 2 * j, x[Y], PLACE * share * power(PULL_TIME, 2 * j), "path", j);
-        state(row, &claim, 2 * j, v[Z], SPEED * share * power(PULL_TIME, 2 * j), "velocity", j);
-        state(row, &claim, 2 * j + 1, x[Z], SPEED * share * power(PULL_TIME, 2 * j + 1), "path",
+        state(row, &claim, 2 * j, x[Y] / (PLACE * share * power(PULL_TIME, 2 * j)), "path", j);
+        state(row, &claim, 2 * j, v[Z] / (SPEED * share * power(PULL_TIME, 2 * j)), "velocity",
               j);
+        state(row, &claim, 2 * j + 1, x[Z] / (SPEED * share * power(PULL_TIME, 2 * j + 1)),
+              "path", j);
     }
 }
 
@@ -181,9 +183,9 @@ static void drag(const struct cs_conform *conform, struct cs_conform_row *row) {
     for (uint32_t j = 1; j < LINKS; j++) {
         const double *x = links + 2 * j, *v = x + 3 * PARTICLES;
         share *= SOFT;
-        state(row, &claim, j, v[Z], SPEED * share * power(PULL_TIME, j), "velocity by dampers",
-              j);
-        state(row, &claim, j + 1, x[Z], SPEED * share * power(PULL_TIME, j + 1),
+        state(row, &claim, j, v[Z] / (SPEED * share * power(PULL_TIME, j)),
+              "velocity by dampers", j);
+        state(row, &claim, j + 1, x[Z] / (SPEED * share * power(PULL_TIME, j + 1)),
               "path by dampers", j);
     }
 }
