@@ -142,12 +142,17 @@ static void host_force_diagonal(void *ctx, double t, const double *x, const doub
 }
 
 /* The solver that methods call. Fails at the iteration limit, if a clamped A is still
- * indefinite, or if a number is not finite. */
+ * indefinite, or if a number is not finite. Ends a run of studies that is over budget: a step
+ * may take many solves. */
 static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *u) {
     struct cs_run_host *host = ctx;
     struct cs_solve_result result = {0};
     if (!host->linear.system)
         return host_fail(ctx, "solve was used without CS_NEED_SOLVE");
+    if (cs_run_host_is_over_budget(host)) {
+        host->run->outcome = CS_OVER_BUDGET;
+        return CS_STEP_HALT;
+    }
     const struct cs_stage_start begin = cs_stage_begin(host);
     host->run->counts.solves++;
     const enum cs_linear_end end = cs_host_solve_settled(host, b, rtol, u, &result);

@@ -119,7 +119,7 @@ enum cs_step cs_run_host_fail_solve(struct cs_run_host *host, enum cs_linear_end
 #define MEMBRANE_SPRINGS 10 /* a particle of elastic bodies, with its triangles and hinges */
 #define PAIR_SPRINGS     24 /* a particle of bodies in contact with each other */
 #define COLLIDER_SPRINGS 2
-#define MATRIX_SPRINGS   500 /* a particle that bends, where the matrix of a solver is made */
+#define MATRIX_SPRINGS   25 /* a particle that bends, where the matrix of a solver is made */
 
 double cs_pass_seconds(const struct cs_system *system) {
     double springs = 0, particle = 1 + COLLIDER_SPRINGS * (double)system->scene->colliders.n;

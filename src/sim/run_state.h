@@ -150,7 +150,7 @@ struct cs_run_settings {
     bool skip_advance_check;
     const volatile sig_atomic_t *stop; /* set by a signal handler; may be NULL */
     /* Work in nominal s (cs_pass_seconds) after which the run ends as CS_OVER_BUDGET, checked
-     * at every commit; a step counts as a pass at least. 0: no limit. */
+     * at every commit and solve; a step counts as a pass at least. 0: no limit. */
     double budget;
     /* Nominal s that are left for all runs with this pointer. Each is limited by it too, and
      * subtracts its work at its end. NULL: no limit. */

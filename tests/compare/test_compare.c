@@ -268,6 +268,7 @@ TEST(crossings_are_ringed) {
     for (int k = 0; k < 3; k++) {
         cells[k].cpu = 0.5 * (k + 1);
         cells[k].error = 0.25 * (k + 1);
+        cells[k].target = (double)NAN;
     }
     for (uint32_t n = 1; n <= 3; n += 2) {
         const struct cs_plot_settings settings = {.cells = cells,

@@ -293,7 +293,7 @@ static void oscillator_limit(const struct cs_conform *conform, struct cs_conform
         if (!elongation_at(conform, row, model, ldexp(0.025, -k), found + k))
             return;
     cs_extrapolate(found, levels, 1, 1, order);
-    cs_row_state(row, fabs(found[levels - 1] - elongation(0.6)), order < 2 ? 1e-9 : 1e-12,
+    cs_row_state(row, fabs(found[levels - 1] - elongation(0.6)), order < 2 ? 1e-9 : 1.4e-12,
                  "of the amplitude off after a period in the limit");
 }
 

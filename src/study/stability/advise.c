@@ -15,7 +15,7 @@ enum { SAMPLES = 32, HALVINGS = 6, STEPS_TESTED = 4 };
 #define GROWTH_SEEN     1e-7 /* growth per step that counts; less is rounding */
 #define CALL_BUDGET     20   /* nominal s of work of a call, if none is given */
 #define METHOD_BUDGET   5    /* and of each of some methods */
-#define MOST_BUDGET     60   /* of many, so that a call ends within two minutes */
+#define MOST_BUDGET     50   /* of many, so that a call ends within two minutes */
 #define REFERENCE_SHARE 0.5  /* of the work for a method, that its reference may take */
 
 /* Probe runs with the advised step, from the perturbed start and, if that is stable, from the
