@@ -158,8 +158,11 @@ bool cs_run_host_is_over_budget(struct cs_run_host *host) {
         return false;
     cs_run_host_count(host);
     const double work = cs_run_host_work_seconds(host);
-    return (settings->budget > 0 && work > settings->budget) ||
-           (settings->pot && work > *settings->pot);
+    if (!(settings->budget > 0 && work > settings->budget) &&
+        !(settings->pot && work > *settings->pot))
+        return false;
+    host->run->outcome = CS_OVER_BUDGET;
+    return true;
 }
 
 /* Detects a blow-up; the bound is derived in run_host.h. */
