@@ -20,15 +20,15 @@ CS_INLINE quad *position_at(double *positions, size_t k) {
     return (quad *)(positions + k);
 }
 
-/* Takes n particles from x (3,n). */
-CS_INLINE void take_positions(double *positions, size_t n, const double *x,
-                              const double *inv_mass) {
+/* Reads n particles from x (3,n). */
+CS_INLINE void gather_positions(double *positions, size_t n, const double *x,
+                                const double *inv_mass) {
     for (size_t i = 0; i < n; i++)
         *position_at(positions, PLACE * i) = (quad){x[i], x[n + i], x[2 * n + i], inv_mass[i]};
 }
 
-/* Gives n particles back to x (3,n). */
-CS_INLINE void give_positions(const double *positions, size_t n, double *x) {
+/* Writes n particles to x (3,n). */
+CS_INLINE void scatter_positions(const double *positions, size_t n, double *x) {
     for (size_t i = 0; i < n; i++)
         for (size_t c = 0; c < 3; c++)
             x[c * n + i] = positions[PLACE * i + c];

@@ -96,14 +96,14 @@ void spring_groups_read_constants(struct spring_groups *self, const struct cs_vi
         }
 }
 
-void spring_groups_take(struct spring_groups *self, const struct cs_view *view,
-                        const double *x) {
-    take_positions(self->positions, view->n, x, view->inv_mass);
+void spring_groups_gather(struct spring_groups *self, const struct cs_view *view,
+                          const double *x) {
+    gather_positions(self->positions, view->n, x, view->inv_mass);
 }
 
-void spring_groups_give(const struct spring_groups *self, const struct cs_view *view,
-                        double *x) {
-    give_positions(self->positions, view->n, x);
+void spring_groups_scatter(const struct spring_groups *self, const struct cs_view *view,
+                           double *x) {
+    scatter_positions(self->positions, view->n, x);
 }
 
 const struct spring_sweeps *spring_sweeps(void) {

@@ -52,13 +52,13 @@ enum cs_step spring_groups_init(struct spring_groups *self, const struct cs_host
 void spring_groups_read_constants(struct spring_groups *self, const struct cs_view *view,
                                   double h);
 
-/* Takes the particles from x (3,n). */
-void spring_groups_take(struct spring_groups *self, const struct cs_view *view,
-                        const double *x);
+/* Reads the particles from x (3,n). */
+void spring_groups_gather(struct spring_groups *self, const struct cs_view *view,
+                          const double *x);
 
 /* The loops over groups, with vectors of one width. */
 struct spring_sweeps {
-    /* Notes the positions taken last as those at the begin of a step, for dampers. */
+    /* Notes the positions read last as those at the begin of a step, for dampers. */
     void (*note_old)(struct spring_groups *self);
     /* One pass over all springs, which corrects the particles; is_first: with multipliers 0
      * before it. */
@@ -69,8 +69,8 @@ extern const struct spring_sweeps spring_sweeps_2, spring_sweeps_4, spring_sweep
 /* The quickest sweeps of this processor; bits are those of all others. */
 const struct spring_sweeps *spring_sweeps(void);
 
-/* Gives the particles back to x (3,n). */
-void spring_groups_give(const struct spring_groups *self, const struct cs_view *view,
-                        double *x);
+/* Writes the particles to x (3,n). */
+void spring_groups_scatter(const struct spring_groups *self, const struct cs_view *view,
+                           double *x);
 
 #endif

@@ -118,7 +118,7 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
     memcpy(self->old, x, 3 * n * sizeof *x);
     // ramps change them with the time of the force above
     spring_groups_read_constants(&self->springs, host->view, h);
-    spring_groups_take(&self->springs, host->view, x);
+    spring_groups_gather(&self->springs, host->view, x);
     self->sweeps->note_old(&self->springs);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0, k = c * n; i < n; i++, k++) {
@@ -128,17 +128,17 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
 
     if (self->impulse)
         memset(self->impulse, 0, 3 * n * sizeof *x);
-    spring_groups_take(&self->springs, host->view, x);
+    spring_groups_gather(&self->springs, host->view, x);
     for (int64_t i = 0; i < self->iterations; i++) {
         self->sweeps->sweep(&self->springs, i == 0 || self->forgets);
         self->passes++;
         if (!self->impulse)
             continue;
-        spring_groups_give(&self->springs, host->view, x);
+        spring_groups_scatter(&self->springs, host->view, x);
         touch(self, t + h, h, x);
-        spring_groups_take(&self->springs, host->view, x);
+        spring_groups_gather(&self->springs, host->view, x);
     }
-    spring_groups_give(&self->springs, host->view, x);
+    spring_groups_scatter(&self->springs, host->view, x);
     // (x - old) / h by what the springs moved, so that free flight keeps every bit of v
     for (size_t k = 0; k < 3 * n; k++)
         v[k] += (x[k] - (self->old[k] + h * v[k])) / h;

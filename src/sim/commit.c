@@ -98,7 +98,7 @@ static enum cs_step judge(struct cs_run_host *host, double t, const double *x,
         host->run->outcome = CS_INTERRUPTED;
         return CS_STEP_HALT;
     }
-    if (cs_run_host_is_over_budget(host))
+    if (cs_run_host_end_over_budget(host))
         return CS_STEP_HALT;
     return CS_STEP_OK;
 }

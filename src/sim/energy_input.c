@@ -91,7 +91,7 @@ static void book_powers(struct cs_run_host *host, double t, double dt, const dou
             cs_normals_update(host->run->system, x);
         cs_terms_force(system, &at, host->power + n);
     }
-    const struct cs_rebound *impacts = host->has_impact ? system->rebounds->rebounds : NULL;
+    const struct cs_rebound *impacts = host->has_impact ? system->rebounds->list : NULL;
     double power = 0;
     for (size_t i = 0; i < n; i++)
         power += impacts && impacts[i].collider ? 0 : host->power[i];

@@ -149,7 +149,7 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
     struct cs_solve_result result = {0};
     if (!host->linear.system)
         return host_fail(ctx, "solve was used without CS_NEED_SOLVE");
-    if (cs_run_host_is_over_budget(host))
+    if (cs_run_host_end_over_budget(host))
         return CS_STEP_HALT;
     const struct cs_stage_start begin = cs_stage_begin(host);
     host->run->counts.solves++;

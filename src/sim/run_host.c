@@ -152,7 +152,7 @@ double cs_run_host_work_seconds(const struct cs_run_host *host) {
            (double)counts->solve_setups * bent;
 }
 
-bool cs_run_host_is_over_budget(struct cs_run_host *host) {
+bool cs_run_host_end_over_budget(struct cs_run_host *host) {
     const struct cs_run_settings *settings = &host->settings;
     if (!(settings->budget > 0) && !settings->pot)
         return false;

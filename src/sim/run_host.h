@@ -58,9 +58,9 @@ void cs_run_host_count(struct cs_run_host *host);
 /* Nominal s of the work of the run so far. */
 double cs_run_host_work_seconds(const struct cs_run_host *host);
 
-/* Returns true if the work of the run exceeds its budget, or what is left in its pot; its
- * outcome then says so. */
-bool cs_run_host_is_over_budget(struct cs_run_host *host);
+/* Ends a run whose work exceeds its budget, or what is left in its pot: sets its outcome and
+ * returns true. */
+bool cs_run_host_end_over_budget(struct cs_run_host *host);
 
 /* Checks the post-conditions of advance() before a state is hashed, written
  * or drawn.

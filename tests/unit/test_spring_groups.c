@@ -151,17 +151,17 @@ static void compare(const struct spring_sweeps *sweeps, void (*joined)(struct ne
         .size = sizeof host, .ctx = &net.arena, .view = &net.view, .alloc = take};
     ck_assert_int_eq(spring_groups_init(&groups, &host), CS_STEP_OK);
     spring_groups_read_constants(&groups, &net.view, h);
-    spring_groups_take(&groups, &net.view, net.old);
+    spring_groups_gather(&groups, &net.view, net.old);
     sweeps->note_old(&groups);
     memcpy(x, net.x, sizeof x);
-    spring_groups_take(&groups, &net.view, x);
+    spring_groups_gather(&groups, &net.view, x);
     memset(spring, 0, sizeof spring);
     memset(damper, 0, sizeof damper);
     for (int pass = 0; pass < 3; pass++) {
         sweeps->sweep(&groups, pass == 0);
         sweep_one_by_one(&net, spring, damper, net.x);
     }
-    spring_groups_give(&groups, &net.view, x);
+    spring_groups_scatter(&groups, &net.view, x);
     ck_assert_mem_eq(x, net.x, sizeof x);
     cs_arena_finish(&net.arena);
 }

@@ -76,7 +76,7 @@ static inline bool cs_job_makes_checkpoints(const struct cs_job_settings *settin
 }
 
 /* Reads --trace: "frames", or the number of a frame. CS_ERR_USAGE. */
-enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *trace,
+enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *run_trace,
                                  struct cs_error *error);
 
 /* Reads --export and --export-values, lists with commas between; NULL: not given. CS_ERR_USAGE.

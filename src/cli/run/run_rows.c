@@ -12,14 +12,14 @@ static void write_record(void *ctx, const struct cs_trace_record *record) {
 }
 
 /* Frames have at most 8 digits here, which strtoul reads without overflow. */
-enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *trace,
+enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *run_trace,
                                  struct cs_error *error) {
     const size_t length = strlen(value);
     const bool number = strspn(value, "0123456789") == length && length > 0 && length < 9;
-    trace->frame = number ? (uint32_t)strtoul(value, NULL, 10) : 0;
-    trace->is_requested = true;
-    trace->trace = (struct cs_trace){.emit = write_record};
-    return trace->frame || !strcmp(value, "frames")
+    run_trace->frame = number ? (uint32_t)strtoul(value, NULL, 10) : 0;
+    run_trace->is_requested = true;
+    run_trace->trace = (struct cs_trace){.emit = write_record};
+    return run_trace->frame || !strcmp(value, "frames")
                ? CS_OK
                : cs_fail(error, CS_ERR_USAGE,
                          "--trace: found \"%.60s\", expected \"frames\" or the number of a "
@@ -44,8 +44,8 @@ static void write_state(const struct cs_job *job) {
 }
 
 /* Enables the full trace for the requested frame only. */
-static void expect_frame(struct cs_run_trace *trace, const struct cs_run *run) {
-    trace->trace.enabled = trace->frame == run->frame + 1;
+static void expect_frame(struct cs_run_trace *run_trace, const struct cs_run *run) {
+    run_trace->trace.enabled = run_trace->frame == run->frame + 1;
 }
 
 static enum cs_status refuse_output(struct cs_error *error) {
@@ -73,13 +73,14 @@ static enum cs_status begin_rows(struct cs_job *job, struct cs_error *error) {
 /* Writes the state after a frame: after every frame, or after the traced one only. */
 static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
-    const struct cs_run_trace *trace = &job->trace;
-    if (!trace->is_requested)
+    const struct cs_run_trace *run_trace = &job->trace;
+    if (!run_trace->is_requested)
         return CS_OK;
-    if (!trace->frame || trace->frame == run->frame)
+    if (!run_trace->frame || run_trace->frame == run->frame)
         write_state(job);
     expect_frame(&job->trace, run);
-    return fflush(trace->trace.ctx) || ferror(trace->trace.ctx) ? refuse_output(error) : CS_OK;
+    return fflush(run_trace->trace.ctx) || ferror(run_trace->trace.ctx) ? refuse_output(error)
+                                                                        : CS_OK;
 }
 
 /* Writes when and where a run blew up, and closes the stream. */

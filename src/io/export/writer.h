@@ -190,23 +190,23 @@ struct cs_append_file {
 /* Opens a new file; or, if kept > 0, an existing one, cut off after `kept` bytes: samples after
  * the checkpoint of a continued run are dropped. All calls fail with CS_ERR_FILE; this one also
  * if the existing file is shorter. Does not follow a symbolic link. */
-enum cs_status cs_append_file_open(struct cs_append_file *file, const char *path, uint64_t kept,
-                                   struct cs_error *error);
+enum cs_status cs_append_file_open(struct cs_append_file *append, const char *path,
+                                   uint64_t kept, struct cs_error *error);
 
 /* Writes n bytes at offset `at`, at most the length. On failure the file is as long as
  * before. */
-enum cs_status cs_append_file_write(struct cs_append_file *file, uint64_t at, const void *bytes,
-                                    size_t n, struct cs_error *error);
+enum cs_status cs_append_file_write(struct cs_append_file *append, uint64_t at,
+                                    const void *bytes, size_t n, struct cs_error *error);
 
 /* Reads n bytes at offset `at`; fewer are a failure. */
-enum cs_status cs_append_file_read(const struct cs_append_file *file, uint64_t at, void *bytes,
-                                   size_t n, struct cs_error *error);
+enum cs_status cs_append_file_read(const struct cs_append_file *append, uint64_t at,
+                                   void *bytes, size_t n, struct cs_error *error);
 
 /* Returns when the disk has what was written. Does nothing if closed. */
-enum cs_status cs_append_file_sync(const struct cs_append_file *file, struct cs_error *error);
+enum cs_status cs_append_file_sync(const struct cs_append_file *append, struct cs_error *error);
 
 /* Closes the file; safe on a closed one. */
-void cs_append_file_close(struct cs_append_file *file);
+void cs_append_file_close(struct cs_append_file *append);
 
 /* Uncompressed ZIP archives of any size, written in one pass. */
 

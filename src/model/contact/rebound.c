@@ -31,8 +31,7 @@ enum cs_status cs_rebounds_init(struct cs_system *system, struct cs_arena *arena
     struct cs_rebounds *rebounds = cs_arena_alloc_array(arena, 1, sizeof *rebounds, error);
     if (!rebounds)
         return error->status;
-    rebounds->rebounds =
-        cs_arena_alloc_array(arena, system->view.n, sizeof *rebounds->rebounds, error);
+    rebounds->list = cs_arena_alloc_array(arena, system->view.n, sizeof *rebounds->list, error);
     rebounds->change =
         cs_arena_alloc_array(arena, 3 * (size_t)system->view.n, sizeof(double), error);
     system->rebounds = rebounds;
@@ -221,7 +220,7 @@ static bool approach(const struct search *search, size_t i, struct start *start,
 /* Sets the impact and the change of velocity of particle i, if it is in impact. */
 static void find_rebound(const struct search *search, size_t i) {
     const size_t n = search->system->view.n;
-    struct cs_rebound *rebound = search->system->rebounds->rebounds + i;
+    struct cs_rebound *rebound = search->system->rebounds->list + i;
     double *change = search->system->rebounds->change + i;
     struct flight flight;
     struct start start;
@@ -256,7 +255,7 @@ static void find_rebound(const struct search *search, size_t i) {
 
 static void find_all(void *arg, size_t begin, size_t end) {
     const struct search *search = arg;
-    const struct cs_rebound *rebounds = search->system->rebounds->rebounds;
+    const struct cs_rebound *rebounds = search->system->rebounds->list;
     for (size_t i = begin; i < end; i++)
         if (search->system->inv_mass[i] > 0 && rebounds[i].collider == 0)
             find_rebound(search, i);
@@ -267,7 +266,7 @@ void cs_rebounds_find(const struct cs_system *system, double t, double h, const 
     struct cs_rebounds *rebounds = system->rebounds;
     rebounds->judged = false;
     for (size_t i = 0; i < system->view.n; i++)
-        rebounds->rebounds[i].collider = 0;
+        rebounds->list[i].collider = 0;
     memset(rebounds->change, 0, 3 * sizeof *rebounds->change * system->view.n);
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         if (cs_scene_colliders(system->scene)[c].mesh.present)
@@ -283,7 +282,7 @@ void cs_rebounds_find(const struct cs_system *system, double t, double h, const 
     }
     rebounds->any = false;
     for (size_t i = 0; i < system->view.n; i++)
-        rebounds->any |= rebounds->rebounds[i].collider > 0;
+        rebounds->any |= rebounds->list[i].collider > 0;
 }
 
 void cs_rebounds_move(const struct cs_system *system, double h, double *x, double *v) {
@@ -291,7 +290,7 @@ void cs_rebounds_move(const struct cs_system *system, double h, double *x, doubl
     const double *change = system->rebounds->change;
     system->rebounds->judged = true;
     for (size_t i = 0; i < n; i++) {
-        const struct cs_rebound *rebound = system->rebounds->rebounds + i;
+        const struct cs_rebound *rebound = system->rebounds->list + i;
         for (size_t k = i, c = 0; c < 3 && rebound->collider; k += n, c++) {
             v[k] += change[k];
             x[k] += h * change[k] + rebound->displacement * rebound->g[c];
@@ -308,7 +307,7 @@ double cs_rebounds_work(const struct cs_system *system, double t, const double *
         for (size_t i = 0; i < n; i++) {
             const double p[3] = {x[i], x[n + i], x[2 * n + i]};
             double u[3];
-            if (system->rebounds->rebounds[i].collider != k + 1)
+            if (system->rebounds->list[i].collider != k + 1)
                 continue;
             cs_posed_collider_velocity(&collider, p, u);
             for (size_t c = 0; c < 3; c++)

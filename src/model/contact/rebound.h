@@ -65,9 +65,9 @@ double cs_rebounds_work(const struct cs_system *system, double t, const double *
 static inline const struct cs_rebound *cs_rebound_of(const struct cs_system *system,
                                                      const struct cs_matrix *matrix,
                                                      uint32_t collider, size_t i) {
-    if (!matrix->rebounds || system->rebounds->rebounds[i].collider != collider + 1)
+    if (!matrix->rebounds || system->rebounds->list[i].collider != collider + 1)
         return NULL;
-    return system->rebounds->rebounds + i;
+    return system->rebounds->list + i;
 }
 
 /* Adds the block of an impact to b: xx, xy, xz, yy, yz, zz. */

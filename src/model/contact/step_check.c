@@ -80,8 +80,7 @@ static double departure_of(const struct cs_rebound *rebound,
  *
  *   s^3 k / (12 D y^4) <= a m s^2 / 2h^2   <=>   s k h^2 <= 6 a D m y^4,   a = unresolved_max
  *
- * so that no particle that is_unresolved would reject is left out; a spare energy only makes it
- * reject fewer. */
+ * so that no particle with an excess is left out; a spare energy only lessens the excess. */
 CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *step, size_t begin,
                                         size_t count) {
     const struct cs_posed_collider *after = &step->at_t1, *before = &step->at_t0;
@@ -133,7 +132,7 @@ bool cs_collider_step_is_far(const struct cs_collider_step *step, size_t begin, 
 /* The impacts of the step that was finished last, if that is this one; NULL: none. */
 static const struct cs_rebound *impacts_of(const struct cs_collider_step *step) {
     const struct cs_rebounds *rebounds = step->system->rebounds;
-    return rebounds && rebounds->judged && rebounds->any ? rebounds->rebounds : NULL;
+    return rebounds && rebounds->judged && rebounds->any ? rebounds->list : NULL;
 }
 
 /* Returns whether a row needs no test particle by particle. */

@@ -37,7 +37,7 @@ struct cs_rebound {
 
 /* The particles in impact of one step. */
 struct cs_rebounds {
-    struct cs_rebound *rebounds; /* (n) by particle */
+    struct cs_rebound *list; /* (n) by particle */
     double *change; /* (3,n) m/s, of the velocity in the flight; 0 where there is none */
     bool any;       /* a particle is in impact */
     bool judged;    /* the last step was finished: the next test of a step is its own */

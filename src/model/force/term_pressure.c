@@ -112,7 +112,7 @@ struct enclosed {
 struct cs_gas {
     uint32_t n;
     struct enclosed *list;
-    double *g, *x; /* (3,n) dV/dx in m2, and positions in m */
+    double *g, *x; /* (3,n) dV/dx in m2; positions in m, of the matrix alone */
     bool is_kept, is_clamped;
 };
 enum { NOW, KEPT };
@@ -124,27 +124,20 @@ static struct cs_plan_row gas_plan(const struct cs_scene *scene) {
     return (struct cs_plan_row){.built = acts, .reason = acts ? "gas is shut in" : NULL};
 }
 
-static double length_at(const double *g, size_t n, size_t i) {
-    return sqrt(g[i] * g[i] + g[n + i] * g[n + i] + g[2 * n + i] * g[2 * n + i]);
-}
-
 /* Looks at the gas at x: its pressures and their slopes. Returns it. */
 static struct cs_gas *look(const struct cs_system *system, int which, const double *x) {
     const size_t n = system->view.n;
     struct cs_gas *gas = system->gas + which;
     const struct cs_block all = {.end = system->view.n};
     const struct cs_eval at = {.x = x, .block = &all};
-    memcpy(gas->x, x, 3 * n * sizeof *x);
     memset(gas->g, 0, 3 * n * sizeof *x);
     for (struct enclosed *in = gas->list; in < gas->list + gas->n; in++) {
         add_slope(system, &at, in->body, 1, gas->g);
         // V = sum g.x/3, from the first vertex on, which keeps digits far from the origin
-        double volume = in->lengths = 0;
-        for (size_t i = in->body->first; i < (size_t)in->body->first + in->body->count; i++) {
+        double volume = 0;
+        for (size_t i = in->body->first; i < (size_t)in->body->first + in->body->count; i++)
             for (size_t c = 0; c < 3 * n; c += n)
                 volume += gas->g[c + i] * (x[c + i] - x[c + in->body->first]) / 3;
-            in->lengths += length_at(gas->g, n, i);
-        }
         in->start = in->start > 0 ? in->start : volume;
         in->keys = cs_scene_bodies(system->scene) + (in->body - system->bodies);
         in->r = volume / in->start;
@@ -164,7 +157,7 @@ static enum cs_status gas_build(struct cs_system *system, struct cs_error *error
         struct cs_gas *gas = system->gas + k;
         CS_ARENA_ARRAY(arena, gas->list, system->scene->bodies.n, error);
         CS_ARENA_ARRAY(arena, gas->g, 3 * (size_t)system->view.n, error);
-        CS_ARENA_ARRAY(arena, gas->x, 3 * (size_t)system->view.n, error);
+        CS_ARENA_ARRAY(arena, gas->x, k == KEPT ? 3 * (size_t)system->view.n : 0, error);
         for (uint32_t b = 0; b < system->scene->bodies.n && !error->status; b++)
             if (!isnan(cs_scene_bodies(system->scene)[b].outer_pressure))
                 gas->list[gas->n++].body = system->bodies + b;
@@ -172,6 +165,17 @@ static enum cs_status gas_build(struct cs_system *system, struct cs_error *error
             look(system, k, system->start);
     }
     return error->status;
+}
+
+static double length_at(const double *g, size_t n, size_t i) {
+    return sqrt(g[i] * g[i] + g[n + i] * g[n + i] + g[2 * n + i] * g[2 * n + i]);
+}
+
+static double sum_lengths(const struct cs_gas *gas, const struct enclosed *in, size_t n) {
+    double sum = 0;
+    for (size_t i = in->body->first; i < (size_t)in->body->first + in->body->count; i++)
+        sum += length_at(gas->g, n, i);
+    return sum;
 }
 
 /* m3, change of V along d (3,n) */
@@ -221,11 +225,13 @@ static double gas_energy(const struct cs_system *system, const struct cs_eval *a
 static void gas_prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
                                bool kept) {
     struct cs_gas *gas = look(system, KEPT, matrix->x);
+    memcpy(gas->x, matrix->x, 3 * (size_t)system->view.n * sizeof *gas->x);
     gas->is_kept = kept;
     gas->is_clamped = matrix->psd;
     for (struct enclosed *in = gas->list; in < gas->list + gas->n; in++) {
         in->p *= matrix->ck;
         in->slope *= matrix->ck;
+        in->lengths = sum_lengths(gas, in, system->view.n);
     }
 }
 
@@ -235,14 +241,16 @@ static void gas_blocks(const struct cs_system *system, const struct cs_matrix *m
                        size_t begin, size_t end, double *blocks) {
     const struct cs_gas *gas = system->gas + KEPT;
     const size_t n = system->view.n;
-    for (const struct enclosed *in = gas->list; in < gas->list + gas->n; in++)
-        for (size_t i = in->body->first; i < (size_t)in->body->first + in->body->count; i++) {
+    for (const struct enclosed *in = gas->list; in < gas->list + gas->n; in++) {
+        const size_t first = in->body->first, last = first + in->body->count;
+        for (size_t i = begin > first ? begin : first; i < end && i < last; i++) {
             const double length = length_at(gas->g, n, i), *g = gas->g + i;
             const bool whole = matrix->bound && !gas->is_kept && length > 0;
-            for (size_t m = 0; m < 6 && i >= begin && i < end; m++)
+            for (size_t m = 0; m < 6; m++)
                 blocks[m * n + i] += in->slope * (whole ? in->lengths / length : 1) *
                                      g[cs_sym3_row[m] * n] * g[cs_sym3_column[m] * n];
         }
+    }
 }
 
 /* y += ck df/dx p; apart: without the diagonal blocks. */
@@ -280,10 +288,12 @@ static void gas_approach(const struct cs_system *system, const struct cs_matrix 
 static void gas_bound(const struct cs_system *system, const struct cs_eval *at,
                       const struct cs_gershgorin *sums) {
     const struct cs_gas *gas = look(system, NOW, at->x);
-    for (const struct enclosed *in = gas->list; in < gas->list + gas->n; in++)
+    const size_t n = system->view.n;
+    for (const struct enclosed *in = gas->list; in < gas->list + gas->n; in++) {
+        const double rate = in->slope * sum_lengths(gas, in, n);
         for (size_t i = in->body->first; i < (size_t)in->body->first + in->body->count; i++)
-            sums->stiffness[i] -=
-                in->slope * in->lengths * length_at(gas->g, system->view.n, i);
+            sums->stiffness[i] -= rate * length_at(gas->g, n, i);
+    }
 }
 
 const struct cs_term cs_term_gas = {
