@@ -42,7 +42,7 @@ static const struct cs_arg rows[] = {
      "all series of one family, such as \"adaptive implicit\" (default: the twelve nearest to "
      "the front)",
      CS_ARG_INTO(struct options, family)},
-    {"methods", 0, "NAME,...", "these methods or series alone",
+    {"methods", 0, "NAME,...", "only these methods or series",
      CS_ARG_INTO(struct options, methods)},
     {"log", 0, "AXES", "x, y or xy: logarithmic axes of a table that is no comparison",
      CS_ARG_INTO(struct options, log_axes)},
@@ -52,12 +52,12 @@ static const struct cs_arg rows[] = {
     {"particle", 0, "N", "motion of particle N of a run.npz, of run --export npz",
      CS_ARG_INTO(struct options, particle), .max = UINT32_MAX - 1},
     {"stretch", 0, "LOW..HIGH",
-     "force of the first body of a scene over its length along x, in lengths of the start",
+     "force of the first body of a scene against its length along x, over that at the start",
      CS_ARG_INTO(struct options, stretch)},
     {"width", 0, "MM",
      "width in print: 180, two columns of a journal, or 88, one (default: 180)",
      CS_ARG_INTO(struct options, width)},
-    {"format", 0, "NAME,...", "of png, svg and pdf (default: all)",
+    {"format", 0, "NAME,...", "any of png, svg and pdf (default: all)",
      CS_ARG_INTO(struct options, format)},
     {"out", 'o', "NAME",
      "write NAME.png, NAME.svg and NAME.pdf (default: FILE without its ending; of a comparison "

@@ -390,8 +390,8 @@ const struct cs_command cs_command_film = {
     .name = "film",
     .operands = "DIR [DIR ...]",
     .summary = CS_SUMMARY_film,
-    .notes = "DIR is a folder that clothsim run wrote; several stand side by side, the first\n"
-             "being what --titles compare with. ffmpeg makes the film.\n\n"
+    .notes = "DIR is a folder that clothsim run wrote. Several are shown side by side, and\n"
+             "--titles compares them with the first. ffmpeg makes the film.\n\n"
              "Example: clothsim film out -o cloth.webm\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,

@@ -21,11 +21,11 @@ struct options {
 static const struct options initial = {.json = NULL};
 
 static const struct cs_arg rows[] = {
-    {"family", 0, "FAMILY", "only those of this one, such as \"adaptive implicit\"",
+    {"family", 0, "FAMILY", "only this family, such as \"adaptive implicit\"",
      CS_ARG_INTO(struct options, family)},
-    {"order", 0, "N", "only those of this order", CS_ARG_INTO(struct options, order), .min = 1,
+    {"order", 0, "N", "only this order", CS_ARG_INTO(struct options, order), .min = 1,
      .max = 100},
-    {"json", 0, "FILE", "write them with their options as JSON too; -: instead of the text",
+    {"json", 0, "FILE", "write the list as JSON too, with all options; -: instead of the text",
      CS_ARG_INTO(struct options, json)},
     {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
      CS_ARG_LIST(struct options, plugins, n_plugins)},

@@ -136,7 +136,7 @@ const struct cs_command cs_command_reproduce = {
     .summary = "reproduce a result and report what differs",
     .notes =
         "FILE is the run.json or a picture of a run, the folder of one, or compare.csv:ROW of\n"
-        "a comparison, where row 1 is the first after the names.\n\n"
+        "a comparison, where row 1 is the first below the header.\n\n"
         "Example: clothsim reproduce out/frame_00060.png\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,

@@ -53,7 +53,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, cell_megabytes)},
     {"retry-failed", 0, NULL, "run failed cells again",
      CS_ARG_INTO(struct options, sweep.retry_failed)},
-    {"status", 0, NULL, "count the cells that are there, and run none",
+    {"status", 0, NULL, "count the finished cells, and run none",
      CS_ARG_INTO(struct options, status)},
     {"strict", 0, NULL, "exit with 8 if a cell blew up, was refused or failed",
      CS_ARG_INTO(struct options, strict)},

@@ -87,8 +87,7 @@ struct cs_arg {
 /* The same in every command that has it. */
 #define CS_ARG_QUIET(struct_, field)                                                           \
     {                                                                                          \
-        "quiet", 'q', NULL,                                                                    \
-            "no progress and no tables: the answer, and what fails or differs",                \
+        "quiet", 'q', NULL, "print only the answer, failures and differences",                 \
             CS_ARG_INTO(struct_, field)                                                        \
     }
 
