@@ -173,59 +173,7 @@ enum cs_status cs_flat_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mend
     return error->status;
 }
 
-/* --- repeated faces --- */
-
-/* The vertices of a triangle in ascending order, and the triangle. */
-struct key {
-    uint32_t vertex[3], triangle;
-};
-
-static int by_key(const void *left, const void *right) {
-    const struct key *a = left, *b = right;
-    for (int k = 0; k < 3; k++)
-        if (a->vertex[k] != b->vertex[k])
-            return a->vertex[k] < b->vertex[k] ? -1 : 1;
-    return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
-}
-
-static struct key key_of(const struct cs_raw_mesh *raw, uint32_t t) {
-    const struct cs_raw_corner *c = raw->triangles[t].corners;
-    uint32_t v[3] = {c[0].vertex, c[1].vertex, c[2].vertex};
-    for (int k = 0; k < 3; k++) {
-        const int low = k == 1 ? 1 : 0;
-        if (v[low] > v[low + 1]) {
-            const uint32_t higher = v[low];
-            v[low] = v[low + 1];
-            v[low + 1] = higher;
-        }
-    }
-    return (struct key){{v[0], v[1], v[2]}, t};
-}
-
-enum cs_status cs_repeated_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
-                                        struct cs_error *error) {
-    struct key *keys = calloc((size_t)raw->n_triangles + 1, sizeof *keys);
-    bool *leaves = calloc((size_t)raw->n_triangles + 1, sizeof *leaves);
-    for (uint32_t t = 0; keys && leaves && t < raw->n_triangles; t++)
-        keys[t] = key_of(raw, t);
-    if (keys && leaves) {
-        /* equal faces become neighbours, the earliest of them first */
-        qsort(keys, raw->n_triangles, sizeof *keys, by_key);
-        for (uint32_t t = 1; t < raw->n_triangles; t++)
-            if (!memcmp(keys[t - 1].vertex, keys[t].vertex, sizeof keys[t].vertex))
-                leaves[keys[t].triangle] = true;
-        for (uint32_t t = 0; t < raw->n_triangles; t++)
-            if (leaves[t])
-                cs_mesh_fault_count(&mends->twice, &mends->twice_line, raw->triangles[t].line);
-        leave_out(raw, leaves);
-    } else
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
-    free(keys);
-    free(leaves);
-    return error->status;
-}
-
-/* --- orientation --- */
+/* --- sides --- */
 
 /* A side of a triangle by its ordered ends. */
 struct end_pair {
@@ -240,6 +188,125 @@ static int by_ends(const void *left, const void *right) {
             return a->vertex[k] < b->vertex[k] ? -1 : 1;
     return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
 }
+
+/* Lists the sides of all triangles (3 n), sorted by their ends. */
+static void list_ends(const struct cs_raw_mesh *raw, struct end_pair *sides) {
+    const size_t n = 3 * (size_t)raw->n_triangles;
+    for (uint32_t s = 0; s < n; s++) {
+        const struct cs_raw_corner *corners = raw->triangles[s / 3].corners;
+        const uint32_t a = corners[s % 3].vertex, b = corners[(s + 1) % 3].vertex;
+        sides[s] = (struct end_pair){{a < b ? a : b, a < b ? b : a}, s / 3, a > b};
+    }
+    qsort(sides, n, sizeof *sides, by_ends);
+}
+
+/* Number of sides from `first` on, of n, that have its ends. */
+static uint32_t run_of(const struct end_pair *sides, uint32_t first, uint32_t n) {
+    const struct end_pair *side = sides + first;
+    uint32_t run = 1;
+    while (first + run < n && !memcmp(side[run].vertex, side->vertex, sizeof side->vertex))
+        run++;
+    return run;
+}
+
+/* --- repeated faces --- */
+
+/* The vertices of a triangle in ascending order, and the triangle; `odd`: a swap of two of them
+ * leads from its corners to that order. */
+struct key {
+    uint32_t vertex[3], triangle;
+    bool odd;
+};
+
+static int by_key(const void *left, const void *right) {
+    const struct key *a = left, *b = right;
+    for (int k = 0; k < 3; k++)
+        if (a->vertex[k] != b->vertex[k])
+            return a->vertex[k] < b->vertex[k] ? -1 : 1;
+    return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
+}
+
+static struct key key_of(const struct cs_raw_mesh *raw, uint32_t t) {
+    const struct cs_raw_corner *c = raw->triangles[t].corners;
+    uint32_t v[3] = {c[0].vertex, c[1].vertex, c[2].vertex};
+    bool odd = false;
+    for (int k = 0; k < 3; k++) {
+        const int low = k == 1 ? 1 : 0;
+        if (v[low] > v[low + 1]) {
+            const uint32_t higher = v[low];
+            v[low] = v[low + 1];
+            v[low + 1] = higher;
+            odd = !odd;
+        }
+    }
+    return (struct key){{v[0], v[1], v[2]}, t, odd};
+}
+
+/* Returns true if an edge has faces of the same vertices alone, as the border of a sheet whose
+ * two sides are both there. Walls between solids end at other faces. */
+static bool has_two_sides(const struct cs_raw_mesh *raw, const uint32_t *firsts,
+                          struct end_pair *sides) {
+    const uint32_t n = 3 * raw->n_triangles;
+    list_ends(raw, sides);
+    for (uint32_t s = 0, run, alike; s < n; s += run) {
+        run = run_of(sides, s, n);
+        for (alike = 1;
+             alike < run && firsts[sides[s + alike].triangle] == firsts[sides[s].triangle];)
+            alike++;
+        if (run > 1 && alike == run)
+            return true;
+    }
+    return false;
+}
+
+/* Marks faces with the vertices of an earlier one: those of its direction; of the opposite one
+ * if they are the other side of a sheet, as all are where no face stands alone. */
+static void mark_repeated(const struct cs_raw_mesh *raw, struct key *keys, uint32_t *firsts,
+                          struct end_pair *sides, bool *leaves) {
+    const uint32_t n = raw->n_triangles;
+    uint32_t alone = 0;
+    for (uint32_t t = 0; t < n; t++)
+        keys[t] = key_of(raw, t);
+    /* faces of the same vertices become neighbours, the earliest of them first */
+    qsort(keys, n, sizeof *keys, by_key);
+    for (uint32_t k = 0, run; k < n; k += run, alone += run == 1)
+        for (run = 0;
+             k + run < n && !memcmp(keys[k].vertex, keys[k + run].vertex, sizeof keys->vertex);
+             run++)
+            firsts[keys[k + run].triangle] = keys[k].triangle;
+    const bool two_sided = n > alone && (!alone || has_two_sides(raw, firsts, sides));
+    bool seen[2] = {false, false};
+    for (uint32_t k = 0; k < n; k++) {
+        const bool odd = keys[k].odd, is_first = firsts[keys[k].triangle] == keys[k].triangle;
+        seen[!odd] = seen[!odd] && !is_first;
+        leaves[keys[k].triangle] = !is_first && (seen[odd] || two_sided);
+        seen[odd] = true;
+    }
+}
+
+enum cs_status cs_repeated_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
+                                        struct cs_error *error) {
+    const size_t n = raw->n_triangles;
+    struct key *keys = calloc(n + 1, sizeof *keys);
+    uint32_t *firsts = calloc(n + 1, sizeof *firsts);
+    struct end_pair *sides = calloc(3 * n + 1, sizeof *sides);
+    bool *leaves = calloc(n + 1, sizeof *leaves);
+    if (keys && firsts && sides && leaves) {
+        mark_repeated(raw, keys, firsts, sides, leaves);
+        for (uint32_t t = 0; t < n; t++)
+            if (leaves[t])
+                cs_mesh_fault_count(&mends->twice, &mends->twice_line, raw->triangles[t].line);
+        leave_out(raw, leaves);
+    } else
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
+    free(keys);
+    free(firsts);
+    free(sides);
+    free(leaves);
+    return error->status;
+}
+
+/* --- orientation --- */
 
 /* Pieces as a union-find structure; `turned`: against the parent, and of a root false. */
 struct pieces {
@@ -281,18 +348,12 @@ static void join_pieces(struct pieces *of, uint32_t a, uint32_t b, bool turned) 
 /* Lists the sides, and joins neighbours over edges of two triangles. */
 static void find_pieces(const struct cs_raw_mesh *raw, struct pieces *of) {
     const uint32_t n = 3 * raw->n_triangles;
-    for (uint32_t s = 0; s < n; s++) {
-        const struct cs_raw_corner *corners = raw->triangles[s / 3].corners;
-        const uint32_t a = corners[s % 3].vertex, b = corners[(s + 1) % 3].vertex;
-        of->sides[s] = (struct end_pair){{a < b ? a : b, a < b ? b : a}, s / 3, a > b};
-        of->parents[s / 3] = s / 3;
-    }
-    qsort(of->sides, n, sizeof *of->sides, by_ends);
+    for (uint32_t t = 0; t < raw->n_triangles; t++)
+        of->parents[t] = t;
+    list_ends(raw, of->sides);
     for (uint32_t s = 0, run; s < n; s += run) {
         const struct end_pair *side = of->sides + s;
-        for (run = 1;
-             s + run < n && !memcmp(side[run].vertex, side->vertex, sizeof side->vertex);)
-            run++;
+        run = run_of(of->sides, s, n);
         if (run == 2)
             join_pieces(of, side[0].triangle, side[1].triangle, side[0].falls == side[1].falls);
     }

@@ -44,7 +44,13 @@ static void add_fan(const uint32_t *next, uint32_t first, uint32_t n, uint32_t *
     }
 }
 
-/* True if the corner behind `before` is an ear of the ring. */
+static bool is_same(const double a[3], const double b[3]) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/* True if the corner behind `before` is an ear of the ring. Others in the place of its corners
+ * do not count: they are there at the bridge to a hole, and of quads at the pole of a sphere.
+ */
 static bool is_ear(const double (*x)[3], const uint32_t *next, uint32_t before, double least,
                    const double normal[3]) {
     const uint32_t at = next[before], behind = next[at];
@@ -53,7 +59,8 @@ static bool is_ear(const double (*x)[3], const uint32_t *next, uint32_t before, 
     for (uint32_t i = next[behind]; i != before; i = next[i])
         if (turn_of(x[before], x[at], x[i], normal) >= 0 &&
             turn_of(x[at], x[behind], x[i], normal) >= 0 &&
-            turn_of(x[behind], x[before], x[i], normal) >= 0)
+            turn_of(x[behind], x[before], x[i], normal) >= 0 && !is_same(x[i], x[before]) &&
+            !is_same(x[i], x[at]) && !is_same(x[i], x[behind]))
             return false;
     return true;
 }

@@ -63,7 +63,8 @@ uint32_t cs_near_vertices_find(const double (*positions)[3], uint32_t n, const b
 enum cs_status cs_flat_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
                                     struct cs_error *error);
 
-/* Removes each face with the vertices of an earlier one, and counts them. CS_ERR_MEMORY. */
+/* Removes each face with the vertices of an earlier one, and counts them. The wall between two
+ * solids, where each has a face of its own, is left to them. CS_ERR_MEMORY. */
 enum cs_status cs_repeated_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
                                         struct cs_error *error);
 

@@ -99,6 +99,28 @@ TEST(repeated_faces_and_loose_vertices_are_removed) {
     cs_arena_finish(&arena);
 }
 
+/* Of a closed surface whose two sides are both there one stays; two tetrahedra keep the wall
+ * between them, of a face each. */
+TEST(walls_between_solids_stay_and_other_sides_of_sheets_do_not) {
+    struct cs_trimesh mesh;
+    struct cs_arena arena;
+    read_sound(TETRAHEDRON
+               "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n",
+               &plain, &mesh, &arena);
+    ck_assert_uint_eq(mesh.n_triangles, 4);
+    ck_assert_uint_eq(mesh.n_open, 0);
+    cs_arena_finish(&arena);
+    read_sound(TETRAHEDRON "v 0 0 -1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+                           "f 1 2 3\nf 1 5 2\nf 2 5 3\nf 1 3 5\n",
+               &plain, &mesh, &arena);
+    ck_assert_uint_eq(mesh.n, 8);
+    ck_assert_uint_eq(mesh.pieces, 2);
+    ck_assert_uint_eq(mesh.n_open, 0);
+    ck_assert_str_eq(mesh.mends,
+                     "3 edges of three triangles or more (the first in line 15) cut");
+    cs_arena_finish(&arena);
+}
+
 /* Three pages of a book; and two cubes that share an edge, which become two closed pieces. */
 TEST(edges_of_three_triangles_are_cut) {
     struct cs_trimesh mesh;

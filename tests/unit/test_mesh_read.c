@@ -199,6 +199,24 @@ TEST(concave_polygons_are_cut_into_their_area) {
         }
 }
 
+/* A square with a square hole, which a bridge joins to the outside; and a quad at a pole, two
+ * of whose corners lie in one place. */
+TEST(corners_in_one_place_cross_nothing) {
+    struct cs_trimesh mesh;
+    struct cs_arena arena;
+    read_sound("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0.5 0.5 0\nv 0.5 1.5 0\nv 1.5 1.5 0\n"
+               "v 1.5 0.5 0\nf 1 2 3 4 1 5 6 7 8 5\n",
+               &plain, &mesh, &arena);
+    ck_assert_double_eq_tol(area_of(&mesh), 3, 1e-12);
+    ck_assert_uint_eq(mesh.n_open, 8);
+    ck_assert_str_eq(mesh.mends, "");
+    cs_arena_finish(&arena);
+    read_sound("v 0 0 0\nv 0 0 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\n", &plain, &mesh, &arena);
+    ck_assert_double_eq_tol(area_of(&mesh), 1, 1e-12);
+    ck_assert_str_eq(mesh.mends, "1 face without area (line 5) removed");
+    cs_arena_finish(&arena);
+}
+
 TEST(polygons_that_cross_themselves_are_told) {
     struct cs_trimesh mesh;
     struct cs_arena arena;
