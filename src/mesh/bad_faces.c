@@ -173,42 +173,6 @@ enum cs_status cs_flat_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mend
     return error->status;
 }
 
-/* --- sides --- */
-
-/* A side of a triangle by its ordered ends. */
-struct end_pair {
-    uint32_t vertex[2], triangle;
-    bool falls;
-};
-
-static int by_ends(const void *left, const void *right) {
-    const struct end_pair *a = left, *b = right;
-    for (int k = 0; k < 2; k++)
-        if (a->vertex[k] != b->vertex[k])
-            return a->vertex[k] < b->vertex[k] ? -1 : 1;
-    return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
-}
-
-/* Lists the sides of all triangles (3 n), sorted by their ends. */
-static void list_ends(const struct cs_raw_mesh *raw, struct end_pair *sides) {
-    const size_t n = 3 * (size_t)raw->n_triangles;
-    for (uint32_t s = 0; s < n; s++) {
-        const struct cs_raw_corner *corners = raw->triangles[s / 3].corners;
-        const uint32_t a = corners[s % 3].vertex, b = corners[(s + 1) % 3].vertex;
-        sides[s] = (struct end_pair){{a < b ? a : b, a < b ? b : a}, s / 3, a > b};
-    }
-    qsort(sides, n, sizeof *sides, by_ends);
-}
-
-/* Number of sides from `first` on, of n, that have its ends. */
-static uint32_t run_of(const struct end_pair *sides, uint32_t first, uint32_t n) {
-    const struct end_pair *side = sides + first;
-    uint32_t run = 1;
-    while (first + run < n && !memcmp(side[run].vertex, side->vertex, sizeof side->vertex))
-        run++;
-    return run;
-}
-
 /* --- repeated faces --- */
 
 /* The vertices of a triangle in ascending order, and the triangle; `odd`: a swap of two of them
@@ -245,11 +209,11 @@ static struct key key_of(const struct cs_raw_mesh *raw, uint32_t t) {
 /* Returns true if an edge has faces of the same vertices alone, as the border of a sheet whose
  * two sides are both there. Walls between solids end at other faces. */
 static bool has_two_sides(const struct cs_raw_mesh *raw, const uint32_t *firsts,
-                          struct end_pair *sides) {
+                          struct cs_raw_side *sides) {
     const uint32_t n = 3 * raw->n_triangles;
-    list_ends(raw, sides);
+    cs_raw_sides_list(raw, NULL, sides);
     for (uint32_t s = 0, run, alike; s < n; s += run) {
-        run = run_of(sides, s, n);
+        run = cs_raw_side_run(sides + s, n - s, true);
         for (alike = 1;
              alike < run && firsts[sides[s + alike].triangle] == firsts[sides[s].triangle];)
             alike++;
@@ -262,7 +226,7 @@ static bool has_two_sides(const struct cs_raw_mesh *raw, const uint32_t *firsts,
 /* Marks faces with the vertices of an earlier one: those of its direction; of the opposite one
  * if they are the other side of a sheet, as all are where no face stands alone. */
 static void mark_repeated(const struct cs_raw_mesh *raw, struct key *keys, uint32_t *firsts,
-                          struct end_pair *sides, bool *leaves) {
+                          struct cs_raw_side *sides, bool *leaves) {
     const uint32_t n = raw->n_triangles;
     uint32_t alone = 0;
     for (uint32_t t = 0; t < n; t++)
@@ -289,7 +253,7 @@ enum cs_status cs_repeated_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_
     const size_t n = raw->n_triangles;
     struct key *keys = calloc(n + 1, sizeof *keys);
     uint32_t *firsts = calloc(n + 1, sizeof *firsts);
-    struct end_pair *sides = calloc(3 * n + 1, sizeof *sides);
+    struct cs_raw_side *sides = calloc(3 * n + 1, sizeof *sides);
     bool *leaves = calloc(n + 1, sizeof *leaves);
     if (keys && firsts && sides && leaves) {
         mark_repeated(raw, keys, firsts, sides, leaves);
@@ -310,7 +274,7 @@ enum cs_status cs_repeated_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_
 
 /* Pieces as a union-find structure; `turned`: against the parent, and of a root false. */
 struct pieces {
-    struct end_pair *sides;
+    struct cs_raw_side *sides;
     uint32_t *parents, *counts; /* counts (2 n): of a root, triangles like it, and turned */
     bool *turned, *one_sided;
 };
@@ -350,10 +314,10 @@ static void find_pieces(const struct cs_raw_mesh *raw, struct pieces *of) {
     const uint32_t n = 3 * raw->n_triangles;
     for (uint32_t t = 0; t < raw->n_triangles; t++)
         of->parents[t] = t;
-    list_ends(raw, of->sides);
+    cs_raw_sides_list(raw, NULL, of->sides);
     for (uint32_t s = 0, run; s < n; s += run) {
-        const struct end_pair *side = of->sides + s;
-        run = run_of(of->sides, s, n);
+        const struct cs_raw_side *side = of->sides + s;
+        run = cs_raw_side_run(side, n - s, true);
         if (run == 2)
             join_pieces(of, side[0].triangle, side[1].triangle, side[0].falls == side[1].falls);
     }

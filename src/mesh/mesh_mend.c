@@ -15,18 +15,10 @@
 /* Rounds of cutting: a cut can bring to light another edge of three triangles. */
 enum { ROUNDS_MAX = 8 };
 
-/* A directed side of a triangle. `place` are its ends as points in space, `vertex` as vertices
- * of the file; 0: the one with the lower place. */
-struct side {
-    uint32_t place[2], vertex[2], triangle, k; /* from corner k to corner k + 1 */
-    bool falls;                                /* directed from end 1 to end 0 */
-    bool paired;
-};
-
 struct work {
     struct cs_raw_mesh *raw;
     struct cs_mesh_mends *mends;
-    struct side *sides; /* (3 n_triangles), sorted */
+    struct cs_raw_side *sides; /* (3 n_triangles), sorted */
     uint32_t
         *places; /* (n_vertices) the first vertex in the same place; itself if not welded */
     uint32_t *parents; /* (n_vertices + 3 n_triangles) of the union-find structure */
@@ -49,45 +41,10 @@ static uint32_t join(uint32_t *parents, uint32_t a, uint32_t b) {
     return a != b;
 }
 
-static int by_numbers(const uint32_t *a, const uint32_t *b, size_t n) {
-    for (size_t k = 0; k < n; k++)
-        if (a[k] != b[k])
-            return a[k] < b[k] ? -1 : 1;
-    return 0;
-}
-
 /* --- sides --- */
 
-static int by_place(const void *left, const void *right) {
-    const struct side *a = left, *b = right;
-    int order = by_numbers(a->place, b->place, 2);
-    order = order ? order : by_numbers(a->vertex, b->vertex, 2);
-    order = order ? order : by_numbers(&a->triangle, &b->triangle, 1);
-    return order ? order : by_numbers(&a->k, &b->k, 1);
-}
-
-/* Lists the sides of all triangles, sorted by place, then by vertices, then by triangle. */
-static void list_sides(struct work *work) {
-    const struct cs_raw_mesh *raw = work->raw;
-    struct side *side = work->sides;
-    for (uint32_t t = 0; t < raw->n_triangles; t++)
-        for (uint32_t k = 0; k < 3; k++, side++) {
-            const uint32_t a = raw->triangles[t].corners[k].vertex,
-                           b = raw->triangles[t].corners[(k + 1) % 3].vertex;
-            const uint32_t p = work->places[a], q = work->places[b];
-            const bool falls = p != q ? p > q : a > b;
-            *side = (struct side){{falls ? q : p, falls ? p : q},
-                                  {falls ? b : a, falls ? a : b},
-                                  t,
-                                  k,
-                                  falls,
-                                  false};
-        }
-    qsort(work->sides, 3 * (size_t)raw->n_triangles, sizeof *work->sides, by_place);
-}
-
 /* The node of the corner at which a side has its lower (end 0) or higher end. */
-static uint32_t node_of(const struct work *work, const struct side *side, int end) {
+static uint32_t node_of(const struct work *work, const struct cs_raw_side *side, int end) {
     const uint32_t k = (side->k + (side->falls != (end == 1))) % 3;
     const uint32_t vertex = side->vertex[end];
     return work->splits[vertex] ? work->raw->n_vertices + 3 * side->triangle + k : vertex;
@@ -95,7 +52,7 @@ static uint32_t node_of(const struct work *work, const struct side *side, int en
 
 /* Joins the corners along each pair of sides of opposite direction, in their order, that no
  * earlier call has paired. Returns the number of sets that became one with another. */
-static uint32_t pair_sides(struct work *work, struct side *sides, uint32_t n) {
+static uint32_t pair_sides(struct work *work, struct cs_raw_side *sides, uint32_t n) {
     uint32_t next[2] = {0, 0}, joined = 0;
     for (;;) {
         for (int way = 0; way < 2; way++)
@@ -104,22 +61,15 @@ static uint32_t pair_sides(struct work *work, struct side *sides, uint32_t n) {
                 next[way]++;
         if (next[0] == n || next[1] == n)
             return joined;
-        struct side *a = sides + next[0], *b = sides + next[1];
+        struct cs_raw_side *a = sides + next[0], *b = sides + next[1];
         a->paired = b->paired = true;
         for (int end = 0; end < 2; end++)
             joined += join(work->parents, node_of(work, a, end), node_of(work, b, end));
     }
 }
 
-/* Number of sides from `first` on that have its place, or also its vertices. */
 static uint32_t run_of(const struct work *work, uint32_t first, bool by_vertex) {
-    const uint32_t total = 3 * work->raw->n_triangles;
-    const struct side *a = work->sides + first;
-    uint32_t n = 1;
-    while (first + n < total && !by_numbers(a->place, a[n].place, 2) &&
-           (!by_vertex || !by_numbers(a->vertex, a[n].vertex, 2)))
-        n++;
-    return n;
+    return cs_raw_side_run(work->sides + first, 3 * work->raw->n_triangles - first, by_vertex);
 }
 
 /* Marks the ends of edges of more than two triangles, and returns their number; counts them as
@@ -127,7 +77,7 @@ static uint32_t run_of(const struct work *work, uint32_t first, bool by_vertex) 
 static uint32_t mark_splits(struct work *work, bool tells) {
     uint32_t found = 0;
     for (uint32_t s = 0, n; s < 3 * work->raw->n_triangles; s += n) {
-        struct side *side = work->sides + s;
+        struct cs_raw_side *side = work->sides + s;
         n = run_of(work, s, true);
         if (n <= 2)
             continue;
@@ -180,7 +130,7 @@ static enum cs_status number_vertices(struct work *work, struct cs_error *error)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
     }
     for (size_t s = 0; s < 3 * (size_t)raw->n_triangles; s++) {
-        const struct side *side = work->sides + s;
+        const struct cs_raw_side *side = work->sides + s;
         numbers[root_of(work->parents, node_of(work, side, side->falls))] = 1;
     }
     for (size_t node = 0; node < nodes; node++) {
@@ -195,7 +145,7 @@ static enum cs_status number_vertices(struct work *work, struct cs_error *error)
         numbers[node] = ++n;
     }
     for (size_t s = 0; s < 3 * (size_t)raw->n_triangles; s++) {
-        const struct side *side = work->sides + s;
+        const struct cs_raw_side *side = work->sides + s;
         raw->triangles[side->triangle].corners[side->k].vertex =
             numbers[root_of(work->parents, node_of(work, side, side->falls))] - 1;
     }
@@ -226,7 +176,7 @@ static enum cs_status find_places(struct work *work, struct cs_error *error) {
     mark_open(work, open);
     if (cs_near_vertices_find((const double(*)[3])raw->positions, raw->n_vertices, open,
                               WELD_DISTANCE, work->places, error))
-        list_sides(work);
+        cs_raw_sides_list(work->raw, work->places, work->sides);
     free(open);
     return error->status;
 }
@@ -258,7 +208,7 @@ static enum cs_status begin_mending(struct work *work, struct cs_error *error) {
         work->parents[i] = (uint32_t)i;
     for (size_t i = 0; i < n; i++)
         work->places[i] = (uint32_t)i;
-    list_sides(work);
+    cs_raw_sides_list(work->raw, work->places, work->sides);
     return CS_OK;
 }
 

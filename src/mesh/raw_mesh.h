@@ -38,6 +38,22 @@ struct cs_raw_mesh {
     uint32_t n_vertices, n_uv, n_triangles;
 };
 
+/* A directed side of a triangle. `place` are its ends as points in space, `vertex` as vertices
+ * of the file; 0: the one with the lower place. */
+struct cs_raw_side {
+    uint32_t place[2], vertex[2], triangle, k; /* from corner k to corner k + 1 */
+    bool falls;                                /* directed from end 1 to end 0 */
+    bool paired;
+};
+
+/* Lists the sides of all triangles (3 n), sorted by place, then by vertices, then by triangle.
+ * places: of each vertex the number of its point; NULL: its own. */
+void cs_raw_sides_list(const struct cs_raw_mesh *raw, const uint32_t *places,
+                       struct cs_raw_side *sides);
+
+/* Number of the n >= 1 sides that have the place of the first, or also its vertices. */
+uint32_t cs_raw_side_run(const struct cs_raw_side *sides, uint32_t n, bool by_vertex);
+
 /* Counts a fault in *n, and keeps the line of the first. */
 void cs_mesh_fault_count(uint32_t *n, uint32_t *first, uint32_t line);
 
