@@ -12,12 +12,11 @@
  * that ends at an event is tiny too, but alone. The stiffness of contact grows by 1.7e8 from
  * its range to its core, which shortens steps by 1.3e4. */
 #define SHRUNK 1e-6
-enum { TINY_STEPS = 8, SINGULAR_STEPS_MIN = 1000, STAGES = 12, COSTS = 4 };
+enum { TINY_STEPS = 8 };
 
 struct shrinking {
     double longest, t; /* s */
     uint32_t tiny;
-    uint64_t left;                          /* steps */
     const volatile sig_atomic_t *interrupt; /* may be NULL */
     sig_atomic_t stop;
 };
@@ -28,8 +27,7 @@ static bool watch_step(void *ctx, double t, double dt, double *x, double *v) {
     steps->longest = fmax(steps->longest, dt);
     steps->tiny = dt < SHRUNK * steps->longest ? steps->tiny + 1 : 0;
     steps->t = t;
-    steps->stop = steps->tiny >= TINY_STEPS || --steps->left == 0 ||
-                  (steps->interrupt && *steps->interrupt);
+    steps->stop = steps->tiny >= TINY_STEPS || (steps->interrupt && *steps->interrupt);
     return false;
 }
 
@@ -59,11 +57,10 @@ static enum cs_status name_singular(const struct cs_run *run, double t,
 }
 
 enum cs_status cs_singular_force_find(const struct cs_session_settings *settings,
-                                      double seconds, uint64_t evaluations,
+                                      double seconds, double evaluations,
                                       struct cs_singular_force *found, struct cs_error *error) {
     struct cs_session_settings asked = *settings;
-    struct shrinking steps = {.left = COSTS * evaluations / STAGES + SINGULAR_STEPS_MIN,
-                              .interrupt = settings->run.stop};
+    struct shrinking steps = {.interrupt = settings->run.stop};
     struct cs_session session;
     struct cs_error refused = {0};
     *found = (struct cs_singular_force){.text = ""};
@@ -75,17 +72,21 @@ enum cs_status cs_singular_force_find(const struct cs_session_settings *settings
     asked.fps = 1 / seconds;
     asked.threads = 0;
     asked.render = false;
-    asked.run = (struct cs_run_settings){.budget = settings->run.budget,
-                                         .pot = settings->run.pot,
+    asked.run = (struct cs_run_settings){.pot = settings->run.pot,
                                          .stop = &steps.stop,
                                          .after_commit = watch_step,
                                          .ctx = &steps};
-    if (!(seconds > 0) || cs_session_open(&session, &asked, &refused))
+    if (!(seconds > 0) || cs_session_open_system(&session, &asked, &refused))
         return CS_OK;
-    struct cs_follow follow = {.run = &session.run, .last = 1};
-    cs_follow_next(&follow, &refused);
-    if (steps.tiny >= TINY_STEPS || cs_outcome_is_blow_up(session.run.outcome))
-        name_singular(&session.run, steps.t, found, error);
+    const double budget = evaluations * cs_pass_seconds(&session.system) + CS_SINGULAR_SECONDS,
+                 given = settings->run.budget;
+    session.settings.run.budget = given > 0 ? fmin(given, budget) : budget;
+    if (!cs_session_begin(&session, NULL, &refused)) {
+        struct cs_follow follow = {.run = &session.run, .last = 1};
+        cs_follow_next(&follow, &refused);
+        if (steps.tiny >= TINY_STEPS || cs_outcome_is_blow_up(session.run.outcome))
+            name_singular(&session.run, steps.t, found, error);
+    }
     cs_session_close(&session);
     return error->status;
 }

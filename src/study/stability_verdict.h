@@ -12,15 +12,16 @@
  * within so many seconds. dop853 runs the scene from its start with steps by their error. Where
  * another method's step is too long it goes on. Where a force has no bound its steps shrink
  * without end, or it blows up too, whatever step the other method takes. Sets *found, whose
- * text is empty if there is none, if dop853 refuses the scene, and after four times the
- * evaluations of the run and 1000 steps. CS_ERR_MEMORY. */
+ * text is empty if there is none, if dop853 refuses the scene, and after so many evaluations of
+ * the forces and CS_SINGULAR_SECONDS nominal seconds. CS_ERR_MEMORY. */
+#define CS_SINGULAR_SECONDS 0.01
 struct cs_singular_force {
     char text[200];    /* "a force is singular at t = ... s, particle ...: no step passes" */
     double time;       /* s */
     uint32_t particle; /* of the greatest acceleration */
 };
 enum cs_status cs_singular_force_find(const struct cs_session_settings *settings,
-                                      double seconds, uint64_t evaluations,
+                                      double seconds, double evaluations,
                                       struct cs_singular_force *found, struct cs_error *error);
 
 /* Runs a scene once for a study and records scalar figures, no states.

@@ -247,6 +247,7 @@ static struct cs_plan_row swing_plan(const struct cs_scene *scene) {
 }
 
 static void swing_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
+    planted.calls++;
     for (size_t i = at->block->begin; i < at->block->end; i++)
         f[i] += system->mass[i] * planted.swing * cos(3 * at->t);
 }

@@ -12,6 +12,7 @@ struct planted {
     double attract;      /* m3/s2: f = -attract m s/|s|^3 n, s = distance + q; has an energy */
     double distance;     /* m */
     double swing;        /* m/s2: f = m swing cos(3 t) along x; external */
+    long calls;          /* of the swing, counted: evaluations of the forces */
 };
 extern struct planted planted;
 

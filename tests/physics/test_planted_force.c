@@ -276,7 +276,7 @@ static struct cs_singular_force find_singular(double seconds) {
     const struct cs_session_settings settings = {.scene = "sheet.json", .text = SHEET};
     struct cs_singular_force found;
     struct cs_error error = {0};
-    ck_assert_int_eq(cs_singular_force_find(&settings, seconds, 4000, &found, &error), CS_OK);
+    ck_assert_int_eq(cs_singular_force_find(&settings, seconds, 16000, &found, &error), CS_OK);
     return found;
 }
 
@@ -318,4 +318,29 @@ TEST(singular_attraction_is_found_at_its_time) {
     ck_assert_double_eq_tol(found.time, end, 1e-3 * end);
     for (double dt = 1e-3; dt > 1e-4; dt /= 2)
         ck_assert_double_eq_tol(end_by_rk4(dt), end, 2 * dt);
+}
+
+/* Evaluations of a search along a stiff sheet, which no search follows to the end. */
+static long count_calls(double evaluations) {
+    const struct cs_session_settings settings = {
+        .scene = "stiff.json",
+        .text = "{\"bodies\": [{\"cloth\": {\"grid\": [4, 3], \"stretch\": [1.05, 1.05]}, "
+                "\"mass\": {\"particle\": 0.1}, \"springs\": {\"stretch\": 2e6}}]}"};
+    struct cs_singular_force found;
+    struct cs_error error = {0};
+    planted = (struct planted){.swing = 1};
+    ck_assert_int_eq(cs_singular_force_find(&settings, 100, evaluations, &found, &error),
+                     CS_OK);
+    ck_assert_str_eq(found.text, "");
+    return planted.calls;
+}
+
+/* A nominal call takes more than 1e-6 s; a step of dop853 takes some 12 evaluations. */
+TEST(search_for_a_singular_force_keeps_its_budget) {
+    const long least = count_calls(0), more = count_calls(30000);
+    ck_assert_int_gt(least, 100);
+    ck_assert_int_lt(least, (long)(CS_SINGULAR_SECONDS / 1e-6) + 50);
+    ck_assert_int_ge(more, least + 29900);
+    ck_assert_int_le(more, least + 30050);
+    planted = (struct planted){0};
 }

@@ -223,8 +223,8 @@ static void name_end(struct cs_probe *probe) {
     struct cs_singular_force cause = {.text = ""};
     struct cs_error ignored = {0};
     if (cs_outcome_is_blow_up(run->outcome) || run->outcome == CS_GAVE_UP)
-        cs_singular_force_find(&settings, end + probe->frame, run->counts.forces, &cause,
-                               &ignored);
+        cs_singular_force_find(&settings, end + probe->frame, 4.0 * (double)run->counts.forces,
+                               &cause, &ignored);
     cs_fail(&probe->error, CS_ERR_CHECK, "%s at t = %.6g s%s%s%s%s",
             cs_outcome_text(run->outcome), end, run->reason ? ": " : "",
             run->reason ? run->reason : "", *cause.text ? "; " : "", cause.text);

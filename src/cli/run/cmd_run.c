@@ -222,7 +222,8 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_error *error
     return CS_OK;
 }
 
-/* Finds a singular force, if that is why the run ended or made energy. */
+/* Finds a singular force, if that is why the run ended or made energy, at a twentieth of its
+ * work. */
 static void find_cause(struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
     const bool blown = cs_outcome_is_blow_up(run->outcome);
@@ -231,7 +232,7 @@ static void find_cause(struct cs_job *job) {
     if (run->system && (blown || run->outcome == CS_GAVE_UP || job->failure ||
                         job->monitor.first.verdict != CS_STABILITY_BOUNDED))
         cs_singular_force_find(&job->settings->session, end + 1 / run->system->scene->time.fps,
-                               run->counts.forces, &job->cause, &ignored);
+                               cs_counts_work(&run->counts) / 20, &job->cause, &ignored);
 }
 
 /* Warns of limits that were missed and of a physically impossible final state, whatever else is

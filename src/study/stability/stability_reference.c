@@ -164,8 +164,8 @@ static void name_failure(struct cs_reference *reference,
                          const struct cs_sampled_run_settings *settings,
                          struct cs_error *error) {
     struct cs_singular_force cause;
-    cs_singular_force_find(&settings->session, settings->seconds, reference->run.steps, &cause,
-                           error);
+    cs_singular_force_find(&settings->session, settings->seconds,
+                           4.0 * (double)reference->run.steps, &cause, error);
     snprintf(reference->message, sizeof reference->message, "%s%.280s",
              *cause.text ? "" : "velocity-verlet: ",
              *cause.text ? cause.text : reference->run.result.message);
