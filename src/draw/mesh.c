@@ -64,12 +64,15 @@ enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system
     const struct cs_body_range *range = system->bodies + body;
     const enum cs_look_colours colours = cs_look_of(system->scene->render.look)->colours;
     const bool marked = colours == CS_COLOURS_CROSSINGS;
+    const struct cs_material *material = &cs_scene_bodies(system->scene)[body].material;
     mesh->range = *range;
-    mesh->flat_shading =
-        cs_scene_bodies(system->scene)[body].material.shading == CS_SHADING_FLAT;
+    mesh->faces = textured && colours == CS_COLOURS_MATERIAL && material->faces.n
+                      ? &material->faces
+                      : NULL;
+    mesh->flat_shading = material->shading == CS_SHADING_FLAT;
     mesh->has_creases = !mesh->flat_shading && is_box(cs_scene_bodies(system->scene) + body);
     mesh->split_vertices = mesh->flat_shading || mesh->has_creases || marked ||
-                           (textured && range->mesh && range->mesh->uv);
+                           (textured && range->mesh && (range->mesh->uv || mesh->faces));
     mesh->has_curvature =
         colours == CS_COLOURS_MATERIAL && !mesh->flat_shading && !mesh->has_creases;
     mesh->curvature_radius = reach_of(system, range);
@@ -230,6 +233,18 @@ static void front_uv(const struct cs_trimesh *mesh, uint32_t i, const double low
     }
 }
 
+/* The texel of a triangle in a row of one for each colour of faces, and the last for the rest
+ * (make_palette in study/frame_picture.c). */
+static double face_texel(const struct cs_mesh *mesh, uint32_t triangle) {
+    const struct cs_trimesh *from = mesh->range.mesh;
+    const struct cs_face_colour *faces = mesh->faces->items;
+    uint32_t k = 0;
+    while (k < mesh->faces->n &&
+           !cs_mesh_has_label(from->labels, from->triangle_labels[triangle], faces[k].set))
+        k++;
+    return (k + 0.5) / (mesh->faces->n + 1.0);
+}
+
 void cs_mesh_uv(const struct cs_mesh *mesh, const double repeat[2], float *uv) {
     const struct cs_trimesh *from = mesh->range.mesh;
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
@@ -242,6 +257,11 @@ void cs_mesh_uv(const struct cs_mesh *mesh, const double repeat[2], float *uv) {
     for (uint32_t k = 0; k < mesh->n_vertices; k++) {
         const uint32_t i = mesh->split_vertices ? mesh->indices[k] : k;
         double at[2];
+        if (mesh->faces) {
+            uv[2 * (size_t)k] = (float)face_texel(mesh, k / 3);
+            uv[2 * (size_t)k + 1] = 0.5f;
+            continue;
+        }
         if (!from)
             grid_uv(mesh, i, at);
         else if (from->uv)

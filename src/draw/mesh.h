@@ -20,9 +20,10 @@ struct cs_vertex {
 struct cs_mesh {
     struct cs_body_range range; /* particles of the body, copied */
     bool flat_shading, has_creases, split_vertices;
-    uint32_t first_triangle; /* of the body among the system's */
-    bool has_curvature;      /* values are slopes of folds (cs_mesh_update) */
-    double curvature_radius; /* m: radius around a vertex in which folds take light away */
+    uint32_t first_triangle;     /* of the body among the system's */
+    const struct cs_list *faces; /* of its material, if they are drawn; else NULL */
+    bool has_curvature;          /* values are slopes of folds (cs_mesh_update) */
+    double curvature_radius;     /* m: radius around a vertex in which folds take light away */
     uint32_t n_vertices, n_indices;
     struct cs_vertex *vertices; /* (n_vertices), owned by the arena like the others */
     uint32_t *indices;          /* (n_indices) particles of the body, three per triangle */

@@ -77,6 +77,12 @@ struct cs_spring_law {
 
 enum cs_shading { CS_SHADING_SMOOTH, CS_SHADING_FLAT };
 
+/* The colour of faces of a mesh's file that have a name. */
+struct cs_face_colour {
+    char set[CS_TEXT_MAX]; /* group, object or material */
+    double colour[3];      /* linear RGB, times the material's */
+};
+
 /* Blinn-Phong coefficients (shade.c); colours are linear RGB in 0..1. */
 struct cs_material {
     double colour[3];
@@ -85,6 +91,7 @@ struct cs_material {
     int32_t shading;           /* enum cs_shading */
     char texture[CS_TEXT_MAX]; /* PNG beside the scene file; "" = none */
     double texture_repeat[2];  /* repetitions over the cloth */
+    struct cs_list faces;      /* struct cs_face_colour; the first that has the face counts */
 };
 
 /* A deformable body: its shape, masses, springs, pins, contact and look. */

@@ -56,6 +56,22 @@ static enum cs_status check_texture(const struct cs_check *check, const char *bo
     return CS_OK;
 }
 
+/* Checks the colours of faces, which are drawn as a texture of a texel each. */
+static enum cs_status check_faces(const struct cs_check *check, const char *body,
+                                  const struct cs_body *of) {
+    const struct cs_face_colour *faces = of->material.faces.items;
+    char path[128], fault[256];
+    snprintf(path, sizeof path, "%s.material.faces", body);
+    if (of->material.faces.n && *of->material.texture)
+        return cs_check_refuse(check, path, "expected a texture or faces, found both");
+    for (uint32_t k = 0; k < of->material.faces.n; k++) {
+        snprintf(path, sizeof path, "%s.material.faces[%u].set", body, k);
+        if (cs_shape_set_fault(of, faces[k].set, fault, sizeof fault))
+            return cs_check_refuse(check, path, "%s", fault);
+    }
+    return CS_OK;
+}
+
 static enum cs_status check_network(const struct cs_check *check, const char *body,
                                     const struct cs_body *of) {
     char path[128];
@@ -139,7 +155,8 @@ static enum cs_status check_body(const struct cs_check *check, const struct cs_s
         cs_check_pose(check, path, "cloth", &body->cloth.place) ||
         cs_check_pose(check, path, "mesh", &body->mesh.place) ||
         check_mass(check, path, body) || check_pins(check, scene, path, body) ||
-        check_pressure(check, path, body) || check_texture(check, path, body->material.texture))
+        check_pressure(check, path, body) ||
+        check_texture(check, path, body->material.texture) || check_faces(check, path, body))
         return check->error->status;
     return CS_OK;
 }

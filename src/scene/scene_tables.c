@@ -179,6 +179,13 @@ static const struct cs_option spring_rows[] = {
 const struct cs_table cs_spring_table = {ROWS(spring_rows),
                                          .size = sizeof(struct cs_spring_law)};
 
+static const struct cs_option face_rows[] = {
+    TEXT(struct cs_face_colour, set, "group, object or material of the mesh's file"),
+    VECTOR(struct cs_face_colour, colour, 3, "", one3, 0, 1, "linear RGB"),
+};
+static const struct cs_table face_table = {ROWS(face_rows),
+                                           .size = sizeof(struct cs_face_colour)};
+
 static const char *const shading_names[] = {"smooth", "flat", NULL};
 static const double red_cloth[3] = CS_CLOTH_RED;
 static const struct cs_option material_rows[] = {
@@ -195,6 +202,9 @@ static const struct cs_option material_rows[] = {
     TEXT(struct cs_material, texture, "PNG file, relative to the scene file; times the colour"),
     VECTOR(struct cs_material, texture_repeat, 2, "", one2, 1e-3, 1e4,
            "repetitions of the texture along a row and a column, or a mesh's width and height"),
+    LIST(struct cs_material, faces, face_table,
+         "of a mesh's file, instead of a texture: colours of faces by their names, times the "
+         "colour; the first counts"),
 };
 static const struct cs_table material_table = {ROWS(material_rows),
                                                .size = sizeof(struct cs_material)};

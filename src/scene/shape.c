@@ -215,13 +215,12 @@ static void find_near(const struct cs_mesh_label *label, const char *word,
     *near = 0;
 }
 
-/* Returns true if no face of the body has this name; text then names a near one. */
-static bool set_fault(const struct cs_body *body, const char *set, char *text, size_t size) {
+bool cs_shape_set_fault(const struct cs_body *body, const char *set, char *text, size_t size) {
     const struct cs_trimesh *mesh = body->mesh.present ? body->mesh.geometry : NULL;
     char near[CS_TEXT_MAX] = "";
     if (!mesh || !mesh->triangle_labels)
-        return snprintf(text, size, "found the set \"%.60s\", expected an index or a box: %s",
-                        set, mesh ? "no face of the mesh has a name" : "a cloth has no sets");
+        return snprintf(text, size, "found the set \"%.60s\", but %s", set,
+                        mesh ? "no face of the mesh has a name" : "a cloth has no sets");
     for (uint32_t t = 0; t < mesh->n_triangles; t++)
         if (cs_mesh_has_label(mesh->labels, mesh->triangle_labels[t], set))
             return false;
@@ -246,7 +245,7 @@ bool cs_shape_pin_fault(const struct cs_body *body, const struct cs_pin *pin, ch
             "or edges",
             cs_pin_names[pin->at]);
     if (*pin->set)
-        return set_fault(body, pin->set, text, size);
+        return cs_shape_set_fault(body, pin->set, text, size);
     for (int c = 0; c < 3 && pin->box.present; c++)
         if (pin->box.min[c] > pin->box.max[c])
             return snprintf(text, size, "box.min[%d] = %.9g lies above box.max[%d] = %.9g", c,

@@ -38,6 +38,10 @@ bool cs_holder_fault(const struct cs_scene *scene, const struct cs_holder *holde
 void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,
                   bool *pinned);
 
+/* Returns true if no face of the body, whose mesh is made, has this name. text (size bytes)
+ * then says so, and names a near one. */
+bool cs_shape_set_fault(const struct cs_body *body, const char *set, char *text, size_t size);
+
 /* Returns true if the body, whose mesh is made, cannot have this pin: an index beyond its
  * particles, a named edge of a mesh, a box inside out. text (size bytes) then says so. */
 bool cs_shape_pin_fault(const struct cs_body *body, const struct cs_pin *pin, char *text,

@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "base/pool.h"
+#include "draw/srgb.h"
 #include "io/png.h"
 #include "model/contact/ccd/crossings.h"
 #include "model/elastic/membrane_strain.h"
@@ -31,14 +32,32 @@ static enum cs_status read_texture(const struct cs_scene *scene, const char *nam
     return error->status;
 }
 
+/* Makes a row of texels: the colours of faces, and white for the rest. */
+static enum cs_status make_palette(const struct cs_list *list, struct cs_image *image,
+                                   struct cs_error *error) {
+    const struct cs_face_colour *faces = list->items;
+    const size_t n = 3 * ((size_t)list->n + 1);
+    struct cs_srgb srgb;
+    *image = (struct cs_image){.width = list->n + 1, .height = 1, .rgb = malloc(n)};
+    if (!image->rgb)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours of faces");
+    cs_srgb_make(&srgb);
+    memset(image->rgb, 255, n);
+    for (size_t k = 0; k < n - 3; k++)
+        image->rgb[k] = (uint8_t)cs_srgb_encode(&srgb, (float)faces[k / 3].colour[k % 3]);
+    return CS_OK;
+}
+
 static enum cs_status read_textures(struct cs_picture *picture, struct cs_error *error) {
     const struct cs_scene *scene = picture->scene;
     picture->textures = calloc(scene->bodies.n, sizeof *picture->textures);
     if (!picture->textures)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u textures", scene->bodies.n);
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
-        const char *name = cs_scene_bodies(scene)[b].material.texture;
-        if (*name && read_texture(scene, name, picture->textures + b, error))
+        const struct cs_material *material = &cs_scene_bodies(scene)[b].material;
+        struct cs_image *image = picture->textures + b;
+        if ((*material->texture && read_texture(scene, material->texture, image, error)) ||
+            (material->faces.n && make_palette(&material->faces, image, error)))
             return error->status;
     }
     return CS_OK;
