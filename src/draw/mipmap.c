@@ -1,8 +1,8 @@
 /* mipmap.c - trilinear filtering (Williams 1983): two levels, four texels of each.
  *
- * A pixel that covers rho texels of level 0 in width takes the level log2(rho), where a texel
- * is about a pixel wide. It interpolates linearly between the two nearest whole levels. The
- * caller passes rho^2, which needs no root: log2(rho) = log2(rho^2) / 2.
+ * A part of a pixel that covers rho texels of level 0 in width takes the level log2(rho), where
+ * a texel is about as wide as it. It interpolates linearly between the two nearest whole
+ * levels. Footprints have rho^2, which needs no root: log2(rho) = log2(rho^2) / 2.
  */
 #include "draw/mipmap.h"
 
@@ -124,7 +124,30 @@ static float log_2(float value) {
     return (float)exponent + (mantissa - 1);
 }
 
-void cs_mipmap_sample(const struct cs_mipmap *mips, float u, float v, float square,
+void cs_texel_footprint_make(const struct cs_mipmap *mips, float steps[2][2],
+                             struct cs_texel_footprint *footprint) {
+    float squares[2];
+    for (int i = 0; i < 2; i++) {
+        const float du = steps[i][0] * (float)mips->levels[0].width;
+        const float dv = steps[i][1] * (float)mips->levels[0].height;
+        squares[i] = du * du + dv * dv;
+    }
+    const int longer = squares[0] > squares[1] ? 0 : 1;
+    const float square = squares[longer], other = squares[1 - longer];
+    const float least = other > 1 ? other : 1;
+    int parts = 1;
+    // NaN and huge numbers are one part
+    while (parts < CS_FOOTPRINT_PARTS_MAX && square < 1e30f &&
+           (float)(parts * parts) * least < square)
+        parts++;
+    const float part = square / (float)(parts * parts);
+    footprint->parts = parts;
+    footprint->square = parts > 1 && part < least ? least : part;
+    for (int k = 0; k < 2; k++)
+        footprint->side[k] = parts > 1 ? steps[longer][k] : 0;
+}
+
+static void trilinear(const struct cs_mipmap *mips, float u, float v, float square,
                       float rgb[3]) {
     // below 1 texel per pixel level 0 is magnified; NaN and huge numbers stay in range
     const float level = square > 1 ? 0.5f * log_2(square < 1e30f ? square : 1e30f) : 0;
@@ -140,4 +163,18 @@ void cs_mipmap_sample(const struct cs_mipmap *mips, float u, float v, float squa
     bilinear(mips, whole + 1, u, v, then);
     for (int k = 0; k < 3; k++)
         rgb[k] += (level - (float)whole) * (then[k] - rgb[k]);
+}
+
+void cs_mipmap_sample(const struct cs_mipmap *mips, float u, float v,
+                      const struct cs_texel_footprint *footprint, float rgb[3]) {
+    const float share = 1 / (float)footprint->parts;
+    rgb[0] = rgb[1] = rgb[2] = 0;
+    for (int i = 0; i < footprint->parts; i++) {
+        const float at = ((float)i + 0.5f) * share - 0.5f;
+        float part[3];
+        trilinear(mips, u + at * footprint->side[0], v + at * footprint->side[1],
+                  footprint->square, part);
+        for (int k = 0; k < 3; k++)
+            rgb[k] += share * part[k];
+    }
 }

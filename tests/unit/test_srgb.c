@@ -150,6 +150,10 @@ static int columns(int x, int y) {
     (void)y;
     return x % 2 ? 200 : 100;
 }
+static int rows(int x, int y) {
+    (void)x;
+    return y % 2 ? 200 : 100;
+}
 static int slope(int x, int y) {
     return 10 * x + 5 * y;
 }
@@ -174,6 +178,16 @@ static float light(double byte) {
     return (float)decode(byte / 255);
 }
 
+/* the light at (u, v) of a square pixel that is as large as `square` texels */
+static void sample(const struct cs_mipmap *mips, float u, float v, float square, float rgb[3]) {
+    const float side = sqrtf(square);
+    float steps[2][2] = {{side / WIDE, 0}, {0, side / HIGH}};
+    struct cs_texel_footprint footprint;
+    cs_texel_footprint_make(mips, steps, &footprint);
+    ck_assert_int_eq(footprint.parts, 1);
+    cs_mipmap_sample(mips, u, v, &footprint, rgb);
+}
+
 /* in the middle of a texel its own light, between two their mean, and the same a repeat on */
 TEST(a_texture_repeats_and_is_blended) {
     struct cs_arena arena = {0};
@@ -181,22 +195,61 @@ TEST(a_texture_repeats_and_is_blended) {
     float rgb[3];
     make(&mips, &arena, slope);
     for (int turn = -2; turn <= 2; turn++) {
-        cs_mipmap_sample(&mips, (4.5f / WIDE) + (float)turn, 2.5f / HIGH, 0.5f, rgb);
+        sample(&mips, (4.5f / WIDE) + (float)turn, 2.5f / HIGH, 0.5f, rgb);
         near(rgb[0], light(50), 2e-5);
-        cs_mipmap_sample(&mips, 5.0f / WIDE, 3.0f / HIGH + (float)turn, 1, rgb);
+        sample(&mips, 5.0f / WIDE, 3.0f / HIGH + (float)turn, 1, rgb);
         near(rgb[1], (light(50) + light(55) + light(60) + light(65)) / 4, 2e-5);
         // across the seam: between the last column and the first
-        cs_mipmap_sample(&mips, (float)turn, 0.5f / HIGH, 1, rgb);
+        sample(&mips, (float)turn, 0.5f / HIGH, 1, rgb);
         near(rgb[2], (light(0) + light(110)) / 2, 2e-5);
     }
     // from afar: the mean of all, and nothing beyond the smallest copy
     float sum = 0;
     for (int i = 0; i < WIDE * HIGH; i++)
         sum += light(slope(i % WIDE, i / WIDE)) / (WIDE * HIGH);
-    cs_mipmap_sample(&mips, 0.3f, 0.4f, 1e6f, rgb);
+    sample(&mips, 0.3f, 0.4f, 1e6f, rgb);
     near(rgb[0], sum, 1e-4);
-    cs_mipmap_sample(&mips, 0.3f, 0.4f, NAN, rgb);
+    sample(&mips, 0.3f, 0.4f, NAN, rgb);
     near(rgb[0], 0.5f, 0.5);
+    sample(&mips, 0.3f, 0.4f, INFINITY, rgb);
+    near(rgb[0], 0.5f, 0.5);
+    cs_arena_finish(&arena);
+}
+
+/* A pixel that covers six texels in a row and one in height is six parts of a texel: in the
+ * middle of a stripe it has that stripe's light, where a square pixel of that width has the
+ * mean of all. Six columns are a whole number of the columns' periods, so that their mean is
+ * exact. */
+TEST(a_long_pixel_blurs_along_its_longer_side) {
+    struct cs_arena arena = {0};
+    struct cs_mipmap mips;
+    struct cs_texel_footprint footprint;
+    float along[2][2] = {{6.0f / WIDE, 0}, {0, 1.0f / HIGH}}, rgb[3];
+    make(&mips, &arena, rows);
+    for (int turn = 0; turn < 2; turn++) {
+        cs_texel_footprint_make(&mips, along, &footprint);
+        ck_assert_int_eq(footprint.parts, 6);
+        near(footprint.square, 1, 1e-6);
+        near(footprint.side[0], 0.5, 0);
+        cs_mipmap_sample(&mips, 0.3f, 2.5f / HIGH, &footprint, rgb);
+        near(rgb[0], light(100), 2e-5);
+        sample(&mips, 0.3f, 2.5f / HIGH, 36, rgb);
+        near(rgb[0], (light(100) + light(200)) / 2, 1e-3);
+        // the same pixel, its sides in the other order
+        const float swap[2] = {along[0][0], along[0][1]};
+        memcpy(along[0], along[1], sizeof swap);
+        memcpy(along[1], swap, sizeof swap);
+    }
+    cs_arena_finish(&arena);
+    make(&mips, &arena, columns);
+    cs_texel_footprint_make(&mips, along, &footprint);
+    cs_mipmap_sample(&mips, 6.0f / WIDE, 2.5f / HIGH, &footprint, rgb);
+    near(rgb[0], (light(100) + light(200)) / 2, 2e-5);
+    // longer than eight times: eight wider parts
+    along[0][0] = 64.0f / WIDE;
+    cs_texel_footprint_make(&mips, along, &footprint);
+    ck_assert_int_eq(footprint.parts, CS_FOOTPRINT_PARTS_MAX);
+    near(footprint.square, 64, 1e-4);
     cs_arena_finish(&arena);
 }
 

@@ -30,26 +30,26 @@ CS_INLINE void put_four(cs_f4 from, float *to) {
     *(cs_f4_unaligned *)to = from;
 }
 
-/* Squared texels per pixel: the longer of the steps along a row and along a column (rho^2 of
- * mipmap.c). Differences are taken in blocks of 2 x 2 pixels from the bottom left, as OpenGL
- * does. */
-static float texels_of(const struct cs_band_pass *pass, const struct cs_triangle *t,
-                       const struct cs_mipmap *mips, int x, int y) {
+/* Footprint of a pixel on a texture. Differences are taken in blocks of 2 x 2 pixels from the
+ * bottom left, as OpenGL does. */
+static struct cs_texel_footprint footprint_of(const struct cs_band_pass *pass,
+                                              const struct cs_triangle *t,
+                                              const struct cs_mipmap *mips, int x, int y) {
     const int last = pass->shading.height - 1;
     const float left = (float)((x & ~1) - t->left);
     const float low = (float)(last - ((last - y) & ~1) - t->top);
     const float places[3][2] = {{left, low}, {left + 1, low}, {left, low - 1}};
-    float uv[3][2], squares[2];
+    struct cs_texel_footprint footprint;
+    float uv[3][2], steps[2][2];
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 2; k++)
             uv[i][k] = value_at(t->attributes + 4 + k, places[i][0], places[i][1]) /
                        value_at(&t->inverse, places[i][0], places[i][1]);
-    for (int i = 0; i < 2; i++) {
-        const float du = (uv[i + 1][0] - uv[0][0]) * (float)mips->levels[0].width;
-        const float dv = (uv[i + 1][1] - uv[0][1]) * (float)mips->levels[0].height;
-        squares[i] = du * du + dv * dv;
-    }
-    return squares[0] > squares[1] ? squares[0] : squares[1];
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 2; k++)
+            steps[i][k] = uv[i + 1][k] - uv[0][k];
+    cs_texel_footprint_make(mips, steps, &footprint);
+    return footprint;
 }
 
 // the slot of one side of a surface; its fragments are shaded first if it is full or another's
@@ -111,9 +111,9 @@ static void add_fragments(const struct cs_band_pass *pass, const struct cs_trian
             f->view_depth[first + i] = along_of(pass, t, f->material, x + i, y);
         // both pixels of a block of 2 x 2 have the same
         for (int i = 0; f->material->mode == CS_SURFACE_TEXTURED && i < count; i++)
-            f->texels[first + i] = i && ((x + i) & 1)
-                                       ? f->texels[first + i - 1]
-                                       : texels_of(pass, t, f->material->mips, x + i, y);
+            f->footprints[first + i] = i && ((x + i) & 1)
+                                           ? f->footprints[first + i - 1]
+                                           : footprint_of(pass, t, f->material->mips, x + i, y);
     }
 }
 

@@ -42,8 +42,8 @@ struct cs_fragments {
     float inverse[CS_FRAGMENTS_PADDED];                   /* 1/w */
     float view_depth[CS_FRAGMENTS]; /* m along the view, of parallel rays: they have no w */
     float attributes[CS_ATTRIBUTES][CS_FRAGMENTS_PADDED]; /* divided by w */
-    float texels[CS_FRAGMENTS];          /* squared texels per pixel, of textured surfaces */
-    uint32_t colour_index[CS_FRAGMENTS]; /* index in `colours` of the result */
+    struct cs_texel_footprint footprints[CS_FRAGMENTS];   /* of textured surfaces */
+    uint32_t colour_index[CS_FRAGMENTS];                  /* index in `colours` of the result */
 };
 
 /* Intermediate results of cs_shade, 22 KiB. Some arrays serve twice: facing holds |n|^2 before

@@ -160,7 +160,7 @@ static void paint_base(const struct cs_fragments *f, struct cs_shading_work *w) 
         const float t = 1 / f->inverse[i];
         float rgb[3];
         cs_mipmap_sample(f->material->mips, f->attributes[4][i] * t, f->attributes[5][i] * t,
-                         f->texels[i], rgb);
+                         f->footprints + i, rgb);
         for (int k = 0; k < 3; k++)
             w->base[k][i] *= rgb[k];
     }

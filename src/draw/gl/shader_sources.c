@@ -216,6 +216,22 @@ static const char surface_fragment[] = GLSL(
         vec3 over = max(c - 0.6, 0.0);
         return c - over + over / (1.0 + over / 0.4);
     }
+    // mean over parts of the longer side of the pixel's footprint, at most 8 (mipmap.h)
+    vec3 textured() {
+        vec2 wide = vec2(textureSize(picture, 0));
+        vec2 steps[2] = vec2[2](dFdx(uv), dFdy(uv));
+        vec2 squares = vec2(dot(wide * steps[0], wide * steps[0]),
+                            dot(wide * steps[1], wide * steps[1]));
+        vec2 side = squares.x > squares.y ? steps[0] : steps[1];
+        float square = max(squares.x, squares.y);
+        float least = max(min(squares.x, squares.y), 1.0);
+        float parts = clamp(ceil(sqrt(square / least)), 1.0, 8.0);
+        float part = parts > 1.0 ? sqrt(max(1.0 / (parts * parts), least / square)) : 1.0;
+        vec3 sum = vec3(0.0);
+        for (float i = 0.5; i < parts; i += 1.0)
+            sum += textureGrad(picture, uv + (i / parts - 0.5) * side, part * side, vec2(0.0)).rgb;
+        return sum / parts;
+    }
     vec3 blinn_phong(vec3 base, vec3 n, vec3 v) {
         // ambient light is 1 on an upright surface seen straight on; more from above and less
         // towards the outline, or folds without direct light would be one flat patch
@@ -243,7 +259,7 @@ static const char surface_fragment[] = GLSL(
         vec3 base = gl_FrontFacing ? front : back;
         float towards = abs(dot(n, v));
         if (mode == 1)
-            base *= texture(picture, uv).rgb;
+            base *= textured();
         if (span.z > 0.0 && ink.w <= 0.0 && span.w > 0.0)
             base += pattern() * (has_lines == 1 ? ink.rgb - base : 0.06 * base);
         vec3 c;
