@@ -219,7 +219,9 @@ static const char surface_fragment[] = GLSL(
     // mean over parts of the longer side of the pixel's footprint, at most 8 (mipmap.h)
     vec3 textured() {
         vec2 wide = vec2(textureSize(picture, 0));
-        vec2 steps[2] = vec2[2](dFdx(uv), dFdy(uv));
+        // of the lower row and the left column of the pixel's block of 2 x 2, for all of it
+        vec2 odd = mod(floor(gl_FragCoord.xy), 2.0);
+        vec2 steps[2] = vec2[2](dFdx(uv - odd.y * dFdy(uv)), dFdy(uv - odd.x * dFdx(uv)));
         vec2 squares = vec2(dot(wide * steps[0], wide * steps[0]),
                             dot(wide * steps[1], wide * steps[1]));
         vec2 side = squares.x > squares.y ? steps[0] : steps[1];
