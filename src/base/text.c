@@ -234,6 +234,16 @@ const char *cs_nearest_word(const char *word, const char *const *candidates) {
     return nearest;
 }
 
+bool cs_names_program(const char *text) {
+    return !strncmp(text, "program:", 8) || !strncmp(text, "tableau:", 8);
+}
+
+bool cs_names_code(const char *text) {
+    const size_t length = strlen(text);
+    return cs_names_program(text) || strchr(text, '/') ||
+           (length > 3 && !strcmp(text + length - 3, ".so"));
+}
+
 enum { REPORTS_MAX = 16 };
 
 void cs_old_name_report(const char *place, const char *old, const char *name) {

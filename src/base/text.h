@@ -62,6 +62,11 @@ bool cs_parse_real(const char *s, double *value);
  * beginning. */
 const char *cs_nearest_word(const char *word, const char *const *candidates);
 
+/* True for "program:COMMAND" and "tableau:FILE" in the place of an integrator's name; and for
+ * all that names code there: these, a path, a name with the ending .so. */
+bool cs_names_program(const char *text);
+bool cs_names_code(const char *text);
+
 /* Prints "clothsim: PLACEold is now PLACEname; the old name goes in the next release" on
  * standard error, once per process and old name. old is a text of a table: old names
  * are compared by their addresses. place stands before both ("--", "newmark:"). Main thread

@@ -43,14 +43,14 @@ void cs_method_finish(struct cs_method *method) {
 }
 
 size_t cs_method_name_length(const char *text) {
-    const size_t begin = cs_program_is_named(text) ? strcspn(text, ":") + 1 : 0;
+    const size_t begin = cs_names_program(text) ? strcspn(text, ":") + 1 : 0;
     return begin + strcspn(text + begin, ":");
 }
 
 enum cs_status cs_method_find(struct cs_method *method, struct cs_registry *registry,
                               const char *text, const char **pairs, struct cs_error *error) {
     const size_t length = cs_method_name_length(text);
-    const bool is_program = cs_program_is_named(text);
+    const bool is_program = cs_names_program(text);
     const struct cs_registry_entry *found;
     *method = (struct cs_method){0};
     *pairs = text[length] ? text + length + 1 : NULL;

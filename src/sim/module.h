@@ -63,10 +63,6 @@ void cs_program_process_end(struct cs_program_process *process, struct cs_text *
 int cs_program_receive_hello(const struct cs_program_process *process,
                              struct cs_program_message *message);
 
-/* True for "program:COMMAND" and "tableau:FILE", which name programs rather than methods or
- * module files. */
-bool cs_program_is_named(const char *text);
-
 /* Starts "program:COMMAND", "program:NAME=COMMAND", or the program that reads the coefficients
  * of "tableau:FILE", reads its description, and ends it. Each
  * run starts a process of its own. COMMAND is cut into words at spaces; a word that begins with

@@ -12,13 +12,6 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Bytes of "program:" and "tableau:". */
-enum { PREFIX = 8 };
-
-bool cs_program_is_named(const char *text) {
-    return !strncmp(text, "program:", PREFIX) || !strncmp(text, "tableau:", PREFIX);
-}
-
 /* Closes a text of the description, which may hold anything. */
 #define CLOSED(text) ((text)[sizeof(text) - 1] = 0, (text))
 
@@ -172,7 +165,7 @@ enum cs_status cs_program_method_open(const char *text, const struct cs_integrat
             return cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%.200s\"", text);
         // two copies behind the struct: one stays, one is cut
         program->key = memcpy(program + 1, text, bytes);
-        program->command = strcpy(program->key + bytes, text + PREFIX);
+        program->command = strcpy(program->key + bytes, strchr(text, ':') + 1);
         if (open_program(program, error)) {
             free(program);
             return error->status;

@@ -89,12 +89,6 @@ static enum cs_status open_module(struct cs_registry *registry, const char *file
     return error->status;
 }
 
-bool cs_registry_is_file(const char *text) {
-    const size_t length = strlen(text);
-    return cs_program_is_named(text) || strchr(text, '/') ||
-           (length > 3 && !strcmp(text + length - 3, ".so"));
-}
-
 /* Starts a program and adds it, unless it is there. */
 static enum cs_status add_program(struct cs_registry *registry, const char *text,
                                   struct cs_error *error) {
@@ -114,7 +108,7 @@ static enum cs_status add_program(struct cs_registry *registry, const char *text
 enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *file,
                                     struct cs_error *error) {
     char absolute[PATH_MAX];
-    if (cs_program_is_named(file))
+    if (cs_names_program(file))
         return add_program(registry, file, error);
     if (!realpath(file, absolute))
         return cs_fail(error, CS_ERR_MODULE, "%s: no such module file", file);
@@ -150,7 +144,7 @@ static bool may_contain_name(const char *file, const char *name) {
 
 /* Filter of scandir. */
 static int is_module_name(const struct dirent *entry) {
-    return cs_registry_is_file(entry->d_name);
+    return cs_names_code(entry->d_name);
 }
 
 /* Opens the modules of a folder in the order of their names. With a name: only those that may
@@ -312,7 +306,7 @@ static const char *translate_name(const char *name) {
 static enum cs_status unknown_name(struct cs_registry *registry, const char *name,
                                    struct cs_error *error) {
     uint32_t n;
-    if (cs_program_is_named(name))
+    if (cs_names_program(name))
         return cs_fail(
             error, CS_ERR_USAGE,
             "found \"%.60s\", expected a name: only the command line starts a program, "

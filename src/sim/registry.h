@@ -24,10 +24,6 @@ struct cs_registry {
     struct cs_arena arena;
 };
 
-/* True for what names code rather than a method: a path, a name with the ending .so, or a
- * program. */
-bool cs_registry_is_file(const char *text);
-
 /* Adds one module file (--plugin), or starts one program and adds it (--program). A refused
  * file is an error here (CS_ERR_MODULE), unlike one that a folder holds. Only texts of the
  * command line may come here: this is the one door by which programs are started. */

@@ -114,14 +114,6 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
                            cs_scene_first_matched(scene) < scene->bodies.n ? SHAPES_METHOD
                                                                            : EXPLICIT_METHOD,
                            error);
-    /* code is run where the user names it, and never by a scene */
-    if (!asked && cs_registry_is_file(scene->integrator)) {
-        cs_fail(&missing, CS_ERR_SCENE,
-                "integrator: found \"%.60s\", expected a name: a module file is given with "
-                "--integrator or --plugin, a program with --program",
-                scene->integrator);
-        return fail_at(session, CS_ERR_SCENE, missing.message, error);
-    }
     if (cs_method_find(method, &session->registry, asked ? asked : scene->integrator, &pairs,
                        &missing)) {
         struct cs_text message = {0};

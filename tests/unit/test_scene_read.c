@@ -97,6 +97,11 @@ TEST(folder_is_that_of_the_path) {
     }
 }
 
+/* code is named on the command line alone, however long its name is */
+#define NO_FILE                                                                                \
+    ", expected a name: a module file is given with --integrator or --plugin, a program with " \
+    "--program"
+
 TEST(messages_name_the_place) {
     static const char *const rows[][2] = {
         {"{\n  \"time\": {\"fps\": 60,}\n}",
@@ -165,7 +170,13 @@ TEST(messages_name_the_place) {
         {"{\"bodies\": [" BODY "], \"integrator\": {\"dt\": null}}",
          "s.json:1:86: integrator.dt: found null, expected a number, true, false or a string"},
         {"{\"bodies\": [" BODY "], \"integrator\": \"\"}",
-         "s.json:1:79: integrator: found 0 characters, expected 1..63"}};
+         "s.json:1:79: integrator: found 0 characters, expected 1..63"},
+        {"{\"bodies\": [" BODY "], \"integrator\": \"tableau:a.json\"}",
+         "s.json:1:79: integrator: found \"tableau:a.json\"" NO_FILE},
+        {"{\"bodies\": [" BODY "], \"integrator\": {\"name\": \"tableau:/a/folder/"
+         "whose/path/has/more/bytes/than/the/name/of/an/integrator.json\"}}",
+         "s.json:1:88: integrator.name: found \"tableau:/a/folder/"
+         "whose/path/has/more/bytes/than/the/name/of\"" NO_FILE}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         assert_refused(rows[i][0], NULL, 0, CS_ERR_SCENE, rows[i][1]);
 }

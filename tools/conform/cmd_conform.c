@@ -288,7 +288,7 @@ static enum cs_status print_cards(void *ctx, struct cs_error *error) {
     struct cs_registry registry = {0};
     cs_registry_add_files(&registry, options->plugins, options->n_plugins, error);
     for (uint32_t k = 0; k < output->args->n_operands && !error->status; k++) {
-        if (cs_registry_is_file(output->args->operands[k]))
+        if (cs_names_code(output->args->operands[k]))
             print_file(output, &registry, output->args->operands[k], error);
         else
             print_named(output, &registry, output->args->operands[k], error);

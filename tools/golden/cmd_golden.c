@@ -149,7 +149,7 @@ static enum cs_status take_states(struct cs_args *args, struct cs_error *error) 
     // a distance is measured from something that is kept
     else if (m > 0 && !golden->states)
         cs_fail(error, CS_ERR_USAGE, "--tolerance needs states, found --keep 0");
-    else if (method && cs_program_is_named(method))
+    else if (method && cs_names_program(method))
         cs_fail(error, CS_ERR_USAGE,
                 "no table starts a program; expected --program NAME=COMMAND -i NAME, here and "
                 "at each check");

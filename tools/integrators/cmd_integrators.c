@@ -300,7 +300,7 @@ static enum cs_status list(struct cs_args *args, struct cs_error *error) {
                        "--family and --order choose from the list, found \"%.60s\" too",
                        operand);
     if (!cs_registry_add_files(&registry, options->plugins, options->n_plugins, error)) {
-        if (operand && cs_registry_is_file(operand))
+        if (operand && cs_names_code(operand))
             print_file(options, &registry, operand, error);
         else if (operand && !cs_registry_find(&registry, operand, &found, error))
             print_entries(options, found, 1, error);

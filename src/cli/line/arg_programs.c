@@ -14,7 +14,7 @@ static enum cs_status add_programs(struct cs_args *args, const struct cs_arg *ro
         char *item = cs_method_split(&rest), name[CS_SERIES_BYTES];
         const char *method = item;
         struct cs_error unread = {0}; // reported when the list is read
-        if (cs_series_parse_name(&method, name, &unread) || !cs_program_is_named(method))
+        if (cs_series_parse_name(&method, name, &unread) || !cs_names_program(method))
             continue;
         // the name alone: without SERIES= and options
         item += method - item;

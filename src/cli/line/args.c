@@ -339,7 +339,7 @@ static void *append(const struct list *list, size_t size, struct cs_error *error
 static enum cs_status add_word(const struct list *list, const char *text,
                                struct cs_error *error) {
     const char **word = append(list, sizeof *word, error);
-    const bool is_whole = !list->row->prefix || cs_program_is_named(text);
+    const bool is_whole = !list->row->prefix || cs_names_program(text);
     const char *prefix = is_whole ? "" : list->row->prefix;
     char *copy = cs_arena_alloc(list->arena, strlen(prefix) + strlen(text) + 1, error);
     if (word && copy)

@@ -125,6 +125,12 @@ static enum cs_status read_name(struct cs_json_context *context, const struct cs
     if (cs_json_kind_of(value) != CS_JSON_TEXT)
         return cs_json_context_fail_type(context, value, "a string");
     const size_t length = strlen(cs_json_text(value));
+    // code is run where the user names it, and never by a scene
+    if (cs_names_code(cs_json_text(value)))
+        return cs_json_context_fail(context, value, false,
+                                    "found \"%.60s\", expected a name: a module file is given "
+                                    "with --integrator or --plugin, a program with --program",
+                                    cs_json_text(value));
     if (length < 1 || length >= sizeof scene->integrator)
         return cs_json_context_fail(context, value, false,
                                     "found %zu characters, expected 1..%zu", length,
