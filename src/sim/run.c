@@ -121,6 +121,7 @@ static void note_give_up(struct cs_run *run) {
 static enum cs_step advance(struct cs_run *run, double from, double to) {
     if (!run->host->settings.skip_advance_check)
         cs_advance_check_begin(&run->host->advance_check, run->system, from);
+    cs_host_store_step(run->host, from, run->x);
     cs_host_pin(run->host, true);
     watch(run, "in advance");
     const enum cs_step step =

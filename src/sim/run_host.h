@@ -253,6 +253,9 @@ bool cs_energy_input_events(struct cs_run_host *host, double t);
  * method's calls only: corrections, the ledger and outputs see them as free. */
 void cs_host_pin(struct cs_run_host *host, bool held);
 
+/* Stores where a step begins, unless the method asks max_step_fraction about its steps. */
+void cs_host_store_step(struct cs_run_host *host, double t, const double *x);
+
 /* --- linear systems: linear_setup.c sets them up, host.c solves them --- */
 
 /* The calls solve_setup and euler_setup of a method. */

@@ -254,8 +254,9 @@ static uint32_t count_passed(const struct cs_probe *sheets) {
 }
 
 /* A method that asks max_step_fraction claims to shorten its step. One that never asks claims
- * nothing, and is right as it is: the guard is then nobody's. Where the step is the user's to
- * choose, the sheets may well fly apart too fast: that is for `restitution` to judge. */
+ * nothing, and is right as it is: the guard is then the host's, which ends the run. Where the
+ * step is the user's to choose, the sheets may well fly apart too fast: that is for
+ * `restitution` to judge. */
 void cs_check_crossing(const struct cs_conform *conform, struct cs_conform_row *row) {
     struct cs_probe sheets;
     if (conform->method->traits & CS_EXPLICIT_OUTER) {
@@ -265,7 +266,7 @@ void cs_check_crossing(const struct cs_conform *conform, struct cs_conform_row *
     if (cs_probe_open(&sheets, conform, conform->method, THIN))
         sheets.trace.enabled = true;
     const bool ended = !cs_probe_run(&sheets, THIN_FRAMES);
-    if (!sheets.asks_step_fraction && sheets.session.run.outcome != CS_GAVE_UP) {
+    if (!sheets.asks_step_fraction) {
         cs_row_skip(row, "a guard and no claim: it never asks max_step_fraction");
         row->is_guard = true;
     } else if (ended && sheets.session.run.outcome != CS_UNBOUNDED)

@@ -29,9 +29,10 @@ void cs_blocked_step_store(struct cs_blocked_step *blocked, const struct cs_syst
                            const double t[2], const double *const x[2], double share) {
     const size_t n3 = 3 * (size_t)system->view.n;
     blocked->is_set = blocked->x && share < 1;
+    blocked->asked = true;
     for (size_t end = 0; end < 2 && blocked->is_set; end++) {
         blocked->t[end] = t[end];
-        memcpy(blocked->x + end * n3, x[end], n3 * sizeof *blocked->x);
+        memmove(blocked->x + end * n3, x[end], n3 * sizeof *blocked->x);
     }
 }
 
