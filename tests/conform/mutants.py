@@ -311,18 +311,21 @@ def main():
             module.unlink()
             return check, same
 
-        results = list(pool.map(run, enumerate(mutants)))
-    made = [(m, *result) for m, result in zip(mutants, results) if result is not None]
+        # told as they come, so that a run that is cut short has its results
+        made, lines = [], []
+        for mutant, result in zip(mutants, pool.map(run, enumerate(mutants))):
+            if result is None:
+                continue
+            check, scenes = result
+            made.append((mutant, check, scenes))
+            reason = "" if check else table.get(mutant["name"], ["", "", ""])[2]
+            if scenes:
+                reason = f"same bits in {scenes} scenes"
+            known = bool(check) or (whole and bool(reason) and (scenes > 0) == reason.startswith("same"))
+            print("ok" if known or write else "not ok", "-", mutant["name"], f"({check or 'survives: ' + reason})",
+                  mutant.get("file", ""), mutant.get("line", ""), mutant.get("change", ""), flush=True)
+            lines.append("\t".join((mutant["name"], check, reason)))
     found = [m for m, check, _ in made if check]
-    lines = []
-    for mutant, check, scenes in made:
-        reason = "" if check else table.get(mutant["name"], ["", "", ""])[2]
-        if scenes:
-            reason = f"same bits in {scenes} scenes"
-        known = bool(check) or (whole and bool(reason) and (scenes > 0) == reason.startswith("same"))
-        print("ok" if known or write else "not ok", "-", mutant["name"], f"({check or 'survives: ' + reason})",
-              mutant.get("file", ""), mutant.get("line", ""), mutant.get("change", ""))
-        lines.append("\t".join((mutant["name"], check, reason)))
     same = sum(scenes > 0 for _, _, scenes in made)
     rate = len(found) / (len(made) - same)
     print(f"# {len(found)} of {len(made) - same} mutants found, {100 * rate:.1f} %; {same} more do what the right "
