@@ -9,6 +9,7 @@ import csv
 import importlib.util
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -34,6 +35,56 @@ STEPS = {
     "needs": "host.energy(t, y)",
     "hangs": "open('hung', 'w').close(); time.sleep(1000)",
 }
+# each service against an identity that it has to hold; raises where one does not
+SERVICES = HEAD + """
+import numpy as np
+
+def near(name, found, expected, bound):
+    gap = np.abs(np.subtract(found, expected)).max() / (np.abs(expected).max() or 1)
+    if not gap <= bound:
+        raise ValueError(f"{name}: {gap:.2e}")
+
+def step(host, t, h, y):
+    n, n3, e, draw = host.n, 3 * host.n, 1e-6, np.random.default_rng(1)
+    mass, free = np.tile(host.mass, 3), np.tile(host.inv_mass > 0, 3)
+    p, q = (draw.normal(size=n3) * free for _ in range(2))
+    by_x = host.jvp(t, y, np.concatenate([p, 0 * p])).copy()
+    by_v = host.jvp(t, y, np.concatenate([0 * p, p])).copy()
+    both = np.concatenate([p, p])
+    slope = (host.force(t, y + e * both).copy() - host.force(t, y - e * both)) / (2 * e)
+    near("jvp", by_x + by_v, slope, 1e-5)
+    kxx, dvv = (blocks.reshape(6, n)[:, -1].copy() for blocks in host.diagonal(t, y))
+    # blocks and matrix leave out what short springs and turning dampers add: nothing at rest
+    for c, row in enumerate(((0, 1, 2), (1, 3, 4), (2, 4, 5)) if t == 0 else ()):
+        unit = np.zeros(2 * n3)
+        unit[(c + 1) * n - 1] = 1
+        near("kxx", kxx[list(row)], host.jvp(t, y, unit)[n - 1::n], 1e-12)
+        near("dvv", dvv[list(row)], host.jvp(t, y, np.roll(unit, n3))[n - 1::n], 1e-12)
+    still = np.concatenate([y[:n3], 0 * p])
+    move = np.concatenate([e * p, 0 * p])
+    rise = (host.energy(t, still + move) - host.energy(t, still - move)) / (2 * e)
+    near("energy", rise, -p @ host.force(t, still), 1e-4)
+    host.solve_setup(t, y, 1.0, -h, -h * h)
+    near("product", host.matrix_product(p), mass * p - h * by_v - h * h * by_x, 1e-5 if t else 1e-12)
+    near("solve", host.matrix_product(host.solve(q, 1e-13).copy()), q, 1e-11)
+    one, other = host.precondition(p).copy(), host.precondition(q).copy()
+    near("precondition", q @ one, p @ other, 1e-12)
+    near("definite", np.sign([p @ one, q @ other]), [1, 1], 0)
+    omega, delta = host.bounds(t, y)
+    near("bounds", [-p @ by_x <= omega**2 * (p @ (mass * p)), -p @ by_v <= 2 * delta * (p @ (mass * p))], [1, 1], 0)
+    near("nothing limits", [host.max_step_fraction(t, y[:n3], t + h, y[:n3] + h * y[n3:])], [1], 0)
+    host.longest_step(t, y)
+    host.note("all services hold")
+    host.counts[0] += 1
+    host.counts[1] += 2
+    # what is remembered moves the state
+    host.history[:n] += 1
+    new = y + h * host.rate(t, y)
+    new[n3:] += 1e-6 * free * host.history[0]
+    return new
+
+serve(step=step, name="services", order=1, needs="jvp diagonal energy solve bounds", history=1)
+"""
 n = failed = 0
 
 
@@ -148,6 +199,37 @@ def check_commands():
     told("compare measures its order", 50 < ratio < 80, f"{ratio}\n{out}{err}")
 
 
+def check_services():
+    with open("services.py", "w") as file:
+        file.write(SERVICES)
+    code, out, err = run(f"program:{PYTHON} services.py:dt=2e-3")
+    counts = re.search(r"^steps +(\d+), (\d+) rejected", out, re.M)
+    newton = re.search(r"(\d+) Newton", out)
+    told("every service holds its identity", code == 0 and "all services hold" in out, f"{code}\n{out}{err}")
+    told("its counts are told", counts and newton and counts[1] == counts[2]
+         and int(newton[1]) == 2 * int(counts[1]), out)
+    whole = state(f"program:{PYTHON} services.py:dt=2e-3")
+    run(f"program:{PYTHON} services.py:dt=2e-3", "-o", "part", "--checkpoint", "2", "-q", frames="2")
+    resumed = state(f"program:{PYTHON} services.py:dt=2e-3", "--resume", "part")
+    told("its history survives a checkpoint", whole == resumed, f"{whole}\n{resumed}")
+
+
+def check_studies(method="program:./midpoint"):
+    """The studies that choose steps by themselves."""
+    build_client()
+    advised = call("advise", "scene.json", "-t", "0.05", "-i", method)
+    told(f"advise takes {method}", advised[0] == 0 and "dt" in advised[1], advised)
+    mapped = call("stability", "scene.json", "-i", method, "--columns", "2", "--rows", "2", "-t", "0.05",
+                  "-o", "map", "-q", "-y")
+    told(f"stability takes {method}", mapped[0] == 0 and "stability.csv" in os.listdir("map"), mapped)
+    same = call("bisect", "scene.json", "-n", "2", "-i", method, "--b", "threads=2")
+    told(f"bisect takes {method}", same[0] == 0 and "2 frames" in same[1], same)
+
+
+def check_tableau_studies():
+    check_studies(f"tableau:{EXAMPLES}/tableaux/ralston3.json")
+
+
 def check_ranking():
     """Beside a program all are ranked by work, whatever the times were."""
     code, out, err = call("compare", "scene.json", "-t", "0.1", "-o", "ranked", "--runs", "3", "-q", "-i",
@@ -249,8 +331,8 @@ def check_door():
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     write_programs()
-    for check in ([check_cards] if "card" in sys.argv[3:] else
-                  [check_bits, check_commands, check_ranking, check_scipy, check_faults, check_signal, check_door]):
+    for check in ([check_cards, check_studies, check_tableau_studies] if "card" in sys.argv[3:] else
+                  [check_bits, check_commands, check_services, check_ranking, check_scipy, check_faults, check_signal, check_door]):
         check()
     os.chdir("/")
 print(f"1..{n}")

@@ -119,7 +119,7 @@ def check_faults():
         done = conform(file, "abi")
         told("no JSON", f"tableau.py: {file}:2:13: " in done.stderr, done.stderr)
         file.write_text(json.dumps({"bodies": [{"cloth": {"grid": [3, 3]}, "mass": {"total": 1}}],
-                                    "integrator": "tableau:ralston3.json"}))
+                                    "integrator": f"tableau:{FILES[0]}"}))
         done = subprocess.run([program, "run", file, "-n", "1", "--no-render"], capture_output=True, text=True)
         told("no scene starts one", done.returncode == 3 and "expected a name" in done.stderr, done.stderr)
         # a wrong coefficient that leaves the sums alone is what the order is for
