@@ -7,8 +7,9 @@
  *    contact lets pass, the rest of the advance.
  * 3. Try it. A step whose error is too large, or that contact refuses, is tried again shorter.
  * 4. Accept the new state and commit it.
- * Where steps may pass the end of the advance, 2 knows no rest of it, and 4 commits each step
- * in parts: the interpolant's state at every end of an advance within the step, then the rest.
+ * Where steps may pass the end of the advance, 2 takes the rest up to the next event, and 4
+ * commits each step in parts: the interpolant's state at every end of an advance within the
+ * step, then the rest.
  */
 #include "adaptive_step.h"
 
@@ -35,11 +36,9 @@ enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host
     for (int k = 0; k < 4; k++)
         if (!(*arrays[k] = (double *)host->alloc(host->ctx, self->length * sizeof(double))))
             return CS_STEP_FAIL;
-    /* a step that looks far ahead would pass over a force that comes later; and with the
-     * largest atol, 1 m, nothing but the caller's frames bounds steps */
-    const bool passes = !self->fixed && CS_HAS(host, forces_depend_on_time) &&
-                        host->may_overstep && !host->forces_depend_on_time &&
-                        self->asked.atol < 1;
+    // with the largest atol, 1 m, nothing but the caller's frames bounds steps
+    const bool passes = !self->fixed && CS_HAS(host, overstep_until) &&
+                        host->overstep_until > 0 && self->asked.atol < 1;
     self->ends = !passes ? 0 : hermite_ends_for(power);
     for (int k = 0; k < self->ends - 1; k++)
         if (!(self->start[k] = host->alloc(host->ctx, 9 * sizeof(double) * host->view->n)))
@@ -152,6 +151,11 @@ static bool is_refused(struct adaptive_step *self, double t, double h, const dou
     return true;
 }
 
+/* s, where the present step has to end at the latest. */
+static double stop_of(const struct adaptive_step *self) {
+    return self->ends ? self->host->overstep_until : self->end;
+}
+
 /* Tries steps from y at t until one holds. *h: its length in s. */
 static enum cs_step try_steps(struct adaptive_step *self, double t, const double *y,
                               double *h) {
@@ -165,8 +169,7 @@ static enum cs_step try_steps(struct adaptive_step *self, double t, const double
         }
         self->bound = longest_step(self, t, y);
         *h = least(control->h, self->bound);
-        if (!self->ends)
-            *h = cut(*h, self->end - t);
+        *h = cut(*h, stop_of(self) - t);
         /* a shorter step is lost in the rounding of t; NaN is refused too */
         if (!(*h > 4 * DBL_EPSILON * self->end)) {
             host->fail(host->ctx, "the step fell to %.3g s at t = %.9g s", *h, t);
@@ -210,7 +213,9 @@ static enum cs_step step_past_frames(struct adaptive_step *self, double t, const
     memcpy(oldest, y, self->length * sizeof *y);
     memcpy(oldest + self->length, self->slope, self->length / 2 * sizeof *y);
     const enum cs_step status = step(self, t, LONGEST_PAST_FRAMES, y, self->length_of);
-    self->reached = t + self->length_of[0];
+    // ends at an event itself, not at a sum that rounds beside it
+    const double h = self->length_of[0], stop = stop_of(self);
+    self->reached = h < stop - t ? t + h : stop;
     return status;
 }
 

@@ -3,8 +3,8 @@
  * Error norm: the root of the mean, over the numbers that move, of (error / (atol + rtol
  * |y|))^2, |y| the larger of both ends of the step. A step is accepted at 1 or below;
  * step_control.h chooses the next one. The last steps before the end of an advance are cut so
- * that one ends there; but where the host lets it (host->may_overstep) a step passes that end,
- * hermite.h gives the state there, and steps do not depend on frames.
+ * that one ends there; but where the host lets it (host->overstep_until) a step passes that end
+ * up to the next event, hermite.h gives the state there, and steps do not depend on frames.
  *
  * Contact shortens steps in two ways. host->longest_step bounds a step before it is tried. A
  * step that host->max_step_fraction refuses is tried again, shorter; that length bounds the

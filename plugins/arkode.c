@@ -227,14 +227,12 @@ static int open_memory(struct ark *self, ARKRhsFn explicit_part, ARKRhsFn implic
     return code;
 }
 
-/* Lets steps pass frames, where the host does, no force depends on time, and their length is
- * free. */
+/* Lets steps pass frames, where the host does and their length is free. */
 static enum cs_step pass_frames(struct ark *self, bool is_additive) {
     const struct cs_host *host = self->base.host;
     const uint32_t parts[] = {is_additive ? CS_PART_STIFF : CS_PART_ALL,
                               is_additive ? EXPLICIT_PARTS : 0};
-    if (self->asked.dt > 0 || self->asked.atol >= 1 || !CS_HAS(host, forces_depend_on_time) ||
-        host->forces_depend_on_time)
+    if (self->asked.dt > 0 || self->asked.atol >= 1)
         return CS_STEP_OK;
     sundials_overstep_begin(&self->base);
     return self->base.interpolated

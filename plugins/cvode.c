@@ -137,9 +137,9 @@ static int change_order(struct cvode *self, double t, double h, double stop) {
     if (self->order.is_high)
         return CVodeSetMaxOrd(self->base.memory, CVODE_ORDER_HIGH);
     const int code = reinit_cvode(self, t, h);
-    return code == CV_SUCCESS && !self->base.interpolated
-               ? CVodeSetStopTime(self->base.memory, stop)
-               : code;
+    stop = self->base.interpolated ? self->base.host->overstep_until : stop;
+    return code == CV_SUCCESS && stop < HUGE_VAL ? CVodeSetStopTime(self->base.memory, stop)
+                                                 : code;
 }
 
 /* One step from *reached. The length of the last step may change the order first, and only

@@ -148,6 +148,19 @@ static int restore_state(struct sundials *self, double t, double reached, double
     return self->library->on_state_changed(self, t, 0);
 }
 
+int sundials_try(struct sundials *self, double t1, double frame, double *x, double *t) {
+    const double before = *t;
+    if (self->y_before)
+        memcpy(self->y_before, x, 6 * sizeof *x * self->host->view->n);
+    int code = self->library->evolve(self->memory, t1, self->state, t, self->library->one_step);
+    if (code >= 0 && self->status == CS_STEP_OK &&
+        passes_through(self, self->judges_contact ? before : *t, *t, x)) {
+        code = restore_state(self, before, *t, frame, x);
+        *t = before;
+    }
+    return code;
+}
+
 enum cs_step sundials_advance(void *object, double t0, double t1, double *x, double *v) {
     struct sundials *self = object;
     const struct cs_host *host = self->host;
@@ -167,18 +180,13 @@ enum cs_step sundials_advance(void *object, double t0, double t1, double *x, dou
             return sundials_fail_by_count(self, t0, t);
         const double before = t;
         bool changed = false;
-        if (self->y_before)
-            memcpy(self->y_before, x, 6 * sizeof *x * host->view->n);
-        code = library->evolve(self->memory, t1, self->state, &t, library->one_step);
+        code = sundials_try(self, t1, t1 - t0, x, &t);
+        if (code >= 0 && t == before)
+            code = set_stop(self, limited, before, t1, x);
         if (code < 0 || self->status != CS_STEP_OK)
             return sundials_fail(self, code, before);
-        if (passes_through(self, self->judges_contact ? before : t, t, x)) {
-            if ((code = restore_state(self, before, t, t1 - t0, x)) < 0 ||
-                (code = set_stop(self, limited, before, t1, x)) < 0)
-                return sundials_fail(self, code, before);
-            t = before;
+        if (t == before)
             continue;
-        }
         const enum cs_step status = host->commit(host->ctx, t, t - before, x, v, &changed);
         if (status != CS_STEP_OK)
             return status;

@@ -3,7 +3,7 @@
  *
  * y = (x, v), y' = (v, f/m). A library is driven step by step, and the commit follows each
  * step. If something acts between steps, the end of the advance is the library's stop time.
- * If nothing does, the library steps as it likes and frames are interpolated: see
+ * If nothing does, it is the next event, and frames are interpolated: see
  * sundials_overstep.h. It keeps its history across frames, and is told when the state was
  * changed from outside. */
 #ifndef SUNDIALS_COMMON_H
@@ -30,6 +30,11 @@ int sundials_slope(const struct sundials *self, double t, N_Vector y, uint32_t p
 int sundials_whole_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object);
 /* The weights of errors at y by self->tolerance, as SUNDIALS asks for them. */
 int sundials_weigh(N_Vector y, N_Vector weight, void *object);
+
+/* Tries a step from *t, where x (6n) is the state, and moves *t to its end. One that
+ * max_step_fraction refuses is undone, and *t stays; frame: s, how short it may become is a
+ * part of that. Returns the library's code. */
+int sundials_try(struct sundials *self, double t1, double frame, double *x, double *t);
 
 #if SUNDIALS_VERSION_MAJOR < 7
 /* For the libraries' SetErrHandlerFn; since 7 the context has it. */

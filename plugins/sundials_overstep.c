@@ -6,6 +6,9 @@
  * that step or to the frame, whichever is first, and that state is committed. */
 #include "sundials_overstep.h"
 
+#include "sundials_common.h"
+
+#include <math.h>
 #include <string.h>
 
 /* s, distance of the target time that a step is given. CVODE limits its first step to a tenth
@@ -21,7 +24,7 @@ static size_t bytes_of(const struct sundials *self) {
 
 void sundials_overstep_begin(struct sundials *self) {
     const struct cs_host *host = self->host;
-    if (CS_HAS(host, may_overstep) && host->may_overstep)
+    if (CS_HAS(host, overstep_until) && host->overstep_until > 0)
         self->interpolated = sundials_vectors_acquire(&self->vectors);
 }
 
@@ -67,11 +70,14 @@ enum cs_step sundials_overstep_advance(struct sundials *self, double t0, double 
     for (double t = t0, next; t < t1; t = next) {
         bool changed = false;
         int code = 0;
-        if (self->t_internal <= t) {
+        while (self->t_internal <= t && code >= 0 && self->status == CS_STEP_OK) {
             if (steps++ >= self->max_steps)
                 return sundials_fail_by_count(self, t0, t);
-            code = self->library->evolve(self->memory, self->t_internal + AHEAD, self->state,
-                                         &self->t_internal, self->library->one_step);
+            if (host->overstep_until < HUGE_VAL)
+                code = self->library->set_stop(self->memory, host->overstep_until);
+            if (code >= 0)
+                code = sundials_try(self, t + AHEAD, AHEAD, sundials_data(self->state),
+                                    &self->t_internal);
         }
         next = self->t_internal < t1 ? self->t_internal : t1;
         if (code < 0 || self->status != CS_STEP_OK || (code = show(self, next, x)) < 0)

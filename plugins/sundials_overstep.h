@@ -1,4 +1,4 @@
-/* sundials_overstep.h - steps that pass frames, if nothing acts between steps.
+/* sundials_overstep.h - steps that pass frames, where the host lets them.
  *
  * A library that must stop at each frame takes up to several times the steps, if the
  * tolerance would let it go farther: the more, the more frames per second. Instead its own

@@ -158,7 +158,9 @@ struct cs_host {
     double (*energy)(void *ctx, double t, const double *x, const double *v);
 
     /* [restart, advance] df (3,n) = (df/dx) dx + (df/dv) dv of the chosen parts, exact.
-     * Overwrites df. dx or dv may be NULL, which means 0. Needs CS_NEED_JVP. */
+     * Overwrites df. dx or dv may be NULL, which means 0. Held particles count: with their v in
+     * dx it has what their motion adds. Where they turn, force has them on their arcs at t, so
+     * that a difference of force over t holds that too: take one of both. Needs CS_NEED_JVP. */
     void (*jvp)(void *ctx, double t, const double *x, const double *v, uint32_t parts,
                 const double *dx, const double *dv, double *df);
 
@@ -282,6 +284,11 @@ struct cs_host {
      * tolerance that nobody set is a relative one times these. Not in older hosts: ask
      * CS_HAS(host, speed_scale) first. */
     double length_scale, speed_scale;
+    /* [create, advance] s. Above 0: a step may pass t1 as with may_overstep, up to this time of
+     * the next event (HUGE_VAL: there is none), and contact by force may act: ask
+     * max_step_fraction about the whole step. 0 for the whole run: steps end at t1. Not in
+     * older hosts: ask CS_HAS(host, overstep_until) first. */
+    double overstep_until;
 };
 
 /* A method: what it claims, and its calls. The host calls them in the order

@@ -319,15 +319,6 @@ static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *err
     return CS_OK;
 }
 
-/* True if commit only checks: no correction, contact or event can change the state. */
-static bool may_pass(const struct cs_system *system) {
-    const struct cs_plan_row *rows = system->plan.rows;
-    return !(cs_step_limit_applies(system) || rows[CS_FEATURE_VELOCITY_LOSS].built ||
-             rows[CS_FEATURE_CONTACT].built || rows[CS_FEATURE_STRAIN_LIMIT].built ||
-             rows[CS_FEATURE_FRICTION_ANCHORS].built || rows[CS_FEATURE_EVENTS].built ||
-             cs_scene_crossings(system->scene) == CS_CROSSINGS_STOP);
-}
-
 /* Takes from a system what the host of a former run has added; that host's memory is gone. */
 static void forget_former_run(struct cs_system *system) {
     system->rebounds = NULL;
@@ -361,13 +352,13 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .forces_depend_on_time =
             system->events || system->plan.rows[CS_FEATURE_KEY_FRAMES].built,
         .commit = cs_host_commit,
-        .may_overstep = may_pass(system),
         .euler_setup = cs_host_euler_setup,
     };
     if (system->events && cs_events_turn_particles(system->scene))
         CS_ARENA_ARRAY(&host->arena, host->held, 12 * (size_t)system->view.n, error);
     cs_blow_up_check_set(&host->blow_up, system, 0);
     cs_run_host_set_scales(host);
+    cs_run_host_set_overstep(host);
     if (error->status || add_contact(host, error) || add_rate(host, error) ||
         add_lagged_friction(host, error) || cs_energy_input_init(host, error))
         return error->status;

@@ -119,6 +119,9 @@ static void note_give_up(struct cs_run *run) {
 
 /* The method's advance, with its post-conditions checked. */
 static enum cs_step advance(struct cs_run *run, double from, double to) {
+    const struct cs_events *events = run->system->events;
+    if (events && run->host->table.overstep_until > 0)
+        run->host->table.overstep_until = cs_events_next(events);
     if (!run->host->settings.skip_advance_check)
         cs_advance_check_begin(&run->host->advance_check, run->system, from);
     cs_host_store_step(run->host, from, run->x);

@@ -3,6 +3,7 @@
 #include "sim/run_host.h"
 
 #include "base/vector.h"
+#include "model/contact/ccd/step_limit.h"
 #include "model/elastic/membrane_matrix.h"
 #include "model/event/event_state.h"
 #include "model/event/events.h"
@@ -330,6 +331,23 @@ void cs_run_host_set_scales(struct cs_run_host *host) {
     const double pi = 3.141592653589793, fall = sqrt(gravity * length) / pi;
     host->table.length_scale = length;
     host->table.speed_scale = gravity > 0 ? fall : squared > 0 ? sqrt(squared) : length;
+}
+
+/* Frames a second up to which steps end at frames where contact by force or events act. That
+ * costs 6 % at most, and a frame is then the end of a step that was judged, not within one. */
+#define PASSED_FPS 60
+
+void cs_run_host_set_overstep(struct cs_run_host *host) {
+    const struct cs_system *system = host->run->system;
+    const struct cs_plan_row *rows = system->plan.rows;
+    const bool corrects =
+        rows[CS_FEATURE_VELOCITY_LOSS].built || rows[CS_FEATURE_CONTACT].built ||
+        rows[CS_FEATURE_STRAIN_LIMIT].built || rows[CS_FEATURE_FRICTION_ANCHORS].built ||
+        cs_scene_crossings(system->scene) == CS_CROSSINGS_STOP;
+    const bool acts = cs_step_limit_applies(system) || rows[CS_FEATURE_EVENTS].built;
+    host->table.may_overstep = !corrects && !acts;
+    if (!corrects && (!acts || system->scene->time.fps > PASSED_FPS))
+        host->table.overstep_until = HUGE_VAL;
 }
 
 /* --- trace points --- */

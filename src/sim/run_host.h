@@ -282,6 +282,9 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
 /* Sets the scales of the host's table from the state at time 0. */
 void cs_run_host_set_scales(struct cs_run_host *host);
 
+/* Sets in the host's table whether steps may pass frames. */
+void cs_run_host_set_overstep(struct cs_run_host *host);
+
 /* Replaces the call solve by one that always fails, to test what a method does then. */
 void cs_run_host_fail_solves(struct cs_run_host *host);
 

@@ -210,6 +210,29 @@ TEST(steps_pass_frames) {
     }
 }
 
+/* The same in contact by force and between events, above 60 frames a second. */
+TEST(steps_pass_frames_up_to_events) {
+    static const char *const methods[] = {"dopri5", "dop853", "esdirk:rtol=1e-4", "rock4"};
+    static const char *const acting[] = {
+        ", \"colliders\": [{\"floor\": {\"height\": -0.7}, \"thickness\": 0.05}]"
+        ", \"contact\": {\"law\": \"force\"}",
+        ", \"events\": [{\"at\": 0.13, \"impact\": {\"impulse\": 0.3, \"direction\": [1, 0, "
+        "2]}},"
+        " {\"from\": 0.2, \"to\": 0.41, \"ramp\": {\"key\": \"forces.drag\", \"value\": "
+        "0.5}}]"};
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; m++)
+        for (int k = 0; k < 2; k++) {
+            const struct half_second few = half_second(methods[m], acting[k], 100);
+            const struct half_second many = half_second(methods[m], acting[k], 3000);
+            const struct half_second ended = half_second(methods[m], acting[k], 60);
+            ck_bits(few.state, many.state, 24, methods[m]);
+            ck_assert_uint_eq(few.forces, many.forces);
+            ck_assert_double_lt(cs_rms_difference(few.state, ended.state, 12), 3e-4);
+            ck_assert_double_gt(
+                cs_rms_difference(few.state, half_second(methods[m], "", 60).state, 12), 1e-2);
+        }
+}
+
 enum { INSIDE = 100 };
 
 /* The largest RMS error in m over frames that fall anywhere within steps of h. */

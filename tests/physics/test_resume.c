@@ -13,16 +13,15 @@ struct broken {
     uint32_t frames, breaks[BREAKS];
 };
 
-/* The scenes are run without the damping of springs. */
-static bool undamped;
+/* What the scenes are run with. */
+static struct cs_override changed;
 
 static void open_session(struct cs_session *session, const struct broken *broken) {
     struct cs_error error = {0};
-    const struct cs_override none = {"bodies[0].springs.damping", "0"};
     const struct cs_session_settings settings = {.scene = broken->scene,
                                                  .integrator = broken->method,
-                                                 .overrides = &none,
-                                                 .n_overrides = undamped};
+                                                 .overrides = &changed,
+                                                 .n_overrides = changed.path != NULL};
     cs_session_open(session, &settings, &error);
     ck_assert_msg(!error.status, "%s: %s", broken->scene, error.message);
 }
@@ -133,9 +132,23 @@ TEST(scenes_go_on) {
 TEST(methods_go_on_without_damping) {
     static const struct broken drum = {
         SCENES "/drum.json", "symmetric-multistep", 20, {1, 9, 15}};
-    undamped = true;
+    changed = (struct cs_override){"bodies[0].springs.damping", "0"};
     check(&drum);
-    undamped = false;
+    changed = (struct cs_override){0};
+}
+
+/* Breaks within steps that pass frames in contact and before events. */
+TEST(steps_that_pass_frames_go_on) {
+    static const struct broken all[] = {
+        {SCENES "/contact_compare.json", "dop853", 400, {20, 211, 333}},
+        {SCENES "/contact_compare.json", "esdirk", 400, {20, 211, 333}},
+        {SCENES "/grab_release.json", "dopri5", 300, {7, 111, 203}},
+        {SCENES "/grab_release.json", "rock4", 300, {7, 111, 203}},
+    };
+    changed = (struct cs_override){"time.fps", "600"};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+        check(all + k);
+    changed = (struct cs_override){0};
 }
 
 /* the record of another scene has too many bytes, or too few */

@@ -227,6 +227,29 @@ TEST(runge_kutta_steps_pass_frames) {
     }
 }
 
+/* In contact by force and up to events too. A slope at a frame before an event goes unused. */
+TEST(steps_pass_frames_up_to_events) {
+    static const char *const names[] = {"cvode-bdf", "ark-erk", "ark-dirk", "ark-imex"};
+    static const char *const acting[] = {
+        "}], \"colliders\": [{\"sphere\": {\"centre\": [0, -0.2, 0.25], \"radius\": 0.2}}], "
+        "\"forces\": {\"gravity\": [0, -9.81, 5]},"
+        " \"contact\": {\"law\": \"force\"}",
+        "}], \"events\": [{\"at\": 0.23, \"release\": {\"particles\": [\"top-left\"]}}]"};
+    static struct hung few, many;
+    for (size_t k = 0; k < 2 * LENGTH(names); k++) {
+        const char *name = names[k / 2];
+        hang(name, acting[k % 2], 100, &few);
+        hang(name, acting[k % 2], 1000, &many);
+        ck_assert_msg(!memcmp(few.states, many.states, sizeof few.states), "%s", name);
+        ck_assert_msg(many.forces < few.forces + few.forces / 50, "%s: %llu and %llu forces",
+                      name, (unsigned long long)few.forces, (unsigned long long)many.forces);
+        hang("dopri5:rtol=1e-8", acting[k % 2], 100, &many);
+        const double error =
+            cs_rms_difference(few.states[ENDS - 1], many.states[ENDS - 1], HANGING_VALUES / 2);
+        ck_assert_msg(error < 1e-3, "%s: %.3g m off", name, error);
+    }
+}
+
 /* The interpolant is as good as the steps: between them the error follows the tolerance too. */
 TEST(interpolated_frames_follow_the_tolerance) {
     static const char *const names[] = {"cvode-bdf", "ark-erk", "ark-erk:order=8,", "ark-dirk",
