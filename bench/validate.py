@@ -112,6 +112,16 @@ def belt(run, cells):
     return mean_acceleration(times, v, 0.3)
 
 
+def restitution(run, cells):
+    """Newton: what is thrown at a floor with 2 m/s leaves it with 0.6 of that."""
+    scene = on_slope(0, 0.2, cells)
+    scene["bodies"][0]["cloth"] |= {"velocity": [0, -2, 0], "place": {"translate": [0, 0.1, 0]}}
+    scene["contact"] = {"law": "force", "restitution": 0.6}
+    scene["forces"]["gravity"] = [0, 0, 0]
+    _, _, v = run(scene, 0.2, "tr-bdf2")
+    return v[-1, :, 1].mean() / 2
+
+
 def cantilever(cells, length, width, law, density, gravity, events=()):
     """A strip along x whose first two columns are held: clamped midway between them, so that its
     free length is length."""
@@ -352,6 +362,7 @@ ROWS = {
     "incline, 2 % below mu, stick": (0, "m", slope_sticks, 1e-5, (6, 12)),
     "belt": (0.2 * G, "m/s2", belt, 0.01, (6, 12)),
     "belt brake": (math.exp(0.3 * math.pi), "T", belt_brake, 0.02, (12, 24)),
+    "restitution": (0.6, "v", restitution, 0.01, (6, 12)),
     "hanging chain": (1, "f", chain, 0.001, (10, 20)),
     "drumhead": (1, "f", drum, 0.002, (8, 16, 32)),
     "Euler buckling": (math.pi**2, "D/L2", euler_buckling, 0.005, (8, 16)),
