@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -61,9 +62,10 @@ void cs_csv_end_row(struct cs_text *out, size_t from, const char *names) {
     cs_text_add(out, ",%.*s\n", CHECK_DIGITS, digits);
 }
 
-void cs_column_add_label(const struct cs_column *column, struct cs_text *out) {
+void cs_column_print_label(const struct cs_column *column, char *label, size_t size) {
     const bool measured = *column->unit && strcmp(column->unit, "1") != 0;
-    cs_text_add(out, measured ? "%s in %s" : "%s", column->help, column->unit);
+    snprintf(label, size, "%s%s%s", column->help, measured ? " in " : "",
+             measured ? column->unit : "");
 }
 
 void cs_columns_add_names(const struct cs_column *columns, uint32_t n, struct cs_text *out) {

@@ -45,8 +45,8 @@ struct cs_column {
 #define CS_NUMBER_COLUMN(name, unit, help)                                                     \
     { name, CS_CELL_NUMBER, unit, help, false, 0, 0 }
 
-/* Adds what an axis is called: the help, and the unit in words. */
-void cs_column_add_label(const struct cs_column *column, struct cs_text *out);
+/* Prints what an axis is called: the help, and the unit in words. */
+void cs_column_print_label(const struct cs_column *column, char *label, size_t size);
 
 /* Adds the names of n columns, after a comma unless they are the first of their line. */
 void cs_columns_add_names(const struct cs_column *columns, uint32_t n, struct cs_text *out);

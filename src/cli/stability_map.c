@@ -47,22 +47,22 @@ static enum cs_status check_files(const struct cs_stability_options *options,
 
 /* Makes the diagram of the tables that were written. */
 static enum cs_status make_plot(const struct cs_stability_options *options,
-                                const struct cs_stability *stability,
-                                struct cs_table_plot *plot, char title[640],
-                                struct cs_error *error) {
+                                const struct cs_stability *stability, struct cs_plot *plot,
+                                char title[640], struct cs_error *error) {
     char name[CS_SERIES_BYTES], path[4200];
+    struct cs_number_table table;
     cs_series_file_name(stability->series, name);
     snprintf(path, sizeof path, "%s/%s.csv", options->map.folder, name);
     snprintf(title, 640, "%s: stable time steps, %.255s, %g s of motion per cell",
              stability->series, stability->session.scene.path, stability->settings->seconds);
-    return cs_table_plot_open(plot, path, title, 1.35 * CS_WIDTH_COLUMN, error);
+    cs_plot_begin(plot, title, 1.35 * CS_WIDTH_COLUMN);
+    return cs_table_plot_read(plot, &table, path, error);
 }
 
 /* *drawn: false without the module that draws, which is no failure. */
 static enum cs_status write_files(const struct cs_stability_options *options,
-                                  const struct cs_stability *stability,
-                                  struct cs_table_plot *plot, char title[640], bool *drawn,
-                                  struct cs_error *error) {
+                                  const struct cs_stability *stability, struct cs_plot *plot,
+                                  char title[640], bool *drawn, struct cs_error *error) {
     char name[CS_SERIES_BYTES], path[4200];
     struct cs_text cells = {0}, borders = {0}, json = {0};
     struct cs_error unseen = {0};
@@ -95,7 +95,7 @@ static enum cs_status write_files(const struct cs_stability_options *options,
 /* Prints the table or the diagram of a finished map. */
 static enum cs_status print_map(const struct cs_stability_options *options,
                                 const struct cs_stability *stability,
-                                const struct cs_table_plot *plot, bool drawn,
+                                const struct cs_plot *plot, bool drawn,
                                 struct cs_error *error) {
     char name[CS_SERIES_BYTES];
     struct cs_screen screen;
@@ -141,7 +141,7 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
     struct cs_stability stability;
     struct cs_stability_settings asked = options->map;
     const bool quiet = options->quiet;
-    struct cs_table_plot plot = {0};
+    struct cs_plot plot = {0};
     struct cs_screen screen;
     char title[640];
     bool drawn = false;
@@ -169,7 +169,7 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
                !write_files(options, &stability, &plot, title, &drawn, error) &&
                (!quiet || options->show))
         print_map(options, &stability, &plot, drawn, error);
-    cs_table_plot_finish(&plot);
+    cs_plot_finish(&plot);
     if (!error->status && options->strict)
         check_cells(&stability, error);
     cs_stability_finish(&stability);

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -16,22 +17,18 @@ uint32_t cs_number_table_find(const struct cs_number_table *table, const char *n
     return c;
 }
 
-enum cs_status cs_number_table_read(const char *path, struct cs_arena *arena,
-                                    struct cs_number_table *table, struct cs_error *error) {
+static enum cs_status read_table(const char *path, struct cs_arena *arena,
+                                 struct cs_number_table *table, struct cs_error *error) {
     struct cs_rows rows;
     char *fields[CS_TABLE_COLUMNS], *line;
     *table = (struct cs_number_table){0};
     if (cs_rows_open(&rows, path, 0, error))
         return error->status;
     /* names and words point into the file's bytes */
-    char *bytes = cs_arena_alloc(arena, rows.length + 1, error);
-    if (bytes) {
-        memcpy(bytes, rows.bytes, rows.length + 1);
-        line = rows.bytes;
-        rows.bytes = bytes;
-        bytes = line;
-    }
-    if (bytes && (line = cs_rows_next(&rows)))
+    cs_arena_adopt(arena, free, rows.bytes, error);
+    if (error->status)
+        cs_rows_close(&rows);
+    else if ((line = cs_rows_next(&rows)))
         table->columns = cs_csv_cut(line, ',', table->names, CS_TABLE_COLUMNS);
     const bool grouped = table->columns && !strcmp(table->names[0], "series");
     const uint32_t verdict = grouped ? 0 : cs_number_table_find(table, "verdict");
@@ -45,23 +42,19 @@ enum cs_status cs_number_table_read(const char *path, struct cs_arena *arena,
             if (c >= n || !cs_parse_real(fields[c], row + c))
                 row[c] = (double)NAN;
     }
-    rows.bytes = bytes;
-    cs_rows_close(&rows);
     return error->status;
 }
 
-/* A line of the second column over the first, through the rows whose first field is `group`;
- * NULL: all. */
-enum cs_status cs_table_plot_add_series(struct cs_table_plot *plot, struct cs_panel *panel,
-                                        const struct cs_number_table *table,
-                                        const uint32_t columns[2], const char *group,
-                                        struct cs_error *error) {
-    struct cs_series *series = (struct cs_series *)panel->series + panel->n_series;
-    *series = (struct cs_series){.name = group ? group : table->names[columns[1]],
-                                 .style = cs_style_of(panel->n_series++),
-                                 .points = cs_arena_alloc_array(&plot->arena, table->rows,
-                                                                sizeof *series->points, error)};
-    for (uint32_t r = 0; series->points && r < table->rows; r++)
+struct cs_series *cs_table_plot_add_series(struct cs_plot *plot, struct cs_panel *panel,
+                                           const struct cs_number_table *table,
+                                           const uint32_t columns[2], const char *group,
+                                           struct cs_error *error) {
+    struct cs_series *series =
+        cs_plot_add_series(plot, panel,
+                           (struct cs_series){.name = group ? group : table->names[columns[1]],
+                                              .style = cs_style_of(panel->n_series)},
+                           table->rows, error);
+    for (uint32_t r = 0; series && r < table->rows; r++)
         if (!group || !strcmp(group, table->words[r])) {
             const struct cs_point point = {.x = cs_number_table_at(table, r, columns[0]),
                                            .y = cs_number_table_at(table, r, columns[1]),
@@ -71,7 +64,7 @@ enum cs_status cs_table_plot_add_series(struct cs_table_plot *plot, struct cs_pa
             cs_plot_axis_include(&panel->x, point.x);
             cs_plot_axis_include(&panel->y, point.y);
         }
-    return error->status;
+    return series;
 }
 
 /* --- maps --- */
@@ -79,19 +72,16 @@ enum cs_status cs_table_plot_add_series(struct cs_table_plot *plot, struct cs_pa
 static const char *const edges[] = {"cell_left", "cell_right", "cell_bottom", "cell_top"};
 enum { EDGES = sizeof edges / sizeof *edges };
 
-static enum cs_status add_cells(struct cs_table_plot *plot, const struct cs_number_table *table,
-                                struct cs_error *error) {
-    struct cs_panel *panel = plot->panels;
-    struct cs_diagram_rect *box =
-        cs_arena_alloc_array(&plot->arena, table->rows, sizeof *box, error);
+static enum cs_status add_cells(struct cs_plot *plot, struct cs_panel *panel,
+                                const struct cs_number_table *table, struct cs_error *error) {
     bool there[CS_STABILITY_VERDICTS] = {false};
-    panel->boxes = box;
-    for (uint32_t r = 0; box && r < table->rows; r++) {
+    CS_ARENA_ARRAY(&plot->arena, panel->boxes, table->rows, error);
+    for (uint32_t r = 0; panel->boxes && r < table->rows; r++) {
         double at[EDGES];
-        for (int k = 0; k < EDGES; k++)
+        for (int k = 0; k < EDGES; k++) {
             at[k] = cs_number_table_at(table, r, cs_number_table_find(table, edges[k]));
-        for (int k = 0; k < EDGES; k++)
             cs_plot_axis_include(k < 2 ? &panel->x : &panel->y, at[k]);
+        }
         /* by the word: numbers shift where a verdict comes in between */
         enum cs_stability_verdict v = 0;
         while (v < CS_STABILITY_VERDICTS && strcmp(cs_stability_word(v), table->words[r]) != 0)
@@ -99,7 +89,7 @@ static enum cs_status add_cells(struct cs_table_plot *plot, const struct cs_numb
         /* a cell that was not run yet has room, and no colour */
         if (v == CS_STABILITY_VERDICTS)
             continue;
-        box[panel->n_boxes++] = (struct cs_diagram_rect){
+        panel->boxes[panel->n_boxes++] = (struct cs_diagram_rect){
             at[0], at[1], at[2], at[3], cs_stability_colour(v), cs_stability_letter(v)};
         if (!there[v])
             cs_diagram_add_key(&plot->diagram, CS_KEY_PATCH, cs_stability_colour(v),
@@ -111,46 +101,47 @@ static enum cs_status add_cells(struct cs_table_plot *plot, const struct cs_numb
 }
 
 /* Border and limits of theory over the cells. */
-static enum cs_status add_limits(struct cs_table_plot *plot,
-                                 const struct cs_number_table *border, struct cs_error *error) {
-    static const struct {
-        const char *column, *name;
-        struct cs_style style;
-    } lines[] = {
-        {"gershgorin", "theory: Gershgorin", {0x5a5f66, 2, 0, 1.1}},
-        {"at_start", "theory: at the start", {0x23262b, 1, 0, 1.1}},
-        {"worst_on_way", "theory: worst on the way", {0x23262b, 0, 0, 1.4}},
-        {"border", "border, bisected", {0x23262b, 0, 0, 0}},
-    };
-    enum { LINES = sizeof lines / sizeof *lines };
+static const struct {
+    const char *column, *name;
+    struct cs_style style;
+} limits[] = {
+    {"gershgorin", "theory: Gershgorin", {0x5a5f66, 2, 0, 1.1}},
+    {"at_start", "theory: at the start", {0x23262b, 1, 0, 1.1}},
+    {"worst_on_way", "theory: worst on the way", {0x23262b, 0, 0, 1.4}},
+    {"border", "border, bisected", {0x23262b, 0, 0, 0}},
+};
+enum { LIMITS = sizeof limits / sizeof *limits };
+
+static void add_limits(struct cs_plot *plot, struct cs_panel *panel,
+                       const struct cs_number_table *border, struct cs_error *error) {
     /* the ranges are those of the cells */
-    struct cs_panel scratch = *plot->panels;
-    scratch.series = cs_arena_alloc_array(&plot->arena, LINES, sizeof *scratch.series, error);
-    for (int k = 0; scratch.series && k < LINES && !error->status; k++) {
-        const uint32_t c = cs_number_table_find(border, lines[k].column);
-        struct cs_series *series = (struct cs_series *)scratch.series + scratch.n_series;
-        if (c == border->columns ||
-            cs_table_plot_add_series(plot, &scratch, border, (uint32_t[2]){0, c}, NULL, error))
+    const struct cs_plot_axis x = panel->x, y = panel->y;
+    for (int k = 0; k < LIMITS && !error->status; k++) {
+        const uint32_t columns[2] = {0, cs_number_table_find(border, limits[k].column)};
+        struct cs_series *series =
+            columns[1] < border->columns
+                ? cs_table_plot_add_series(plot, panel, border, columns, NULL, error)
+                : NULL;
+        if (!series)
             continue;
-        series->name = lines[k].name;
-        series->style = lines[k].style;
-        for (uint32_t i = 0; i < series->n && !(lines[k].style.width > 0); i++)
+        series->name = limits[k].name;
+        series->style = limits[k].style;
+        for (uint32_t i = 0; i < series->n && !(limits[k].style.width > 0); i++)
             series->points[i].mark = CS_MARK_HOLLOW;
     }
-    plot->panels->series = scratch.series;
-    plot->panels->n_series = scratch.n_series;
-    return error->status;
+    panel->x = x;
+    panel->y = y;
 }
 
-static enum cs_status add_map(struct cs_table_plot *plot, const struct cs_number_table *table,
+static enum cs_status add_map(struct cs_plot *plot, const struct cs_number_table *table,
                               const char *path, struct cs_error *error) {
-    const struct cs_plot_axis axis = {.logarithmic = true, .range = {HUGE_VAL, -HUGE_VAL}};
-    struct cs_panel *panel = plot->panels;
+    struct cs_panel *panel = cs_plot_add_panel(plot, 0.75, LIMITS, error);
     struct cs_number_table border;
     char name[4200];
+    if (!panel)
+        return error->status;
     /* both axes are logarithmic, and end at the edges of the cells */
-    plot->diagram.n_panels = 1;
-    *panel = (struct cs_panel){.x = axis, .y = axis, .aspect = 0.75};
+    panel->x.logarithmic = panel->y.logarithmic = true;
     snprintf(panel->x.label, CS_LABEL_BYTES, "%s", table->names[0]);
     for (int k = 0; k < CS_AXES; k++)
         if (!strcmp(cs_axis_names[k], table->names[0]))
@@ -158,19 +149,16 @@ static enum cs_status add_map(struct cs_table_plot *plot, const struct cs_number
                      cs_axis_unit((enum cs_axis)k));
     snprintf(panel->y.label, CS_LABEL_BYTES, "time step in s");
     snprintf(name, sizeof name, "%.*s_border.csv", (int)(strlen(path) - strlen(".csv")), path);
-    if (add_cells(plot, table, error) || access(name, R_OK) ||
-        cs_number_table_read(name, &plot->arena, &border, error))
-        return error->status;
-    return border.columns ? add_limits(plot, &border, error) : CS_OK;
+    if (!add_cells(plot, panel, table, error) && !access(name, R_OK) &&
+        !read_table(name, &plot->arena, &border, error))
+        add_limits(plot, panel, &border, error);
+    return error->status;
 }
 
-enum cs_status cs_table_plot_open(struct cs_table_plot *plot, const char *path,
-                                  const char *title, double width, struct cs_error *error) {
-    struct cs_number_table *table = &plot->table;
+enum cs_status cs_table_plot_read(struct cs_plot *plot, struct cs_number_table *table,
+                                  const char *path, struct cs_error *error) {
     bool map = strlen(path) > strlen(".csv");
-    *plot = (struct cs_table_plot){
-        .diagram = {.title = title, .width = width, .columns = 1, .panels = plot->panels}};
-    if (cs_number_table_read(path, &plot->arena, table, error))
+    if (read_table(path, &plot->arena, table, error))
         return error->status;
     if (!table->columns || !table->rows)
         return cs_fail(error, CS_ERR_FILE, "%s: found no rows below names of columns", path);
@@ -178,9 +166,4 @@ enum cs_status cs_table_plot_open(struct cs_table_plot *plot, const char *path,
     for (int k = 0; k < EDGES; k++)
         map = map && cs_number_table_find(table, edges[k]) < table->columns;
     return map ? add_map(plot, table, path, error) : CS_OK;
-}
-
-void cs_table_plot_finish(struct cs_table_plot *plot) {
-    cs_arena_finish(&plot->arena);
-    *plot = (struct cs_table_plot){0};
 }

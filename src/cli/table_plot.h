@@ -3,11 +3,10 @@
 #ifndef CS_TABLE_PLOT_H
 #define CS_TABLE_PLOT_H
 
-#include "base/arena.h"
 #include "base/table.h"
 #include "draw/diagram.h"
 
-enum { CS_TABLE_PANELS = 8, CS_TABLE_COLUMNS = 128 };
+enum { CS_TABLE_COLUMNS = 128 };
 
 /* A CSV in memory, whose first line names its columns; a field that is no number is NAN. */
 struct cs_number_table {
@@ -17,10 +16,6 @@ struct cs_number_table {
     char **words; /* (rows) of "verdict", else, or where it is "series", of the first column */
 };
 
-/* Reads a CSV into the arena. CS_ERR_FILE, CS_ERR_MEMORY. */
-enum cs_status cs_number_table_read(const char *path, struct cs_arena *arena,
-                                    struct cs_number_table *table, struct cs_error *error);
-
 /* Number of a column; that of the columns if there is none of this name. */
 uint32_t cs_number_table_find(const struct cs_number_table *table, const char *name);
 
@@ -29,26 +24,17 @@ static inline double cs_number_table_at(const struct cs_number_table *table, uin
     return table->values[(size_t)row * table->columns + column];
 }
 
-/* A diagram with its memory. */
-struct cs_table_plot {
-    struct cs_diagram diagram;
-    struct cs_number_table table;
-    struct cs_panel panels[CS_TABLE_PANELS];
-    struct cs_arena arena; /* names, points, boxes */
-};
-
-/* Reads the table, and makes the diagram of a stability map, with its border in NAME_border.csv
- * where that is there; the diagram of another table has no panels yet. title: borrowed; width
- * in mm. cs_table_plot_finish must be called in any case. CS_ERR_FILE, CS_ERR_MEMORY. */
-enum cs_status cs_table_plot_open(struct cs_table_plot *plot, const char *path,
-                                  const char *title, double width, struct cs_error *error);
-void cs_table_plot_finish(struct cs_table_plot *plot);
+/* Reads a CSV into the memory of a diagram that was begun, and makes the diagram of a stability
+ * map, with its border in NAME_border.csv where that is there; that of another table has no
+ * panels yet. CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_table_plot_read(struct cs_plot *plot, struct cs_number_table *table,
+                                  const char *path, struct cs_error *error);
 
 /* Adds a line of the second column over the first to a panel, whose series have room for it,
- * through the rows whose word is `group`; NULL: all. */
-enum cs_status cs_table_plot_add_series(struct cs_table_plot *plot, struct cs_panel *panel,
-                                        const struct cs_number_table *table,
-                                        const uint32_t columns[2], const char *group,
-                                        struct cs_error *error);
+ * through the rows whose word is `group`; NULL: all. Returns NULL if out of memory. */
+struct cs_series *cs_table_plot_add_series(struct cs_plot *plot, struct cs_panel *panel,
+                                           const struct cs_number_table *table,
+                                           const uint32_t columns[2], const char *group,
+                                           struct cs_error *error);
 
 #endif

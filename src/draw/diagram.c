@@ -3,6 +3,8 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 const char *const cs_format_names[] = {"png", "svg", "pdf", NULL};
 
@@ -57,12 +59,13 @@ static uint32_t add_decades(const double range[2], struct cs_tick *ticks) {
     uint32_t n = 0;
     for (int decade = (int)floor(range[0]); decade <= range[1]; decade++)
         for (int digit = 1; digit < 10; digit++) {
-            const double at = decade + log10(digit);
+            const double at = (decade + log10(digit) - range[0]) / span;
             const bool label = (digit == 1 && decade % stride(span) == 0) ||
                                (span < 2 && (digit == 2 || digit == 5)) ||
                                (span < 1 && digit == 3);
-            if (at >= range[0] && at <= range[1] && n < CS_TICKS_MAX)
-                ticks[n++] = (struct cs_tick){at, digit, decade, label, plain};
+            if (at >= 0 && at <= 1 && n < CS_TICKS_MAX)
+                ticks[n++] =
+                    (struct cs_tick){at, digit * pow(10, decade), digit, decade, label, plain};
         }
     return n;
 }
@@ -72,28 +75,42 @@ uint32_t cs_plot_axis_ticks(const struct cs_plot_axis *axis,
     if (axis->logarithmic)
         return add_decades(axis->range, ticks);
     /* 1, 2 or 5 times a power of 10: four to nine ticks */
-    const double span = axis->range[1] - axis->range[0],
+    const double *range = axis->range, span = range[1] - range[0],
                  power = pow(10, floor(log10(span / 4)));
     const double step = span / power >= 20 ? 5 * power : span / power >= 8 ? 2 * power : power;
     uint32_t n = 0;
-    for (double k = ceil(axis->range[0] / step); k * step <= axis->range[1] && n < 16; k++)
-        ticks[n++] = (struct cs_tick){.position = k * step + 0.0, .label = true, .plain = true};
+    for (double k = ceil(range[0] / step); k * step <= range[1] && n < 16; k++)
+        ticks[n++] = (struct cs_tick){.at = (k * step - range[0]) / span,
+                                      .value = k * step + 0.0,
+                                      .decade = (int)fmod(k, 10),
+                                      .label = true,
+                                      .plain = true};
     return n;
 }
 
-double cs_tick_at(const struct cs_plot_axis *axis, const struct cs_tick *tick) {
-    return (tick->position - axis->range[0]) / (axis->range[1] - axis->range[0]);
+/* Adds a number with the minus sign of print. */
+static void add_number(char out[CS_TICK_BYTES], const char *number) {
+    const bool minus = *number == '-';
+    const size_t length = strlen(out);
+    snprintf(out + length, CS_TICK_BYTES - length, "%s%s", minus ? "\u2212" : "",
+             number + minus);
 }
 
-bool cs_tick_print(const struct cs_tick *tick, char label[24]) {
-    if (tick->plain)
-        snprintf(label, 24, "%.6g",
-                 tick->digit ? tick->digit * pow(10, tick->decade) : tick->position);
-    else if (tick->digit > 1)
-        snprintf(label, 24, "%d·10", tick->digit);
-    else
-        snprintf(label, 24, "10");
-    return !tick->plain;
+void cs_tick_print(const struct cs_tick *tick, char label[CS_TICK_BYTES],
+                   char power[CS_TICK_BYTES]) {
+    char number[CS_TICK_BYTES], decade[CS_TICK_BYTES];
+    snprintf(number, sizeof number, tick->plain ? "%.6g" : "%.0e", tick->value);
+    char *exponent = strchr(number, 'e');
+    *label = *power = 0;
+    if (exponent) {
+        *exponent = 0;
+        snprintf(decade, sizeof decade, "%d", atoi(exponent + 1));
+        add_number(power, decade);
+    }
+    if (!exponent || strcmp(number, "1") != 0)
+        add_number(label, number);
+    if (exponent)
+        add_number(label, *label ? "·10" : "10");
 }
 
 struct cs_key *cs_diagram_add_key(struct cs_diagram *diagram, enum cs_key_kind kind,
@@ -104,4 +121,34 @@ struct cs_key *cs_diagram_add_key(struct cs_diagram *diagram, enum cs_key_kind k
         .kind = kind, .style = {.colour = colour, .width = 1}, .letter = letter};
     snprintf(key->text, sizeof key->text, "%s", text);
     return key;
+}
+
+void cs_plot_begin(struct cs_plot *plot, const char *title, double width) {
+    *plot = (struct cs_plot){
+        .diagram = {.title = title, .width = width, .columns = 1, .panels = plot->panels}};
+}
+
+void cs_plot_finish(struct cs_plot *plot) {
+    cs_arena_finish(&plot->arena);
+    *plot = (struct cs_plot){0};
+}
+
+struct cs_panel *cs_plot_add_panel(struct cs_plot *plot, double aspect, uint32_t n_series,
+                                   struct cs_error *error) {
+    const struct cs_plot_axis empty = {.range = {HUGE_VAL, -HUGE_VAL}};
+    struct cs_panel *panel = plot->panels + plot->diagram.n_panels;
+    if (panel == plot->panels + CS_PANELS_MAX)
+        return NULL;
+    *panel = (struct cs_panel){.x = empty, .y = empty, .aspect = aspect};
+    plot->diagram.n_panels++;
+    return CS_ARENA_ARRAY(&plot->arena, panel->series, n_series, error) ? panel : NULL;
+}
+
+struct cs_series *cs_plot_add_series(struct cs_plot *plot, struct cs_panel *panel,
+                                     struct cs_series series, uint32_t n_points,
+                                     struct cs_error *error) {
+    if (!CS_ARENA_ARRAY(&plot->arena, series.points, n_points, error))
+        return NULL;
+    panel->series[panel->n_series] = series;
+    return panel->series + panel->n_series++;
 }

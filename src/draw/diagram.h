@@ -7,7 +7,7 @@
 #ifndef CS_DRAW_DIAGRAM_H
 #define CS_DRAW_DIAGRAM_H
 
-#include "base/status.h"
+#include "base/arena.h"
 #include "base/text.h"
 
 #include <stdbool.h>
@@ -17,7 +17,8 @@
 #define CS_WIDTH_COLUMN 88.0
 #define CS_WIDTH_PAGE   180.0
 
-enum { CS_TICKS_MAX = 512, CS_LABEL_BYTES = 160, CS_KEYS_MAX = 16, CS_STYLES = 12 };
+enum { CS_PANELS_MAX = 8, CS_TICKS_MAX = 512, CS_LABEL_BYTES = 160, CS_KEYS_MAX = 16 };
+enum { CS_STYLES = 12, CS_TICK_BYTES = 32 };
 
 /* The terminal's letter of a series is that of its style. */
 struct cs_style {
@@ -42,14 +43,15 @@ struct cs_plot_axis {
 
 /* Fraction of the axis at a value; not finite where the axis has no such value. */
 double cs_plot_axis_at(const struct cs_plot_axis *axis, double value);
-/* Extends the range to a value; an empty range is HUGE_VAL, -HUGE_VAL. */
+/* Extends the range to a value. */
 void cs_plot_axis_include(struct cs_plot_axis *axis, double value);
 /* Widens the range by a margin, and to at least a factor of four, or by a tenth. */
 void cs_plot_axis_widen(struct cs_plot_axis *axis);
 
-/* A tick at digit times 10^decade of a logarithmic axis, else (digit 0) at its position. */
+/* A tick at digit times 10^decade of a logarithmic axis; digit 0: of another, on which every
+ * n-th, for n = 2, 5 or 10, is where n divides decade. */
 struct cs_tick {
-    double position; /* in the unit of the range */
+    double at, value; /* fraction of the axis */
     int digit, decade;
     bool label, plain; /* it has a label; written without a power of 10 */
 };
@@ -59,30 +61,32 @@ struct cs_tick {
  */
 uint32_t cs_plot_axis_ticks(const struct cs_plot_axis *axis,
                             struct cs_tick ticks[CS_TICKS_MAX]);
-/* Fraction of the axis at a tick. */
-double cs_tick_at(const struct cs_plot_axis *axis, const struct cs_tick *tick);
-/* Prints the label without its power of 10, which is true for one. */
-bool cs_tick_print(const struct cs_tick *tick, char label[24]);
+/* Prints the label for print, and its power of 10, which may be "". */
+void cs_tick_print(const struct cs_tick *tick, char label[CS_TICK_BYTES],
+                   char power[CS_TICK_BYTES]);
 
-enum cs_mark { CS_MARK_NONE, CS_MARK_FULL, CS_MARK_HOLLOW, CS_MARK_CROSS };
+/* Later ones lie below earlier ones, but for the ring. */
+enum cs_mark { CS_MARK_NONE, CS_MARK_FULL, CS_MARK_HOLLOW, CS_MARK_CROSS, CS_MARK_RING };
 
 struct cs_point {
     double x, y;
-    double low, high; /* ends of a bar along x; of a band along y; NAN: none */
+    double low, high; /* ends of a bar along x; NAN: none */
+    double band[2];   /* of its series, if that has a band, along y; NAN: not here */
     enum cs_mark mark;
     bool joined, ring; /* on the line of its series; with a ring around it */
     bool front;        /* in capitals in a terminal */
     const char *note;  /* borrowed; what an SVG tells of its mark with the values; NULL: none */
 };
 
-enum cs_series_kind { CS_SERIES_LINE, CS_SERIES_BAND, CS_SERIES_STAIRS };
+enum cs_series_kind { CS_SERIES_LINE, CS_SERIES_STAIRS };
 
 struct cs_series {
     const char *name; /* borrowed; stands where its line ends; NULL: none */
     enum cs_series_kind kind;
     struct cs_style style;
+    bool has_band;
     uint32_t n;
-    struct cs_point *points; /* (n) borrowed */
+    struct cs_point *points; /* (n) of the diagram's memory */
 };
 
 /* A filled rectangle; in a terminal its letter. */
@@ -94,13 +98,14 @@ struct cs_diagram_rect {
 
 struct cs_panel {
     struct cs_plot_axis x, y;
-    double aspect; /* height of the box of the axes over its width */
+    double aspect;  /* height of the box of the axes over its width */
+    bool is_single; /* the y axis says what its one series is: it is not named beside it */
     uint32_t n_boxes, n_series;
-    const struct cs_diagram_rect *boxes; /* (n_boxes) borrowed; below the series */
-    const struct cs_series *series;      /* (n_series) borrowed; later ones over earlier ones */
+    struct cs_diagram_rect *boxes; /* (n_boxes) below the series; both of its memory */
+    struct cs_series *series;      /* (n_series) later ones over earlier ones */
 };
 
-enum cs_key_kind { CS_KEY_TEXT, CS_KEY_PATCH, CS_KEY_LINE, CS_KEY_MARK, CS_KEY_RING };
+enum cs_key_kind { CS_KEY_TEXT, CS_KEY_PATCH, CS_KEY_SAMPLE };
 
 /* The meaning of a colour or mark, below the panels. */
 struct cs_key {
@@ -125,11 +130,30 @@ struct cs_diagram {
 struct cs_key *cs_diagram_add_key(struct cs_diagram *diagram, enum cs_key_kind kind,
                                   uint32_t colour, char letter, const char *text);
 
+/* A diagram with its memory, in which series, points and boxes are. It must not move. */
+struct cs_plot {
+    struct cs_diagram diagram;
+    struct cs_panel panels[CS_PANELS_MAX];
+    struct cs_arena arena;
+};
+
+/* Begins a diagram without panels; cs_plot_finish must be called in any case. */
+void cs_plot_begin(struct cs_plot *plot, const char *title, double width);
+void cs_plot_finish(struct cs_plot *plot);
+/* Adds a panel of empty ranges, with room for so many series. NULL: no room for it, or
+ * CS_ERR_MEMORY. */
+struct cs_panel *cs_plot_add_panel(struct cs_plot *plot, double aspect, uint32_t n_series,
+                                   struct cs_error *error);
+/* Adds a series, with room for so many points. NULL: CS_ERR_MEMORY. */
+struct cs_series *cs_plot_add_series(struct cs_plot *plot, struct cs_panel *panel,
+                                     struct cs_series series, uint32_t n_points,
+                                     struct cs_error *error);
+
 enum cs_format { CS_FORMAT_PNG, CS_FORMAT_SVG, CS_FORMAT_PDF, CS_FORMATS };
 extern const char *const cs_format_names[]; /* closed by NULL */
 enum { CS_FORMATS_ALL = (1 << CS_FORMATS) - 1 };
 
-#define CS_DIAGRAM_ABI 2u /* raised with every change of the structs above or below */
+#define CS_DIAGRAM_ABI 3u /* raised with every change of the structs above or below */
 /* The module exports this table as clothsim_diagram. */
 struct cs_diagram_module {
     unsigned abi;

@@ -289,7 +289,10 @@ void cs_picture_range(const struct cs_scene *scene, double most, double range[2]
 static void measure_colours(struct cs_picture *picture, const struct cs_run *run) {
     const double *given = picture->scene->render.range;
     const uint32_t n = picture->system->view.n;
-    cs_picture_values(picture->system, run, picture->scalar, picture->work);
+    if (picture->values)
+        memcpy(picture->scalar, picture->values, n * sizeof *picture->scalar);
+    else
+        cs_picture_values(picture->system, run, picture->scalar, picture->work);
     memcpy(picture->range, given, sizeof picture->range);
     if (isnan(given[0]))
         cs_picture_range(picture->scene, cs_diagnostics_magnitude(picture->scalar, n),
@@ -305,7 +308,7 @@ static void paint(void *object) {
                                    .x = picture->x,
                                    .scalar = picture->scalar,
                                    .range = {picture->range[0], picture->range[1]},
-                                   .title = look->title,
+                                   .title = picture->values ? NULL : look->title,
                                    .factor = look->factor,
                                    .inv_mass = picture->inv_mass,
                                    .goals = picture->goals,
@@ -371,9 +374,9 @@ void cs_picture_close(struct cs_picture *picture) {
     *picture = (struct cs_picture){0};
 }
 
-enum cs_status cs_snapshot_draw(const struct cs_run *run, enum cs_renderer_kind kind,
-                                struct cs_image *image, struct cs_text *renderer,
-                                struct cs_error *error) {
+enum cs_status cs_snapshot_draw(const struct cs_run *run, const double *values,
+                                enum cs_renderer_kind kind, struct cs_image *image,
+                                struct cs_text *renderer, struct cs_error *error) {
     const struct cs_render *render = &run->system->scene->render;
     struct cs_picture picture;
     image->width = (uint32_t)render->size[0];
@@ -383,6 +386,7 @@ enum cs_status cs_snapshot_draw(const struct cs_run *run, enum cs_renderer_kind 
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
     if (cs_picture_open(&picture, run->system, kind, false, false, error))
         return error->status;
+    picture.values = values;
     cs_picture_begin(&picture, run, image);
     cs_picture_end(&picture, error);
     cs_text_add(renderer, "%s", cs_picture_renderer(&picture));

@@ -31,6 +31,7 @@ struct cs_picture {
     struct cs_image *textures; /* (scene->bodies.n), owned */
     double *x, *inv_mass;      /* (3,n), (n), owned: the run as it was at begin */
     double *scalar, *work;     /* (n), (3,n), owned; NULL unless the look colours by a value */
+    const double *values;      /* (n), borrowed: see cs_snapshot_draw; or NULL */
     double *goals;             /* (3,n), owned; NULL unless the look shows them */
     uint8_t *marks;            /* (n) of particles, owned; NULL unless the scene marks some */
     uint8_t *triangle_marks;   /* of triangles, owned; NULL unless the look shows them */
@@ -77,10 +78,12 @@ const char *cs_picture_renderer(const struct cs_picture *picture);
 /* Waits for the picture in progress and frees everything. */
 void cs_picture_close(struct cs_picture *picture);
 
-/* Draws the state of a run once, at the size of its scene. The caller frees image->rgb, also on
- * failure; image->alpha is the caller's. Adds the renderer's description. */
-enum cs_status cs_snapshot_draw(const struct cs_run *run, enum cs_renderer_kind kind,
-                                struct cs_image *image, struct cs_text *renderer,
-                                struct cs_error *error);
+/* Draws the state of a run once, at the size of its scene. values (n): colours of a look that
+ * has some, in place of its own and without its bar; NULL: its own. The caller frees
+ * image->rgb, also on failure; image->alpha is the caller's. Adds the renderer's description.
+ */
+enum cs_status cs_snapshot_draw(const struct cs_run *run, const double *values,
+                                enum cs_renderer_kind kind, struct cs_image *image,
+                                struct cs_text *renderer, struct cs_error *error);
 
 #endif

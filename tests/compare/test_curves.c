@@ -46,24 +46,28 @@ static bool is_beaten(const struct cs_plot_settings *settings, uint32_t k) {
 /* against the definition: no other cell is both cheaper and more accurate */
 TEST(front_is_what_nothing_beats) {
     const struct cs_plot_settings settings = make();
-    bool on[CELLS] = {false};
-    double last = 0;
-    for (uint32_t k = UINT32_MAX; cs_curves_front(&settings, &k); last = cells[k].cpu) {
-        ck_assert_double_gt(cells[k].cpu, last);
-        on[k] = true;
+    struct cs_spot spots[CELLS];
+    cs_spots_find(&settings, settings.x, spots);
+    for (uint32_t k = 0; k < CELLS; k++) {
+        const bool front = cs_cell_is_finished(cells + k) && !is_beaten(&settings, k);
+        ck_assert_msg(spots[k].on_front == front, "cell %u: on the front %d", k, !front);
     }
-    for (uint32_t k = 0; k < CELLS; k++)
-        ck_assert_msg(!cs_cell_is_finished(cells + k) || on[k] == !is_beaten(&settings, k),
-                      "cell %u: on the front %d", k, on[k]);
 }
 
 TEST(no_front_over_what_costs_nothing) {
-    struct cs_plot_settings settings = make();
-    uint32_t k = UINT32_MAX;
-    for (uint32_t c = 0; c < CELLS; c++)
-        cells[c].step = cells[c].cpu;
-    settings.x = cs_column_find("step");
-    ck_assert(!cs_curves_front(&settings, &k));
+    const struct cs_plot_settings settings = make();
+    struct cs_spot spots[CELLS];
+    for (uint32_t k = 0; k < CELLS; k++)
+        cells[k].step = cells[k].cpu;
+    cs_spots_find(&settings, cs_column_find("step"), spots);
+    for (uint32_t k = 0; k < CELLS; k++)
+        ck_assert(!spots[k].on_front);
+}
+
+static void find(const struct cs_plot_settings *settings, struct cs_curves *curves) {
+    struct cs_spot spots[CELLS];
+    cs_spots_find(settings, settings->x, spots);
+    cs_curves_make(curves, settings, spots);
 }
 
 TEST(twelve_curves_with_what_is_on_the_front) {
@@ -71,15 +75,15 @@ TEST(twelve_curves_with_what_is_on_the_front) {
     struct cs_curves curves;
     uint32_t drawn = 0, least = CELLS, most_left = 0;
     bool styles[CS_CURVES_DRAWN] = {false};
-    cs_curves_make(&curves, &settings);
+    find(&settings, &curves);
     ck_assert_uint_eq(curves.n, SERIES);
     for (uint32_t c = 0; c < curves.n; c++) {
         const struct cs_curve *curve = curves.list + c;
-        if (curve->style < 0) {
+        if (!curve->is_chosen) {
             most_left = curve->on_front > most_left ? curve->on_front : most_left;
             continue;
         }
-        ck_assert_int_lt(curve->style, CS_CURVES_DRAWN);
+        ck_assert_uint_lt(curve->style, CS_CURVES_DRAWN);
         ck_assert(!styles[curve->style]);
         styles[curve->style] = true;
         least = curve->on_front < least ? curve->on_front : least;
@@ -87,17 +91,17 @@ TEST(twelve_curves_with_what_is_on_the_front) {
     }
     ck_assert_uint_eq(drawn, CS_CURVES_DRAWN);
     ck_assert_uint_le(most_left, least);
-    ck_assert_uint_eq(cs_curves_left_out(&curves), SERIES - CS_CURVES_DRAWN);
+    ck_assert_uint_eq(curves.n_left_out, SERIES - CS_CURVES_DRAWN);
 }
 
 TEST(all_series_are_drawn_on_request) {
     struct cs_plot_settings settings = make();
     struct cs_curves curves;
     settings.all = true;
-    cs_curves_make(&curves, &settings);
+    find(&settings, &curves);
     for (uint32_t c = 0; c < curves.n; c++)
-        ck_assert_int_ge(curves.list[c].style, 0);
-    ck_assert_uint_eq(cs_curves_left_out(&curves), 0);
+        ck_assert(curves.list[c].is_chosen);
+    ck_assert_uint_eq(curves.n_left_out, 0);
 }
 
 /* Points, bars and crosses are within the axes; points have their cells' values. Twice, beside
@@ -190,9 +194,9 @@ TEST(no_axis_is_without_labels) {
         const uint32_t n = cs_plot_axis_ticks(&axis, ticks);
         uint32_t labels = 0;
         for (uint32_t i = 0; i < n; i++) {
-            ck_assert(ticks[i].position >= range[0] && ticks[i].position <= range[1]);
-            ck_assert_double_eq_tol(ticks[i].position, ticks[i].decade + log10(ticks[i].digit),
-                                    1e-12);
+            ck_assert(ticks[i].at >= 0 && ticks[i].at <= 1);
+            ck_assert_double_eq_tol(range[0] + ticks[i].at * (range[1] - range[0]),
+                                    ticks[i].decade + log10(ticks[i].digit), 1e-12);
             labels += ticks[i].label;
         }
         ck_assert_msg(labels >= 2 && labels <= 20, "%u labels from 1e%g over %g decades",
@@ -213,9 +217,13 @@ TEST(linear_ticks_are_round) {
         struct cs_tick ticks[CS_TICKS_MAX];
         const uint32_t n = cs_plot_axis_ticks(&axis, ticks);
         ck_assert_msg(n >= 3 && n <= 11, "%u ticks from %g over %g", n, start, span);
-        const double step = ticks[1].position - ticks[0].position;
+        const double step = ticks[1].value - ticks[0].value;
         const double digit = step / pow(10, floor(log10(step) + 1e-6));
         ck_assert(fabs(digit - 1) < 1e-3 || fabs(digit - 2) < 1e-3 || fabs(digit - 5) < 1e-3);
+        // a label at every tenth tick has a tenth of the digits
+        for (uint32_t i = 0; i < n; i++)
+            ck_assert(ticks[i].decade % 10 != 0 ||
+                      fabs(remainder(ticks[i].value, 10 * step)) < 1e-3 * step);
     }
 }
 
@@ -227,4 +235,26 @@ TEST(twelve_styles_differ_in_grey) {
             ck_assert(one.dash != other.dash || one.marker != other.marker);
             ck_assert_uint_ne(one.colour, other.colour);
         }
+}
+
+/* Labels as journals print them: a true minus sign, and powers of 10 instead of an e. */
+TEST(labels_are_for_print) {
+    static const struct {
+        struct cs_tick tick;
+        const char *label, *power;
+    } known[] = {
+        {{.value = 0, .plain = true}, "0", ""},
+        {{.value = -0.02, .plain = true}, "\u22120.02", ""},
+        {{.value = -2e-7, .plain = true}, "\u22122·10", "\u22127"},
+        {{.value = 1e6, .plain = true}, "10", "6"},
+        {{.value = 2500000, .plain = true}, "2.5·10", "6"},
+        {{.value = 1e-12, .digit = 1, .decade = -12}, "10", "\u221212"},
+        {{.value = 5e3, .digit = 5, .decade = 3}, "5·10", "3"},
+    };
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
+        char label[CS_TICK_BYTES], power[CS_TICK_BYTES];
+        cs_tick_print(&known[k].tick, label, power);
+        ck_assert_str_eq(label, known[k].label);
+        ck_assert_str_eq(power, known[k].power);
+    }
 }

@@ -1,6 +1,6 @@
 /* clothsim plot: draws a table that the program wrote.
  *
- *   FILE -> a comparison: cells -> cs_plot_make; a stability map: cs_table_plot_open; other
+ *   FILE -> a comparison: cells -> cs_plot_make; a stability map: cs_table_plot_read; other
  *   numbers, of which a spectrum may be made: cs_table_lines_add
  *   -> the terminal, or NAME.png, NAME.svg, NAME.pdf */
 #include "base/file.h"
@@ -205,18 +205,6 @@ static enum cs_status finish(struct cs_args *args, const struct cs_diagram *diag
     return cs_print_out(stdout, &text, error);
 }
 
-/* True if `methods`, "NAME,NAME", has the series or the method of a cell. */
-static bool is_listed(const char *methods, const struct cs_cell *cell) {
-    for (size_t length; *methods; methods += length + (methods[length] == ',')) {
-        length = strcspn(methods, ",");
-        const char *names[] = {cell->series, cell->method};
-        for (int k = 0; k < 2; k++)
-            if (strlen(names[k]) == length && !strncmp(methods, names[k], length))
-                return true;
-    }
-    return false;
-}
-
 /* Keeps the cells of the family and methods that were given. Fails if there are none: an empty
  * diagram would hide a mistake in a name. */
 static enum cs_status select_cells(const struct options *options, const char *file,
@@ -226,7 +214,8 @@ static enum cs_status select_cells(const struct options *options, const char *fi
     *n = 0;
     for (uint32_t k = 0; k < all; k++)
         if ((!family || !strcmp(family, cells[k].family)) &&
-            (!methods || is_listed(methods, cells + k)))
+            (!methods || cs_list_has(methods, cells[k].series) ||
+             cs_list_has(methods, cells[k].method)))
             cells[(*n)++] = cells[k];
     return *n || !(family || methods)
                ? CS_OK
@@ -258,37 +247,34 @@ static enum cs_status plot_comparison(struct cs_args *args, struct cs_error *err
 }
 
 /* Replaces the table by its spectrum, and draws it with its lowest frequencies. */
-static enum cs_status add_spectrum(struct cs_table_plot *plot,
+static enum cs_status add_spectrum(struct cs_plot *plot, struct cs_number_table *table,
                                    const struct cs_line_settings *lines, uint32_t particle,
                                    struct cs_error *error) {
     double seconds;
     char name[32];
     const bool joint = particle != UINT32_MAX;
     snprintf(name, sizeof name, "particle %u", particle);
-    if (cs_spectrum_make(&plot->table, joint ? name : NULL, &seconds, &plot->arena, error) ||
-        cs_table_lines_add(plot, lines, error))
+    if (cs_spectrum_make(table, joint ? name : NULL, &seconds, &plot->arena, error) ||
+        cs_table_lines_add(plot, table, lines, error))
         return error->status;
     if (joint)
         snprintf(plot->panels->y.label, CS_LABEL_BYTES, "amplitude in m");
-    cs_spectrum_add_peaks(plot, seconds);
+    cs_spectrum_add_peaks(plot, table, seconds);
     return CS_OK;
 }
 
-/* Opens the table that the options ask for: of a particle, of a force, or the file. */
-static enum cs_status open_table(const struct cs_args *args, const char *title,
-                                 struct cs_table_plot *plot, struct cs_error *error) {
+/* Reads or makes the table that the options ask for: of a particle, of a force, or the file. */
+static enum cs_status open_table(const struct cs_args *args, struct cs_plot *plot,
+                                 struct cs_number_table *table, struct cs_error *error) {
     const struct options *options = args->options;
     const char *file = args->operands[0];
     const char *dots = options->stretch ? strstr(options->stretch, "..") : NULL;
     double low, high;
     char text[64] = "";
-    if (!options->stretch && !is_of_particle(options))
-        return cs_table_plot_open(plot, file, title, options->width, error);
-    *plot = (struct cs_table_plot){
-        .diagram = {
-            .title = title, .width = options->width, .columns = 1, .panels = plot->panels}};
+    if (is_of_particle(options))
+        return cs_particle_read(file, options->particle, &plot->arena, table, error);
     if (!options->stretch)
-        return cs_particle_read(file, options->particle, &plot->arena, &plot->table, error);
+        return cs_table_plot_read(plot, table, file, error);
     if (dots && dots - options->stretch < (ptrdiff_t)sizeof text)
         memcpy(text, options->stretch, (size_t)(dots - options->stretch));
     if (!dots || !cs_parse_real(text, &low) || !cs_parse_real(dots + 2, &high) ||
@@ -297,7 +283,7 @@ static enum cs_status open_table(const struct cs_args *args, const char *title,
                        "--stretch: expected LOW..HIGH, both above 0 and up to 100, found "
                        "\"%.60s\"",
                        options->stretch);
-    return cs_force_length_measure(file, low, high, &plot->arena, &plot->table, error);
+    return cs_force_length_measure(file, low, high, &plot->arena, table, error);
 }
 
 static enum cs_status plot_table(struct cs_args *args, struct cs_error *error) {
@@ -305,22 +291,24 @@ static enum cs_status plot_table(struct cs_args *args, struct cs_error *error) {
     const bool computed = options->spectrum || options->stretch || is_of_particle(options);
     const struct cs_line_settings lines = {options->x, options->y, options->log_axes,
                                            args->operands[0]};
-    struct cs_table_plot plot;
-    if (!open_table(args, options->title ? options->title : args->operands[0], &plot, error)) {
+    struct cs_plot plot;
+    struct cs_number_table table;
+    cs_plot_begin(&plot, options->title ? options->title : args->operands[0], options->width);
+    if (!open_table(args, &plot, &table, error)) {
         /* a map has its panel already */
         if (plot.diagram.n_panels && options->spectrum)
             cs_fail(error, CS_ERR_USAGE, "--spectrum: a stability map has none");
-        else if (!plot.diagram.n_panels && options->spectrum)
-            add_spectrum(&plot, &lines, options->particle, error);
+        else if (options->spectrum)
+            add_spectrum(&plot, &table, &lines, options->particle, error);
         else if (!plot.diagram.n_panels)
-            cs_table_lines_add(&plot, &lines, error);
+            cs_table_lines_add(&plot, &table, &lines, error);
         if (!error->status && is_of_particle(options) && !options->spectrum)
             snprintf(plot.panels->y.label, CS_LABEL_BYTES, "position in m");
         if (!error->status)
-            finish(args, &plot.diagram, &(struct cs_plot_settings){0},
-                   computed ? &plot.table : NULL, error);
+            finish(args, &plot.diagram, &(struct cs_plot_settings){0}, computed ? &table : NULL,
+                   error);
     }
-    cs_table_plot_finish(&plot);
+    cs_plot_finish(&plot);
     return error->status;
 }
 

@@ -167,21 +167,22 @@ static void mark_point(struct cs_series *series, double frequency) {
     nearest->mark = CS_MARK_FULL;
 }
 
-void cs_spectrum_add_peaks(struct cs_table_plot *plot, double seconds) {
+void cs_spectrum_add_peaks(struct cs_plot *plot, const struct cs_number_table *table,
+                           double seconds) {
     for (uint32_t k = 0; k < plot->diagram.n_panels; k++)
         for (uint32_t s = 0; s < plot->panels[k].n_series; s++) {
-            struct cs_series *series = (struct cs_series *)plot->panels[k].series + s;
+            struct cs_series *series = plot->panels[k].series + s;
             double peaks[CS_SPECTRUM_PEAKS];
             char text[CS_LABEL_BYTES];
-            const uint32_t n = find_peaks(
-                &plot->table, cs_number_table_find(&plot->table, series->name), seconds, peaks);
+            const uint32_t n =
+                find_peaks(table, cs_number_table_find(table, series->name), seconds, peaks);
             int at = snprintf(text, sizeof text, "%.60s:", series->name);
             for (uint32_t p = 0; p < n; p++) {
                 mark_point(series, peaks[p]);
                 at += snprintf(text + at, sizeof text - (size_t)at, " %.4g Hz%s", peaks[p],
                                p + 1 < n ? "," : "");
             }
-            cs_diagram_add_key(&plot->diagram, CS_KEY_LINE, series->style.colour, ' ',
+            cs_diagram_add_key(&plot->diagram, CS_KEY_SAMPLE, series->style.colour, ' ',
                                n ? text : "no peak has two periods in the samples")
                 ->style = series->style;
         }

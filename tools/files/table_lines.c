@@ -9,15 +9,12 @@
 
 static void set_label(struct cs_plot_axis *axis, const char *name) {
     const struct cs_column *column = cs_known_column(name);
-    struct cs_text label = {0};
+    snprintf(axis->label, CS_LABEL_BYTES, "%s", name);
     if (column)
-        cs_column_add_label(column, &label);
-    snprintf(axis->label, CS_LABEL_BYTES, "%s", column ? cs_text_get(&label) : name);
-    cs_text_finish(&label);
+        cs_column_print_label(column, axis->label, CS_LABEL_BYTES);
 }
 
-/* True for a word of "a,b,c". */
-static bool has_word(const char *list, const char *word) {
+bool cs_list_has(const char *list, const char *word) {
     const size_t length = strlen(word);
     for (const char *at = list; length && (at = strstr(at, word)); at += length)
         if ((at == list || at[-1] == ',') && (!at[length] || at[length] == ','))
@@ -28,9 +25,9 @@ static bool has_word(const char *list, const char *word) {
 /* True for a column that was asked for; else for one that is not zero throughout, but for
  * indices, and bounds that are far above what they bound. */
 static bool is_drawn(const struct cs_number_table *table, uint32_t c, const char *y) {
-    const bool quiet = has_word("frame,step,particle,fast_particles,bound", table->names[c]);
+    const bool quiet = cs_list_has("frame,step,particle,fast_particles,bound", table->names[c]);
     if (y)
-        return has_word(y, table->names[c]);
+        return cs_list_has(y, table->names[c]);
     for (uint32_t r = 0; r < table->rows && !quiet; r++)
         if (isfinite(cs_number_table_at(table, r, c)) && cs_number_table_at(table, r, c) != 0)
             return true;
@@ -38,9 +35,9 @@ static bool is_drawn(const struct cs_number_table *table, uint32_t c, const char
 }
 
 /* The panel of a column's unit, or a new one; NULL: there is no room, or no memory. */
-static struct cs_panel *find_panel(struct cs_table_plot *plot,
-                                   const struct cs_number_table *table, uint32_t x, uint32_t c,
-                                   const char *log_axes, struct cs_error *error) {
+static struct cs_panel *find_panel(struct cs_plot *plot, const struct cs_number_table *table,
+                                   uint32_t x, uint32_t c, const char *log_axes,
+                                   struct cs_error *error) {
     const struct cs_column *column = cs_known_column(table->names[c]), *other;
     struct cs_panel *panel = plot->panels;
     const bool grouped = !strcmp(table->names[0], "series");
@@ -48,27 +45,25 @@ static struct cs_panel *find_panel(struct cs_table_plot *plot,
         if (!grouped && ((other = cs_known_column(panel->series->name)) == column ||
                          (column && other && !strcmp(column->unit, other->unit)))) {
             /* of several lines their names say what they are */
+            if (column && !strcmp(column->help, other->help))
+                return panel;
             snprintf(panel->y.label, CS_LABEL_BYTES, "%s%s",
                      column && !strcmp(column->unit, "J") ? "energy in " : "",
                      column ? column->unit : "");
             return panel;
         }
-    if (panel == plot->panels + CS_TABLE_PANELS)
-        return NULL;
-    *panel = (struct cs_panel){
-        .aspect = 0.4,
-        .x = {.logarithmic = strchr(log_axes, 'x'), .range = {HUGE_VAL, -HUGE_VAL}},
-        .y = {.logarithmic = strchr(log_axes, 'y'), .range = {HUGE_VAL, -HUGE_VAL}},
-        .series = cs_arena_alloc_array(&plot->arena, table->columns + (size_t)table->rows,
-                                       sizeof *panel->series, error)};
-    set_label(&panel->x, table->names[x]);
-    set_label(&panel->y, table->names[c]);
-    plot->diagram.n_panels++;
-    return panel->series ? panel : NULL;
+    panel = cs_plot_add_panel(plot, 0.4, table->columns + table->rows, error);
+    if (panel) {
+        panel->x.logarithmic = strchr(log_axes, 'x');
+        panel->y.logarithmic = strchr(log_axes, 'y');
+        set_label(&panel->x, table->names[x]);
+        set_label(&panel->y, table->names[c]);
+    }
+    return panel;
 }
 
 /* Lines of all columns that are drawn; of a table of series one for each. */
-static enum cs_status add_lines(struct cs_table_plot *plot, const struct cs_number_table *table,
+static enum cs_status add_lines(struct cs_plot *plot, const struct cs_number_table *table,
                                 const struct cs_line_settings *settings,
                                 struct cs_error *error) {
     const bool grouped = !strcmp(table->names[0], "series");
@@ -88,6 +83,7 @@ static enum cs_status add_lines(struct cs_table_plot *plot, const struct cs_numb
                 cs_table_plot_add_series(plot, panel, table, columns, table->words[r], error);
     }
     for (uint32_t k = 0; k < plot->diagram.n_panels; k++) {
+        plot->panels[k].is_single = plot->panels[k].n_series == 1 && !grouped;
         cs_plot_axis_widen(&plot->panels[k].y);
         if (grouped || !(plot->panels[k].x.range[0] < plot->panels[k].x.range[1]))
             cs_plot_axis_widen(&plot->panels[k].x);
@@ -110,10 +106,9 @@ static enum cs_status check_names(const struct cs_number_table *table, const cha
     return CS_OK;
 }
 
-enum cs_status cs_table_lines_add(struct cs_table_plot *plot,
+enum cs_status cs_table_lines_add(struct cs_plot *plot, const struct cs_number_table *table,
                                   const struct cs_line_settings *settings,
                                   struct cs_error *error) {
-    const struct cs_number_table *table = &plot->table;
     if (check_names(table, "x", settings->x, error) ||
         check_names(table, "y", settings->y, error) || add_lines(plot, table, settings, error))
         return error->status;

@@ -102,7 +102,7 @@ static enum cs_status check_with(const struct cs_golden *golden, enum cs_rendere
                                  struct cs_error *error) {
     struct cs_image found = {0};
     struct cs_text renderer = {0};
-    if (!cs_snapshot_draw(&session->run, kind, &found, &renderer, error)) {
+    if (!cs_snapshot_draw(&session->run, NULL, kind, &found, &renderer, error)) {
         cs_hash_bytes(found.rgb, cs_image_bytes(&found), row->finding.found);
         if (golden->accept_all)
             accept_image(golden, row, &found, &renderer, error);

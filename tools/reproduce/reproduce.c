@@ -217,8 +217,8 @@ static enum cs_status draw(struct work *work, const struct cs_image *then, const
     if (render->background.kind == CS_BACKGROUND_NONE &&
         !(now.alpha = malloc((size_t)render->size[0] * (size_t)render->size[1])))
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
-    else if (!cs_snapshot_draw(&work->session.run, renderer_of(&work->carried), &now, &drawn_by,
-                               error))
+    else if (!cs_snapshot_draw(&work->session.run, NULL, renderer_of(&work->carried), &now,
+                               &drawn_by, error))
         compare_pixels(work, then, &now, cs_text_get(&drawn_by));
     free(now.rgb);
     free(now.alpha);

@@ -19,12 +19,12 @@ const struct cs_column cs_ledger_columns[] = {
 #define X(name, column) CS_NUMBER_COLUMN(column, "J", "work since the start: " column),
     CS_LEDGER_WORK_LIST(X)
 #undef X
-        CS_NUMBER_COLUMN("angular_x", "kg m2/s", "angular momentum about the origin"),
-    CS_NUMBER_COLUMN("angular_y", "kg m2/s", "angular momentum about the origin"),
-    CS_NUMBER_COLUMN("angular_z", "kg m2/s", "angular momentum about the origin"),
-    CS_NUMBER_COLUMN("couple_x", "kg m2/s", "what friction between surfaces has added to it"),
-    CS_NUMBER_COLUMN("couple_y", "kg m2/s", "what friction between surfaces has added to it"),
-    CS_NUMBER_COLUMN("couple_z", "kg m2/s", "what friction between surfaces has added to it"),
+        CS_NUMBER_COLUMN("angular_x", "kg m²/s", "angular momentum about the origin"),
+    CS_NUMBER_COLUMN("angular_y", "kg m²/s", "angular momentum about the origin"),
+    CS_NUMBER_COLUMN("angular_z", "kg m²/s", "angular momentum about the origin"),
+    CS_NUMBER_COLUMN("couple_x", "kg m²/s", "what friction between surfaces has added to it"),
+    CS_NUMBER_COLUMN("couple_y", "kg m²/s", "what friction between surfaces has added to it"),
+    CS_NUMBER_COLUMN("couple_z", "kg m²/s", "what friction between surfaces has added to it"),
 };
 const uint32_t cs_n_ledger_columns = sizeof cs_ledger_columns / sizeof *cs_ledger_columns;
 

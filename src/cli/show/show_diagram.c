@@ -133,10 +133,8 @@ static void draw(struct box *box) {
 }
 
 static void print_label(const struct cs_tick *tick, char label[32]) {
-    char digits[24];
-    cs_tick_print(tick, digits);
     if (tick->plain)
-        snprintf(label, 32, "%s", digits);
+        snprintf(label, 32, "%.6g", tick->value);
     else
         snprintf(label, 32, "%de%d", tick->digit, tick->decade);
 }
@@ -147,8 +145,7 @@ static void add_rows(const struct box *box, struct cs_text *out) {
     struct cs_tick ticks[CS_TICKS_MAX];
     const uint32_t n = cs_plot_axis_ticks(&box->panel->y, ticks);
     for (uint32_t k = 0; k < n; k++) {
-        char *label =
-            labels[box->rows - 1 - position(cs_tick_at(&box->panel->y, ticks + k), box->rows)];
+        char *label = labels[box->rows - 1 - position(ticks[k].at, box->rows)];
         if (ticks[k].label && !*label)
             print_label(ticks + k, label);
     }
@@ -168,7 +165,7 @@ static void add_x_axis(const struct box *box, struct cs_text *out) {
     axis[box->columns] = 0;
     for (uint32_t k = 0; k < n; k++) {
         char label[32];
-        const uint32_t at = position(cs_tick_at(&box->panel->x, ticks + k), box->columns);
+        const uint32_t at = position(ticks[k].at, box->columns);
         print_label(ticks + k, label);
         const size_t width = strlen(label), start = LEFT + at - width / 2;
         /* labels that would touch the one before or end outside are left out */

@@ -19,6 +19,10 @@ void cs_cairo_dash(cairo_t *cairo, const struct cs_style *style) {
         int n;
         double lengths[4];
     } dashes[] = {{0, {0}}, {2, {4, 1.6}}, {2, {1.2, 1.2}}, {4, {5, 1.4, 1.2, 1.4}}};
+    if (!(style->width > 0)) {
+        cairo_new_path(cairo);
+        return;
+    }
     cs_cairo_ink(cairo, style->colour, 1);
     cairo_set_line_width(cairo, style->width);
     cairo_set_dash(cairo, dashes[style->dash].lengths, dashes[style->dash].n, 0);
@@ -32,25 +36,19 @@ void cs_cairo_line(cairo_t *cairo, double x0, double y0, double x1, double y1) {
     cairo_stroke(cairo);
 }
 
-double cs_cairo_width(cairo_t *cairo, const char *text, double size) {
+double cs_cairo_text(cairo_t *cairo, const char *text, double x, double y, double align,
+                     double size) {
     struct cs_text plain = {0};
     cairo_text_extents_t extents;
     cs_text_add_plain(&plain, text);
     cairo_set_font_size(cairo, size);
     cairo_text_extents(cairo, cs_text_get(&plain), &extents);
+    if (isfinite(y)) {
+        cairo_move_to(cairo, x - align * extents.x_advance, y);
+        cairo_show_text(cairo, cs_text_get(&plain));
+    }
     cs_text_finish(&plain);
     return extents.x_advance;
-}
-
-double cs_cairo_text(cairo_t *cairo, const char *text, double x, double y, double align,
-                     double size) {
-    struct cs_text plain = {0};
-    const double width = cs_cairo_width(cairo, text, size);
-    cs_text_add_plain(&plain, text);
-    cairo_move_to(cairo, x - align * width, y);
-    cairo_show_text(cairo, cs_text_get(&plain));
-    cs_text_finish(&plain);
-    return width;
 }
 
 void cs_cairo_fitted(cairo_t *cairo, const char *text, double x, double y, double align,
@@ -60,28 +58,16 @@ void cs_cairo_fitted(cairo_t *cairo, const char *text, double x, double y, doubl
                   wide > room ? CS_FONT_SIZE * room / wide : CS_FONT_SIZE);
 }
 
-/* The label of a tick in two parts, the second a power. */
-static void split_tick(const struct cs_tick *tick, char label[24], char power[16]) {
-    *power = 0;
-    if (cs_tick_print(tick, label))
-        snprintf(power, 16, "%s%d", tick->decade < 0 ? "\u2212" : "",
-                 tick->decade < 0 ? -tick->decade : tick->decade);
-}
-
-double cs_cairo_tick_width(cairo_t *cairo, const struct cs_tick *tick) {
-    char label[24], power[16];
-    split_tick(tick, label, power);
-    return cs_cairo_width(cairo, label, CS_FONT_SIZE) +
-           cs_cairo_width(cairo, power, CS_SMALL_SIZE);
-}
-
-void cs_cairo_tick(cairo_t *cairo, const struct cs_tick *tick, double x, double y,
-                   double align) {
-    char label[24], power[16];
-    split_tick(tick, label, power);
-    x -= align * cs_cairo_tick_width(cairo, tick);
-    x += cs_cairo_text(cairo, label, x, y, 0, CS_FONT_SIZE);
-    cs_cairo_text(cairo, power, x, y - 0.38 * CS_FONT_SIZE, 0, CS_SMALL_SIZE);
+double cs_cairo_tick(cairo_t *cairo, const struct cs_tick *tick, double x, double y,
+                     double align) {
+    char label[CS_TICK_BYTES], power[CS_TICK_BYTES];
+    cs_tick_print(tick, label, power);
+    const double width = cs_cairo_width(cairo, label, CS_FONT_SIZE),
+                 all = width + cs_cairo_width(cairo, power, CS_SMALL_SIZE);
+    cs_cairo_text(cairo, label, x - align * all, y, 0, CS_FONT_SIZE);
+    cs_cairo_text(cairo, power, x - align * all + width, y - 0.38 * CS_FONT_SIZE, 0,
+                  CS_SMALL_SIZE);
+    return all;
 }
 
 /* A marker: n corners, every second one at `inner` of the radius. */
@@ -105,31 +91,26 @@ static void add_shape(cairo_t *cairo, const struct shape *shape, double size, do
 
 void cs_cairo_mark(cairo_t *cairo, enum cs_mark mark, const struct cs_style *style, double x,
                    double y) {
-    if (mark == CS_MARK_NONE)
-        return;
-    const double size = mark == CS_MARK_HOLLOW ? 0.6 * MARK_RADIUS : MARK_RADIUS;
+    const bool hollow = mark == CS_MARK_HOLLOW;
     cairo_new_path(cairo); /* a text leaves its end as the current point */
     cairo_set_line_width(cairo, MARK_LINE);
-    if (mark == CS_MARK_CROSS) {
-        cs_cairo_ink(cairo, style->colour, 1);
+    cs_cairo_ink(cairo, style->colour, 1);
+    if (mark == CS_MARK_CROSS)
         for (int side = -1; side <= 1; side += 2)
             cs_cairo_line(cairo, x - MARK_RADIUS, y - side * MARK_RADIUS, x + MARK_RADIUS,
                           y + side * MARK_RADIUS);
-        return;
+    if (mark == CS_MARK_RING) {
+        cs_cairo_ink(cairo, CS_RING_COLOUR, 1);
+        cairo_arc(cairo, x, y, 2.2 * MARK_RADIUS, 0, 2 * M_PI);
+        cairo_stroke(cairo);
     }
-    add_shape(cairo, shapes + style->marker, size, x, y);
-    cs_cairo_ink(cairo, mark == CS_MARK_HOLLOW ? 0xffffff : style->colour, 1);
+    if (mark != CS_MARK_FULL && !hollow)
+        return;
+    add_shape(cairo, shapes + style->marker, hollow ? 0.6 * MARK_RADIUS : MARK_RADIUS, x, y);
+    cs_cairo_ink(cairo, hollow ? 0xffffff : style->colour, 1);
     cairo_fill_preserve(cairo);
-    cs_cairo_ink(cairo, mark == CS_MARK_HOLLOW ? style->colour : 0xffffff, 1);
-    cairo_set_line_width(cairo, mark == CS_MARK_HOLLOW ? 0.4 : 0.2);
-    cairo_stroke(cairo);
-}
-
-void cs_cairo_ring(cairo_t *cairo, double x, double y) {
-    cs_cairo_ink(cairo, CS_RING_COLOUR, 1);
-    cairo_set_line_width(cairo, MARK_LINE);
-    cairo_new_sub_path(cairo);
-    cairo_arc(cairo, x, y, 2.2 * MARK_RADIUS, 0, 2 * M_PI);
+    cs_cairo_ink(cairo, hollow ? style->colour : 0xffffff, 1);
+    cairo_set_line_width(cairo, hollow ? 0.4 : 0.2);
     cairo_stroke(cairo);
 }
 
@@ -137,9 +118,7 @@ void cs_cairo_sample(cairo_t *cairo, const struct cs_style *style, enum cs_mark 
                      double y) {
     cairo_move_to(cairo, x, y);
     cairo_line_to(cairo, x + CS_SAMPLE, y);
-    if (style->width > 0)
-        cs_cairo_dash(cairo, style);
-    cairo_new_path(cairo);
+    cs_cairo_dash(cairo, style);
     cs_cairo_mark(cairo, mark, style, x + CS_SAMPLE / 2.0, y);
 }
 
@@ -154,18 +133,14 @@ void cs_cairo_keys(cairo_t *cairo, const struct cs_diagram *diagram, double widt
             *y += CS_LINE_HEIGHT + 1;
         }
         const double middle = *y - 0.35 * CS_FONT_SIZE;
-        cs_cairo_ink(cairo, key->style.colour, 1);
         if (key->kind == CS_KEY_PATCH) {
+            cs_cairo_ink(cairo, key->style.colour, 1);
             cairo_rectangle(cairo, x, middle - 3, CS_SAMPLE, 6);
             cairo_fill(cairo);
-        } else if (key->kind == CS_KEY_LINE)
+        } else if (key->kind == CS_KEY_SAMPLE)
             cs_cairo_sample(cairo, &key->style, key->mark, x, middle);
-        else if (key->kind == CS_KEY_MARK)
-            cs_cairo_mark(cairo, key->mark, &key->style, x + CS_SAMPLE / 2.0, middle);
-        else if (key->kind == CS_KEY_RING)
-            cs_cairo_ring(cairo, x + CS_SAMPLE / 2.0, middle);
         cs_cairo_ink(cairo, 0, 1);
-        cs_cairo_text(cairo, key->text, x + sample, *y, 0, CS_FONT_SIZE);
+        cs_cairo_fitted(cairo, key->text, x + sample, *y, 0, width - x - sample);
         x += wide + 10;
     }
     *y += diagram->n_keys ? CS_LINE_HEIGHT : 0;
@@ -181,13 +156,13 @@ void cs_cairo_gather_titles(cairo_t *cairo, struct cs_text *titles) {
 }
 
 void cs_cairo_title(cairo_t *cairo, const struct cs_panel *panel,
-                    const struct cs_series *series, const struct cs_point *p, double x,
-                    double y) {
+                    const struct cs_series *series, const struct cs_point *p,
+                    const double at[2]) {
     struct cs_text *titles = cairo_get_user_data(cairo, &titles_key);
     if (!titles)
         return;
     cs_text_add(titles, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"transparent\"><title>",
-                x, y);
+                at[0], at[1]);
     cs_text_add_html(titles, series->name ? series->name : "");
     cs_text_add(titles, " ");
     cs_text_add_html(titles, p->note ? p->note : "");

@@ -5,6 +5,7 @@
 #include "draw/diagram.h"
 
 #include <cairo.h>
+#include <math.h>
 
 /* Sizes in pt at print size: of text, and from one line of it to the next. */
 #define CS_FONT_SIZE   8.0
@@ -14,33 +15,31 @@ enum { CS_MARGIN = 3, CS_SAMPLE = 12 };
 
 void cs_cairo_ink(cairo_t *cairo, uint32_t colour, double alpha);
 
-/* Strokes the path in the dashes of a style. */
+/* Strokes the path in the dashes of a style; without a width it is dropped. */
 void cs_cairo_dash(cairo_t *cairo, const struct cs_style *style);
 
 void cs_cairo_line(cairo_t *cairo, double x0, double y0, double x1, double y1);
 
-/* Width of a text; characters that could confuse a reader or cairo are counted as replaced. */
-double cs_cairo_width(cairo_t *cairo, const char *text, double size);
-
-/* Writes a text with its base line at y. align: 0 from x on, 0.5 around it, 1 up to it. Returns
- * its width. */
+/* Writes a text with its base line at y; y NAN: writes nothing. align: 0 from x on, 0.5 around
+ * it, 1 up to it. Returns its width. Characters that could confuse a reader or cairo are
+ * replaced. */
 double cs_cairo_text(cairo_t *cairo, const char *text, double x, double y, double align,
                      double size);
+
+static inline double cs_cairo_width(cairo_t *cairo, const char *text, double size) {
+    return cs_cairo_text(cairo, text, 0, (double)NAN, 0, size);
+}
 
 /* The same, smaller where it would be wider than `room`. */
 void cs_cairo_fitted(cairo_t *cairo, const char *text, double x, double y, double align,
                      double room);
 
-double cs_cairo_tick_width(cairo_t *cairo, const struct cs_tick *tick);
-
-/* The label of a tick, with a raised power of 10. */
-void cs_cairo_tick(cairo_t *cairo, const struct cs_tick *tick, double x, double y,
-                   double align);
+/* The label of a tick, with a raised power of 10; returns its width. y NAN: draws nothing. */
+double cs_cairo_tick(cairo_t *cairo, const struct cs_tick *tick, double x, double y,
+                     double align);
 
 void cs_cairo_mark(cairo_t *cairo, enum cs_mark mark, const struct cs_style *style, double x,
                    double y);
-
-void cs_cairo_ring(cairo_t *cairo, double x, double y);
 
 /* A short line in a style with a mark on it, from x on. */
 void cs_cairo_sample(cairo_t *cairo, const struct cs_style *style, enum cs_mark mark, double x,
@@ -55,8 +54,8 @@ void cs_cairo_keys(cairo_t *cairo, const struct cs_diagram *diagram, double widt
  * does not. */
 void cs_cairo_gather_titles(cairo_t *cairo, struct cs_text *titles);
 void cs_cairo_title(cairo_t *cairo, const struct cs_panel *panel,
-                    const struct cs_series *series, const struct cs_point *p, double x,
-                    double y);
+                    const struct cs_series *series, const struct cs_point *p,
+                    const double at[2]);
 
 /* Mends the bytes of an SVG: drops the surface's number, which counts those of the process, and
  * puts the titles at the end. Frees the titles. */

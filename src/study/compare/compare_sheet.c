@@ -2,9 +2,9 @@
 #include "study/compare/compare.h"
 
 #include "base/file.h"
-#include "base/install_paths.h"
 #include "draw/look.h"
 #include "io/png.h"
+#include "study/frame_picture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,7 +13,7 @@
 
 enum { TILE_WIDTH = 400, TILE_HEIGHT = 300, TILES_MAX = 64, SHEETS = 2 };
 /* colours of a map; bytes of a tile's file, at most */
-enum { STOPS = 6, TILE_BYTES_MAX = 1 << 22 };
+enum { STOPS = 6, TILE_BYTES_MAX = 1 << 22, PATH_BYTES = 4400 };
 
 /* The cells of one sheet, one per series at most. */
 struct sheet {
@@ -23,18 +23,20 @@ struct sheet {
     double range[2]; /* log10 m */
 };
 
-/* FOLDER/pictures/KIND_SERIES.png */
-static void tile_path(const struct sheet *sheet, const struct cs_cell *cell,
-                      const struct cs_compare *compare, char *path, size_t size) {
-    char file[CS_SERIES_BYTES];
-    cs_series_file_name(cell->series, file);
-    snprintf(path, size, "%s/pictures/%s_%s.png", compare->settings->folder, sheet->kind, file);
+/* KIND_SERIES.png in FOLDER/pictures; cell NULL: KIND_reference.png. */
+static void tile_name(const struct sheet *sheet, const struct cs_cell *cell,
+                      char name[CS_SERIES_BYTES + 16]) {
+    char series[CS_SERIES_BYTES] = "reference";
+    if (cell)
+        cs_series_file_name(cell->series, series);
+    snprintf(name, CS_SERIES_BYTES + 16, "%s_%s.png", sheet->kind, series);
 }
 
-/* True for the first cell of a series. */
-static bool is_first_of_series(const struct cs_compare *compare, uint32_t k) {
-    const struct cs_cell *cells = compare->cells.cells;
-    return k == 0 || !cs_cell_same_series(cells + k, cells + k - 1);
+static void tile_path(const struct sheet *sheet, const struct cs_cell *cell,
+                      const struct cs_compare *compare, char path[PATH_BYTES]) {
+    char name[CS_SERIES_BYTES + 16];
+    tile_name(sheet, cell, name);
+    snprintf(path, PATH_BYTES, "%.4000s/pictures/%s", compare->settings->folder, name);
 }
 
 /* True for a finished cell with that step, equal up to rounding of its text. */
@@ -61,129 +63,112 @@ static void choose_step(struct sheet *sheet, const struct cs_compare *compare) {
             sheet->cells[sheet->n++] = list->cells + k;
 }
 
-/* Cost in s that every method can keep: the largest of the methods' cheapest cells. */
-static double common_cost(const struct cs_compare *compare) {
-    const struct cs_cell_list *list = &compare->cells;
-    double cost = 0, least = HUGE_VAL;
-    for (uint32_t k = 0; k <= list->n; k++) {
-        if (k == list->n || is_first_of_series(compare, k)) {
-            cost = least < HUGE_VAL ? fmax(cost, least) : cost;
-            least = HUGE_VAL;
-        }
-        if (k < list->n && cs_cell_is_finished(list->cells + k))
-            least = fmin(least, list->cells[k].cpu);
-    }
-    return cost;
+/* The cell after the last one of the series that begins with a cell. */
+static const struct cs_cell *end_of_series(const struct cs_compare *compare,
+                                           const struct cs_cell *first) {
+    const struct cs_cell *cell = first, *end = compare->cells.cells + compare->cells.n;
+    while (cell < end && cs_cell_same_series(cell, first))
+        cell++;
+    return cell;
 }
 
-/* Chooses the most expensive cell of each series within the common cost: its best result. */
-static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
-    const struct cs_cell_list *list = &compare->cells;
-    const double cost = common_cost(compare);
+/* The most expensive finished cell of a series within a cost, its best result; cost 0: the
+ * cheapest one. NULL: there is none. */
+static const struct cs_cell *find_cell(const struct cs_cell *first, const struct cs_cell *end,
+                                       double cost) {
     const struct cs_cell *best = NULL;
-    for (uint32_t k = 0; k <= list->n; k++) {
-        if ((k == list->n || is_first_of_series(compare, k)) && best && sheet->n < TILES_MAX) {
-            sheet->cells[sheet->n++] = best;
-            best = NULL;
-        }
-        const struct cs_cell *cell = list->cells + k;
-        if (k < list->n && cs_cell_is_finished(cell) && cell->cpu <= cost &&
-            (!best || cell->cpu > best->cpu))
+    for (const struct cs_cell *cell = first; cell < end; cell++)
+        if (cs_cell_is_finished(cell) &&
+            (cost > 0 ? cell->cpu <= cost && (!best || cell->cpu > best->cpu)
+                      : !best || cell->cpu < best->cpu))
             best = cell;
-    }
+    return best;
 }
 
-/* Renders one tile with a scalar per particle. */
-static enum cs_status paint(struct cs_recorded_run *recording, const struct cs_frame *frame,
-                            enum cs_renderer_kind kind, const char *path,
-                            struct cs_error *error) {
-    struct cs_scene *scene = &recording->session.scene;
-    const struct cs_renderer *renderer = NULL;
-    struct cs_canvas *canvas = NULL;
-    struct cs_image image = {TILE_WIDTH, TILE_HEIGHT, malloc(3 * TILE_WIDTH * TILE_HEIGHT),
-                             NULL};
-    struct cs_image *textures = calloc(scene->bodies.n, sizeof *textures);
-    const struct cs_canvas_settings settings = {.scene = scene,
-                                                .system = &recording->session.system,
-                                                .textures = textures,
-                                                .colliders = frame->colliders};
-    scene->render.size[0] = TILE_WIDTH;
-    scene->render.size[1] = TILE_HEIGHT;
-    scene->render.look = CS_LOOK_FORCE; // colours of what has no sign
-    if (!image.rgb || !textures || !frame->colliders)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
-    else if (!cs_renderer_open(cs_renderer_folder(), kind, &renderer, error) &&
-             !renderer->create(&settings, &canvas, error) &&
-             !renderer->paint(canvas, frame, &image, error)) {
+/* Chooses the best cell of each series within the cost in s that every method can keep: the
+ * largest of the methods' cheapest cells. */
+static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
+    const struct cs_cell *cells = compare->cells.cells, *end, *best;
+    double cost = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (const struct cs_cell *first = cells; first < cells + compare->cells.n;
+             first = end) {
+            end = end_of_series(compare, first);
+            best = find_cell(first, end, pass ? cost : 0);
+            if (best && pass == 0)
+                cost = fmax(cost, best->cpu);
+            else if (best && sheet->n < TILES_MAX)
+                sheet->cells[sheet->n++] = best;
+        }
+}
+
+/* A tile of a system at x (3,n), coloured by values (n). cell: as of its name. */
+struct tile {
+    const struct sheet *sheet;
+    const struct cs_compare *compare;
+    struct cs_system *system;
+    enum cs_renderer_kind kind;
+};
+
+static enum cs_status paint(const struct tile *tile, const struct cs_cell *cell, double *x,
+                            const double *values, struct cs_error *error) {
+    const struct cs_run run = {.system = tile->system, .x = x, .t = tile->compare->time};
+    struct cs_image image = {0};
+    struct cs_text renderer = {0};
+    char path[PATH_BYTES];
+    tile_path(tile->sheet, cell, tile->compare, path);
+    if (!cs_snapshot_draw(&run, values, tile->kind, &image, &renderer, error))
         cs_png_write(path, &image, 6, NULL, 0, error);
-    }
-    if (renderer)
-        renderer->destroy(canvas);
-    free(textures);
     free(image.rgb);
+    cs_text_finish(&renderer);
     return error->status;
 }
 
-/* Draws the reference. frame: of a method, with distances of 0. */
-static enum cs_status draw_reference(const struct sheet *sheet,
-                                     const struct cs_compare *compare,
-                                     struct cs_recorded_run *recording, struct cs_frame frame,
-                                     enum cs_renderer_kind kind, struct cs_error *error) {
-    const struct cs_trajectory *trajectory = &compare->reference.trajectory;
-    char path[4400];
-    snprintf(path, sizeof path, "%s/pictures/%s_reference.png", compare->settings->folder,
-             sheet->kind);
-    frame.x = cs_trajectory_state(trajectory, trajectory->frames);
-    return paint(recording, &frame, kind, path, error);
+/* Draws the last frame of a cell, and before that of a sheet's first cell the reference. */
+static enum cs_status paint_end(const struct tile *tile, const struct cs_cell *cell,
+                                const struct cs_trajectory *trajectory,
+                                struct cs_error *error) {
+    const struct cs_trajectory *reference = &tile->compare->reference.trajectory;
+    double *x = cs_trajectory_state(trajectory, trajectory->frames),
+           *right = cs_trajectory_state(reference, reference->frames),
+           *distance = calloc(trajectory->n, sizeof *distance);
+    if (!distance)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours");
+    for (int own = cell != tile->sheet->cells[0]; own < 2 && !error->status; own++) {
+        cs_distance_each(trajectory->n, own ? x : right, right, distance);
+        for (uint32_t i = 0; i < trajectory->n; i++)
+            distance[i] = log10(fmax(distance[i], pow(10, tile->sheet->range[0])));
+        paint(tile, own ? cell : NULL, own ? x : right, distance, error);
+    }
+    free(distance);
+    return error->status;
 }
 
-/* Runs a cell again and draws its last frame: a comparison stores no states of its cells. The
- * reference is drawn with the first. */
+/* Runs a cell again and draws it: a comparison stores no states of its cells. */
 static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell *cell,
                                 const struct cs_compare *compare, enum cs_renderer_kind kind,
                                 struct cs_error *error) {
-    char integrator[CS_CELL_INTEGRATOR], path[4400];
+    char integrator[CS_CELL_INTEGRATOR];
     struct cs_recorded_run recording;
     struct cs_trajectory trajectory = {0};
     struct cs_recorded_run_result result;
-    double *distance = calloc(compare->particles, sizeof *distance);
-    struct cs_posed_collider *colliders = NULL;
     cs_cell_integrator(cell, integrator, sizeof integrator);
-    tile_path(sheet, cell, compare, path, sizeof path);
-    if (!distance)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours");
-    else if (!cs_recorded_run_open(&recording, &compare->settings->run, integrator, error)) {
-        if (!cs_trajectory_init(&trajectory, &recording, error) &&
-            !cs_recorded_run_execute(&recording, 0, &trajectory, &result, error) &&
-            trajectory.n_recorded == trajectory.frames) {
-            const double *x = cs_trajectory_state(&trajectory, trajectory.frames);
-            cs_distance_each(
-                trajectory.n, x,
-                cs_trajectory_state(&compare->reference.trajectory, trajectory.frames),
-                distance);
-            for (uint32_t i = 0; i < trajectory.n; i++)
-                distance[i] = log10(fmax(distance[i], pow(10, sheet->range[0])));
-            const struct cs_system *system = &recording.session.system;
-            colliders = calloc(system->scene->colliders.n + 1, sizeof *colliders);
-            if (colliders)
-                cs_posed_colliders_at(system, compare->time, colliders);
-            /* no time: what viewpoint forces saw was forgotten at the end of the run */
-            const struct cs_frame frame = {.x = x,
-                                           .scalar = distance,
-                                           .range = {sheet->range[0], sheet->range[1]},
-                                           .inv_mass = system->inv_mass,
-                                           .colliders = colliders};
-            paint(&recording, &frame, kind, path, error);
-            for (uint32_t i = 0; i < compare->particles; i++)
-                distance[i] = sheet->range[0];
-            if (!error->status && cell == sheet->cells[0])
-                draw_reference(sheet, compare, &recording, frame, kind, error);
-        }
-        cs_trajectory_finish(&trajectory);
-        cs_recorded_run_close(&recording);
-    }
-    free(colliders);
-    free(distance);
+    if (cs_recorded_run_open(&recording, &compare->settings->run, integrator, error))
+        return error->status;
+    struct cs_render *render = &recording.session.scene.render;
+    render->size[0] = TILE_WIDTH;
+    render->size[1] = TILE_HEIGHT;
+    render->look = CS_LOOK_FORCE; // colours of what has no sign
+    memcpy(render->range, sheet->range, sizeof render->range);
+    render->marks.particles.n = 0;
+    render->viewpoint_forces = false; // what they saw was forgotten at the end of the run
+    if (!cs_trajectory_init(&trajectory, &recording, error) &&
+        !cs_recorded_run_execute(&recording, 0, &trajectory, &result, error) &&
+        trajectory.n_recorded == trajectory.frames)
+        paint_end(&(struct tile){sheet, compare, &recording.session.system, kind}, cell,
+                  &trajectory, error);
+    cs_trajectory_finish(&trajectory);
+    cs_recorded_run_close(&recording);
     return error->status;
 }
 
@@ -213,24 +198,17 @@ static void choose_sheets(struct sheet sheets[SHEETS], const struct cs_compare *
     set_range(sheets, compare);
 }
 
-static enum cs_status write_sheet(const struct sheet *sheet, const struct cs_compare *compare,
-                                  enum cs_renderer_kind kind, struct cs_error *error) {
-    char path[4200];
-    snprintf(path, sizeof path, "%s/pictures", compare->settings->folder);
-    if (sheet->n == 0 || cs_folder_create(path, error))
-        return error->status;
-    for (uint32_t k = 0; k < sheet->n && !error->status; k++)
-        draw_tile(sheet, sheet->cells[k], compare, kind, error);
-    return error->status;
-}
-
 enum cs_status cs_compare_contact_sheet_write(struct cs_compare *compare,
                                               enum cs_renderer_kind kind,
                                               struct cs_error *error) {
     struct sheet sheets[SHEETS];
+    char path[PATH_BYTES];
     choose_sheets(sheets, compare);
-    for (int s = 0; s < SHEETS && !error->status; s++)
-        write_sheet(sheets + s, compare, kind, error);
+    snprintf(path, sizeof path, "%s/pictures", compare->settings->folder);
+    for (const struct sheet *s = sheets; s < sheets + SHEETS && !error->status; s++)
+        if (s->n && !cs_folder_create(path, error))
+            for (uint32_t k = 0; k < s->n && !error->status; k++)
+                draw_tile(s, s->cells[k], compare, kind, error);
     return error->status;
 }
 
@@ -252,26 +230,32 @@ static bool begin_figure(const char *path, struct cs_text *out) {
     return true;
 }
 
-/* Adds the reference and the tiles of a sheet with their captions. */
-static void add_strip(const struct sheet *sheet, const struct cs_compare *compare,
-                      struct cs_text *out) {
-    char path[4400];
-    cs_text_add(out, "<h3>%s</h3>\n<div class=\"strip\">\n", sheet->title);
-    snprintf(path, sizeof path, "%s/pictures/%s_reference.png", compare->settings->folder,
-             sheet->kind);
-    if (begin_figure(path, out))
-        cs_text_add(out, "reference<br>known to %.1e m</figcaption></figure>\n",
+/* Adds the reference (cell NULL) or a tile with its caption: a figure, or a row of a table. */
+static void add_tile(const struct sheet *sheet, const struct cs_cell *cell,
+                     const struct cs_compare *compare, bool html, struct cs_text *out) {
+    char path[PATH_BYTES], name[CS_SERIES_BYTES + 16];
+    tile_name(sheet, cell, name);
+    tile_path(sheet, cell, compare, path);
+    if (!html)
+        cs_text_add(out, "| ![](pictures/%s) | ", name);
+    else if (!begin_figure(path, out))
+        return;
+    if (!cell)
+        cs_text_add(out, "reference%sknown to %.1e m", html ? "<br>" : ", ",
                     compare->reference.error_bar);
-    for (uint32_t k = 0; k < sheet->n; k++) {
-        const struct cs_cell *cell = sheet->cells[k];
-        tile_path(sheet, cell, compare, path, sizeof path);
-        if (!begin_figure(path, out))
-            continue;
-        cs_text_add_html(out, cell->series);
-        cs_text_add(out, "<br>%s %.3g, %.3g ms, error %.1e m</figcaption></figure>\n",
+    else {
+        (html ? cs_text_add_html : cs_text_add_markdown)(out, cell->series);
+        cs_text_add(out, "%s%s %.3g, %.3g ms, error %.1e m", html ? "<br>" : ", ",
                     cell->control, cell->value, 1e3 * cell->cpu, cell->error);
     }
-    cs_text_add(out, "</div>\n");
+    cs_text_add(out, html ? "</figcaption></figure>\n" : " |\n");
+}
+
+static void add_tiles(const struct sheet *sheet, const struct cs_compare *compare, bool html,
+                      struct cs_text *out) {
+    add_tile(sheet, NULL, compare, html, out);
+    for (uint32_t k = 0; k < sheet->n; k++)
+        add_tile(sheet, sheet->cells[k], compare, html, out);
 }
 
 void cs_compare_contact_sheet_add_html(const struct cs_compare *compare, struct cs_text *out) {
@@ -290,33 +274,26 @@ void cs_compare_contact_sheet_add_html(const struct cs_compare *compare, struct 
     cs_text_add(out,
                 ")\"></i><span>1e%.0f m: distance to the reference after %.4g s</span></div>\n",
                 sheets->range[1], compare->time);
-    for (int s = 0; s < SHEETS; s++)
-        add_strip(sheets + s, compare, out);
+    for (const struct sheet *s = sheets; s < sheets + SHEETS; s++) {
+        cs_text_add(out, "<h3>%s</h3>\n<div class=\"strip\">\n", s->title);
+        add_tiles(s, compare, true, out);
+        cs_text_add(out, "</div>\n");
+    }
 }
 
 void cs_compare_contact_sheet_add_markdown(const struct cs_compare *compare,
                                            struct cs_text *out) {
     struct sheet sheets[SHEETS];
     choose_sheets(sheets, compare);
-    for (int s = 0; s < SHEETS && compare->settings->pictures; s++) {
-        if (!sheets[s].n)
+    for (const struct sheet *s = sheets; s < sheets + SHEETS; s++) {
+        if (!s->n || !compare->settings->pictures)
             continue;
         cs_text_add(
             out,
             "## %s\n\nColours: distance to the reference after %.4g s, from 1e%.0f m to "
-            "1e%.0f m.\n\n| | |\n|---|---|\n| ![](pictures/%s_reference.png) | "
-            "reference, known to %.1e m |\n",
-            sheets[s].title, compare->time, sheets[s].range[0], sheets[s].range[1],
-            sheets[s].kind, compare->reference.error_bar);
-        for (uint32_t k = 0; k < sheets[s].n; k++) {
-            const struct cs_cell *cell = sheets[s].cells[k];
-            char file[CS_SERIES_BYTES];
-            cs_series_file_name(cell->series, file);
-            cs_text_add(out, "| ![](pictures/%s_%s.png) | ", sheets[s].kind, file);
-            cs_text_add_markdown(out, cell->series);
-            cs_text_add(out, ", %s %.3g, %.3g ms, error %.1e m |\n", cell->control, cell->value,
-                        1e3 * cell->cpu, cell->error);
-        }
+            "1e%.0f m.\n\n| | |\n|---|---|\n",
+            s->title, compare->time, s->range[0], s->range[1]);
+        add_tiles(s, compare, false, out);
         cs_text_add(out, "\n");
     }
 }
