@@ -3,12 +3,15 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/run_output.h"
+#include "files/gltf_read.h"
 #include "io/file_conflicts.h"
 #include "scene/file/mesh_read.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { BYTES_MAX = 1 << 30 };
 
 struct options {
     const char *out;
@@ -128,6 +131,24 @@ static void add_obj(const struct cs_trimesh *mesh, struct cs_text *out) {
     }
 }
 
+/* Reads OBJ, or glTF by way of it. */
+static enum cs_status read_mesh(const char *path, const struct cs_mesh_source *source,
+                                struct cs_trimesh *mesh, struct cs_arena *arena,
+                                struct cs_error *error) {
+    char *bytes;
+    size_t length;
+    struct cs_text obj = {0};
+    if (cs_file_read(path, BYTES_MAX, &bytes, &length, error))
+        return error->status;
+    if (!cs_gltf_is(bytes, length))
+        cs_mesh_read_text(path, bytes, length, source, mesh, arena, error);
+    else if (!cs_gltf_to_obj(path, bytes, length, &obj, error))
+        cs_mesh_read_text(path, cs_text_get(&obj), obj.length, source, mesh, arena, error);
+    cs_text_finish(&obj);
+    free(bytes);
+    return error->status;
+}
+
 static enum cs_status mesh(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
     const struct cs_mesh_source source = {.scale = {1, 1, 1}, .weld = options->weld};
@@ -136,7 +157,7 @@ static enum cs_status mesh(struct cs_args *args, struct cs_error *error) {
     struct cs_text out = {0}, obj = {0};
     if (cs_file_conflicts_pair(options->out, "--out", path, "the mesh", error) ||
         (options->out && !options->overwrite && cs_output_check_file(options->out, error)) ||
-        cs_mesh_read(path, path, &source, &mesh, &args->arena, error))
+        read_mesh(path, &source, &mesh, &args->arena, error))
         return error->status;
     /* what fails leaves no report behind */
     add_report(&mesh, &out);
@@ -154,7 +175,7 @@ static enum cs_status mesh(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_mesh = {
     .name = "mesh",
     .operands = "FILE",
-    .summary = "print what an OBJ file holds, and write it mended",
+    .summary = "print what a mesh file holds, and write it as OBJ",
     .notes = "Example: clothsim mesh skirt.obj -o mended.obj\n",
     CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,

@@ -369,6 +369,10 @@ enum cs_status cs_obj_read(const char *name, const char *text, size_t length,
                         .obj = out,
                         .arena = arena,
                         .error = error};
+    if (length >= 4 && !memcmp(text, "glTF", 4))
+        return cs_fail(
+            error, CS_ERR_FILE,
+            "%.128s: found glTF, expected OBJ: clothsim mesh FILE -o FILE.obj makes it", name);
     if (length && memchr(text, 0, length))
         return cs_fail(error, CS_ERR_FILE, "%s: found a zero byte, expected text", name);
     read_lines(&in);
