@@ -8,15 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Address of the row's member in an object. */
-static void *field_of(const struct cs_option *row, void *object) {
-    return (char *)object + row->offset;
-}
-
-static const void *const_field_of(const struct cs_option *row, const void *object) {
-    return (const char *)object + row->offset;
-}
-
 /* Number of components. Rows of single-component kinds may leave `count` at 0. */
 static uint32_t components_of(const struct cs_option *row) {
     return cs_value_kind_of(row)->several ? row->count : 1;
@@ -29,7 +20,7 @@ static double default_of(const struct cs_option *row, uint32_t i) {
 
 /* Component i of a value, or of the default if object is NULL. */
 static double value_of(const struct cs_option *row, const void *object, uint32_t i) {
-    return object ? cs_value_kind_of(row)->get(const_field_of(row, object), i)
+    return object ? cs_value_kind_of(row)->get(cs_option_value(row, object), i)
                   : default_of(row, i);
 }
 
@@ -37,7 +28,7 @@ void cs_options_default(const struct cs_table *table, void *object) {
     for (uint32_t r = 0; r < table->n; r++) {
         const struct cs_option *row = table->rows + r;
         const struct cs_value_kind *kind = cs_value_kind_of(row);
-        void *field = field_of(row, object);
+        void *field = cs_option_field(row, object);
         if (!kind->set && cs_option_is_optional(row))
             memset(field, 0, kind->size);
         if (row->type == CS_TABLE)
@@ -76,7 +67,7 @@ bool cs_table_needs_row(const struct cs_option *row) {
 
 bool cs_option_is_set(const struct cs_option *row, const void *object) {
     const struct cs_value_kind *kind = cs_value_kind_of(row);
-    return kind->is_given ? kind->is_given(row, const_field_of(row, object))
+    return kind->is_given ? kind->is_given(row, cs_option_value(row, object))
                           : !is_absent(row, object);
 }
 
@@ -131,7 +122,7 @@ enum cs_status cs_option_set_number(const struct cs_option *row, void *object, d
                                     struct cs_error *error) {
     if (cs_option_check_range(row, value, -1, where, status, error))
         return error->status;
-    cs_value_kind_of(row)->set(field_of(row, object), 0, value);
+    cs_value_kind_of(row)->set(cs_option_field(row, object), 0, value);
     return CS_OK;
 }
 
@@ -140,7 +131,7 @@ enum cs_status cs_option_set_choice(const struct cs_option *row, void *object, c
                                     struct cs_error *error) {
     for (int32_t i = 0; row->choices[i]; i++)
         if (!strcmp(row->choices[i], text)) {
-            *(int32_t *)field_of(row, object) = i;
+            *(int32_t *)cs_option_field(row, object) = i;
             return CS_OK;
         }
     struct cs_text range = {0};
@@ -173,11 +164,11 @@ enum cs_status cs_option_set(const struct cs_option *row, void *object, const ch
                              const char *where, enum cs_status status, struct cs_error *error) {
     double value = HUGE_VAL;
     if (row->type == CS_BOOL)
-        return set_bool(field_of(row, object), text, where, status, error);
+        return set_bool(cs_option_field(row, object), text, where, status, error);
     if (row->type == CS_CHOICE)
         return cs_option_set_choice(row, object, text, where, status, error);
     if (row->type == CS_REAL && row->choices && !strcmp(text, row->choices[0])) {
-        memcpy(field_of(row, object), &value, sizeof value);
+        memcpy(cs_option_field(row, object), &value, sizeof value);
         return CS_OK;
     }
     if (!cs_parse_real(text, &value))
@@ -198,7 +189,7 @@ static void print_components(const struct cs_option *row, const void *object,
 void cs_option_print(const struct cs_option *row, const void *object, struct cs_text *out) {
     const struct cs_value_kind *kind = cs_value_kind_of(row);
     if (row->type == CS_TEXT)
-        cs_text_add_json(out, const_field_of(row, object));
+        cs_text_add_json(out, cs_option_value(row, object));
     if (!kind->get)
         return;
     cs_text_add(out, kind->several ? "[" : "");

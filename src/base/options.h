@@ -8,6 +8,16 @@
 
 #include <clothsim/option.h>
 
+/* Returns the field of a row in an object; of a table that stands apart, its struct. */
+static inline void *cs_option_field(const struct cs_option *row, void *object) {
+    void *field = (char *)object + row->offset;
+    return row->type == CS_TABLE && row->table->apart ? *(void **)field : field;
+}
+static inline const void *cs_option_value(const struct cs_option *row, const void *object) {
+    const void *field = (const char *)object + row->offset;
+    return row->type == CS_TABLE && row->table->apart ? *(void *const *)field : field;
+}
+
 /* Writes the defaults of all rows, and of nested tables, into *object. Lists become empty. */
 void cs_options_default(const struct cs_table *table, void *object);
 

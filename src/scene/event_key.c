@@ -136,7 +136,7 @@ static const struct cs_option *descend(struct walk *walk) {
         uint32_t index = 0;
         if (!row)
             return NULL;
-        walk->object += row->offset;
+        walk->object = cs_option_field(row, walk->object);
         if (row->type == CS_LIST) {
             const struct cs_list *list = (const void *)walk->object;
             if (!next_index(walk, list->n, &index))

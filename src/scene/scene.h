@@ -401,6 +401,16 @@ bool cs_scene_is_below(const char *file);
  * after it. */
 enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_error *error);
 
+/* Takes the structs that a scene points to, in its arena, with the defaults of all rows.
+ * CS_ERR_MEMORY; *scene can then be finished. */
+enum cs_status cs_scene_init(struct cs_scene *scene, struct cs_error *error);
+
+/* Copies a scene, with structs and lists of its own in `arena`, so that its numbers can change.
+ * The events, and what items of lists point to, are shared: the scene must outlive the copy.
+ * `arena` may be that of the copy, which is empty. CS_ERR_MEMORY. */
+enum cs_status cs_scene_copy(struct cs_scene *copy, const struct cs_scene *scene,
+                             struct cs_arena *arena, struct cs_error *error);
+
 /* Frees the arena; safe on a zeroed scene. */
 void cs_scene_finish(struct cs_scene *scene);
 

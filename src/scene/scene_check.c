@@ -409,9 +409,3 @@ enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_
         return error->status;
     return CS_OK;
 }
-
-void cs_scene_finish(struct cs_scene *scene) {
-    struct cs_arena arena = scene->arena;
-    cs_arena_finish(&arena);
-    *scene = (struct cs_scene){0};
-}

@@ -63,16 +63,6 @@ static enum cs_status read_textures(struct cs_picture *picture, struct cs_error 
     return CS_OK;
 }
 
-/* Replaces the items of a list by a copy; an empty one has none. */
-static void copy_list(struct cs_list *list, size_t size, struct cs_error *error) {
-    void *items = malloc((list->n + 1) * size);
-    if (!items)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours of pictures");
-    else if (list->n)
-        memcpy(items, list->items, list->n * size);
-    list->items = items;
-}
-
 static double begin_of(const struct cs_event *event) {
     return isnan(event->at) ? event->from : event->at;
 }
@@ -103,10 +93,7 @@ static enum cs_status make_ramps(struct cs_picture *picture, struct cs_error *er
         n += cs_event_is_picture(events + e);
     if (n == 0)
         return CS_OK;
-    picture->drawn = *picture->scene;
-    copy_list(&picture->drawn.bodies, sizeof(struct cs_body), error);
-    copy_list(&picture->drawn.colliders, sizeof(struct cs_collider), error);
-    copy_list(&picture->drawn.lights, sizeof(struct cs_light), error);
+    cs_scene_copy(&picture->drawn, picture->scene, &picture->drawn.arena, error);
     picture->ramps = calloc(n, sizeof *picture->ramps);
     if (!picture->ramps)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours of pictures");
@@ -136,9 +123,7 @@ static void set_ramps(struct cs_picture *picture, double t) {
 static void free_ramps(struct cs_picture *picture) {
     if (picture->scene != &picture->drawn)
         return;
-    free(picture->drawn.bodies.items);
-    free(picture->drawn.colliders.items);
-    free(picture->drawn.lights.items);
+    cs_scene_finish(&picture->drawn);
     free(picture->ramps);
 }
 

@@ -240,7 +240,7 @@ static void walk(const struct cs_scene *scene, const struct cs_table *table, con
 /* Walks one row: a table, each element of a list, or a value. */
 static void walk_row(const struct cs_scene *scene, const struct cs_option *row,
                      const void *object, const struct place *above, struct cs_text *out) {
-    const void *field = (const char *)object + row->offset;
+    const void *field = cs_option_value(row, object);
     const char *point = *above->path ? "." : "";
     const struct cs_list *list = field;
     struct place at = *above;

@@ -32,7 +32,7 @@ static void hash_of_text(const char *text, char digits[CS_HASH_DIGITS]) {
 static void fill(const struct cs_table *table, void *object) {
     for (uint32_t r = 0; r < table->n; r++) {
         const struct cs_option *row = table->rows + r;
-        void *field = (char *)object + row->offset;
+        void *field = cs_option_field(row, object);
         if (row->type == CS_TABLE) {
             if (row->table->optional)
                 *(bool *)field = true;
@@ -49,7 +49,7 @@ static void fill(const struct cs_table *table, void *object) {
 static void empty(const struct cs_table *table, void *object) {
     for (uint32_t r = 0; r < table->n; r++) {
         const struct cs_option *row = table->rows + r;
-        void *field = (char *)object + row->offset;
+        void *field = cs_option_field(row, object);
         if (row->type == CS_TABLE)
             empty(row->table, field);
         if (row->type == CS_LIST) {
@@ -79,7 +79,7 @@ static void expect_another(struct walk *walk, const char *what) {
 /* One component of a value becomes another one, and its own again. */
 static void change_component(struct walk *walk, const struct cs_option *row, void *object,
                              uint32_t i) {
-    void *field = (char *)object + row->offset;
+    void *field = cs_option_field(row, object);
     double real = 0;
     int64_t whole = 0;
     switch (row->type) {
@@ -110,7 +110,7 @@ static void change_component(struct walk *walk, const struct cs_option *row, voi
 static void change_all(struct walk *walk, const struct cs_table *table, void *object);
 
 static void change_row(struct walk *walk, const struct cs_option *row, void *object) {
-    void *field = (char *)object + row->offset;
+    void *field = cs_option_field(row, object);
     struct cs_list *list = field;
     const int32_t choice = *(const int32_t *)field;
     switch (row->type) {

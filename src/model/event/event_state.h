@@ -81,8 +81,7 @@ struct cs_viewpoint_forces;
 
 /* The events of a run. All arrays are the system's arena's. */
 struct cs_events {
-    /* The scene with the values of now; system->scene points to it. Its lists of bodies and
-     * colliders are copies, the other lists are shared with the scene that was read. */
+    /* The scene with the values of now, a copy; system->scene points to it. */
     struct cs_scene scene;
     /* (n_times) s, ascending and distinct; `next` is the number of the segment's end. */
     double *times;

@@ -108,24 +108,13 @@ static bool any(const struct cs_scene *scene, bool (*is)(const struct cs_event *
     return false;
 }
 
-/* Replaces the items of a list by a copy in the system's arena. */
-static void copy_list(struct cs_system *system, struct cs_list *list, size_t size,
-                      struct cs_error *error) {
-    void *items = cs_arena_alloc_array(&system->arena, list->n, size, error);
-    if (items && list->n > 0)
-        memcpy(items, list->items, list->n * size);
-    list->items = items;
-}
-
-/* Takes all arrays, and copies the lists that ramps can change. */
+/* Takes all arrays, and copies the scene, whose numbers ramps change. */
 static void alloc_arrays(struct cs_system *system, struct cs_events *events,
                          struct cs_error *error) {
     const size_t n = system->view.n;
     struct cs_arena *arena = &system->arena;
     struct cs_scene *scene = &events->scene;
-    *scene = *system->scene;
-    copy_list(system, &scene->bodies, sizeof(struct cs_body), error);
-    copy_list(system, &scene->colliders, sizeof(struct cs_collider), error);
+    cs_scene_copy(scene, system->scene, arena, error);
     CS_ARENA_ARRAY(arena, events->times, cs_event_times_count(scene), error);
     CS_ARENA_ARRAY(arena, events->states, scene->events.n, error);
     events->held_by = cs_arena_alloc_array(arena, n, sizeof(uint32_t), error);

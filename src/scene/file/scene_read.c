@@ -264,10 +264,8 @@ enum cs_status cs_scene_read_text(struct cs_scene *scene, const char *path, cons
     struct cs_json_context context = {
         .name = path, .arena = &scene->arena, .error = error, .skipped_key = INTEGRATOR};
     enum cs_status status;
-    *scene = (struct cs_scene){0};
-    cs_options_default(&cs_scene_table, scene);
-
-    if ((status = store_source(scene, path, text, bytes, error)) ||
+    if ((status = cs_scene_init(scene, error)) ||
+        (status = store_source(scene, path, text, bytes, error)) ||
         (status = parse(scene, &root, error)))
         goto done;
     context.text = scene->text;

@@ -30,7 +30,7 @@ static uint32_t print_rows(const struct cs_table *table, const void *object, int
     uint32_t n = 0;
     for (uint32_t r = 0; r < table->n; r++) {
         const struct cs_option *row = table->rows + r;
-        const void *field = (const char *)object + row->offset;
+        const void *field = cs_option_value(row, object);
         if (!cs_option_is_set(row, object))
             continue;
         n++;
@@ -91,7 +91,7 @@ void cs_scene_print(const struct cs_scene *scene, const struct cs_table *integra
 
 /* Adds a value in the form that is hashed. */
 static void add_value(const struct cs_option *row, const void *object, struct cs_text *out) {
-    const double *values = (const double *)(const void *)((const char *)object + row->offset);
+    const double *values = cs_option_value(row, object);
     if (row->type != CS_REAL && row->type != CS_VECTOR) {
         cs_option_print(row, object, out);
         return;
@@ -105,7 +105,7 @@ static void add_value(const struct cs_option *row, const void *object, struct cs
 /* Adds the lines of one row: of a table, of a list, or of a value that is not the default. */
 static void add_scene_row(const struct cs_option *row, const void *object, const char *path,
                           struct cs_text *out) {
-    const void *field = (const char *)object + row->offset;
+    const void *field = cs_option_value(row, object);
     struct cs_text inner = {0};
     if (row->type == CS_TABLE) {
         /* presence alone has a meaning, even if every value is the default */

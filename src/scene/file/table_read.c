@@ -8,11 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The field of a row in a struct. */
-static void *field_of(const struct cs_option *row, void *object) {
-    return (char *)object + row->offset;
-}
-
 /* Fails with "found ..., expected ..." for a row. */
 static enum cs_status fail_row(struct cs_json_context *context, const struct cs_json *value,
                                const struct cs_option *row) {
@@ -42,7 +37,7 @@ static enum cs_status read_component(struct cs_json_context *context,
     struct cs_error said = {0};
     const double number = cs_json_number(value);
     if (!cs_option_check_range(row, number, -1, "", CS_ERR_SCENE, &said))
-        cs_value_kind_of(row)->set(field_of(row, object), i, number);
+        cs_value_kind_of(row)->set(cs_option_field(row, object), i, number);
     return pass_on(context, value, &said);
 }
 
@@ -86,7 +81,7 @@ static enum cs_status read_bool(struct cs_json_context *context, const struct cs
                                 const struct cs_option *row, void *object) {
     if (cs_json_kind_of(value) != CS_JSON_BOOL)
         return fail_row(context, value, row);
-    *(bool *)field_of(row, object) = cs_json_is_true(value);
+    *(bool *)cs_option_field(row, object) = cs_json_is_true(value);
     return CS_OK;
 }
 
@@ -100,7 +95,7 @@ static enum cs_status read_text(struct cs_json_context *context, const struct cs
         return cs_json_context_fail(context, value, false,
                                     "found a string of %zu bytes, expected at most %d", length,
                                     CS_TEXT_MAX - 1);
-    memcpy(field_of(row, object), cs_json_text(value), length + 1);
+    memcpy(cs_option_field(row, object), cs_json_text(value), length + 1);
     return CS_OK;
 }
 
@@ -109,7 +104,7 @@ static enum cs_status read_list(struct cs_json_context *context, const struct cs
                                 const struct cs_option *row, void *object) {
     if (cs_json_kind_of(value) != CS_JSON_LIST)
         return fail_row(context, value, row);
-    struct cs_list *list = field_of(row, object);
+    struct cs_list *list = cs_option_field(row, object);
     const uint32_t n = cs_json_count(value);
     /* the default is an empty list already */
     if (!n)
@@ -134,7 +129,7 @@ static enum cs_status read_list(struct cs_json_context *context, const struct cs
 
 static enum cs_status read_table(struct cs_json_context *context, const struct cs_json *value,
                                  const struct cs_option *row, void *object) {
-    return cs_table_read(context, value, row->table, field_of(row, object));
+    return cs_table_read(context, value, row->table, cs_option_field(row, object));
 }
 
 /* Reads a value in the form of its row. */
@@ -314,7 +309,7 @@ static enum cs_status check_complete(struct cs_json_context *context,
         } else {
             /* the table itself may be absent: the message names the value that it lacks */
             check_complete(context, value, true, row->table,
-                           (const char *)object + row->offset);
+                           cs_option_value(row, object));
         }
         if (context->error->status)
             return context->error->status;
