@@ -183,6 +183,10 @@ bool cs_event_key_is_picture(const char *path) {
     return is_pictured(plain);
 }
 
+bool cs_event_is_picture(const struct cs_event *event) {
+    return event->ramp.present && cs_event_key_is_picture(event->ramp.key);
+}
+
 /* Checks that the number may change during a run. */
 static enum cs_status check_changeable(const struct walk *walk, const struct cs_option *row) {
     for (uint32_t k = 0; changeable[k]; k++)

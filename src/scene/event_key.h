@@ -20,6 +20,9 @@ enum cs_status cs_event_key_find(struct cs_scene *scene, const char *path,
  * pictures take its value at their time (study/frame_picture.h). */
 bool cs_event_key_is_picture(const char *path);
 
+/* Returns true for an event that is a ramp of such a key: it has no times in a run. */
+bool cs_event_is_picture(const struct cs_event *event);
+
 /* Returns true if a ramp of the scene gives a value other than 0 to a key whose path contains
  * `key`. */
 bool cs_event_key_changes(const struct cs_scene *scene, const char *key);

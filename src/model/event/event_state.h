@@ -218,11 +218,6 @@ struct cs_event_path {
 
 struct cs_event_path cs_event_path_of(const struct cs_event *event);
 
-/* True for a ramp of a number that only pictures show: it has no times here. */
-static inline bool cs_event_is_picture(const struct cs_event *event) {
-    return event->ramp.present && cs_event_key_is_picture(event->ramp.key);
-}
-
 /* An upper bound of the number of times: two per event, and one per chord. */
 size_t cs_event_times_count(const struct cs_scene *scene);
 
