@@ -15,6 +15,8 @@ static const struct cs_option inner_rows[] = {
 };
 static const struct cs_table inner_table = {
     .rows = inner_rows, .n = 1, .size = sizeof(struct inner), .optional = true};
+static const struct cs_table apart_table = {
+    .rows = inner_rows, .n = 1, .size = sizeof(struct inner), .apart = true};
 
 struct all {
     double real, absent;
@@ -81,6 +83,23 @@ static struct all defaults(void) {
     memset(&all, 0x5a, sizeof all);
     cs_options_default(&table, &all);
     return all;
+}
+
+/* A table that stands apart is behind a pointer, which is followed and stays. */
+TEST(struct_elsewhere_is_filled) {
+    static const struct cs_option row = {
+        .name = "apart", .type = CS_TABLE, .count = 1, .offset = 8, .table = &apart_table};
+    static const struct cs_table holder_table = {.rows = &row, .n = 1, .size = 16};
+    struct inner inner = {.weight = 7};
+    struct {
+        double before;
+        struct inner *inner;
+    } holder = {5, &inner};
+    ck_assert_uint_eq(offsetof(typeof(holder), inner), row.offset);
+    cs_options_default(&holder_table, &holder);
+    ck_assert(holder.before == 5 && holder.inner == &inner && inner.weight == 3);
+    ck_assert_ptr_eq(cs_option_value(&row, &holder), &inner);
+    ck_assert(cs_option_is_set(&row, &holder));
 }
 
 /* over whatever was in the struct before */

@@ -1,4 +1,5 @@
 /* Scenes are read whole, with defaults, shorthands; bad ones name the place. */
+#include "base/options.h"
 #include "scene_text.h"
 
 #include <math.h>
@@ -33,6 +34,34 @@ TEST(defaults_stand_in) {
     ck_assert_str_eq(scene.folder, "dir");
     ck_assert_uint_eq(scene.text_bytes, strlen(text));
     ck_assert_str_eq(scene.text, text);
+    cs_scene_finish(&scene);
+}
+
+/* bit for bit, but elsewhere; the events are shared */
+TEST(a_copy_has_numbers_of_its_own) {
+    struct cs_scene scene, copy;
+    struct cs_error error = {0};
+    read_text(&scene,
+              "{\"bodies\": [" BODY "], \"colliders\": [{\"sphere\": {}}], \"events\":"
+              " [{\"at\": 1, \"ramp\": {\"key\": \"forces.drag\", \"value\": 2}}]}",
+              NULL, 0);
+    cs_scene_copy(&copy, &scene, &copy.arena, &error);
+    UNIT_ASSERT_OK(&error);
+    for (uint32_t r = 0; r < cs_scene_table.n; r++) {
+        const struct cs_option *row = cs_scene_table.rows + r;
+        const void *own = cs_option_value(row, &scene), *copied = cs_option_value(row, &copy);
+        const struct cs_list *list = own, *other = copied;
+        if (row->type == CS_TABLE)
+            ck_assert_mem_eq(own, copied, row->table->size);
+        ck_assert(own != copied);
+        if (row->type != CS_LIST || list->n == 0)
+            continue;
+        ck_assert_uint_eq(list->n, other->n);
+        ck_assert_mem_eq(list->items, other->items, list->n * row->table->size);
+        ck_assert_int_eq(list->items == other->items, row->table == &cs_event_table);
+    }
+    cs_scene_finish(&copy);
+    ck_assert_double_eq(cs_scene_bodies(&scene)->mass.total, 2);
     cs_scene_finish(&scene);
 }
 
