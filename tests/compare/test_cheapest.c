@@ -1,6 +1,6 @@
 /* The search for the cheapest method: few runs, and the method that a whole sweep has. */
+#include "advise/cheapest.h"
 #include "scene.h"
-#include "study/advise/cheapest.h"
 
 #include <math.h>
 #include <string.h>

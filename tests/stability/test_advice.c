@@ -3,7 +3,7 @@
  *
  * Found, linear theory / bisected: 0.83 to 1.02 where a limit is sharp; forward and averaged
  * Euler 0.67 (free_fall) to 1.83 (jelly_drop), which advise lowers to what lives. */
-#include "study/stability/advise.h"
+#include "advise/advise.h"
 
 #include "../physics/fixture.h"
 

@@ -13,7 +13,7 @@ awk '
         n = split("base mesh scene model/spring model/system model/elastic model/force model/contact model/contact/broad_phase" \
             " model/contact/narrow_phase model/contact/ccd model/solver,model/event model/post_step model" \
             " scene/file io,draw,sim io/export draw/gl,draw/cpu,draw/cairo study study/reference" \
-            " study/compare,study/stability study/advise cli/line cli/show cli cli/run sweep shared bisect,conform,describe,files,film,golden,integrators,new,reproduce,soft", floors, " ")
+            " study/compare,study/stability cli/line cli/show cli cli/run sweep shared advise,bisect,conform,describe,files,film,golden,integrators,new,reproduce,soft", floors, " ")
         for (i = 1; i <= n; i++) {
             count_of = split(floors[i], folders, ",")
             for (k = 1; k <= count_of; k++) floor[folders[k]] = i

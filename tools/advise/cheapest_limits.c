@@ -1,7 +1,7 @@
 /* The search as the source of a comparison's cells: finds the longest stable step of each fixed
  * explicit method by linear theory, at the start of the reference and at a few of its frames.
  * What moves by itself, colliders for example, is where it is at time 0. */
-#include "study/advise/cheapest.h"
+#include "advise/cheapest.h"
 
 #include "study/stability/theory.h"
 

@@ -1,5 +1,5 @@
 /* Searches the cheapest method for an error, best first. */
-#include "study/advise/cheapest.h"
+#include "advise/cheapest.h"
 
 #include <math.h>
 #include <stdlib.h>

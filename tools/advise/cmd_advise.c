@@ -2,6 +2,8 @@
  *
  *   options -> cs_advise_run: theory, probe runs, bisection -> table
  *   options with --error -> cs_compare_run -> the cheapest method and step for that error */
+#include "advise/advise.h"
+#include "advise/cheapest.h"
 #include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/commands.h"
@@ -11,13 +13,11 @@
 #include "model/elastic/membranes.h"
 #include "scene/body_pairs.h"
 #include "scene/shape.h"
-#include "study/advise/cheapest.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
 #include "study/compare/ranking.h"
 #include "study/contact_capacity.h"
 #include "study/process_pool.h"
-#include "study/stability/advise.h"
 #include "study/stability/stability_state.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Finds a safe step for each method from linear theory, and confirms it by probe runs. */
-#include "study/stability/advise.h"
+#include "advise/advise.h"
 
 #include "model/force/diagnostics.h"
 #include "study/process_pool.h"
