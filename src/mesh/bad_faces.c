@@ -155,21 +155,16 @@ static void remove_all(struct work *work, struct cs_mesh_mends *mends) {
 enum cs_status cs_flat_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
                                     struct cs_error *error) {
     const size_t n = raw->n_vertices, triangles = raw->n_triangles;
-    struct work work = {.raw = raw,
-                        .is_flat = calloc(triangles + 1, sizeof(bool)),
-                        .is_changed = calloc(triangles + 1, sizeof(bool)),
-                        .starts = calloc(n + 2, sizeof(uint32_t)),
-                        .around = calloc(3 * triangles + 1, sizeof(uint32_t)),
-                        .becomes = calloc(n + 1, sizeof(uint32_t))};
-    if (work.is_flat && work.is_changed && work.starts && work.around && work.becomes)
+    struct cs_arena arena = {0};
+    struct work work = {.raw = raw};
+    CS_ARENA_ARRAY(&arena, work.is_flat, triangles, error);
+    CS_ARENA_ARRAY(&arena, work.is_changed, triangles, error);
+    CS_ARENA_ARRAY(&arena, work.starts, n + 2, error);
+    CS_ARENA_ARRAY(&arena, work.around, 3 * triangles, error);
+    CS_ARENA_ARRAY(&arena, work.becomes, n, error);
+    if (!error->status)
         remove_all(&work, mends);
-    else
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
-    free(work.is_flat);
-    free(work.is_changed);
-    free(work.starts);
-    free(work.around);
-    free(work.becomes);
+    cs_arena_finish(&arena);
     return error->status;
 }
 
@@ -250,23 +245,24 @@ static void mark_repeated(const struct cs_raw_mesh *raw, struct key *keys, uint3
 
 enum cs_status cs_repeated_faces_remove(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
                                         struct cs_error *error) {
-    const size_t n = raw->n_triangles;
-    struct key *keys = calloc(n + 1, sizeof *keys);
-    uint32_t *firsts = calloc(n + 1, sizeof *firsts);
-    struct cs_raw_side *sides = calloc(3 * n + 1, sizeof *sides);
-    bool *leaves = calloc(n + 1, sizeof *leaves);
-    if (keys && firsts && sides && leaves) {
+    struct cs_arena arena = {0};
+    struct key *keys;
+    struct cs_raw_side *sides;
+    uint32_t *firsts;
+    bool *leaves;
+    CS_ARENA_ARRAY(&arena, keys, raw->n_triangles, error);
+    CS_ARENA_ARRAY(&arena, firsts, raw->n_triangles, error);
+    CS_ARENA_ARRAY(&arena, sides, 3 * (size_t)raw->n_triangles, error);
+    CS_ARENA_ARRAY(&arena, leaves, raw->n_triangles, error);
+    if (!error->status) {
         mark_repeated(raw, keys, firsts, sides, leaves);
-        for (uint32_t t = 0; t < n; t++)
+        /* in the order of the file, whose first fault is told */
+        for (uint32_t t = 0; t < raw->n_triangles; t++)
             if (leaves[t])
                 cs_mesh_fault_count(&mends->twice, &mends->twice_line, raw->triangles[t].line);
         leave_out(raw, leaves);
-    } else
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
-    free(keys);
-    free(firsts);
-    free(sides);
-    free(leaves);
+    }
+    cs_arena_finish(&arena);
     return error->status;
 }
 
@@ -346,20 +342,17 @@ static void turn_faces(struct cs_raw_mesh *raw, struct pieces *of,
 enum cs_status cs_faces_turn_alike(struct cs_raw_mesh *raw, struct cs_mesh_mends *mends,
                                    struct cs_error *error) {
     const size_t n = raw->n_triangles;
-    struct pieces pieces = {.sides = calloc(3 * n + 1, sizeof *pieces.sides),
-                            .parents = calloc(n + 1, sizeof(uint32_t)),
-                            .counts = calloc(2 * n + 1, sizeof(uint32_t)),
-                            .turned = calloc(n + 1, sizeof(bool)),
-                            .one_sided = calloc(n + 1, sizeof(bool))};
-    if (pieces.sides && pieces.parents && pieces.counts && pieces.turned && pieces.one_sided) {
+    struct cs_arena arena = {0};
+    struct pieces pieces;
+    CS_ARENA_ARRAY(&arena, pieces.sides, 3 * n, error);
+    CS_ARENA_ARRAY(&arena, pieces.parents, n, error);
+    CS_ARENA_ARRAY(&arena, pieces.counts, 2 * n, error);
+    CS_ARENA_ARRAY(&arena, pieces.turned, n, error);
+    CS_ARENA_ARRAY(&arena, pieces.one_sided, n, error);
+    if (!error->status) {
         find_pieces(raw, &pieces);
         turn_faces(raw, &pieces, mends);
-    } else
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
-    free(pieces.sides);
-    free(pieces.parents);
-    free(pieces.counts);
-    free(pieces.turned);
-    free(pieces.one_sided);
+    }
+    cs_arena_finish(&arena);
     return error->status;
 }

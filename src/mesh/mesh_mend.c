@@ -195,37 +195,31 @@ static uint32_t count_pieces(const struct cs_raw_mesh *raw, uint32_t *parents) {
 
 /* --- all --- */
 
-static enum cs_status begin_mending(struct work *work, struct cs_error *error) {
+static enum cs_status begin_mending(struct work *work, struct cs_arena *arena,
+                                    struct cs_error *error) {
     const size_t n = work->raw->n_vertices, sides = 3 * (size_t)work->raw->n_triangles;
-    work->sides = calloc(sides + 1, sizeof *work->sides);
-    work->places = calloc(n + 1, sizeof *work->places);
-    work->parents = calloc(n + sides + 1, sizeof *work->parents);
-    work->splits = calloc(n + 1, sizeof *work->splits);
-    work->torn = calloc(sides / 3 + 1, sizeof *work->torn);
-    if (!work->torn || !work->sides || !work->places || !work->parents || !work->splits)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a mesh");
-    for (size_t i = 0; i < n + sides; i++)
+    CS_ARENA_ARRAY(arena, work->sides, sides, error);
+    CS_ARENA_ARRAY(arena, work->places, n, error);
+    CS_ARENA_ARRAY(arena, work->parents, n + sides, error);
+    CS_ARENA_ARRAY(arena, work->splits, n, error);
+    CS_ARENA_ARRAY(arena, work->torn, sides / 3, error);
+    for (size_t i = 0; !error->status && i < n + sides; i++)
         work->parents[i] = (uint32_t)i;
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; !error->status && i < n; i++)
         work->places[i] = (uint32_t)i;
-    cs_raw_sides_list(work->raw, work->places, work->sides);
-    return CS_OK;
-}
-
-static void end(struct work *work) {
-    free(work->sides);
-    free(work->places);
-    free(work->parents);
-    free(work->splits);
-    free(work->torn);
+    if (!error->status)
+        cs_raw_sides_list(work->raw, work->places, work->sides);
+    return error->status;
 }
 
 /* One round: cuts, and welds if asked to. *again: edges of more than two triangles are left. */
 static enum cs_status mend_once(struct cs_raw_mesh *raw, bool weld, bool first,
                                 struct cs_mesh_mends *mends, bool *again,
                                 struct cs_error *error) {
+    struct cs_arena arena = {0};
     struct work work = {.raw = raw, .mends = mends};
-    if (!begin_mending(&work, error)) {
+    if (!begin_mending(&work, &arena, error)) {
+        /* a mesh without faults is numbered once, for its loose vertices */
         *again = mark_splits(&work, first) > 0;
         if (*again || first)
             if (!weld || !find_places(&work, error)) {
@@ -236,7 +230,7 @@ static enum cs_status mend_once(struct cs_raw_mesh *raw, bool weld, bool first,
         if (!error->status)
             mends->pieces = count_pieces(raw, work.parents);
     }
-    end(&work);
+    cs_arena_finish(&arena);
     return error->status;
 }
 

@@ -26,6 +26,10 @@ enum cs_status cs_check_unit(const struct cs_check *check, const char *path, dou
 enum cs_status cs_check_pose(const struct cs_check *check, const char *body, const char *shape,
                              struct cs_pose *place);
 
+/* Checks that the faces that a material colours exist, and that it has no texture beside. */
+enum cs_status cs_check_faces(const struct cs_check *check, const char *body,
+                              const struct cs_body *of);
+
 /* Checks the constants of an elastic body. */
 enum cs_status cs_elastic_check(const struct cs_check *check, const char *body,
                                 const struct cs_body *of);

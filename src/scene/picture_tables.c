@@ -1,6 +1,9 @@
-/* The rows of what a scene says of its pictures. */
-#include "scene/scene.h"
+/* The rows of what a scene says of its pictures, and the check of coloured faces. */
+#include "scene/check.h"
+#include "scene/shape.h"
 #include "scene/table_rows.h"
+
+#include <stdio.h>
 
 static const double zero3[3] = {0, 0, 0};
 static const double up3[3] = {0, 1, 0};
@@ -111,3 +114,19 @@ static const struct cs_option render_rows[] = {
           "particles to mark by red discs, the first by a larger one"),
 };
 const struct cs_table cs_render_table = {ROWS(render_rows), .size = sizeof(struct cs_render)};
+
+enum cs_status cs_check_faces(const struct cs_check *check, const char *body,
+                              const struct cs_body *of) {
+    const struct cs_face_colour *faces = of->material.faces.items;
+    char path[128], fault[256];
+    snprintf(path, sizeof path, "%s.material.faces", body);
+    /* the colours are drawn as a texture of their own */
+    if (of->material.faces.n && *of->material.texture)
+        return cs_check_refuse(check, path, "expected a texture or faces, found both");
+    for (uint32_t k = 0; k < of->material.faces.n; k++) {
+        snprintf(path, sizeof path, "%s.material.faces[%u].set", body, k);
+        if (cs_shape_set_fault(of, faces[k].set, fault, sizeof fault))
+            return cs_check_refuse(check, path, "%s", fault);
+    }
+    return CS_OK;
+}

@@ -49,27 +49,11 @@ static enum cs_status check_texture(const struct cs_check *check, const char *bo
                                     const char *texture) {
     char path[128];
     snprintf(path, sizeof path, "%s.material.texture", body);
-    if (!cs_scene_is_below(texture))
-        return cs_check_refuse(
-            check, path, "found \"%.60s\", expected a file in the scene's folder or below",
-            texture);
-    return CS_OK;
-}
-
-/* Checks the colours of faces, which are drawn as a texture of a texel each. */
-static enum cs_status check_faces(const struct cs_check *check, const char *body,
-                                  const struct cs_body *of) {
-    const struct cs_face_colour *faces = of->material.faces.items;
-    char path[128], fault[256];
-    snprintf(path, sizeof path, "%s.material.faces", body);
-    if (of->material.faces.n && *of->material.texture)
-        return cs_check_refuse(check, path, "expected a texture or faces, found both");
-    for (uint32_t k = 0; k < of->material.faces.n; k++) {
-        snprintf(path, sizeof path, "%s.material.faces[%u].set", body, k);
-        if (cs_shape_set_fault(of, faces[k].set, fault, sizeof fault))
-            return cs_check_refuse(check, path, "%s", fault);
-    }
-    return CS_OK;
+    if (cs_scene_is_below(texture))
+        return CS_OK;
+    return cs_check_refuse(check, path,
+                           "found \"%.60s\", expected a file in the scene's folder or below",
+                           texture);
 }
 
 static enum cs_status check_network(const struct cs_check *check, const char *body,
@@ -131,7 +115,6 @@ static enum cs_status check_elastic(const struct cs_check *check, const char *bo
     return cs_elastic_check(check, body, of);
 }
 
-/* Checks one body: a shape, then all that depends on it. */
 /* Refuses a pressure in what has an edge: it would push the body away. */
 static enum cs_status check_pressure(const struct cs_check *check, const char *body,
                                      const struct cs_body *of) {
@@ -156,7 +139,7 @@ static enum cs_status check_body(const struct cs_check *check, const struct cs_s
         cs_check_pose(check, path, "mesh", &body->mesh.place) ||
         check_mass(check, path, body) || check_pins(check, scene, path, body) ||
         check_pressure(check, path, body) ||
-        check_texture(check, path, body->material.texture) || check_faces(check, path, body))
+        check_texture(check, path, body->material.texture) || cs_check_faces(check, path, body))
         return check->error->status;
     return CS_OK;
 }

@@ -63,6 +63,7 @@ static bool open_column(const struct glb *glb, uint64_t number, uint64_t n,
     out->type = count_of(of, "componentType", none);
     out->n = count_of(of, "count", none);
     const uint64_t size = n * (out->type == BYTES ? 1 : out->type == SHORTS ? 2 : 4);
+    /* absent: values follow each other */
     out->stride = count_of(view, "byteStride", size);
     if (!type || strcmp(cs_json_text(type), types[n]) || cs_json_find(of, "sparse") ||
         count_of(view, "buffer", none) || begin == none || at == none || length == none ||
@@ -193,6 +194,7 @@ static const char *add_node(struct glb *glb, const struct cs_json *number,
                : NULL;
     const struct cs_json *mesh = item_of(glb, "meshes", count_of(node, "mesh", none));
     const struct cs_json *item = first_of(mesh, "primitives");
+    /* what stands below a node moves with it */
     double m[3][4];
     const char *fault = !node || !place_node(node, up, m) ? "a node that is none" : NULL;
     if (!fault && (depth == DEPTH_MAX || glb->n_nodes++ == NODES_MAX))
@@ -226,6 +228,7 @@ static const char *add_scene(struct glb *glb, const unsigned char *bytes, size_t
         if (glb->n_bin > length - begin - n - CHUNK)
             return "fewer bytes than its length";
     }
+    /* the parser wants a zero behind the text */
     struct cs_text text = {0};
     cs_text_add_bytes(&text, bytes + begin, n);
     const enum cs_status status =
