@@ -186,19 +186,13 @@ static int by_key(const void *left, const void *right) {
 }
 
 static struct key key_of(const struct cs_raw_mesh *raw, uint32_t t) {
-    const struct cs_raw_corner *c = raw->triangles[t].corners;
-    uint32_t v[3] = {c[0].vertex, c[1].vertex, c[2].vertex};
-    bool odd = false;
-    for (int k = 0; k < 3; k++) {
-        const int low = k == 1 ? 1 : 0;
-        if (v[low] > v[low + 1]) {
-            const uint32_t higher = v[low];
-            v[low] = v[low + 1];
-            v[low + 1] = higher;
-            odd = !odd;
-        }
-    }
-    return (struct key){{v[0], v[1], v[2]}, t, odd};
+    const struct cs_raw_corner *corners = raw->triangles[t].corners;
+    const uint32_t a = corners[0].vertex, b = corners[1].vertex, c = corners[2].vertex;
+    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    const uint32_t least = c < low ? c : low, most = c > high ? c : high;
+    /* the third number is what the others leave; each inverted pair is a swap */
+    return (struct key){
+        {least, a ^ b ^ c ^ least ^ most, most}, t, (a > b) != ((b > c) != (a > c))};
 }
 
 /* Returns true if an edge has faces of the same vertices alone, as the border of a sheet whose
