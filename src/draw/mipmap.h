@@ -22,9 +22,9 @@ enum cs_status cs_mipmap_make(struct cs_mipmap *mips, const struct cs_image *ima
                               const struct cs_srgb *srgb, struct cs_arena *arena,
                               struct cs_error *error);
 
-/* What a pixel covers of a texture: a row of equal parts along the longer of its two sides, so
- * that a surface seen at a grazing angle blurs only in the direction in which it is shortened
- * (McCormack et al. 1999). */
+/* The footprint of a pixel on a texture: a row of equal parts along the longer of its two
+ * sides, so that a surface seen at a grazing angle blurs only in the direction in which it is
+ * shortened (McCormack et al. 1999). */
 struct cs_texel_footprint {
     float side[2]; /* the longer side in texture coordinates; 0 of a single part */
     float square;  /* squared width of a part in texels of level 0 */
