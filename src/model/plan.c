@@ -111,8 +111,12 @@ static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
            "forces.velocity_loss is above 0", "forces.velocity_loss is 0");
     decide(plan, CS_FEATURE_STRAIN_LIMIT, springs && any_body(scene, has_limit),
            "a body has strain_limit", "no strain_limit");
-    decide(plan, CS_FEATURE_EVENTS, scene->events.n > 0 || cs_scene_carries_pins(scene, true),
-           scene->events.n > 0 ? "the scene has events" : "key frames carry particles",
+    const bool leads = !isnan(scene->contact.untangle);
+    decide(plan, CS_FEATURE_EVENTS,
+           scene->events.n > 0 || leads || cs_scene_carries_pins(scene, true),
+           scene->events.n > 0 ? "the scene has events"
+           : leads             ? "contact.untangle is given"
+                               : "key frames carry particles",
            "no events");
     decide(plan, CS_FEATURE_VIEWPOINT_FORCES, cs_viewpoint_forces_any(scene),
            "an event is a viewpoint_force; it needs a visibility test",

@@ -152,10 +152,10 @@ struct cs_contact_keys {
     /* not in the tables: the scene names no law (cs_plan_choose_contact_law) */
     bool law_is_default;
     bool damping_is_default; /* nor a damping: cs_session_build sets it */
-    int32_t start; /* enum cs_contact_start_policy, of what starts inside or within range */
-    /* of the law force: */
-    double stiffness;   /* N/m per particle; NAN: from what may come (contact/approach.h) */
-    double damping;     /* s, times the stiffness of the contact: N s/m */
+    int32_t start;    /* enum cs_contact_start_policy, of what starts inside or within range */
+    double untangle;  /* s, in which particles that start inside are moved out; NAN: refused */
+    double stiffness; /* N/m per particle, by force; NAN: from what may come (approach.h) */
+    double damping;   /* s, times the stiffness of the contact: N s/m */
     double restitution; /* (1) speed after an impact over that before; NAN: not asked */
     /* not in the tables, set by cs_session_build: the factor alpha of the loss, and kg, M */
     double loss, mass;

@@ -273,6 +273,9 @@ static const struct cs_option contact_rows[] = {
         "a particle that starts inside a collider, or, for force, bodies that start with more "
         "contact energy than at rest: refuse the scene, move them out first, as the report "
         "then states, or allow it"),
+    REAL(struct cs_contact_keys, untangle, "s", ABSENT, 1e-6, BIG,
+         "particles that start inside a collider are moved out along the shortest way, from "
+         "rest to rest in this time, and feel colliders from its end on; absent: see start"),
     REAL(struct cs_contact_keys, stiffness, "N/m", ABSENT, 1e-9, 1e12,
          "for force, per particle; absent: 40 m v^2/D^2 for the speed v at which surfaces may "
          "meet, at least springs.stretch of the softest body that has such springs"),

@@ -13,6 +13,8 @@
 #include "scene/body_pairs.h"
 #include "sim/run_host.h"
 
+#include <string.h>
+
 /* Passes over the forces that a method must have made for each one of the account. Two
  * energies count as ENERGIES. */
 enum { SHARE = 33, ENERGIES = 2 };
@@ -25,15 +27,17 @@ static bool has_powers(const struct cs_system *system) {
     return found;
 }
 
-/* J, kinetic energy of the pinned particles: it changes only if their path turns. */
-static double pinned_energy(const struct cs_system *system, const double *v) {
+/* Kinetic energy in J of the pinned particles, and of the tangled ones: it changes only if
+ * their path turns. */
+static void find_pinned_energy(const struct cs_system *system, const double *v,
+                               double energy[2]) {
     const size_t n = system->view.n;
     const bool turns = system->events && system->events->has_turns;
-    double energy = 0;
+    energy[0] = energy[1] = 0;
     for (uint32_t p = 0; turns && p < system->n_pinned; p++)
         for (size_t k = system->pinned[p]; k < 3 * n; k += n)
-            energy += 0.5 * system->mass[system->pinned[p]] * v[k] * v[k];
-    return energy;
+            energy[cs_system_is_tangled(system, system->pinned[p])] +=
+                0.5 * system->mass[system->pinned[p]] * v[k] * v[k];
 }
 
 /* J, all potentials. */
@@ -92,10 +96,12 @@ static void book_powers(struct cs_run_host *host, double t, double dt, const dou
         cs_terms_force(system, &at, host->power + n);
     }
     const struct cs_rebound *impacts = host->has_impact ? system->rebounds->list : NULL;
-    double power = 0;
+    double power = 0, led = 0;
     for (size_t i = 0; i < n; i++)
-        power += impacts && impacts[i].collider ? 0 : host->power[i];
+        *(cs_system_is_tangled(system, (uint32_t)i) ? &led : &power) +=
+            impacts && impacts[i].collider ? 0 : host->power[i];
     input->given[CS_SOURCE_FORCES] += (impacts ? host->impact_work : 0) + dt * power;
+    input->given[CS_SOURCE_UNTANGLE] += dt * led;
     host->has_impact = false;
     input->powers_work = work;
     host->power_is_set = false;
@@ -126,9 +132,11 @@ void cs_energy_input_step(struct cs_run_host *host, double t, double dt, const d
     if (host->power)
         book_powers(host, t, dt, x, v);
     if (host->run->system->events) {
-        const double pinned = pinned_energy(host->run->system, v);
-        input->given[CS_SOURCE_FORCES] += pinned - input->pinned;
-        input->pinned = pinned;
+        double pinned[2];
+        find_pinned_energy(host->run->system, v, pinned);
+        input->given[CS_SOURCE_FORCES] += pinned[0] - input->pinned[0];
+        input->given[CS_SOURCE_UNTANGLE] += pinned[1] - input->pinned[1];
+        memcpy(input->pinned, pinned, sizeof pinned);
         book_values(host, t, x, v);
     }
     if (!host->corrects)
@@ -160,10 +168,13 @@ void cs_energy_input_corrections(struct cs_run_host *host, double t, const doubl
 bool cs_energy_input_events(struct cs_run_host *host, double t) {
     struct cs_energy_input *input = &host->run->energy_input;
     const double before = total(host, t);
+    const bool tangled = host->run->system->tangled;
     if (!cs_events_apply(host->run->system, t))
         return false;
-    input->given[CS_SOURCE_EVENTS] += total(host, t) - before;
-    input->pinned = pinned_energy(host->run->system, host->run->v);
+    // particles that arrive meet contact
+    const bool arrive = tangled && !host->run->system->tangled;
+    input->given[arrive ? CS_SOURCE_UNTANGLE : CS_SOURCE_EVENTS] += total(host, t) - before;
+    find_pinned_energy(host->run->system, host->run->v, input->pinned);
     input->values_t = t;
     host->power_is_set = false;
     return true;

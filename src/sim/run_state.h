@@ -92,14 +92,15 @@ enum cs_energy_source {
     CS_SOURCE_VALUES,      /* ramps, at fixed positions */
     CS_SOURCE_CORRECTIONS, /* strain limit and projection */
     CS_SOURCE_EVENTS,      /* at once, between two steps */
+    CS_SOURCE_UNTANGLE,    /* what moves particles out of colliders from the start on */
     CS_ENERGY_SOURCES
 };
 
 /* The energy that the scene has given since the start of a run; negative if it took more. */
 struct cs_energy_input {
     double given[CS_ENERGY_SOURCES]; /* J */
-    double pinned;                   /* J, kinetic energy of pinned particles that turn */
-    double values_t;                 /* s, to which ramps are booked */
+    double pinned[2]; /* J, kinetic energy of pinned particles that turn; of tangled ones */
+    double values_t;  /* s, to which ramps are booked */
     /* before the corrections of the running step, in J; the potential only if it is_sampled */
     double kinetic, potential;
     double corrected_steps; /* since the last sample, this one included */

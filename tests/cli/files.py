@@ -21,7 +21,7 @@ import numpy as np
 program, scenes, module_path = (str(Path(word).resolve()) for word in sys.argv[1:])
 # keys that no run below can have: a machine with other arithmetic; more than a short test asks
 UNSEEN = {"run.json": {"contact.other_body", "error.measured", "strain_limit_missed", "energy.other", "crossings.first",
-                       "beyond_cloth", "singular_force", "singular_force.time", "singular_force.particle",
+                       "beyond_cloth", "untangle", "singular_force", "singular_force.time", "singular_force.particle",
                        "crossings.first.time", "crossings.first.edge", "crossings.most_at"},
           "compare.json": {key for at in ("verdict[]", "stable_at_frame_step") for key in
                            [at + ".by_" + norm for norm in "error path largest velocity energy".split()]}}

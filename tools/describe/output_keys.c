@@ -130,6 +130,7 @@ static const struct cs_output_key run_keys[] = {
     {"largest_strain", "number or null", "1", "largest strain of a spring at the end"},
     {"strain_limit_missed?", "number", "1", "largest length over the strain limit, less 1"},
     {"beyond_cloth?", "text", "", "what no cloth does: where, and the bound"},
+    {"untangle?", "number", "J", "given to what contact.untangle led out"},
     {"largest_depth", "number", "m", "of a particle in a collider after a frame"},
     {"memory", "object", "", "arrays of the run"},
     {"memory.bytes", "whole", "B", "all"},
@@ -376,9 +377,8 @@ const struct cs_output_file cs_output_files[] = {
      .columns = cs_stability_columns,
      .n_columns = &cs_stability_n_columns},
     {.name = "stability_border.csv",
-     .about =
-         "Of *clothsim stability*, as _NAME_\\_border.csv: a row for each value on the axis, "
-         "which is the first column, and called like the axis. Empty: no limit, or none known.",
+     .about = "Of *clothsim stability*, as _NAME_\\_border.csv: a row for each value on the "
+              "axis, the first column, called like the axis. Empty: no limit, or none known.",
      .columns = cs_stability_border_columns,
      .n_columns = &cs_stability_n_border_columns},
     {.name = "stability.json",

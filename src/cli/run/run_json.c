@@ -142,6 +142,8 @@ static void add_measures(const struct cs_job *job, struct cs_text *out) {
         cs_json_write(out, ", 'other': %g", energy.other);
     cs_json_write(out, "},\n  'largest_strain': %g,\n",
                   cs_diagnostics_strain(run->system, run->x));
+    if (run->system->scene->contact.untangle > 0)
+        cs_json_write(out, "  'untangle': %g,\n", run->energy_input.given[CS_SOURCE_UNTANGLE]);
     if (run->strain_limit.missed > 0)
         cs_json_write(out, "  'strain_limit_missed': %g,\n", run->strain_limit.missed);
     cs_json_write(out, "  'largest_depth': %g,\n", job->monitor.cloth[CS_CLOTH_DEPTH].value);

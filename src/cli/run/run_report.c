@@ -165,6 +165,10 @@ static void add_measures(const struct cs_job *job, struct cs_text *out) {
     if (run->system->scene->colliders.n)
         add_report_row(out, "largest depth", "%.3g m in a collider after a frame",
                        job->monitor.cloth[CS_CLOTH_DEPTH].value);
+    if (run->system->scene->contact.untangle > 0)
+        add_report_row(out, "untangle", "gave %.6g J to %u particles",
+                       run->energy_input.given[CS_SOURCE_UNTANGLE],
+                       job->session.initial_penetration.n);
     add_report_row(out, "memory", "%zu bytes in arrays, %.1f per particle", cs_run_bytes(run),
                    (double)cs_run_bytes(run) / run->system->view.n);
     add_report_row(out, "wall time", "%.3g s, %.3g s of it in the integrator",

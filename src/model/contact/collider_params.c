@@ -65,6 +65,8 @@ static double default_range(const struct cs_system *system, uint32_t collider,
             continue;
         // one that starts inside or touches is refused, or moved out, by the whole range
         const double distance = cs_posed_collider_distance(&posed, p, normal);
+        if (distance < -CS_PENETRATION_MIN && !isnan(system->scene->contact.untangle))
+            return whole;
         range = distance > least ? fmin(range, distance) : range;
     }
     return range;

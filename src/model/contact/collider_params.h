@@ -13,6 +13,9 @@
 
 /* Least fraction to which a range that nobody set shrinks to fit the start; chosen by trial. */
 #define CS_RANGE_SHRINK_MIN 0.02
+/* m, depth up to which a particle counts as on the surface: scenes give positions in decimals.
+ */
+#define CS_PENETRATION_MIN 1e-9
 
 /* Parameters of one collider. */
 struct cs_collider_params {

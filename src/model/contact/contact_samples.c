@@ -258,5 +258,5 @@ double cs_contact_sample_mass(const struct cs_system *system,
     double inverse = 0;
     for (uint32_t k = 0; k < point->n; k++)
         inverse += point->w[k] * point->w[k] * system->inv_mass[point->particles[k]];
-    return inverse > 0 ? 1 / inverse : HUGE_VAL;
+    return inverse > 0 && !cs_contact_sample_is_tangled(system, point) ? 1 / inverse : HUGE_VAL;
 }

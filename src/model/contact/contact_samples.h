@@ -99,8 +99,17 @@ static inline void cs_contact_sample_interpolate(const struct cs_contact_sample_
             out[c] += point->w[k] * x[c * n + point->particles[k]];
 }
 
+/* True if a vertex of a sample is on its way out of a collider: it then feels none. */
+static inline bool cs_contact_sample_is_tangled(const struct cs_system *system,
+                                                const struct cs_contact_sample_point *point) {
+    bool tangled = false;
+    for (uint32_t k = 0; system->tangled && k < point->n; k++)
+        tangled = tangled || system->tangled[point->particles[k]];
+    return tangled;
+}
+
 /* Effective mass in kg of a sample against a force: 1 / sum (w_i^2 / m_i); HUGE_VAL if all its
- * vertices are pinned. */
+ * vertices are pinned, or one is tangled. */
 double cs_contact_sample_mass(const struct cs_system *system,
                               const struct cs_contact_sample_point *point);
 

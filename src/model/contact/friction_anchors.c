@@ -102,8 +102,9 @@ static void follow(const struct job *job, const struct point *point) {
     memcpy(to, point->p, sizeof to);
     if (!set(&job->law, point->anchor, point->p, point->mass, &bristle))
         return;
-    // at the start, and out of range, the anchor is the point
-    if (job->v && cs_posed_collider_law_in_range(&job->law, point->p, point->v, &contact)) {
+    // at the start, out of range and tangled, the anchor is the point
+    if (job->v && point->mass < HUGE_VAL &&
+        cs_posed_collider_law_in_range(&job->law, point->p, point->v, &contact)) {
         double back[3];
         if (!cs_bristle_slips(&contact, &bristle, back))
             return;
@@ -119,7 +120,9 @@ static void follow_particles(void *arg, size_t begin, size_t end) {
     const size_t n = job->system->view.n;
     for (size_t i = begin; i < end; i++) {
         struct point point = {.anchor = anchor_of_particle(job->system, job->collider, i),
-                              .mass = job->system->mass[i]};
+                              .mass = cs_system_is_tangled(job->system, (uint32_t)i)
+                                          ? HUGE_VAL
+                                          : job->system->mass[i]};
         for (size_t c = 0; c < 3; c++) {
             point.p[c] = job->x[c * n + i];
             point.v[c] = job->v ? job->v[c * n + i] : 0;

@@ -73,7 +73,8 @@ bool cs_point_evaluate(const struct cs_point_query *query,
     double p[3], v[3];
     cs_contact_sample_interpolate(point, system->view.n, query->eval.x, p);
     cs_contact_sample_interpolate(point, system->view.n, stored ? NULL : query->eval.v, v);
-    if (!cs_posed_collider_law_in_range(law, p, v, &answer->contact))
+    if (cs_contact_sample_is_tangled(system, point) ||
+        !cs_posed_collider_law_in_range(law, p, v, &answer->contact))
         return false;
     if (stored) {
         const struct cs_point_contact *contact = &answer->contact;

@@ -78,15 +78,20 @@ CS_INLINE void push(const struct cs_posed_collider_law *law, size_t n, const dou
     }
 }
 
-/* Adds the forces of all rows of a block. */
-CS_INLINE void add(const struct cs_posed_collider_law *law, size_t n, const struct cs_eval *at,
-                   struct cs_contact_force_parts parts, const bool sphere, double *f) {
+/* Adds the forces of all rows of a block, but on tangled particles. */
+CS_INLINE void add(const struct cs_posed_collider_law *law, const struct cs_system *system,
+                   const struct cs_eval *at, struct cs_contact_force_parts parts,
+                   const bool sphere, double *f) {
+    const bool *tangled = system->tangled;
+    const size_t n = system->view.n;
     const bool rubs = parts.friction * (law->friction + law->damping + law->loss) > 0;
     for (size_t start = at->block->begin; start < at->block->end; start += ROW) {
         const size_t left = at->block->end - start, count = left < ROW ? left : ROW;
         struct row row;
         if (measure(law, n, at->x + start, count, sphere, &row) == 0)
             continue;
+        for (size_t i = 0; tangled && i < count; i++)
+            row.d[i] = tangled[start + i] ? law->params.range : row.d[i];
         if (rubs)
             push(law, n, at->v + start, count, parts, sphere, true, &row, f + start);
         else
@@ -96,13 +101,13 @@ CS_INLINE void add(const struct cs_posed_collider_law *law, size_t n, const stru
 
 /* f (3,n) += the force of point_contact.h at the particles of at->block; equal to it but for
  * rounding. */
-static CS_CLONES void contact_rows_add(const struct cs_posed_collider_law *law, size_t n,
-                                       const struct cs_eval *at,
+static CS_CLONES void contact_rows_add(const struct cs_posed_collider_law *law,
+                                       const struct cs_system *system, const struct cs_eval *at,
                                        struct cs_contact_force_parts parts, double *f) {
     if (law->collider.shape->bounds == CS_BOUNDS_SPHERE)
-        add(law, n, at, parts, true, f);
+        add(law, system, at, parts, true, f);
     else
-        add(law, n, at, parts, false, f);
+        add(law, system, at, parts, false, f);
 }
 
 /* Adds the bounds of one row, those of cs_point_contact_bound for |g| = 1. */
@@ -223,7 +228,7 @@ static void add_force(const struct cs_system *system, const struct cs_eval *at, 
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_posed_collider_law law = near_of(system, c, at->t);
         if (cs_posed_collider_law_is_plain(&law))
-            contact_rows_add(&law, system->view.n, at, parts, f);
+            contact_rows_add(&law, system, at, parts, f);
         else
             add_vectors(&query, &law, c, f);
         add_powers(&query, &law, c);

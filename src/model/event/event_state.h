@@ -100,6 +100,12 @@ struct cs_events {
     double *offsets;
     /* (n) triangle that carries it, of a holder with key frames; NULL without key frames */
     uint32_t *triangles;
+    /* Ways that particles go in their collider's frame, from rest to rest: (3,n) m, to the
+     * place in offsets, and (n) s, the time that they arrive; NULL: none. Those of `tangled`
+     * (n) are then free: system->tangled points to it until the time `untangled`. */
+    double *ways, *arrivals;
+    bool *tangled;
+    double untangled, way_speed; /* s; m/s, the largest on a way */
     /* NULL without viewpoint forces */
     struct cs_viewpoint_forces *viewpoint_forces;
     double next_test;          /* s, of the next visibility test; HUGE_VAL: none */
@@ -124,6 +130,10 @@ void cs_event_finish(struct cs_system *system, uint32_t event);
  * and starts its path. */
 void cs_event_begin_grab(struct cs_system *system, uint32_t event);
 
+/* Stores where the marked particles are at t in the frame of their holder. */
+void cs_event_store_offsets(struct cs_system *system, uint32_t holder, const bool *marks,
+                            double t);
+
 /* True if a scene may turn particles that it holds. They then move on arcs, and at a stage of a
  * method, whose x + h v is off the arc, cs_events_apply_paths gives their state. */
 bool cs_events_turn_particles(const struct cs_scene *scene);
@@ -143,6 +153,17 @@ double cs_events_turning_work(const struct cs_system *system, const double *v0,
 /* Lets colliders carry the particles of such pins, at time 0. Fails with CS_ERR_SCENE if two
  * pins hold a particle to different things. */
 enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *error);
+
+/* Moves each particle i with colliders[i] > 0 from where it starts to targets (3,n) in m, in
+ * the frame of collider colliders[i] - 1, until contact.untangle: on the part u^2 (3 - 2 u) of
+ * the way at the part u of the time. Nothing pushes it meanwhile, and it is free from then on.
+ * CS_ERR_MEMORY. */
+enum cs_status cs_event_lead_out(struct cs_system *system, const uint32_t *colliders,
+                                 const double *targets, struct cs_error *error);
+/* Frees those that have arrived at t. */
+void cs_event_release_tangled(struct cs_system *system, double t);
+/* Lists the particles without inverse mass, ascending. */
+void cs_event_list_pinned(struct cs_system *system);
 
 /* Sets has_grabs, has_turns and held_speed for the segment that begins at t. */
 void cs_event_find_held(struct cs_system *system, double t);
@@ -225,6 +246,9 @@ size_t cs_event_times_count(const struct cs_scene *scene);
  * within CS_EVENT_SAME of a frame becomes the frame's, and times as near to each other become
  * one, the earlier. */
 void cs_event_times_fill(struct cs_events *events);
+
+/* Adds a time after 0, and returns it as it stands in events->times. */
+double cs_event_times_add(struct cs_events *events, double t);
 
 /* Time in s of the end of a chord of a leg, as it stands in events->times. */
 double cs_event_chord_end(const struct cs_events *events, uint32_t event, uint32_t leg,

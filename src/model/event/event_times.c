@@ -27,7 +27,7 @@ struct cs_event_path cs_event_path_of(const struct cs_event *event) {
 
 size_t cs_event_times_count(const struct cs_scene *scene) {
     const struct cs_event *events = cs_scene_events(scene);
-    size_t n = 0;
+    size_t n = !isnan(scene->contact.untangle);
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_event_path path = cs_event_path_of(events + e);
         n += 2 + (size_t)path.n * path.n_chords;
@@ -103,6 +103,19 @@ void cs_event_times_fill(struct cs_events *events) {
         events->states[e].begin = never ? (double)NAN : entry_of(events, begin_of(list + e));
         events->states[e].end = never ? (double)NAN : entry_of(events, end_of(list + e));
     }
+}
+
+double cs_event_times_add(struct cs_events *events, double t) {
+    double *times = events->times;
+    t = cs_event_time_snap(&events->scene, t);
+    uint32_t k = times[0] < HUGE_VAL ? events->n_times : 0;
+    if (k && fabs(entry_of(events, t) - t) <= CS_EVENT_SAME)
+        return entry_of(events, t);
+    events->n_times = k + 1;
+    for (; k && times[k - 1] > t; k--)
+        times[k] = times[k - 1];
+    events->end = k ? events->end : t;
+    return times[k] = t;
 }
 
 double cs_event_chord_end(const struct cs_events *events, uint32_t event, uint32_t leg,

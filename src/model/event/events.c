@@ -78,8 +78,9 @@ void cs_events_serialise(struct cs_system *system, struct cs_serialiser *seriali
     else
         cs_serialiser_bytes(serialiser, system->pinned,
                             system->n_pinned * sizeof *system->pinned);
-    // springs and the view follow from the values that were read
+    // springs and the view follow from the values that were read, ways are those of the start
     if (serialiser->is_reading) {
+        cs_event_release_tangled(system, events->begin);
         cs_event_refresh_springs(system);
         cs_event_show_moves(system);
     }
@@ -216,14 +217,6 @@ uint32_t cs_events_count_stops(const struct cs_events *events, double t) {
     return events->n_times + cs_viewpoint_forces_cuts(&events->scene, t);
 }
 
-/* Lists the particles without inverse mass, ascending. */
-static void list_pinned(struct cs_system *system) {
-    system->n_pinned = 0;
-    for (uint32_t i = 0; i < system->view.n; i++)
-        if (system->inv_mass[i] == 0)
-            system->pinned[system->n_pinned++] = i;
-}
-
 /* Closes the segment at t and opens the next: ends, then beginnings, then the chords of
  * paths. Pins, springs, masses and the positions of grabbed particles follow from these. */
 static void end_segment(struct cs_system *system, double t) {
@@ -237,6 +230,7 @@ static void end_segment(struct cs_system *system, double t) {
     for (uint32_t e = 0; e < n; e++)
         if (events->states[e].active && events->states[e].end <= t)
             cs_event_finish(system, e);
+    cs_event_release_tangled(system, t);
     for (uint32_t e = 0; e < n; e++)
         if (events->states[e].begin == t)
             cs_event_start(system, e);
@@ -255,7 +249,7 @@ static void end_segment(struct cs_system *system, double t) {
     cs_event_follow_growth(system);
     cs_event_show_moves(system);
     cs_event_find_held(system, t);
-    list_pinned(system);
+    cs_event_list_pinned(system);
     refresh(system);
     cs_events_apply_paths(system, t, system->state, system->state + 3 * (size_t)system->view.n);
 }

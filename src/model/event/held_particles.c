@@ -11,7 +11,9 @@
  *
  * A collider with key frames has no R. The triangle nearest to a particle when it is taken
  * carries it: x = p0 + a (p1 - p0) + b (p2 - p0) + h n with the unit normal n, and (a, b, h)
- * constant. */
+ * constant.
+ *
+ * A particle on a way (cs_event_lead_out) has (a, b, h), or r, that are not constant yet. */
 #include "model/event/carrier.h"
 #include "model/event/event_state.h"
 
@@ -25,7 +27,7 @@
 
 /* A holder at a time: p in m, its rate in m/s without w, R by rows, w in rad/s. */
 struct frame {
-    double point[3], rate[3], turn[9], spin[3];
+    double t, point[3], rate[3], turn[9], spin[3];
     double lever[3]; /* m, from the point of rotation, whose rate it is, to p */
     bool is_turned;  /* R is not the identity, or will not be */
     bool deforms;    /* it is `surface`, with key frames, and the above does not count */
@@ -90,7 +92,7 @@ static void grab_frame(const struct cs_events *events, uint32_t event, double t,
 }
 
 static struct frame frame_at(const struct cs_system *system, uint32_t holder, double t) {
-    struct frame out = {.spin = {0}};
+    struct frame out = {.t = t};
     const int64_t collider = collider_of(system->events, holder);
     memcpy(out.turn, no_turn, sizeof no_turn);
     if (collider >= 0)
@@ -100,19 +102,37 @@ static struct frame frame_at(const struct cs_system *system, uint32_t holder, do
     return out;
 }
 
+/* s at which particle i arrives, if it is on a way; else 0. */
+static double arrival_of(const struct cs_events *events, size_t i) {
+    return events->arrivals && events->held_by[i] > events->scene.events.n ? events->arrivals[i]
+                                                                           : 0;
+}
+
+/* Place of particle i in the frame of its holder, and its rate, which is 0 but on a way. */
+static void own_at(const struct cs_system *system, const struct frame *frame, size_t i,
+                   double own[3], double rate[3]) {
+    const struct cs_events *events = system->events;
+    const double end = arrival_of(events, i), u = frame->t / end;
+    const bool moves = frame->t < end;
+    for (size_t c = 0, k = i; c < 3; c++, k += system->view.n) {
+        own[c] = events->offsets[k] - (moves ? (1 - u * u * (3 - 2 * u)) * events->ways[k] : 0);
+        rate[c] = moves ? 6 * u * (1 - u) / end * events->ways[k] : 0;
+    }
+}
+
 /* Position and velocity of particle i, which such a surface carries. */
 static void deformed_at(const struct cs_system *system, const struct frame *frame, size_t i,
                         double x[3], double v[3]) {
-    const size_t n = system->view.n;
-    const double *own = system->events->offsets + i;
+    double own[3], rate[3];
     struct cs_carrier at;
+    own_at(system, frame, i, own, rate);
     cs_carrier_at(&frame->collider, system->events->triangles[i], &at);
     for (int c = 0; c < 3; c++) {
         x[c] = at.place[0][c];
         v[c] = at.rate[0][c];
         for (size_t k = 0; k < 3; k++) {
-            x[c] += own[k * n] * at.place[k + 1][c];
-            v[c] += own[k * n] * at.rate[k + 1][c];
+            x[c] += own[k] * at.place[k + 1][c];
+            v[c] += own[k] * at.rate[k + 1][c] + rate[k] * at.place[k + 1][c];
         }
     }
 }
@@ -131,38 +151,50 @@ static void take_triangle(struct cs_system *system, const struct frame *frame, s
             continue;
         least = squared;
         system->events->triangles[i] = k;
-        for (size_t c = 0; c < 3; c++)
-            system->events->offsets[c * system->view.n + i] = own[c];
     }
 }
 
-/* arm = R r of particle i, in m. */
-static void arm_of(const struct cs_system *system, const struct frame *frame, size_t i,
-                   double arm[3]) {
-    const size_t n = system->view.n;
-    const double *offsets = system->events->offsets;
-    const double r[3] = {offsets[i], offsets[n + i], offsets[2 * n + i]};
-    memcpy(arm, r, sizeof r);
-    for (size_t c = 0; c < 3 && frame->is_turned; c++)
-        arm[c] = cs_vec3_dot(frame->turn + 3 * c, r);
+/* own = place of p in the frame: r = R^T (p - point), or (a, b, h) in particle i's triangle. */
+static void locate(const struct cs_system *system, const struct frame *frame, size_t i,
+                   const double p[3], double own[3]) {
+    const double *m = frame->turn;
+    double arm[3];
+    struct cs_carrier at;
+    for (size_t c = 0; c < 3; c++)
+        arm[c] = p[c] - frame->point[c];
+    for (size_t c = 0; c < 3; c++)
+        own[c] =
+            frame->is_turned ? m[c] * arm[0] + m[3 + c] * arm[1] + m[6 + c] * arm[2] : arm[c];
+    if (!frame->deforms)
+        return;
+    cs_carrier_at(&frame->collider, system->events->triangles[i], &at);
+    cs_carrier_find(&at, p, own);
+}
+
+/* R r of a vector in the frame. */
+static void turn(const struct frame *frame, const double r[3], double out[3]) {
+    for (size_t c = 0; c < 3; c++)
+        out[c] = frame->is_turned ? cs_vec3_dot(frame->turn + 3 * c, r) : r[c];
 }
 
 /* Position and velocity of particle i, which a holder carries. */
 static void carried_at(const struct cs_system *system, const struct frame *frame, size_t i,
                        double x[3], double v[3]) {
-    double arm[3], turning[3] = {0};
+    double own[3], own_rate[3], arm[3], rate[3], turning[3] = {0};
     if (frame->deforms) {
         deformed_at(system, frame, i, x, v);
         return;
     }
-    arm_of(system, frame, i, arm);
+    own_at(system, frame, i, own, own_rate);
+    turn(frame, own, arm);
+    turn(frame, own_rate, rate);
     const double lever[3] = {arm[0] + frame->lever[0], arm[1] + frame->lever[1],
                              arm[2] + frame->lever[2]};
     if (frame->is_turned)
         cs_vec3_cross(frame->spin, lever, turning);
     for (int c = 0; c < 3; c++) {
         x[c] = arm[c] + frame->point[c];
-        v[c] = frame->rate[c] + turning[c];
+        v[c] = frame->rate[c] + turning[c] + rate[c];
     }
 }
 
@@ -204,26 +236,26 @@ double cs_events_turning_work(const struct cs_system *system, const double *v0,
     return energy;
 }
 
-/* r = R^T (x - p) for the marked particles at time t. */
-static void store_offsets(struct cs_system *system, uint32_t holder, const bool *marks,
-                          double t) {
+/* Stores the place of particle i at x (3,n) in the frame that takes it. */
+static void take(struct cs_system *system, const struct frame *frame, size_t i,
+                 const double *x) {
+    const size_t n = system->view.n;
+    const double p[3] = {x[i], x[n + i], x[2 * n + i]};
+    double own[3];
+    if (frame->deforms)
+        take_triangle(system, frame, i, p);
+    locate(system, frame, i, p, own);
+    for (size_t c = 0; c < 3; c++)
+        system->events->offsets[c * n + i] = own[c];
+}
+
+void cs_event_store_offsets(struct cs_system *system, uint32_t holder, const bool *marks,
+                            double t) {
     const size_t n = system->view.n;
     const struct frame frame = frame_at(system, holder, t);
-    const double *m = frame.turn;
-    for (size_t i = 0; i < n; i++) {
-        const double *x = system->state + i;
-        double arm[3];
-        if (!marks[i])
-            continue;
-        for (size_t c = 0; c < 3; c++)
-            arm[c] = x[c * n] - frame.point[c];
-        if (frame.deforms)
-            take_triangle(system, &frame, i, (const double[3]){x[0], x[n], x[2 * n]});
-        for (size_t c = 0; c < 3 && !frame.deforms; c++)
-            system->events->offsets[c * n + i] =
-                frame.is_turned ? m[c] * arm[0] + m[3 + c] * arm[1] + m[6 + c] * arm[2]
-                                : arm[c];
-    }
+    for (size_t i = 0; i < n; i++)
+        if (marks[i])
+            take(system, &frame, i, system->state);
 }
 
 /* m, the mean of the marked particles along one axis. */
@@ -252,76 +284,16 @@ void cs_event_begin_grab(struct cs_system *system, uint32_t event) {
     }
     // the frame of a grab is that of a path that has come to its end
     state->chord_end = events->begin;
-    store_offsets(system, event + 1, events->work, events->begin);
+    cs_event_store_offsets(system, event + 1, events->work, events->begin);
     cs_event_begin_path(state, events->begin);
-}
-
-/* Makes a pin's collider the holder of a particle; fails if another pin holds it elsewhere. */
-static enum cs_status hold(struct cs_system *system, uint32_t b, uint32_t p, uint32_t i,
-                           struct cs_error *error) {
-    const struct cs_body *body = cs_scene_bodies(system->scene) + b;
-    const struct cs_pin *pins = body->pins.items;
-    const struct cs_body_range *range = system->bodies + b;
-    for (uint32_t k = 0; k < body->pins.n; k++) {
-        const bool same = pins[k].to.present && pins[k].to.collider == pins[p].to.collider;
-        if (!same && cs_shape_pin_selects(body, pins + k, system->view.n, range->first,
-                                          i - range->first, system->start))
-            return cs_fail(
-                error, CS_ERR_SCENE,
-                "bodies[%u].pins[%u].to: pins[%u] holds particle %u of the body too, "
-                "but not to collider %lld; expected one pin for each particle",
-                b, p, k, i - range->first, (long long)pins[p].to.collider);
-    }
-    system->events->held_by[i] = system->scene->events.n + 1 + (uint32_t)pins[p].to.collider;
-    return CS_OK;
-}
-
-enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *error) {
-    struct cs_events *events = system->events;
-    const uint32_t n = system->view.n, first = system->scene->events.n + 1;
-    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
-        const struct cs_body *body = cs_scene_bodies(system->scene) + b;
-        const struct cs_pin *pins = body->pins.items;
-        const struct cs_body_range *range = system->bodies + b;
-        for (uint32_t p = 0; p < body->pins.n; p++)
-            for (uint32_t i = range->first;
-                 pins[p].to.present && i < range->first + range->count; i++)
-                if (cs_shape_pin_selects(body, pins + p, n, range->first, i - range->first,
-                                         system->start) &&
-                    hold(system, b, p, i, error))
-                    return error->status;
-    }
-    // the offsets need a collider's frame, one collider after the other
-    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
-        for (uint32_t i = 0; i < n; i++)
-            events->work[i] = events->held_by[i] == first + k;
-        store_offsets(system, first + k, events->work, 0);
-    }
-    // key frames move from the start, before any event
-    if (cs_scene_carries_pins(system->scene, true)) {
-        cs_event_find_held(system, 0);
-        cs_events_apply_paths(system, 0, system->state, system->state + 3 * (size_t)n);
-    }
-    return CS_OK;
-}
-
-bool cs_events_turn_particles(const struct cs_scene *scene) {
-    bool turns = false, carries = cs_scene_carries_pins(scene, false), spins = false;
-    for (uint32_t e = 0; e < scene->events.n; e++) {
-        const struct cs_grab *grab = &cs_scene_events(scene)[e].grab;
-        const struct cs_move *move = &cs_scene_events(scene)[e].move;
-        carries |= grab->present && grab->to.present;
-        turns |= grab->present && cs_vec3_dot(grab->spin, grab->spin) > 0;
-        spins |= move->present && cs_vec3_dot(move->spin, move->spin) > 0;
-    }
-    return turns || (carries && (spins || cs_scene_has_key_frames(scene)));
 }
 
 /* m/s, a bound for a particle that key frames carry: that of the vertices by their weights. */
 static double deformed_speed(const struct cs_system *system, const struct frame *frame,
                              size_t i) {
-    const double *own = system->events->offsets + i;
-    const double weights = 1 + 2 * (fabs(own[0]) + fabs(own[system->view.n]));
+    double own[3], rate[3];
+    own_at(system, frame, i, own, rate);
+    const double weights = 1 + 2 * (fabs(own[0]) + fabs(own[1]));
     return weights *
            (frame->collider.collider->mesh.paths->speed + cs_event_angular_speed(system));
 }
@@ -334,20 +306,90 @@ void cs_event_find_held(struct cs_system *system, double t) {
     events->held_speed = 0;
     for (size_t i = 0; i < system->view.n; i++) {
         const uint32_t holder = events->held_by[i];
-        double arm[3];
+        double own[3], rate[3], arm[3];
         if (!leads(events, holder))
             continue;
         if (holder != last)
             frame = frame_at(system, last = holder, t);
         const double spin = sqrt(cs_vec3_dot(frame.spin, frame.spin));
-        arm_of(system, &frame, i, arm);
+        const bool moves = arrival_of(events, i) > t;
+        own_at(system, &frame, i, own, rate);
+        turn(&frame, own, arm);
         for (int c = 0; c < 3; c++)
             arm[c] += frame.lever[c];
         // of the turning alone: the rates of paths are bounded elsewhere
         events->has_grabs = true;
-        events->has_turns |= spin > 0 || frame.deforms;
+        events->has_turns |= spin > 0 || frame.deforms || moves;
         events->held_speed =
-            fmax(events->held_speed, frame.deforms ? deformed_speed(system, &frame, i)
-                                                   : spin * sqrt(cs_vec3_dot(arm, arm)));
+            fmax(events->held_speed, (frame.deforms ? deformed_speed(system, &frame, i)
+                                                    : spin * sqrt(cs_vec3_dot(arm, arm))) +
+                                         (moves ? events->way_speed : 0));
     }
+}
+
+void cs_event_list_pinned(struct cs_system *system) {
+    system->n_pinned = 0;
+    for (uint32_t i = 0; i < system->view.n; i++)
+        if (system->inv_mass[i] == 0)
+            system->pinned[system->n_pinned++] = i;
+}
+
+/* Takes the arrays of ways, and those of carried particles where no event has them. */
+static enum cs_status take_ways(struct cs_system *system, struct cs_error *error) {
+    struct cs_events *events = system->events;
+    struct cs_arena *arena = &system->arena;
+    const size_t n = system->view.n;
+    if (!events->offsets)
+        CS_ARENA_ARRAY(arena, events->offsets, 3 * n, error);
+    if (!events->triangles && cs_scene_has_key_frames(system->scene))
+        CS_ARENA_ARRAY(arena, events->triangles, n, error);
+    CS_ARENA_ARRAY(arena, events->ways, 3 * n, error);
+    CS_ARENA_ARRAY(arena, events->arrivals, n, error);
+    CS_ARENA_ARRAY(arena, events->tangled, n, error);
+    return error->status;
+}
+
+/* Leads particle i to its target (3,n). */
+static void lead(struct cs_system *system, const struct frame *frame, size_t i,
+                 const double *targets) {
+    struct cs_events *events = system->events;
+    const size_t n = system->view.n;
+    const double *x = system->state + i, p[3] = {x[0], x[n], x[2 * n]};
+    double own[3], squared = 0;
+    take(system, frame, i, targets);
+    locate(system, frame, i, p, own);
+    for (size_t c = 0; c < 3; c++) {
+        const size_t k = c * n + i;
+        events->ways[k] = events->offsets[k] - own[c];
+        squared += (targets[k] - x[c * n]) * (targets[k] - x[c * n]);
+    }
+    events->arrivals[i] = events->untangled;
+    // the slope of u^2 (3 - 2 u) is at most 1.5
+    events->way_speed = fmax(events->way_speed, 1.5 * sqrt(squared) / events->untangled);
+    system->inv_mass[i] = 0;
+    events->tangled[i] = true;
+}
+
+enum cs_status cs_event_lead_out(struct cs_system *system, const uint32_t *colliders,
+                                 const double *targets, struct cs_error *error) {
+    struct cs_events *events = system->events;
+    const size_t n = system->view.n;
+    if (take_ways(system, error))
+        return error->status;
+    events->untangled = cs_event_times_add(events, system->scene->contact.untangle);
+    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
+        const uint32_t holder = system->scene->events.n + 1 + k;
+        const struct frame frame = frame_at(system, holder, 0);
+        for (size_t i = 0; i < n; i++) {
+            if (colliders[i] != k + 1)
+                continue;
+            events->held_by[i] = holder;
+            lead(system, &frame, i, targets);
+        }
+    }
+    system->tangled = events->tangled;
+    cs_event_list_pinned(system);
+    cs_event_find_held(system, 0);
+    cs_events_apply_paths(system, 0, system->state, system->state + 3 * n);
+    return CS_OK;
 }

@@ -132,13 +132,16 @@ struct cs_initial_penetration {
     double shift;
     /* J of contact by force before and after them */
     double energy[2];
+    /* s, in which the particles are moved; NAN: at once */
+    double seconds;
 };
 
 /* Checks the state that a system starts from. Contact would push a particle out of a collider
  * with energy that comes from nothing. By the law `project`, inside means behind the surface
  * offset by the thickness. With contact.start "move-out" a particle is moved out along normals:
  * onto that surface, or by contact by force to the distance at which it carries its own weight.
- * *inside reports it. contact.start "allow" leaves all as it is, but for crossings.
+ * *inside reports it. With contact.untangle they stay, and the run moves them. contact.start
+ * "allow" leaves all as it is, but for crossings.
  *
  * CS_ERR_SCENE, with particle, collider and depth, if contact.start refuses; if colliders leave
  * no way out; if a contact sample (model/contact/contact_samples.h) is then still inside; if

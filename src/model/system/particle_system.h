@@ -131,8 +131,15 @@ struct cs_system {
     struct cs_membranes *membranes; /* of elastic bodies; NULL: none (elastic/membranes.h) */
     struct cs_bendings *bendings;   /* likewise (elastic/bendings.h) */
     struct cs_events *events;       /* NULL without events; it owns the scene's changed copy */
-    struct cs_arena arena;          /* owns the arrays */
+    const bool *tangled;   /* (n) on its way out of a collider (cs_event_lead_out), with no
+                              contact with any; NULL: none is */
+    struct cs_arena arena; /* owns the arrays */
 };
+
+/* True if a particle is on its way out of a collider; of surface points beyond them false. */
+static inline bool cs_system_is_tangled(const struct cs_system *system, uint32_t particle) {
+    return system->tangled && particle < system->view.n && system->tangled[particle];
+}
 
 /* Frees the arena; *system is empty afterwards. Safe on an empty one. */
 void cs_system_finish(struct cs_system *system);

@@ -69,9 +69,20 @@ static inline uint32_t cs_seams_merged(const struct cs_system *system, uint32_t 
     return system->seams && point < system->view.n ? system->seams->merged[point] : point;
 }
 
+/* Returns whether one of n points of a pair is tangled and another one is a collider's. */
+static inline bool cs_seams_tangled(const struct cs_system *system, const uint32_t *points,
+                                    uint32_t n) {
+    bool tangled = false, collider = false;
+    for (uint32_t k = 0; system->tangled && k < n; k++) {
+        tangled = tangled || cs_system_is_tangled(system, points[k]);
+        collider = collider || points[k] >= system->view.n;
+    }
+    return tangled && collider;
+}
+
 /* Returns whether a point and a triangle, or two edges, have a point in common, or two that are
- * sewn together. Such pairs have no contact. at: points, then corners; or ends of both edges.
- */
+ * sewn together, or one that is tangled. Such pairs have no contact. at: points, then corners;
+ * or ends of both edges. */
 static inline bool cs_seams_join_pair(const struct cs_system *system, const uint32_t points[4],
                                       bool edges) {
     const uint32_t *at = points;
@@ -82,7 +93,8 @@ static inline bool cs_seams_join_pair(const struct cs_system *system, const uint
         at = merged;
     }
     return at[0] == at[2] || at[0] == at[3] ||
-           (edges ? at[1] == at[2] || at[1] == at[3] : at[0] == at[1]);
+           (edges ? at[1] == at[2] || at[1] == at[3] : at[0] == at[1]) ||
+           cs_seams_tangled(system, points, 4);
 }
 
 #endif
