@@ -93,7 +93,8 @@ void cs_contact_capacity_warn(const struct cs_system *system, struct cs_text *ou
     cs_text_add(out,
                 " takes up %.3g J, but a particle comes with %.3g J: expected at least %.3g "
                 "N/m, or no value for %.3g N/m",
-                capacity.holds, capacity.comes, capacity.k_needed,
+                // three digits must not round below what holds
+                capacity.holds, capacity.comes, 1.01 * capacity.k_needed,
                 CS_APPROACH_STIFFNESS * capacity.comes / (capacity.range * capacity.range));
 }
 

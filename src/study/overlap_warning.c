@@ -1,6 +1,7 @@
 /* Bounding boxes of bodies, and of the positions they can reach. */
 #include "study/overlap_warning.h"
 
+#include "base/vec3.h"
 #include "model/contact/ccd/edge_triangle.h"
 #include "model/contact/contact_samples.h"
 #include "model/contact/surface_points.h"
@@ -20,7 +21,8 @@ struct box {
 };
 
 struct body {
-    struct box start, reach; /* at the start; at any time */
+    struct box start, reach;  /* at the start; at any time */
+    double middle[3], radius; /* m, of a sphere that holds it at the start */
 };
 
 static const struct box nowhere = {{HUGE_VAL, HUGE_VAL, HUGE_VAL},
@@ -41,16 +43,21 @@ static bool overlap(const struct box *a, const struct box *b) {
     return !apart;
 }
 
+/* Boxes of round bodies overlap at their corners, spheres do not. */
+static bool overlap_at_start(const struct body *a, const struct body *b) {
+    const double d[3] = {a->middle[0] - b->middle[0], a->middle[1] - b->middle[1],
+                         a->middle[2] - b->middle[2]};
+    return overlap(&a->start, &b->start) && sqrt(cs_vec3_dot(d, d)) <= a->radius + b->radius;
+}
+
 static void copy_point(const double *x, size_t n, size_t i, double p[3]) {
     for (size_t c = 0; c < 3; c++)
         p[c] = x[c * n + i];
 }
 
-/* Box of a pinned body. Inextensible springs keep each particle within its initial distance of
- * the pin. */
-static void reach_from_pin(const double *x, size_t n, size_t pin, struct box *reach) {
-    double from[3], squared = 0;
-    copy_point(x, n, pin, from);
+/* m, from a place to the particle farthest from it. */
+static double farthest(const double *x, size_t n, const double from[3]) {
+    double squared = 0;
     for (size_t i = 0; i < n; i++) {
         double p[3], sum = 0;
         copy_point(x, n, i, p);
@@ -58,7 +65,15 @@ static void reach_from_pin(const double *x, size_t n, size_t pin, struct box *re
             sum += (p[c] - from[c]) * (p[c] - from[c]);
         squared = fmax(squared, sum);
     }
-    extend_box(reach, from, sqrt(squared));
+    return sqrt(squared);
+}
+
+/* Box of a pinned body. Inextensible springs keep each particle within its initial distance of
+ * the pin. */
+static void reach_from_pin(const double *x, size_t n, size_t pin, struct box *reach) {
+    double from[3];
+    copy_point(x, n, pin, from);
+    extend_box(reach, from, farthest(x, n, from));
 }
 
 /* Box of all times in free fall: end of the fall, and the turning point v + g t = 0 if it is on
@@ -101,6 +116,9 @@ static enum cs_status measure_overlap(const struct cs_scene *scene, const struct
         extend_box(&out->start, p, 0);
         pin = pinned[i] ? i : pin;
     }
+    for (int c = 0; c < 3; c++)
+        out->middle[c] = 0.5 * (out->start.low[c] + out->start.high[c]);
+    out->radius = farthest(x, n, out->middle);
     if (pin < n)
         reach_from_pin(x, n, pin, &out->reach);
     else
@@ -132,7 +150,7 @@ static uint32_t count_pairs(const struct cs_scene *scene, const struct body *bod
         for (uint32_t b = a + 1; b < scene->bodies.n; b++) {
             if (cs_scene_bodies_collide(scene, a, b, &friction) || are_sewn(scene, a, b))
                 continue;
-            if (start ? !overlap(&bodies[a].start, &bodies[b].start)
+            if (start ? !overlap_at_start(bodies + a, bodies + b)
                       : !overlap(&bodies[a].reach, &bodies[b].reach))
                 continue;
             if (!pairs++) {
@@ -261,7 +279,9 @@ void cs_containment_warning_print(const struct cs_system *system, struct cs_text
     const double *x = cs_surface_points_positions(system, CS_POINTS_BEGIN, 0, system->state);
     for (uint32_t b = 0; b < s->n_bodies; b++)
         for (uint32_t a = 0; a < system->scene->bodies.n && is_closed(s, b); a++) {
-            if (a == b || !cs_scene_bodies_collide(system->scene, a, b, &friction) ||
+            // what is being moved out meets nothing yet
+            if (a == b || cs_system_is_tangled(system, s->first_point[a]) ||
+                !cs_scene_bodies_collide(system->scene, a, b, &friction) ||
                 !is_inside(s, a, b, x) || found++)
                 continue;
             name(system, a, out);

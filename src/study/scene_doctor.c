@@ -125,8 +125,8 @@ static void check_energy(const struct cs_system *system, struct cs_text *out) {
     if (start.elastic > most && released_energy(system) > most)
         cs_text_add(out,
                     "springs store %.3g J at the start, gravity and events give %.3g J: check "
-                    "cloth.size and cloth.stretch; springs.stretch %.2g times smaller stores "
-                    "as little\n",
+                    "cloth.size and cloth.stretch; springs %.2g times as soft, of all kinds, "
+                    "store as little\n",
                     start.elastic, most / STORED_MAX, STORED_MAX * start.elastic / most);
     if (start.other > most)
         cs_text_add(out,

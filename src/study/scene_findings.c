@@ -181,6 +181,7 @@ static const struct {
     {"colliders[].colour", is_drawn, "visible is false"},
     {"colliders[]", NULL, NULL},
     {"contact.start", has_contact, "nothing is in contact, expected colliders or pairs"},
+    {"contact.untangle", has_contact, "expected colliders"},
     {"contact.law", has_contact, "nothing is in contact, expected colliders or pairs"},
     {"contact.friction_speed", is_smooth_friction,
      "expected contact.law force, friction_law smooth and a coefficient of friction"},
@@ -211,6 +212,18 @@ int cs_idle_keys_rule(const char *key) {
             return (int)r;
     }
     return -1;
+}
+
+/* True if all rules about a key and what is in it say that it always acts. */
+static bool always_acts(const char *key) {
+    bool found = false;
+    for (size_t r = 0; r < sizeof rules / sizeof *rules; r++)
+        if (!strncmp(rules[r].key, key, strlen(key))) {
+            if (rules[r].acts)
+                return false;
+            found = true;
+        }
+    return found;
 }
 
 /* A place in a scene: the path with its indices, and without. */
@@ -244,8 +257,13 @@ static void walk_row(const struct cs_scene *scene, const struct cs_option *row,
     const char *point = *above->path ? "." : "";
     const struct cs_list *list = field;
     struct place at = *above;
+    if (!row->table && (cs_option_is_default(row, object) || is_zero(row, field)))
+        return;
     snprintf(at.path, sizeof at.path, "%.200s%s%s", above->path, point, row->name);
     snprintf(at.key, sizeof at.key, "%.200s%s%s", above->key, point, row->name);
+    // events and paths may be many
+    if (row->table && always_acts(at.key))
+        return;
     if (row->type == CS_TABLE)
         walk(scene, row->table, field, &at, out);
     for (uint32_t k = 0; row->type == CS_LIST && k < list->n; k++) {
@@ -255,7 +273,7 @@ static void walk_row(const struct cs_scene *scene, const struct cs_option *row,
         item.first = strchr(above->path, '[') ? above->first : k;
         walk(scene, row->table, (const char *)list->items + k * row->table->size, &item, out);
     }
-    if (!row->table && !cs_option_is_default(row, object) && !is_zero(row, field))
+    if (!row->table)
         print_rule(scene, &at, out);
 }
 
@@ -273,76 +291,31 @@ void cs_idle_keys_print(const struct cs_scene *scene, struct cs_text *out) {
 /* A first leg longer than the obstacle within so many frames is a jump. */
 #define JUMP_FRAMES 1.5
 
-static double begin_of(const struct cs_event *event) {
-    return isnan(event->at) ? event->from : event->at;
+void cs_findings_print(const struct cs_system *system, uint32_t n, cs_finding *check,
+                       const void *arg, struct cs_text *out) {
+    struct cs_text line = {0};
+    uint32_t more = 0;
+    for (uint32_t k = 0; k < n; k++) {
+        struct cs_text found = {0};
+        check(system, k, arg, line.length ? &found : &line);
+        more += found.length > 0;
+        line.failed |= found.failed;
+        cs_text_finish(&found);
+    }
+    if (line.length && more)
+        cs_text_add(&line, "; the same holds for %u more", more);
+    if (line.length)
+        cs_text_add(out, "%s\n", cs_text_get(&line));
+    out->failed |= line.failed;
+    cs_text_finish(&line);
 }
 
-/* m/s, mean speed of the first leg of a path. */
-static double first_speed(const struct cs_event *event, const struct cs_path_point *to,
-                          const double from[3]) {
+double cs_findings_first_speed(const struct cs_event *event, const struct cs_path_point *to,
+                               const double from[3]) {
     double way[3];
     for (int c = 0; c < 3; c++)
         way[c] = to->point[c] - from[c];
-    return sqrt(cs_vec3_dot(way, way)) / (to->at - begin_of(event));
-}
-
-/* First particle that a grab takes, or view.n. */
-static size_t first_target(const struct cs_system *system, const struct cs_grab *grab) {
-    cs_event_mark(system, &grab->target);
-    size_t i = 0;
-    while (i < system->view.n && !system->events->work[i])
-        i++;
-    return i;
-}
-
-/* True if the scene pins a particle that a grab takes. */
-static bool takes_pinned(const struct cs_system *system, const struct cs_grab *grab) {
-    bool any = false;
-    cs_event_mark(system, &grab->target);
-    for (uint32_t p = 0; p < system->n_pinned; p++)
-        any = any || system->events->work[system->pinned[p]];
-    return any;
-}
-
-/* m/s, speed of waves in the springs at a particle; 0: it has none. */
-static double wave_speed(const struct cs_system *system, size_t particle) {
-    double speed = 0;
-    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
-        const struct cs_spring_run *s = system->springs.runs + r;
-        for (uint32_t i = 0; i < s->count; i++)
-            if (cs_spring_a(s, i) == particle || cs_spring_b(s, i) == particle)
-                speed = fmax(speed, cs_spring_length(s, i) * sqrt(cs_spring_stiffness(s, i) /
-                                                                  system->mass[particle]));
-    }
-    return speed;
-}
-
-static void check_grab(const struct cs_system *system, uint32_t e, struct cs_text *out) {
-    const struct cs_event *event = cs_scene_events(system->scene) + e;
-    const struct cs_grab *grab = &event->grab;
-    const struct cs_event_path path = cs_event_path_of(event);
-    const struct cs_path_point *to = path.points;
-    const size_t n = system->view.n;
-    const size_t i = first_target(system, grab);
-    if (i == n)
-        return;
-    double from[3] = {0};
-    for (size_t c = 0; c < 3 && !grab->relative; c++)
-        from[c] = system->state[c * n + i];
-    const double speed = path.n ? first_speed(event, to, from) : 0;
-    const double waves = wave_speed(system, i);
-    if (speed > waves && waves > 0)
-        cs_text_add(out,
-                    "events[%u].grab.path[0] is reached at %.3g m/s, faster than waves in the "
-                    "springs, %.3g m/s: expected at = %.3g s or later%s\n",
-                    e, speed, waves,
-                    begin_of(event) + 2 * (to->at - begin_of(event)) * speed / waves,
-                    grab->relative ? "" : ", or \"relative\": true if its points are shifts");
-    if (takes_pinned(system, grab) && isfinite(event->to))
-        cs_text_add(out,
-                    "events[%u].grab takes particles that pins hold, and lets them go at %.3g "
-                    "s: no \"to\", with \"at\" instead of \"from\", holds them for good\n",
-                    e, event->to);
+    return sqrt(cs_vec3_dot(way, way)) / (to->at - cs_findings_begin(event));
 }
 
 /* m, of a collider without a plane: the diagonal of its box. */
@@ -362,37 +335,57 @@ static double size_of(const struct cs_posed_collider *collider) {
     return 2 * collider->radius + sqrt(cs_vec3_dot(sides, sides));
 }
 
-static void check_move(const struct cs_system *system, uint32_t e, struct cs_text *out) {
+/* A collider that is led by more than its size per frame. */
+static void check_move(const struct cs_system *system, uint32_t e, const void *arg,
+                       struct cs_text *out) {
     const struct cs_event *event = cs_scene_events(system->scene) + e;
     const struct cs_move *move = &event->move;
     const struct cs_event_path path = cs_event_path_of(event);
     const struct cs_path_point *to = path.points;
     struct cs_posed_collider collider;
-    if (!path.n || !system->motions)
+    (void)arg;
+    if (!move->present || !path.n || !system->motions)
         return;
     cs_posed_collider_at(system, (uint32_t)move->collider, 0, &collider);
     if (cs_shape_is_endless(collider.shape))
         return;
     const double still[3] = {0}, *from = move->relative ? still : collider.centre;
-    const double speed = first_speed(event, to, from);
+    const double speed = cs_findings_first_speed(event, to, from);
     const double size = size_of(&collider);
     const double fastest = size * system->scene->time.fps / JUMP_FRAMES;
     if (speed > fastest)
+        cs_text_add(
+            out,
+            "events[%u].move.path[0] is reached at %.3g m/s, by more than the size of "
+            "colliders[%u], %.3g m, per frame: expected at = %.3g s or later%s",
+            e, speed, (uint32_t)move->collider, size,
+            cs_findings_begin(event) + (to->at - cs_findings_begin(event)) * speed / fastest,
+            move->relative ? ", or \"relative\": false if its points are positions" : "");
+}
+
+/* True if the scene pins a particle that a grab takes. */
+static bool takes_pinned(const struct cs_system *system, const struct cs_grab *grab) {
+    bool any = false;
+    cs_event_mark(system, &grab->target);
+    for (uint32_t p = 0; p < system->n_pinned; p++)
+        any = any || system->events->work[system->pinned[p]];
+    return any;
+}
+
+/* A grab that lets go what pins hold. */
+static void check_let_go(const struct cs_system *system, uint32_t e, const void *arg,
+                         struct cs_text *out) {
+    const struct cs_event *event = cs_scene_events(system->scene) + e;
+    (void)arg;
+    if (event->grab.present && isfinite(event->to) && takes_pinned(system, &event->grab))
         cs_text_add(out,
-                    "events[%u].move.path[0] is reached at %.3g m/s, by more than the size of "
-                    "colliders[%u], %.3g m, per frame: expected at = %.3g s or later%s\n",
-                    e, speed, (uint32_t)move->collider, size,
-                    begin_of(event) + (to->at - begin_of(event)) * speed / fastest,
-                    move->relative ? ", or \"relative\": false if its points are positions"
-                                   : "");
+                    "events[%u].grab takes particles that pins hold, and lets them go at %.3g "
+                    "s: no \"to\", with \"at\" instead of \"from\", holds them for good",
+                    e, event->to);
 }
 
 void cs_path_findings_print(const struct cs_system *system, struct cs_text *out) {
-    for (uint32_t e = 0; e < system->scene->events.n; e++) {
-        const struct cs_event *event = cs_scene_events(system->scene) + e;
-        if (event->grab.present)
-            check_grab(system, e, out);
-        if (event->move.present)
-            check_move(system, e, out);
-    }
+    const uint32_t n = system->scene->events.n;
+    cs_findings_print(system, n, check_let_go, NULL, out);
+    cs_findings_print(system, n, check_move, NULL, out);
 }

@@ -5,6 +5,8 @@
 
 #include "model/system/particle_system.h"
 
+#include <math.h>
+
 /* Adds the keys that have another value than their default, but no effect, one per line:
  * "bodies[0].thickness has no effect: ...". */
 void cs_idle_keys_print(const struct cs_scene *scene, struct cs_text *out);
@@ -19,13 +21,29 @@ struct cs_scene_findings {
     struct cs_text warnings, hints;
 };
 
+/* s, at which an event begins. */
+static inline double cs_findings_begin(const struct cs_event *event) {
+    return isnan(event->at) ? event->from : event->at;
+}
+
+/* A check of body or event k, which adds a line without its end, or nothing. */
+typedef void cs_finding(const struct cs_system *system, uint32_t k, const void *arg,
+                        struct cs_text *out);
+/* Runs a check on 0 to n - 1: adds its first line, and on how many more it finds the same. */
+void cs_findings_print(const struct cs_system *system, uint32_t n, cs_finding *check,
+                       const void *arg, struct cs_text *out);
+
 /* Adds pins that hold nothing, seams over gaps, paths of colliders through held particles,
  * releases of what nothing holds, and grabs that begin with a jump. The particles are at their
  * start. Uses events->work. */
 void cs_trajectory_findings_print(const struct cs_system *system,
                                   struct cs_scene_findings *out);
 
-/* Adds what is wrong with the paths of grabs and moves, one per line. */
+/* m/s, mean speed of the first leg of a path. */
+double cs_findings_first_speed(const struct cs_event *event, const struct cs_path_point *to,
+                               const double from[3]);
+
+/* Adds moves that jump, and grabs that let go what pins hold. */
 void cs_path_findings_print(const struct cs_system *system, struct cs_text *out);
 
 #endif

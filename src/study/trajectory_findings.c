@@ -28,10 +28,6 @@ enum { POSES = 256 };
 #define JUMP_RATIO 3.0
 #define JUMP_SIZE  0.25
 
-static double begin_of(const struct cs_event *event) {
-    return isnan(event->at) ? event->from : event->at;
-}
-
 /* m, diagonal of the box of a body at the start; low and high: its corners. */
 static double box_of(const struct cs_system *system, uint32_t b, double low[3],
                      double high[3]) {
@@ -50,7 +46,9 @@ static double box_of(const struct cs_system *system, uint32_t b, double low[3],
 }
 
 /* Pins that hold no particle. */
-static void check_pins(const struct cs_system *system, uint32_t b, struct cs_text *out) {
+static void check_pins(const struct cs_system *system, uint32_t b, const void *arg,
+                       struct cs_text *out) {
+    (void)arg;
     const struct cs_body *body = cs_scene_bodies(system->scene) + b;
     const struct cs_body_range *range = system->bodies + b;
     const struct cs_pin *pins = body->pins.items;
@@ -65,8 +63,9 @@ static void check_pins(const struct cs_system *system, uint32_t b, struct cs_tex
         box_of(system, b, low, high);
         cs_text_add(out,
                     "bodies[%u].pins[%u] holds no particle: the body lies between (%.4g, %.4g, "
-                    "%.4g) and (%.4g, %.4g, %.4g)\n",
+                    "%.4g) and (%.4g, %.4g, %.4g)",
                     b, p, low[0], low[1], low[2], high[0], high[1], high[2]);
+        return;
     }
 }
 
@@ -182,13 +181,14 @@ static bool moves_once(const struct cs_scene *scene, uint32_t event) {
 }
 
 /* A collider whose path goes through particles that pins hold. */
-static void check_sweep(const struct cs_system *system, uint32_t e, const struct held *held,
+static void check_sweep(const struct cs_system *system, uint32_t e, const void *arg,
                         struct cs_text *out) {
+    const struct held *held = arg;
     const struct cs_event *event = cs_scene_events(system->scene) + e;
     const struct cs_event_path path = cs_event_path_of(event);
     struct cs_posed_collider collider;
     double from[3] = {0};
-    if (!moves_once(system->scene, e))
+    if (!event->move.present || !moves_once(system->scene, e))
         return;
     cs_posed_collider_at(system, (uint32_t)event->move.collider, 0, &collider);
     if (collider.shape->bounds == CS_BOUNDS_MESH ||
@@ -209,7 +209,7 @@ static void check_sweep(const struct cs_system *system, uint32_t e, const struct
             const uint32_t b = body_of(system, i);
             cs_text_add(out,
                         "events[%u].move leads colliders[%u] through particle %u of bodies[%u] "
-                        "before %.4g s, which pins hold: contact cannot keep them apart\n",
+                        "before %.4g s, which pins hold: contact cannot keep them apart",
                         e, (uint32_t)event->move.collider, i - system->bodies[b].first, b,
                         to->at);
             return;
@@ -219,37 +219,42 @@ static void check_sweep(const struct cs_system *system, uint32_t e, const struct
 }
 
 /* A release of particles that neither pins nor an earlier event may hold. */
-static void check_release(const struct cs_system *system, uint32_t e, struct cs_text *out) {
+static void check_release(const struct cs_system *system, uint32_t e, const void *arg,
+                          struct cs_text *out) {
     const struct cs_scene *scene = system->scene;
     const struct cs_event *event = cs_scene_events(scene) + e;
-    bool holds = false;
+    bool holds = !event->release.present;
+    (void)arg;
     for (uint32_t other = 0; other < scene->events.n; other++) {
         const struct cs_event *earlier = cs_scene_events(scene) + other;
         holds = holds || ((earlier->grab.present || earlier->pin.present) &&
-                          begin_of(earlier) <= begin_of(event));
+                          cs_findings_begin(earlier) <= cs_findings_begin(event));
     }
-    cs_event_mark(system, &event->release.target);
-    for (uint32_t p = 0; p < system->n_pinned; p++)
+    if (!holds)
+        cs_event_mark(system, &event->release.target);
+    for (uint32_t p = 0; !holds && p < system->n_pinned; p++)
         holds = holds || system->events->work[system->pinned[p]];
     if (!holds)
-        cs_text_add(out, "events[%u].release lets go what nothing holds at %.4g s\n", e,
-                    begin_of(event));
+        cs_text_add(out, "events[%u].release lets go what nothing holds at %.4g s", e,
+                    cs_findings_begin(event));
 }
 
 /* A grab whose positions begin with a jump that shifts by the same numbers would not have. */
-static void check_jump(const struct cs_system *system, uint32_t e, struct cs_text *out) {
+static void check_jump(const struct cs_system *system, uint32_t e, const void *arg,
+                       struct cs_text *out) {
     const struct cs_event *event = cs_scene_events(system->scene) + e;
     const struct cs_event_path path = cs_event_path_of(event);
     const size_t n = system->view.n;
     double low[3], high[3], way[3];
-    if (!path.n || event->grab.relative)
+    (void)arg;
+    if (!event->grab.present || !path.n || event->grab.relative)
         return;
     cs_event_mark(system, &event->grab.target);
     const bool *first = memchr(system->events->work, true, n);
     if (!first)
         return;
     const size_t i = (size_t)(first - system->events->work);
-    const double *to = path.points->point, seconds = path.points->at - begin_of(event);
+    const double *to = path.points->point, seconds = path.points->at - cs_findings_begin(event);
     for (size_t c = 0; c < 3; c++)
         way[c] = to[c] - system->state[c * n + i];
     const double jump = sqrt(cs_vec3_dot(way, way)), shift = sqrt(cs_vec3_dot(to, to));
@@ -261,20 +266,23 @@ static void check_jump(const struct cs_system *system, uint32_t e, struct cs_tex
     if (jump > JUMP_RATIO * shift && jump > JUMP_SIZE * size && jump > fastest * seconds)
         cs_text_add(out,
                     "events[%u].grab.path[0] is %.3g m from where its particle starts, reached "
-                    "at %.3g m/s: points are positions, and with \"relative\": true shifts\n",
+                    "at %.3g m/s: points are positions, and with \"relative\": true shifts",
                     e, jump, jump / seconds);
 }
 
 /* A grab that draws a particle further from one that pins hold than the sheet between them
  * goes. In a flat sheet that is their distance at rest. */
-static void check_apart(const struct cs_system *system, uint32_t e, const struct held *held,
+static void check_apart(const struct cs_system *system, uint32_t e, const void *arg,
                         struct cs_text *out) {
+    const struct held *held = arg;
     const struct cs_grab *grab = &cs_scene_events(system->scene)[e].grab;
     const struct cs_event_path path = cs_event_path_of(cs_scene_events(system->scene) + e);
     const size_t n = system->view.n;
+    if (!grab->present || !path.n || !cs_vec3_is_zero(grab->spin))
+        return;
     cs_event_mark(system, &grab->target);
     const bool *first = memchr(system->events->work, true, n);
-    if (!first || !cs_vec3_is_zero(grab->spin))
+    if (!first)
         return;
     const uint32_t i = (uint32_t)(first - system->events->work), b = body_of(system, i);
     const struct cs_body_range *range = system->bodies + b;
@@ -300,31 +308,74 @@ static void check_apart(const struct cs_system *system, uint32_t e, const struct
         cs_text_add(
             out,
             "events[%u].grab draws particle %u of bodies[%u] until %.4g s to %.3g m from "
-            "particle %u, which pins hold: the sheet between them is %.3g m long\n",
+            "particle %u, which pins hold: the sheet between them is %.3g m long",
             e, p, b, to->at, length, q, rest);
         return;
     }
+}
+
+/* First particle that a grab takes, or view.n. */
+static size_t first_target(const struct cs_system *system, const struct cs_grab *grab) {
+    cs_event_mark(system, &grab->target);
+    size_t i = 0;
+    while (i < system->view.n && !system->events->work[i])
+        i++;
+    return i;
+}
+
+/* m/s, speed of waves in the springs at a particle; 0: it has none. */
+static double wave_speed(const struct cs_system *system, size_t particle) {
+    double speed = 0;
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *s = system->springs.runs + r;
+        for (uint32_t i = 0; i < s->count; i++)
+            if (cs_spring_a(s, i) == particle || cs_spring_b(s, i) == particle)
+                speed = fmax(speed, cs_spring_length(s, i) * sqrt(cs_spring_stiffness(s, i) /
+                                                                  system->mass[particle]));
+    }
+    return speed;
+}
+
+/* A grab that is led faster than waves run through the springs. */
+static void check_waves(const struct cs_system *system, uint32_t e, const void *arg,
+                        struct cs_text *out) {
+    const struct cs_event *event = cs_scene_events(system->scene) + e;
+    const struct cs_grab *grab = &event->grab;
+    const struct cs_event_path path = cs_event_path_of(event);
+    const struct cs_path_point *to = path.points;
+    const size_t n = system->view.n,
+                 i = grab->present && path.n ? first_target(system, grab) : n;
+    (void)arg;
+    if (i == n)
+        return;
+    double from[3] = {0};
+    for (size_t c = 0; c < 3 && !grab->relative; c++)
+        from[c] = system->state[c * n + i];
+    const double speed = cs_findings_first_speed(event, to, from),
+                 waves = wave_speed(system, i);
+    if (speed > waves && waves > 0)
+        cs_text_add(out,
+                    "events[%u].grab.path[0] is reached at %.3g m/s, faster than waves in the "
+                    "springs, %.3g m/s: expected at = %.3g s or later%s",
+                    e, speed, waves,
+                    cs_findings_begin(event) +
+                        2 * (to->at - cs_findings_begin(event)) * speed / waves,
+                    grab->relative ? "" : ", or \"relative\": true if its points are shifts");
 }
 
 void cs_trajectory_findings_print(const struct cs_system *system,
                                   struct cs_scene_findings *out) {
     const struct cs_scene *scene = system->scene;
     struct held held = {0};
-    for (uint32_t b = 0; b < scene->bodies.n; b++)
-        check_pins(system, b, &out->warnings);
+    cs_findings_print(system, scene->bodies.n, check_pins, NULL, &out->warnings);
     check_seams(system, &out->warnings);
     if (scene->events.n)
         out->warnings.failed |= !list_held(system, &held);
-    for (uint32_t e = 0; !out->warnings.failed && e < scene->events.n; e++) {
-        const struct cs_event *event = cs_scene_events(scene) + e;
-        if (event->move.present)
-            check_sweep(system, e, &held, &out->warnings);
-        if (event->release.present)
-            check_release(system, e, &out->hints);
-        if (event->grab.present) {
-            check_jump(system, e, &out->hints);
-            check_apart(system, e, &held, &out->warnings);
-        }
-    }
+    const uint32_t n = out->warnings.failed ? 0 : scene->events.n;
+    cs_findings_print(system, n, check_sweep, &held, &out->warnings);
+    cs_findings_print(system, n, check_apart, &held, &out->warnings);
+    cs_findings_print(system, n, check_waves, NULL, &out->hints);
+    cs_findings_print(system, n, check_release, NULL, &out->hints);
+    cs_findings_print(system, n, check_jump, NULL, &out->hints);
     free(held.particles);
 }

@@ -1,27 +1,10 @@
 /* Traps of scenes that end with exit code 0 and a good-looking table: each is found before the
  * first step, and the proposed value removes the finding. */
-#include "fixture.h"
-#include "study/scene_doctor.h"
-#include "study/scene_findings.h"
+#include "doctor.h"
 
 #include <string.h>
 
-#define SHEET(more)                                                                            \
-    "{\"cloth\": {\"grid\": [8, 8], \"size\": [0.5, 0.5], \"start\": \"flat\"" more            \
-    "}, \"mass\": {\"total\": 0.1}}"
-#define BODY(cloth, more)                                                                      \
-    "\"bodies\": [{\"cloth\": {\"grid\": [8, 8], \"size\": [0.5, 0.5]" cloth                   \
-    "}, \"mass\": {\"total\": 0.1}" more "}]"
-#define FLAT    ", \"start\": \"flat\""
-#define HIGH    ", \"start\": \"flat\", \"place\": {\"translate\": [0, 1, 0]}"
-#define PROJECT ", \"contact\": \"project\""
-#define FLOOR   ", \"colliders\": [{\"floor\": {\"height\": 0}}]"
-
-/* A scene, what is said of it, and an override after which nothing of the kind is said. */
-static const struct {
-    const char *scene, *finding, *path, *value;
-    bool is_warning;
-} traps[] = {
+static const struct trap traps[] = {
     {"\"bodies\": [" SHEET("") ", " SHEET("") "]",
      "bodies[0] and bodies[1] overlap at the start", "bodies[1].cloth.place.translate",
      "[0, 0.3, 0]", true},
@@ -106,44 +89,8 @@ static const struct {
      "render.look", "strain", false},
 };
 
-/* Opens a scene and asks the doctor; n_overrides 0 or 1. */
-static void check(const char *text, const struct cs_override *override, uint32_t n_overrides,
-                  struct cs_scene_findings *found) {
-    struct cs_session session;
-    struct cs_error error = {0};
-    cs_session_open(&session,
-                    &(struct cs_session_settings){.scene = "trap.json",
-                                                  .text = text,
-                                                  .integrator = "implicit-linearised:dt=frame",
-                                                  .overrides = override,
-                                                  .n_overrides = n_overrides},
-                    &error);
-    ck_assert_msg(!error.status, "%s: %s", text, error.message);
-    cs_scene_doctor_check(&session, 1, found, &error);
-    ck_assert_msg(!error.status, "%s", error.message);
-    cs_session_close(&session);
-}
-
 TEST(traps_are_found_and_cured) {
-    ck_assert_uint_ge(LENGTH(traps), 20);
-    for (size_t k = 0; k < LENGTH(traps); k++) {
-        char text[4096];
-        const struct cs_override cure = {traps[k].path, traps[k].value};
-        struct cs_scene_findings before, after;
-        snprintf(text, sizeof text, "{%s}", traps[k].scene);
-        check(text, &cure, 0, &before);
-        check(text, &cure, 1, &after);
-        const struct cs_text *of = traps[k].is_warning ? &before.warnings : &before.hints;
-        ck_assert_msg(strstr(cs_text_get(of), traps[k].finding) != NULL, "%s: %s%s",
-                      traps[k].finding, cs_text_get(&before.warnings),
-                      cs_text_get(&before.hints));
-        ck_assert_msg(!strstr(cs_text_get(&after.warnings), traps[k].finding) &&
-                          !strstr(cs_text_get(&after.hints), traps[k].finding),
-                      "%s with %s=%s: %s%s", traps[k].finding, traps[k].path, traps[k].value,
-                      cs_text_get(&after.warnings), cs_text_get(&after.hints));
-        cs_scene_findings_finish(&before);
-        cs_scene_findings_finish(&after);
-    }
+    spring_traps(traps, LENGTH(traps));
 }
 
 /* Each key of a scene has a rule, of which the first that fits counts. */
