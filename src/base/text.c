@@ -239,9 +239,8 @@ bool cs_names_program(const char *text) {
 }
 
 bool cs_names_code(const char *text) {
-    const size_t length = strlen(text);
-    return cs_names_program(text) || strchr(text, '/') ||
-           (length > 3 && !strcmp(text + length - 3, ".so"));
+    const char *end = strrchr(text, '.');
+    return cs_names_program(text) || strchr(text, '/') || (end && !strcmp(end, ".so"));
 }
 
 enum { REPORTS_MAX = 16 };

@@ -87,6 +87,27 @@ static void lose_velocity(struct cs_run_host *host, double *v, bool *changed) {
     *changed = true;
 }
 
+void cs_host_store_step(struct cs_run_host *host, double t, const double *x) {
+    struct cs_blocked_step *step = &host->blocked_step;
+    if (!step->asked && step->x)
+        memcpy(step->x, x, 3 * sizeof *x * host->run->system->view.n), step->t[0] = t;
+}
+
+/* Ends the run at a step that passes over contact, of a method that never asks
+ * max_step_fraction and so cannot shorten it: bodies would be through each other. */
+static enum cs_step refuse_unasked(struct cs_run_host *host, double t, const double *x) {
+    struct cs_blocked_step *step = &host->blocked_step;
+    const double from = step->t[0], *const ends[] = {step->x, x};
+    if (step->asked || !step->x ||
+        cs_step_limit_fraction(host->run->system, from, step->x, t, x) >= 1)
+        return CS_STEP_OK;
+    cs_blocked_step_store(step, host->run->system, (const double[2]){from, t}, ends, 0);
+    host->table.fail(
+        host, "never asks max_step_fraction: its step of %.3g s at %.9g s passes contact",
+        t - from, from);
+    return CS_STEP_HALT;
+}
+
 /* Decides if the run continues. A blow-up comes first: its report must not hide behind an
  * interrupt. */
 static enum cs_step judge(struct cs_run_host *host, double t, const double *x,
@@ -98,9 +119,7 @@ static enum cs_step judge(struct cs_run_host *host, double t, const double *x,
         host->run->outcome = CS_INTERRUPTED;
         return CS_STEP_HALT;
     }
-    if (cs_run_host_end_over_budget(host))
-        return CS_STEP_HALT;
-    return CS_STEP_OK;
+    return cs_run_host_end_over_budget(host) ? CS_STEP_HALT : refuse_unasked(host, t, x);
 }
 
 /* Ends the run at the first crossing of surfaces, if the scene asks for that: the motion
@@ -114,30 +133,6 @@ static enum cs_step stop_crossings(struct cs_run_host *host, double t, const dou
     cs_text_finish(&why);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
     return step;
-}
-
-void cs_host_store_step(struct cs_run_host *host, double t, const double *x) {
-    struct cs_blocked_step *step = &host->blocked_step;
-    if (step->asked || !step->x)
-        return;
-    step->t[0] = t;
-    memcpy(step->x, x, 3 * sizeof *x * host->run->system->view.n);
-}
-
-/* Ends the run at a step that passes over contact, of a method that never asks
- * max_step_fraction and so cannot shorten it: bodies would be through each other. */
-static enum cs_step refuse_unasked(struct cs_run_host *host, double t, const double *x) {
-    struct cs_blocked_step *step = &host->blocked_step;
-    const double from = step->t[0], *const ends[] = {step->x, x};
-    if (step->asked || !step->x ||
-        cs_step_limit_fraction(host->run->system, from, step->x, t, x) >= 1)
-        return CS_STEP_OK;
-    cs_blocked_step_store(step, host->run->system, (const double[2]){from, t}, ends, 0);
-    host->table.fail(host,
-                     "a step of %.3g s at t = %.9g s passes over contact, and the method "
-                     "never asks max_step_fraction: expected a shorter dt",
-                     t - from, from);
-    return CS_STEP_HALT;
 }
 
 /* Traces the state that a correction left (phase NULL: it does not act), and books its
@@ -197,8 +192,6 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
     if (cs_step_limit_failed(host->run->system))
         return host->table.fail(ctx, "out of memory for the contact pairs");
     enum cs_step step = judge(host, t, x, v);
-    if (step == CS_STEP_OK)
-        step = refuse_unasked(host, t, x);
     if (step == CS_STEP_OK && rows[CS_FEATURE_CROSSINGS].built)
         step = stop_crossings(host, t, x);
     bool moved = rows[CS_FEATURE_VELOCITY_LOSS].built || rows[CS_FEATURE_EVENTS].built;
@@ -211,7 +204,6 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
         cs_energy_ledger_store_state(settings->ledger, t, x, v);
     if (rows[CS_FEATURE_CONTACT].built)
         *changed |= store_contact(host, t, x, v, observed, moved);
-    if (step == CS_STEP_OK)
-        cs_host_store_step(host, t, x);
+    cs_host_store_step(host, t, x);
     return step;
 }

@@ -307,11 +307,9 @@ static enum cs_status unknown_name(struct cs_registry *registry, const char *nam
                                    struct cs_error *error) {
     uint32_t n;
     if (cs_names_program(name))
-        return cs_fail(
-            error, CS_ERR_USAGE,
-            "found \"%.60s\", expected a name: only the command line starts a program, "
-            "by --integrator or --program",
-            name);
+        return cs_fail(error, CS_ERR_USAGE,
+                       "found \"%.60s\", expected a name: only -i and --program start one",
+                       name);
     const char *const *names = cs_registry_names(registry, true, &n, error);
     if (!names)
         return error->status;

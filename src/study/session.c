@@ -116,13 +116,12 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
                            error);
     if (cs_method_find(method, &session->registry, asked ? asked : scene->integrator, &pairs,
                        &missing)) {
-        struct cs_text message = {0};
+        char message[sizeof missing.message + 16];
         if (asked || missing.status != CS_ERR_USAGE)
             return cs_fail(error, missing.status, "%s", missing.message);
-        cs_text_add(&message, "integrator: %s", missing.message);
-        fail_at(session, CS_ERR_SCENE, cs_text_get(&message), error);
-        cs_text_finish(&message);
-        return error->status;
+        // with the key, by which its place is found
+        snprintf(message, sizeof message, "integrator: %s", missing.message);
+        return fail_at(session, CS_ERR_SCENE, message, error);
     }
     if (!strcmp(method->integrator->name, scene->integrator) &&
         set_options_of_scene(session, pairs, error))

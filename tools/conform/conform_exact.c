@@ -154,6 +154,7 @@ static void throw_over(const struct cs_conform *conform, struct cs_conform_row *
         start = sheet.session.system.start[sheet.n];
         path = RISE * power(t, 1) + GRAVITY * power(t, 2);
     }
+    // on the arc: the next step is cut short by the post
     if (path > 0 && fabs(sheet.x[sheet.n] - start - path) <= SMALL * path) {
         const bool done = cs_probe_run(&sheet, FRAMES - 1);
         t = FALL_TIME;

@@ -31,8 +31,8 @@ bool cs_step_limit_ends_run(const struct cs_system *system, double t, const doub
 struct cs_blocked_step {
     /* times in s; positions (2,3,n) in m, NULL if the scene does not limit steps */
     double t[2], *x;
-    bool is_set; /* it was rejected */
-    bool asked;  /* a step was tested; before that the first end is where a step begins */
+    /* it was rejected; a step was tested, and before that the first end is where one begins */
+    bool is_set, asked;
 };
 
 /* Allocates memory in the arena if the scene limits steps. CS_ERR_MEMORY. */
