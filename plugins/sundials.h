@@ -58,6 +58,16 @@ struct sundials {
  * failed, the nonlinear solver did, the right-hand side was refused. */
 enum { SUNDIALS_ERROR_TEST = -3, SUNDIALS_CONVERGENCE = -4, SUNDIALS_REFUSED = -10 };
 
+/* True if the displacement from the state before the step, at t0, to x at t carries surfaces
+ * through each other, or passes over contact. With t for t0 max_step_fraction tests the first
+ * alone, and contact by force is left to error control. False without limits. */
+bool sundials_passes_through(const struct sundials *self, double t0, double t, const double *x);
+
+/* Tries a step from *t, where x (6n) is the state, and moves *t to its end. One that
+ * max_step_fraction refuses is undone, and *t stays; frame: s, how short it may become is a
+ * part of that. Returns the library's code. */
+int sundials_try(struct sundials *self, double t1, double frame, double *x, double *t);
+
 /* Fails with the library's code and last message at t, unless the host's own calls failed
  * before: their status is returned then. CS_STEP_HALT if no step was short enough. */
 enum cs_step sundials_fail(struct sundials *self, int code, double t);

@@ -53,14 +53,6 @@ static bool open_context(struct sundials *self) {
 }
 #endif
 
-/* True if the displacement from the state before the step, at t0, to x at t carries surfaces
- * through each other, or passes over contact. With t for t0 max_step_fraction tests the first
- * alone, and contact by force is left to error control. False without limits. */
-static bool passes_through(const struct sundials *self, double t0, double t, const double *x) {
-    const struct cs_host *host = self->host;
-    return self->y_before && host->max_step_fraction(host->ctx, t0, self->y_before, t, x) < 1;
-}
-
 /* Turns forces into accelerations; true if one is NaN or infinite. Without a branch, for
  * vector units. */
 CS_CLONES static bool accelerate(size_t n, const double *restrict inv_mass,
@@ -79,7 +71,7 @@ int sundials_slope(const struct sundials *self, double t, N_Vector y, uint32_t p
     const size_t n = host->view->n;
     const double *x = sundials_data(y), *v = x + 3 * n;
     double *dx = sundials_data(slope), *dv = dx + 3 * n;
-    if (self->library->can_retry && passes_through(self, t, t, x))
+    if (self->library->can_retry && sundials_passes_through(self, t, t, x))
         return 1;
     host->force(host->ctx, t, x, v, parts, dv);
     if (moves)
@@ -125,40 +117,6 @@ static int set_stop(const struct sundials *self, bool limited, double t, double 
     const double *v = x + 3 * (size_t)host->view->n;
     const double most = limited ? host->longest_step(host->ctx, t, x, v) : HUGE_VAL;
     return self->library->set_stop(self->memory, most < t1 - t ? t + most : t1);
-}
-
-/* A step shorter than the advance by this factor is not shortened further: as 16 halvings in
- * fixed_step.c. */
-#define PARTS_MAX 65536
-
-/* Undoes the step from t to `reached` and restarts the library, which then takes a small
- * first step. Needed although the right-hand side refuses such states: the end of a step need
- * not be a point where it was evaluated. Returns a code below 0 on failure. */
-static int restore_state(struct sundials *self, double t, double reached, double frame,
-                         double *x) {
-    const struct cs_host *host = self->host;
-    memcpy(x, self->y_before, 6 * sizeof *x * host->view->n);
-    if (self->equal_steps || (reached - t) * PARTS_MAX < frame) {
-        host->fail(host->ctx,
-                   "a step of %.3g s at t = %.9g s misses contact or crosses a surface",
-                   reached - t, t);
-        self->status = CS_STEP_HALT;
-        return -1;
-    }
-    return self->library->on_state_changed(self, t, 0);
-}
-
-int sundials_try(struct sundials *self, double t1, double frame, double *x, double *t) {
-    const double before = *t;
-    if (self->y_before)
-        memcpy(self->y_before, x, 6 * sizeof *x * self->host->view->n);
-    int code = self->library->evolve(self->memory, t1, self->state, t, self->library->one_step);
-    if (code >= 0 && self->status == CS_STEP_OK &&
-        passes_through(self, self->judges_contact ? before : *t, *t, x)) {
-        code = restore_state(self, before, *t, frame, x);
-        *t = before;
-    }
-    return code;
 }
 
 enum cs_step sundials_advance(void *object, double t0, double t1, double *x, double *v) {

@@ -31,11 +31,6 @@ int sundials_whole_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object
 /* The weights of errors at y by self->tolerance, as SUNDIALS asks for them. */
 int sundials_weigh(N_Vector y, N_Vector weight, void *object);
 
-/* Tries a step from *t, where x (6n) is the state, and moves *t to its end. One that
- * max_step_fraction refuses is undone, and *t stays; frame: s, how short it may become is a
- * part of that. Returns the library's code. */
-int sundials_try(struct sundials *self, double t1, double frame, double *x, double *t);
-
 #if SUNDIALS_VERSION_MAJOR < 7
 /* For the libraries' SetErrHandlerFn; since 7 the context has it. */
 void sundials_keep_message(int code, const char *module, const char *function, char *message,

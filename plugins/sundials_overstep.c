@@ -6,8 +6,6 @@
  * that step or to the frame, whichever is first, and that state is committed. */
 #include "sundials_overstep.h"
 
-#include "sundials_common.h"
-
 #include <math.h>
 #include <string.h>
 
