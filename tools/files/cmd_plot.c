@@ -237,6 +237,7 @@ static enum cs_status plot_comparison(struct cs_args *args, struct cs_error *err
         cs_csv_read(args->operands[0], true, &cells, &settings.n, error))
         return error->status;
     settings.cells = cells;
+    /* a terminal has room for one panel */
     settings.second = options->x || options->show ? NULL : cs_column_find("cpu");
     if (!select_cells(options, args->operands[0], cells, &settings.n, error) &&
         !cs_plot_make(&plot, &settings, error))

@@ -1,6 +1,8 @@
 /* Draws ink, text and marks, and gathers their titles. */
 #include "draw/cairo/cairo_marks.h"
 
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -190,4 +192,27 @@ void cs_cairo_finish_svg(struct cs_text *out, struct cs_text *titles) {
     cs_text_add(out, "%s%s\n", cs_text_get(titles), end);
     out->failed |= titles->failed;
     cs_text_finish(titles);
+}
+
+/* --- surfaces --- */
+
+cairo_status_t cs_cairo_store(void *closure, const unsigned char *bytes, unsigned n) {
+    cs_text_add_bytes(closure, bytes, n);
+    if (((struct cs_text *)closure)->failed)
+        return CAIRO_STATUS_NO_MEMORY;
+    return CAIRO_STATUS_SUCCESS;
+}
+
+cairo_surface_t *cs_cairo_make_surface(enum cs_format format, double width, double height,
+                                       struct cs_text *out) {
+    if (format == CS_FORMAT_SVG)
+        return cairo_svg_surface_create_for_stream(cs_cairo_store, out, width, height);
+    if (format == CS_FORMAT_PNG)
+        return cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width * CS_PNG_SCALE),
+                                          (int)ceil(height * CS_PNG_SCALE));
+    cairo_surface_t *pdf =
+        cairo_pdf_surface_create_for_stream(cs_cairo_store, out, width, height);
+    /* equal diagrams give equal files, whenever they were drawn */
+    cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_CREATE_DATE, "");
+    return pdf;
 }

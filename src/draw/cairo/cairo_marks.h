@@ -57,6 +57,13 @@ void cs_cairo_title(cairo_t *cairo, const struct cs_panel *panel,
                     const struct cs_series *series, const struct cs_point *p,
                     const double at[2]);
 
+#define CS_PNG_SCALE (300 / 72.0) /* pixels a pt */
+/* Adds bytes as they come from cairo to a text. */
+cairo_status_t cs_cairo_store(void *closure, const unsigned char *bytes, unsigned n);
+/* Makes a surface of so many pt, whose bytes go to `out`, but for those of a PNG. */
+cairo_surface_t *cs_cairo_make_surface(enum cs_format format, double width, double height,
+                                       struct cs_text *out);
+
 /* Mends the bytes of an SVG: drops the surface's number, which counts those of the process, and
  * puts the titles at the end. Frees the titles. */
 void cs_cairo_finish_svg(struct cs_text *out, struct cs_text *titles);

@@ -5,15 +5,11 @@
  */
 #include "draw/cairo/cairo_marks.h"
 
-#include <cairo-pdf.h>
-#include <cairo-svg.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define PT_PER_MM  (72 / 25.4)
-#define PNG_SCALE  (300 / 72.0)
 #define GREY       0x404040u
 #define GRID       0xdddddd
 #define GRID_MINOR 0xf2f2f2
@@ -209,8 +205,8 @@ static uint32_t find_names(const struct view *view, struct name names[NAMES_MAX]
         names[k] = name;
     }
     /* from above, then from below: none on another, none outside */
-    const double bottom = view->top + view->height;
-    const double apart = fmin(CS_LINE_HEIGHT, n ? view->height / n : 0);
+    const double bottom = view->top + view->height,
+                 apart = fmin(CS_LINE_HEIGHT, n ? view->height / n : 0);
     for (uint32_t k = 0; k < n; k++)
         names[k].y = fmax(names[k].y, k ? names[k - 1].y + apart : view->top + apart / 2);
     for (uint32_t k = n; k-- > 0;)
@@ -225,6 +221,7 @@ static void draw_names(const struct view *view, double size) {
     const double x = view->left + view->width + LEADER;
     for (uint32_t k = 0; k < n; k++) {
         const struct cs_series *s = names[k].series;
+        /* the sample has the mark of the line */
         enum cs_mark mark = CS_MARK_NONE;
         for (uint32_t p = 0; p < s->n && mark != CS_MARK_FULL; p++)
             mark = s->points[p].joined ? s->points[p].mark : mark;
@@ -344,27 +341,6 @@ static double draw_page(cairo_t *cairo, const struct cs_diagram *diagram) {
 
 /* --- surfaces --- */
 
-/* Bytes as they come from cairo. */
-static cairo_status_t store(void *closure, const unsigned char *bytes, unsigned n) {
-    cs_text_add_bytes(closure, bytes, n);
-    if (((struct cs_text *)closure)->failed)
-        return CAIRO_STATUS_NO_MEMORY;
-    return CAIRO_STATUS_SUCCESS;
-}
-
-static cairo_surface_t *make_surface(enum cs_format format, double width, double height,
-                                     struct cs_text *out) {
-    if (format == CS_FORMAT_SVG)
-        return cairo_svg_surface_create_for_stream(store, out, width, height);
-    if (format == CS_FORMAT_PNG)
-        return cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width * PNG_SCALE),
-                                          (int)ceil(height * PNG_SCALE));
-    cairo_surface_t *pdf = cairo_pdf_surface_create_for_stream(store, out, width, height);
-    /* equal diagrams give equal files, whenever they were drawn */
-    cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_CREATE_DATE, "");
-    return pdf;
-}
-
 /* Draws on a surface, and gathers titles unless they are NULL; returns the height. */
 static double draw_on(cairo_surface_t *surface, double scale, const struct cs_diagram *diagram,
                       struct cs_text *titles) {
@@ -391,17 +367,16 @@ static double draw_on(cairo_surface_t *surface, double scale, const struct cs_di
 static enum cs_status draw(const struct cs_diagram *diagram, enum cs_format format,
                            char **bytes, size_t *length, struct cs_error *error) {
     const double width = diagram->width * PT_PER_MM;
-    const bool pixels = format == CS_FORMAT_PNG;
-    const bool is_svg = format == CS_FORMAT_SVG;
+    const bool pixels = format == CS_FORMAT_PNG, is_svg = format == CS_FORMAT_SVG;
     struct cs_text out = {0}, titles = {0};
     /* a first pass finds the height */
     cairo_surface_t *empty = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 1, 1);
     cairo_surface_t *surface =
-        make_surface(format, width, draw_on(empty, 1, diagram, NULL), &out);
-    draw_on(surface, pixels ? PNG_SCALE : 1, diagram, is_svg ? &titles : NULL);
+        cs_cairo_make_surface(format, width, draw_on(empty, 1, diagram, NULL), &out);
+    draw_on(surface, pixels ? CS_PNG_SCALE : 1, diagram, is_svg ? &titles : NULL);
     cairo_status_t status = cairo_surface_status(surface);
     if (pixels && !status)
-        status = cairo_surface_write_to_png_stream(surface, store, &out);
+        status = cairo_surface_write_to_png_stream(surface, cs_cairo_store, &out);
     cairo_surface_finish(surface);
     status = status ? status : cairo_surface_status(surface);
     cairo_surface_destroy(surface);

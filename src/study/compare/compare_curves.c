@@ -51,6 +51,7 @@ void cs_spots_find(const struct cs_plot_settings *settings, const struct cs_colu
                       s->x > 0 && s->y > 0 &&
                       (!is_position_error(y) || !(cell->bar > 0) || s->y >= cell->bar);
     }
+    /* from the cheapest on, each more accurate than all before */
     struct cs_spot *s = NULL;
     while (is_cost(x) && (s = next_of_front(spots, n, s ? s->y : HUGE_VAL)))
         s->on_front = true;
@@ -96,6 +97,7 @@ void cs_curves_make(struct cs_curves *curves, const struct cs_plot_settings *set
         if (spots[k].is_drawn)
             curve->least = fmin(curve->least, spots[k].x * spots[k].y);
     }
+    /* of the best, styles go by family */
     for (uint32_t k = 0; k < most && (curve = best_curve(curves)); k++)
         curve->is_chosen = true;
     uint32_t style = 0;
@@ -230,6 +232,7 @@ static void fill_panel(struct filling *at, struct cs_error *error) {
     find_ranges(at);
     add_bar(at, error);
     add_front(at, error);
+    /* later ones lie over earlier ones */
     for (uint32_t c = 0; c < at->curves->n; c++)
         if (at->curves->list[c].is_chosen)
             add_curve(at, at->curves->list + c, error);
@@ -279,6 +282,7 @@ enum cs_status cs_plot_make(struct cs_plot *plot, const struct cs_plot_settings 
     for (int k = 0; k <= pair && !error->status; k++) {
         at.x = columns[k];
         cs_spots_find(settings, at.x, at.spots);
+        /* both panels have the series of the first */
         if (k == 0)
             cs_curves_make(curves, settings, at.spots);
         at.panel = cs_plot_add_panel(plot, page ? 1.1 : pair ? 1.3 : 0.8, curves->n + 1, error);
