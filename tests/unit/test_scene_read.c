@@ -42,7 +42,7 @@ TEST(a_copy_has_numbers_of_its_own) {
     struct cs_scene scene, copy;
     struct cs_error error = {0};
     read_text(&scene,
-              "{\"bodies\": [" BODY "], \"colliders\": [{\"sphere\": {}}], \"events\":"
+              "{\"bodies\": [" BODY "], \"colliders\": [{\"floor\": {}}], \"events\":"
               " [{\"at\": 1, \"ramp\": {\"key\": \"forces.drag\", \"value\": 2}}]}",
               NULL, 0);
     cs_scene_copy(&copy, &scene, &copy.arena, &error);
