@@ -1,6 +1,6 @@
 /* Keys of Blender, Houdini (Vellum), ARCSim, MuJoCo and Marvelous Designer, and everyday words.
  */
-#include "scene/file/foreign_keys.h"
+#include "scene/file/json_context.h"
 
 #include "base/options.h"
 

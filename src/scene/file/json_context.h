@@ -53,4 +53,29 @@ const struct cs_option *cs_json_shorthand(const struct cs_table *table,
 enum cs_status cs_json_override(struct cs_json *root, const struct cs_table *table,
                                 const char *path, const char *value, struct cs_error *error);
 
+/* What reads below such a position. */
+
+struct cs_scene;
+
+/* Fills *object, which holds the defaults, from value. Refuses unknown keys (but "x-..." and
+ * "$..."), wrong types, values out of range, missing values without a default, and none or two
+ * rows of a table that wants exactly one. CS_ERR_SCENE or CS_ERR_MEMORY; *object is then
+ * incomplete. */
+enum cs_status cs_table_read(struct cs_json_context *context, const struct cs_json *value,
+                             const struct cs_table *table, void *object);
+
+/* Fills the geometry of every mesh of bodies and colliders, and the clusters of every matched
+ * body, of a scene whose tables were read; root gives positions for messages. CS_ERR_SCENE,
+ * CS_ERR_FILE (a mesh file) or CS_ERR_MEMORY. */
+enum cs_status cs_scene_read_meshes(struct cs_json_context *context, const struct cs_json *root,
+                                    struct cs_scene *scene);
+
+/* Returns the key for an unknown one at a place, "bodies[0].springs"; NULL: none is known. It
+ * is a key of the table at the place if there is one, else the end of a path
+ * ("springs.stretch"), or a word of the command line. */
+const char *cs_foreign_key(const char *place, const char *key, const struct cs_table *table);
+
+/* Returns true if a path, "bodies[0].springs.stretch", ends with the keys of another one. */
+bool cs_path_ends_with(const char *path, const char *keys);
+
 #endif

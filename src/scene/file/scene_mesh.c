@@ -1,12 +1,12 @@
 /* Makes the mesh of each body and collider of a scene, and bodies' spring networks and clusters
  * of shape matching. */
-#include "scene/file/scene_mesh.h"
 
 #include "mesh/spring_network.h"
 #include "model/system/shape_clusters.h"
 #include "scene/file/json_context.h"
 #include "scene/file/key_frames_read.h"
 #include "scene/file/mesh_read.h"
+#include "scene/scene.h"
 #include "scene/shape.h"
 
 #include <stdio.h>

@@ -9,8 +9,6 @@
 #include "base/status.h"
 #include "scene/body_pairs.h"
 #include "scene/file/json_context.h"
-#include "scene/file/scene_mesh.h"
-#include "scene/file/table_read.h"
 
 #include <errno.h>
 #include <stdbool.h>

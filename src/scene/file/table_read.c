@@ -1,8 +1,7 @@
 /* Fills structs from JSON values by their option tables: one reader per form of value. */
-#include "scene/file/table_read.h"
+#include "scene/file/json_context.h"
 
 #include "base/options.h"
-#include "scene/file/foreign_keys.h"
 #include "scene/scene.h"
 
 #include <stdio.h>
@@ -308,8 +307,7 @@ static enum cs_status check_complete(struct cs_json_context *context,
             cs_text_finish(&expected);
         } else {
             /* the table itself may be absent: the message names the value that it lacks */
-            check_complete(context, value, true, row->table,
-                           cs_option_value(row, object));
+            check_complete(context, value, true, row->table, cs_option_value(row, object));
         }
         if (context->error->status)
             return context->error->status;
