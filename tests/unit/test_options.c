@@ -91,11 +91,11 @@ TEST(struct_elsewhere_is_filled) {
         .name = "apart", .type = CS_TABLE, .count = 1, .offset = 8, .table = &apart_table};
     static const struct cs_table holder_table = {.rows = &row, .n = 1, .size = 16};
     struct inner inner = {.weight = 7};
-    struct {
+    struct holder {
         double before;
         struct inner *inner;
     } holder = {5, &inner};
-    ck_assert_uint_eq(offsetof(typeof(holder), inner), row.offset);
+    ck_assert_uint_eq(offsetof(struct holder, inner), row.offset);
     cs_options_default(&holder_table, &holder);
     ck_assert(holder.before == 5 && holder.inner == &inner && inner.weight == 3);
     ck_assert_ptr_eq(cs_option_value(&row, &holder), &inner);
