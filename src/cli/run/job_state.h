@@ -242,8 +242,9 @@ enum cs_status cs_run_json_close(struct cs_job *job, struct cs_error *error);
 /* Adds "blew up: ... at t = ... s, particle ..." or "finished". */
 void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out);
 
-/* Adds the error as measured, or the sum of local errors in m and its worth. */
-void cs_report_print_error(const struct cs_job *job, double local, struct cs_text *out);
+/* Adds the error of that frame: as measured, or the sum of local errors in m and its worth. */
+void cs_report_print_error(const struct cs_job *job, uint32_t frame, double local,
+                           struct cs_text *out);
 
 /* Warns on standard error of a strain limit that was missed, and of what is beyond cloth in a
  * stable run. */

@@ -257,9 +257,10 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     if (warn(job, error) || begin_job(job, error))
         return error->status;
     job->failure = run_frames(job, error) == CS_ERR_MODULE ? error->message : NULL;
-    finish_files(job, error);
+    // before the last picture is written, which says the error too
     if (settings->error && !error->status && job->session.run.outcome == CS_RUNNING)
         measure_error(job, error);
+    finish_files(job, error);
     job->wall_seconds = cs_clock_wall() - start;
     return error->status;
 }

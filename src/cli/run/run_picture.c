@@ -81,7 +81,7 @@ static enum cs_status give(struct cs_job *job, struct cs_error *error) {
     cs_hash_bytes(picture->image->rgb, cs_image_bytes(picture->image), pixels);
     cs_text_add_real(&time, picture->time);
     print_range(picture, &job->session.scene, &range);
-    cs_report_print_error(job, picture->local_error, &error_line);
+    cs_report_print_error(job, picture->frame, picture->local_error, &error_line);
     const struct cs_png_text texts[] = {
         {"Software", "clothsim " CS_VERSION},
         {"Source", job->scene_hash},

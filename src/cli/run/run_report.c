@@ -130,9 +130,10 @@ static void add_counts(const struct cs_job *job, struct cs_text *out) {
 
 /* The error of the end as it was measured. Local errors, added up, are no measure of it:
  * contact enlarges and damping shrinks them, by factors of 0.04 to 2000 on random scenes. */
-void cs_report_print_error(const struct cs_job *job, double sum, struct cs_text *out) {
+void cs_report_print_error(const struct cs_job *job, uint32_t frame, double sum,
+                           struct cs_text *out) {
     const double size = cs_run_calls(&job->session.run)->length_scale;
-    if (job->measured_error > 0)
+    if (job->measured_error > 0 && frame == job->session.run.frame)
         cs_text_add(out, "about %.2g m, %.2g %% of the size (distance to a run of finer steps)",
                     job->measured_error, 100 * job->measured_error / size);
     else if (sum > 0)
@@ -147,7 +148,8 @@ void cs_report_print_error(const struct cs_job *job, double sum, struct cs_text 
 
 static void add_error(const struct cs_job *job, struct cs_text *out) {
     struct cs_text line = {0};
-    cs_report_print_error(job, job->session.run.counts.method.local_error, &line);
+    const struct cs_run *run = &job->session.run;
+    cs_report_print_error(job, run->frame, run->counts.method.local_error, &line);
     cs_print_hanging("error", cs_text_get(&line), VALUE_COLUMN, out);
     cs_text_finish(&line);
 }
