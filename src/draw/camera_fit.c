@@ -3,6 +3,9 @@
 
 #include "draw/colour_bar.h"
 #include "draw/matrix.h"
+#include "scene/collider_keys.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 
 enum { MOST_POINTS = 200 }; // particles whose view is tested
 
@@ -150,7 +153,7 @@ void cs_camera_fit_extremes(const struct cs_camera_fit *fit, size_t n, const dou
  * what a sheet of the box's width hangs down. */
 static double depth_below(const struct cs_scene *scene, const double low[3],
                           const double high[3]) {
-    const double *g = scene->forces.gravity;
+    const double *g = scene->forces->gravity;
     const double width = fmax(high[0] - low[0], high[2] - low[2]);
     double depth = cs_dot(g, g) > 0 ? 0.5 * width : 0;
     for (uint32_t k = 0; k < scene->colliders.n; k++) {
@@ -315,7 +318,7 @@ void cs_camera_fit_start(struct cs_camera_fit *fit, const struct cs_system *syst
     static const double eyes[][3] = {{1.2, 0.7, 2.2}, {-1.2, 0.7, 2.2}, {0, 0.7, 2.5},
                                      {1.2, 2, 1.7},   {-1.2, 2, 1.7},   {0, 2.5, 1}};
     const struct cs_scene *scene = system->scene;
-    struct cs_camera camera = scene->camera;
+    struct cs_camera camera = *scene->camera;
     const bool is_free = !memcmp(camera.eye, eyes[0], sizeof camera.eye) &&
                          !(cs_dot(camera.target, camera.target) > 0);
     uint32_t least = UINT32_MAX;
@@ -335,7 +338,7 @@ void cs_camera_fit_start(struct cs_camera_fit *fit, const struct cs_system *syst
         struct cs_camera_fit tried;
         if (k > 0)
             memcpy(camera.eye, eyes[k], sizeof camera.eye);
-        cs_camera_fit_begin(&tried, &camera, &scene->render);
+        cs_camera_fit_begin(&tried, &camera, scene->render);
         tried.follows = follows;
         if (follows > 0)
             memcpy(tried.follows_from, colliders[follows - 1].centre, sizeof low);

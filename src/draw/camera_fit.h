@@ -11,6 +11,7 @@
 #define CS_DRAW_CAMERA_FIT_H
 
 #include "model/contact/posed_collider.h"
+#include "scene/picture_keys.h"
 
 #include <math.h>
 

@@ -4,6 +4,7 @@
 #include "draw/glyph.h"
 #include "draw/look.h"
 #include "draw/srgb.h"
+#include "scene/picture_keys.h"
 
 #include <math.h>
 #include <stdio.h>

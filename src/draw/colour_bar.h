@@ -6,6 +6,8 @@
 #include "draw/glyph.h"
 #include "draw/render.h"
 
+struct cs_render;
+
 /* Colour and place of the bar. */
 struct cs_colour_bar {
     float ink[3];         /* linear RGB of lines and labels */

@@ -6,6 +6,10 @@
 #include "mesh/trimesh.h"
 #include "model/contact/posed_collider.h"
 #include "model/system/particle_system.h"
+#include "scene/body_keys.h"
+#include "scene/collider_keys.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -90,7 +94,7 @@ static double lowest_point(const struct cs_system *system,
                            const struct cs_posed_collider *colliders) {
     const struct cs_scene *scene = system->scene;
     double lowest = cs_scene_extent_solid(system, system->view.start, colliders).low[1];
-    const bool falls = scene->forces.gravity[1] < 0;
+    const bool falls = scene->forces->gravity[1] < 0;
     for (uint32_t b = 0; falls && b < scene->bodies.n; b++) {
         const double own = is_released(scene) ? (double)NAN : lowest_of_body(system, b);
         if (!(own < lowest) && !isnan(own))
@@ -164,7 +168,7 @@ static const struct cs_shape square = {.bounds = CS_BOUNDS_HALF_SPACE,
 void cs_ground_make(struct cs_ground *ground, const struct cs_system *system,
                     const struct cs_posed_collider *colliders,
                     const struct cs_bounding_sphere *sphere) {
-    const struct cs_render *render = &system->scene->render;
+    const struct cs_render *render = system->scene->render;
     const struct cs_posed_collider *floor = floor_of(system->scene, colliders);
     const bool given = !isnan(render->ground_height);
     set_style(ground, render, sphere);

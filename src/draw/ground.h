@@ -6,6 +6,7 @@
 #include "draw/view.h"
 #include "model/contact/posed_collider.h"
 #include "model/system/particle_system.h"
+#include "scene/collider_keys.h"
 
 /* The ground of a scene, which must not move in memory once it is made. */
 struct cs_ground {

@@ -2,6 +2,9 @@
 #include "draw/look.h"
 
 #include "draw/matrix.h"
+#include "scene/body_keys.h"
+#include "scene/collider_keys.h"
+#include "scene/picture_keys.h"
 
 static const uint32_t force_stops[6] = {0x3b1f6b, 0x31578f, 0x1f8a8c,
                                         0x3db86f, 0xa4d742, 0xfbe84a};

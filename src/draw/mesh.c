@@ -5,6 +5,8 @@
 #include "draw/matrix.h"
 #include "mesh/trimesh.h"
 #include "model/system/surfaces.h"
+#include "scene/body_keys.h"
+#include "scene/picture_keys.h"
 
 // m: positions farther away are drawn at this bound, because they would upset the rasteriser
 static const double bound = 1e5;
@@ -62,7 +64,7 @@ static enum cs_status init_creases(struct cs_mesh *mesh, struct cs_arena *arena,
 enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system, uint32_t body,
                             bool textured, struct cs_arena *arena, struct cs_error *error) {
     const struct cs_body_range *range = system->bodies + body;
-    const enum cs_look_colours colours = cs_look_of(system->scene->render.look)->colours;
+    const enum cs_look_colours colours = cs_look_of(system->scene->render->look)->colours;
     const bool marked = colours == CS_COLOURS_CROSSINGS;
     const struct cs_material *material = &cs_scene_bodies(system->scene)[body].material;
     mesh->range = *range;

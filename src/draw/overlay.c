@@ -10,6 +10,9 @@
 #include "mesh/trimesh.h"
 #include "model/event/event_state.h"
 #include "model/system/seams.h"
+#include "scene/body_keys.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -95,7 +98,7 @@ static void viewpoint_forces_draw(const struct cs_wireframe *wireframe, struct c
 enum cs_status cs_overlay_init(struct cs_overlay *overlay, const struct cs_system *system,
                                double pixels_per_m, struct cs_lines *lines,
                                struct cs_arena *arena, struct cs_error *error) {
-    const struct cs_render *render = &system->scene->render;
+    const struct cs_render *render = system->scene->render;
     const double cell = cs_scene_extent_cell(system);
     const uint32_t most = cs_wireframe_capacity(system);
     overlay->lines = lines;
@@ -117,7 +120,7 @@ void cs_overlay_aim(struct cs_overlay *overlay, double pixels_per_m) {
 }
 
 bool cs_overlay_hides(const struct cs_scene *scene, uint32_t body) {
-    return cs_look_of(scene->render.look)->springs &&
+    return cs_look_of(scene->render->look)->springs &&
            cs_scene_bodies(scene)[body].network.present;
 }
 
@@ -143,7 +146,7 @@ static void marks_draw(const struct cs_overlay *overlay, struct cs_lines *lines,
 }
 
 void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *frame) {
-    const struct cs_render *render = &overlay->wireframe.system->scene->render;
+    const struct cs_render *render = overlay->wireframe.system->scene->render;
     const struct cs_look_kind *look = cs_look_of(render->look);
     const struct cs_wireframe *wireframe = &overlay->wireframe;
     struct cs_lines *lines = overlay->lines;

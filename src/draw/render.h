@@ -64,7 +64,7 @@ struct cs_renderer {
      * NULL. */
     enum cs_status (*create)(const struct cs_canvas_settings *settings,
                              struct cs_canvas **canvas, struct cs_error *error);
-    /* Draws a frame into an image with room for scene->render.size. If the image has no alpha,
+    /* Draws a frame into an image with room for scene->render->size. If the image has no alpha,
      * a transparent background becomes white. */
     enum cs_status (*paint)(struct cs_canvas *canvas, const struct cs_frame *frame,
                             struct cs_image *image, struct cs_error *error);

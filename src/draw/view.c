@@ -6,6 +6,9 @@
 #include "draw/mesh.h"
 #include "draw/srgb.h"
 #include "mesh/trimesh.h"
+#include "scene/body_keys.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 
 static void copy3(const double from[3], double last, float to[4]) {
     for (int i = 0; i < 3; i++)
@@ -86,14 +89,14 @@ void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_bounding_sphere *sphere, size_t n,
                   const struct cs_frame *frame) {
     struct cs_camera_fit fit;
-    view->camera = camera_at(&scene->camera, frame->t);
-    if (scene->camera.frame == CS_FRAME_START)
+    view->camera = camera_at(scene->camera, frame->t);
+    if (scene->camera->frame == CS_FRAME_START)
         cs_camera_fit_picture(&view->fit, frame->colliders, n, frame->x, &view->camera);
-    if (scene->camera.frame == CS_FRAME_AUTO) {
-        cs_camera_fit_begin(&fit, &scene->camera, &scene->render);
+    if (scene->camera->frame == CS_FRAME_AUTO) {
+        cs_camera_fit_begin(&fit, scene->camera, scene->render);
         cs_camera_fit_solve(&fit, n, frame->x, 0.62, &view->camera);
     }
-    set_camera(view, &scene->render, sphere);
+    set_camera(view, scene->render, sphere);
 }
 
 /* Position of a lamp or direction to a sun; by default from above, in front and the right. */
@@ -118,14 +121,14 @@ static double brightness(const struct cs_light *light) {
 }
 
 static const struct cs_light *light_of(const struct cs_scene *scene, uint32_t k) {
-    return k ? (const struct cs_light *)scene->lights.items + (k - 1) : &scene->light;
+    return k ? (const struct cs_light *)scene->lights.items + (k - 1) : scene->light;
 }
 
 static void set_lights(struct cs_view_state *view, const struct cs_scene *scene) {
     double all = 0;
     view->n_lights = 1 + scene->lights.n;
     view->block.size[3] = (float)view->n_lights;
-    copy3(scene->light.ambient, 1, view->block.ambient);
+    copy3(scene->light->ambient, 1, view->block.ambient);
     for (uint32_t k = 0; k < view->n_lights; k++)
         all += brightness(light_of(scene, k));
     for (uint32_t k = 0; k < view->n_lights; k++) {
@@ -166,7 +169,7 @@ static void set_background(struct cs_view_block *block,
 
 void cs_view_set_colours(struct cs_view_state *view, const struct cs_scene *scene) {
     set_lights(view, scene);
-    set_background(&view->block, &scene->render.background);
+    set_background(&view->block, &scene->render->background);
 }
 
 void cs_view_init(struct cs_view_state *view, const struct cs_system *system,
@@ -175,14 +178,14 @@ void cs_view_init(struct cs_view_state *view, const struct cs_system *system,
     const struct cs_scene *scene = system->scene;
     memset(view, 0, sizeof *view);
     view->haze = cs_view_haze(sphere);
-    view->camera = camera_at(&scene->camera, 0);
-    if (scene->camera.frame == CS_FRAME_START) {
+    view->camera = camera_at(scene->camera, 0);
+    if (scene->camera->frame == CS_FRAME_START) {
         cs_camera_fit_start(&view->fit, system, colliders, sphere->low, sphere->high);
         cs_camera_fit_picture(&view->fit, colliders, 0, NULL, &view->camera);
     }
-    set_camera(view, &scene->render, sphere);
+    set_camera(view, scene->render, sphere);
     cs_view_set_colours(view, scene);
-    cs_colour_stops(scene->render.look, scene->render.palette == CS_PALETTE_GREEN_RED,
+    cs_colour_stops(scene->render->look, scene->render->palette == CS_PALETTE_GREEN_RED,
                     view->block.colour_stops);
 }
 

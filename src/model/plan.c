@@ -8,8 +8,13 @@
 #include "model/force/terms.h"
 #include "model/solver/multigrid.h"
 #include "model/spring/springs.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
 #include "scene/event_key.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 #include "scene/shape.h"
 
 #include <clothsim/integrator.h>
@@ -89,7 +94,7 @@ static bool has_limit(const struct cs_body *body) {
 
 /* Forces and what belongs to them. A feature that an event can switch on counts as needed. */
 static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
-    const struct cs_forces *forces = &scene->forces;
+    const struct cs_forces *forces = scene->forces;
     const bool springs = plan->n_springs > 0;
     decide(plan, CS_FEATURE_SPRINGS, springs, "the bodies have springs",
            cs_scene_first_matched(scene) < plan->n_bodies
@@ -111,7 +116,7 @@ static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
            "forces.velocity_loss is above 0", "forces.velocity_loss is 0");
     decide(plan, CS_FEATURE_STRAIN_LIMIT, springs && any_body(scene, has_limit),
            "a body has strain_limit", "no strain_limit");
-    const bool leads = !isnan(scene->contact.untangle);
+    const bool leads = !isnan(scene->contact->untangle);
     decide(plan, CS_FEATURE_EVENTS,
            scene->events.n > 0 || leads || cs_scene_carries_pins(scene, true),
            scene->events.n > 0 ? "the scene has events"
@@ -130,17 +135,17 @@ static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
  */
 static void plan_contact(struct cs_plan *plan, const struct cs_scene *scene, bool render) {
     decide(plan, CS_FEATURE_CONTACT,
-           scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT,
-           scene->contact.law_is_default ? PROJECTED_BY_DEFAULT : "contact.law is project",
+           scene->colliders.n > 0 && scene->contact->law == CS_CONTACT_PROJECT,
+           scene->contact->law_is_default ? PROJECTED_BY_DEFAULT : "contact.law is project",
            scene->colliders.n > 0 ? "contact is a force" : "no colliders");
     decide(plan, CS_FEATURE_FRICTION_ANCHORS, cs_scene_friction_sticks(scene),
            "contact.friction_law is stick",
-           scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n > 0
-               ? (scene->contact.friction_law == CS_FRICTION_BRISTLES
+           scene->contact->law == CS_CONTACT_FORCE && scene->colliders.n > 0
+               ? (scene->contact->friction_law == CS_FRICTION_BRISTLES
                       ? "no friction on colliders that are no meshes"
                       : "contact.friction_law is smooth")
                : "no contact by force with a collider");
-    const bool shown = render && scene->render.look == CS_LOOK_CROSSINGS;
+    const bool shown = render && scene->render->look == CS_LOOK_CROSSINGS;
     const bool wanted = cs_scene_crossings(scene) != CS_CROSSINGS_IGNORE;
     decide(plan, CS_FEATURE_CROSSINGS, wanted || shown,
            cs_scene_crossings_by_pairs(scene)
@@ -158,7 +163,7 @@ static bool has_friction(const struct cs_scene *scene) {
     for (uint32_t c = 0; c < scene->colliders.n; c++)
         any |= cs_scene_colliders(scene)[c].friction > 0;
     // friction that sticks to colliders has a memory, and is not lagged
-    any &= scene->contact.law == CS_CONTACT_FORCE && !cs_scene_friction_sticks(scene);
+    any &= scene->contact->law == CS_CONTACT_FORCE && !cs_scene_friction_sticks(scene);
     for (uint32_t a = 0; a < n; a++)
         for (uint32_t b = a; b < n; b++)
             any |= cs_scene_bodies_collide(scene, a, b, &friction) && friction > 0;
@@ -238,13 +243,13 @@ void cs_plan_choose_contact_law(struct cs_scene *scene, const struct cs_integrat
     const bool follows =
         !(method->traits & CS_EXPLICIT_OUTER || method->needs & CS_NEED_CLUSTERS) &&
         !(method->traits & CS_NOT_GALILEAN && cs_event_moves_any(scene));
-    bool elastic = !isnan(scene->contact.stiffness);
+    bool elastic = !isnan(scene->contact->stiffness);
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         elastic |= bodies[b].elastic.present ||
                    (bodies[b].springs.stretch > 0 && !cs_scene_springs_left_out(bodies + b));
-    if (scene->contact.law_is_default && scene->colliders.n > 0 &&
+    if (scene->contact->law_is_default && scene->colliders.n > 0 &&
         !cs_scene_has_body_contact(scene) && !(follows && elastic))
-        scene->contact.law = CS_CONTACT_PROJECT;
+        scene->contact->law = CS_CONTACT_PROJECT;
 }
 
 enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integrator *method,
@@ -261,14 +266,14 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
                        "bodies: none has shape_matching, and without it integrator \"%s\" has "
                        "nothing to match",
                        method->name);
-    if (scene->contact.law == CS_CONTACT_FORCE &&
+    if (scene->contact->law == CS_CONTACT_FORCE &&
         (scene->colliders.n > 0 || cs_scene_has_body_contact(scene)) &&
         method->traits & CS_EXPLICIT_OUTER)
         return cs_fail(error, CS_ERR_SCENE,
                        "contact.law: force is too stiff for integrator \"%s\", which treats "
                        "contact explicitly; use %sanother integrator",
                        method->name, cs_scene_has_body_contact(scene) ? "" : "project, or ");
-    if (scene->contact.law == CS_CONTACT_FORCE && method->traits & CS_NOT_GALILEAN &&
+    if (scene->contact->law == CS_CONTACT_FORCE && method->traits & CS_NOT_GALILEAN &&
         cs_event_moves_any(scene))
         return cs_fail(
             error, CS_ERR_SCENE,

@@ -17,6 +17,7 @@
 #include "model/force/terms.h"
 #include "model/post_step/tunnelling.h"
 #include "model/system/shape_clusters.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
 #include "scene/shape.h"
 

@@ -7,6 +7,7 @@
 #include "model/plan.h"
 
 #include "base/pool.h"
+#include "scene/body_keys.h"
 #include "scene/shape.h"
 
 /* Blocks per thread, so that the others can take over the work of one that is held up; and the

@@ -1,19 +1,15 @@
-/* body_keys.h - keys of a scene that place grids, select particles, pins and seams between
- * bodies, and keys about friction, contact between bodies, and its start. */
+/* body_keys.h - keys of bodies: shape, masses, springs, pins, look; and of seams between them.
+ */
 #ifndef CS_BODY_KEYS_H
 #define CS_BODY_KEYS_H
 
-#include <clothsim/option.h>
+#include "mesh/spring_network.h"
+#include "scene/elastic_keys.h"
+#include "scene/mesh_keys.h"
+#include "scene/scene.h"
 
 /* Plane of the cloth before `place` is applied. */
 enum cs_start { CS_START_HANGING, CS_START_FLAT };
-
-/* A rigid placement x = R p + translate; R from the matrix, or from the quaternion. */
-struct cs_pose {
-    double translate[3]; /* m */
-    double rotate[4];    /* quaternion x, y, z, w; normalised by cs_scene_check */
-    double matrix[9];    /* rows of a rotation matrix; first element NAN: absent */
-};
 
 /* A rectangular grid of particles, joined by springs. */
 struct cs_cloth {
@@ -45,12 +41,6 @@ enum cs_pin_name {
     CS_PIN_LEFT,
     CS_PIN_RIGHT,
     CS_PIN_EDGES
-};
-
-/* A collider that carries particles along. */
-struct cs_holder {
-    bool present;
-    int64_t collider; /* -1: not given, refused */
 };
 
 /* Selects pinned particles; one of: a named corner or edge, a particle index, a box, a name of
@@ -87,28 +77,78 @@ struct cs_seam {
     double breaking_force;  /* N, of its spring; NAN: likewise */
 };
 
-/* Friction of contact by force: a function of the velocity, or with a memory
- * (model/contact/bristle_law.h). */
-enum cs_friction_law { CS_FRICTION_SMOOTH, CS_FRICTION_BRISTLES };
-
-/* Two bodies in contact. */
-struct cs_body_pair_keys {
-    int64_t bodies[2];
-    double friction; /* Coulomb coefficient */
-};
-/* Pairs in contact: those of the list, or all. */
-enum cs_pairs_among { CS_PAIRS_NAMED, CS_PAIRS_ALL };
-struct cs_body_pairs_keys {
-    int32_t among;       /* enum cs_pairs_among */
-    double friction;     /* of pairs that are not in the list */
-    struct cs_list list; /* struct cs_body_pair_keys */
+struct cs_shape_clusters;
+/* A body that is drawn to its shape (Mueller et al. 2005) instead of held by springs. */
+struct cs_shape_matching {
+    bool present;
+    double alpha;      /* fraction of the way to the goals per step; 1: rigid */
+    double beta;       /* fraction of the linear deformation in the goals */
+    double alpha_step; /* s, length of that step; 0: alpha holds for a step of any length */
+    int64_t clusters;  /* parts that each keep their shape */
+    double overlap;    /* of neighbouring parts, as a fraction of a part's longest side */
+    bool springs;      /* the body's springs act too */
+    /* not in the tables: made by the reader, owned by the scene's arena */
+    const struct cs_shape_clusters *parts;
 };
 
-/* Treatment of what starts inside a collider, or within the range of contact by force. */
-enum cs_contact_start_policy {
-    CS_CONTACT_START_REFUSE,
-    CS_CONTACT_START_MOVE_OUT,
-    CS_CONTACT_START_ALLOW
+/* Mass of a body's particles; exactly one is not NAN. */
+struct cs_mass {
+    double particle;      /* kg each */
+    double areal_density; /* kg/m2, times each particle's area */
+    double total;         /* kg, divided equally */
+    double degree;        /* kg per spring at the particle */
 };
+enum cs_damping_model { CS_DAMPING_RELATIVE, CS_DAMPING_AXIAL };
+enum cs_stiffness_unit { CS_STIFFNESS_N_PER_M, CS_STIFFNESS_N };
+
+/* Springs of a body. A stiffness in N is divided by the rest length of the spring. */
+struct cs_spring_law {
+    double stretch, shear,
+        bend;               /* N/m, or N (divided by the rest length); 0: no such springs */
+    double damping;         /* N s/m per spring */
+    int32_t damping_model;  /* enum cs_damping_model */
+    int32_t stiffness_unit; /* enum cs_stiffness_unit */
+};
+
+/* A deformable body: its shape, masses, springs, pins, contact and look. */
+struct cs_body {
+    struct cs_cloth cloth; /* either this or the mesh */
+    struct cs_mesh_source mesh;
+    struct cs_spring_network network;
+    struct cs_shape_matching shape_matching;
+    struct cs_mass mass;
+    struct cs_spring_law springs;
+    struct cs_elastic elastic; /* instead of springs */
+    struct cs_list pins;       /* struct cs_pin */
+    bool self_contact;         /* contact with itself; needs contact.law force */
+    double thickness;    /* m, range of its contact with bodies; 0: a fraction of its edges */
+    double friction;     /* Coulomb coefficient of self-contact */
+    double strain_limit; /* max length of a stretch spring / rest length; NAN: none */
+    int64_t strain_limit_sweeps;     /* passes over the springs per step */
+    double pressure, outer_pressure; /* Pa: inside over outside; outside, NAN: a pump */
+    struct cs_material material;
+};
+
+/* Returns true if the body has no springs: it is drawn to its shape instead, or elastic. */
+static inline bool cs_scene_springs_left_out(const struct cs_body *body) {
+    return body->elastic.present ||
+           (body->shape_matching.present && !body->shape_matching.springs);
+}
+
+/* Returns the first body that is drawn to its shape; bodies.n if there is none. */
+static inline uint32_t cs_scene_first_matched(const struct cs_scene *scene) {
+    uint32_t b = 0;
+    while (b < scene->bodies.n && !cs_scene_bodies(scene)[b].shape_matching.present)
+        b++;
+    return b;
+}
+
+/* Returns the first body that is elastic; bodies.n if there is none. */
+static inline uint32_t cs_scene_first_elastic(const struct cs_scene *scene) {
+    uint32_t b = 0;
+    while (b < scene->bodies.n && !cs_scene_bodies(scene)[b].elastic.present)
+        b++;
+    return b;
+}
 
 #endif

@@ -2,7 +2,11 @@
  * itself, and by the colliders that are meshes. */
 #include "scene/body_pairs.h"
 
+#include "scene/body_keys.h"
+#include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
 #include "scene/event_key.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 
@@ -57,27 +61,27 @@ static bool hits_obstacle(const struct cs_scene *scene, uint32_t a, uint32_t b,
 
 bool cs_scene_bodies_collide(const struct cs_scene *scene, uint32_t a, uint32_t b,
                              double *friction) {
-    const struct cs_body_pair_keys *pairs = scene->pairs.list.items;
+    const struct cs_body_pair_keys *pairs = scene->pairs->list.items;
     if (a >= scene->bodies.n || b >= scene->bodies.n)
         return hits_obstacle(scene, a, b, friction);
     if (a == b) {
         *friction = cs_scene_bodies(scene)[a].friction;
         return cs_scene_bodies(scene)[a].self_contact;
     }
-    for (uint32_t p = 0; p < scene->pairs.list.n; p++) {
+    for (uint32_t p = 0; p < scene->pairs->list.n; p++) {
         const int64_t *bodies = pairs[p].bodies;
         if ((bodies[0] == a && bodies[1] == b) || (bodies[0] == b && bodies[1] == a)) {
             *friction = pairs[p].friction;
             return true;
         }
     }
-    *friction = scene->pairs.friction;
-    return scene->pairs.among == CS_PAIRS_ALL;
+    *friction = scene->pairs->friction;
+    return scene->pairs->among == CS_PAIRS_ALL;
 }
 
 bool cs_scene_has_body_contact(const struct cs_scene *scene) {
-    bool any = scene->pairs.list.n > 0 ||
-               (scene->pairs.among == CS_PAIRS_ALL && scene->bodies.n > 1) ||
+    bool any = scene->pairs->list.n > 0 ||
+               (scene->pairs->among == CS_PAIRS_ALL && scene->bodies.n > 1) ||
                cs_scene_surfaces(scene) > scene->bodies.n;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         any = any || cs_scene_bodies(scene)[b].self_contact;
@@ -86,19 +90,19 @@ bool cs_scene_has_body_contact(const struct cs_scene *scene) {
 
 bool cs_scene_sticks_to(const struct cs_scene *scene, uint32_t collider) {
     const struct cs_collider *to = cs_scene_colliders(scene) + collider;
-    return scene->contact.law == CS_CONTACT_FORCE &&
-           scene->contact.friction_law == CS_FRICTION_BRISTLES && !to->mesh.present &&
+    return scene->contact->law == CS_CONTACT_FORCE &&
+           scene->contact->friction_law == CS_FRICTION_BRISTLES && !to->mesh.present &&
            cs_event_key_acts(scene, to->friction, ".friction");
 }
 
 bool cs_scene_has_friction(const struct cs_scene *scene) {
-    const struct cs_body_pair_keys *pairs = scene->pairs.list.items;
-    bool any = scene->pairs.friction > 0;
+    const struct cs_body_pair_keys *pairs = scene->pairs->list.items;
+    bool any = scene->pairs->friction > 0;
     for (uint32_t c = 0; c < scene->colliders.n; c++)
         any = any || cs_scene_colliders(scene)[c].friction > 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         any = any || cs_scene_bodies(scene)[b].friction > 0;
-    for (uint32_t p = 0; p < scene->pairs.list.n; p++)
+    for (uint32_t p = 0; p < scene->pairs->list.n; p++)
         any = any || pairs[p].friction > 0;
     return any;
 }
@@ -111,9 +115,13 @@ bool cs_scene_friction_sticks(const struct cs_scene *scene) {
 }
 
 void cs_scene_remove_corrections(struct cs_scene *scene) {
-    if (scene->contact.law == CS_CONTACT_PROJECT)
+    if (scene->contact->law == CS_CONTACT_PROJECT)
         scene->colliders.n = 0;
-    scene->forces.velocity_loss = 0;
+    scene->forces->velocity_loss = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         cs_scene_bodies(scene)[b].strain_limit = (double)NAN;
+}
+
+bool cs_scene_contact_is_force(const struct cs_scene *scene) {
+    return scene->contact->law == CS_CONTACT_FORCE;
 }

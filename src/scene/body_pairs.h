@@ -7,6 +7,8 @@
 
 #include "scene/scene.h"
 
+struct cs_collider;
+
 /* Returns the number of surfaces. */
 uint32_t cs_scene_surfaces(const struct cs_scene *scene);
 
@@ -26,6 +28,9 @@ double cs_scene_key_frame_speed(const struct cs_scene *scene);
  * coefficient of the pair. */
 bool cs_scene_bodies_collide(const struct cs_scene *scene, uint32_t a, uint32_t b,
                              double *friction);
+
+/* Returns true if the contact of a scene is a force. */
+bool cs_scene_contact_is_force(const struct cs_scene *scene);
 
 /* Returns true if any two may. */
 bool cs_scene_has_body_contact(const struct cs_scene *scene);

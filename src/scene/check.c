@@ -1,6 +1,8 @@
 /* Messages of checks, and the checks of directions and rotations. */
 #include "scene/check.h"
 
+#include "scene/mesh_keys.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -4,6 +4,9 @@
 
 #include "scene/scene.h"
 
+struct cs_body;
+struct cs_pose;
+
 /* Destination of a failure: the JSON path of the faulty value, and the message. */
 struct cs_check {
     char *path; /* CS_TEXT_MAX bytes of the caller */

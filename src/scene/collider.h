@@ -5,15 +5,18 @@
  * has no distance here: bodies meet its features in pairs (model/contact/narrow_phase), and
  * model/contact/surface_points.h gives the positions of its vertices.
  *
- * A new shape needs: its keys and its line in CS_SHAPE_LIST (scene.h), shape_NAME.c with
- * cs_NAME_keys and cs_shape_NAME, and that file in meson.build.
+ * A new shape needs: its keys and its line in CS_SHAPE_LIST (collider_keys.h), shape_NAME.c
+ * with cs_NAME_keys and cs_shape_NAME, and that file in meson.build.
  */
 #ifndef CS_COLLIDER_H
 #define CS_COLLIDER_H
 
 #include "base/vec3.h"
 #include "mesh/trimesh.h"
+#include "mesh/vertex_paths.h"
 #include "scene/check.h"
+
+struct cs_collider;
 
 /* One collider at one time: a shape with its pose and its motion. */
 struct cs_posed_collider {
@@ -86,22 +89,6 @@ static inline void cs_shape_assert(const struct cs_shape *shape) {
               shape->triangles);
 }
 
-#define X(name, keys, text)                                                                    \
-    extern const struct cs_table cs_##name##_keys;                                             \
-    extern const struct cs_shape cs_shape_##name;
-CS_SHAPE_LIST(X)
-#undef X
-
-/* The shape of a collider: the one whose keys are present; NULL if none is. */
-static inline const struct cs_shape *cs_collider_shape(const struct cs_collider *collider) {
-#define X(name, keys, text)                                                                    \
-    if (collider->name.present)                                                                \
-        return &cs_shape_##name;
-    CS_SHAPE_LIST(X)
-#undef X
-    return NULL;
-}
-
 /* Returns true if it has no end: a plane or a floor. */
 static inline bool cs_shape_is_endless(const struct cs_shape *shape) {
     return shape->bounds == CS_BOUNDS_HALF_SPACE;
@@ -124,27 +111,11 @@ static inline void cs_collider_to_local(const struct cs_posed_collider *collider
 
 /* Sets own = position in m of vertex i of a mesh in its own frame, at its time if it has key
  * frames. */
-static inline void cs_collider_mesh_vertex(const struct cs_posed_collider *collider, uint32_t i,
-                                           double own[3]) {
-    const struct cs_mesh_source *mesh = &collider->collider->mesh;
-    const struct cs_trimesh *geometry = mesh->geometry;
-    for (size_t c = 0; c < 3 && !mesh->paths; c++)
-        own[c] = geometry->positions[c * geometry->n + i];
-    if (mesh->paths)
-        cs_vertex_paths_sum(mesh->paths, &collider->path, collider->path.position, i, own);
-}
+void cs_collider_mesh_vertex(const struct cs_posed_collider *collider, uint32_t i,
+                             double own[3]);
 
 /* Sets positions (3,n) of all vertices likewise. */
-static inline void cs_collider_mesh_vertices(const struct cs_posed_collider *collider,
-                                             double *positions) {
-    const uint32_t n = collider->collider->mesh.geometry->n;
-    for (uint32_t i = 0; i < n; i++) {
-        double own[3];
-        cs_collider_mesh_vertex(collider, i, own);
-        for (size_t c = 0; c < 3; c++)
-            positions[c * n + i] = own[c];
-    }
-}
+void cs_collider_mesh_vertices(const struct cs_posed_collider *collider, double *positions);
 
 /* Sets out = a point of the collider's own frame in the world, in m. */
 static inline void cs_collider_to_world(const struct cs_posed_collider *collider,

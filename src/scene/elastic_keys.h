@@ -31,6 +31,10 @@ struct cs_elastic {
     double damping; /* s: stress per rate of strain over stress per strain */
 };
 
+struct cs_scene;
+/* The elastic keys of body b of a scene. */
+const struct cs_elastic *cs_scene_elastic(const struct cs_scene *scene, uint32_t b);
+
 /* A symmetric matrix of moduli over the strains (XX, YY, XY), or the curvatures (XX, YY, 2 XY):
  * entries 11, 22, 12, 33; the others are 0. X is the direction of the warp. */
 struct cs_moduli {

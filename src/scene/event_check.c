@@ -3,8 +3,11 @@
 
 #include "base/options.h"
 #include "base/vec3.h"
+#include "scene/body_keys.h"
 #include "scene/check.h"
 #include "scene/event_key.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 #include "scene/shape.h"
 
 #include <math.h>
@@ -106,7 +109,7 @@ static enum cs_status check_aim(const struct look *at, const char *part,
 /* Returns true if the scene's wind, or that of an earlier event, has a direction. */
 static bool has_direction(const struct look *at) {
     const struct cs_event *events = cs_scene_events(at->scene);
-    bool has = at->scene->forces.wind.present;
+    bool has = at->scene->forces->wind.present;
     for (uint32_t k = 0; k < at->scene->events.n; k++)
         has |= events[k].wind.present && !isnan(events[k].wind.direction[0]) &&
                begin_of(events + k) < begin_of(events + at->number);
@@ -125,7 +128,7 @@ static enum cs_status check_wind(const struct look *at, struct cs_wind_change *w
 
 /* Fills absent values of a viewpoint from the camera and the picture. */
 static void complete_viewpoint(const struct cs_scene *scene, struct cs_viewpoint *of) {
-    const struct cs_camera *camera = &scene->camera;
+    const struct cs_camera *camera = scene->camera;
     if (isnan(of->eye[0]))
         memcpy(of->eye, camera->eye, sizeof of->eye);
     if (isnan(of->target[0]))
@@ -135,7 +138,7 @@ static void complete_viewpoint(const struct cs_scene *scene, struct cs_viewpoint
     if (isnan(of->fov))
         of->fov = camera->fov;
     if (isnan(of->aspect))
-        of->aspect = (double)scene->render.size[0] / (double)scene->render.size[1];
+        of->aspect = (double)scene->render->size[0] / (double)scene->render->size[1];
 }
 
 /* A force at one moment has a duration, 1/60 s if absent; one over an interval has a rate of

@@ -2,6 +2,9 @@
 #include "scene/event_key.h"
 
 #include "base/options.h"
+#include "scene/body_keys.h"
+#include "scene/contact_keys.h"
+#include "scene/force_keys.h"
 #include "scene/shape.h"
 
 #include <math.h>
@@ -236,12 +239,12 @@ static enum cs_status check_there(const struct walk *walk, const struct cs_scene
     if (isnan(value))
         return cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: the scene has none",
                        walk->path);
-    if (grows(walk->plain) && scene->contact.law != CS_CONTACT_FORCE)
+    if (grows(walk->plain) && scene->contact->law != CS_CONTACT_FORCE)
         return cs_fail(walk->error, CS_ERR_SCENE,
                        "%.120s cannot change: contact.law project bounds the energy of pushes; "
                        "expected contact.law force",
                        walk->path);
-    if (!strcmp(walk->plain, "forces.wind.strength") && !scene->forces.wind.present)
+    if (!strcmp(walk->plain, "forces.wind.strength") && !scene->forces->wind.present)
         return cs_fail(walk->error, CS_ERR_SCENE,
                        "%.120s cannot change: the scene has no forces.wind", walk->path);
     if (!strcmp(walk->plain, "bodies.pressure") && !cs_shape_is_closed(body_of(walk, scene)))

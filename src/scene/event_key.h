@@ -4,6 +4,8 @@
 
 #include "scene/scene.h"
 
+struct cs_event;
+
 /* A number of the scene and its row of the tables. */
 struct cs_event_key {
     const struct cs_option *row;

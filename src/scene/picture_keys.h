@@ -2,7 +2,7 @@
 #ifndef CS_PICTURE_KEYS_H
 #define CS_PICTURE_KEYS_H
 
-#include <clothsim/option.h>
+#include "scene/scene.h"
 
 /* linear RGB: the default colour of cloth, which means white behind a texture */
 #define CS_CLOTH_RED                                                                           \

@@ -1,9 +1,14 @@
 /* Checks of a scene that ranges of single values cannot express. */
 #include "base/options.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
 #include "scene/check.h"
 #include "scene/collider.h"
+#include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
 #include "scene/event_key.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 #include "scene/shape.h"
 
 #include <math.h>
@@ -191,9 +196,9 @@ static uint32_t find_pair(const struct cs_body_pair_keys *pairs, uint32_t p) {
 
 /* Checks that listed pairs are two different bodies, each pair once. */
 static enum cs_status check_pairs(const struct cs_check *check, const struct cs_scene *scene) {
-    const struct cs_body_pair_keys *pairs = scene->pairs.list.items;
+    const struct cs_body_pair_keys *pairs = scene->pairs->list.items;
     char path[64];
-    for (uint32_t p = 0; p < scene->pairs.list.n; p++) {
+    for (uint32_t p = 0; p < scene->pairs->list.n; p++) {
         snprintf(path, sizeof path, "pairs.list[%u].bodies", p);
         for (int k = 0; k < 2; k++)
             if (pairs[p].bodies[k] >= scene->bodies.n)
@@ -219,7 +224,7 @@ static enum cs_status check_meetings(const struct cs_check *check,
     char path[64] = "pairs";
     if (check_pairs(check, scene))
         return check->error->status;
-    if (scene->contact.law == CS_CONTACT_FORCE || !cs_scene_has_body_contact(scene))
+    if (scene->contact->law == CS_CONTACT_FORCE || !cs_scene_has_body_contact(scene))
         return CS_OK;
     for (uint32_t b = scene->bodies.n; b--;)
         if (cs_scene_bodies(scene)[b].self_contact)
@@ -237,20 +242,21 @@ static enum cs_status check_meetings(const struct cs_check *check,
  * that meet in pairs. */
 static enum cs_status check_sticking(const struct cs_check *check,
                                      const struct cs_scene *scene) {
-    const struct cs_body_pair_keys *pairs = scene->pairs.list.items;
+    const struct cs_body_pair_keys *pairs = scene->pairs->list.items;
     char path[64] = "";
-    if (scene->contact.friction_law != CS_FRICTION_BRISTLES)
+    if (scene->contact->friction_law != CS_FRICTION_BRISTLES)
         return CS_OK;
-    if (scene->contact.law != CS_CONTACT_FORCE)
+    if (scene->contact->law != CS_CONTACT_FORCE)
         return cs_check_refuse(check, "contact.friction_law",
                                "found stick with contact.law project, expected contact.law "
                                "force");
     for (uint32_t b = scene->bodies.n; b--;)
         if (cs_scene_bodies(scene)[b].self_contact && cs_scene_bodies(scene)[b].friction > 0)
             snprintf(path, sizeof path, "bodies[%u].friction", b);
-    if (scene->pairs.among == CS_PAIRS_ALL && scene->pairs.friction > 0 && scene->bodies.n > 1)
+    if (scene->pairs->among == CS_PAIRS_ALL && scene->pairs->friction > 0 &&
+        scene->bodies.n > 1)
         snprintf(path, sizeof path, "pairs.friction");
-    for (uint32_t p = scene->pairs.list.n; p--;)
+    for (uint32_t p = scene->pairs->list.n; p--;)
         if (pairs[p].friction > 0)
             snprintf(path, sizeof path, "pairs.list[%u].friction", p);
     for (uint32_t c = scene->colliders.n; c--;)
@@ -324,12 +330,12 @@ static enum cs_status check_lights(const struct cs_check *check, struct cs_scene
         if (check_light(check, path, lights + k))
             return check->error->status;
     }
-    return check_light(check, "light", &scene->light);
+    return check_light(check, "light", scene->light);
 }
 
 /* Checks that the body has the marked particles. */
 static enum cs_status check_marks(const struct cs_check *check, const struct cs_scene *scene) {
-    const struct cs_marks *marks = &scene->render.marks;
+    const struct cs_marks *marks = &scene->render->marks;
     const struct cs_pin *pins = marks->particles.items;
     char path[64], fault[200];
     if (marks->body >= scene->bodies.n)
@@ -385,9 +391,9 @@ enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_
     path_out[0] = 0;
     if (check_bodies(&check, scene) || check_colliders(&check, scene) ||
         check_meetings(&check, scene) || check_sticking(&check, scene) ||
-        cs_seams_check(&check, scene) || check_wind(&check, &scene->forces.wind) ||
-        check_camera(&check, &scene->camera) || check_lights(&check, scene) ||
-        check_render(&check, &scene->render) || check_marks(&check, scene) ||
+        cs_seams_check(&check, scene) || check_wind(&check, &scene->forces->wind) ||
+        check_camera(&check, scene->camera) || check_lights(&check, scene) ||
+        check_render(&check, scene->render) || check_marks(&check, scene) ||
         cs_events_check(scene, path_out, error))
         return error->status;
     return CS_OK;

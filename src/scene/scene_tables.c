@@ -1,7 +1,12 @@
 /* The scene's rows: the one place that says which keys a scene has. Parsing, --set, --resolved,
  * the schema and the man page all come from here. A default outside its range (NAN, -1) means:
  * absent unless given. */
+#include "scene/body_keys.h"
 #include "scene/collider.h"
+#include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 #include "scene/table_rows.h"
 
 static const double zero3[3] = {0, 0, 0};
@@ -294,8 +299,9 @@ static const struct cs_option contact_rows[] = {
            "for force: smooth: friction depends on the velocity alone, and what rests creeps; "
            "stick: particles hang on anchors in colliders and rest below the limit"),
 };
-static const struct cs_table contact_table = {
-    ROWS(contact_rows), .size = sizeof(struct cs_contact_keys), .shorthand_text = "law"};
+static const struct cs_table contact_table = {ROWS(contact_rows),
+                                              .size = sizeof(struct cs_contact_keys),
+                                              .apart = true, .shorthand_text = "law"};
 
 static const char *const crossings_names[] = {"ignore", "count", "limit", "stop", NULL};
 static const struct cs_option pair_rows[] = {
@@ -314,8 +320,9 @@ static const struct cs_option pairs_rows[] = {
     LIST(struct cs_body_pairs_keys, list, pair_table,
          "pairs of bodies, each with its own friction"),
 };
-static const struct cs_table pairs_table = {
-    ROWS(pairs_rows), .size = sizeof(struct cs_body_pairs_keys), .shorthand_text = "among"};
+static const struct cs_table pairs_table = {ROWS(pairs_rows),
+                                            .size = sizeof(struct cs_body_pairs_keys),
+                                            .apart = true, .shorthand_text = "among"};
 
 static const double absent3[3] = {ABSENT, ABSENT, ABSENT};
 static const char *const wind_units[] = {"Pa", "N", NULL};
@@ -350,7 +357,8 @@ static const struct cs_option force_rows[] = {
          "and is not a force"),
     TABLE(struct cs_forces, wind, wind_table, "steady wind, by the particle normals"),
 };
-static const struct cs_table force_table = {ROWS(force_rows), .size = sizeof(struct cs_forces)};
+static const struct cs_table force_table = {ROWS(force_rows), .size = sizeof(struct cs_forces),
+                                            .apart = true};
 
 static const struct cs_option time_rows[] = {
     REAL(struct cs_time, fps, "1/s", 60, 1e-3, 1e6,

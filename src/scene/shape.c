@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "base/vec3.h"
 #include "mesh/trimesh.h"
+#include "scene/body_keys.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -251,4 +252,8 @@ bool cs_shape_pin_fault(const struct cs_body *body, const struct cs_pin *pin, ch
             return snprintf(text, size, "box.min[%d] = %.9g lies above box.max[%d] = %.9g", c,
                             pin->box.min[c], c, pin->box.max[c]);
     return false;
+}
+
+const struct cs_body *cs_scene_body(const struct cs_scene *scene, uint32_t b) {
+    return cs_scene_bodies(scene) + b;
 }

@@ -4,6 +4,14 @@
 
 #include "scene/scene.h"
 
+struct cs_body;
+struct cs_holder;
+struct cs_pin;
+struct cs_pose;
+
+/* Body b of a scene. */
+const struct cs_body *cs_scene_body(const struct cs_scene *scene, uint32_t b);
+
 /* Number of particles of a body, its placement, and its velocity in m/s at time 0. */
 int64_t cs_shape_count(const struct cs_body *body);
 const struct cs_pose *cs_shape_placement(const struct cs_body *body);

@@ -9,10 +9,31 @@
  * The keys of the mesh are with those of bodies, in scene_tables.c. */
 #include "base/vec3.h"
 #include "scene/collider.h"
+#include "scene/collider_keys.h"
 #include "scene/shape.h"
 
 #include <math.h>
 #include <string.h>
+
+void cs_collider_mesh_vertex(const struct cs_posed_collider *collider, uint32_t i,
+                             double own[3]) {
+    const struct cs_mesh_source *mesh = &collider->collider->mesh;
+    const struct cs_trimesh *geometry = mesh->geometry;
+    for (size_t c = 0; c < 3 && !mesh->paths; c++)
+        own[c] = geometry->positions[c * geometry->n + i];
+    if (mesh->paths)
+        cs_vertex_paths_sum(mesh->paths, &collider->path, collider->path.position, i, own);
+}
+
+void cs_collider_mesh_vertices(const struct cs_posed_collider *collider, double *positions) {
+    const uint32_t n = collider->collider->mesh.geometry->n;
+    for (uint32_t i = 0; i < n; i++) {
+        double own[3];
+        cs_collider_mesh_vertex(collider, i, own);
+        for (size_t c = 0; c < 3; c++)
+            positions[c * n + i] = own[c];
+    }
+}
 
 static enum cs_status check(const struct cs_check *at, const char *path,
                             struct cs_collider *collider) {

@@ -4,6 +4,7 @@
  * the plane. Its gradient is n and its Hessian 0: exact and smooth distance are the same. */
 #include "base/vec3.h"
 #include "scene/collider.h"
+#include "scene/collider_keys.h"
 #include "scene/shape_core.h"
 #include "scene/table_rows.h"
 

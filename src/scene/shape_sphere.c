@@ -2,6 +2,7 @@
  *   d = l - r,   gradient n = (p - c) / l,   Hessian (I - n n^T) / l
  * In the centre the normal is up and the Hessian 0. */
 #include "base/vec3.h"
+#include "scene/collider_keys.h"
 #include "scene/shape_core.h"
 #include "scene/table_rows.h"
 

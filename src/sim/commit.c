@@ -20,6 +20,7 @@
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/post_step/contact_projection.h"
 #include "model/system/seams.h"
+#include "scene/force_keys.h"
 #include "sim/energy_ledger.h"
 
 /* Shortens springs that are longer than the scene allows; counts them. */
@@ -82,7 +83,7 @@ static void apply_velocity_loss(void *arg, size_t begin, size_t end) {
 /* v *= 1 - velocity_loss, once per step whatever its length: not a force (see
  * docs/theory.md). */
 static void lose_velocity(struct cs_run_host *host, double *v, bool *changed) {
-    struct loss loss = {v, 1 - host->run->system->scene->forces.velocity_loss};
+    struct loss loss = {v, 1 - host->run->system->scene->forces->velocity_loss};
     cs_vector_parallel_for(3 * (size_t)host->run->system->view.n, apply_velocity_loss, &loss);
     *changed = true;
 }

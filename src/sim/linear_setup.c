@@ -26,6 +26,7 @@
 #include "model/contact/rebound.h"
 #include "model/force/terms.h"
 #include "scene/body_pairs.h"
+#include "scene/contact_keys.h"
 
 #include <clothsim/clones.h>
 #include <string.h>
@@ -238,7 +239,7 @@ static bool set_end(struct cs_run_host *host, const double *b, const double *dv)
 
 enum cs_status cs_host_init_settling(struct cs_run_host *host, struct cs_error *error) {
     const struct cs_system *system = host->run->system;
-    if (system->pairs && system->scene->contact.friction_speed < SETTLED_BELOW &&
+    if (system->pairs && system->scene->contact->friction_speed < SETTLED_BELOW &&
         !cs_scene_friction_sticks(system->scene) &&
         !(host->run->integrator->needs & CS_NEED_LAGGED_FRICTION))
         CS_ARENA_ARRAY(&host->arena, host->settled, 3 * (size_t)system->view.n, error);

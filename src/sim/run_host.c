@@ -11,6 +11,7 @@
 #include "model/force/terms.h"
 #include "model/system/shape_clusters.h"
 #include "scene/body_pairs.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -313,7 +314,7 @@ bool cs_blow_up_check_step(const struct cs_blow_up_check *check, struct cs_run *
  * fastest particle does, and at rest nothing: a second. */
 void cs_run_host_set_scales(struct cs_run_host *host) {
     const struct cs_view *view = &host->run->system->view;
-    const double *g = host->run->system->scene->forces.gravity, *v = host->run->v;
+    const double *g = host->run->system->scene->forces->gravity, *v = host->run->v;
     double length = 0, squared = 0;
     for (size_t c = 0; c < 3; c++) {
         double low = HUGE_VAL, high = -HUGE_VAL;

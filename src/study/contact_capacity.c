@@ -6,6 +6,8 @@
 #include "model/contact/collider_params.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "scene/body_pairs.h"
+#include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
 
 #include <math.h>
 
@@ -85,7 +87,7 @@ void cs_contact_capacity_print(const struct cs_system *system,
 void cs_contact_capacity_warn(const struct cs_system *system, struct cs_text *out) {
     struct cs_contact_capacity capacity;
     if (!cs_contact_capacity_find(system, &capacity) ||
-        isnan(system->scene->contact.stiffness) ||
+        isnan(system->scene->contact->stiffness) ||
         capacity.holds >= CS_APPROACH_MARGIN * capacity.comes)
         return;
     cs_text_add(out, "contact.stiffness: at %.3g N/m a contact of ", capacity.k);
@@ -141,7 +143,7 @@ void cs_contact_note_add(const struct cs_scene *scene, const char *before,
                          struct cs_text *out) {
     if (scene->colliders.n > 0 || cs_scene_has_body_contact(scene))
         cs_text_add(out, "%s%s", before,
-                    scene->contact.law == CS_CONTACT_FORCE
+                    scene->contact->law == CS_CONTACT_FORCE
                         ? "contact is a force, in linear theory and in runs"
                         : "contact is off in linear theory; in runs it acts after each step");
 }
@@ -182,7 +184,7 @@ void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
     for (uint32_t c = 0; system->collider_params && c < scene->colliders.n; c++)
         stiffest = fmax(stiffest, system->collider_params[c].k);
     if (stiffest > 0 && any_friction(scene) &&
-        scene->contact.friction_law == CS_FRICTION_BRISTLES)
+        scene->contact->friction_law == CS_FRICTION_BRISTLES)
         cs_text_add(out,
                     "friction that sticks holds a particle by %.3g N/m and %.3g N s/m, "
                     "which limits explicit steps\n",
@@ -194,5 +196,5 @@ void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
             "steps above 2 over that explicit methods let it chatter, by mu N dt/(2 m) at "
             "most; what rests on a slope of half of mu creeps by %.2g mm in 30 s, with an "
             "implicit method and a friction_speed of 5e-6 m/s by 0.09 mm\n",
-            scene->contact.friction_speed, 30e3 * 0.57735 * scene->contact.friction_speed);
+            scene->contact->friction_speed, 30e3 * 0.57735 * scene->contact->friction_speed);
 }

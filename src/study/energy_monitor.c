@@ -6,7 +6,9 @@
 #include "model/event/event_state.h"
 #include "model/event/events.h"
 #include "model/force/terms.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -152,7 +154,7 @@ enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
         return error->status;
     start_speeds(monitor, run);
     monitor->start_speed += speed;
-    const double *g = run->system->scene->forces.gravity, c = cs_run_calls(run)->speed_scale;
+    const double *g = run->system->scene->forces->gravity, c = cs_run_calls(run)->speed_scale;
     if (length_of(g) > 0 || monitor->start_speed > 0)
         monitor->least = 0.5 * LEAST_FRACTION * c * c;
     monitor->last_sample = run->t;

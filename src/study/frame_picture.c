@@ -9,6 +9,10 @@
 #include "model/contact/ccd/crossings.h"
 #include "model/elastic/membrane_strain.h"
 #include "model/event/event_state.h"
+#include "scene/body_keys.h"
+#include "scene/collider_keys.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 #include "scene/shape.h"
 #include "sim/crash.h"
 
@@ -17,7 +21,7 @@
 #include <string.h>
 
 bool cs_picture_is_coloured(const struct cs_scene *scene) {
-    return cs_look_of(scene->render.look)->title;
+    return cs_look_of(scene->render->look)->title;
 }
 
 static enum cs_status read_texture(const struct cs_scene *scene, const char *name,
@@ -129,7 +133,7 @@ static void free_ramps(struct cs_picture *picture) {
 
 /* Allocates marks of triangles if the look shows crossings. Returns false if out of memory. */
 static bool take_marks(struct cs_picture *picture) {
-    if (cs_look_of(picture->scene->render.look)->colours != CS_COLOURS_CROSSINGS)
+    if (cs_look_of(picture->scene->render->look)->colours != CS_COLOURS_CROSSINGS)
         return true;
     picture->triangle_marks = calloc((size_t)picture->system->surfaces->n_triangles + 1, 1);
     return picture->triangle_marks;
@@ -137,7 +141,7 @@ static bool take_marks(struct cs_picture *picture) {
 
 /* Marks the particles of render.marks, the first of them by 2. */
 static enum cs_status make_marks(struct cs_picture *picture, struct cs_error *error) {
-    const struct cs_marks *marks = &picture->scene->render.marks;
+    const struct cs_marks *marks = &picture->scene->render->marks;
     const struct cs_body_range *range = picture->system->bodies + marks->body;
     const uint32_t n = picture->system->view.n;
     struct cs_body body = cs_scene_bodies(picture->scene)[marks->body];
@@ -162,7 +166,7 @@ static enum cs_status make_marks(struct cs_picture *picture, struct cs_error *er
 static enum cs_status alloc_arrays(struct cs_picture *picture, struct cs_error *error) {
     const size_t n = picture->system->view.n;
     const bool coloured = cs_picture_is_coloured(picture->scene);
-    const bool drawn_to = cs_look_of(picture->scene->render.look)->goals;
+    const bool drawn_to = cs_look_of(picture->scene->render->look)->goals;
     picture->x = calloc(n, 3 * sizeof(double));
     picture->colliders = calloc(picture->scene->colliders.n + 1, sizeof *picture->colliders);
     picture->inv_mass = calloc(n, sizeof(double));
@@ -241,7 +245,7 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
         !make_ramps(picture, error) && !alloc_arrays(picture, error) &&
         !open_renderer(kind, &picture->renderer, error)) {
         /* what viewpoint forces see is drawn from the events, which move on with the run */
-        const bool apart = beside && !picture->scene->render.viewpoint_forces;
+        const bool apart = beside && !picture->scene->render->viewpoint_forces;
         picture->worker = apart ? cs_worker_thread_create() : NULL;
         cs_worker_thread_submit(picture->worker, make_canvas, picture);
         cs_picture_end(picture, error);
@@ -255,7 +259,7 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
 
 void cs_picture_values(const struct cs_system *system, const struct cs_run *run, double *scalar,
                        double *work) {
-    const enum cs_look_colours colours = cs_look_of(system->scene->render.look)->colours;
+    const enum cs_look_colours colours = cs_look_of(system->scene->render->look)->colours;
     if (colours == CS_COLOURS_FORCE)
         cs_diagnostics_particle_force(system, run->t, run->x, run->v, scalar, work);
     else if (colours == CS_COLOURS_STRESS)
@@ -265,14 +269,14 @@ void cs_picture_values(const struct cs_system *system, const struct cs_run *run,
 }
 
 void cs_picture_range(const struct cs_scene *scene, double most, double range[2]) {
-    range[0] = cs_look_of(scene->render.look)->has_sign ? -most : 0;
+    range[0] = cs_look_of(scene->render->look)->has_sign ? -most : 0;
     range[1] = most;
 }
 
 /* Values and range of the colours. The magnitude is robust: one pinched corner must not leave
  * the rest without colours. */
 static void measure_colours(struct cs_picture *picture, const struct cs_run *run) {
-    const double *given = picture->scene->render.range;
+    const double *given = picture->scene->render->range;
     const uint32_t n = picture->system->view.n;
     if (picture->values)
         memcpy(picture->scalar, picture->values, n * sizeof *picture->scalar);
@@ -287,7 +291,7 @@ static void measure_colours(struct cs_picture *picture, const struct cs_run *run
 /* Draws the picture; runs on the worker thread if there is one. */
 static void paint(void *object) {
     struct cs_picture *picture = object;
-    const struct cs_look_kind *look = cs_look_of(picture->scene->render.look);
+    const struct cs_look_kind *look = cs_look_of(picture->scene->render->look);
     const double start = cs_clock_wall();
     const struct cs_frame frame = {.t = picture->t,
                                    .x = picture->x,
@@ -362,7 +366,7 @@ void cs_picture_close(struct cs_picture *picture) {
 enum cs_status cs_snapshot_draw(const struct cs_run *run, const double *values,
                                 enum cs_renderer_kind kind, struct cs_image *image,
                                 struct cs_text *renderer, struct cs_error *error) {
-    const struct cs_render *render = &run->system->scene->render;
+    const struct cs_render *render = run->system->scene->render;
     struct cs_picture picture;
     image->width = (uint32_t)render->size[0];
     image->height = (uint32_t)render->size[1];

@@ -6,7 +6,9 @@
 #include "model/contact/contact_samples.h"
 #include "model/contact/surface_points.h"
 #include "model/system/surfaces.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/force_keys.h"
 #include "scene/shape.h"
 
 #include <math.h>
@@ -80,7 +82,7 @@ static void reach_from_pin(const double *x, size_t n, size_t pin, struct box *re
  * the way. */
 static void free_fall_box(const struct cs_scene *scene, const struct cs_body *body,
                           double seconds, const struct box *start, struct box *reach) {
-    const double *v = cs_shape_velocity(body), *g = scene->forces.gravity;
+    const double *v = cs_shape_velocity(body), *g = scene->forces->gravity;
     double diagonal = 0;
     for (int c = 0; c < 3; c++)
         diagonal += (start->high[c] - start->low[c]) * (start->high[c] - start->low[c]);

@@ -3,6 +3,8 @@
 
 #include "base/hash.h"
 #include "base/json_writer.h"
+#include "scene/body_keys.h"
+#include "scene/collider_keys.h"
 #include "scene/file/key_frames_read.h"
 #include "sim/module.h"
 

@@ -2,6 +2,9 @@
 #include "study/recorded_run.h"
 
 #include "model/event/events.h"
+#include "scene/body_keys.h"
+#include "scene/contact_keys.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,8 +20,8 @@ static bool has_strain_limit(const struct cs_scene *scene) {
 }
 
 void cs_recorded_run_describe_changes(const struct cs_scene *scene, struct cs_text *out) {
-    const bool projected = scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT;
-    const bool parts[] = {projected, has_strain_limit(scene), scene->forces.velocity_loss > 0};
+    const bool projected = scene->colliders.n > 0 && scene->contact->law == CS_CONTACT_PROJECT;
+    const bool parts[] = {projected, has_strain_limit(scene), scene->forces->velocity_loss > 0};
     const char *const names[] = {"contact", "strain limit", "velocity loss"};
     bool any = false;
     for (int k = 0; k < 3; k++)

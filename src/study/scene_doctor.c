@@ -7,7 +7,11 @@
 #include "model/contact/posed_collider.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
+#include "scene/force_keys.h"
 #include "study/contact_capacity.h"
 #include "study/overlap_warning.h"
 #include "study/scene_findings.h"
@@ -31,7 +35,7 @@ static double length_of(const double a[3]) {
 }
 
 static double gravity_of(const struct cs_system *system) {
-    return length_of(system->scene->forces.gravity);
+    return length_of(system->scene->forces->gravity);
 }
 
 /* --- stored energy --- */
@@ -64,7 +68,7 @@ static double size_of(const struct cs_system *system) {
 /* J that impacts give the whole scene if it is at rest; HUGE_VAL where work has no bound. */
 static double event_energy(const struct cs_system *system, double mass) {
     const struct cs_scene *scene = system->scene;
-    double energy = scene->forces.wind.present ? HUGE_VAL : 0;
+    double energy = scene->forces->wind.present ? HUGE_VAL : 0;
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_event *event = cs_scene_events(scene) + e;
         if (event->impact.present)
@@ -230,8 +234,8 @@ static bool find_plane(const struct cs_system *system, const struct cs_body_rang
 
 /* True if only pins, releases and ramps happen, and no obstacle or wind is there. */
 static bool is_undisturbed(const struct cs_scene *scene) {
-    bool calm =
-        !scene->colliders.n && !scene->forces.wind.present && !cs_scene_has_body_contact(scene);
+    bool calm = !scene->colliders.n && !scene->forces->wind.present &&
+                !cs_scene_has_body_contact(scene);
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_event *event = cs_scene_events(scene) + e;
         calm = calm && (event->pin.present || event->release.present || event->ramp.present);
@@ -243,7 +247,7 @@ static bool is_undisturbed(const struct cs_scene *scene) {
  * single points, or shorter than at rest. */
 static void check_symmetry(const struct cs_system *system, struct cs_text *out) {
     const struct cs_scene *scene = system->scene;
-    const double *g = scene->forces.gravity;
+    const double *g = scene->forces->gravity;
     for (uint32_t b = 0; b < scene->bodies.n && is_undisturbed(scene); b++) {
         const struct cs_body_range *range = system->bodies + b;
         const struct cs_body *body = cs_scene_bodies(scene) + b;
@@ -298,7 +302,7 @@ static double width_of(const struct cs_posed_collider *collider) {
 /* Obstacles that fit between the particles: projection sees particles only. */
 static void check_gaps(const struct cs_system *system, struct cs_text *out) {
     const struct cs_scene *scene = system->scene;
-    for (uint32_t k = 0; k < scene->colliders.n && scene->contact.law == CS_CONTACT_PROJECT;
+    for (uint32_t k = 0; k < scene->colliders.n && scene->contact->law == CS_CONTACT_PROJECT;
          k++) {
         struct cs_posed_collider collider;
         double gap = 0;

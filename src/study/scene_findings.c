@@ -12,8 +12,13 @@
 #include "base/vec3.h"
 #include "model/contact/posed_collider.h"
 #include "model/event/event_state.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
 #include "scene/event_key.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,7 +28,7 @@
 typedef bool acts(const struct cs_scene *scene, uint32_t k);
 
 static bool is_force(const struct cs_scene *scene) {
-    return scene->contact.law == CS_CONTACT_FORCE;
+    return scene->contact->law == CS_CONTACT_FORCE;
 }
 static const struct cs_body *body_at(const struct cs_scene *scene, uint32_t k) {
     return cs_scene_bodies(scene) + k;
@@ -87,7 +92,7 @@ static bool is_contact_force(const struct cs_scene *scene, uint32_t k) {
     return is_force(scene) && has_contact(scene, k);
 }
 static bool is_smooth_friction(const struct cs_scene *scene, uint32_t k) {
-    return is_contact_force(scene, k) && scene->contact.friction_law == CS_FRICTION_SMOOTH &&
+    return is_contact_force(scene, k) && scene->contact->friction_law == CS_FRICTION_SMOOTH &&
            (cs_scene_has_friction(scene) || cs_event_key_changes(scene, "friction"));
 }
 static bool sticks(const struct cs_scene *scene, uint32_t k) {
@@ -99,28 +104,28 @@ static bool has_pairs(const struct cs_scene *scene, uint32_t k) {
     return scene->bodies.n > 1;
 }
 static bool are_all_pairs(const struct cs_scene *scene, uint32_t k) {
-    return has_pairs(scene, k) && scene->pairs.among == CS_PAIRS_ALL;
+    return has_pairs(scene, k) && scene->pairs->among == CS_PAIRS_ALL;
 }
 static bool has_drag(const struct cs_scene *scene, uint32_t k) {
     (void)k;
-    return cs_event_key_acts(scene, scene->forces.drag, "forces.drag");
+    return cs_event_key_acts(scene, scene->forces->drag, "forces.drag");
 }
 static bool flows(const struct cs_scene *scene, uint32_t k) {
     (void)k;
-    return scene->forces.wind.present && !isnan(scene->forces.wind.velocity[0]);
+    return scene->forces->wind.present && !isnan(scene->forces->wind.velocity[0]);
 }
 static bool blows(const struct cs_scene *scene, uint32_t k) {
     (void)k;
     bool any = flows(scene, k) ||
-               cs_event_key_acts(scene, scene->forces.wind.strength, "forces.wind.strength");
+               cs_event_key_acts(scene, scene->forces->wind.strength, "forces.wind.strength");
     for (uint32_t e = 0; e < scene->events.n; e++)
         any = any || cs_scene_events(scene)[e].wind.present;
     return any;
 }
 static bool has_range(const struct cs_scene *scene, uint32_t k) {
     (void)k;
-    return scene->render.look == CS_LOOK_FORCE || scene->render.look == CS_LOOK_STRAIN ||
-           scene->render.look == CS_LOOK_STRESS;
+    return scene->render->look == CS_LOOK_FORCE || scene->render->look == CS_LOOK_STRAIN ||
+           scene->render->look == CS_LOOK_STRESS;
 }
 
 static bool has_young(const struct cs_scene *scene, uint32_t k) {

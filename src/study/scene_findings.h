@@ -4,6 +4,7 @@
 #define CS_SCENE_FINDINGS_H
 
 #include "model/system/particle_system.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 

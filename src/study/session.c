@@ -7,7 +7,10 @@
 #include "base/pool.h"
 #include "model/contact/collider_params.h"
 #include "model/plan.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/contact_keys.h"
+#include "scene/picture_keys.h"
 #include "scene/shape.h"
 #include "study/perturb.h"
 
@@ -164,7 +167,7 @@ static enum cs_status check_method(struct cs_session *session, struct cs_error *
     cs_plan_choose_contact_law(&session->scene, method);
     if (!session->settings.method && cs_plan_check(&session->scene, method, &said))
         return fail_at(session, said.status, said.message, error);
-    if (render && session->scene.render.look == CS_LOOK_GOALS && !cs_run_has_goals(method))
+    if (render && session->scene.render->look == CS_LOOK_GOALS && !cs_run_has_goals(method))
         return cs_fail(error, CS_ERR_SCENE,
                        "%s: render.look: integrator \"%s\" has no goals to draw",
                        session->scene.path, method->name);
@@ -330,7 +333,7 @@ enum cs_status cs_session_build(struct cs_session *session, struct cs_error *err
     if (cs_system_build(&session->system, &session->scene, &session->plan, &said))
         return said.status == CS_ERR_SCENE ? fail_at(session, said.status, said.message, error)
                                            : cs_fail(error, said.status, "%s", said.message);
-    cs_contact_keys_complete(&session->scene.contact, &session->system);
+    cs_contact_keys_complete(session->scene.contact, &session->system);
     if (cs_initial_penetration_resolve(&session->system, &session->initial_penetration, error))
         return error->status;
     if (session->settings.perturbation > 0)

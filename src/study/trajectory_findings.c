@@ -7,6 +7,8 @@
 #include "model/contact/posed_collider.h"
 #include "model/event/event_state.h"
 #include "model/system/seams.h"
+#include "scene/body_keys.h"
+#include "scene/force_keys.h"
 #include "scene/shape.h"
 
 #include <math.h>
@@ -262,7 +264,7 @@ static void check_jump(const struct cs_system *system, uint32_t e, const void *a
     /* faster than a fall over the body, and not as shifts */
     const double fastest =
         sqrt(2 * size *
-             sqrt(cs_vec3_dot(system->scene->forces.gravity, system->scene->forces.gravity)));
+             sqrt(cs_vec3_dot(system->scene->forces->gravity, system->scene->forces->gravity)));
     if (jump > JUMP_RATIO * shift && jump > JUMP_SIZE * size && jump > fastest * seconds)
         cs_text_add(out,
                     "events[%u].grab.path[0] is %.3g m from where its particle starts, reached "

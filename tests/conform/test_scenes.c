@@ -4,6 +4,7 @@
 #include "../suite.h"
 #include "conform/conform_checks.h"
 #include "model/force/terms.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 /* Any bytes as the key frames of a mesh of three vertices, PC2 or NPZ: whole paths or a
  * refusal. */
 #include "scene/file/key_frames_read.h"
+#include "scene/mesh_keys.h"
 
 #include <math.h>
 #include <stdint.h>

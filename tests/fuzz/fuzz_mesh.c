@@ -1,5 +1,6 @@
 /* Any bytes as an OBJ file: a sound mesh or a refusal. */
 #include "scene/file/mesh_read.h"
+#include "scene/mesh_keys.h"
 
 #include <stdint.h>
 #include <string.h>

@@ -89,7 +89,7 @@ static void choose_options(struct choices *choices, const struct cs_method *meth
 static int64_t count_particles(const struct cs_scene *scene) {
     int64_t n = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        n += cs_shape_count(cs_scene_bodies(scene) + b);
+        n += cs_shape_count(cs_scene_body(scene, b));
     return n;
 }
 

@@ -5,6 +5,7 @@
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "model/solver/linear.h"
+#include "scene/elastic_keys.h"
 #include "sheet.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
 
 #include "model/contact/barrier_law.h"
 #include "model/contact/step_check.h"
+#include "scene/contact_keys.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -151,7 +152,7 @@ TEST(damping_is_chosen_where_nobody_names_law_or_damping) {
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         struct fixture box;
         fixture_open(&box, "rk4", BOX, rows[r].contact);
-        ck_assert_double_eq_tol(box.system->scene->contact.damping, rows[r].damping, 1e-15);
+        ck_assert_double_eq_tol(box.system->scene->contact->damping, rows[r].damping, 1e-15);
         fixture_close(&box);
     }
 }

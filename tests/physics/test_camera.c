@@ -2,6 +2,8 @@
 #include "picture_fixture.h"
 
 #include "draw/view.h"
+#include "scene/collider_keys.h"
+#include "scene/picture_keys.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,6 +4,7 @@
 #include "mesh/trimesh.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
+#include "scene/body_keys.h"
 #include "sheet.h"
 
 #include <math.h>
@@ -157,7 +158,8 @@ static double buckling_load(int cells) {
 TEST(cylinder_buckles_at_the_load_of_theory) {
     const double coarse = buckling_load(128) - 1, fine = buckling_load(256) - 1;
     ck_assert_msg(coarse < 0.016 && fine < 0.0045, "%g at 128, %g at 256 cells", coarse, fine);
-    ck_assert_msg(fabs(log2(coarse / fine) - 2) < 0.2, "%g at 128, %g at 256 cells", coarse, fine);
+    ck_assert_msg(fabs(log2(coarse / fine) - 2) < 0.2, "%g at 128, %g at 256 cells", coarse,
+                  fine);
 }
 
 /* --- tension at an angle to the warp --- */

@@ -3,6 +3,7 @@
 #include "methods.h"
 
 #include "model/event/events.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -177,7 +178,7 @@ TEST(wind_rises_and_turns) {
                  " \"strength\": 3}}, {\"from\": 0.1, \"to\": 0.2, \"wind\":"
                  " {\"direction\": [0, 2, 0], \"strength\": 4}},"
                  "{\"at\": 0.25, \"wind\": {\"strength\": 0}}");
-    const struct cs_wind *wind = &dust.system->scene->forces.wind;
+    const struct cs_wind *wind = &dust.system->scene->forces->wind;
     fixture_start(&dust);
     fixture_frames(&dust, 3);
     ck_assert_double_eq_tol(wind->strength, 1.5, 1e-14);

@@ -20,6 +20,7 @@ static enum cs_status add(void *state, const struct cs_export_source *source,
 static struct cs_export_writer bare = {.ending = "obj", .size = 1, .add = add};
 #define cs_export_obj bare
 #include "../../src/io/export/export.c"
+#include "scene/collider_keys.h"
 
 #define SCENE "{\"bodies\": [{\"cloth\": {\"grid\": [4, 3]}, \"mass\": {\"total\": 0.2}}]}"
 

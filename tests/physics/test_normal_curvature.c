@@ -3,6 +3,7 @@
 #include "model/elastic/bending_forces.h"
 #include "model/elastic/bending_sums.h"
 #include "model/force/terms.h"
+#include "scene/elastic_keys.h"
 #include "sheet.h"
 
 #include <math.h>

@@ -5,6 +5,8 @@
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"
 #include "model/plan.h"
+#include "scene/body_keys.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 
@@ -19,11 +21,11 @@ TEST(ramp_is_linear_in_time) {
     fixture_frames(&dust, 24); /* 0.4 s */
     ck_assert_double_eq_tol(dust.v[dust.n], 6 * 0.3 * 0.3, 1e-13);
     ck_assert_double_eq_tol(dust.x[dust.n] - start, 2 * 0.3 * 0.3 * 0.3, 1e-6);
-    ck_assert(fabs(dust.system->scene->forces.gravity[1] - 3.6) < 1e-14);
+    ck_assert(fabs(dust.system->scene->forces->gravity[1] - 3.6) < 1e-14);
     fixture_frames(&dust, 24); /* 0.8 s: 0.2 s at 6 m/s2 */
     ck_assert_double_eq_tol(dust.v[dust.n], 1.5 + 1.2, 1e-13);
-    ck_assert(dust.system->scene->forces.gravity[1] == 6);
-    ck_assert(dust.session.scene.forces.gravity[1] == 0);
+    ck_assert(dust.system->scene->forces->gravity[1] == 6);
+    ck_assert(dust.session.scene.forces->gravity[1] == 0);
     fixture_close(&dust);
 }
 

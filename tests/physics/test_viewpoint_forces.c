@@ -3,6 +3,8 @@
 
 #include "model/event/event_state.h"
 #include "model/event/events.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -245,7 +247,7 @@ TEST(viewpoint_is_the_cameras_by_default) {
         &cs_scene_events(&dust.session.scene)[0].viewpoint_force.viewpoint;
     const struct cs_viewpoint *b =
         &cs_scene_events(&dust.session.scene)[1].viewpoint_force.viewpoint;
-    const struct cs_camera *camera = &dust.session.scene.camera;
+    const struct cs_camera *camera = dust.session.scene.camera;
     ck_assert_mem_eq(a->eye, camera->eye, sizeof a->eye);
     ck_assert_mem_eq(b->target, camera->target, sizeof a->target);
     ck_assert_mem_eq(b->up, camera->up, sizeof a->up);

@@ -6,6 +6,7 @@
 #include "advise/advise.h"
 
 #include "../physics/fixture.h"
+#include "scene/contact_keys.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -199,7 +200,7 @@ static void advise_sliding(const char *format, const char *friction, double *saf
     cs_advise_run(&advise, &error);
     ck_assert_msg(!error.status, "%s", error.message);
     ck_assert_int_eq(advise.rows->verdict, CS_STABILITY_BOUNDED);
-    ck_assert(advise.was_opened.system.scene->contact.damping > 0);
+    ck_assert(advise.was_opened.system.scene->contact->damping > 0);
     *safe = advise.rows->safe;
     *border = advise.rows->measured;
     cs_advise_finish(&advise);

@@ -3,6 +3,7 @@
 #define MESH_TEXT_H
 
 #include "scene/file/mesh_read.h"
+#include "scene/mesh_keys.h"
 #include "unit.h"
 
 static const struct cs_mesh_source plain = {.scale = {1, 1, 1}, .weld = true};

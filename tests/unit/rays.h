@@ -7,6 +7,8 @@
 
 #include "mesh/trimesh.h"
 #include "model/contact/posed_collider.h"
+#include "scene/collider_keys.h"
+#include "scene/force_keys.h"
 #include "sheet.h"
 
 /* two cloths, a closed mesh, and obstacles of every kind; %s: keys of the last sphere */

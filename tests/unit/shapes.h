@@ -3,6 +3,7 @@
 #define CS_TESTS_SHAPES_H
 
 #include "model/contact/posed_collider.h"
+#include "scene/collider_keys.h"
 #include "unit.h"
 
 /* rotation by the unit quaternion (1, 2, 3, 4)/sqrt(30): no axis stays parallel to another */

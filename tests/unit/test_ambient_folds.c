@@ -1,5 +1,7 @@
 /* How deep vertices lie in folds, against grooves whose curvature is known. */
 #include "draw/mesh.h"
+#include "scene/body_keys.h"
+#include "scene/picture_keys.h"
 #include "unit.h"
 
 #include <math.h>
@@ -18,7 +20,8 @@ static void bend(double r, double x[3 * N]) {
 
 static void update(struct cs_mesh *mesh, const double *x, struct cs_arena *arena) {
     static struct cs_body body = {.cloth = {.present = true, .grid = {SIDE, SIDE}}};
-    static struct cs_scene scene = {.bodies = {&body, 1}};
+    static struct cs_render render;
+    static struct cs_scene scene = {.bodies = {&body, 1}, .render = &render};
     static struct cs_body_range range = {0, N, SIDE, SIDE, NULL};
     static double start[3 * N];
     struct cs_error error = {0};

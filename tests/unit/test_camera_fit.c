@@ -1,5 +1,8 @@
 /* Cameras that frame places: what they show reaches as far as it was asked to. */
 #include "draw/camera_fit.h"
+#include "scene/collider_keys.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 #include "unit.h"
 
 #include <math.h>
@@ -77,11 +80,13 @@ TEST(extremes_stand_for_all) {
 TEST(the_start_is_in_the_picture) {
     struct cs_collider floor = {.floor = {.present = true, .height = -2}};
     const double low[3] = {4, 0, -1}, high[3] = {6, 2, 1};
-    struct cs_scene scene = {
-        .camera = {.frame = CS_FRAME_START, .eye = {1, 2, 3}, .up = {0, 1, 0}, .fov = 40},
-        .render = {.size = {640, 480}},
-        .forces = {.gravity = {0, -9.81, 0}},
-        .colliders = {.items = &floor, .n = 0}};
+    struct cs_scene scene = {.camera = &(struct cs_camera){.frame = CS_FRAME_START,
+                                                           .eye = {1, 2, 3},
+                                                           .up = {0, 1, 0},
+                                                           .fov = 40},
+                             .render = &(struct cs_render){.size = {640, 480}},
+                             .forces = &(struct cs_forces){.gravity = {0, -9.81, 0}},
+                             .colliders = {.items = &floor, .n = 0}};
     const struct cs_system system = {.scene = &scene};
     const struct cs_posed_collider posed = {.collider = &floor};
     for (uint32_t n = 0; n < 2; n++) {
@@ -113,11 +118,14 @@ static struct cs_camera camera_of(double to, double at) {
         .at = (double)NAN,
         .move = {.present = true, .relative = true, .path = {.items = &point, .n = 1}}};
     struct cs_collider ball = {.visible = true};
-    const struct cs_scene scene = {
-        .camera = {.frame = CS_FRAME_START, .eye = {0, 0, 3}, .up = {0, 1, 0}, .fov = 40},
-        .render = {.size = {640, 480}},
-        .colliders = {.items = &ball, .n = 1},
-        .events = {.items = &event, .n = 1}};
+    const struct cs_scene scene = {.camera = &(struct cs_camera){.frame = CS_FRAME_START,
+                                                                 .eye = {0, 0, 3},
+                                                                 .up = {0, 1, 0},
+                                                                 .fov = 40},
+                                   .render = &(struct cs_render){.size = {640, 480}},
+                                   .forces = &(struct cs_forces){.drag = 0},
+                                   .colliders = {.items = &ball, .n = 1},
+                                   .events = {.items = &event, .n = 1}};
     const double particle[3] = {0, 2, 0};
     const struct cs_system system = {.scene = &scene, .view = {.n = 1, .start = particle}};
     struct cs_posed_collider posed = {

@@ -5,6 +5,7 @@
 #include "model/contact/narrow_phase/pair_contact.h"
 #include "model/force/terms.h"
 #include "pair_positions.h"
+#include "scene/contact_keys.h"
 #include "sheet.h"
 
 /* --- all pairs --- */
@@ -29,7 +30,7 @@ static bool add_one(const struct sheet *sheet, enum cs_pair_kind kind, const uin
         &contact, kind, feature ? feature->kind : (struct cs_feature_kind){0}, params.range, p);
     if (kind == CS_PAIR_EDGE_EDGE && !(contact.distance.d < params.range))
         return false;
-    cs_pair_contact_set(&contact, &params, &system->scene->contact, v);
+    cs_pair_contact_set(&contact, &params, system->scene->contact, v);
     cs_pair_contact_force(&contact, (struct cs_contact_force_parts){1, 1}, push);
     for (size_t k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++)

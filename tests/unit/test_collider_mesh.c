@@ -2,6 +2,7 @@
 #include "base/vec3.h"
 #include "draw/collider_mesh.h"
 #include "mesh/trimesh.h"
+#include "scene/collider_keys.h"
 
 #include "unit.h"
 

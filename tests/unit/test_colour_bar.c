@@ -5,6 +5,7 @@
 #include "draw/colour_bar.h"
 #include "draw/srgb.h"
 #include "model/force/diagnostics.h"
+#include "scene/picture_keys.h"
 
 #include <math.h>
 

@@ -1,6 +1,7 @@
 /* The linear solver with multigrid against a sparse Cholesky factor (CHOLMOD) of a matrix that
  * is assembled from the equations, spring by spring. */
 #include "crumple.h"
+#include "scene/force_keys.h"
 
 #include <suitesparse/cholmod.h>
 
@@ -50,7 +51,7 @@ static double *solve_direct(const struct crumple *crumple) {
     const struct sheet *sheet = &crumple->sheet;
     const size_t n3 = 3 * sheet->n;
     const struct cs_springs *springs = &sheet->system.springs;
-    const double drag = CRUMPLE_H_STEP * sheet->scene.forces.drag;
+    const double drag = CRUMPLE_H_STEP * sheet->scene.forces->drag;
     cholmod_common common;
     cholmod_start(&common);
     struct matrix matrix = {crumple,

@@ -2,6 +2,7 @@
 #include "scene/file/key_frames_read.h"
 
 #include "base/serialise.h"
+#include "scene/mesh_keys.h"
 #include "unit.h"
 
 #include <zlib.h>

@@ -1,5 +1,6 @@
 /* Meshes of files are mended to a surface: welded, turned, cut, without what has no area. */
 #include "mesh_text.h"
+#include "scene/mesh_keys.h"
 
 #include <math.h>
 

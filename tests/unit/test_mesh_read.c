@@ -1,5 +1,6 @@
 /* OBJ files are read whole; bad ones are refused with the line. */
 #include "mesh_text.h"
+#include "scene/mesh_keys.h"
 
 #include <math.h>
 

@@ -4,6 +4,7 @@
  * default; "all" for 1e5. */
 #include "model/contact/narrow_phase/pair_contact.h"
 #include "pair_positions.h"
+#include "scene/contact_keys.h"
 #include "unit.h"
 
 static int n_pairs(void) {

@@ -1,5 +1,6 @@
 /* Obstacles as geometry: distances against sampled shapes and differences, poses in motion. */
 #include "base/portable_sine.h"
+#include "scene/collider_keys.h"
 #include "shapes.h"
 
 #include <math.h>

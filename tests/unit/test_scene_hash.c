@@ -3,6 +3,8 @@
  */
 #include "base/options.h"
 #include "mesh/trimesh.h"
+#include "scene/body_keys.h"
+#include "scene/collider_keys.h"
 #include "scene/file/scene_read.h"
 #include "unit.h"
 
@@ -161,7 +163,9 @@ static void change_all(struct walk *walk, const struct cs_table *table, void *ob
 TEST(every_key_counts) {
     static struct walk walk;
     struct cs_trimesh mesh = {.file_hash = "0123"};
-    cs_options_default(&cs_scene_table, &walk.scene);
+    struct cs_error error = {0};
+    cs_scene_init(&walk.scene, &error);
+    UNIT_ASSERT_OK(&error);
     fill(&cs_scene_table, &walk.scene);
     cs_scene_bodies(&walk.scene)->mesh.geometry = &mesh;
     cs_scene_colliders(&walk.scene)->mesh.geometry = &mesh;
@@ -178,6 +182,7 @@ TEST(every_key_counts) {
     expect_another(&walk, "bytes of a mesh file");
     ck_assert_uint_gt(walk.n, 200);
     empty(&cs_scene_table, &walk.scene);
+    cs_scene_finish(&walk.scene);
 }
 
 /* The table with a row more at its end, and with it in front: at its default it says nothing.

@@ -1,4 +1,7 @@
 /* --set: what is put in, and what is refused. */
+#include "scene/body_keys.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 #include "scene_text.h"
 
 TEST(overrides_are_put_in) {
@@ -35,14 +38,14 @@ TEST(overrides_are_put_in) {
     ck_assert_int_eq(pins[0].at, CS_PIN_LEFT);
     ck_assert_int_eq(pins[1].index, 5);
     ck_assert_double_eq(bodies[1].mass.particle, 0.5);
-    ck_assert_double_eq(scene.forces.wind.direction[2], 1);
-    ck_assert_double_eq(scene.forces.wind.strength, 4);
+    ck_assert_double_eq(scene.forces->wind.direction[2], 1);
+    ck_assert_double_eq(scene.forces->wind.strength, 4);
     ck_assert_str_eq(scene.about, "two words");
     ck_assert_str_eq(scene.source, "quoted");
-    ck_assert_int_eq(scene.render.look, CS_LOOK_STRAIN);
-    ck_assert_int_eq(scene.render.ground, CS_GROUND_GRID);
-    ck_assert_int_eq(scene.render.background.kind, CS_BACKGROUND_NONE);
-    ck_assert_double_eq(scene.render.background.colour[1], 0.5);
+    ck_assert_int_eq(scene.render->look, CS_LOOK_STRAIN);
+    ck_assert_int_eq(scene.render->ground, CS_GROUND_GRID);
+    ck_assert_int_eq(scene.render->background.kind, CS_BACKGROUND_NONE);
+    ck_assert_double_eq(scene.render->background.colour[1], 0.5);
     const struct cs_setting *settings = scene.integrator_settings.items;
     ck_assert_str_eq(scene.integrator, "cvode-bdf");
     ck_assert_uint_eq(scene.integrator_settings.n, 1);

@@ -1,5 +1,9 @@
 /* Scenes are read whole, with defaults, shorthands; bad ones name the place. */
 #include "base/options.h"
+#include "scene/body_keys.h"
+#include "scene/collider_keys.h"
+#include "scene/force_keys.h"
+#include "scene/picture_keys.h"
 #include "scene_text.h"
 
 #include <math.h>
@@ -24,10 +28,10 @@ TEST(defaults_stand_in) {
     ck_assert_uint_eq(body->pins.n, 0);
     ck_assert_ptr_null(body->pins.items);
     ck_assert_uint_eq(scene.colliders.n, 0);
-    ck_assert(!scene.forces.wind.present);
-    ck_assert_double_eq(scene.forces.gravity[1], -9.81);
+    ck_assert(!scene.forces->wind.present);
+    ck_assert_double_eq(scene.forces->gravity[1], -9.81);
     ck_assert_double_eq(scene.time.fps, 60);
-    ck_assert_int_eq(scene.render.size[0], 640);
+    ck_assert_int_eq(scene.render->size[0], 640);
     ck_assert_str_eq(scene.integrator, CS_INTEGRATOR_DEFAULT);
     ck_assert_uint_eq(scene.integrator_settings.n, 0);
     ck_assert_str_eq(scene.path, "dir/s.json");
@@ -101,7 +105,7 @@ TEST(everything_given_is_kept) {
     ck_assert(colliders[0].floor.present && !colliders[0].sphere.present);
     ck_assert_double_eq(colliders[1].sphere.radius, 0.3);
     ck_assert(!colliders[1].visible);
-    ck_assert_int_eq(scene.render.look, CS_LOOK_FORCE);
+    ck_assert_int_eq(scene.render->look, CS_LOOK_FORCE);
     ck_assert_str_eq(scene.integrator, "cvode-bdf");
     const struct cs_setting *settings = scene.integrator_settings.items;
     ck_assert_uint_eq(scene.integrator_settings.n, 3);

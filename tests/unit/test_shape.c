@@ -1,4 +1,5 @@
 /* Grids made into particles: places, areas and pins. */
+#include "scene/body_keys.h"
 #include "scene/shape.h"
 #include "sheet.h"
 

@@ -2,6 +2,7 @@
  */
 #include "mesh/trimesh.h"
 #include "model/system/shape_clusters.h"
+#include "scene/body_keys.h"
 #include "sheet.h"
 
 static void read_body(struct cs_scene *scene, const char *shape, const char *matching) {

@@ -1,5 +1,6 @@
 /* What a particle passes within one step is found, and nothing else. */
 #include "model/post_step/tunnelling.h"
+#include "scene/collider_keys.h"
 
 #include "shapes.h"
 

@@ -1,5 +1,6 @@
 /* What is seen from a viewpoint, against a ray test over every triangle and obstacle. */
 #include "rays.h"
+#include "scene/force_keys.h"
 
 static uint64_t state = 88172645463325252u;
 

@@ -12,6 +12,8 @@
 #include "cli/run_output.h"
 #include "model/elastic/membranes.h"
 #include "scene/body_pairs.h"
+#include "scene/elastic_keys.h"
+#include "scene/force_keys.h"
 #include "scene/shape.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
@@ -156,7 +158,7 @@ static double density_of(const struct cs_system *system, uint32_t body) {
     double mass = 0, area = 0;
     for (uint32_t i = 0; i < range->count; i++) {
         mass += system->mass[range->first + i];
-        area += cs_shape_area(cs_scene_bodies(system->scene) + body, i);
+        area += cs_shape_area(cs_scene_body(system->scene, body), i);
     }
     return mass / area;
 }
@@ -164,12 +166,11 @@ static double density_of(const struct cs_system *system, uint32_t body) {
 /* How stiff elastic bodies are for a step of one frame, and the length over which they bend by
  * their own weight. */
 static void add_elastic(const struct cs_system *system, struct cs_text *out) {
-    const double *g = system->scene->forces.gravity, dt = 1 / system->scene->time.fps;
+    const double *g = system->scene->forces->gravity, dt = 1 / system->scene->time.fps;
     const double weight = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
     for (uint32_t k = 0; system->membranes && k < system->membranes->n; k++) {
         const struct cs_membrane *membrane = system->membranes->bodies + k;
-        const struct cs_elastic *elastic =
-            &cs_scene_bodies(system->scene)[membrane->body].elastic;
+        const struct cs_elastic *elastic = cs_scene_elastic(system->scene, membrane->body);
         const struct cs_moduli Y = cs_membrane_moduli(elastic), D = cs_bending_moduli(elastic);
         const double density = density_of(system, membrane->body), h = membrane->shortest;
         const double bends = fmax(D.warp, D.weft);

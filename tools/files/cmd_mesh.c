@@ -6,6 +6,7 @@
 #include "files/gltf_read.h"
 #include "io/file_conflicts.h"
 #include "scene/file/mesh_read.h"
+#include "scene/mesh_keys.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,6 +2,7 @@
 #include "files/force_length.h"
 
 #include "model/force/terms.h"
+#include "scene/body_keys.h"
 #include "study/session.h"
 
 #include <math.h>

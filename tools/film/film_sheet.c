@@ -10,7 +10,7 @@
 #include "draw/srgb.h"
 #include "io/npy.h"
 #include "io/png.h"
-#include "scene/scene.h"
+#include "scene/picture_keys.h"
 #include "study/frame_picture.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "io/png.h"
+#include "scene/picture_keys.h"
 #include "shared/image_diff.h"
 #include "sim/run.h"
 #include "study/follow.h"
@@ -212,7 +213,7 @@ static enum cs_status draw(struct work *work, const struct cs_image *then, const
     if (strcmp(hash, pixels) != 0)
         cs_text_add(&work->reproduction->notes,
                     "the pixels in the file have changed since it was written\n");
-    const struct cs_render *render = &work->session.scene.render;
+    const struct cs_render *render = work->session.scene.render;
     /* as the run had it: colours are not laid on white then */
     if (render->background.kind == CS_BACKGROUND_NONE &&
         !(now.alpha = malloc((size_t)render->size[0] * (size_t)render->size[1])))

@@ -3,6 +3,8 @@
 
 #include "base/clock.h"
 #include "base/install_paths.h"
+#include "scene/body_keys.h"
+#include "scene/picture_keys.h"
 #include "study/follow.h"
 #include "study/frame_picture.h"
 
@@ -89,8 +91,8 @@ static enum cs_status time_steps(const struct cs_soft *soft, struct cs_run *run,
 static enum cs_status time_pictures(struct cs_session *session, struct cs_soft_row *row,
                                     struct cs_error *error) {
     struct cs_picture picture = {0};
-    struct cs_image image = {(uint32_t)session->scene.render.size[0],
-                             (uint32_t)session->scene.render.size[1], NULL, NULL};
+    struct cs_image image = {(uint32_t)session->scene.render->size[0],
+                             (uint32_t)session->scene.render->size[1], NULL, NULL};
     double samples[PICTURES];
     image.rgb = malloc(3 * (size_t)image.width * image.height);
     if (!image.rgb)

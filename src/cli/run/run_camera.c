@@ -7,6 +7,7 @@
 #include "cli/run/job_state.h"
 
 #include "draw/camera_fit.h"
+#include "scene/picture_keys.h"
 #include "study/follow.h"
 
 #include <math.h>
@@ -118,13 +119,13 @@ static enum cs_status find_camera_path(struct motion *motion, struct cs_scene *s
             cs_arena_alloc_array(&scene->arena, motion->n, sizeof *keys, error);
         if (keys) {
             memcpy(keys, motion->keys, motion->n * sizeof *keys);
-            scene->camera.path = (struct cs_list){keys, motion->n};
+            scene->camera->path = (struct cs_list){keys, motion->n};
         }
     } else if (!all || !each) {
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the camera path");
     }
     // where nothing was drawn there is nothing to frame
-    scene->camera.frame = CS_FRAME_GIVEN;
+    scene->camera->frame = CS_FRAME_GIVEN;
     free(all);
     free(each);
     return error->status;
@@ -147,7 +148,7 @@ void cs_run_camera_find(struct cs_scene *scene, void *camera) {
     struct motion motion = {.n = 0};
     const uint32_t frames = cs_job_frames(of->settings, scene),
                    every = of->settings->frame_interval;
-    if (scene->camera.frame != CS_FRAME_AUTO)
+    if (scene->camera->frame != CS_FRAME_AUTO)
         return;
     if (!strcmp(once.scene, "-")) {
         cs_fail(&of->error, CS_ERR_USAGE,
@@ -156,7 +157,7 @@ void cs_run_camera_find(struct cs_scene *scene, void *camera) {
     }
     // those of the session that asks
     once.threads = 0;
-    cs_camera_fit_begin(&motion.fit, &scene->camera, &scene->render);
+    cs_camera_fit_begin(&motion.fit, scene->camera, scene->render);
     if (!cs_session_open(&session, &once, &of->error) &&
         !allocate_path(&motion, frames / every, &of->error) &&
         !record(&session, frames, every, &motion, &of->error))

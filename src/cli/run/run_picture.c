@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/pool.h"
 #include "cli/run/job_state.h"
+#include "scene/picture_keys.h"
 #include "study/provenance_write.h"
 
 #include <stdio.h>
@@ -34,7 +35,7 @@ static enum cs_status open_renderer(struct cs_job *job, struct cs_error *error) 
  * interval of its checkpoint. */
 static enum cs_status begin_picture(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
-    const struct cs_render *render = &job->session.scene.render;
+    const struct cs_render *render = job->session.scene.render;
     if (!settings->session.render)
         return CS_OK;
     const struct cs_frame_writer_settings frames = {
@@ -60,7 +61,7 @@ static void print_range(const struct cs_job_picture *picture, const struct cs_sc
     cs_text_add_real(range, picture->range[0]);
     cs_text_add(range, "..");
     cs_text_add_real(range, picture->range[1]);
-    cs_text_add(range, " %s", cs_look_of(scene->render.look)->unit);
+    cs_text_add(range, " %s", cs_look_of(scene->render->look)->unit);
 }
 
 /* Shows the last image in the terminal. */

@@ -4,6 +4,7 @@
 
 #include "cli/line/print.h"
 #include "model/force/diagnostics.h"
+#include "scene/picture_keys.h"
 #include "study/energy_monitor.h"
 #include "study/follow.h"
 #include "study/frame_picture.h"
@@ -50,7 +51,7 @@ static enum cs_status check(const struct cs_session *session, struct cs_error *e
     if (!cs_picture_is_coloured(scene))
         return cs_fail(error, CS_ERR_USAGE,
                        "--range: the look \"%s\" shows no values; \"force\" and \"strain\" do",
-                       cs_look_names[scene->render.look]);
+                       cs_look_names[scene->render->look]);
     return CS_OK;
 }
 

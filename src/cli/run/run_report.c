@@ -3,6 +3,7 @@
 
 #include "base/pool.h"
 #include "cli/line/print.h"
+#include "scene/contact_keys.h"
 #include "study/contact_capacity.h"
 #include "study/scene_doctor.h"
 
@@ -167,7 +168,7 @@ static void add_measures(const struct cs_job *job, struct cs_text *out) {
     if (run->system->scene->colliders.n)
         add_report_row(out, "largest depth", "%.3g m in a collider after a frame",
                        job->monitor.cloth[CS_CLOTH_DEPTH].value);
-    if (run->system->scene->contact.untangle > 0)
+    if (run->system->scene->contact->untangle > 0)
         add_report_row(out, "untangle", "gave %.6g J to %u particles",
                        run->energy_input.given[CS_SOURCE_UNTANGLE],
                        job->session.initial_penetration.n);

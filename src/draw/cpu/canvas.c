@@ -12,6 +12,7 @@
 #include "draw/matrix.h"
 #include "draw/overlay.h"
 #include "draw/view.h"
+#include "scene/picture_keys.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -62,7 +63,7 @@ static void aim_rays(struct cs_rays *rays, const struct cs_view_state *view,
 
 /* Sets what depends on the camera: projection and rays. */
 static void aim_camera(struct cs_canvas *canvas) {
-    const struct cs_render *render = &canvas->settings.scene->render;
+    const struct cs_render *render = canvas->settings.scene->render;
     cs_clip_transform_make(&canvas->clip, canvas->view.block.world_to_clip,
                            canvas->view.block.size[2], (int)render->size[0],
                            (int)render->size[1]);
@@ -73,7 +74,7 @@ static void aim_camera(struct cs_canvas *canvas) {
 static void init_view(struct cs_canvas *canvas) {
     const struct cs_scene *scene = canvas->settings.scene;
     const struct cs_system *system = canvas->settings.system;
-    const int width = (int)scene->render.size[0], height = (int)scene->render.size[1];
+    const int width = (int)scene->render->size[0], height = (int)scene->render->size[1];
     const struct cs_bounding_sphere sphere =
         cs_scene_extent_solid(system, system->view.start, canvas->settings.colliders);
     struct cs_band_pass *pass = &canvas->pass;
@@ -86,7 +87,7 @@ static void init_view(struct cs_canvas *canvas) {
     pass->shading.shadow_maps = canvas->lightmaps;
     pass->shading.srgb = &canvas->srgb;
     pass->sample_pattern =
-        scene->render.samples > 1 ? &cs_sample_pattern_four : &cs_sample_pattern_one;
+        scene->render->samples > 1 ? &cs_sample_pattern_four : &cs_sample_pattern_one;
     cs_ground_make(&canvas->ground, system, canvas->settings.colliders, &sphere);
 }
 

@@ -2,6 +2,9 @@
 #include "draw/cpu/collider_geometry.h"
 
 #include "draw/overlay.h"
+#include "scene/body_keys.h"
+#include "scene/collider_keys.h"
+#include "scene/picture_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -113,7 +116,7 @@ enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
     const struct cs_image *image = settings->textures ? settings->textures + b : &none;
     const struct cs_material *material = &cs_scene_bodies(settings->scene)[b].material;
     const bool textured = image->width > 0;
-    const bool has_uv = cs_look_needs_uv(settings->scene->render.look, textured);
+    const bool has_uv = cs_look_needs_uv(settings->scene->render->look, textured);
     if (cs_mesh_init(&body->mesh, settings->system, b, has_uv, arena, error))
         return error->status;
     body->clip_vertices =
@@ -123,8 +126,8 @@ enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
     body->textured = textured;
     cs_body_geometry_restyle(body, settings->scene, b);
     if (error->status == CS_OK && has_uv)
-        init_texture(body, image, cs_look_repeat(settings->scene->render.look, material), arena,
-                     error);
+        init_texture(body, image, cs_look_repeat(settings->scene->render->look, material),
+                     arena, error);
     return error->status;
 }
 
@@ -132,7 +135,7 @@ void cs_body_geometry_restyle(struct cs_body_geometry *body, const struct cs_sce
                               uint32_t b) {
     struct cs_surface_style style;
     cs_style_cloth(&style, &cs_scene_bodies(scene)[b].material, body->textured,
-                   scene->render.look);
+                   scene->render->look);
     cs_shading_material_make(body->material, &style);
 }
 

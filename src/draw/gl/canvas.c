@@ -11,6 +11,9 @@
 #include "draw/overlay.h"
 #include "draw/render.h"
 #include "draw/view.h"
+#include "scene/body_keys.h"
+#include "scene/collider_keys.h"
+#include "scene/picture_keys.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -170,7 +173,7 @@ static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
                                  const struct cs_image *texture, struct cs_error *error) {
     struct cs_cloth_picture *cloth = canvas->cloths + b;
     const struct cs_material *material = &cs_scene_bodies(canvas->scene)[b].material;
-    const int32_t look = canvas->scene->render.look;
+    const int32_t look = canvas->scene->render->look;
     const bool has_uv = cs_look_needs_uv(look, texture->width > 0);
     if (cs_mesh_init(&cloth->mesh, canvas->system, b, has_uv, &canvas->arena, error) != CS_OK)
         return error->status;
@@ -205,7 +208,7 @@ static enum cs_status init_cloths(struct cs_canvas *canvas, const struct cs_imag
 /* Makes the context, then everything in it; the order matters, since all need its calls. */
 static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_settings *settings,
                            struct cs_error *error) {
-    const struct cs_render *render = &canvas->scene->render;
+    const struct cs_render *render = canvas->scene->render;
     /* before there is a context: Mesa reads its environment only once */
     const char *caps = driver_pin(settings->fast_render);
     if (cs_context_create(&canvas->context, error) != CS_OK || cs_gl_load(error) != CS_OK)
@@ -302,7 +305,7 @@ static void restyle(struct cs_canvas *canvas) {
         struct cs_surface_style *style = &canvas->cloths[b].style;
         const unsigned texture = style->texture;
         cs_style_cloth(style, &cs_scene_bodies(canvas->scene)[b].material,
-                       style->mode == CS_SURFACE_TEXTURED, canvas->scene->render.look);
+                       style->mode == CS_SURFACE_TEXTURED, canvas->scene->render->look);
         style->texture = texture;
     }
 }

@@ -1,6 +1,7 @@
 /* Draws into a multisampled texture, and reads it back sample by sample. */
 
 #include "draw/gl/gl.h"
+#include "scene/picture_keys.h"
 
 #include <stdbool.h>
 

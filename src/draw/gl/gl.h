@@ -11,7 +11,7 @@
 #include "draw/mesh.h"
 #include "draw/mipmap.h"
 #include "draw/srgb.h"
-#include "scene/scene.h"
+#include "scene/picture_keys.h"
 
 #include <GL/glcorearb.h>
 #include <stdbool.h>

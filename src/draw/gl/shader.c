@@ -2,6 +2,7 @@
 
 #include "draw/gl/gl.h"
 #include "draw/view.h"
+#include "scene/picture_keys.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -5,6 +5,7 @@
 
 #include "base/serialise.h"
 #include "model/system/surfaces.h"
+#include "scene/collider_keys.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,6 +3,9 @@
 
 #include "model/contact/posed_collider.h"
 #include "scene/body_pairs.h"
+#include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -270,7 +273,7 @@ static double largest_square(const struct cs_scene *scene, const struct cs_appro
 
 enum cs_status cs_approach_build(struct cs_system *system, struct cs_error *error) {
     const struct cs_scene *scene = system->scene;
-    const double *g = scene->forces.gravity;
+    const double *g = scene->forces->gravity;
     if (system->approach)
         return CS_OK;
     struct cs_approach *approach = cs_arena_alloc(&system->arena, sizeof *approach, error);
@@ -318,7 +321,7 @@ double cs_approach_energy(const struct cs_system *system, uint32_t a, uint32_t b
 
 double cs_approach_stiffness(const struct cs_system *system, double softest, double energy,
                              double range) {
-    const double given = system->scene->contact.stiffness;
+    const double given = system->scene->contact->stiffness;
     return isnan(given) ? fmax(softest, CS_APPROACH_STIFFNESS * energy / (range * range))
                         : given;
 }

@@ -4,7 +4,9 @@
 
 #include "model/contact/approach.h"
 #include "model/contact/collider_params.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/collider_keys.h"
 
 #include <math.h>
 

@@ -6,6 +6,9 @@
 #include "model/contact/approach.h"
 #include "model/contact/lagged_friction.h"
 #include "model/force/diagnostics.h"
+#include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
+#include "scene/elastic_keys.h"
 
 #include <math.h>
 
@@ -14,7 +17,7 @@ static double softest(const struct cs_system *system) {
     const struct cs_springs *springs = &system->springs;
     double k = HUGE_VAL;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
-        const struct cs_elastic *elastic = &cs_scene_bodies(system->scene)[b].elastic;
+        const struct cs_elastic *elastic = cs_scene_elastic(system->scene, b);
         const struct cs_moduli moduli = cs_membrane_moduli(elastic);
         k = elastic->present ? fmin(k, fmin(moduli.warp, moduli.weft)) : k;
     }
@@ -28,7 +31,7 @@ static double softest(const struct cs_system *system) {
 enum cs_status cs_collider_params_softest(struct cs_system *system, double *k,
                                           struct cs_error *error) {
     *k = softest(system);
-    if (isnan(system->scene->contact.stiffness) && !isfinite(*k))
+    if (isnan(system->scene->contact->stiffness) && !isfinite(*k))
         return cs_fail(
             error, CS_ERR_SCENE,
             "contact.stiffness: no stretch spring or membrane to derive it from, expected a "
@@ -56,7 +59,7 @@ static double default_range(const struct cs_system *system, uint32_t collider,
     struct cs_posed_collider posed;
     double range = whole, normal[3];
     // who asks for bodies to be moved out of the range means all of it
-    if (system->scene->contact.start == CS_CONTACT_START_MOVE_OUT)
+    if (system->scene->contact->start == CS_CONTACT_START_MOVE_OUT)
         return whole;
     cs_posed_collider_at(system, collider, 0, &posed);
     for (size_t i = 0; i < n; i++) {
@@ -65,7 +68,7 @@ static double default_range(const struct cs_system *system, uint32_t collider,
             continue;
         // one that starts inside or touches is refused, or moved out, by the whole range
         const double distance = cs_posed_collider_distance(&posed, p, normal);
-        if (distance < -CS_PENETRATION_MIN && !isnan(system->scene->contact.untangle))
+        if (distance < -CS_PENETRATION_MIN && !isnan(system->scene->contact->untangle))
             return whole;
         range = distance > least ? fmin(range, distance) : range;
     }
@@ -145,7 +148,7 @@ enum cs_status cs_collider_params_table_build(struct cs_system *system,
             cs_approach_stiffness(system, k, energy_of(system, c), pairings[c].range);
         stiffest = fmax(stiffest, pairings[c].k);
     }
-    if (scene->contact.damping_is_default)
+    if (scene->contact->damping_is_default)
         system->default_damping = default_damping(system, stiffest);
     system->collider_params = pairings;
     return error->status;
@@ -157,15 +160,15 @@ void cs_posed_collider_law_at(const struct cs_system *system, uint32_t collider,
                               struct cs_posed_collider_law *law) {
     const struct cs_scene *scene = system->scene;
     const double friction = cs_scene_colliders(scene)[collider].friction;
-    const bool sticks = scene->contact.friction_law == CS_FRICTION_BRISTLES;
+    const bool sticks = scene->contact->friction_law == CS_FRICTION_BRISTLES;
     *law = (struct cs_posed_collider_law){
         .params = system->collider_params[collider],
         .friction = sticks || cs_lagged_friction_acts(system) ? 0 : friction,
         .sticking_friction = sticks ? friction : 0,
-        .friction_speed = scene->contact.friction_speed,
-        .damping = scene->contact.damping,
-        .loss = scene->contact.loss};
-    law->rate = law->loss > 0 ? law->params.k / scene->contact.mass : 0;
+        .friction_speed = scene->contact->friction_speed,
+        .damping = scene->contact->damping,
+        .loss = scene->contact->loss};
+    law->rate = law->loss > 0 ? law->params.k / scene->contact->mass : 0;
     cs_posed_collider_at(system, collider, t, &law->collider);
     // a ramp may change it
     if (law->collider.collider->thickness > 0)

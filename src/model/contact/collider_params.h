@@ -7,6 +7,8 @@
 #include "model/contact/posed_collider.h"
 #include "model/system/particle_system.h"
 
+struct cs_contact_keys;
+
 /* Default range in units of the shortest spring: a spring at rest does not reach through a thin
  * collider from one range to the other. */
 #define CS_RANGE_FRACTION 0.4

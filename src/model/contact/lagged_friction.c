@@ -7,6 +7,7 @@
 #include "base/pool.h"
 #include "base/vec3.h"
 #include "model/force/term.h"
+#include "scene/contact_keys.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,7 +43,7 @@ static void interpolate(const struct cs_contact_set *set, const struct cs_contac
 static struct sliding slide(const struct pass *pass, uint32_t chunk, size_t number) {
     const struct cs_contact_set *set = &pass->lagged->set;
     const struct cs_lagged_contact *contact = pass->lagged->chunks[chunk].contacts + number;
-    const double ev = pass->lagged->system->scene->contact.friction_speed;
+    const double ev = pass->lagged->system->scene->contact->friction_speed;
     struct sliding to;
     memcpy(to.t, contact->obstacle, sizeof to.t);
     interpolate(set, set->chunks[chunk].pairs + number,
@@ -58,7 +59,7 @@ static void find_force(const struct pass *pass, uint32_t chunk, size_t number) {
     const struct cs_lagged_contact *contact = pass->lagged->chunks[chunk].contacts + number;
     const struct sliding to = slide(pass, chunk, number);
     const double *weights = of->parts[number].weights, rub = contact->load / to.speed;
-    const double ev = pass->lagged->system->scene->contact.friction_speed;
+    const double ev = pass->lagged->system->scene->contact->friction_speed;
     double along[3] = {to.t[0], to.t[1], to.t[2]};
     if (pass->dv) {
         double dt[3] = {0};

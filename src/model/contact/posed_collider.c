@@ -3,6 +3,7 @@
 
 #include "base/portable_sine.h"
 #include "base/vec3.h"
+#include "scene/collider_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -172,4 +173,9 @@ double cs_posed_colliders_depth(const struct cs_system *system, double t, const 
         }
     }
     return largest;
+}
+
+double cs_posed_collider_signed_distance(const struct cs_posed_collider *collider,
+                                         const double p[3], double n[3]) {
+    return collider->shape->distance(collider, collider->collider->thickness, p, n);
 }

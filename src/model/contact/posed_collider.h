@@ -53,10 +53,8 @@ static inline double cs_posed_collider_distance(const struct cs_posed_collider *
 
 /* The same from the surface offset by the collider's thickness, onto which projection moves
  * particles. */
-static inline double cs_posed_collider_signed_distance(const struct cs_posed_collider *collider,
-                                                       const double p[3], double n[3]) {
-    return collider->shape->distance(collider, collider->collider->thickness, p, n);
-}
+double cs_posed_collider_signed_distance(const struct cs_posed_collider *collider,
+                                         const double p[3], double n[3]);
 
 /* Returns whether p may be within `reach` (m, >= 0) of the surface or inside; a test of a few
  * nanoseconds before a distance is computed. False only if the distance, exact or smooth, is

@@ -5,6 +5,8 @@
 #include "base/vector.h"
 #include "model/contact/bristle_law.h"
 #include "model/contact/collider_params.h"
+#include "scene/body_pairs.h"
+#include "scene/collider_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,7 +20,7 @@ enum { FLIGHT_STEPS_MAX = 2000 };
 #define MISSED_MAX 0.01
 
 bool cs_rebounds_possible(const struct cs_scene *scene) {
-    if (scene->contact.law != CS_CONTACT_FORCE)
+    if (!cs_scene_contact_is_force(scene))
         return false;
     for (uint32_t c = 0; c < scene->colliders.n; c++)
         if (!cs_scene_colliders(scene)[c].mesh.present)

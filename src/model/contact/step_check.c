@@ -5,6 +5,8 @@
 #include "model/contact/barrier_law.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/posed_collider.h"
+#include "scene/contact_keys.h"
+#include "scene/force_keys.h"
 
 #include <clothsim/clones.h>
 #include <math.h>
@@ -193,7 +195,7 @@ void cs_collider_step_set(struct cs_collider_step *step, const struct cs_system 
 static double most_energy(const struct cs_collider_step *step) {
     const struct cs_system *system = step->system;
     const size_t n = system->view.n;
-    const double *g = system->scene->forces.gravity;
+    const double *g = system->scene->forces->gravity;
     const double fall = sqrt(cs_vec3_dot(g, g)) * step->params.range;
     double most = 0, shift[3];
     for (int c = 0; c < 3; c++)
@@ -234,4 +236,8 @@ bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0
     if (system->rebounds)
         system->rebounds->judged = false;
     return resolved;
+}
+
+bool cs_impacts_are_resolved(const struct cs_system *system) {
+    return system->scene->contact->restitution >= 0;
 }

@@ -63,9 +63,7 @@ struct cs_rebounds {
 #define CS_IMPACT_CHANGE_MAX 0.03
 
 /* Returns whether the scene gives contact.restitution. */
-static inline bool cs_impacts_are_resolved(const struct cs_system *system) {
-    return system->scene->contact.restitution >= 0;
-}
+bool cs_impacts_are_resolved(const struct cs_system *system);
 
 bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0,
                                        const double *x0, double t1, const double *x1);

@@ -8,6 +8,7 @@
 #include "model/contact/rebound.h"
 #include "model/force/term.h"
 #include "model/force/terms.h"
+#include "scene/body_pairs.h"
 
 #include <clothsim/clones.h>
 #include <math.h>
@@ -161,7 +162,7 @@ static CS_CLONES void contact_rows_add_bounds(const struct cs_posed_collider_law
 
 /* A scene with contact by projection has no row in the plan; meshes have contact by pairs. */
 static struct cs_plan_row plan_contact(const struct cs_scene *scene) {
-    const bool asked = scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n,
+    const bool asked = cs_scene_contact_is_force(scene) && scene->colliders.n,
                built = cs_rebounds_possible(scene);
     return (struct cs_plan_row){.built = built,
                                 .reason = !asked  ? NULL

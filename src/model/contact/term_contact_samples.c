@@ -4,6 +4,8 @@
 #include "model/contact/lagged_friction.h"
 #include "model/contact/point_query.h"
 #include "model/force/term.h"
+#include "scene/body_pairs.h"
+#include "scene/collider_keys.h"
 
 #include <clothsim/clones.h>
 #include <math.h>
@@ -153,7 +155,7 @@ static bool any_round(const struct cs_scene *scene) {
 
 /* The plan does not know lengths yet; reason_idle reports short edges later. */
 static struct cs_plan_row plan_samples(const struct cs_scene *scene) {
-    const bool asked = scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n,
+    const bool asked = cs_scene_contact_is_force(scene) && scene->colliders.n,
                built = asked && any_round(scene);
     return (struct cs_plan_row){.built = built,
                                 .reason = !asked  ? NULL

@@ -6,6 +6,7 @@
 #include "base/pool.h"
 #include "model/elastic/bending_sums.h"
 #include "model/elastic/normal_curvature.h"
+#include "scene/elastic_keys.h"
 
 #include <clothsim/clones.h>
 #include <math.h>
@@ -21,7 +22,7 @@ struct job {
 
 static struct cs_moduli moduli_of(const struct cs_system *system,
                                   const struct cs_bending *bending) {
-    return cs_bending_moduli(&cs_scene_bodies(system->scene)[bending->body].elastic);
+    return cs_bending_moduli(cs_scene_elastic(system->scene, bending->body));
 }
 
 /* Stencils of a mesh whose energy is quadratic. */

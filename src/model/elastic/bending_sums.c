@@ -2,6 +2,7 @@
 #include "model/elastic/bending_sums.h"
 
 #include "model/elastic/normal_curvature.h"
+#include "scene/elastic_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -33,7 +34,7 @@ double cs_bendings_energy(const struct cs_system *system, const double *x) {
     for (uint32_t b = 0; b < system->bendings->n; b++) {
         const struct cs_bending *bending = system->bendings->bodies + b;
         const struct cs_moduli moduli =
-            cs_bending_moduli(&cs_scene_bodies(system->scene)[bending->body].elastic);
+            cs_bending_moduli(cs_scene_elastic(system->scene, bending->body));
         for (uint32_t s = 0; !bending->rest && s < bending->n; s++) {
             struct cs_bending_stencil stencil;
             cs_bending_stencil_at(bending, &moduli, s, &stencil);
@@ -68,7 +69,7 @@ void cs_bendings_update_rows(const struct cs_system *system) {
     for (uint32_t b = 0; b < bendings->n; b++) {
         const struct cs_bending *bending = bendings->bodies + b;
         const struct cs_moduli moduli =
-            cs_bending_moduli(&cs_scene_bodies(system->scene)[bending->body].elastic);
+            cs_bending_moduli(cs_scene_elastic(system->scene, bending->body));
         const struct cs_moduli *of = bendings->moduli + b;
         if (bending->rest)
             continue;

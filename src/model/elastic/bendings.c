@@ -3,6 +3,7 @@
 
 #include "base/vec3.h"
 #include "mesh/trimesh.h"
+#include "scene/body_keys.h"
 #include "scene/event_key.h"
 
 #include <math.h>

@@ -22,6 +22,7 @@
 #define CS_BENDINGS_H
 
 #include "model/system/particle_system.h"
+#include "scene/elastic_keys.h"
 
 /* Points of a stencil, and of all its weights. */
 enum { CS_BENDING_POINTS = 6, CS_BENDING_WEIGHTS = 18 };

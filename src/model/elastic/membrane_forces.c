@@ -4,6 +4,7 @@
 #include "model/elastic/membrane_forces.h"
 
 #include "base/pool.h"
+#include "scene/elastic_keys.h"
 
 #include <string.h>
 
@@ -33,8 +34,7 @@ static kernel_function *const kernels[3][2] = {
 
 struct membrane_law cs_membrane_law_of(const struct membrane_job *job,
                                        const struct cs_membrane *membrane) {
-    const struct cs_elastic *elastic =
-        &cs_scene_bodies(job->system->scene)[membrane->body].elastic;
+    const struct cs_elastic *elastic = cs_scene_elastic(job->system->scene, membrane->body);
     struct membrane_law law = {.moduli = cs_membrane_moduli(elastic),
                                .elastic = job->elastic + job->per_damping * elastic->damping,
                                .damping = job->damping * elastic->damping};

@@ -4,6 +4,7 @@
 #define CS_MEMBRANE_FORCES_H
 
 #include "model/elastic/membranes.h"
+#include "scene/elastic_keys.h"
 
 #include <clothsim/clones.h>
 

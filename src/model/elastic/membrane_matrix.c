@@ -14,6 +14,7 @@
 #include "base/pool.h"
 #include "base/vec3.h"
 #include "model/elastic/membrane_forces.h"
+#include "scene/elastic_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -63,7 +64,7 @@ static void find_stiffness(const struct cs_membrane *membrane, const struct memb
 /* The moduli of a body now. */
 static struct cs_moduli moduli_of(const struct cs_system *system,
                                   const struct cs_membrane *membrane) {
-    return cs_membrane_moduli(&cs_scene_bodies(system->scene)[membrane->body].elastic);
+    return cs_membrane_moduli(cs_scene_elastic(system->scene, membrane->body));
 }
 
 /* W = 1/4 z.C z of q. */

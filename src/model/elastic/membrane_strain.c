@@ -1,6 +1,8 @@
 /* Principal strains and stresses of membranes. */
 #include "model/elastic/membrane_strain.h"
 
+#include "scene/elastic_keys.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -54,7 +56,7 @@ static double strain_of(const struct cs_system *system, const struct cs_membrane
 static double stress_of(const struct cs_system *system, const struct cs_membrane *membrane,
                         uint32_t t, const double *x) {
     const struct cs_moduli C =
-        cs_membrane_moduli(&cs_scene_bodies(system->scene)[membrane->body].elastic);
+        cs_membrane_moduli(cs_scene_elastic(system->scene, membrane->body));
     double E[3], low, high;
     find_strain(membrane, t, system->view.n, x, E);
     find_principal(C.warp * E[0] + C.coupling * E[1], C.coupling * E[0] + C.weft * E[1],

@@ -3,6 +3,7 @@
 
 #include "base/pool.h"
 #include "mesh/trimesh.h"
+#include "scene/elastic_keys.h"
 
 #include <math.h>
 
@@ -145,8 +146,7 @@ static void factor_run(void *arg, uint32_t number) {
                  first = run->first - factoring->system->springs.n;
     while (membrane->body != run->body)
         membrane++;
-    const struct cs_elastic *elastic =
-        &cs_scene_bodies(factoring->system->scene)[run->body].elastic;
+    const struct cs_elastic *elastic = cs_scene_elastic(factoring->system->scene, run->body);
     const struct cs_moduli moduli = cs_membrane_moduli(elastic);
     const double kappa = -membranes->ck - membranes->cd * elastic->damping;
     double *to = factoring->factors + 4 * (size_t)run->first;

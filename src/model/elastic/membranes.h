@@ -21,6 +21,8 @@
 
 #include "model/system/particle_system.h"
 
+struct cs_moduli;
+
 /* Numbers of a triangle at rest: P row by row, then the squares of L in m2. */
 enum { CS_MEMBRANE_P = 9, CS_MEMBRANE_REST = 12 };
 

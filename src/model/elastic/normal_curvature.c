@@ -6,6 +6,7 @@
 #include "base/pool.h"
 #include "model/elastic/membranes.h"
 #include "model/elastic/normal_stencil.h"
+#include "scene/elastic_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -23,7 +24,7 @@ struct job {
 
 static const struct cs_elastic *elastic_of(const struct cs_system *system,
                                            const struct cs_bending *bending) {
-    return &cs_scene_bodies(system->scene)[bending->body].elastic;
+    return cs_scene_elastic(system->scene, bending->body);
 }
 
 /* The factors of one body: only a curved one has its energy here. */

@@ -3,6 +3,7 @@
 #include "model/elastic/normal_stencil.h"
 
 #include "base/vec3.h"
+#include "scene/elastic_keys.h"
 
 #include <math.h>
 #include <string.h>

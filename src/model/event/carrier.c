@@ -2,6 +2,7 @@
 #include "model/event/carrier.h"
 
 #include "base/vec3.h"
+#include "scene/collider_keys.h"
 
 #include <math.h>
 

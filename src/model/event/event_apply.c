@@ -10,7 +10,10 @@
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/system/seams.h"
 #include "model/system/shape_clusters.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/contact_keys.h"
+#include "scene/force_keys.h"
 #include "scene/shape.h"
 
 #include <math.h>
@@ -110,7 +113,7 @@ void cs_event_release_tangled(struct cs_system *system, double t) {
  * does not give (NaN) stays. */
 static void begin_gust(const struct cs_events *events, const struct cs_wind_change *change,
                        struct cs_event_state *state) {
-    const struct cs_wind *wind = &events->scene.forces.wind;
+    const struct cs_wind *wind = &events->scene.forces->wind;
     const bool turns = !isnan(change->direction[0]);
     state->first = wind->strength;
     state->last = isnan(change->strength) ? wind->strength : change->strength;
@@ -137,7 +140,7 @@ static void set_wind(struct cs_wind *wind, const struct cs_event_state *state, d
 /* Sets the number of a ramp or gust to its last value, without rounding. */
 static void end_value(struct cs_system *system, uint32_t event) {
     struct cs_event_state *state = system->events->states + event;
-    struct cs_wind *wind = &system->events->scene.forces.wind;
+    struct cs_wind *wind = &system->events->scene.forces->wind;
     if (state->value) {
         *state->value = state->last;
         return;
@@ -155,7 +158,7 @@ void cs_event_set_value(struct cs_system *system, uint32_t event, double t) {
     if (of->ramp.present)
         *state->value = state->first + (state->last - state->first) * share;
     else if (of->wind.present)
-        set_wind(&events->scene.forces.wind, state, share);
+        set_wind(&events->scene.forces->wind, state, share);
 }
 
 void cs_event_start(struct cs_system *system, uint32_t event) {
@@ -283,7 +286,7 @@ enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *e
 }
 
 bool cs_events_turn_particles(const struct cs_scene *scene) {
-    bool turns = !isnan(scene->contact.untangle), spins = false,
+    bool turns = !isnan(scene->contact->untangle), spins = false,
          carries = cs_scene_carries_pins(scene, false);
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_grab *grab = &cs_scene_events(scene)[e].grab;

@@ -9,6 +9,7 @@
 #include "base/vec3.h"
 #include "model/contact/posed_collider.h"
 #include "scene/body_pairs.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,6 +8,11 @@
 #include "model/system/particle_system.h"
 #include "scene/event_key.h"
 
+struct cs_event;
+struct cs_event_target;
+struct cs_path_point;
+struct cs_viewpoint_force;
+
 /* Visibility: the particles that are seen through a rectangle from a
  * viewpoint.
  *

@@ -7,6 +7,7 @@
 #include "model/force/diagnostics.h"
 #include "scene/body_pairs.h"
 #include "scene/event_key.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,7 +46,7 @@ static void record_marks(struct cs_events *events, struct cs_serialiser *seriali
     CS_SERIALISER(serialiser, events->has_grabs);
     CS_SERIALISER(serialiser, events->has_turns);
     CS_SERIALISER(serialiser, events->held_speed);
-    CS_SERIALISER(serialiser, events->scene.forces.wind);
+    CS_SERIALISER(serialiser, events->scene.forces->wind);
     for (uint32_t e = 0; e < events->scene.events.n; e++)
         record_event(events->states + e, serialiser);
 }

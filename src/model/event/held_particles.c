@@ -20,6 +20,9 @@
 #include "base/vec3.h"
 #include "model/contact/posed_collider.h"
 #include "scene/body_pairs.h"
+#include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
+#include "scene/force_keys.h"
 #include "scene/shape.h"
 
 #include <math.h>
@@ -376,7 +379,7 @@ enum cs_status cs_event_lead_out(struct cs_system *system, const uint32_t *colli
     const size_t n = system->view.n;
     if (take_ways(system, error))
         return error->status;
-    events->untangled = cs_event_times_add(events, system->scene->contact.untangle);
+    events->untangled = cs_event_times_add(events, system->scene->contact->untangle);
     for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
         const uint32_t holder = system->scene->events.n + 1 + k;
         const struct frame frame = frame_at(system, holder, 0);

@@ -2,6 +2,7 @@
  * visibility tests. */
 
 #include "model/event/event_state.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <string.h>

@@ -23,6 +23,8 @@
 #include "base/vec3.h"
 #include "model/contact/posed_collider.h"
 #include "model/system/surfaces.h"
+#include "scene/collider_keys.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <string.h>

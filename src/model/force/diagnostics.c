@@ -3,6 +3,8 @@
 
 #include "model/elastic/membrane_strain.h"
 #include "model/force/terms.h"
+#include "scene/body_keys.h"
+#include "scene/contact_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -223,7 +225,7 @@ bool cs_spectral_bounds_can_jump(const struct cs_system *system) {
 /* Takes friction as far as it limits the step of an explicit method. sums: of contact alone,
  * where a damper has contact.damping times the stiffness, and friction the rest. */
 static void limit_friction(const struct cs_system *system, const struct cs_gershgorin *sums) {
-    const double tau = system->scene->contact.damping;
+    const double tau = system->scene->contact->damping;
     for (size_t i = 0; i < system->view.n; i++) {
         const double k = sums->stiffness[i];
         const double most = tau * k + CS_FRICTION_RATE_RATIO * sqrt(k * system->mass[i]);

@@ -7,6 +7,7 @@
 #include "model/force/term.h"
 #include "model/force/terms.h"
 #include "scene/event_key.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 
@@ -17,18 +18,18 @@ static double fraction_of(const struct cs_system *system, bool by_area, size_t i
 
 /* c of particle i in N s/m */
 static double drag_of(const struct cs_system *system, size_t i) {
-    const struct cs_forces *forces = &system->scene->forces;
+    const struct cs_forces *forces = system->scene->forces;
     return forces->drag * fraction_of(system, forces->drag_unit == CS_DRAG_AREA, i);
 }
 
 static struct cs_plan_row drag_plan(const struct cs_scene *scene) {
-    const bool acts = cs_event_key_acts(scene, scene->forces.drag, "forces.drag");
+    const bool acts = cs_event_key_acts(scene, scene->forces->drag, "forces.drag");
     return (struct cs_plan_row){.built = acts,
                                 .reason = acts ? "forces.drag is above 0" : "forces.drag is 0"};
 }
 
 static uint32_t drag_uses(const struct cs_scene *scene) {
-    return scene->forces.drag_unit == CS_DRAG_AREA ? CS_USE_AREA : 0;
+    return scene->forces->drag_unit == CS_DRAG_AREA ? CS_USE_AREA : 0;
 }
 
 /* f -= c v, which is linear: v may be a direction */
@@ -86,7 +87,7 @@ static bool has_gust(const struct cs_scene *scene) {
 /* Wind is built if it blows at some time: from the start, by a ramp, or as a gust of an event.
  */
 static struct cs_plan_row wind_plan(const struct cs_scene *scene) {
-    const struct cs_wind *wind = &scene->forces.wind;
+    const struct cs_wind *wind = &scene->forces->wind;
     const double strength = wind->present ? wind->strength : 0;
     const bool acts =
         has_gust(scene) || cs_event_key_acts(scene, strength, "forces.wind.strength");
@@ -97,27 +98,27 @@ static struct cs_plan_row wind_plan(const struct cs_scene *scene) {
 }
 
 static uint32_t wind_uses(const struct cs_scene *scene) {
-    const bool by_area = scene->forces.wind.strength_unit == CS_WIND_PA;
+    const bool by_area = scene->forces->wind.strength_unit == CS_WIND_PA;
     return CS_USE_NORMALS | (by_area ? CS_USE_AREA : 0);
 }
 
 /* s of particle i in N. |w.n| is at most 1, so this is also the greatest force. */
 static double strength_of(const struct cs_system *system, size_t i) {
-    const struct cs_wind *wind = &system->scene->forces.wind;
+    const struct cs_wind *wind = &system->scene->forces->wind;
     return wind->strength * fraction_of(system, wind->strength_unit == CS_WIND_PA, i);
 }
 
 /* Either side of the cloth catches the wind: |w.n|, in N along w. */
 static double push_on(const struct cs_system *system, size_t i) {
     const size_t n = system->view.n;
-    const double *w = system->scene->forces.wind.direction, *normal = system->normals + i;
+    const double *w = system->scene->forces->wind.direction, *normal = system->normals + i;
     return strength_of(system, i) *
            fabs(w[0] * normal[0] + w[1] * normal[n] + w[2] * normal[2 * n]);
 }
 
 static void wind_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const size_t n = system->view.n;
-    const double *w = system->scene->forces.wind.direction, *v = at->v;
+    const double *w = system->scene->forces->wind.direction, *v = at->v;
     for (size_t i = at->block->begin; i < at->block->end; i++) {
         const double push = push_on(system, i);
         f[i] += push * w[0];
@@ -135,7 +136,7 @@ static void add_turned(const struct cs_system *system, const struct cs_eval *at,
                        const struct cs_body_range *body, uint32_t begin, uint32_t end,
                        double *df) {
     const size_t n = system->view.n;
-    const double *w = system->scene->forces.wind.direction;
+    const double *w = system->scene->forces->wind.direction;
     const double *nx = system->normals, *ny = nx + n, *nz = ny + n;
     for (uint32_t i = begin; i < end; i++) {
         double dn[3];

@@ -15,11 +15,12 @@
 #include "model/force/terms.h"
 
 #include "base/vec3.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 
 static struct cs_plan_row plan_airflow(const struct cs_scene *scene) {
-    const bool flows = scene->forces.wind.present && !isnan(scene->forces.wind.velocity[0]);
+    const bool flows = scene->forces->wind.present && !isnan(scene->forces->wind.velocity[0]);
     return (struct cs_plan_row){
         .built = flows, .reason = flows ? "forces.wind.velocity; it needs normals" : NULL};
 }
@@ -31,14 +32,14 @@ static uint32_t uses(const struct cs_scene *scene) {
 
 /* rho A c / 2 of particle i, in kg/m. */
 static double scale_of(const struct cs_system *system, size_t i) {
-    const struct cs_wind *wind = &system->scene->forces.wind;
+    const struct cs_wind *wind = &system->scene->forces->wind;
     return 0.5 * wind->density * wind->drag * system->area[i];
 }
 
 /* u = w - v of particle i; v NULL: w. */
 static void flow_past(const struct cs_system *system, const double *v, size_t i, double u[3]) {
     for (size_t c = 0; c < 3; c++)
-        u[c] = system->scene->forces.wind.velocity[c] - (v ? v[c * system->view.n + i] : 0);
+        u[c] = system->scene->forces->wind.velocity[c] - (v ? v[c * system->view.n + i] : 0);
 }
 
 /* Force of the chosen parts on particle i along its normal n, in N. */
@@ -146,7 +147,7 @@ static void add_bound(const struct cs_system *system, const struct cs_gershgorin
 
 /* N: the wind on cloth that stands still. */
 static double max_force(const struct cs_system *system, size_t i) {
-    const double *w = system->scene->forces.wind.velocity;
+    const double *w = system->scene->forces->wind.velocity;
     return scale_of(system, i) * cs_vec3_dot(w, w);
 }
 

@@ -7,6 +7,7 @@
 #include "model/elastic/membrane_surrogate.h"
 #include "model/elastic/normal_curvature.h"
 #include "model/force/term.h"
+#include "scene/body_keys.h"
 
 static struct cs_plan_row membrane_plan(const struct cs_scene *scene) {
     const bool acts = cs_scene_first_elastic(scene) < scene->bodies.n;

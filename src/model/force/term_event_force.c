@@ -2,6 +2,7 @@
  * same a; a viewpoint force gives all visible particles the same f. Both are constant between
  * two calls of cs_events_apply. */
 #include "model/force/term.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 

@@ -18,6 +18,7 @@
 #include "base/vec3.h"
 #include "model/force/term.h"
 #include "model/force/terms.h"
+#include "scene/body_keys.h"
 #include "scene/event_key.h"
 
 #include <math.h>

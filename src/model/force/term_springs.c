@@ -1,11 +1,12 @@
 /* Springs with dampers as a term: the kernels of springs.h. */
 #include "model/force/term.h"
+#include "scene/shape.h"
 
 /* the plan has a line for springs, with the bytes of their arrays */
 static struct cs_plan_row plan_springs(const struct cs_scene *scene) {
     uint32_t n_springs = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        cs_springs_of_body(cs_scene_bodies(scene) + b, b, 0, NULL, NULL, &n_springs);
+        cs_springs_of_body(cs_scene_body(scene, b), b, 0, NULL, NULL, &n_springs);
     return (struct cs_plan_row){.built = n_springs > 0};
 }
 

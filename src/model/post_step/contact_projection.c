@@ -12,6 +12,7 @@
 #include "model/contact/approach.h"
 #include "model/contact/posed_collider.h"
 #include "model/post_step/tunnelling.h"
+#include "scene/collider_keys.h"
 
 #include <math.h>
 #include <stdatomic.h>

@@ -24,7 +24,11 @@
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "model/post_step/contact_projection.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -232,7 +236,7 @@ static bool is_balanced(const struct search *search, const struct way *way, doub
  * pinned particles. Returns false if both are held, or the forces have no direction. */
 static bool choose(const struct search *search, const struct interface *at, struct way *way) {
     const struct cs_system *system = search->system;
-    const double *g = system->scene->forces.gravity, *f = at->force;
+    const double *g = system->scene->forces->gravity, *f = at->force;
     const double length = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
     const bool single = at->b >= system->scene->bodies.n;
     const bool held[2] = {has_pins(system, at->a), single || has_pins(system, at->b)};
@@ -316,7 +320,7 @@ static bool shrink(const struct search *search, struct interface *at) {
 static enum cs_status refuse_layer(const struct search *search, const struct interface *at,
                                    struct cs_error *error) {
     const struct cs_scene *scene = search->system->scene;
-    const bool asked = scene->contact.start == CS_CONTACT_START_MOVE_OUT;
+    const bool asked = scene->contact->start == CS_CONTACT_START_MOVE_OUT;
     struct cs_text other = {0}, cure = {0};
     struct way way;
     cs_text_add(&other, at->b < scene->bodies.n ? "bodies[%u]" : "colliders[%u]",
@@ -350,7 +354,7 @@ static double stored(const struct cs_system *system) {
  * much; or refuses. */
 static enum cs_status balance(struct search *search, struct cs_initial_penetration *penetration,
                               struct cs_error *error) {
-    const bool asked = search->system->scene->contact.start == CS_CONTACT_START_MOVE_OUT;
+    const bool asked = search->system->scene->contact->start == CS_CONTACT_START_MOVE_OUT;
     const uint32_t most = MOVES * search->system->scene->bodies.n;
     struct interface at;
     struct way way;
@@ -369,7 +373,7 @@ static enum cs_status balance(struct search *search, struct cs_initial_penetrati
 enum cs_status cs_initial_layer_resolve(struct cs_system *system,
                                         struct cs_initial_penetration *penetration,
                                         struct cs_error *error) {
-    const double *g = system->scene->forces.gravity;
+    const double *g = system->scene->forces->gravity;
     const size_t n = system->view.n, n_bodies = system->pairs ? system->surfaces->n_bodies : 0;
     penetration->energy[0] = penetration->energy[1] = stored(system);
     if (!(penetration->energy[0] > 0))

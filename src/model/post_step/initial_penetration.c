@@ -19,6 +19,9 @@
 #include "model/force/diagnostics.h"
 
 #include "base/vec3.h"
+#include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
+#include "scene/force_keys.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,7 +43,7 @@ struct leaving {
 /* m in front of the bare surface of a collider to which a particle is moved: by contact by
  * force where it carries its own weight. */
 static double way_beyond(const struct cs_system *system, uint32_t i, uint32_t collider) {
-    const double *g = system->scene->forces.gravity;
+    const double *g = system->scene->forces->gravity;
     const double weight = system->mass[i] * sqrt(cs_vec3_dot(g, g));
     double range = system->collider_params ? system->collider_params[collider].range : 0,
            k = range > 0 ? system->collider_params[collider].k : 0;
@@ -101,7 +104,7 @@ static bool find_penetration(const struct cs_system *system, const struct leavin
     out->depth = CS_PENETRATION_MIN;
     bool found = false;
     for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
-        const bool project = system->scene->contact.law == CS_CONTACT_PROJECT;
+        const bool project = system->scene->contact->law == CS_CONTACT_PROJECT;
         struct cs_posed_collider posed;
         double normal[3];
         cs_posed_collider_at(system, k, 0, &posed);
@@ -126,8 +129,8 @@ static enum cs_status refuse_penetration(const struct cs_system *system, uint32_
                                          uint32_t collider, double depth,
                                          struct cs_error *error) {
     struct cs_text text = {0};
-    const bool asked = system->scene->contact.start == CS_CONTACT_START_MOVE_OUT ||
-                       !isnan(system->scene->contact.untangle);
+    const bool asked = system->scene->contact->start == CS_CONTACT_START_MOVE_OUT ||
+                       !isnan(system->scene->contact->untangle);
     cs_system_print_particle(system, i, &text);
     cs_fail(error, CS_ERR_SCENE, "%s: %s starts %.3g m inside colliders[%u]%s",
             system->scene->path, cs_text_get(&text), depth, collider,
@@ -148,7 +151,7 @@ static enum cs_status clear(struct cs_system *system, const struct leaving *leav
     struct penetration out;
     for (int pass = 0; find_penetration(system, leaving, i, p, &out); pass++) {
         if (pass == PASSES ||
-            (!leaving->start && system->scene->contact.start == CS_CONTACT_START_REFUSE))
+            (!leaving->start && system->scene->contact->start == CS_CONTACT_START_REFUSE))
             return refuse_penetration(system, i, out.collider, out.depth, error);
         if (leaving->start && !leaving->colliders[i])
             leaving->colliders[i] = out.collider + 1;
@@ -217,7 +220,7 @@ static enum cs_status check_crossings(const struct cs_system *system, struct cs_
         cs_fail(error, CS_ERR_SCENE,
                 "%s: at the start %s: separate the bodies, %sor set crossings to \"ignore\"",
                 system->scene->path, cs_text_get(&text),
-                system->points && isnan(system->scene->contact.untangle)
+                system->points && isnan(system->scene->contact->untangle)
                     ? "set contact.untangle where one is inside a closed collider, "
                     : "");
     }
@@ -246,7 +249,7 @@ static enum cs_status resolve(struct cs_system *system,
                               struct cs_error *error) {
     if (check_inside(system, penetration, error))
         return error->status;
-    if (system->scene->contact.law == CS_CONTACT_FORCE &&
+    if (system->scene->contact->law == CS_CONTACT_FORCE &&
         cs_initial_layer_resolve(system, penetration, error))
         return error->status;
     return penetration->n_moves ? check_inside(system, penetration, error) : CS_OK;
@@ -268,7 +271,7 @@ static bool is_any_inside(const struct cs_system *system, const struct leaving *
 /* J of contact that the particles may store when they arrive: as bodies at the start
  * (initial_layer.c), their weight times the range. */
 static double admitted_energy(const struct cs_system *system, const struct leaving *leaving) {
-    const double *g = system->scene->forces.gravity;
+    const double *g = system->scene->forces->gravity;
     double sum = 0;
     for (uint32_t i = 0; i < system->view.n; i++)
         if (leaving->colliders[i])
@@ -335,10 +338,10 @@ static enum cs_status untangle(struct cs_system *system,
 enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
                                               struct cs_initial_penetration *penetration,
                                               struct cs_error *error) {
-    *penetration = (struct cs_initial_penetration){.seconds = system->scene->contact.untangle};
+    *penetration = (struct cs_initial_penetration){.seconds = system->scene->contact->untangle};
     if (penetration->seconds > 0 && untangle(system, penetration, error))
         return error->status;
-    return system->scene->contact.start == CS_CONTACT_START_ALLOW
+    return system->scene->contact->start == CS_CONTACT_START_ALLOW
                ? check_crossings(system, error)
                : resolve(system, penetration, error);
 }

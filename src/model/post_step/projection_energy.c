@@ -5,6 +5,8 @@
 #include "base/vector.h"
 #include "model/force/diagnostics.h"
 #include "model/post_step/tunnelling.h"
+#include "scene/collider_keys.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -172,7 +174,7 @@ static double energy_absorbed(struct cs_projection_energy *energy,
 static double find_fall(struct cs_projection_energy *energy,
                         const struct cs_projection_step *step) {
     const struct cs_system *system = energy->system;
-    const double *g = system->scene->forces.gravity;
+    const double *g = system->scene->forces->gravity;
     double mass = 0;
     for (uint32_t i = 0; i < system->view.n; i++)
         mass += system->inv_mass[i] > 0 ? system->mass[i] : 0;
@@ -367,7 +369,7 @@ bool cs_projection_energy_limit(struct cs_projection_energy *energy,
 /* J, sum of |m g.x|: the size of the terms of gravity's energy */
 static double gravity_scale(const struct cs_system *system) {
     const size_t n = system->view.n;
-    const double *g = system->scene->forces.gravity, *x = system->state;
+    const double *g = system->scene->forces->gravity, *x = system->state;
     double sum = 0;
     for (size_t i = 0; i < n; i++)
         sum += system->mass[i] * fabs(g[0] * x[i] + g[1] * x[n + i] + g[2] * x[2 * n + i]);

@@ -4,7 +4,7 @@
 
 #include "base/vec3.h"
 #include "model/force/terms.h"
-#include "scene/scene.h"
+#include "scene/collider_keys.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,6 +2,7 @@
 #include "model/post_step/contact_projection.h"
 
 #include "model/force/diagnostics.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 
@@ -27,7 +28,7 @@ static double time_to(double way, double s, double a) {
  * of relative velocity and gravity against the normal. */
 static double time_of(const struct cs_system *system, const struct cs_posed_collider *collider,
                       double depth, const double p[3], const double v[3]) {
-    const double *g = system->scene->forces.gravity;
+    const double *g = system->scene->forces->gravity;
     double n[3], provenance[3], speed = 0, pull = 0;
     const double gap = cs_posed_collider_signed_distance(collider, p, n);
     cs_posed_collider_velocity(collider, p, provenance);

@@ -7,6 +7,7 @@
  * particles a sheet too weak for its weight needs up to 60 rounds a step, and 1000 passes leave
  * 10 %. */
 #include "model/post_step/contact_projection.h"
+#include "scene/body_keys.h"
 
 #include <clothsim/clones.h>
 #include <float.h>

@@ -5,6 +5,8 @@
  * least one is found by trisection, and the entry by bisection before it. */
 #include "model/post_step/tunnelling.h"
 
+#include "scene/collider_keys.h"
+
 #include <math.h>
 #include <string.h>
 

@@ -16,6 +16,7 @@
 #include "model/solver/contact_coupling.h"
 #include "model/solver/extra_springs.h"
 #include "scene/body_pairs.h"
+#include "scene/elastic_keys.h"
 #include "scene/shape.h"
 
 #include <clothsim/clones.h>
@@ -26,7 +27,7 @@ enum { ROW = 4096 };
 
 static bool any_body_above(const struct cs_scene *scene, uint32_t particles) {
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        if (cs_shape_count(cs_scene_bodies(scene) + b) > particles)
+        if (cs_shape_count(cs_scene_body(scene, b)) > particles)
             return true;
     return false;
 }
@@ -63,7 +64,7 @@ static bool is_joint(const struct cs_scene *scene) {
  * stand for its membrane. Runs of one body stand together, in the order of the bodies. */
 static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t body) {
     const struct cs_body_range *range = system->bodies + body;
-    const bool elastic = cs_scene_bodies(system->scene)[body].elastic.present;
+    const bool elastic = cs_scene_elastic(system->scene, body)->present;
     const struct cs_spring_run *runs = elastic ? system->membranes->runs : system->springs.runs;
     const uint32_t n_runs = elastic ? system->membranes->n_runs : system->springs.n_runs;
     uint32_t begin = 0;

@@ -9,6 +9,8 @@
 
 #include "model/spring/spring_runs.h"
 
+struct cs_body;
+
 /* Appends the runs of one body, whose particles start at `first`, at runs[0..]: those of a
  * cloth's rows, or one per kind of a mesh. lists receives the lengths and stiffnesses of a
  * mesh, 2 doubles per spring. Both may be NULL to count. Kinds of stiffness 0 have no springs,

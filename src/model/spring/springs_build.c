@@ -2,6 +2,7 @@
  * networks of a mesh. */
 #include "mesh/trimesh.h"
 #include "model/spring/springs.h"
+#include "scene/body_keys.h"
 
 #include <math.h>
 

@@ -1,6 +1,7 @@
 /* Functions of a built system: sets masses, names a particle, frees the memory. */
 #include "model/system/particle_system.h"
 
+#include "scene/body_keys.h"
 #include "scene/shape.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 /* seams.c - makes the stitches of a scene's seams, and breaks them. */
 #include "model/system/seams.h"
 
+#include "scene/body_keys.h"
 #include "scene/shape.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
 
 #include "mesh/trimesh.h"
 #include "model/system/particle_system.h"
+#include "scene/body_keys.h"
 #include "scene/shape.h"
 
 #include <math.h>

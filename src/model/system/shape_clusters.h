@@ -5,6 +5,9 @@
 #include "base/arena.h"
 #include "scene/scene.h"
 
+struct cs_body;
+struct cs_shape_clusters;
+
 struct cs_system;
 
 /* Clusters of one body; the arena of cs_shape_clusters_make owns the arrays. */

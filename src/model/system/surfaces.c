@@ -3,6 +3,7 @@
 #include "model/system/surfaces.h"
 
 #include "scene/body_pairs.h"
+#include "scene/collider_keys.h"
 
 /* Edges of a body. A grid has them along its rows, along its columns, and one diagonal per
  * cell. */

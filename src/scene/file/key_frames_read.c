@@ -6,6 +6,7 @@
 #include "base/serialise.h"
 #include "base/text.h"
 #include "scene/file/mesh_read.h"
+#include "scene/mesh_keys.h"
 
 #include <stdarg.h>
 #include <stdio.h>

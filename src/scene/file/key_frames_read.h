@@ -14,6 +14,10 @@
 #include "mesh/trimesh.h"
 #include "scene/scene.h"
 
+struct cs_key_frames;
+struct cs_mesh_source;
+struct cs_vertex_paths;
+
 /* Prints the name of file k of the key frames; returns false after the last one. */
 bool cs_key_frames_file(const struct cs_key_frames *keys, uint32_t k, char out[CS_TEXT_MAX]);
 

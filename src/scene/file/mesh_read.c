@@ -2,6 +2,7 @@
 #include "scene/file/mesh_read.h"
 
 #include "base/file.h"
+#include "scene/mesh_keys.h"
 
 #include <stdlib.h>
 #include <string.h>

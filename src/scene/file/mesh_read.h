@@ -6,6 +6,8 @@
 #include "scene/file/obj_read.h"
 #include "scene/scene.h"
 
+struct cs_mesh_source;
+
 /* Sets out to a position of the file in metres, y up: scaled, in the unit of source, turned.
  * out may be p. */
 void cs_mesh_to_scene(const struct cs_mesh_source *source, const double p[3], double out[3]);

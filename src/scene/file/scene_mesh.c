@@ -3,10 +3,11 @@
 
 #include "mesh/spring_network.h"
 #include "model/system/shape_clusters.h"
+#include "scene/body_keys.h"
+#include "scene/collider_keys.h"
 #include "scene/file/json_context.h"
 #include "scene/file/key_frames_read.h"
 #include "scene/file/mesh_read.h"
-#include "scene/scene.h"
 #include "scene/shape.h"
 
 #include <stdio.h>

@@ -8,7 +8,9 @@
 #include "base/options.h"
 #include "base/status.h"
 #include "scene/body_pairs.h"
+#include "scene/contact_keys.h"
 #include "scene/file/json_context.h"
+#include "scene/picture_keys.h"
 
 #include <errno.h>
 #include <stdbool.h>
@@ -222,11 +224,11 @@ static enum cs_status read_integrator(struct cs_json_context *context,
  * taken as it stands: it keeps the energy of an impact. */
 static void find_contact_law(const struct cs_json *root, struct cs_scene *scene) {
     const struct cs_json *contact = cs_json_find(root, "contact");
-    scene->contact.law_is_default = !contact || (cs_json_kind_of(contact) == CS_JSON_OBJECT &&
-                                                 !cs_json_find(contact, "law"));
-    scene->contact.damping_is_default =
-        scene->contact.law_is_default && !(contact && (cs_json_find(contact, "damping") ||
-                                                       cs_json_find(contact, "restitution")));
+    scene->contact->law_is_default = !contact || (cs_json_kind_of(contact) == CS_JSON_OBJECT &&
+                                                  !cs_json_find(contact, "law"));
+    scene->contact->damping_is_default =
+        scene->contact->law_is_default && !(contact && (cs_json_find(contact, "damping") ||
+                                                        cs_json_find(contact, "restitution")));
 }
 
 /* Chooses the camera where the scene says of none where it stands. */
@@ -237,7 +239,7 @@ static void choose_camera(const struct cs_json *root, struct cs_scene *scene) {
     for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
         is_placed = is_placed || (camera && cs_json_find(camera, keys[k]));
     if (!is_placed)
-        scene->camera.frame = CS_FRAME_START;
+        scene->camera->frame = CS_FRAME_START;
 }
 
 /* Runs cs_scene_check; a failure gets the position of the faulty value. */

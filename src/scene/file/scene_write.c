@@ -5,6 +5,8 @@
 #include "base/json_writer.h"
 #include "base/options.h"
 #include "mesh/trimesh.h"
+#include "scene/body_keys.h"
+#include "scene/collider_keys.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -7,6 +7,7 @@
 #include "base/json_writer.h"
 #include "model/event/events.h"
 #include "scene/body_pairs.h"
+#include "scene/contact_keys.h"
 #include "scene/file/scene_read.h"
 #include "sim/module.h"
 #include "study/compare/cell_list_parse.h"
@@ -78,7 +79,7 @@ static enum cs_status print_origin(struct cs_compare *compare, struct cs_error *
     cs_provenance_out_print_scene(&scene, out, error);
     cs_text_add(out, ",\n  \"scene\": ");
     /* what each method chooses stays absent */
-    struct cs_contact_keys *contact = &scene.contact;
+    struct cs_contact_keys *contact = scene.contact;
     contact->law = contact->law_is_default ? -1 : contact->law;
     contact->damping = contact->damping_is_default ? (double)NAN : contact->damping;
     cs_scene_print(&scene, NULL, NULL, 2, out);

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "draw/look.h"
 #include "io/png.h"
+#include "scene/picture_keys.h"
 #include "study/frame_picture.h"
 
 #include <math.h>
@@ -155,7 +156,7 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
     cs_cell_integrator(cell, integrator, sizeof integrator);
     if (cs_recorded_run_open(&recording, &compare->settings->run, integrator, error))
         return error->status;
-    struct cs_render *render = &recording.session.scene.render;
+    struct cs_render *render = recording.session.scene.render;
     render->size[0] = TILE_WIDTH;
     render->size[1] = TILE_HEIGHT;
     render->look = CS_LOOK_FORCE; // colours of what has no sign

@@ -2,6 +2,7 @@
 #include "study/compare/mesh_error.h"
 
 #include "base/file.h"
+#include "scene/body_keys.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,5 @@
 /* Varies one value of a scene over the columns of a stability map. */
+#include "scene/body_keys.h"
 #include "study/stability/stability_state.h"
 
 #include <math.h>

@@ -11,6 +11,7 @@
 #include "study/stability/stiffest_modes.h"
 
 #include "model/force/terms.h"
+#include "scene/contact_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -73,10 +74,12 @@ static void apply(struct cs_stiffest_modes *modes, const double *x, double a, do
     struct cs_system *system = modes->system;
     const struct cs_scene *given = system->scene;
     struct cs_scene frictionless = *given;
+    struct cs_contact_keys contact = *given->contact;
     const size_t n = system->view.n;
     double *dx = modes->dx, *dv = modes->dv;
     /* the slope of friction goes as 1/friction_speed */
-    frictionless.contact.friction_speed = NO_FRICTION_SPEED;
+    contact.friction_speed = NO_FRICTION_SPEED;
+    frictionless.contact = &contact;
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
             /* negative, because the product of the Jacobian is -K dx - C dv */

@@ -4,6 +4,8 @@
 
 #include "model/elastic/membranes.h"
 #include "model/force/diagnostics.h"
+#include "scene/body_keys.h"
+#include "scene/contact_keys.h"
 #include "study/follow.h"
 #include "study/session.h"
 
@@ -358,7 +360,7 @@ enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
  * that is only damped: the fastest of those is searched by itself. */
 static enum cs_status consider_dampers(struct cs_theory *theory, const double *x,
                                        struct cs_theory_limit *limit, struct cs_error *error) {
-    if (!(theory->modes.system->scene->contact.damping > 0) ||
+    if (!(theory->modes.system->scene->contact->damping > 0) ||
         !cs_spectral_bounds_depend_on_state(theory->modes.system))
         return CS_OK;
     theory->modes.has_start = false;

@@ -20,6 +20,7 @@
 #include "model/contact/lagged_friction.h"
 #include "model/contact/narrow_phase/pair_lanes.h"
 #include "model/contact/surface_points.h"
+#include "scene/contact_keys.h"
 
 #include <string.h>
 
@@ -60,7 +61,7 @@ static void contact_of(const struct work *work, const struct cs_pair_lanes *lane
         v[k / 3][k % 3] = lanes->v[k / 3][k % 3][l];
     }
     cs_pair_contact_measure(contact, work->chunk->kind, kind, params.range, p);
-    cs_pair_contact_set(contact, &params, &system->scene->contact, v);
+    cs_pair_contact_set(contact, &params, system->scene->contact, v);
 }
 
 /* Stores the friction of a block of pairs. The velocities are those of colliders alone. */
@@ -101,7 +102,7 @@ static void add_energy(const struct work *work, struct cs_pair_lanes *lanes, siz
 static void push(const struct work *work, struct cs_pair_lanes *lanes) {
     const struct cs_narrow_phase *narrow = work->narrow;
     const struct cs_pair_lane_constants constants = {
-        narrow->contacts->candidates->system->scene->contact,
+        *narrow->contacts->candidates->system->scene->contact,
         cs_force_parts_of(narrow->eval.parts)};
     if (narrow->query == CS_CONTACT_QUERY_JVP)
         cs_pair_lanes_jvp(work->chunk->kind, lanes, &constants);
@@ -139,7 +140,7 @@ static void read_pulls(const struct work *work, size_t first, uint32_t n,
 /* Stores the matrix terms of a block, which the operator multiplies with later. */
 static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     const struct cs_narrow_phase *narrow = work->narrow;
-    const struct cs_contact_keys *keys = &narrow->contacts->candidates->system->scene->contact;
+    const struct cs_contact_keys *keys = narrow->contacts->candidates->system->scene->contact;
     const struct cs_pair_matrix_chunk *terms = narrow->result->chunks + work->number;
     struct cs_pair_factors *factors = terms->factors + first / CS_PAIR_LANES;
     if (narrow->matrix->chord) {
@@ -163,7 +164,7 @@ static void add_bounds(const struct work *work, struct cs_pair_lanes *lanes, siz
     uint32_t(*to)[4] = work->chunk->rows + first;
     double *sums = cs_gather_of(gather->chunks + work->number, gather->row_sums, 1);
     struct cs_pair_bounds bounds;
-    cs_pair_lanes_bound(work->chunk->kind, lanes, &active->candidates->system->scene->contact,
+    cs_pair_lanes_bound(work->chunk->kind, lanes, active->candidates->system->scene->contact,
                         &bounds);
     for (uint32_t l = 0; l < lanes->n; l++)
         for (int k = 0; k < 4; k++) {
@@ -204,7 +205,7 @@ static void evaluate_block(const struct work *work, struct cs_pair_lanes *lanes,
 static void psd_stiffness(const struct cs_narrow_phase *narrow,
                           const struct cs_active_lanes *from, uint32_t l,
                           struct cs_pair_lanes *lanes) {
-    const struct cs_contact_keys *keys = &narrow->contacts->candidates->system->scene->contact;
+    const struct cs_contact_keys *keys = narrow->contacts->candidates->system->scene->contact;
     const bool positive = narrow->query == CS_CONTACT_QUERY_MATRIX && narrow->matrix->psd;
     const bool rubs = lanes->friction[l] + keys->damping + keys->loss > 0 &&
                       !(positive && narrow->matrix->bound);

@@ -6,6 +6,7 @@
 
 #include "base/vector.h"
 #include "model/contact/friction_chord.h"
+#include "scene/contact_keys.h"
 
 #include <string.h>
 

@@ -6,6 +6,7 @@
 #include "model/contact/body_pair_params.h"
 #include "model/contact/narrow_phase/mesh_feature.h"
 #include "model/contact/point_contact.h"
+#include "scene/contact_keys.h"
 
 /* Terms of a pair's matrix P = c g g^T + (w w^T) x B besides the gradient g. */
 struct cs_pair_matrix_terms {

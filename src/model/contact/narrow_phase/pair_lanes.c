@@ -18,6 +18,7 @@
 #include "model/contact/narrow_phase/pair_lanes.h"
 
 #include "base/vector.h"
+#include "scene/contact_keys.h"
 
 /* Copies one lane to or from a pair in point order. */
 CS_INLINE void read_lane(double from[4][3][CS_PAIR_LANES], int lane, double to[4][3]) {

@@ -12,6 +12,7 @@
 
 #include "model/contact/narrow_phase/pair_contact.h"
 #include "model/system/particle_system.h"
+#include "scene/contact_keys.h"
 
 enum { CS_PAIR_LANES = 8 };
 

@@ -1,5 +1,8 @@
 /* The rows of what a scene says of its pictures, and the check of coloured faces. */
+#include "scene/picture_keys.h"
+#include "scene/body_keys.h"
 #include "scene/check.h"
+#include "scene/force_keys.h"
 #include "scene/shape.h"
 #include "scene/table_rows.h"
 
@@ -39,7 +42,7 @@ static const struct cs_option camera_rows[] = {
            "linear: at constant velocity from key to key; smooth: at rest at each key"),
 };
 const struct cs_table cs_camera_table = {ROWS(camera_rows), .size = sizeof(struct cs_camera),
-                                         .shorthand_text = "frame"};
+                                         .apart = true, .shorthand_text = "frame"};
 
 static const double dim[3] = {0.16, 0.17, 0.19};
 static const double bright[3] = {1, 0.97, 0.92};
@@ -59,7 +62,8 @@ static const struct cs_option light_rows[] = {
     COLOUR_ROWS,
 };
 static const struct cs_option further_rows[] = {PLACE_ROWS, COLOUR_ROWS};
-const struct cs_table cs_light_table = {ROWS(light_rows), .size = sizeof(struct cs_light)};
+const struct cs_table cs_light_table = {ROWS(light_rows), .size = sizeof(struct cs_light),
+                                        .apart = true};
 const struct cs_table cs_lights_table = {ROWS(further_rows), .size = sizeof(struct cs_light)};
 
 #define X(NAME, name) #name,
@@ -113,7 +117,8 @@ static const struct cs_option render_rows[] = {
     TABLE(struct cs_render, marks, mark_table,
           "particles to mark by red discs, the first by a larger one"),
 };
-const struct cs_table cs_render_table = {ROWS(render_rows), .size = sizeof(struct cs_render)};
+const struct cs_table cs_render_table = {ROWS(render_rows), .size = sizeof(struct cs_render),
+                                         .apart = true};
 
 enum cs_status cs_check_faces(const struct cs_check *check, const char *body,
                               const struct cs_body *of) {

@@ -1,5 +1,6 @@
 /* The rows of the scene's events; see scene_tables.c. */
-#include "scene/scene.h"
+#include "scene/force_keys.h"
+#include "scene/body_keys.h"
 #include "scene/table_rows.h"
 
 const char *const cs_pin_names[] = {"top-left", "top-right", "bottom-left", "bottom-right",
