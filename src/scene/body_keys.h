@@ -110,6 +110,29 @@ struct cs_spring_law {
     int32_t stiffness_unit; /* enum cs_stiffness_unit */
 };
 
+/* linear RGB: the default colour of cloth, which means white behind a texture */
+#define CS_CLOTH_RED                                                                           \
+    { 0.60, 0.06, 0.07 }
+
+enum cs_shading { CS_SHADING_SMOOTH, CS_SHADING_FLAT };
+
+/* The colour of faces of a mesh's file that have a name. */
+struct cs_face_colour {
+    char set[CS_TEXT_MAX]; /* group, object or material */
+    double colour[3];      /* linear RGB, times the material's */
+};
+
+/* Blinn-Phong coefficients (shade.c); colours are linear RGB in 0..1. */
+struct cs_material {
+    double colour[3];
+    double back_colour[3]; /* of the other side; first component NAN: as the front */
+    double ambient, diffuse, specular, shininess;
+    int32_t shading;           /* enum cs_shading */
+    char texture[CS_TEXT_MAX]; /* PNG beside the scene file; "" = none */
+    double texture_repeat[2];  /* repetitions over the cloth */
+    struct cs_list faces;      /* struct cs_face_colour; the first that has the face counts */
+};
+
 /* A deformable body: its shape, masses, springs, pins, contact and look. */
 struct cs_body {
     struct cs_cloth cloth; /* either this or the mesh */

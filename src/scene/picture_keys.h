@@ -1,31 +1,8 @@
-/* picture_keys.h - the keys of pictures: material, camera, light, look, background, ground. */
+/* picture_keys.h - the keys of pictures: camera, light, look, background, ground. */
 #ifndef CS_PICTURE_KEYS_H
 #define CS_PICTURE_KEYS_H
 
 #include "scene/scene.h"
-
-/* linear RGB: the default colour of cloth, which means white behind a texture */
-#define CS_CLOTH_RED                                                                           \
-    { 0.60, 0.06, 0.07 }
-
-enum cs_shading { CS_SHADING_SMOOTH, CS_SHADING_FLAT };
-
-/* The colour of faces of a mesh's file that have a name. */
-struct cs_face_colour {
-    char set[CS_TEXT_MAX]; /* group, object or material */
-    double colour[3];      /* linear RGB, times the material's */
-};
-
-/* Blinn-Phong coefficients (shade.c); colours are linear RGB in 0..1. */
-struct cs_material {
-    double colour[3];
-    double back_colour[3]; /* of the other side; first component NAN: as the front */
-    double ambient, diffuse, specular, shininess;
-    int32_t shading;           /* enum cs_shading */
-    char texture[CS_TEXT_MAX]; /* PNG beside the scene file; "" = none */
-    double texture_repeat[2];  /* repetitions over the cloth */
-    struct cs_list faces;      /* struct cs_face_colour; the first that has the face counts */
-};
 
 enum cs_frame_kind { CS_FRAME_GIVEN, CS_FRAME_AUTO, CS_FRAME_START };
 enum cs_projection { CS_PROJECTION_PERSPECTIVE, CS_PROJECTION_ORTHOGRAPHIC };

@@ -61,7 +61,6 @@ static void add_binding(const struct cs_system *system, const struct cs_mode *mo
     else
         cs_text_add(out, " oscillates at %.4g /s, damped at %.3g /s",
                     sqrt(fmax(mode->omega_squared, 0)), mode->damping_rate);
-    // the bounds of the view do not hold contact
     if (mode->damping_rate > 2 * system->view.delta ||
         mode->omega_squared > system->view.omega * system->view.omega)
         cs_text_add(out, " by contact");

@@ -5,9 +5,8 @@
  * application scales the residual by its norm, runs the cycle and scales back:
  *
  *   (A / scale) x = r / size,   z = (size / scale) x
- *
- * Conjugate gradients in double precision correct the cycle's rounding. The cycle only needs to
- * stay symmetric and positive definite up to rounding. */
+ * Conjugate gradients in double precision correct its rounding, up to which the cycle has to be
+ * symmetric and positive definite. */
 #include "model/solver/multigrid.h"
 
 #include "base/pool.h"
