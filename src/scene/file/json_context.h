@@ -53,8 +53,6 @@ const struct cs_option *cs_json_shorthand(const struct cs_table *table,
 enum cs_status cs_json_override(struct cs_json *root, const struct cs_table *table,
                                 const char *path, const char *value, struct cs_error *error);
 
-/* What reads below such a position. */
-
 struct cs_scene;
 
 /* Fills *object, which holds the defaults, from value. Refuses unknown keys (but "x-..." and
