@@ -1,7 +1,6 @@
 /* Judges by the balance of energy whether a run is sound; the header derives the bounds. */
 #include "study/energy_monitor.h"
 
-#include "model/contact/contact_samples.h"
 #include "model/contact/posed_collider.h"
 #include "model/event/event_state.h"
 #include "model/event/events.h"
@@ -278,8 +277,7 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
     *row = (struct cs_energy_monitor_row){.t = run->t};
     row->energy = cs_diagnostics_energy(system, run->t, run->x, run->v);
     row->strain = cs_diagnostics_strain(system, run->x);
-    row->depth = fmax(cs_posed_colliders_depth(system, run->t, run->x),
-                      cs_contact_sample_depth(system, run->t, run->x));
+    row->depth = cs_posed_colliders_depth(system, run->t, run->x);
     balance(monitor, run, row);
     /* no bound of speed holds after an event has added energy */
     if (with_event)
@@ -341,9 +339,7 @@ const struct cs_column cs_energy_monitor_columns[] = {
     CS_TEXT_COLUMN("verdict", "verdict of this time, as of clothsim-stability(1)"),
     CS_NUMBER_COLUMN("made", "J", "energy made by the integrator"),
     CS_NUMBER_COLUMN("bound", "J", "energy above which it is a global instability"),
-    CS_NUMBER_COLUMN(
-        "largest_depth", "m",
-        "largest depth of a particle, or of an edge longer than samples allow, in a collider"),
+    CS_NUMBER_COLUMN("largest_depth", "m", "largest depth of a particle in a collider"),
 };
 const uint32_t cs_energy_monitor_n_columns =
     sizeof cs_energy_monitor_columns / sizeof *cs_energy_monitor_columns;

@@ -63,87 +63,46 @@ double cs_contact_sample_spacing(const struct cs_posed_collider *collider, doubl
 
 /* --- lengths --- */
 
-/* m, distance of two particles at x (3,n) */
-static double distance_of(const double *x, size_t n, const uint32_t ends[2]) {
+/* m, distance of two particles at the start */
+static double length_of(const struct cs_system *system, uint32_t a, uint32_t b) {
+    const double *x = system->start;
+    const size_t n = system->view.n;
     double squared = 0;
-    for (size_t c = 0; c < 3 * n; c += n)
-        squared += (x[c + ends[1]] - x[c + ends[0]]) * (x[c + ends[1]] - x[c + ends[0]]);
+    for (size_t c = 0; c < 3; c++)
+        squared += (x[c * n + b] - x[c * n + a]) * (x[c * n + b] - x[c * n + a]);
     return sqrt(squared);
 }
 
-/* m, distance of two particles at the start */
-static double length_of(const struct cs_system *system, uint32_t a, uint32_t b) {
-    return distance_of(system->start, system->view.n, (const uint32_t[2]){a, b});
-}
-
-/* Numbers of edges of a body; a grid's include some that do not exist. */
-static size_t edges_of(const struct cs_body_range *body) {
-    return body->mesh ? body->mesh->n_edges : 3 * (size_t)body->count;
-}
-
-/* Sets the ends of edge e; returns whether it exists. Of a grid's particle the edges to the
- * right and down, and the diagonal of its cell as in surfaces.h. */
-static bool find_edge(const struct cs_body_range *body, size_t e, uint32_t ends[2]) {
-    const uint32_t columns = body->columns, k = (uint32_t)(e / 3), i = body->first + k;
-    if (body->mesh) {
-        ends[0] = body->first + body->mesh->edges[2 * e];
-        ends[1] = body->first + body->mesh->edges[2 * e + 1];
-        return true;
+/* m, longest edge or cell diagonal of a grid at the start */
+static double longest_of_grid(const struct cs_system *system,
+                              const struct cs_body_range *body) {
+    const uint32_t columns = body->columns;
+    double longest = 0;
+    for (uint32_t k = 0; k < body->count; k++) {
+        const uint32_t i = body->first + k;
+        const bool right = k % columns + 1 < columns, below = k / columns + 1 < body->rows;
+        if (right)
+            longest = fmax(longest, length_of(system, i, i + 1));
+        if (below)
+            longest = fmax(longest, length_of(system, i, i + columns));
+        // a cell's diagonal as in surfaces.h
+        if (right && below)
+            longest = fmax(longest, length_of(system, i + 1, i + columns));
     }
-    const bool right = k % columns + 1 < columns, below = k / columns + 1 < body->rows;
-    ends[0] = e % 3 == 2 ? i + 1 : i;
-    ends[1] = e % 3 == 0 ? i + 1 : i + columns;
-    return (e % 3 == 1 || right) && (e % 3 == 0 || below);
+    return longest;
 }
 
 double cs_contact_sample_longest(const struct cs_system *system) {
     double longest = 0;
-    uint32_t ends[2];
-    for (uint32_t b = 0; b < system->scene->bodies.n; b++)
-        for (size_t e = 0; e < edges_of(system->bodies + b); e++)
-            if (find_edge(system->bodies + b, e, ends))
-                longest = fmax(longest, length_of(system, ends[0], ends[1]));
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_body_range *body = system->bodies + b;
+        if (!body->mesh)
+            longest = fmax(longest, longest_of_grid(system, body));
+        for (size_t e = 0; body->mesh && e < body->mesh->n_edges; e++)
+            longest = fmax(longest, length_of(system, body->first + body->mesh->edges[2 * e],
+                                              body->first + body->mesh->edges[2 * e + 1]));
+    }
     return longest;
-}
-
-/* m, largest depth of an edge between its ends in a collider, if it is longer at x than samples
- * of the start allow. */
-static double edge_depth(const struct cs_system *system,
-                         const struct cs_posed_collider *collider, double spacing,
-                         const uint32_t ends[2], const double *x) {
-    const size_t n = system->view.n;
-    const bool free = system->inv_mass[ends[0]] > 0 || system->inv_mass[ends[1]] > 0;
-    const double now = free ? distance_of(x, n, ends) : 0;
-    double deepest = 0, normal[3];
-    if (now <= spacing * fmax(ceil(length_of(system, ends[0], ends[1]) / spacing), 1))
-        return 0;
-    const int parts = 2 * (int)fmin(ceil(now / spacing), CS_CONTACT_SAMPLE_PARTS_MAX);
-    for (int k = 1; k < parts; k++) {
-        const double w = (double)k / parts;
-        double p[3];
-        for (size_t c = 0; c < 3; c++)
-            p[c] = (1 - w) * x[c * n + ends[0]] + w * x[c * n + ends[1]];
-        if (cs_posed_collider_is_near(collider, 0, p))
-            deepest = fmax(deepest, -cs_posed_collider_distance(collider, p, normal));
-    }
-    return deepest;
-}
-
-double cs_contact_sample_depth(const struct cs_system *system, double t, const double *x) {
-    double deepest = 0;
-    uint32_t ends[2];
-    for (uint32_t k = 0; system->collider_params && k < system->scene->colliders.n; k++) {
-        struct cs_posed_collider posed;
-        cs_posed_collider_at(system, k, t, &posed);
-        const double spacing =
-            cs_contact_sample_spacing(&posed, system->collider_params[k].range);
-        for (uint32_t b = 0; spacing > 0 && spacing < HUGE_VAL && b < system->scene->bodies.n;
-             b++)
-            for (size_t e = 0; e < edges_of(system->bodies + b); e++)
-                if (find_edge(system->bodies + b, e, ends))
-                    deepest = fmax(deepest, edge_depth(system, &posed, spacing, ends, x));
-    }
-    return deepest;
 }
 
 /* --- making --- */

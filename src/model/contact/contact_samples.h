@@ -66,10 +66,6 @@ double cs_contact_sample_spacing(const struct cs_posed_collider *collider, doubl
 /* Longest edge in m of a system at its start; needs no surfaces. */
 double cs_contact_sample_longest(const struct cs_system *system);
 
-/* Largest depth in m of an edge at (t, x) in a collider with contact by force, at least 0: of
- * edges alone that have grown so much that samples, made at the start, leave gaps. */
-double cs_contact_sample_depth(const struct cs_system *system, double t, const double *x);
-
 /* Builds system->contact_samples, and the surfaces if they are missing; leaves it NULL if no
  * sample is needed. After cs_collider_params_table_build. CS_ERR_MEMORY. */
 enum cs_status cs_contact_samples_build(struct cs_system *system, struct cs_error *error);
