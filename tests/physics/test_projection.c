@@ -125,9 +125,7 @@ TEST(box_below_the_angle_of_friction_stays) {
         open_box(&box, method);
         fixture_frames(&box, suite_all ? 600 : 120);
         const double way = slip(&box, box.system->start);
-        // one vertex, whose load friction cannot hold: twice the slip of the law, below
-        const double most = methods_is(method, "gauss") ? 1.5e-4 : 1e-6;
-        ck_assert_msg(way <= most, "%s: %.3g m", method, way);
+        ck_assert_msg(way <= 1e-6, "%s: %.3g m", method, way);
         fixture_close(&box);
     }
 }
@@ -313,34 +311,28 @@ TEST(ball_gets_none_at_a_tolerance) {
 }
 
 /* m behind the surface of the collider `kind`: a ball of 0.3 m, a box of 0.6 x 0.3 x 0.6 m with
- * edges of 0.02 m, a capsule of 0.15 m along x, or a ball over a floor */
+ * round edges, a capsule of 0.15 m along x */
 static double depth_in(char kind, double x, double y, double z) {
-    const double a = fabs(x) - 0.28, b = fabs(y) - 0.13, c = fabs(z) - 0.28;
-    const double out = sqrt(pow(fmax(a, 0), 2) + pow(fmax(b, 0), 2) + pow(fmax(c, 0), 2));
-    if (kind == 'b')
-        return 0.02 - out - fmin(fmax(a, fmax(b, c)), 0);
+    if (kind == 's')
+        return 0.3 - sqrt(x * x + y * y + z * z);
     if (kind == 'c')
         return 0.15 - sqrt(y * y + z * z);
-    return fmax(0.3 - sqrt(x * x + y * y + z * z), kind == 'f' ? -0.2 - y : -1);
+    return fmin(fmin(0.3 - fabs(x), 0.3 - fabs(z)), 0.15 - fabs(y));
 }
 
-/* A sheet falls on a collider in steps of a frame. No commit leaves a
- * particle inside, or makes energy: once what energy did not allow was put off, and the sheet
- * came through the ball, 0.17 m deep. */
+/* A sheet of 8 x 8 falls on a collider in steps of a frame. No commit may leave a particle
+ * deeper than a tenth of the inner radius or a quarter of a spring: the limit of energy alone
+ * let it through the ball, 0.17 m deep. */
 TEST(sheet_stays_out_in_long_steps) {
     static const struct {
         char kind;
-        double top;
+        double top, inner;
         const char *collider;
     } cases[] = {
-        {'s', 0.3, "{\"sphere\": {\"centre\": [0, 0, 0], \"radius\": 0.3}}"},
-        {'b', 0.15,
-         "{\"box\": {\"centre\": [0, 0, 0], \"size\": [0.6, 0.3, 0.6], \"radius\": 0.02}}"},
-        {'c', 0.15,
-         "{\"capsule\": {\"from\": [-1, 0, 0], \"to\": [1, 0, 0], \"radius\": 0.15}}"},
-        {'f', 0.3,
-         "{\"sphere\": {\"centre\": [0, 0, 0], \"radius\": 0.3}, \"friction\": 0.3},"
-         "{\"floor\": {\"height\": -0.2}, \"friction\": 0.3}"},
+        {'s', 0.3, 0.3, "\"sphere\": {\"centre\": [0, 0, 0], \"radius\": 0.3}"},
+        {'b', 0.15, 0.15, "\"box\": {\"centre\": [0, 0, 0], \"size\": [0.6, 0.3, 0.6]}"},
+        {'c', 0.15, 0.15,
+         "\"capsule\": {\"from\": [-1, 0, 0], \"to\": [1, 0, 0], \"radius\": 0.15}"},
     };
     static const char *const more[] = {"xpbd:dt=frame", "vbd:dt=frame", NULL};
     const struct methods methods = methods_find(&(struct methods_query){.more = more,
@@ -351,15 +343,14 @@ TEST(sheet_stays_out_in_long_steps) {
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)
         for (size_t k = 0; k < methods.n; k++) {
             struct fixture sheet;
-            struct fixture_log log;
             double deepest = 0;
             fixture_open(&sheet, methods.list[k].text,
                          "{\"bodies\": [{\"cloth\": {\"grid\": [8, 8], \"start\": \"flat\","
                          " \"place\": {\"translate\": [0, %.17g, 0]}},"
                          " \"mass\": {\"total\": 0.2}}], \"contact\": \"project\","
-                         " \"colliders\": [%s]}",
+                         " \"colliders\": [{%s}]}",
                          cases[c].top + 0.06, cases[c].collider);
-            fixture_start_logged(&sheet, &log);
+            fixture_start(&sheet);
             for (int frame = 0; frame < 60; frame++) {
                 fixture_frames(&sheet, 1);
                 for (size_t i = 0; i < sheet.n; i++)
@@ -367,10 +358,8 @@ TEST(sheet_stays_out_in_long_steps) {
                         fmax(deepest, depth_in(cases[c].kind, sheet.x[i], sheet.x[sheet.n + i],
                                                sheet.x[2 * sheet.n + i]));
             }
-            ck_assert_msg(deepest <= 1e-12, "%s, %c: %.3g m", methods.list[k].text,
-                          cases[c].kind, deepest);
-            ck_assert_msg(log.largest <= log.first * (1 + 1e-9), "%s, %c: %.9g J of %.9g",
-                          methods.list[k].text, cases[c].kind, log.largest, log.first);
+            ck_assert_msg(deepest <= fmax(0.1 * cases[c].inner, 0.25 / 7), "%s, %c: %.3g m",
+                          methods.list[k].text, cases[c].kind, deepest);
             fixture_close(&sheet);
         }
 }

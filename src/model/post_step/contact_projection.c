@@ -63,19 +63,9 @@ static bool absorb(const struct cs_collider *collider, const double n[3], double
     return held;
 }
 
-/* One commit. */
-struct step {
-    struct cs_contact_projection *contact;
-    double t, dt;
-    /* the state that the step left; changed in place */
-    double *x, *v;
-    /* integer counts: the order of their sum does not matter */
-    atomic_ullong tests, pushed;
-};
-
-/* Moves a particle at p with velocity v onto the surface of collider k, offset by its
- * thickness, after a step that began at `last`; n becomes the normal. Against a moving collider
- * all is relative to the motion of its matter. With the outward normal n and the gap d < 0:
+/* Moves a particle at p with velocity v onto the surface, offset by the collider's thickness,
+ * after a step of dt that began at `last`. Against a moving collider all is relative to the
+ * motion of its matter. With the outward normal n and the gap d < 0:
  *
  *   p -= d n                                             (cloth thesis, eq. 5.27 to 5.31)
  *   v -= ka (v.n) n  if v.n < 0, ka the absorption       (eq. 5.32 as meant)
@@ -86,13 +76,11 @@ struct step {
  * absorption reflects the normal velocity, times |ka|. Position and velocity are corrected
  * alike, so that a particle that friction holds stays in its place. If it passes the collider,
  * n and d are those of the half-space at its entry. */
-static enum cs_project_result project_particle(const struct step *step, uint32_t k,
-                                               const double last[3], double p[3], double v[3],
-                                               double n[3]) {
-    const struct cs_posed_collider *before = step->contact->colliders_before + k;
-    const struct cs_posed_collider *posed = step->contact->colliders + k;
+static enum cs_project_result project_particle(const struct cs_posed_collider *before,
+                                               const struct cs_posed_collider *posed, double dt,
+                                               const double last[3], double p[3], double v[3]) {
     const struct cs_collider *collider = posed->collider;
-    double surface_v[3], from[3], move[3], gap;
+    double n[3], surface_v[3], from[3], move[3], gap;
     if (!cs_tunnelling_find(before, posed, last, p, &gap, n))
         gap = cs_posed_collider_signed_distance(posed, p, n);
     if (!(gap < 0))
@@ -101,7 +89,7 @@ static enum cs_project_result project_particle(const struct step *step, uint32_t
     /* position that the particle would have, had it moved with the collider */
     cs_posed_collider_velocity(posed, p, surface_v);
     for (int c = 0; c < 3; c++) {
-        from[c] = last[c] + step->dt * surface_v[c];
+        from[c] = last[c] + dt * surface_v[c];
         move[c] = p[c] - from[c];
         v[c] -= surface_v[c];
     }
@@ -114,6 +102,16 @@ static enum cs_project_result project_particle(const struct step *step, uint32_t
     }
     return stopped && kept && cs_vec3_is_zero(surface_v) ? CS_PROJECT_STUCK : CS_PROJECT_PUSHED;
 }
+
+/* One commit. */
+struct step {
+    struct cs_contact_projection *contact;
+    double t, dt;
+    /* the state that the step left; changed in place */
+    double *x, *v;
+    /* integer counts: the order of their sum does not matter */
+    atomic_ullong tests, pushed;
+};
 
 static size_t count_of(const struct cs_contact_projection *contact) {
     return contact->system->view.n;
@@ -150,18 +148,14 @@ static bool passes_any(const struct cs_contact_projection *contact, const double
     return false;
 }
 
-/* Returns whether particle i is behind a collider on which it does not stick, or passes one.
- * Most do neither. */
+/* Returns whether particle i is behind a collider, or passes one. Most do neither. */
 static bool is_behind_any(const struct step *step, size_t i) {
     const struct cs_contact_projection *contact = step->contact;
-    const uint32_t own =
-        contact->static_friction.is_sticking[i] ? contact->static_friction.resting_on[i] : 0;
     double p[3], last[3], normal[3];
     copy_point(step->x, count_of(contact), i, p);
     for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
         const struct cs_posed_collider *collider = contact->colliders + k;
-        if (k + 1 != own &&
-            cs_posed_collider_is_near(collider, collider->collider->thickness, p) &&
+        if (cs_posed_collider_is_near(collider, collider->collider->thickness, p) &&
             cs_posed_collider_signed_distance(collider, p, normal) < 0)
             return true;
     }
@@ -176,23 +170,21 @@ static bool is_behind_any(const struct step *step, size_t i) {
 static unsigned project_against_all(const struct step *step, size_t i) {
     struct cs_contact_projection *contact = step->contact;
     const size_t n = count_of(contact);
-    double p[3], v[3], last[3], normal[3], imposed[3] = {0};
+    double p[3], v[3], last[3];
     unsigned pushed = 0;
     copy_point(step->x, n, i, p);
     copy_point(step->v, n, i, v);
     copy_point(contact->state_before, n, i, last);
     for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
-        const enum cs_project_result touch = project_particle(step, k, last, p, v, normal);
+        const enum cs_project_result touch = project_particle(
+            contact->colliders_before + k, contact->colliders + k, step->dt, last, p, v);
         if (touch == CS_PROJECT_NONE)
             continue;
         pushed++;
-        for (int c = 0; c < 3; c++)
-            imposed[c] = touch == CS_PROJECT_STUCK || pushed > 1 ? 0 : normal[c];
         contact->static_friction.resting_on[i] = touch == CS_PROJECT_STUCK ? k + 1 : 0;
     }
     put(p, n, i, contact->state_after);
     put(v, n, i, contact->state_after + 3 * n);
-    put(imposed, n, i, contact->normals);
     return pushed;
 }
 
@@ -203,10 +195,7 @@ static void project_block(void *arg, size_t begin, size_t end) {
     const struct cs_system *system = contact->system;
     uint64_t tested = 0, pushed = 0;
     for (size_t i = begin; i < end; i++) {
-        bool *sticks = contact->static_friction.is_sticking + i;
-        // a collider that moves may come over it
-        *sticks &= contact->colliders_before == contact->colliders || !is_behind_any(step, i);
-        const bool free = system->inv_mass[i] > 0 && !*sticks;
+        const bool free = system->inv_mass[i] > 0 && !contact->static_friction.is_sticking[i];
         tested += free;
         contact->is_pushed[i] = free && is_behind_any(step, i);
         if (contact->is_pushed[i])
@@ -231,7 +220,6 @@ static void complete(const struct step *step) {
             contact->state_after[(3 + c) * n + i] = step->v[c * n + i];
         }
         contact->is_pushed[i] = contact->static_friction.is_sticking[i];
-        put((const double[3]){0}, n, i, contact->normals);
     }
 }
 
@@ -247,12 +235,9 @@ static void push(const struct step *step) {
                                               .x = step->x,
                                               .v = step->v,
                                               .corrected = contact->state_after,
-                                              .is_pushed = contact->is_pushed,
-                                              .normals = contact->normals,
-                                              .is_sticking =
-                                                  contact->static_friction.is_sticking};
+                                              .is_pushed = contact->is_pushed};
     complete(step);
-    // particles that go a part of their way are not at rest
+    // If the push was cut short, a particle may still be behind a surface and is not at rest.
     if (!cs_projection_energy_limit(&contact->energy_limit, &pushed))
         cs_static_friction_reject(&contact->static_friction);
     memcpy(step->x, contact->state_after, n3 * sizeof *step->x);
@@ -361,7 +346,6 @@ enum cs_status cs_contact_projection_init(struct cs_contact_projection *contact,
         CS_ARENA_ARRAY(arena, contact->colliders_before, system->scene->colliders.n, error);
     contact->state_before = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
     contact->state_after = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
-    contact->normals = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
     contact->is_pushed = cs_arena_alloc_array(arena, n, sizeof(bool), error);
     if (error->status ||
         cs_static_friction_init(&contact->static_friction, system, arena, error))

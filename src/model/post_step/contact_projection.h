@@ -40,8 +40,6 @@ struct cs_contact_projection {
     double *state_before;
     /* (6,n) x and v that the current commit makes of the step */
     double *state_after;
-    /* (3,n) outward normals of pushed particles; 0 where all of the position is imposed */
-    double *normals;
     /* (n) pushed, or held by static friction, in the current commit */
     bool *is_pushed;
     struct cs_projection_counts counts;

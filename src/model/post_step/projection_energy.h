@@ -1,21 +1,19 @@
 /* projection_energy.h - keeps contact projection from adding energy.
  *
  * A push of depth d on a particle with stiffness K adds K d^2 / 2 to the springs. The velocity
- * that it removed had m (d / dt)^2 / 2, which is dt^2 K / m times less if the step is stiff.
+ * that it removes had m (d / dt)^2 / 2, which is dt^2 K / m times less if the step is stiff.
  * The energy after a commit is therefore limited to the larger of two: that before the push,
  * and that of the last commit plus a hundredth of what was lost since first contact. In this
  * order:
  *
  * 1. the pushes alone are accepted if they respect the limit;
- * 2. otherwise the body follows them as in an implicit step, and its velocity by as much as
- *    belongs to the displacement in a step of the method. If that is not enough, pushed
- *    particles that do not rest slide across the normal;
- * 3. otherwise the bodies that were pushed are slowed. If their springs and gravity alone store
- *    too much, they go a part of the way of this step first: at its start the limit holds.
+ * 2. otherwise the body follows them as in an implicit step (projection_energy.h), and its
+ *    velocity by as much as belongs to the displacement in a step of the method;
+ * 3. otherwise a fraction of the correction is applied, by bisection, and the rest in later
+ *    commits. Velocities never point inwards.
  *
- * None leaves a particle inside a collider. At first contact the reference is the energy before
- * the step, plus that of a fall through one step, because a body at rest has nothing to lose.
- * Colliders that move do work in addition. */
+ * At first contact the reference is the energy before the step, plus that of a fall through one
+ * step, because a body at rest has nothing to lose. Colliders that move do work in addition. */
 #ifndef CS_PROJECTION_ENERGY_H
 #define CS_PROJECTION_ENERGY_H
 
@@ -31,6 +29,8 @@
 struct cs_elastic_response {
     /* its own solver: a method may keep the matrix of another */
     struct cs_linear linear;
+    /* pushed particles, so that the preconditioner knows them as pinned */
+    struct cs_temporary_pins pins;
 };
 
 /* J: total energy, and the sum of the sizes of its parts, which scales rounding errors. */
@@ -46,6 +46,8 @@ struct cs_projection_energy {
     double *work;
     /* J, size of the terms of gravity's energy, which may cancel */
     double energy_scale;
+    /* 1/s, velocity per displacement of an elastic response */
+    double velocity_per_push;
     /* energy that the last commit with a push left */
     struct cs_energy_with_scale energy;
     /* J, kinetic energy that the pushes of this commit removed */
@@ -65,9 +67,6 @@ struct cs_projection_step {
     double *corrected;         /* (6,n) as the pushes leave them */
     /* (n) particles whose position is imposed: pushed or held */
     const bool *is_pushed;
-    /* (3,n) outward normal of a pushed particle; 0 where all of its position is imposed */
-    const double *normals;
-    const bool *is_sticking; /* (n) held by static friction */
 };
 
 /* Allocates the arrays in the arena. CS_ERR_MEMORY. */
@@ -75,8 +74,8 @@ enum cs_status cs_projection_energy_init(struct cs_projection_energy *energy,
                                          struct cs_system *system, struct cs_arena *arena,
                                          struct cs_error *error);
 
-/* Corrects step->corrected as described above. Returns false if particles are not where the
- * pushes left them. */
+/* Corrects blow->corrected as described above. Returns false if particles are left behind a
+ * surface. */
 bool cs_projection_energy_limit(struct cs_projection_energy *energy,
                                 const struct cs_projection_step *step);
 
