@@ -34,7 +34,8 @@ static inline double cs_cairo_width(cairo_t *cairo, const char *text, double siz
 void cs_cairo_fitted(cairo_t *cairo, const char *text, double x, double y, double align,
                      double room);
 
-/* The label of a tick, with a raised power of 10; returns its width. y NAN: draws nothing. */
+/* The label of a tick, with a raised power of 10; returns its width. */
+#define CS_NO_Y ((double)NAN) /* draws nothing */
 double cs_cairo_tick(cairo_t *cairo, const struct cs_tick *tick, double x, double y,
                      double align);
 

@@ -87,7 +87,7 @@ static void draw_axis(const struct view *view, bool vertical, bool grid, bool la
     double wide = vertical ? CS_FONT_SIZE + 1 : 30;
     for (uint32_t k = 0; k < n && !vertical; k++)
         if (ticks[k].label)
-            wide = fmax(wide, cs_cairo_tick(view->cairo, ticks + k, 0, (double)NAN, 0) + 4);
+            wide = fmax(wide, cs_cairo_tick(view->cairo, ticks + k, 0, CS_NO_Y, 0) + 4);
     const int every = stride(
         axis->logarithmic || n < 2 ? decade : (ticks[1].at - ticks[0].at) * length, wide);
     for (uint32_t k = 0; k < n; k++) {
@@ -254,8 +254,7 @@ static struct rooms find_rooms(cairo_t *cairo, const struct cs_diagram *diagram)
             }
         for (uint32_t k = cs_plot_axis_ticks(&p->y, ticks); k-- > 0;)
             if (ticks[k].label)
-                rooms.left =
-                    fmax(rooms.left, cs_cairo_tick(cairo, ticks + k, 0, (double)NAN, 0));
+                rooms.left = fmax(rooms.left, cs_cairo_tick(cairo, ticks + k, 0, CS_NO_Y, 0));
         rooms.label = fmax(rooms.label, cs_cairo_width(cairo, p->y.label, CS_FONT_SIZE));
         rooms.names = fmax(rooms.names, names);
     }
