@@ -57,8 +57,8 @@ static void draw_boxes(const struct view *view) {
     const bool apart = panel->n_boxes < 1000;
     clip(view);
     cairo_set_line_width(view->cairo, 0.3);
-    for (const struct cs_diagram_rect *cell = panel->boxes;
-         cell < panel->boxes + panel->n_boxes; cell++) {
+    for (uint32_t k = 0; k < panel->n_boxes; k++) {
+        const struct cs_diagram_rect *cell = panel->boxes + k;
         const double x = to_x(view, cell->left), y = to_y(view, cell->top);
         cairo_rectangle(view->cairo, x, y, to_x(view, cell->right) - x,
                         to_y(view, cell->bottom) - y);
