@@ -1,4 +1,6 @@
 /* What a scene and a method ask for, feature by feature. */
+#include <inttypes.h>
+
 #include "model/force/terms.h"
 #include "model/plan.h"
 #include "sheet.h"
@@ -20,8 +22,8 @@ static struct cs_plan plan_of(const char *text, uint32_t needs, bool render) {
     return plan;
 }
 
-#define BIT(feature) (1u << CS_FEATURE_##feature)
-#define FORCE(name)  (1u << (CS_FEATURES + number_of(&cs_term_##name)))
+#define BIT(feature) (UINT64_C(1) << CS_FEATURE_##feature)
+#define FORCE(name)  (UINT64_C(1) << (CS_FEATURES + number_of(&cs_term_##name)))
 
 static uint32_t number_of(const struct cs_term *term) {
     uint32_t k = 0;
@@ -30,17 +32,17 @@ static uint32_t number_of(const struct cs_term *term) {
     return k;
 }
 
-static uint32_t built(const struct cs_plan *plan) {
-    uint32_t bits = 0;
+static uint64_t built(const struct cs_plan *plan) {
+    uint64_t bits = 0;
     for (uint32_t f = 0; f < CS_FEATURES; f++) {
-        bits |= (uint32_t)plan->rows[f].built << f;
+        bits |= (uint64_t)plan->rows[f].built << f;
         ck_assert_ptr_nonnull(plan->rows[f].reason);
         ck_assert(plan->rows[f].built || plan->rows[f].bytes == 0);
     }
     for (uint32_t k = 0; k < cs_n_terms; k++) {
         const struct cs_plan_row *row = plan->forces + k;
         // the others have a line as features
-        bits |= (uint32_t)(row->built && row->reason) << (CS_FEATURES + k);
+        bits |= (uint64_t)(row->built && row->reason) << (CS_FEATURES + k);
         ck_assert(row->built || row->bytes == 0);
     }
     return bits;
@@ -48,7 +50,7 @@ static uint32_t built(const struct cs_plan *plan) {
 
 /* one key at a time on top of a cloth in gravity */
 TEST(each_key_builds_its_feature) {
-    const uint32_t least = BIT(SPRINGS) | FORCE(gravity);
+    const uint64_t least = BIT(SPRINGS) | FORCE(gravity);
     static const char still[] = "\"wind\": {\"direction\": [1, 0, 0], \"strength\": ";
     char wind[200], wind_n[200], calm[200];
     snprintf(wind, sizeof wind, CLOTH("") ", \"forces\": {%s 2}}}", still);
@@ -57,7 +59,8 @@ TEST(each_key_builds_its_feature) {
     snprintf(calm, sizeof calm, CLOTH("") ", \"forces\": {%s 0}}}", still);
     const struct {
         const char *scene;
-        uint32_t needs, built;
+        uint32_t needs;
+        uint64_t built;
     } rows[] = {
         {CLOTH("") "}", 0, least},
         {CLOTH("") ", \"forces\": {\"gravity\": [0, 0, 0]}}", 0, BIT(SPRINGS)},
@@ -93,8 +96,8 @@ TEST(each_key_builds_its_feature) {
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct cs_plan plan = plan_of(rows[k].scene, rows[k].needs, false);
-        ck_assert_msg(built(&plan) == rows[k].built, "%s: built %x, expected %x", rows[k].scene,
-                      built(&plan), rows[k].built);
+        ck_assert_msg(built(&plan) == rows[k].built, "%s: built %" PRIx64 ", expected %" PRIx64,
+                      rows[k].scene, built(&plan), rows[k].built);
     }
     const struct cs_plan drawn = plan_of(rows[0].scene, 0, true);
     ck_assert_uint_eq(built(&drawn), least | BIT(RENDER));
@@ -130,12 +133,12 @@ static size_t sum_of(const struct cs_plan *plan) {
 }
 
 /* rows that have bytes */
-static uint32_t taken(const struct cs_plan *plan) {
-    uint32_t bits = 0;
+static uint64_t taken(const struct cs_plan *plan) {
+    uint64_t bits = 0;
     for (uint32_t f = 0; f < CS_FEATURES; f++)
-        bits |= (uint32_t)(plan->rows[f].bytes > 0) << f;
+        bits |= (uint64_t)(plan->rows[f].bytes > 0) << f;
     for (uint32_t k = 0; k < cs_n_terms; k++)
-        bits |= (uint32_t)(plan->forces[k].bytes > 0) << (CS_FEATURES + k);
+        bits |= (uint64_t)(plan->forces[k].bytes > 0) << (CS_FEATURES + k);
     return bits;
 }
 
@@ -145,7 +148,8 @@ TEST(every_byte_is_in_one_row) {
 #define LAW ", \"contact\": {\"law\": \"force\"}, \"colliders\": "
     const struct {
         const char *scene;
-        uint32_t needs, taken;
+        uint32_t needs;
+        uint64_t taken;
     } rows[] = {
         {CLOTH("") "}", 0, BIT(SPRINGS)},
         {CLOTH("") "}", CS_NEED_SPRINGS, BIT(SPRINGS) | BIT(SPRING_LIST)},
@@ -166,7 +170,7 @@ TEST(every_byte_is_in_one_row) {
         struct sheet sheet;
         sheet_open(&sheet, rows[k].needs, "%s", rows[k].scene);
         ck_assert_msg(taken(&sheet.system.plan) == rows[k].taken,
-                      "%s: bytes in %x, expected in %x", rows[k].scene,
+                      "%s: bytes in %" PRIx64 ", expected in %" PRIx64, rows[k].scene,
                       taken(&sheet.system.plan), rows[k].taken);
         ck_assert_uint_eq(sum_of(&sheet.system.plan), sheet.system.arena.used);
         sheet_close(&sheet);
