@@ -90,8 +90,10 @@ static void lose_velocity(struct cs_run_host *host, double *v, bool *changed) {
 
 void cs_host_store_step(struct cs_run_host *host, double t, const double *x) {
     struct cs_blocked_step *step = &host->blocked_step;
-    if (!step->asked && step->x)
-        memcpy(step->x, x, 3 * sizeof *x * host->run->system->view.n), step->t[0] = t;
+    if (!step->asked && step->x) {
+        step->t[0] = t;
+        memcpy(step->x, x, 3 * sizeof *x * host->run->system->view.n);
+    }
 }
 
 /* Ends the run at a step that passes over contact, of a method that never asks
@@ -104,7 +106,7 @@ static enum cs_step refuse_unasked(struct cs_run_host *host, double t, const dou
         return CS_STEP_OK;
     cs_blocked_step_store(step, host->run->system, (const double[2]){from, t}, ends, 0);
     host->table.fail(
-        host, "never asks max_step_fraction: its step of %.3g s at %.9g s passes contact",
+        host, "never asks max_step_fraction: its step of %.3g s at %.9g s would pass a contact",
         t - from, from);
     return CS_STEP_HALT;
 }

@@ -20,14 +20,17 @@ void cs_cairo_dash(cairo_t *cairo, const struct cs_style *style);
 
 void cs_cairo_line(cairo_t *cairo, double x0, double y0, double x1, double y1);
 
-/* Writes a text with its base line at y; y NAN: writes nothing. align: 0 from x on, 0.5 around
- * it, 1 up to it. Returns its width. Characters that could confuse a reader or cairo are
+/* y of a text that is only measured */
+#define CS_NO_Y ((double)NAN)
+
+/* Writes a text with its base line at y; CS_NO_Y: writes nothing. align: 0 from x on, 0.5
+ * around it, 1 up to it. Returns its width. Characters that could confuse a reader or cairo are
  * replaced. */
 double cs_cairo_text(cairo_t *cairo, const char *text, double x, double y, double align,
                      double size);
 
 static inline double cs_cairo_width(cairo_t *cairo, const char *text, double size) {
-    return cs_cairo_text(cairo, text, 0, (double)NAN, 0, size);
+    return cs_cairo_text(cairo, text, 0, CS_NO_Y, 0, size);
 }
 
 /* The same, smaller where it would be wider than `room`. */
@@ -35,7 +38,6 @@ void cs_cairo_fitted(cairo_t *cairo, const char *text, double x, double y, doubl
                      double room);
 
 /* The label of a tick, with a raised power of 10; returns its width. */
-#define CS_NO_Y ((double)NAN) /* draws nothing */
 double cs_cairo_tick(cairo_t *cairo, const struct cs_tick *tick, double x, double y,
                      double align);
 

@@ -123,8 +123,7 @@ static void read_points(const struct question *question, const uint32_t *items, 
 /* Returns whether an end of an edge is a corner, or sewn to one, or one of both is tangled. */
 static bool meet_in_a_vertex(const struct cs_system *system, const uint32_t ends[2],
                              const uint32_t corners[3]) {
-    const uint32_t a = ends[0], b = ends[1],
-                   all[5] = {a, b, corners[0], corners[1], corners[2]};
+    const uint32_t a = ends[0], b = ends[1], all[] = {a, b, corners[0], corners[1], corners[2]};
     if (cs_seams_tangled(system, all, 5))
         return true;
     for (int k = 0; k < 3; k++)
