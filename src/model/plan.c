@@ -116,11 +116,12 @@ static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
            "forces.velocity_loss is above 0", "forces.velocity_loss is 0");
     decide(plan, CS_FEATURE_STRAIN_LIMIT, springs && any_body(scene, has_limit),
            "a body has strain_limit", "no strain_limit");
-    const bool leads = !isnan(scene->contact->untangle);
+    const bool leads = !isnan(scene->contact->untangle), sews = cs_scene_sews(scene, true);
     decide(plan, CS_FEATURE_EVENTS,
-           scene->events.n > 0 || leads || cs_scene_carries_pins(scene, true),
+           scene->events.n > 0 || leads || sews || cs_scene_carries_pins(scene, true),
            scene->events.n > 0 ? "the scene has events"
            : leads             ? "contact.untangle is given"
+           : sews              ? "colliders carry what is sewn to them"
                                : "key frames carry particles",
            "no events");
     decide(plan, CS_FEATURE_VIEWPOINT_FORCES, cs_viewpoint_forces_any(scene),
@@ -287,7 +288,7 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
             "bodies[%u].elastic: integrator \"%s\" has a model of springs of its own, "
             "and none of membranes; use another integrator",
             elastic, method->name);
-    if (scene->seams.n && method->traits & CS_EXPLICIT_OUTER)
+    if (cs_scene_sews(scene, false) && method->traits & CS_EXPLICIT_OUTER)
         return cs_fail(error, CS_ERR_SCENE,
                        "seams: integrator \"%s\" treats all forces but springs explicitly, for "
                        "which stitches are too stiff; use another integrator",

@@ -59,14 +59,15 @@ struct cs_seam_side {
     struct cs_list particles; /* struct cs_pin, at least one */
 };
 
-/* The other side: as many particles, or three with weights, which are one point of a triangle.
- */
+/* The other side: as many particles, or three with weights, which are one point of a triangle;
+ * or vertices of a collider's mesh, or the nearest points of a collider. */
 struct cs_seam_to {
-    struct cs_seam_side side;
-    double weights[3]; /* their sum is 1; first component NAN: stitched one to one */
+    struct cs_seam_side side; /* body -1, maybe no particles: a collider */
+    int64_t collider;         /* -1: a body */
+    double weights[3];        /* their sum is 1; first component NAN: stitched one to one */
 };
 
-/* Stitches of one kind. */
+/* Stitches of one kind; a collider carries what is sewn to it, and they have no stiffness. */
 struct cs_seam {
     struct cs_seam_side side;
     struct cs_seam_to to;
@@ -75,6 +76,7 @@ struct cs_seam {
     double length;          /* m, rest length */
     double breaking_length; /* m, of a stitch; NAN: it never breaks */
     double breaking_force;  /* N, of its spring; NAN: likewise */
+    double closing_time;    /* s, in which particles are led to a collider */
 };
 
 struct cs_shape_clusters;

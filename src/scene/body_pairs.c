@@ -27,7 +27,20 @@ bool cs_scene_carries_pins(const struct cs_scene *scene, bool by_key_frames) {
                 (!by_key_frames || colliders[pins[p].to.collider].mesh.key_frames.present))
                 return true;
     }
+    const struct cs_seam *seams = scene->seams.items;
+    for (uint32_t s = 0; s < scene->seams.n; s++)
+        if (seams[s].to.collider >= 0 &&
+            (!by_key_frames || colliders[seams[s].to.collider].mesh.key_frames.present))
+            return true;
     return false;
+}
+
+bool cs_scene_sews(const struct cs_scene *scene, bool to_collider) {
+    const struct cs_seam *seams = scene->seams.items;
+    uint32_t s = 0;
+    while (s < scene->seams.n && (seams[s].to.collider >= 0) != to_collider)
+        s++;
+    return s < scene->seams.n;
 }
 
 bool cs_scene_has_key_frames(const struct cs_scene *scene) {

@@ -19,9 +19,12 @@ const struct cs_collider *cs_scene_collider_at(const struct cs_scene *scene, uin
  * them; 0 if none has. */
 bool cs_scene_has_key_frames(const struct cs_scene *scene);
 
-/* Returns true if a pin of a body of a checked scene holds to a collider; by_key_frames: to one
+/* Returns true if a pin or a seam of a checked scene holds to a collider; by_key_frames: to one
  * that has some. */
 bool cs_scene_carries_pins(const struct cs_scene *scene, bool by_key_frames);
+
+/* Returns true if a seam of the scene joins bodies, or one to a collider. */
+bool cs_scene_sews(const struct cs_scene *scene, bool to_collider);
 double cs_scene_key_frame_speed(const struct cs_scene *scene);
 
 /* Returns true if two surfaces, or one with itself, may be in contact; *friction is then the

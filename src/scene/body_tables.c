@@ -2,6 +2,7 @@
  */
 #include "scene/body_keys.h"
 #include "scene/check.h"
+#include "scene/collider_keys.h"
 #include "scene/shape.h"
 #include "scene/table_rows.h"
 
@@ -200,6 +201,8 @@ enum cs_status cs_elastic_check(const struct cs_check *check, const char *body,
 
 /* Seams. */
 
+#define STIFFNESS 100 /* N/m, of a stitch that gives none */
+
 static const double absent3[3] = {ABSENT, ABSENT, ABSENT};
 
 /* the rows of a side in each struct that holds one */
@@ -220,9 +223,11 @@ static const double absent3[3] = {ABSENT, ABSENT, ABSENT};
 
 static const struct cs_option to_rows[] = {
     SIDE_ROWS(
-        struct cs_seam_to, "number of the other body, or of the same; must be given",
+        struct cs_seam_to, "number of the other body, or of the same; or else collider",
         "as many as on this side, stitched in order; with weights three, the corners of a "
-        "triangle"),
+        "triangle. Of a collider vertices of its mesh; absent: its nearest points"),
+    INT(struct cs_seam_to, collider, "", -1, 0, 4294967295.0,
+        "number of a collider, which carries what is sewn to it, exactly in every method"),
     VECTOR(struct cs_seam_to, weights, 3, "", absent3, 0, 1,
            "barycentric coordinates of the point of the triangle to which all are stitched"),
 };
@@ -232,7 +237,7 @@ static const struct cs_option seam_rows[] = {
     SIDE_ROWS(struct cs_seam, "number of the body from 0; must be given",
               "of the body, named as in its pins; at least one, stitched in order"),
     TABLE(struct cs_seam, to, to_table, "other side"),
-    REAL(struct cs_seam, stiffness, "N/m", 100, 1e-9, 1e12, "of each stitch, a spring"),
+    REAL(struct cs_seam, stiffness, "N/m", STIFFNESS, 1e-9, 1e12, "of each stitch, a spring"),
     REAL(struct cs_seam, damping, "N s/m", 0, 0, 1e12,
          "of each stitch: along it, or with length 0 of the whole relative velocity"),
     REAL(struct cs_seam, length, "m", 0, 0, BIG, "rest length of a stitch"),
@@ -240,6 +245,8 @@ static const struct cs_option seam_rows[] = {
          "a stitch that is longer after a step is gone; absent: none breaks"),
     REAL(struct cs_seam, breaking_force, "N", ABSENT, 1e-12, BIG,
          "likewise one whose spring pulls more: length + breaking_force/stiffness"),
+    REAL(struct cs_seam, closing_time, "s", 0, 0, BIG,
+         "to a collider, in place of the above: the particles are led to it until then"),
 };
 const struct cs_table cs_seam_table = {ROWS(seam_rows), .size = sizeof(struct cs_seam)};
 
@@ -250,27 +257,16 @@ struct look {
     uint32_t number;
 };
 
-/* Checks the body and the particles of a side; part: "" or ".to". */
-static enum cs_status check_side(const struct look *look, const char *part,
-                                 const struct cs_seam_side *side) {
-    const struct cs_pin *pins = side->particles.items;
-    const uint32_t n = look->scene->bodies.n;
+/* Checks that the owner of a side, which name says, has the particles; part: "" or ".to". */
+static enum cs_status check_particles(const struct look *look, const char *part,
+                                      const struct cs_list *particles,
+                                      const struct cs_body *owner, const char *name) {
+    const struct cs_pin *pins = particles->items;
     char path[96], fault[160];
-    snprintf(path, sizeof path, "seams[%u]%s", look->number, part);
-    if (side->body < 0)
-        return cs_check_refuse(look->check, path, "missing key \"body\", expected its number");
-    if (!side->particles.n)
-        return cs_check_refuse(look->check, path, "missing key \"particles\", expected some");
-    snprintf(path, sizeof path, "seams[%u]%s.body", look->number, part);
-    if (side->body >= n)
-        return cs_check_refuse(look->check, path, "body %lld does not exist (0..%u)",
-                               (long long)side->body, n - 1);
-    for (uint32_t p = 0; p < side->particles.n; p++) {
+    for (uint32_t p = 0; p < particles->n; p++) {
         snprintf(path, sizeof path, "seams[%u]%s.particles[%u]", look->number, part, p);
-        if (cs_shape_pin_fault(cs_scene_bodies(look->scene) + side->body, pins + p, fault,
-                               sizeof fault))
-            return cs_check_refuse(look->check, path, "body %lld: %s", (long long)side->body,
-                                   fault);
+        if (cs_shape_pin_fault(owner, pins + p, fault, sizeof fault))
+            return cs_check_refuse(look->check, path, "%s: %s", name, fault);
         if (pins[p].to.present)
             return cs_check_refuse(look->check, path,
                                    "found to, which only pins of a body have");
@@ -278,13 +274,71 @@ static enum cs_status check_side(const struct look *look, const char *part,
     return CS_OK;
 }
 
+/* Checks the body and the particles of a side; part: "" or ".to". */
+static enum cs_status check_side(const struct look *look, const char *part,
+                                 const struct cs_seam_side *side) {
+    const uint32_t n = look->scene->bodies.n;
+    char path[96], name[32];
+    snprintf(path, sizeof path, "seams[%u]%s", look->number, part);
+    if (side->body < 0)
+        return cs_check_refuse(look->check, path, "missing key \"body\"%s, expected its number",
+                               *part ? " or \"collider\"" : "");
+    if (!side->particles.n)
+        return cs_check_refuse(look->check, path, "missing key \"particles\", expected some");
+    snprintf(path, sizeof path, "seams[%u]%s.body", look->number, part);
+    if (side->body >= n)
+        return cs_check_refuse(look->check, path, "body %lld does not exist (0..%u)",
+                               (long long)side->body, n - 1);
+    snprintf(name, sizeof name, "body %u", (uint32_t)side->body);
+    return check_particles(look, part, &side->particles,
+                           cs_scene_bodies(look->scene) + side->body, name);
+}
+
+/* Checks the side of a seam that is a collider, which takes no spring. */
+static enum cs_status check_collider(const struct look *look, const struct cs_seam *seam) {
+    const struct cs_holder holder = {true, seam->to.collider};
+    const struct cs_list *particles = &seam->to.side.particles;
+    char path[64], fault[160], name[32];
+    snprintf(path, sizeof path, "seams[%u].to.collider", look->number);
+    if (seam->to.side.body >= 0)
+        return cs_check_refuse(look->check, path, "found body too, expected either");
+    if (cs_holder_fault(look->scene, &holder, fault, sizeof fault))
+        return cs_check_refuse(look->check, path, "%s", fault);
+    const struct cs_body mesh = {.mesh = cs_scene_colliders(look->scene)[holder.collider].mesh};
+    snprintf(path, sizeof path, "seams[%u].to.particles", look->number);
+    if (!mesh.mesh.present && particles->n)
+        return cs_check_refuse(look->check, path,
+                               "collider %u is no mesh and has no vertices, expected none: its "
+                               "nearest points",
+                               (uint32_t)holder.collider);
+    if (!isnan(seam->to.weights[0]) && !particles->n)
+        return cs_check_refuse(look->check, path, "found none, expected 3 for the weights");
+    snprintf(path, sizeof path, "seams[%u]", look->number);
+    if (seam->stiffness != STIFFNESS || seam->damping > 0 || seam->length > 0 ||
+        !isnan(seam->breaking_length) || !isnan(seam->breaking_force))
+        return cs_check_refuse(look->check, path,
+                               "a collider carries what is sewn to it: no spring has "
+                               "stiffness, damping, length, breaking_length or breaking_force; "
+                               "expected closing_time alone, and an event unsew to open it");
+    snprintf(name, sizeof name, "collider %u", (uint32_t)holder.collider);
+    return check_particles(look, ".to", particles, &mesh, name);
+}
+
 /* Checks one seam: sides, weights, lengths. */
 static enum cs_status check_seam(const struct look *look, const struct cs_seam *seam) {
     const double *w = seam->to.weights;
     const double sum = w[0] + w[1] + w[2];
     char path[64];
-    if (check_side(look, "", &seam->side) || check_side(look, ".to", &seam->to.side))
+    if (check_side(look, "", &seam->side) ||
+        (seam->to.collider >= 0 ? check_collider(look, seam)
+                                : check_side(look, ".to", &seam->to.side)))
         return look->check->error->status;
+    snprintf(path, sizeof path, "seams[%u].closing_time", look->number);
+    if (seam->to.collider < 0 && seam->closing_time > 0)
+        return cs_check_refuse(look->check, path,
+                               "found %.9g s, expected it in a seam to a collider alone: "
+                               "stitches between bodies pull from the start",
+                               seam->closing_time);
     snprintf(path, sizeof path, "seams[%u].to.weights", look->number);
     // false for absent weights
     if (!isnan(w[0]) && !(fabs(sum - 1) <= 1e-9))

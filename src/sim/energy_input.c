@@ -27,7 +27,7 @@ static bool has_powers(const struct cs_system *system) {
     return found;
 }
 
-/* Kinetic energy in J of the pinned particles, and of the tangled ones: it changes only if
+/* Kinetic energy in J of the pinned particles, and of those led out: it changes only if
  * their path turns. */
 static void find_pinned_energy(const struct cs_system *system, const double *v,
                                double energy[2]) {
@@ -36,7 +36,7 @@ static void find_pinned_energy(const struct cs_system *system, const double *v,
     energy[0] = energy[1] = 0;
     for (uint32_t p = 0; turns && p < system->n_pinned; p++)
         for (size_t k = system->pinned[p]; k < 3 * n; k += n)
-            energy[cs_system_is_tangled(system, system->pinned[p])] +=
+            energy[cs_system_is_led_out(system, system->pinned[p])] +=
                 0.5 * system->mass[system->pinned[p]] * v[k] * v[k];
 }
 
@@ -98,7 +98,7 @@ static void book_powers(struct cs_run_host *host, double t, double dt, const dou
     const struct cs_rebound *impacts = host->has_impact ? system->rebounds->list : NULL;
     double power = 0, led = 0;
     for (size_t i = 0; i < n; i++)
-        *(cs_system_is_tangled(system, (uint32_t)i) ? &led : &power) +=
+        *(cs_system_is_led_out(system, (uint32_t)i) ? &led : &power) +=
             impacts && impacts[i].collider ? 0 : host->power[i];
     input->given[CS_SOURCE_FORCES] += (impacts ? host->impact_work : 0) + dt * power;
     input->given[CS_SOURCE_UNTANGLE] += dt * led;
@@ -168,11 +168,12 @@ void cs_energy_input_corrections(struct cs_run_host *host, double t, const doubl
 bool cs_energy_input_events(struct cs_run_host *host, double t) {
     struct cs_energy_input *input = &host->run->energy_input;
     const double before = total(host, t);
-    const bool tangled = host->run->system->tangled;
+    const struct cs_events *events = host->run->system->events;
+    const bool leads = events->begin < events->untangled;
     if (!cs_events_apply(host->run->system, t))
         return false;
     // particles that arrive meet contact
-    const bool arrive = tangled && !host->run->system->tangled;
+    const bool arrive = leads && events->begin >= events->untangled;
     input->given[arrive ? CS_SOURCE_UNTANGLE : CS_SOURCE_EVENTS] += total(host, t) - before;
     find_pinned_energy(host->run->system, host->run->v, input->pinned);
     input->values_t = t;

@@ -22,6 +22,8 @@ enum { POSES = 256 };
 #define SWEPT 0.1
 /* Length of a stitch at the start over the size of its body that is reported. */
 #define GAP_MAX 1.0
+/* Way to a collider over the size of a body that a seam may close at once. */
+#define CLOSED 0.02
 /* Distance of two held particles over that in the sheet at rest that is reported: that of
  * "beyond cloth". */
 #define APART_MAX 1.5
@@ -108,19 +110,12 @@ struct held {
     uint32_t *particles, n;
 };
 
-/* Marks in held (n) the particles that pins hold from the start to the end: those of bodies
- * that no collider carries and no event grabs or lets go. */
+/* Marks in held (n) the particles that pins hold from the start to the end: those that no
+ * collider carries and no event grabs or lets go. */
 static void mark_held(const struct cs_system *system, bool *held) {
     const struct cs_scene *scene = system->scene;
-    for (uint32_t p = 0; p < system->n_pinned; p++) {
-        const struct cs_body *body =
-            cs_scene_bodies(scene) + body_of(system, system->pinned[p]);
-        const struct cs_pin *pins = body->pins.items;
-        bool is_carried = false;
-        for (uint32_t k = 0; k < body->pins.n; k++)
-            is_carried = is_carried || pins[k].to.present;
-        held[system->pinned[p]] = !is_carried;
-    }
+    for (uint32_t p = 0; p < system->n_pinned; p++)
+        held[system->pinned[p]] = !system->events->held_by[system->pinned[p]];
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_event *event = cs_scene_events(scene) + e;
         if (!event->grab.present && !event->release.present)
@@ -365,12 +360,34 @@ static void check_waves(const struct cs_system *system, uint32_t e, const void *
                     grab->relative ? "" : ", or \"relative\": true if its points are shifts");
 }
 
+/* A seam to a collider that closes faster than waves run through the springs. */
+static void check_closing(const struct cs_system *system, struct cs_text *out) {
+    const struct cs_events *events = system->events;
+    const uint32_t i = events ? events->gap_of : 0, b = body_of(system, i);
+    double low[3], high[3];
+    if (!events || !(events->gap > CLOSED * box_of(system, b, low, high)))
+        return;
+    const struct cs_seam *seam =
+        (const struct cs_seam *)system->scene->seams.items + events->seam_of[i] - 1;
+    const double waves = wave_speed(system, i);
+    /* the way begins and ends at rest: at most 1.5 times the mean speed */
+    if (1.5 * events->gap > waves * seam->closing_time && waves > 0)
+        cs_text_add(out,
+                    "seams[%u] draws particle %u of bodies[%u] %.3g m to colliders[%u] in %.3g "
+                    "s, faster than waves in the springs, %.3g m/s: expected closing_time = "
+                    "%.3g s or longer\n",
+                    events->seam_of[i] - 1, i - system->bodies[b].first, b, events->gap,
+                    (uint32_t)seam->to.collider, seam->closing_time, waves,
+                    3 * events->gap / waves);
+}
+
 void cs_trajectory_findings_print(const struct cs_system *system,
                                   struct cs_scene_findings *out) {
     const struct cs_scene *scene = system->scene;
     struct held held = {0};
     cs_findings_print(system, scene->bodies.n, check_pins, NULL, &out->warnings);
     check_seams(system, &out->warnings);
+    check_closing(system, &out->warnings);
     if (scene->events.n)
         out->warnings.failed |= !list_held(system, &held);
     const uint32_t n = out->warnings.failed ? 0 : scene->events.n;

@@ -83,7 +83,7 @@ CS_INLINE void push(const struct cs_posed_collider_law *law, size_t n, const dou
 CS_INLINE void add(const struct cs_posed_collider_law *law, const struct cs_system *system,
                    const struct cs_eval *at, struct cs_contact_force_parts parts,
                    const bool sphere, double *f) {
-    const bool *tangled = system->tangled;
+    const uint8_t *tangled = system->tangled;
     const size_t n = system->view.n;
     const bool rubs = parts.friction * (law->friction + law->damping + law->loss) > 0;
     for (size_t start = at->block->begin; start < at->block->end; start += ROW) {

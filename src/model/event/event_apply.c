@@ -98,15 +98,30 @@ static void unpin(struct cs_system *system, uint32_t i) {
 
 void cs_event_release_tangled(struct cs_system *system, double t) {
     const struct cs_events *events = system->events;
-    if (!system->tangled || events->untangled > t)
-        return;
-    for (uint32_t i = 0; i < system->view.n; i++)
-        if (events->tangled[i] && events->held_by[i] > events->scene.events.n)
+    bool stay = false, meet = false;
+    for (uint32_t i = 0; system->tangled && i < system->view.n; i++) {
+        const bool carried = events->held_by[i] > events->scene.events.n;
+        const bool led = events->tangled[i] == CS_TANGLED_LED_OUT;
+        const bool stays = led ? events->untangled > t : carried;
+        if (led && !stays && carried)
             unpin(system, i);
-    system->tangled = NULL;
+        stay |= stays && events->tangled[i];
+        meet |= !stays && events->tangled[i];
+        events->tangled[i] = stays ? events->tangled[i] : CS_TANGLED_NOT;
+    }
+    system->tangled = stay ? events->tangled : NULL;
     // their pairs with colliders were left out
-    if (system->pairs)
+    if (meet && system->pairs)
         system->pairs->candidates.is_built = false;
+}
+
+/* Opens a seam: frees the particles that a collider carries by it. */
+static void unsew(struct cs_system *system, uint32_t seam) {
+    const struct cs_events *events = system->events;
+    cs_seams_open(system, seam);
+    for (uint32_t i = 0; events->seam_of && i < system->view.n; i++)
+        if (events->seam_of[i] == seam + 1 && events->held_by[i] > events->scene.events.n)
+            unpin(system, i);
 }
 
 /* Stores strength and direction of the wind before and after a gust. A number that the gust
@@ -193,13 +208,20 @@ void cs_event_start(struct cs_system *system, uint32_t event) {
         pin_marked(system, event);
     }
     if (of->unsew.present)
-        cs_seams_open(system, (uint32_t)of->unsew.seam);
+        unsew(system, (uint32_t)of->unsew.seam);
     if (of->release.present) {
         cs_event_mark(system, &of->release.target);
         for (uint32_t i = 0; i < system->view.n; i++)
-            if (events->work[i] && !cs_system_is_tangled(system, i))
+            if (events->work[i] && !cs_system_is_led_out(system, i))
                 unpin(system, i);
     }
+}
+
+void cs_event_list_pinned(struct cs_system *system) {
+    system->n_pinned = 0;
+    for (uint32_t i = 0; i < system->view.n; i++)
+        if (system->inv_mass[i] == 0)
+            system->pinned[system->n_pinned++] = i;
 }
 
 /* A particle is freed only by the event that holds it: a later one may have taken it over. */
@@ -236,57 +258,8 @@ void cs_event_refresh_springs(struct cs_system *system) {
     cs_shape_clusters_refresh(system);
 }
 
-/* Makes a pin's collider the holder of a particle; fails if another pin holds it elsewhere. */
-static enum cs_status hold(struct cs_system *system, uint32_t b, uint32_t p, uint32_t i,
-                           struct cs_error *error) {
-    const struct cs_body *body = cs_scene_bodies(system->scene) + b;
-    const struct cs_pin *pins = body->pins.items;
-    const struct cs_body_range *range = system->bodies + b;
-    for (uint32_t k = 0; k < body->pins.n; k++) {
-        const bool same = pins[k].to.present && pins[k].to.collider == pins[p].to.collider;
-        if (!same && cs_shape_pin_selects(body, pins + k, system->view.n, range->first,
-                                          i - range->first, system->start))
-            return cs_fail(
-                error, CS_ERR_SCENE,
-                "bodies[%u].pins[%u].to: pins[%u] holds particle %u of the body too, "
-                "but not to collider %lld; expected one pin for each particle",
-                b, p, k, i - range->first, (long long)pins[p].to.collider);
-    }
-    system->events->held_by[i] = system->scene->events.n + 1 + (uint32_t)pins[p].to.collider;
-    return CS_OK;
-}
-
-enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *error) {
-    struct cs_events *events = system->events;
-    const uint32_t n = system->view.n, first = system->scene->events.n + 1;
-    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
-        const struct cs_body *body = cs_scene_bodies(system->scene) + b;
-        const struct cs_pin *pins = body->pins.items;
-        const struct cs_body_range *range = system->bodies + b;
-        for (uint32_t p = 0; p < body->pins.n; p++)
-            for (uint32_t i = range->first;
-                 pins[p].to.present && i < range->first + range->count; i++)
-                if (cs_shape_pin_selects(body, pins + p, n, range->first, i - range->first,
-                                         system->start) &&
-                    hold(system, b, p, i, error))
-                    return error->status;
-    }
-    // the offsets need a collider's frame, one collider after the other
-    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
-        for (uint32_t i = 0; i < n; i++)
-            events->work[i] = events->held_by[i] == first + k;
-        cs_event_store_offsets(system, first + k, events->work, 0);
-    }
-    // key frames move from the start, before any event
-    if (cs_scene_carries_pins(system->scene, true)) {
-        cs_event_find_held(system, 0);
-        cs_events_apply_paths(system, 0, system->state, system->state + 3 * (size_t)n);
-    }
-    return CS_OK;
-}
-
 bool cs_events_turn_particles(const struct cs_scene *scene) {
-    bool turns = !isnan(scene->contact->untangle), spins = false,
+    bool turns = !isnan(scene->contact->untangle) || cs_scene_sews(scene, true), spins = false,
          carries = cs_scene_carries_pins(scene, false);
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_grab *grab = &cs_scene_events(scene)[e].grab;

@@ -106,11 +106,16 @@ struct cs_events {
     /* (n) triangle that carries it, of a holder with key frames; NULL without key frames */
     uint32_t *triangles;
     /* Ways that particles go in their collider's frame, from rest to rest: (3,n) m, to the
-     * place in offsets, and (n) s, the time that they arrive; NULL: none. Those of `tangled`
-     * (n) are then free: system->tangled points to it until the time `untangled`. */
+     * place in offsets, and (n) s, the time that they arrive; NULL: none. tangled (n): whether
+     * they are led out, and free from the time `untangled` on, or sewn; system->tangled points
+     * to it while some are. */
     double *ways, *arrivals;
-    bool *tangled;
-    double untangled, way_speed; /* s; m/s, the largest on a way */
+    uint8_t *tangled;
+    double untangled, way_speed; /* s, 0: none is led out; m/s, the largest on a way */
+    /* (n) number of the seam that sews the particle to a collider, plus 1; NULL: none */
+    uint32_t *seam_of;
+    double gap;      /* m, longest way of a sewn particle */
+    uint32_t gap_of; /* that particle */
     /* NULL without viewpoint forces */
     struct cs_viewpoint_forces *viewpoint_forces;
     double next_test;          /* s, of the next visibility test; HUGE_VAL: none */
@@ -160,12 +165,18 @@ double cs_events_turning_work(const struct cs_system *system, const double *v0,
 enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *error);
 
 /* Moves each particle i with colliders[i] > 0 from where it starts to targets (3,n) in m, in
- * the frame of collider colliders[i] - 1, until contact.untangle: on the part u^2 (3 - 2 u) of
- * the way at the part u of the time. Nothing pushes it meanwhile, and it is free from then on.
- * CS_ERR_MEMORY. */
-enum cs_status cs_event_lead_out(struct cs_system *system, const uint32_t *colliders,
-                                 const double *targets, struct cs_error *error);
-/* Frees those that have arrived at t. */
+ * the frame of collider colliders[i] - 1, until the time `end`: on the part u^2 (3 - 2 u) of
+ * the way at the part u of the time; end 0: it is there from the start. Nothing pushes it
+ * meanwhile. From then on it is free if `why` is CS_TANGLED_LED_OUT, or else stays.
+ * CS_ERR_MEMORY.
+ */
+enum cs_status cs_event_lead(struct cs_system *system, const uint32_t *colliders,
+                             const double *targets, double end, enum cs_tangled why,
+                             struct cs_error *error);
+/* Leads particles to the colliders that they are sewn to. CS_ERR_SCENE if a seam fits not. */
+enum cs_status cs_event_attach_seams(struct cs_system *system, struct cs_error *error);
+/* Frees those led out that have arrived at t. They and those that are sewn no more have contact
+ * again. */
 void cs_event_release_tangled(struct cs_system *system, double t);
 /* Lists the particles without inverse mass, ascending. */
 void cs_event_list_pinned(struct cs_system *system);

@@ -29,7 +29,7 @@ struct cs_event_path cs_event_path_of(const struct cs_event *event) {
 
 size_t cs_event_times_count(const struct cs_scene *scene) {
     const struct cs_event *events = cs_scene_events(scene);
-    size_t n = !isnan(scene->contact->untangle);
+    size_t n = !isnan(scene->contact->untangle) + (size_t)scene->seams.n;
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_event_path path = cs_event_path_of(events + e);
         n += 2 + (size_t)path.n * path.n_chords;

@@ -98,7 +98,7 @@ static bool grabs(const struct cs_event *event) {
 }
 
 static bool releases(const struct cs_event *event) {
-    return event->release.present ||
+    return event->release.present || event->unsew.present ||
            ((event->pin.present || event->grab.present) && isnan(event->at));
 }
 
@@ -165,6 +165,8 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
     // pins to colliders that all rest are pins
     if (system->motions && cs_scene_carries_pins(system->scene, false) &&
         cs_event_attach_pins(system, error))
+        return error->status;
+    if (cs_scene_sews(system->scene, true) && cs_event_attach_seams(system, error))
         return error->status;
     return cs_viewpoint_forces_any(system->scene) ? cs_viewpoint_forces_build(system, error)
                                                   : CS_OK;
@@ -235,6 +237,7 @@ static void end_segment(struct cs_system *system, double t) {
     for (uint32_t e = 0; e < n; e++)
         if (events->states[e].begin == t)
             cs_event_start(system, e);
+    cs_event_release_tangled(system, t);
 
     /* the ramps, grabs and moves that are active in the segment that begins */
     events->has_ramps = false;

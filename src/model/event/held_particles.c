@@ -13,7 +13,7 @@
  * carries it: x = p0 + a (p1 - p0) + b (p2 - p0) + h n with the unit normal n, and (a, b, h)
  * constant.
  *
- * A particle on a way (cs_event_lead_out) has (a, b, h), or r, that are not constant yet. */
+ * A particle on a way (cs_event_lead) has (a, b, h), or r, that are not constant yet. */
 #include "model/event/carrier.h"
 #include "model/event/event_state.h"
 
@@ -330,18 +330,13 @@ void cs_event_find_held(struct cs_system *system, double t) {
     }
 }
 
-void cs_event_list_pinned(struct cs_system *system) {
-    system->n_pinned = 0;
-    for (uint32_t i = 0; i < system->view.n; i++)
-        if (system->inv_mass[i] == 0)
-            system->pinned[system->n_pinned++] = i;
-}
-
 /* Takes the arrays of ways, and those of carried particles where no event has them. */
 static enum cs_status take_ways(struct cs_system *system, struct cs_error *error) {
     struct cs_events *events = system->events;
     struct cs_arena *arena = &system->arena;
     const size_t n = system->view.n;
+    if (events->ways)
+        return CS_OK;
     if (!events->offsets)
         CS_ARENA_ARRAY(arena, events->offsets, 3 * n, error);
     if (!events->triangles && cs_scene_has_key_frames(system->scene))
@@ -352,9 +347,9 @@ static enum cs_status take_ways(struct cs_system *system, struct cs_error *error
     return error->status;
 }
 
-/* Leads particle i to its target (3,n). */
+/* Leads particle i to its target (3,n) until `end`. */
 static void lead(struct cs_system *system, const struct frame *frame, size_t i,
-                 const double *targets) {
+                 const double *targets, double end) {
     struct cs_events *events = system->events;
     const size_t n = system->view.n;
     const double *x = system->state + i, p[3] = {x[0], x[n], x[2 * n]};
@@ -366,29 +361,36 @@ static void lead(struct cs_system *system, const struct frame *frame, size_t i,
         events->ways[k] = events->offsets[k] - own[c];
         squared += (targets[k] - x[c * n]) * (targets[k] - x[c * n]);
     }
-    events->arrivals[i] = events->untangled;
+    events->arrivals[i] = end;
     // the slope of u^2 (3 - 2 u) is at most 1.5
-    events->way_speed = fmax(events->way_speed, 1.5 * sqrt(squared) / events->untangled);
+    if (end > 0)
+        events->way_speed = fmax(events->way_speed, 1.5 * sqrt(squared) / end);
     system->inv_mass[i] = 0;
-    events->tangled[i] = true;
+    if (events->seam_of && events->seam_of[i] && sqrt(squared) > events->gap) {
+        events->gap = sqrt(squared);
+        events->gap_of = (uint32_t)i;
+    }
 }
 
-enum cs_status cs_event_lead_out(struct cs_system *system, const uint32_t *colliders,
-                                 const double *targets, struct cs_error *error) {
+enum cs_status cs_event_lead(struct cs_system *system, const uint32_t *colliders,
+                             const double *targets, double end, enum cs_tangled why,
+                             struct cs_error *error) {
     struct cs_events *events = system->events;
+    struct frame frame = {.spin = {0}};
     const size_t n = system->view.n;
+    uint32_t last = 0;
     if (take_ways(system, error))
         return error->status;
-    events->untangled = cs_event_times_add(events, system->scene->contact->untangle);
-    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
-        const uint32_t holder = system->scene->events.n + 1 + k;
-        const struct frame frame = frame_at(system, holder, 0);
-        for (size_t i = 0; i < n; i++) {
-            if (colliders[i] != k + 1)
-                continue;
-            events->held_by[i] = holder;
-            lead(system, &frame, i, targets);
-        }
+    end = end > 0 ? cs_event_times_add(events, end) : 0;
+    events->untangled = why == CS_TANGLED_LED_OUT ? end : events->untangled;
+    for (size_t i = 0; i < n; i++) {
+        if (!colliders[i])
+            continue;
+        events->held_by[i] = system->scene->events.n + colliders[i];
+        if (events->held_by[i] != last)
+            frame = frame_at(system, last = events->held_by[i], 0);
+        lead(system, &frame, i, targets, end);
+        events->tangled[i] = (uint8_t)why;
     }
     system->tangled = events->tangled;
     cs_event_list_pinned(system);

@@ -12,12 +12,13 @@
 #include "model/system/seams.h"
 
 #include "base/vec3.h"
+#include "scene/body_pairs.h"
 
 #include <math.h>
 
 static struct cs_plan_row plan_seams(const struct cs_scene *scene) {
-    return (struct cs_plan_row){.built = scene->seams.n > 0,
-                                .reason = scene->seams.n ? "the scene has seams" : NULL};
+    const bool sews = cs_scene_sews(scene, false);
+    return (struct cs_plan_row){.built = sews, .reason = sews ? "the scene has seams" : NULL};
 }
 
 /* The length of d, and its direction: up for length 0. */

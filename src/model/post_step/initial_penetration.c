@@ -323,8 +323,9 @@ static enum cs_status untangle(struct cs_system *system,
         if (any && !find_places(system, &leaving, penetration, error)) {
             memcpy(places, system->state, bytes);
             memcpy(system->state, leaving.start, bytes);
-            cs_event_lead_out(system, leaving.colliders, places, error);
-        } else if (!any && !system->scene->events.n && !system->motions) {
+            cs_event_lead(system, leaving.colliders, places, system->scene->contact->untangle,
+                          CS_TANGLED_LED_OUT, error);
+        } else if (!any && !system->scene->events.n && !system->motions && !system->tangled) {
             // there is nothing to tell the method
             system->events = NULL;
             system->plan.rows[CS_FEATURE_EVENTS].built = false;

@@ -131,14 +131,23 @@ struct cs_system {
     struct cs_membranes *membranes; /* of elastic bodies; NULL: none (elastic/membranes.h) */
     struct cs_bendings *bendings;   /* likewise (elastic/bendings.h) */
     struct cs_events *events;       /* NULL without events; it owns the scene's changed copy */
-    const bool *tangled;   /* (n) on its way out of a collider (cs_event_lead_out), with no
-                              contact with any; NULL: none is */
-    struct cs_arena arena; /* owns the arrays */
+    const uint8_t *tangled; /* (n) enum cs_tangled, with no contact with colliders; NULL: none
+                             */
+    struct cs_arena arena;  /* owns the arrays */
 };
 
-/* True if a particle is on its way out of a collider; of surface points beyond them false. */
+/* Particles without contact with colliders: on their way out of one (cs_event_lead_out), or
+ * sewn to one (cs_event_attach_seams). */
+enum cs_tangled { CS_TANGLED_NOT, CS_TANGLED_LED_OUT, CS_TANGLED_SEWN };
+
+/* True if a particle is one of them; of surface points beyond them false. */
 static inline bool cs_system_is_tangled(const struct cs_system *system, uint32_t particle) {
     return system->tangled && particle < system->view.n && system->tangled[particle];
+}
+
+/* True if a particle is on its way out of a collider. */
+static inline bool cs_system_is_led_out(const struct cs_system *system, uint32_t particle) {
+    return system->tangled && system->tangled[particle] == CS_TANGLED_LED_OUT;
 }
 
 /* Frees the arena; *system is empty afterwards. Safe on an empty one. */

@@ -8,34 +8,35 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Lists the particles of a side in the order of its entries, each once; out NULL: counts them.
- * marks (view.n) are free for use, and false again afterwards. */
-static uint32_t list_side(const struct cs_system *system, const struct cs_seam_side *side,
-                          bool *marks, uint32_t *out) {
-    const struct cs_body *body = cs_scene_bodies(system->scene) + side->body;
+struct cs_seam_points cs_seam_points_of(const struct cs_system *system,
+                                        const struct cs_seam_side *side) {
     const struct cs_body_range *range = system->bodies + side->body;
-    const struct cs_pin *pins = side->particles.items;
+    return (struct cs_seam_points){cs_scene_bodies(system->scene) + side->body, system->start,
+                                   system->view.n, range->first, range->count};
+}
+
+uint32_t cs_seam_points_list(const struct cs_seam_points *points,
+                             const struct cs_list *particles, bool *marks, uint32_t *out) {
+    const struct cs_pin *pins = particles->items;
+    const uint32_t first = points->first;
     uint32_t n = 0;
-    for (uint32_t p = 0; p < side->particles.n; p++)
-        for (uint32_t i = 0; i < range->count; i++) {
-            if (marks[range->first + i] ||
-                !cs_shape_pin_selects(body, pins + p, system->view.n, range->first, i,
-                                      system->start))
+    for (uint32_t p = 0; p < particles->n; p++)
+        for (uint32_t i = 0; i < points->count; i++) {
+            if (marks[first + i] ||
+                !cs_shape_pin_selects(points->body, pins + p, points->n, first, i, points->x))
                 continue;
             // a corner may belong to two entries
-            marks[range->first + i] = true;
+            marks[first + i] = true;
             if (out)
-                out[n] = range->first + i;
+                out[n] = first + i;
             n++;
         }
-    memset(marks + range->first, false, range->count * sizeof *marks);
+    memset(marks + first, false, points->count * sizeof *marks);
     return n;
 }
 
-/* Fails unless the sides have the same number of particles, or the other one three with
- * weights. */
-static enum cs_status check_counts(uint32_t number, const struct cs_seam *seam,
-                                   const uint32_t n[2], struct cs_error *error) {
+enum cs_status cs_seam_check_counts(uint32_t number, const struct cs_seam *seam,
+                                    const uint32_t n[2], struct cs_error *error) {
     const bool triangle = !isnan(seam->to.weights[0]);
     if (!n[0] || !n[1])
         return cs_fail(error, CS_ERR_SCENE, "seams[%u]%s.particles: found none at the start",
@@ -120,7 +121,14 @@ static enum cs_status list_ends(struct cs_system *system, struct cs_error *error
     return CS_OK;
 }
 
-/* Makes the stitches; work has room for both sides of a seam. */
+/* Lists the particles of a side that is a body. */
+static uint32_t list_side(const struct cs_system *system, const struct cs_seam_side *side,
+                          bool *marks, uint32_t *out) {
+    const struct cs_seam_points points = cs_seam_points_of(system, side);
+    return cs_seam_points_list(&points, &side->particles, marks, out);
+}
+
+/* Makes the stitches of seams between bodies; work has room for both sides of one. */
 static enum cs_status make(struct cs_system *system, bool *marks, uint32_t *work,
                            struct cs_error *error) {
     struct cs_seams *seams = system->seams;
@@ -128,9 +136,11 @@ static enum cs_status make(struct cs_system *system, bool *marks, uint32_t *work
     uint32_t *const sides[2] = {work, work + system->view.n};
     size_t total = 0;
     for (uint32_t k = 0; k < system->scene->seams.n; k++) {
+        if (list[k].to.collider >= 0)
+            continue;
         const uint32_t n[2] = {list_side(system, &list[k].side, marks, NULL),
                                list_side(system, &list[k].to.side, marks, NULL)};
-        if (check_counts(k, list + k, n, error))
+        if (cs_seam_check_counts(k, list + k, n, error))
             return error->status;
         total += n[0];
     }
@@ -140,6 +150,8 @@ static enum cs_status make(struct cs_system *system, bool *marks, uint32_t *work
     seams->forces = cs_arena_alloc_array(arena, 3 * total, sizeof *seams->forces, error);
     seams->blocks = cs_arena_alloc_array(arena, 12 * total, sizeof *seams->blocks, error);
     for (uint32_t k = 0; k < system->scene->seams.n && !error->status; k++) {
+        if (list[k].to.collider >= 0)
+            continue;
         const uint32_t n = list_side(system, &list[k].side, marks, sides[0]);
         list_side(system, &list[k].to.side, marks, sides[1]);
         add_seam(seams, k, list + k, sides, n, error);
@@ -182,7 +194,7 @@ bool cs_seams_break(const struct cs_system *system, const double *x) {
 
 void cs_seams_open(const struct cs_system *system, uint32_t seam) {
     struct cs_seams *seams = system->seams;
-    for (uint32_t s = 0; s < seams->n; s++) {
+    for (uint32_t s = 0; seams && s < seams->n; s++) {
         if (seams->stitches[s].seam != seam || seams->broken[s])
             continue;
         seams->broken[s] = true;

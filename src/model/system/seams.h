@@ -1,4 +1,5 @@
-/* seams.h - stitches between particles and points of bodies, as a part of the system.
+/* seams.h - stitches between particles and points of bodies, as a part of the system. A seam to
+ * a collider has none: its particles are held (cs_event_attach_seams in event/event_state.h).
  *
  * A stitch joins a particle p to a particle or a point of a triangle q: with weights 1 of p and
  * -w of the corners of q, d = sum weight x = x_p - x_q. It is a spring of rest length L with a
@@ -13,6 +14,10 @@
 #define CS_SEAMS_H
 
 #include "model/system/particle_system.h"
+
+struct cs_body;
+struct cs_seam;
+struct cs_seam_side;
 
 struct cs_stitch {
     uint32_t at[4], n;                                  /* particles: p, then 1 or 3 of q */
@@ -42,6 +47,26 @@ struct cs_seams {
      * are stitched together, of a triangle the corner of largest weight */
     uint32_t *merged;
 };
+
+/* Lists the points that entries of a list choose, of one entry ascending, each once; returns
+ * their number. body: that they are of, count points from `first` on, at x (3,n) at the start.
+ * marks (n) are false and free for use. out NULL: counts. */
+struct cs_seam_points {
+    const struct cs_body *body;
+    const double *x;
+    uint32_t n, first, count;
+};
+uint32_t cs_seam_points_list(const struct cs_seam_points *points,
+                             const struct cs_list *particles, bool *marks, uint32_t *out);
+
+/* The points of a side that is a body. */
+struct cs_seam_points cs_seam_points_of(const struct cs_system *system,
+                                        const struct cs_seam_side *side);
+
+/* Fails unless the sides have the same number of points, or the other one three with weights.
+ */
+enum cs_status cs_seam_check_counts(uint32_t number, const struct cs_seam *seam,
+                                    const uint32_t n[2], struct cs_error *error);
 
 /* Builds system->seams from the scene's seams, at the start positions. Fails with CS_ERR_SCENE
  * if sides have different numbers of particles or a particle is sewn to itself. */
