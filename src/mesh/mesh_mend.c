@@ -3,8 +3,10 @@
  * the corners of triangles that stay neighbours there. Welding joins more. */
 #include "mesh/mesh_mend.h"
 
+#include "base/vec3.h"
 #include "mesh/raw_mesh.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,6 +70,49 @@ static uint32_t pair_sides(struct work *work, struct cs_raw_side *sides, uint32_
     }
 }
 
+static int by_angle(const void *left, const void *right) {
+    const struct cs_raw_side *a = left, *b = right;
+    return a->angle != b->angle ? (a->angle > b->angle) - (a->angle < b->angle)
+                                : a->falls - b->falls; // nothing is between faces in one place
+}
+
+/* Orders the sides at an edge where solids or holes touch, counter-clockwise about it: one that
+ * falls and the next one bound the same solid, wherever they stand in the file. */
+static void order_around(const struct work *work, struct cs_raw_side *sides, uint32_t n) {
+    const double(*x)[3] = (const double(*)[3])work->raw->positions;
+    double axes[3][3];
+    uint32_t falling = 0;
+    for (uint32_t i = 0; i < n; i++)
+        falling += sides[i].falls;
+    if (n < 4 || 2 * falling != n)
+        return;
+    for (uint32_t i = 0; i < n; i++) {
+        const struct cs_raw_corner *corners = work->raw->triangles[sides[i].triangle].corners;
+        const double *p = x[sides->vertex[0]], *q = x[sides->vertex[1]],
+                     *r = x[corners[(sides[i].k + 2) % 3].vertex];
+        double arm[3];
+        for (int c = 0; c < 3; c++) {
+            axes[2][c] = q[c] - p[c];
+            arm[c] = r[c] - p[c];
+        }
+        if (i == 0) {
+            cs_vec3_cross(axes[2], arm, axes[1]);
+            cs_vec3_cross(axes[1], axes[2], axes[0]);
+        }
+        const double a = cs_vec3_dot(arm, axes[0]), b = cs_vec3_dot(arm, axes[1]);
+        // ascends with the angle, whatever the lengths of the axes
+        const double slope = b / (fabs(a) + fabs(b));
+        sides[i].angle = a >= 0 ? slope : 2 - slope;
+    }
+    qsort(sides, n, sizeof *sides, by_angle);
+    uint32_t first = 0;
+    while (first < n && !(sides[first].falls && !sides[(first + n - 1) % n].falls))
+        first++;
+    for (uint32_t i = 0; i < first; i++)
+        sides[i].angle += 4;
+    qsort(sides, n, sizeof *sides, by_angle);
+}
+
 static uint32_t run_of(const struct work *work, uint32_t first, bool by_vertex) {
     return cs_raw_side_run(work->sides + first, 3 * work->raw->n_triangles - first, by_vertex);
 }
@@ -100,6 +145,7 @@ static void join_corners(struct work *work) {
         work->sides[s].paired = work->torn[work->sides[s].triangle];
     for (uint32_t s = 0, n; s < 3 * work->raw->n_triangles; s += n) {
         n = run_of(work, s, true);
+        order_around(work, work->sides + s, n);
         pair_sides(work, work->sides + s, n);
         /* neighbours of opposite orientation stay so, and are refused; more are cut off */
         for (uint32_t i = 0; i < n && n > 1; i++)

@@ -40,7 +40,8 @@ void cs_raw_sides_list(const struct cs_raw_mesh *raw, const uint32_t *places,
                                          t,
                                          k,
                                          falls,
-                                         false};
+                                         false,
+                                         0};
         }
     qsort(sides, 3 * (size_t)raw->n_triangles, sizeof *sides, by_place);
 }
@@ -70,8 +71,9 @@ static void add_fault(uint32_t n, uint32_t line, const char *one, const char *se
 }
 
 void cs_mesh_mends_print(const struct cs_mesh_mends *mends, struct cs_text *out) {
-    add_fault(mends->crossed, mends->crossed_line, "polygon that crosses itself",
-              "polygons that cross themselves", "cut as a fan", out);
+    add_fault(mends->crossed, mends->crossed_line,
+              "polygon that crosses itself or has over 1024 corners",
+              "polygons that cross themselves or have over 1024 corners", "cut as a fan", out);
     add_fault(mends->flat, mends->flat_line, "face without area", "faces without area",
               "removed", out);
     add_fault(mends->twice, mends->twice_line, "face given twice", "faces given twice",

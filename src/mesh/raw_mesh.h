@@ -44,6 +44,7 @@ struct cs_raw_side {
     uint32_t place[2], vertex[2], triangle, k; /* from corner k to corner k + 1 */
     bool falls;                                /* directed from end 1 to end 0 */
     bool paired;
+    double angle; /* about the edge, in no unit (mesh_mend.c) */
 };
 
 /* Lists the sides of all triangles (3 n), sorted by place, then by vertices, then by triangle.

@@ -146,6 +146,10 @@ def kinds():
     solids = [[[0, 3, 2], [1, 2, 3], [0, 1, 3], [1, 0, 2]], [[0, 5, 4], [1, 4, 5], [0, 1, 5], [1, 0, 4]]]
     yield (18, "two solids on one edge", obj(points, sum(solids, [])),
            "1 edge of three triangles or more (line 13) cut", 2 * SLOPED, 1 / 3, 2)
+    # the order of the file does not say which faces bound a solid
+    for faces in solids[0][:3] + solids[1] + solids[0][3:], solids[1][::-1] + solids[0]:
+        yield (18, "two solids on one edge, mixed", obj(points, faces),
+               "1 edge of three triangles or more (line 13) cut", 2 * SLOPED, 1 / 3, 2)
 
     yield (8, "no area, three corners in a line",
            obj(TETRAHEDRON + [(0.5, 0, 0)], [[0, 2, 1], [0, 4, 3], [4, 1, 3], [0, 1, 4], [1, 2, 3], [0, 3, 2]]),

@@ -147,11 +147,9 @@ static bool read_index(struct reader *in, const char *text, const char *what, si
     const long value = strtol(text, &behind, 10);
     if (behind == text || *behind || value == 0)
         return fault_at(in, in->line, "found \"%s\", expected the number of a %s", text, what);
-    if (value < 0 && (size_t) - (value + 1) >= done)
-        return fault_at(in, in->line, "%s %ld does not exist (1..%zu)", what, value, done);
-    *index = value < 0                      ? (uint32_t)(done + 1 - (size_t)-value)
-             : (uint64_t)value > UINT32_MAX ? UINT32_MAX
-                                            : (uint32_t)value;
+    if (value < 0 ? (size_t) - (value + 1) >= done : (uint64_t)value > UINT32_MAX)
+        return fault_at(in, in->line, "%s %s does not exist (1..%zu)", what, text, done);
+    *index = value < 0 ? (uint32_t)(done + 1 - (size_t)-value) : (uint32_t)value;
     return true;
 }
 
