@@ -64,34 +64,38 @@ static double middle(const struct cs_plot_axis *axis, double a, double b) {
     return axis->logarithmic ? sqrt(a * b) : (a + b) / 2;
 }
 
+/* Fills the rectangle between two places. */
+static void fill(struct box *box, struct place from, struct place to,
+                 struct cs_screen_cell cell) {
+    for (uint32_t r = from.row; r <= to.row; r++)
+        for (uint32_t c = from.column; c <= to.column; c++)
+            box->cells[r][c] = cell;
+}
+
 static void draw_boxes(struct box *box) {
     const struct cs_panel *panel = box->panel;
-    for (const struct cs_diagram_rect *b = panel->boxes; b < panel->boxes + panel->n_boxes;
-         b++) {
-        const struct place from = place_of(box, b->left, b->top),
-                           to = place_of(box, b->right, b->bottom);
+    for (uint32_t k = 0; k < panel->n_boxes; k++) {
+        const struct cs_diagram_rect *b = panel->boxes + k;
         /* the far edges are those of the next box */
-        for (uint32_t r = from.row; r <= to.row; r++)
-            for (uint32_t c = from.column; c <= to.column; c++)
-                box->cells[r][c] =
-                    (struct cs_screen_cell){.plain = ' ', .ink = 0, .paper = b->colour};
+        fill(box, place_of(box, b->left, b->top), place_of(box, b->right, b->bottom),
+             (struct cs_screen_cell){.plain = ' ', .paper = b->colour});
     }
-    for (const struct cs_diagram_rect *b = panel->boxes; b < panel->boxes + panel->n_boxes; b++)
+    for (uint32_t k = 0; k < panel->n_boxes; k++) {
+        const struct cs_diagram_rect *b = panel->boxes + k;
         put(box, middle(&panel->x, b->left, b->right), middle(&panel->y, b->bottom, b->top),
             b->letter, 0, b->colour);
+    }
 }
 
 /* Marks from one point of a staircase to the next: along the row of the first, then down. */
 static void draw_stairs(struct box *box, const struct cs_series *series) {
-    const struct cs_screen_cell step = {.plain = '.', .ink = 0, .paper = series->style.colour};
+    const struct cs_screen_cell step = {.plain = '.', .paper = series->style.colour};
     for (uint32_t k = 1; k < series->n; k++) {
         const struct cs_point *p = series->points + k;
         const struct place from = place_of(box, p[-1].x, p[-1].y),
-                           to = place_of(box, p->x, p->y);
-        for (uint32_t c = from.column; c <= to.column; c++)
-            box->cells[from.row][c] = step;
-        for (uint32_t r = from.row; r <= to.row; r++)
-            box->cells[r][to.column] = step;
+                           to = place_of(box, p->x, p->y), corner = {from.row, to.column};
+        fill(box, from, corner, step);
+        fill(box, corner, to, step);
     }
 }
 
@@ -118,10 +122,8 @@ static uint32_t drawn_series(const struct cs_panel *panel) {
 static void draw(struct box *box) {
     const struct cs_panel *panel = box->panel;
     const struct cs_series *end = panel->series + drawn_series(panel);
-    for (uint32_t r = 0; r < box->rows; r++)
-        for (uint32_t c = 0; c < box->columns; c++)
-            box->cells[r][c] =
-                (struct cs_screen_cell){.ink = CS_SCREEN_DEFAULT, .paper = CS_SCREEN_DEFAULT};
+    fill(box, (struct place){0, 0}, (struct place){box->rows - 1, box->columns - 1},
+         (struct cs_screen_cell){.ink = CS_SCREEN_DEFAULT, .paper = CS_SCREEN_DEFAULT});
     draw_boxes(box);
     for (const struct cs_series *s = panel->series; s < end; s++)
         if (s->kind == CS_SERIES_STAIRS)

@@ -150,17 +150,9 @@ void cs_cairo_keys(cairo_t *cairo, const struct cs_diagram *diagram, double widt
 
 /* --- titles --- */
 
-/* key of the text with the titles of a context */
-static const cairo_user_data_key_t titles_key;
-
-void cs_cairo_gather_titles(cairo_t *cairo, struct cs_text *titles) {
-    cairo_set_user_data(cairo, &titles_key, titles, NULL);
-}
-
-void cs_cairo_title(cairo_t *cairo, const struct cs_panel *panel,
+void cs_cairo_title(struct cs_text *titles, const struct cs_panel *panel,
                     const struct cs_series *series, const struct cs_point *p,
                     const double at[2]) {
-    struct cs_text *titles = cairo_get_user_data(cairo, &titles_key);
     if (!titles)
         return;
     cs_text_add(titles, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"transparent\"><title>",

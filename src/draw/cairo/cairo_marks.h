@@ -52,11 +52,9 @@ void cs_cairo_sample(cairo_t *cairo, const struct cs_style *style, enum cs_mark 
  * of one below the last. */
 void cs_cairo_keys(cairo_t *cairo, const struct cs_diagram *diagram, double width, double *y);
 
-/* Titles of an SVG, which browsers show under the pointer: of circles that are not seen, with
- * the series, the note and the values of a mark. A context gathers them in a text; NULL: it
- * does not. */
-void cs_cairo_gather_titles(cairo_t *cairo, struct cs_text *titles);
-void cs_cairo_title(cairo_t *cairo, const struct cs_panel *panel,
+/* Adds the title of a mark, which browsers show under the pointer: of a circle that is not
+ * seen, with the series, the note and the values. titles: of an SVG; NULL: adds nothing. */
+void cs_cairo_title(struct cs_text *titles, const struct cs_panel *panel,
                     const struct cs_series *series, const struct cs_point *p,
                     const double at[2]);
 

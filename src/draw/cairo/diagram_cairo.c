@@ -20,6 +20,7 @@ enum { NAME_LEFT = LEADER + CS_SAMPLE + 2 };
 /* A panel, and the box of its axes in pt. */
 struct view {
     cairo_t *cairo;
+    struct cs_text *titles; /* of the marks of an SVG; NULL: not wanted */
     const struct cs_panel *panel;
     double left, top, width, height;
 };
@@ -161,7 +162,7 @@ static void draw_marks(const struct view *view, const struct cs_series *series,
         }
         if (p->ring)
             cs_cairo_mark(view->cairo, CS_MARK_RING, &series->style, at[0], at[1]);
-        cs_cairo_title(view->cairo, view->panel, series, p, at);
+        cs_cairo_title(view->titles, view->panel, series, p, at);
     }
 }
 
@@ -303,8 +304,9 @@ static bool shares_axis(const struct cs_diagram *diagram, uint32_t k) {
            !memcmp(a->range, b->range, sizeof a->range);
 }
 
-/* Draws everything; returns the height in pt. */
-static double draw_page(cairo_t *cairo, const struct cs_diagram *diagram) {
+/* Draws everything; returns the height in pt. titles: as in struct view. */
+static double draw_page(cairo_t *cairo, const struct cs_diagram *diagram,
+                        struct cs_text *titles) {
     const struct rooms rooms = find_rooms(cairo, diagram);
     const double width = diagram->width * PT_PER_MM;
     const uint32_t columns = diagram->columns;
@@ -326,8 +328,8 @@ static double draw_page(cairo_t *cairo, const struct cs_diagram *diagram) {
         const uint32_t column = k % columns;
         const double height =
             fmax(panel->aspect * wide, fmax(rooms.names, fmin(rooms.label, 0.8 * wide)));
-        const struct view view = {cairo, panel, rooms.left + column * (wide + GAP),
-                                  y,     wide,  height};
+        const struct view view = {cairo, titles, panel, rooms.left + column * (wide + GAP),
+                                  y,     wide,   height};
         const bool last = column + 1 == columns || k + 1 == diagram->n_panels;
         const bool lowest = !shares_axis(diagram, k);
         draw_panel(&view, column == 0, lowest, last ? size : 0);
@@ -346,7 +348,6 @@ static double draw_on(cairo_surface_t *surface, double scale, const struct cs_di
                       struct cs_text *titles) {
     cairo_font_options_t *options = cairo_font_options_create();
     cairo_t *cairo = cairo_create(surface);
-    cs_cairo_gather_titles(cairo, titles);
     /* letters have the same shape and width in pixels as in the files without */
     cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
     cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
@@ -359,7 +360,7 @@ static double draw_on(cairo_surface_t *surface, double scale, const struct cs_di
     cairo_scale(cairo, scale, scale);
     cs_cairo_ink(cairo, 0xffffff, 1);
     cairo_paint(cairo);
-    const double height = draw_page(cairo, diagram);
+    const double height = draw_page(cairo, diagram, titles);
     cairo_destroy(cairo);
     return height;
 }

@@ -24,20 +24,13 @@ struct sheet {
     double range[2]; /* log10 m */
 };
 
-/* KIND_SERIES.png in FOLDER/pictures; cell NULL: KIND_reference.png. */
-static void tile_name(const struct sheet *sheet, const struct cs_cell *cell,
-                      char name[CS_SERIES_BYTES + 16]) {
+/* FOLDER/KIND_SERIES.png; cell NULL: FOLDER/KIND_reference.png. */
+static void tile_path(const struct sheet *sheet, const struct cs_cell *cell, const char *folder,
+                      char path[PATH_BYTES]) {
     char series[CS_SERIES_BYTES] = "reference";
     if (cell)
         cs_series_file_name(cell->series, series);
-    snprintf(name, CS_SERIES_BYTES + 16, "%s_%s.png", sheet->kind, series);
-}
-
-static void tile_path(const struct sheet *sheet, const struct cs_cell *cell,
-                      const struct cs_compare *compare, char path[PATH_BYTES]) {
-    char name[CS_SERIES_BYTES + 16];
-    tile_name(sheet, cell, name);
-    snprintf(path, PATH_BYTES, "%.4000s/pictures/%s", compare->settings->folder, name);
+    snprintf(path, PATH_BYTES, "%.4000s/%s_%s.png", folder, sheet->kind, series);
 }
 
 /* True for a finished cell with that step, equal up to rounding of its text. */
@@ -64,82 +57,61 @@ static void choose_step(struct sheet *sheet, const struct cs_compare *compare) {
             sheet->cells[sheet->n++] = list->cells + k;
 }
 
-/* The cell after the last one of the series that begins with a cell. */
-static const struct cs_cell *end_of_series(const struct cs_compare *compare,
-                                           const struct cs_cell *first) {
-    const struct cs_cell *cell = first, *end = compare->cells.cells + compare->cells.n;
-    while (cell < end && cs_cell_same_series(cell, first))
-        cell++;
-    return cell;
-}
-
-/* The most expensive finished cell of a series within a cost, its best result; cost 0: the
- * cheapest one. NULL: there is none. */
-static const struct cs_cell *find_cell(const struct cs_cell *first, const struct cs_cell *end,
-                                       double cost) {
-    const struct cs_cell *best = NULL;
-    for (const struct cs_cell *cell = first; cell < end; cell++)
-        if (cs_cell_is_finished(cell) &&
-            (cost > 0 ? cell->cpu <= cost && (!best || cell->cpu > best->cpu)
-                      : !best || cell->cpu < best->cpu))
-            best = cell;
-    return best;
-}
-
-/* Chooses the best cell of each series within the cost in s that every method can keep: the
- * largest of the methods' cheapest cells. */
+/* Chooses the best cell of each series, its most expensive one, within the cost in s that every
+ * method can keep: the largest of the methods' cheapest cells. */
 static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
-    const struct cs_cell *cells = compare->cells.cells, *end, *best;
+    const struct cs_cell *begin = compare->cells.cells, *end = begin + compare->cells.n;
     double cost = 0;
-    for (int pass = 0; pass < 2; pass++)
-        for (const struct cs_cell *first = cells; first < cells + compare->cells.n;
-             first = end) {
-            end = end_of_series(compare, first);
-            best = find_cell(first, end, pass ? cost : 0);
+    for (int pass = 0; pass < 2; pass++) {
+        const struct cs_cell *best = NULL;
+        for (const struct cs_cell *cell = begin; cell < end; cell++) {
+            if (cs_cell_is_finished(cell) &&
+                (pass ? cell->cpu <= cost && (!best || cell->cpu > best->cpu)
+                      : !best || cell->cpu < best->cpu))
+                best = cell;
+            if (cell + 1 < end && cs_cell_same_series(cell, cell + 1))
+                continue;
             if (best && pass == 0)
                 cost = fmax(cost, best->cpu);
             else if (best && sheet->n < TILES_MAX)
                 sheet->cells[sheet->n++] = best;
+            best = NULL;
         }
+    }
 }
 
-/* A tile of a system at x (3,n), coloured by values (n). cell: as of its name. */
+/* What the tiles of all cells share, and the end of the run of one. */
 struct tile {
-    const struct sheet *sheet;
     const struct cs_compare *compare;
-    struct cs_system *system;
+    const char *pictures; /* folder */
     enum cs_renderer_kind kind;
+    struct cs_system *system;
+    const struct cs_trajectory *trajectory;
 };
 
-static enum cs_status paint(const struct tile *tile, const struct cs_cell *cell, double *x,
-                            const double *values, struct cs_error *error) {
-    const struct cs_run run = {.system = tile->system, .x = x, .t = tile->compare->time};
-    struct cs_image image = {0};
-    struct cs_text renderer = {0};
-    char path[PATH_BYTES];
-    tile_path(tile->sheet, cell, tile->compare, path);
-    if (!cs_snapshot_draw(&run, values, tile->kind, &image, &renderer, error))
-        cs_png_write(path, &image, 6, NULL, 0, error);
-    free(image.rgb);
-    cs_text_finish(&renderer);
-    return error->status;
-}
-
 /* Draws the last frame of a cell, and before that of a sheet's first cell the reference. */
-static enum cs_status paint_end(const struct tile *tile, const struct cs_cell *cell,
-                                const struct cs_trajectory *trajectory,
-                                struct cs_error *error) {
-    const struct cs_trajectory *reference = &tile->compare->reference.trajectory;
-    double *x = cs_trajectory_state(trajectory, trajectory->frames),
-           *right = cs_trajectory_state(reference, reference->frames),
+static enum cs_status paint_end(const struct sheet *sheet, const struct cs_cell *cell,
+                                const struct tile *tile, struct cs_error *error) {
+    const struct cs_trajectory *trajectory = tile->trajectory,
+                               *reference = &tile->compare->reference.trajectory;
+    double *right = cs_trajectory_state(reference, reference->frames),
            *distance = calloc(trajectory->n, sizeof *distance);
+    struct cs_run run = {.system = tile->system, .t = tile->compare->time};
     if (!distance)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours");
-    for (int own = cell != tile->sheet->cells[0]; own < 2 && !error->status; own++) {
-        cs_distance_each(trajectory->n, own ? x : right, right, distance);
+    for (int own = cell != sheet->cells[0]; own < 2 && !error->status; own++) {
+        char path[PATH_BYTES];
+        struct cs_image image = {0};
+        struct cs_text renderer = {0};
+        run.x = own ? cs_trajectory_state(trajectory, trajectory->frames) : right;
+        cs_distance_each(trajectory->n, run.x, right, distance);
         for (uint32_t i = 0; i < trajectory->n; i++)
-            distance[i] = log10(fmax(distance[i], pow(10, tile->sheet->range[0])));
-        paint(tile, own ? cell : NULL, own ? x : right, distance, error);
+            distance[i] = log10(fmax(distance[i], pow(10, sheet->range[0])));
+        tile_path(sheet, own ? cell : NULL, tile->pictures, path);
+        if (!cs_snapshot_draw(&run, distance, tile->kind, &image, &renderer, error))
+            cs_png_write(path, &image, 6, NULL, 0, error);
+        free(image.rgb);
+        cs_text_finish(&renderer);
     }
     free(distance);
     return error->status;
@@ -147,14 +119,13 @@ static enum cs_status paint_end(const struct tile *tile, const struct cs_cell *c
 
 /* Runs a cell again and draws it: a comparison stores no states of its cells. */
 static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell *cell,
-                                const struct cs_compare *compare, enum cs_renderer_kind kind,
-                                struct cs_error *error) {
+                                struct tile tile, struct cs_error *error) {
     char integrator[CS_CELL_INTEGRATOR];
     struct cs_recorded_run recording;
     struct cs_trajectory trajectory = {0};
     struct cs_recorded_run_result result;
     cs_cell_integrator(cell, integrator, sizeof integrator);
-    if (cs_recorded_run_open(&recording, &compare->settings->run, integrator, error))
+    if (cs_recorded_run_open(&recording, &tile.compare->settings->run, integrator, error))
         return error->status;
     struct cs_render *render = recording.session.scene.render;
     render->size[0] = TILE_WIDTH;
@@ -163,20 +134,27 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
     memcpy(render->range, sheet->range, sizeof render->range);
     render->marks.particles.n = 0;
     render->viewpoint_forces = false; // what they saw was forgotten at the end of the run
+    tile.system = &recording.session.system;
+    tile.trajectory = &trajectory;
     if (!cs_trajectory_init(&trajectory, &recording, error) &&
         !cs_recorded_run_execute(&recording, 0, &trajectory, &result, error) &&
         trajectory.n_recorded == trajectory.frames)
-        paint_end(&(struct tile){sheet, compare, &recording.session.system, kind}, cell,
-                  &trajectory, error);
+        paint_end(sheet, cell, &tile, error);
     cs_trajectory_finish(&trajectory);
     cs_recorded_run_close(&recording);
     return error->status;
 }
 
-/* Range of colours in log10 m, one for all sheets: from the smallest error, or the reference's
- * bar, to the largest. */
-static void set_range(struct sheet sheets[SHEETS], const struct cs_compare *compare) {
+/* Chooses the cells of both sheets; none without errors of position. Sets the range of colours
+ * in log10 m, one for both: from the smallest error, or the reference's bar, to the largest. */
+static void choose_sheets(struct sheet sheets[SHEETS], const struct cs_compare *compare) {
     double least = HUGE_VAL, most = 0;
+    sheets[0] = (struct sheet){.kind = "equal_step", .title = "Equal step"};
+    sheets[1] = (struct sheet){.kind = "equal_cost", .title = "Equal cost"};
+    if (!compare->reference.pointwise || !compare->settings->pictures)
+        return;
+    choose_step(sheets + 0, compare);
+    choose_cost(sheets + 1, compare);
     for (int s = 0; s < SHEETS; s++)
         for (uint32_t k = 0; k < sheets[s].n; k++) {
             least = fmin(least, sheets[s].cells[k]->error);
@@ -188,15 +166,8 @@ static void set_range(struct sheet sheets[SHEETS], const struct cs_compare *comp
     }
 }
 
-/* Chooses the cells of both sheets and their range; none without errors of position. */
-static void choose_sheets(struct sheet sheets[SHEETS], const struct cs_compare *compare) {
-    sheets[0] = (struct sheet){.kind = "equal_step", .title = "Equal step"};
-    sheets[1] = (struct sheet){.kind = "equal_cost", .title = "Equal cost"};
-    if (!compare->reference.pointwise)
-        return;
-    choose_step(sheets + 0, compare);
-    choose_cost(sheets + 1, compare);
-    set_range(sheets, compare);
+static void find_folder(const struct cs_compare *compare, char path[PATH_BYTES]) {
+    snprintf(path, PATH_BYTES, "%.4000s/pictures", compare->settings->folder);
 }
 
 enum cs_status cs_compare_contact_sheet_write(struct cs_compare *compare,
@@ -204,26 +175,26 @@ enum cs_status cs_compare_contact_sheet_write(struct cs_compare *compare,
                                               struct cs_error *error) {
     struct sheet sheets[SHEETS];
     char path[PATH_BYTES];
+    const struct tile tile = {.compare = compare, .pictures = path, .kind = kind};
     choose_sheets(sheets, compare);
-    snprintf(path, sizeof path, "%s/pictures", compare->settings->folder);
+    find_folder(compare, path);
     for (const struct sheet *s = sheets; s < sheets + SHEETS && !error->status; s++)
         if (s->n && !cs_folder_create(path, error))
             for (uint32_t k = 0; k < s->n && !error->status; k++)
-                draw_tile(s, s->cells[k], compare, kind, error);
+                draw_tile(s, s->cells[k], tile, error);
     return error->status;
 }
 
 /* --- in reports --- */
 
-/* Begins a figure with the picture of a file; false, and nothing added, where it cannot be
- * read. */
+/* Begins a figure with the picture of a file, in the page itself, which needs no other file.
+ * Returns false, and adds nothing, where it cannot be read. */
 static bool begin_figure(const char *path, struct cs_text *out) {
     char *bytes;
     size_t length;
     struct cs_error unread = {0};
     if (cs_file_read(path, TILE_BYTES_MAX, &bytes, &length, &unread))
         return false;
-    /* in the page itself: it needs no other file */
     cs_text_add(out, "<figure><img alt=\"\" src=\"data:image/png;base64,");
     cs_text_add_base64(out, bytes, length);
     cs_text_add(out, "\"><figcaption>");
@@ -231,39 +202,36 @@ static bool begin_figure(const char *path, struct cs_text *out) {
     return true;
 }
 
-/* Adds the reference (cell NULL) or a tile with its caption: a figure, or a row of a table. */
-static void add_tile(const struct sheet *sheet, const struct cs_cell *cell,
-                     const struct cs_compare *compare, bool html, struct cs_text *out) {
-    char path[PATH_BYTES], name[CS_SERIES_BYTES + 16];
-    tile_name(sheet, cell, name);
-    tile_path(sheet, cell, compare, path);
-    if (!html)
-        cs_text_add(out, "| ![](pictures/%s) | ", name);
-    else if (!begin_figure(path, out))
-        return;
-    if (!cell)
-        cs_text_add(out, "reference%sknown to %.1e m", html ? "<br>" : ", ",
-                    compare->reference.error_bar);
-    else {
-        (html ? cs_text_add_html : cs_text_add_markdown)(out, cell->series);
-        cs_text_add(out, "%s%s %.3g, %.3g ms, error %.1e m", html ? "<br>" : ", ",
-                    cell->control, cell->value, 1e3 * cell->cpu, cell->error);
-    }
-    cs_text_add(out, html ? "</figcaption></figure>\n" : " |\n");
-}
-
+/* Adds the reference and the tiles of a sheet with their captions: figures of a page, or rows
+ * of a table. */
 static void add_tiles(const struct sheet *sheet, const struct cs_compare *compare, bool html,
                       struct cs_text *out) {
-    add_tile(sheet, NULL, compare, html, out);
-    for (uint32_t k = 0; k < sheet->n; k++)
-        add_tile(sheet, sheet->cells[k], compare, html, out);
+    const char *apart = html ? "<br>" : ", ";
+    char folder[PATH_BYTES], path[PATH_BYTES];
+    find_folder(compare, folder);
+    for (uint32_t k = 0; k <= sheet->n; k++) {
+        const struct cs_cell *cell = k ? sheet->cells[k - 1] : NULL;
+        tile_path(sheet, cell, html ? folder : "pictures", path);
+        if (!html)
+            cs_text_add(out, "| ![](%s) | ", path);
+        else if (!begin_figure(path, out))
+            continue;
+        if (!cell)
+            cs_text_add(out, "reference%sknown to %.1e m", apart, compare->reference.error_bar);
+        else {
+            (html ? cs_text_add_html : cs_text_add_markdown)(out, cell->series);
+            cs_text_add(out, "%s%s %.3g, %.3g ms, error %.1e m", apart, cell->control,
+                        cell->value, 1e3 * cell->cpu, cell->error);
+        }
+        cs_text_add(out, html ? "</figcaption></figure>\n" : " |\n");
+    }
 }
 
 void cs_compare_contact_sheet_add_html(const struct cs_compare *compare, struct cs_text *out) {
     const uint32_t *stops = cs_look_of(CS_LOOK_FORCE)->stops;
     struct sheet sheets[SHEETS];
     choose_sheets(sheets, compare);
-    if (!compare->settings->pictures || !sheets[1].n)
+    if (!sheets[1].n)
         return;
     /* one bar for both strips, which have one range */
     cs_text_add(out,
@@ -287,7 +255,7 @@ void cs_compare_contact_sheet_add_markdown(const struct cs_compare *compare,
     struct sheet sheets[SHEETS];
     choose_sheets(sheets, compare);
     for (const struct sheet *s = sheets; s < sheets + SHEETS; s++) {
-        if (!s->n || !compare->settings->pictures)
+        if (!s->n)
             continue;
         cs_text_add(
             out,
