@@ -12,17 +12,6 @@
 
 #include <stdio.h>
 
-/* Writes one file of a map; frees the text. */
-static enum cs_status write_file(const struct cs_stability_options *options, const char *name,
-                                 const char *ending, struct cs_text *text,
-                                 struct cs_error *error) {
-    char path[4200];
-    snprintf(path, sizeof path, "%s/%s%s", options->map.folder, name, ending);
-    cs_file_write_text(path, text, error);
-    cs_text_finish(text);
-    return error->status;
-}
-
 /* Refuses a map whose files would overwrite the scene, or, but for -y, earlier ones. A shard
  * writes none. */
 static enum cs_status check_files(const struct cs_stability_options *options,
@@ -63,18 +52,21 @@ static enum cs_status make_plot(const struct cs_stability_options *options,
 static enum cs_status write_files(const struct cs_stability_options *options,
                                   const struct cs_stability *stability, struct cs_plot *plot,
                                   char title[640], bool *drawn, struct cs_error *error) {
+    static const struct {
+        const char *ending;
+        void (*print)(const struct cs_stability *stability, struct cs_text *out);
+    } tables[] = {{".csv", cs_stability_print_csv},
+                  {"_border.csv", cs_stability_print_borders_csv},
+                  {".json", cs_stability_print_json}};
     char name[CS_SERIES_BYTES], path[4200];
-    struct cs_text cells = {0}, borders = {0}, json = {0};
     struct cs_error unseen = {0};
     cs_series_file_name(stability->series, name);
-    cs_stability_print_csv(stability, &cells);
-    cs_stability_print_borders_csv(stability, &borders);
-    cs_stability_print_json(stability, &json);
-    write_file(options, name, ".csv", &cells, error);
-    if (!error->status)
-        write_file(options, name, "_border.csv", &borders, error);
-    if (!error->status)
-        write_file(options, name, ".json", &json, error);
+    for (size_t k = 0; k < sizeof tables / sizeof *tables && !error->status; k++) {
+        struct cs_text text = {0};
+        tables[k].print(stability, &text);
+        snprintf(path, sizeof path, "%s/%s%s", options->map.folder, name, tables[k].ending);
+        cs_file_write_text(path, &text, error);
+    }
     /* the picture is made of the files above */
     snprintf(path, sizeof path, "%s/%s", options->map.folder, name);
     if (!error->status && !make_plot(options, stability, plot, title, error))
@@ -87,24 +79,21 @@ static enum cs_status write_files(const struct cs_stability_options *options,
     /* not before all results are in files */
     if (!error->status && !cs_journal_remove(stability, error))
         cs_manifest_write_study(options->map.folder, error);
-    cs_text_finish(&borders);
-    cs_text_finish(&json);
     return error->status;
 }
 
-/* Prints the table or the diagram of a finished map. */
+/* Prints the table or, on a screen, the diagram of a finished map. */
 static enum cs_status print_map(const struct cs_stability_options *options,
                                 const struct cs_stability *stability,
-                                const struct cs_plot *plot, bool drawn,
-                                struct cs_error *error) {
+                                const struct cs_screen *screen, const struct cs_plot *plot,
+                                bool drawn, struct cs_error *error) {
     char name[CS_SERIES_BYTES];
-    struct cs_screen screen;
     struct cs_text out = {0};
     cs_series_file_name(stability->series, name);
-    if (options->show && !cs_screen_open(&screen, false, error)) {
-        cs_screen_print_diagram(&screen, &plot->diagram, &out);
+    if (options->show) {
+        cs_screen_print_diagram(screen, &plot->diagram, &out);
         cs_print_raw(stdout, &out, error);
-    } else if (!options->show)
+    } else
         cs_stability_print_table(stability, &out);
     if (!options->quiet)
         cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json%s\n\n", stability->wall,
@@ -142,7 +131,7 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
     struct cs_stability_settings asked = options->map;
     const bool quiet = options->quiet;
     struct cs_plot plot = {0};
-    struct cs_screen screen;
+    struct cs_screen screen = {0};
     char title[640];
     bool drawn = false;
     if (options->show && cs_screen_open(&screen, false, error))
@@ -168,7 +157,7 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
     } else if (!error->status && !cs_folder_create(options->map.folder, error) &&
                !write_files(options, &stability, &plot, title, &drawn, error) &&
                (!quiet || options->show))
-        print_map(options, &stability, &plot, drawn, error);
+        print_map(options, &stability, &screen, &plot, drawn, error);
     cs_plot_finish(&plot);
     if (!error->status && options->strict)
         check_cells(&stability, error);

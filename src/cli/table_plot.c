@@ -55,15 +55,12 @@ struct cs_series *cs_table_plot_add_series(struct cs_plot *plot, struct cs_panel
                                               .style = cs_style_of(panel->n_series)},
                            table->rows, error);
     for (uint32_t r = 0; series && r < table->rows; r++)
-        if (!group || !strcmp(group, table->words[r])) {
-            const struct cs_point point = {.x = cs_number_table_at(table, r, columns[0]),
-                                           .y = cs_number_table_at(table, r, columns[1]),
-                                           .mark = group ? CS_MARK_FULL : CS_MARK_NONE,
-                                           .joined = true};
-            series->points[series->n++] = point;
-            cs_plot_axis_include(&panel->x, point.x);
-            cs_plot_axis_include(&panel->y, point.y);
-        }
+        if (!group || !strcmp(group, table->words[r]))
+            series->points[series->n++] =
+                (struct cs_point){.x = cs_number_table_at(table, r, columns[0]),
+                                  .y = cs_number_table_at(table, r, columns[1]),
+                                  .mark = group ? CS_MARK_FULL : CS_MARK_NONE,
+                                  .joined = true};
     return series;
 }
 
@@ -114,8 +111,6 @@ enum { LIMITS = sizeof limits / sizeof *limits };
 
 static void add_limits(struct cs_plot *plot, struct cs_panel *panel,
                        const struct cs_number_table *border, struct cs_error *error) {
-    /* the ranges are those of the cells */
-    const struct cs_plot_axis x = panel->x, y = panel->y;
     for (int k = 0; k < LIMITS && !error->status; k++) {
         const uint32_t columns[2] = {0, cs_number_table_find(border, limits[k].column)};
         struct cs_series *series =
@@ -129,8 +124,6 @@ static void add_limits(struct cs_plot *plot, struct cs_panel *panel,
         for (uint32_t i = 0; i < series->n && !(limits[k].style.width > 0); i++)
             series->points[i].mark = CS_MARK_HOLLOW;
     }
-    panel->x = x;
-    panel->y = y;
 }
 
 static enum cs_status add_map(struct cs_plot *plot, const struct cs_number_table *table,

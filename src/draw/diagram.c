@@ -47,20 +47,16 @@ void cs_plot_axis_widen(struct cs_plot_axis *axis) {
     range[1] += more;
 }
 
-/* Decades between two labels. */
-static int stride(double span) {
-    return span > 20 ? 3 : span > 10 ? 2 : 1;
-}
-
 static uint32_t add_decades(const double range[2], struct cs_tick *ticks) {
     const double span = range[1] - range[0];
     /* few decades around 1 read best as plain numbers */
     const bool plain = range[0] > -3 && range[1] < 4 && span < 4;
+    const int every = span > 20 ? 3 : span > 10 ? 2 : 1; /* decades between two labels */
     uint32_t n = 0;
     for (int decade = (int)floor(range[0]); decade <= range[1]; decade++)
         for (int digit = 1; digit < 10; digit++) {
             const double at = (decade + log10(digit) - range[0]) / span;
-            const bool label = (digit == 1 && decade % stride(span) == 0) ||
+            const bool label = (digit == 1 && decade % every == 0) ||
                                (span < 2 && (digit == 2 || digit == 5)) ||
                                (span < 1 && digit == 3);
             if (at >= 0 && at <= 1 && n < CS_TICKS_MAX)
@@ -151,4 +147,20 @@ struct cs_series *cs_plot_add_series(struct cs_plot *plot, struct cs_panel *pane
         return NULL;
     panel->series[panel->n_series] = series;
     return panel->series + panel->n_series++;
+}
+
+void cs_panel_fit(struct cs_panel *panel) {
+    for (uint32_t k = 0; k < panel->n_series; k++) {
+        const struct cs_series *s = panel->series + k;
+        for (uint32_t i = 0; i < s->n && s->kind == CS_SERIES_LINE; i++) {
+            const struct cs_point *p = s->points + i;
+            const bool bar = p->low < p->high;
+            if (p->mark == CS_MARK_CROSS)
+                continue;
+            cs_plot_axis_include(&panel->x, p->x);
+            cs_plot_axis_include(&panel->x, bar ? p->low : p->x);
+            cs_plot_axis_include(&panel->x, bar ? p->high : p->x);
+            cs_plot_axis_include(&panel->y, p->y);
+        }
+    }
 }

@@ -149,6 +149,9 @@ struct cs_series *cs_plot_add_series(struct cs_plot *plot, struct cs_panel *pane
                                      struct cs_series series, uint32_t n_points,
                                      struct cs_error *error);
 
+/* Extends the ranges of both axes to all points and bars of its lines, but for crosses. */
+void cs_panel_fit(struct cs_panel *panel);
+
 enum cs_format { CS_FORMAT_PNG, CS_FORMAT_SVG, CS_FORMAT_PDF, CS_FORMATS };
 extern const char *const cs_format_names[]; /* closed by NULL */
 enum { CS_FORMATS_ALL = (1 << CS_FORMATS) - 1 };

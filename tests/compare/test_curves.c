@@ -160,6 +160,42 @@ TEST(probes_are_not_joined) {
     cs_plot_finish(&plot);
 }
 
+/* Probes whose own error is far from the median, and quartiles, are within the axes; those of a
+ * probe that only one panel shows too, because both have one y axis. */
+TEST(what_is_drawn_is_within_the_axes) {
+    struct cs_plot_settings settings = make();
+    struct cs_plot plot;
+    struct cs_error error = {0};
+    settings.n = EACH;
+    settings.x = cs_column_find("work");
+    settings.second = cs_column_find("cpu");
+    for (uint32_t k = 0; k < EACH; k++) {
+        cells[k].adaptive = true;
+        cells[k].value = 1e-6 * pow(1.05, k);
+        cells[k].work = 100 * (k + 1);
+    }
+    cells[2].target = cells[3].target = 1e-5;
+    cells[2].runs = 2;
+    cells[2].error = 1e-13;
+    cells[3].error = 1e-15;
+    cells[3].runs = 1;
+    cells[1].cpu_low = 1e-9;
+    ck_assert_int_eq(cs_plot_make(&plot, &settings, &error), CS_OK);
+    for (const struct cs_panel *panel = plot.panels; panel < plot.panels + 2; panel++) {
+        const struct cs_series *s = panel->series + panel->n_series - 1;
+        ck_assert_uint_eq(s->n, panel == plot.panels ? EACH : EACH - 1);
+        for (uint32_t k = 0; k < s->n; k++) {
+            const double x =
+                s->points[k].low < s->points[k].high ? s->points[k].low : s->points[k].x;
+            ck_assert_double_gt(cs_plot_axis_at(&panel->x, x), 0);
+            ck_assert_double_gt(cs_plot_axis_at(&panel->y, s->points[k].y), 0);
+        }
+        ck_assert_double_eq(panel->y.range[0], plot.panels->y.range[0]);
+        ck_assert_double_eq(panel->y.range[1], plot.panels->y.range[1]);
+    }
+    cs_plot_finish(&plot);
+}
+
 /* Errors on a line of slope 1 with noise of a factor: the median is on the line where the noise
  * is symmetric, and the band holds all values of the half decades around, brought to the cell.
  */

@@ -82,11 +82,12 @@ static enum cs_status add_lines(struct cs_plot *plot, const struct cs_number_tab
             if (r == 0 || strcmp(table->words[r], table->words[r - 1]) != 0)
                 cs_table_plot_add_series(plot, panel, table, columns, table->words[r], error);
     }
-    for (uint32_t k = 0; k < plot->diagram.n_panels; k++) {
-        plot->panels[k].is_single = plot->panels[k].n_series == 1 && !grouped;
-        cs_plot_axis_widen(&plot->panels[k].y);
-        if (grouped || !(plot->panels[k].x.range[0] < plot->panels[k].x.range[1]))
-            cs_plot_axis_widen(&plot->panels[k].x);
+    for (struct cs_panel *p = plot->panels; p < plot->panels + plot->diagram.n_panels; p++) {
+        p->is_single = p->n_series == 1 && !grouped;
+        cs_panel_fit(p);
+        cs_plot_axis_widen(&p->y);
+        if (grouped || !(p->x.range[0] < p->x.range[1]))
+            cs_plot_axis_widen(&p->x);
     }
     return error->status;
 }

@@ -80,14 +80,9 @@ enum { PATIENCE_MS = 1000, ANSWER_BYTES = 256 };
 /* Without an answer about their size, characters are taken for those of the VT340. */
 static const double usual_cell[2] = {10, 20};
 
-static bool is_set(const char *name) {
-    const char *value = getenv(name);
-    return value && *value;
-}
-
 static enum cs_screen_colours find_colours(void) {
-    const char *depth = getenv("COLORTERM");
-    if (is_set("NO_COLOR"))
+    const char *depth = getenv("COLORTERM"), *none = getenv("NO_COLOR");
+    if (none && *none)
         return CS_SCREEN_PLAIN;
     return depth && (!strcmp(depth, "truecolor") || !strcmp(depth, "24bit")) ? CS_SCREEN_24_BIT
                                                                              : CS_SCREEN_256;

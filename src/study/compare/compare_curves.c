@@ -26,6 +26,12 @@ static bool is_probe(const struct cs_cell *cell) {
     return isfinite(cell->target);
 }
 
+/* True for a probe that was timed once: over time it stands where the load of that moment put
+ * it, and is not drawn. */
+static bool is_untimed(const struct cs_cell *cell, const struct cs_column *x) {
+    return is_probe(cell) && cell->runs < 2 && strstr("cpu wall", x->name);
+}
+
 /* The cheapest spot with a smaller error than y, and of those the most accurate; NULL: none. */
 static struct cs_spot *next_of_front(struct cs_spot *spots, uint32_t n, double y) {
     struct cs_spot *next = NULL;
@@ -44,12 +50,14 @@ void cs_spots_find(const struct cs_plot_settings *settings, const struct cs_colu
         const struct cs_cell *cell = settings->cells + k;
         struct cs_spot *s = spots + k;
         const double own = cs_cell_number(cell, y);
-        *s = (struct cs_spot){cs_cell_number(cell, x), own, own, own, own, false, false};
+        *s = (struct cs_spot){.y = own, .own = own, .low = own, .high = own};
+        s->x = is_untimed(cell, x) ? (double)NAN : cs_cell_number(cell, x);
         if (strstr(y->name, "error"))
             s->y = cs_cell_typical(settings->cells, n, cell, y, &s->low, &s->high);
         s->is_drawn = cs_cell_is_finished(cell) && isfinite(s->x) && isfinite(s->y) &&
                       s->x > 0 && s->y > 0 &&
-                      (!is_position_error(y) || !(cell->bar > 0) || s->y >= cell->bar);
+                      (!is_position_error(y) || !(cell->bar > 0) ||
+                       (is_probe(cell) ? own : s->y) >= cell->bar);
     }
     /* from the cheapest on, each more accurate than all before */
     struct cs_spot *s = NULL;
@@ -125,24 +133,6 @@ struct filling {
     bool there[KEYS];
 };
 
-/* Ranges of all cells of the chosen series. */
-static void find_ranges(struct filling *at) {
-    struct cs_panel *panel = at->panel;
-    bool crosses = false;
-    for (const struct cs_curve *c = at->curves->list; c < at->curves->list + at->curves->n; c++)
-        for (uint32_t k = c->first; c->is_chosen && k < c->first + c->n; k++) {
-            crosses |= !cs_cell_is_finished(at->settings->cells + k);
-            if (at->spots[k].is_drawn) {
-                cs_plot_axis_include(&panel->x, at->spots[k].x);
-                cs_plot_axis_include(&panel->y, at->spots[k].y);
-            }
-        }
-    cs_plot_axis_widen(&panel->x);
-    cs_plot_axis_widen(&panel->y);
-    if (crosses)
-        panel->y.range[1] += CROSS_ROOM * (panel->y.range[1] - panel->y.range[0]);
-}
-
 static void add_front(struct filling *at, struct cs_error *error) {
     const uint32_t n = at->settings->n;
     const struct cs_spot *s = NULL;
@@ -156,35 +146,26 @@ static void add_front(struct filling *at, struct cs_error *error) {
     }
 }
 
-/* The point of a cell; false: none. A run that did not finish stands at the upper edge. */
+/* The point of a cell; false: none. That of a run that did not finish is placed later. */
 static bool make_point(struct filling *at, uint32_t k, struct cs_point *point) {
     const struct cs_cell *cell = at->settings->cells + k;
     const struct cs_spot *s = at->spots + k;
-    const double *x = at->panel->x.range, *y = at->panel->y.range, cost = log10(s->x);
-    const bool probe = is_probe(cell), timed = !strcmp(at->x->name, "cpu") && cell->runs > 1;
-    /* a probe that was timed once stands where the load of that moment put it */
-    if (probe && cell->runs < 2 && strstr("cpu wall", at->x->name))
+    const bool swept = s->is_drawn && !is_probe(cell),
+               timed = s->is_drawn && !strcmp(at->x->name, "cpu") && cell->runs > 1;
+    if (!s->is_drawn && (cs_cell_is_finished(cell) || !isfinite(log10(s->x))))
         return false;
     *point = (struct cs_point){.x = s->x,
-                               .y = probe ? s->own : s->y,
+                               .y = swept ? s->y : s->own,
                                .low = timed ? cell->cpu_low : (double)NAN,
                                .high = timed ? cell->cpu_high : (double)NAN,
-                               .band = {probe ? (double)NAN : s->low, s->high},
-                               .mark = probe ? CS_MARK_HOLLOW : CS_MARK_FULL,
-                               .joined = !probe,
-                               .ring = cs_cell_has_crossings(cell),
+                               .band = {swept ? s->low : (double)NAN, s->high},
+                               .mark = swept         ? CS_MARK_FULL
+                                       : s->is_drawn ? CS_MARK_HOLLOW
+                                                     : CS_MARK_CROSS,
+                               .joined = swept,
+                               .ring = s->is_drawn && cs_cell_has_crossings(cell),
                                .front = s->on_front,
                                .note = cell->options};
-    if (!s->is_drawn) {
-        if (cs_cell_is_finished(cell) || !isfinite(cost))
-            return false;
-        const double margin = 0.01 * (x[1] - x[0]);
-        *point = (struct cs_point){.x = pow(10, fmin(fmax(cost, x[0] + margin), x[1] - margin)),
-                                   .y = pow(10, y[1] - 0.02 * (y[1] - y[0])),
-                                   .band = {(double)NAN},
-                                   .mark = CS_MARK_CROSS,
-                                   .note = cell->options};
-    }
     at->there[BAND] |= point->band[0] < point->band[1];
     at->there[PROBE] |= point->mark == CS_MARK_HOLLOW;
     at->there[FAILED] |= point->mark == CS_MARK_CROSS;
@@ -219,7 +200,21 @@ static void add_bar(struct filling *at, struct cs_error *error) {
     at->there[BAR] |= panel->n_boxes;
 }
 
-static void fill_panel(struct filling *at, struct cs_error *error) {
+/* Places the runs that did not finish at the upper edge. */
+static void place_crosses(struct cs_panel *panel) {
+    const double *x = panel->x.range, *y = panel->y.range, margin = 0.01 * (x[1] - x[0]);
+    for (uint32_t k = 0; k < panel->n_series; k++)
+        for (uint32_t i = 0; i < panel->series[k].n; i++) {
+            struct cs_point *p = panel->series[k].points + i;
+            if (p->mark != CS_MARK_CROSS)
+                continue;
+            p->x = pow(10, fmin(fmax(log10(p->x), x[0] + margin), x[1] - margin));
+            p->y = pow(10, y[1] - 0.02 * (y[1] - y[0]));
+        }
+}
+
+/* Adds the series. y: range of all panels, which share the axis. */
+static void fill_panel(struct filling *at, double y[2], struct cs_error *error) {
     const struct cs_column *columns[] = {at->x, at->settings->y};
     struct cs_plot_axis *axes[] = {&at->panel->x, &at->panel->y};
     for (int k = 0; k < 2; k++) {
@@ -229,13 +224,26 @@ static void fill_panel(struct filling *at, struct cs_error *error) {
         if (!strcmp(columns[k]->name, "work"))
             snprintf(axes[k]->label, CS_LABEL_BYTES, "work in passes over the springs");
     }
-    find_ranges(at);
-    add_bar(at, error);
     add_front(at, error);
     /* later ones lie over earlier ones */
     for (uint32_t c = 0; c < at->curves->n; c++)
         if (at->curves->list[c].is_chosen)
             add_curve(at, at->curves->list + c, error);
+    cs_panel_fit(at->panel);
+    y[0] = fmin(y[0], axes[1]->range[0]);
+    y[1] = fmax(y[1], axes[1]->range[1]);
+}
+
+/* Sets the ranges, and adds what depends on them. */
+static void finish_panel(struct filling *at, const double y[2], struct cs_error *error) {
+    struct cs_plot_axis *axis = &at->panel->y;
+    memcpy(axis->range, y, sizeof axis->range);
+    cs_plot_axis_widen(&at->panel->x);
+    cs_plot_axis_widen(axis);
+    if (at->there[FAILED])
+        axis->range[1] += CROSS_ROOM * (axis->range[1] - axis->range[0]);
+    place_crosses(at->panel);
+    add_bar(at, error);
 }
 
 /* Explains the marks that occur. */
@@ -273,6 +281,7 @@ enum cs_status cs_plot_make(struct cs_plot *plot, const struct cs_plot_settings 
     const bool pair = settings->second, page = pair && settings->width >= CS_WIDTH_PAGE;
     struct cs_curves *curves;
     struct filling at = {.settings = settings, .plot = plot};
+    double y[2] = {HUGE_VAL, -HUGE_VAL};
     cs_plot_begin(plot, settings->title, settings->width);
     plot->diagram.columns = page ? 2 : 1;
     CS_ARENA_ARRAY(&plot->arena, at.spots, settings->n + 1ul, error);
@@ -285,7 +294,11 @@ enum cs_status cs_plot_make(struct cs_plot *plot, const struct cs_plot_settings 
             cs_curves_make(curves, settings, at.spots);
         at.panel = cs_plot_add_panel(plot, page ? 1.1 : pair ? 1.3 : 0.8, curves->n + 1, error);
         if (at.panel)
-            fill_panel(&at, error);
+            fill_panel(&at, y, error);
+    }
+    for (uint32_t k = 0; k < plot->diagram.n_panels && !error->status; k++) {
+        at.panel = plot->panels + k;
+        finish_panel(&at, y, error);
     }
     if (!error->status)
         add_keys(&at);

@@ -24,13 +24,14 @@ struct sheet {
     double range[2]; /* log10 m */
 };
 
-/* FOLDER/KIND_SERIES.png; cell NULL: FOLDER/KIND_reference.png. */
-static void tile_path(const struct sheet *sheet, const struct cs_cell *cell, const char *folder,
-                      char path[PATH_BYTES]) {
+/* FOLDER/pictures/KIND_SERIES.png; cell NULL: FOLDER/pictures/KIND_reference.png. */
+static void tile_path(const struct sheet *sheet, const struct cs_cell *cell,
+                      const struct cs_compare *compare, char path[PATH_BYTES]) {
     char series[CS_SERIES_BYTES] = "reference";
     if (cell)
         cs_series_file_name(cell->series, series);
-    snprintf(path, PATH_BYTES, "%.4000s/%s_%s.png", folder, sheet->kind, series);
+    snprintf(path, PATH_BYTES, "%s/pictures/%s_%s.png", compare->settings->folder, sheet->kind,
+             series);
 }
 
 /* True for a finished cell with that step, equal up to rounding of its text. */
@@ -83,7 +84,6 @@ static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
 /* What the tiles of all cells share, and the end of the run of one. */
 struct tile {
     const struct cs_compare *compare;
-    const char *pictures; /* folder */
     enum cs_renderer_kind kind;
     struct cs_system *system;
     const struct cs_trajectory *trajectory;
@@ -107,7 +107,7 @@ static enum cs_status paint_end(const struct sheet *sheet, const struct cs_cell 
         cs_distance_each(trajectory->n, run.x, right, distance);
         for (uint32_t i = 0; i < trajectory->n; i++)
             distance[i] = log10(fmax(distance[i], pow(10, sheet->range[0])));
-        tile_path(sheet, own ? cell : NULL, tile->pictures, path);
+        tile_path(sheet, own ? cell : NULL, tile->compare, path);
         if (!cs_snapshot_draw(&run, distance, tile->kind, &image, &renderer, error))
             cs_png_write(path, &image, 6, NULL, 0, error);
         free(image.rgb);
@@ -166,18 +166,14 @@ static void choose_sheets(struct sheet sheets[SHEETS], const struct cs_compare *
     }
 }
 
-static void find_folder(const struct cs_compare *compare, char path[PATH_BYTES]) {
-    snprintf(path, PATH_BYTES, "%.4000s/pictures", compare->settings->folder);
-}
-
 enum cs_status cs_compare_contact_sheet_write(struct cs_compare *compare,
                                               enum cs_renderer_kind kind,
                                               struct cs_error *error) {
     struct sheet sheets[SHEETS];
     char path[PATH_BYTES];
-    const struct tile tile = {.compare = compare, .pictures = path, .kind = kind};
+    const struct tile tile = {.compare = compare, .kind = kind};
     choose_sheets(sheets, compare);
-    find_folder(compare, path);
+    snprintf(path, PATH_BYTES, "%s/pictures", compare->settings->folder);
     for (const struct sheet *s = sheets; s < sheets + SHEETS && !error->status; s++)
         if (s->n && !cs_folder_create(path, error))
             for (uint32_t k = 0; k < s->n && !error->status; k++)
@@ -207,13 +203,12 @@ static bool begin_figure(const char *path, struct cs_text *out) {
 static void add_tiles(const struct sheet *sheet, const struct cs_compare *compare, bool html,
                       struct cs_text *out) {
     const char *apart = html ? "<br>" : ", ";
-    char folder[PATH_BYTES], path[PATH_BYTES];
-    find_folder(compare, folder);
+    char path[PATH_BYTES];
     for (uint32_t k = 0; k <= sheet->n; k++) {
         const struct cs_cell *cell = k ? sheet->cells[k - 1] : NULL;
-        tile_path(sheet, cell, html ? folder : "pictures", path);
+        tile_path(sheet, cell, compare, path);
         if (!html)
-            cs_text_add(out, "| ![](%s) | ", path);
+            cs_text_add(out, "| ![](pictures%s) | ", strrchr(path, '/'));
         else if (!begin_figure(path, out))
             continue;
         if (!cell)
