@@ -3,7 +3,7 @@
 
 #include "base/clock.h"
 #include "base/pool.h"
-#include "study/provenance_write.h"
+#include "session/provenance_write.h"
 
 #include <getopt.h>
 #include <signal.h>

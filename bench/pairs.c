@@ -14,7 +14,7 @@
 #include "model/contact/narrow_phase/active_contacts.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/force/terms.h"
-#include "study/perturb.h"
+#include "session/perturb.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,8 +4,8 @@
 
 #include "base/clock.h"
 #include "io/png.h"
-#include "study/frame_picture.h"
-#include "study/session.h"
+#include "session/frame_picture.h"
+#include "session/session.h"
 
 #include <stdio.h>
 #include <stdlib.h>

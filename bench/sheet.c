@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "model/spring/springs.h"
-#include "study/perturb.h"
+#include "session/perturb.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #define BENCH_SHEET_H
 
 #include "bench.h"
-#include "study/session.h"
+#include "session/session.h"
 
 enum bench_damping { BENCH_AXIAL, BENCH_RELATIVE, BENCH_UNDAMPED };
 

@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "bench.h"
 #include "commit.h"
-#include "study/provenance_write.h"
+#include "session/provenance_write.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -7,7 +7,7 @@
 #include "timing.h"
 
 #include "base/file.h"
-#include "study/session.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <stdio.h>

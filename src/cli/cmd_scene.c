@@ -6,11 +6,8 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "io/file_conflicts.h"
-#include "model/plan.h"
-#include "scene/file/scene_read.h"
-#include "study/contact_capacity.h"
-#include "study/scene_doctor.h"
-#include "study/session.h"
+#include "session/contact_capacity.h"
+#include "session/session.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -12,8 +12,8 @@
 #include "cli/line/print.h"
 #include "cli/run_output.h"
 #include "cli/stability_map.h"
-#include "study/process_pool.h"
-#include "study/recorded_run.h"
+#include "session/process_pool.h"
+#include "session/recorded_run.h"
 #include "study/stability/extreme.h"
 
 #include <stdio.h>

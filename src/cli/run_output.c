@@ -8,7 +8,7 @@
 #include "io/export/export.h"
 #include "io/file_conflicts.h"
 #include "io/npy.h"
-#include "study/process_pool.h"
+#include "session/process_pool.h"
 
 #include <dirent.h>
 #include <errno.h>

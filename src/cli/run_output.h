@@ -5,7 +5,7 @@
 #include "base/status.h"
 #include "base/text.h"
 #include "cli/line/args.h"
-#include "study/session.h"
+#include "session/session.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -3,10 +3,9 @@
 #ifndef CS_STABILITY_VERDICT_H
 #define CS_STABILITY_VERDICT_H
 
-#include "study/energy_monitor.h"
-#include "study/follow.h"
-#include "study/recorded_run.h"
-#include "study/session.h"
+#include "session/energy_monitor.h"
+#include "session/recorded_run.h"
+#include "session/session.h"
 
 /* Tells a singular force from a step that is too long, for a run that ended or was unstable
  * within so many seconds. dop853 runs the scene from its start with steps by their error. Where

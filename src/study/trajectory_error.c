@@ -1,7 +1,7 @@
 /* Measures the distance of one recorded run from another. */
 #include "study/trajectory_error.h"
 
-#include "model/force/diagnostics.h"
+#include "session/session.h"
 
 #include <math.h>
 

@@ -6,7 +6,7 @@
 #ifndef CS_TRAJECTORY_ERROR_H
 #define CS_TRAJECTORY_ERROR_H
 
-#include "study/recorded_run.h"
+#include "session/recorded_run.h"
 
 /* Distances of a run from the reference. */
 struct cs_trajectory_error {

@@ -2,7 +2,7 @@
  * watch for a blow-up, and the clocks, against the force itself. Prints shares in percent. */
 #include "base/clock.h"
 #include "model/force/terms.h"
-#include "study/recorded_run.h"
+#include "session/recorded_run.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,9 +5,9 @@
 #include "made_scene.h"
 #include "model/plan.h"
 #include "scene/shape.h"
+#include "session/session.h"
 #include "sim/crash.h"
 #include "sim/run.h"
-#include "study/session.h"
 
 #include <math.h>
 #include <stdlib.h>

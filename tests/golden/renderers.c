@@ -9,9 +9,9 @@
  * beyond the gate. */
 #include "base/pool.h"
 #include "scene/picture_keys.h"
+#include "session/frame_picture.h"
+#include "session/session.h"
 #include "shared/image_diff.h"
-#include "study/frame_picture.h"
-#include "study/session.h"
 
 #include <stdio.h>
 #include <stdlib.h>

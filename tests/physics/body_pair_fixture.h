@@ -3,7 +3,7 @@
 #ifndef CS_PHYSICS_BODY_PAIR_FIXTURE_H
 #define CS_PHYSICS_BODY_PAIR_FIXTURE_H
 
-#include "study/session.h"
+#include "session/session.h"
 
 enum { MEETING_OVERRIDES = 6 };
 

@@ -3,8 +3,8 @@
 #define DOCTOR_H
 
 #include "fixture.h"
-#include "study/scene_doctor.h"
-#include "study/scene_findings.h"
+#include "session/scene_findings.h"
+#include "session/session.h"
 
 #include <string.h>
 

@@ -3,8 +3,8 @@
 #define FIXTURE_H
 
 #include "../suite.h"
-#include "study/perturb.h"
-#include "study/session.h"
+#include "session/perturb.h"
+#include "session/session.h"
 #include "study/trajectory_error.h"
 
 struct fixture {

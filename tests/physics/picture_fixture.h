@@ -4,7 +4,7 @@
 
 #include "fixture.h"
 
-#include "study/frame_picture.h"
+#include "session/frame_picture.h"
 
 /* Draws the last of that many frames of an open scene, and closes it. */
 static inline void fixture_draw(struct fixture *cloth, uint32_t frames,

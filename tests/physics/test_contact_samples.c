@@ -5,7 +5,7 @@
 #include "methods.h"
 #include "model/contact/contact_samples.h"
 #include "model/force/terms.h"
-#include "study/overlap_warning.h"
+#include "session/scene_findings.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* The loop over the frames of a run: where it stops, and what it says of the end. */
 #include "fixture.h"
 
-#include "study/follow.h"
+#include "session/session.h"
 
 #include <string.h>
 

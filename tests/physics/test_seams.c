@@ -5,7 +5,7 @@
 
 #include "base/pool.h"
 #include "model/system/seams.h"
-#include "study/session.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,18 +6,28 @@
 # includes another's header, or names what another's .c defines (a header may declare for several),
 # stands above it.
 # What opens a file to write it, renames or removes one, is base/file.c, which looks at the target.
+# Behind a wall, studies, commands and most tools see session in place of the rooms below it.
 # The host is known to sim alone, only a session begins a run, and only follow.c steps one.
 cd "$1" || exit 1
 awk '
     BEGIN {
         n = split("base mesh scene model/spring model/system model/elastic model/force model/contact model/contact/broad_phase" \
             " model/contact/narrow_phase model/contact/ccd model/solver,model/event model/post_step model" \
-            " scene/file io,draw,sim io/export draw/gl,draw/cpu,draw/cairo study study/reference" \
+            " scene/file io,draw,sim io/export draw/gl,draw/cpu,draw/cairo session study study/reference" \
             " study/compare,study/stability cli/line cli/show cli cli/run sweep shared advise,bisect,conform,describe,files,film,golden,integrators,new,reproduce,soft", floors, " ")
         for (i = 1; i <= n; i++) {
             count_of = split(floors[i], folders, ",")
             for (k = 1; k <= count_of; k++) floor[folders[k]] = i
         }
+    }
+    # who sees base, and of all other rooms of src below it session alone, but for these doors
+    BEGIN {
+        walled = "^(study|cli|sweep|shared|bisect|describe|film|golden|integrators|new|reproduce)(/|$)"
+        inner = "^(mesh|scene|model|sim|io|draw)(/|$)"
+        split("draw/camera_fit.h draw/colour_bar.h draw/diagram.h draw/glyph.h draw/srgb.h io/checkpoint.h" \
+            " io/export/export.h io/file_conflicts.h io/frame_writer.h io/npy.h io/png.h io/row_log.h" \
+            " scene/file/json.h", doors, " ")
+        for (i in doors) door[doors[i]]
     }
     function folder_of(path) { sub(/\/[^\/]*$/, "", path); return path }
     function unit_of(path) { sub(/^(src|tools)\//, "", path); sub(/\.[ch]$/, "", path); return path }
@@ -45,12 +55,15 @@ awk '
             connect(here, unit_of(quoted[2]), "includes " quoted[2])
         }
         if (quoted[2] ~ /^sim\/(run_)?host.h$/ && from != "sim") wrong(FILENAME " includes sim/host.h: see the doors in sim/run.h")
+        if (from ~ walled && to ~ inner && !(quoted[2] in door)) {
+            wrong(FILENAME " includes " quoted[2] ": behind the wall, see src/session")
+        }
         count++
     }
-    /cs_run_begin\(/ && from != "sim" && FILENAME != "src/study/session.c" {
+    /cs_run_begin\(/ && from != "sim" && FILENAME != "src/session/session.c" {
         wrong(FILENAME " begins a run: see cs_session_begin")
     }
-    /cs_run_frame\(/ && FILENAME ~ /^(src|tools)/ && from != "sim" && FILENAME != "src/study/follow.c" {
+    /cs_run_frame\(/ && FILENAME ~ /^(src|tools)/ && from != "sim" && FILENAME != "src/session/follow.c" {
         wrong(FILENAME " steps a run: see cs_follow_next")
     }
     FILENAME ~ /^include/ && /^#include </ && !/<(clothsim\/|std|math)/ {

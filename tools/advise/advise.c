@@ -1,8 +1,8 @@
 /* Finds a safe step for each method from linear theory, and confirms it by probe runs. */
 #include "advise/advise.h"
 
-#include "model/force/diagnostics.h"
-#include "study/process_pool.h"
+#include "session/process_pool.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <stdio.h>

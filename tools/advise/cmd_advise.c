@@ -15,11 +15,11 @@
 #include "scene/elastic_keys.h"
 #include "scene/force_keys.h"
 #include "scene/shape.h"
+#include "session/contact_capacity.h"
+#include "session/process_pool.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
 #include "study/compare/ranking.h"
-#include "study/contact_capacity.h"
-#include "study/process_pool.h"
 #include "study/stability/stability_state.h"
 
 #include <math.h>

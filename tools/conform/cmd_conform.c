@@ -11,8 +11,8 @@
 #include "cli/run_output.h"
 #include "conform/conform.h"
 #include "conform/conform_checks.h"
-#include "sim/method.h"
-#include "study/process_pool.h"
+#include "session/process_pool.h"
+#include "session/session.h"
 
 #include <errno.h>
 #include <math.h>

@@ -19,8 +19,8 @@
 
 #include "base/status.h"
 #include "base/text.h"
-#include "study/perturb.h"
-#include "study/session.h"
+#include "session/perturb.h"
+#include "session/session.h"
 #include "study/trajectory_error.h"
 
 #include <clothsim/integrator.h>

@@ -7,7 +7,7 @@
  * error of the size of the motion at any step. A wrong order fails at the finer of two steps.
  * A small fault moves the limit h -> 0, which is compared as well. */
 #include "conform/conform_checks.h"
-#include "model/plan.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <string.h>

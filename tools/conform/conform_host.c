@@ -5,7 +5,7 @@
 #include "base/pool.h"
 #include "base/vector.h"
 #include "conform/conform_checks.h"
-#include "sim/run.h"
+#include "session/session.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,9 +3,7 @@
 #include "conform/conform_checks.h"
 
 #include "base/options.h"
-#include "model/force/diagnostics.h"
-#include "model/plan.h"
-#include "study/follow.h"
+#include "session/session.h"
 #include "study/stability_verdict.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Checks the rules of the contract that hold for every method. */
 #include "conform/conform_checks.h"
-#include "sim/module.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <string.h>

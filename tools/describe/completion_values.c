@@ -5,8 +5,7 @@
 #include "base/options.h"
 #include "cli/line/print.h"
 #include "io/export/export.h"
-#include "scene/scene.h"
-#include "sim/registry.h"
+#include "session/session.h"
 #include "study/compare/compare_cell.h"
 
 #include <stdio.h>

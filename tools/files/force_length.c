@@ -3,7 +3,7 @@
 
 #include "model/force/terms.h"
 #include "scene/body_keys.h"
-#include "study/session.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "scene/file/json.h"
-#include "scene/picture_keys.h"
+#include "session/frame_picture.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -9,9 +9,7 @@
 #include "draw/glyph.h"
 #include "draw/srgb.h"
 #include "io/npy.h"
-#include "io/png.h"
-#include "scene/picture_keys.h"
-#include "study/frame_picture.h"
+#include "session/frame_picture.h"
 
 #include <math.h>
 #include <stdio.h>

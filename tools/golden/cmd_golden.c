@@ -8,10 +8,10 @@
 #include "golden/golden.h"
 #include "golden/golden_report.h"
 #include "io/file_conflicts.h"
-#include "sim/module.h"
+#include "session/process_pool.h"
+#include "session/recorded_run.h"
+#include "session/session.h"
 #include "study/compare/compare_curves.h"
-#include "study/process_pool.h"
-#include "study/recorded_run.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 
 #include "base/clock.h"
 #include "base/file.h"
-#include "study/process_pool.h"
+#include "session/process_pool.h"
 
 #include <stdio.h>
 #include <stdlib.h>

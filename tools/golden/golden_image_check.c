@@ -3,8 +3,8 @@
 
 #include "base/file.h"
 #include "io/png.h"
+#include "session/frame_picture.h"
 #include "shared/image_diff.h"
-#include "study/frame_picture.h"
 
 #include <stdio.h>
 #include <stdlib.h>

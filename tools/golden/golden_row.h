@@ -3,9 +3,9 @@
 #ifndef CS_GOLDEN_ROW_H
 #define CS_GOLDEN_ROW_H
 
-#include "draw/render.h"
 #include "golden/golden_table.h"
-#include "study/session.h"
+#include "session/frame_picture.h"
+#include "session/session.h"
 
 /* Settings and counts of a check; pointers are borrowed. */
 struct cs_golden {

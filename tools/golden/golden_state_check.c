@@ -2,7 +2,7 @@
 #include "golden/golden_row.h"
 
 #include "base/file.h"
-#include "study/follow.h"
+#include "session/session.h"
 
 #include <stdio.h>
 #include <stdlib.h>

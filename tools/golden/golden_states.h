@@ -7,7 +7,7 @@
 #ifndef CS_GOLDEN_STATES_H
 #define CS_GOLDEN_STATES_H
 
-#include "sim/run.h"
+#include "session/session.h"
 
 /* States of a row that is added, and at most. */
 enum { CS_GOLDEN_STATES = 4, CS_GOLDEN_STATES_MAX = 1000 };

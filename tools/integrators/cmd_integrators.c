@@ -3,7 +3,7 @@
 #include "base/options.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "sim/registry.h"
+#include "session/session.h"
 #include "study/compare/compare_cell.h"
 
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 /* Reproduces a row of a comparison. */
 #include "reproduce/compare_reproduce.h"
 
+#include "session/provenance_write.h"
+#include "session/recorded_run.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
-#include "study/provenance_write.h"
-#include "study/recorded_run.h"
 
 #include <libgen.h>
 #include <math.h>

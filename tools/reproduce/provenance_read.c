@@ -3,8 +3,8 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "scene/file/scene_read.h"
-#include "study/provenance_write.h"
+#include "session/provenance_write.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 #include "scene/file/json.h"
-#include "study/session.h"
+#include "session/session.h"
 
 /* Stored provenance; zeroed: nothing. Texts point into the JSON, which it owns. */
 struct cs_provenance {

@@ -2,12 +2,9 @@
 #include "reproduce/reproduce.h"
 
 #include "base/hash.h"
-#include "io/png.h"
-#include "scene/picture_keys.h"
+#include "session/frame_picture.h"
+#include "session/session.h"
 #include "shared/image_diff.h"
-#include "sim/run.h"
-#include "study/follow.h"
-#include "study/frame_picture.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* The columns of all tables that the program writes. */
 #include "shared/known_columns.h"
 
-#include "sim/energy_ledger.h"
+#include "session/energy_monitor.h"
+#include "session/session.h"
 #include "study/compare/compare_cell.h"
-#include "study/energy_monitor.h"
 #include "study/stability/stability.h"
 #include "sweep/parameter_sweep.h"
 

@@ -4,9 +4,8 @@
 #include "base/clock.h"
 #include "base/install_paths.h"
 #include "scene/body_keys.h"
-#include "scene/picture_keys.h"
-#include "study/follow.h"
-#include "study/frame_picture.h"
+#include "session/frame_picture.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <stdio.h>

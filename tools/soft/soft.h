@@ -10,7 +10,7 @@
 #define CS_SOFT_H
 
 #include "base/text.h"
-#include "study/session.h"
+#include "session/session.h"
 
 /* Series of the diagrams. */
 enum cs_soft_series {

@@ -5,9 +5,9 @@
 #include "cli/line/print.h"
 #include "cli/manifest.h"
 #include "cli/run_output.h"
-#include "sim/registry.h"
-#include "study/process_pool.h"
-#include "study/recorded_run.h"
+#include "session/process_pool.h"
+#include "session/recorded_run.h"
+#include "session/session.h"
 #include "sweep/parameter_sweep.h"
 
 #include <stdio.h>

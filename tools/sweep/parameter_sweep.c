@@ -1,7 +1,7 @@
 /* Runs the Cartesian product of values and methods, and stores one row per cell. */
 #include "sweep/parameter_sweep.h"
 
-#include "study/process_pool.h"
+#include "session/process_pool.h"
 #include "sweep/sweep_cell.h"
 
 #include <stdio.h>

@@ -3,11 +3,8 @@
 #include "sweep/sweep_cell.h"
 
 #include "base/file.h"
-#include "model/force/diagnostics.h"
-#include "scene/file/scene_read.h"
-#include "sim/module.h"
-#include "study/follow.h"
-#include "study/provenance_write.h"
+#include "session/provenance_write.h"
+#include "session/session.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -9,7 +9,7 @@
 #include "base/hash.h"
 #include "base/table.h"
 #include "base/text.h"
-#include "study/session.h"
+#include "session/session.h"
 
 enum { CS_PARAMETER_SWEEP_CELLS_MAX = 10000000, CS_PARAMETER_AXES_MAX = 16 };
 

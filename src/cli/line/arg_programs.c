@@ -1,8 +1,7 @@
 /* arg_programs.c - the one place where a list of methods can start programs: the command line.
  */
 #include "cli/line/args.h"
-#include "sim/method.h"
-#include "sim/module.h"
+#include "session/session.h"
 
 #include <string.h>
 

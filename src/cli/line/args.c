@@ -4,8 +4,7 @@
 #include "base/options.h"
 #include "base/text.h"
 #include "cli/line/print.h"
-#include "sim/method.h"
-#include "sim/module.h"
+#include "session/session.h"
 
 #include <stdio.h>
 #include <stdlib.h>

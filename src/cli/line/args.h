@@ -10,7 +10,7 @@
 #include "base/arena.h"
 #include "base/table.h"
 #include "base/text.h"
-#include "scene/file/scene_read.h"
+#include "session/session.h"
 
 #include <stdbool.h>
 #include <stddef.h>

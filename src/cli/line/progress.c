@@ -3,7 +3,7 @@
 #include "cli/line/print.h"
 
 #include "base/clock.h"
-#include "sim/process_state.h"
+#include "session/session.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -11,7 +11,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
-#include "model/force/diagnostics.h"
+#include "session/session.h"
 #include "study/stability_verdict.h"
 
 #include <string.h>

@@ -7,8 +7,7 @@
 #include "cli/run/job_state.h"
 
 #include "draw/camera_fit.h"
-#include "scene/picture_keys.h"
-#include "study/follow.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <stdlib.h>

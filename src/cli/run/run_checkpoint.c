@@ -2,8 +2,7 @@
 #include "cli/run/run_checkpoint.h"
 
 #include "base/clock.h"
-#include "sim/module.h"
-#include "sim/run.h"
+#include "session/session.h"
 
 #include <stdio.h>
 #include <string.h>

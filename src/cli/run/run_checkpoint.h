@@ -10,7 +10,7 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "io/checkpoint.h"
-#include "study/session.h"
+#include "session/session.h"
 
 /* Interval of checkpoints; zeroed: none. */
 struct cs_checkpoint_interval {

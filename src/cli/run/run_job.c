@@ -4,10 +4,8 @@
 #include "base/clock.h"
 #include "base/options.h"
 #include "cli/line/print.h"
-#include "scene/file/scene_read.h"
-#include "study/follow.h"
-#include "study/provenance_write.h"
-#include "study/scene_doctor.h"
+#include "session/provenance_write.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <stdlib.h>

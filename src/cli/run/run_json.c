@@ -5,10 +5,8 @@
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
 #include "cli/run_output.h"
-#include "io/png.h"
-#include "scene/contact_keys.h"
-#include "study/contact_capacity.h"
-#include "study/provenance_write.h"
+#include "session/contact_capacity.h"
+#include "session/provenance_write.h"
 
 #include <cjson/cJSON.h>
 #include <stdlib.h>
@@ -143,7 +141,7 @@ static void add_measures(const struct cs_job *job, struct cs_text *out) {
         cs_json_write(out, ", 'other': %g", energy.other);
     cs_json_write(out, "},\n  'largest_strain': %g,\n",
                   cs_diagnostics_strain(run->system, run->x));
-    if (run->system->scene->contact->untangle > 0)
+    if (cs_system_untangles(run->system))
         cs_json_write(out, "  'untangle': %g,\n", run->energy_input.given[CS_SOURCE_UNTANGLE]);
     if (run->strain_limit.missed > 0)
         cs_json_write(out, "  'strain_limit_missed': %g,\n", run->strain_limit.missed);

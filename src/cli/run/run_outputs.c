@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "cli/manifest.h"
 #include "io/file_conflicts.h"
-#include "study/provenance_write.h"
+#include "session/provenance_write.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,8 +5,7 @@
 #include "base/clock.h"
 #include "base/pool.h"
 #include "cli/run/job_state.h"
-#include "scene/picture_keys.h"
-#include "study/provenance_write.h"
+#include "session/provenance_write.h"
 
 #include <stdio.h>
 #include <string.h>

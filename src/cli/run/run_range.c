@@ -3,11 +3,9 @@
 #include "cli/run/job_state.h"
 
 #include "cli/line/print.h"
-#include "model/force/diagnostics.h"
-#include "scene/picture_keys.h"
-#include "study/energy_monitor.h"
-#include "study/follow.h"
-#include "study/frame_picture.h"
+#include "session/energy_monitor.h"
+#include "session/frame_picture.h"
+#include "session/session.h"
 
 #include <stdio.h>
 #include <stdlib.h>

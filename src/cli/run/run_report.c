@@ -3,9 +3,8 @@
 
 #include "base/pool.h"
 #include "cli/line/print.h"
-#include "scene/contact_keys.h"
-#include "study/contact_capacity.h"
-#include "study/scene_doctor.h"
+#include "session/contact_capacity.h"
+#include "session/session.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -168,7 +167,7 @@ static void add_measures(const struct cs_job *job, struct cs_text *out) {
     if (run->system->scene->colliders.n)
         add_report_row(out, "largest depth", "%.3g m in a collider after a frame",
                        job->monitor.cloth[CS_CLOTH_DEPTH].value);
-    if (run->system->scene->contact->untangle > 0)
+    if (cs_system_untangles(run->system))
         add_report_row(out, "untangle", "gave %.6g J to %u particles",
                        run->energy_input.given[CS_SOURCE_UNTANGLE],
                        job->session.initial_penetration.n);

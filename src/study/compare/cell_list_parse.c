@@ -2,7 +2,7 @@
 #include "study/compare/cell_list_parse.h"
 
 #include "base/options.h"
-#include "sim/module.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -5,16 +5,12 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json_writer.h"
-#include "model/event/events.h"
-#include "scene/body_pairs.h"
-#include "scene/contact_keys.h"
-#include "scene/file/scene_read.h"
-#include "sim/module.h"
+#include "session/process_pool.h"
+#include "session/provenance_write.h"
+#include "session/session.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_state.h"
 #include "study/compare/equal_error.h"
-#include "study/process_pool.h"
-#include "study/provenance_write.h"
 #include "study/reference/compare_reference.h"
 
 #include <math.h>
@@ -51,8 +47,7 @@ static enum cs_status read_scene_facts(struct cs_compare *compare, struct cs_err
         compare->time = settings->frames / compare->fps;
         compare->contact = recording.session.scene.colliders.n > 0 ||
                            cs_scene_has_body_contact(&recording.session.scene);
-        compare->n_event_times =
-            system->events ? cs_events_count_stops(system->events, compare->time) : 0;
+        compare->n_event_times = cs_recorded_run_count_stops(&recording, compare->time);
     }
     cs_recorded_run_close(&recording);
     return error->status;
@@ -78,11 +73,7 @@ static enum cs_status print_origin(struct cs_compare *compare, struct cs_error *
                   compare->settings->accuracy, compare->settings->reference_budget);
     cs_provenance_out_print_scene(&scene, out, error);
     cs_text_add(out, ",\n  \"scene\": ");
-    /* what each method chooses stays absent */
-    struct cs_contact_keys *contact = scene.contact;
-    contact->law = contact->law_is_default ? -1 : contact->law;
-    contact->damping = contact->damping_is_default ? (double)NAN : contact->damping;
-    cs_scene_print(&scene, NULL, NULL, 2, out);
+    cs_provenance_out_print_given(&scene, out);
     cs_text_add(out, "\n}\n");
     cs_scene_finish(&scene);
     if (!error->status && out->failed)

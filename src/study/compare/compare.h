@@ -8,7 +8,7 @@
 #ifndef CS_COMPARE_H
 #define CS_COMPARE_H
 
-#include "draw/render.h"
+#include "session/frame_picture.h"
 #include "study/compare/compare_curves.h"
 #include "study/compare/compare_state.h"
 #include "study/compare/ranking.h"

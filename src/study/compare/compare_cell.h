@@ -5,10 +5,8 @@
 
 #include "base/hash.h"
 #include "base/table.h"
-#include "sim/energy_ledger.h"
-#include "sim/method.h"
-#include "sim/run.h"
-#include "study/provenance_write.h"
+#include "session/provenance_write.h"
+#include "session/session.h"
 
 /* One row. All fields are values, so rows can be copied and moved. Figures that do not apply
  * are NAN: an error beyond the horizon, an order that is not steady. */
@@ -58,8 +56,9 @@ extern const uint32_t cs_n_columns;
 
 /* Reads a file into malloc'd cells (n), the caller's. Columns are found by name; absent ones
  * leave their fields empty, unknown ones are ignored. A last line without its end is dropped:
- * it was being written when the process ended. Rows without a name are dropped too. unchecked: a
- * table without checks is taken. CS_ERR_FILE: also of more than 10,000 lines; CS_ERR_MEMORY. */
+ * it was being written when the process ended. Rows without a name are dropped too. unchecked:
+ * a table without checks is taken. CS_ERR_FILE: also of more than 10,000 lines; CS_ERR_MEMORY.
+ */
 enum cs_status cs_csv_read(const char *path, bool unchecked, struct cs_cell **cells,
                            uint32_t *n, struct cs_error *error);
 
@@ -89,11 +88,11 @@ bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b);
  * times in a row it hardly fell, though steps became shorter. Far from the motion (m), because
  * long steps may not fall either. */
 bool cs_cell_is_rounding(const struct cs_cell *cell, uint32_t n, double motion);
-/* A column's typical value at one of n cells, those of a series together. Errors under error control scatter: 3.7e-8 and
- * 7.0e-7 m were measured at tolerances 5 % apart. Typical is the median over the series' cells
- * with tolerances within half a decade, brought to the cell's own in proportion; *low and *high
- * are the ends of these values. Of other methods, and where the cell has no such value, all
- * three are the cell's own. */
+/* A column's typical value at one of n cells, those of a series together. Errors under error
+ * control scatter: 3.7e-8 and 7.0e-7 m were measured at tolerances 5 % apart. Typical is the
+ * median over the series' cells with tolerances within half a decade, brought to the cell's own
+ * in proportion; *low and *high are the ends of these values. Of other methods, and where the
+ * cell has no such value, all three are the cell's own. */
 double cs_cell_typical(const struct cs_cell *cells, uint32_t n, const struct cs_cell *cell,
                        const struct cs_column *column, double *low, double *high);
 /* True if the run reached its last frame. */

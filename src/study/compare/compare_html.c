@@ -1,10 +1,10 @@
 /* Prints a comparison as one HTML file that needs no other: legible from 400 pixels on, and
  * printed on paper. */
 #include "base/install_paths.h"
+#include "session/provenance_write.h"
 #include "study/compare/compare.h"
 #include "study/compare/compare_curves.h"
 #include "study/compare/ranking.h"
-#include "study/provenance_write.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
 
 #include "study/compare/compare_state.h"
 
-#include "study/provenance_write.h"
+#include "session/provenance_write.h"
 #include "study/reference/compare_reference.h"
 #include "study/stability_verdict.h"
 

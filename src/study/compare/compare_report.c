@@ -5,9 +5,9 @@
 #include "base/file.h"
 #include "base/install_paths.h"
 #include "base/json_writer.h"
+#include "session/provenance_write.h"
 #include "study/compare/compare_curves.h"
 #include "study/compare/ranking.h"
-#include "study/provenance_write.h"
 
 #include <math.h>
 #include <stdio.h>

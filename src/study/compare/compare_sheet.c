@@ -2,10 +2,7 @@
 #include "study/compare/compare.h"
 
 #include "base/file.h"
-#include "draw/look.h"
-#include "io/png.h"
-#include "scene/picture_keys.h"
-#include "study/frame_picture.h"
+#include "session/frame_picture.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "study/compare/mesh_error.h"
 
 #include "base/file.h"
-#include "scene/body_keys.h"
+#include "session/scene_axis.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,20 +23,19 @@ static const char *copy_text(struct cs_mesh_study *study, const char *text,
 
 /* Adds the grid of body b on a level, and its override. */
 static enum cs_status set_grid(struct cs_mesh_study *study, struct cs_mesh_level *level,
-                               uint32_t b, const struct cs_body *body, int64_t first,
+                               uint32_t b, const int64_t *own, int64_t first,
                                struct cs_error *error) {
     struct cs_override *to = level->overrides + level->n_overrides++;
     char path[64], value[64];
     for (int k = 0; k < 2; k++)
-        level->grids[2 * b + k] = scaled(body->cloth.grid[k], level->cells, first);
+        level->grids[2 * b + k] = scaled(own[k], level->cells, first);
     const uint32_t *grid = level->grids + 2 * b;
     if (grid[0] < 2 || grid[1] < 2)
         return cs_fail(
             error, CS_ERR_USAGE,
             "--mesh: %u cells do not divide among bodies[%u] of %lld x %lld, expected "
             "multiples that give whole cells",
-            level->cells, b, (long long)body->cloth.grid[0] - 1,
-            (long long)body->cloth.grid[1] - 1);
+            level->cells, b, (long long)own[0] - 1, (long long)own[1] - 1);
     // an override, so that origin.json has it and a row can be reproduced
     snprintf(path, sizeof path, "bodies[%u].cloth.grid", b);
     snprintf(value, sizeof value, "[%u,%u]", grid[0], grid[1]);
@@ -48,7 +47,6 @@ static enum cs_status set_grid(struct cs_mesh_study *study, struct cs_mesh_level
 static enum cs_status make_level(struct cs_mesh_study *study, struct cs_mesh_level *level,
                                  const struct cs_session_settings *session,
                                  const struct cs_scene *scene, struct cs_error *error) {
-    const struct cs_body *bodies = cs_scene_bodies(scene);
     const size_t n = study->n_bodies;
     level->error = level->bar = (double)NAN;
     level->n_overrides = session->n_overrides;
@@ -60,7 +58,8 @@ static enum cs_status make_level(struct cs_mesh_study *study, struct cs_mesh_lev
         memcpy(level->overrides, session->overrides,
                session->n_overrides * sizeof *level->overrides);
     for (uint32_t b = 0; b < n; b++)
-        if (set_grid(study, level, b, bodies + b, bodies[0].cloth.grid[0] - 1, error))
+        if (set_grid(study, level, b, cs_scene_grid(scene, b), cs_scene_grid(scene, 0)[0] - 1,
+                     error))
             break;
     return error->status;
 }
@@ -70,11 +69,11 @@ static enum cs_status make_levels(struct cs_mesh_study *study, uint32_t low,
                                   const struct cs_scene *scene, struct cs_error *error) {
     study->n_bodies = scene->bodies.n;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        if (!cs_scene_bodies(scene)[b].cloth.present)
+        if (!cs_scene_grid(scene, b))
             return cs_fail(error, CS_ERR_SCENE,
                            "%s: bodies[%u] is a mesh, expected grids for --mesh",
                            session->scene, b);
-    if (cs_scene_bodies(scene)[0].cloth.grid[0] < 2)
+    if (cs_scene_grid(scene, 0)[0] < 2)
         return cs_fail(error, CS_ERR_SCENE, "%s: bodies[0] has no cells", session->scene);
     study->levels = cs_arena_alloc_array(&study->arena, study->n, sizeof *study->levels, error);
     for (uint32_t k = 0; k < study->n && !error->status; k++) {

@@ -2,7 +2,7 @@
 #ifndef CS_COMPARE_REFERENCE_STATE_H
 #define CS_COMPARE_REFERENCE_STATE_H
 
-#include "study/recorded_run.h"
+#include "session/recorded_run.h"
 #include "study/trajectory_error.h"
 
 /* Measures how long a trajectory can be compared point by point.

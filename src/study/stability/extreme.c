@@ -2,11 +2,10 @@
 #include "study/stability/extreme.h"
 
 #include "base/clock.h"
-#include "model/force/diagnostics.h"
-#include "study/follow.h"
-#include "study/perturb.h"
-#include "study/process_pool.h"
-#include "study/stability/extreme_scene.h"
+#include "session/extreme_scene.h"
+#include "session/perturb.h"
+#include "session/process_pool.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <stdio.h>

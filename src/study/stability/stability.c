@@ -4,8 +4,8 @@
 #include "study/stability/stability.h"
 
 #include "base/clock.h"
-#include "model/force/diagnostics.h"
-#include "study/process_pool.h"
+#include "session/process_pool.h"
+#include "session/session.h"
 #include "study/stability/stability_state.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "scene/file/scene_read.h"
+#include "session/session.h"
 
 #include <dirent.h>
 #include <errno.h>

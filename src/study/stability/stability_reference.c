@@ -11,7 +11,7 @@
  *   4. If the run is not stable, reset the limits to those of the start and halve the step. */
 #include "study/stability/stability_state.h"
 
-#include "model/force/diagnostics.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "study/stability/stability.h"
 
 #include "base/json_writer.h"
-#include "study/contact_capacity.h"
+#include "session/contact_capacity.h"
 #include "study/stability/stability_state.h"
 
 #include <math.h>

@@ -10,10 +10,9 @@
 
 #include "base/hash.h"
 #include "model/contact/ccd/crossings.h"
+#include "session/energy_monitor.h"
+#include "session/session.h"
 #include "sim/run.h"
-#include "study/energy_monitor.h"
-#include "study/follow.h"
-#include "study/session.h"
 
 /* Statistics of crossings over the frames of a run. */
 
@@ -86,6 +85,9 @@ enum cs_status cs_session_fit_frames(const struct cs_session_settings *settings,
  * nothing if there are none. The scene must not come from cs_recorded_run_open, which has
  * removed them. */
 void cs_recorded_run_describe_changes(const struct cs_scene *scene, struct cs_text *out);
+
+/* Instants up to t in s at which events make a method stop. */
+uint32_t cs_recorded_run_count_stops(const struct cs_recorded_run *recording, double t);
 
 /* Runs from the start to the last frame within a budget in s (0: none). Only stepping is timed.
  * track may be NULL: then no states are stored. A method that gives up is a result. Can be

@@ -1,5 +1,5 @@
 /* Perturbs the start of a scene reproducibly: by a hash of each index, or by smooth waves. */
-#include "study/perturb.h"
+#include "session/perturb.h"
 
 #include <math.h>
 

@@ -1,5 +1,8 @@
 /* session.h - the only path from a scene to a running method; every command and study takes it.
  *
+ * The face of the rooms below: studies and commands include this header, and those beside it,
+ * in place of theirs. What it includes is a part of it.
+ *
  *   scene file -> cs_scene_read -> registry -> method -> threads -> plan -> system -> run
  * Each arrow is one function that leaves its result in struct cs_session. Studies stop at the
  * plan (to change options) or at the system (to change the state), and call the remaining steps
@@ -7,9 +10,14 @@
 #ifndef CS_SESSION_H
 #define CS_SESSION_H
 
+#include "model/plan.h"
 #include "model/post_step/contact_projection.h"
+#include "scene/body_pairs.h"
 #include "scene/file/scene_read.h"
+#include "sim/energy_ledger.h"
 #include "sim/method.h"
+#include "sim/module.h"
+#include "sim/process_state.h"
 #include "sim/run.h"
 
 /* Request for a session. Zeroed except for the scene: the scene as it is, by its own method. */
@@ -106,5 +114,65 @@ enum cs_status cs_session_begin(struct cs_session *session, const double *start,
 /* Frees everything and ends the threads that the session started; a zeroed session is allowed.
  */
 void cs_session_close(struct cs_session *session);
+
+/* --- the loop over the frames of a run, and the result of the run ---
+ *
+ *   struct cs_follow follow = {.run = &session.run, .last = frames, .every = 1};
+ *   while (cs_follow_next(&follow, error))
+ *     ...                          here follow.run is at the end of a frame
+ *   cs_follow_result(follow.run, "", &result, error);
+ * Only the steps are timed, not the work between two calls. */
+
+/* A begun run on its way to a frame. */
+struct cs_follow {
+    struct cs_run *run; /* borrowed */
+    double last;        /* the frame to stop at */
+    uint32_t every;     /* stops at multiples of it on the way; 0: at none */
+    bool at_start;      /* stops first where the run is */
+    double cpu, wall;   /* s, out: of all steps, without what is done between them */
+};
+
+/* Steps to the next multiple of `every`, or to the last frame. Returns false if no such
+ * multiple was reached: at the last frame, after the end of the run, and after a failure. */
+bool cs_follow_next(struct cs_follow *follow, struct cs_error *error);
+
+/* Result of a run. */
+struct cs_run_result {
+    enum cs_outcome
+        outcome;        /* CS_RUNNING: at its last frame; CS_FAILED: an error of the method */
+    double reached;     /* s, of the last frame; of the last step where the budget ended it */
+    double time;        /* s, of the blow-up if there was one, else as reached */
+    char message[1024]; /* why the method gave up, else the outcome as text */
+};
+
+/* Fills the result. A method that gave up is a result, and *error is cleared. An interrupted
+ * run is CS_ERR_INTERRUPT: "interrupted" followed by the text. Other errors stay. */
+enum cs_status cs_follow_result(const struct cs_run *run, const char *interrupted,
+                                struct cs_run_result *result, struct cs_error *error);
+/* The same of a run whose method must not give up: its failure stays an error. */
+enum cs_status cs_follow_check(const struct cs_run *run, const char *interrupted,
+                               struct cs_error *error);
+
+/* Returns the smallest whole number of frames that cover a time in s. A product that is whole
+ * up to rounding (a relative 1e-9) gets no extra frame. */
+double cs_follow_frames(const struct cs_scene *scene, double seconds);
+
+/* --- where a scene will go wrong, told before the first step, with the value that would do ---
+ */
+
+/* Findings about a scene, one per line. A warning is about a result that cannot be right, a
+ * hint about one that may surprise. Zeroed: none. */
+struct cs_scene_findings {
+    struct cs_text warnings, hints;
+};
+
+/* Checks a session whose system is built, over the given time in s. Changes nothing, and reads
+ * the state of the start only. CS_ERR_MEMORY. */
+enum cs_status cs_scene_doctor_check(const struct cs_session *session, double seconds,
+                                     struct cs_scene_findings *out, struct cs_error *error);
+void cs_scene_findings_finish(struct cs_scene_findings *findings);
+
+/* Appends why "automatic" chose the method, without an end of line; nothing if it was named. */
+void cs_session_print_choice(const struct cs_session *session, struct cs_text *out);
 
 #endif

@@ -1,6 +1,7 @@
 /* Varies one value of a scene over the columns of a stability map. */
+#include "session/scene_axis.h"
+
 #include "scene/body_keys.h"
-#include "study/stability/stability_state.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,6 +13,11 @@ const char *const cs_axis_names[] = {"stiffness",  "damping", "mass",
 const char *cs_axis_unit(enum cs_axis axis) {
     static const char *const units[CS_AXES] = {"N/m", "N s/m", "kg", "columns", "N/m"};
     return units[axis];
+}
+
+const int64_t *cs_scene_grid(const struct cs_scene *scene, uint32_t body) {
+    const struct cs_cloth *cloth = &cs_scene_bodies(scene)[body].cloth;
+    return cloth->present ? cloth->grid : NULL;
 }
 
 /* Young's modulus, or that of the warp; 0 without elastic. */

@@ -1,5 +1,5 @@
 /* Steps a run from frame to frame, and reports how it ended. */
-#include "study/follow.h"
+#include "session/session.h"
 
 #include "base/clock.h"
 

@@ -1,5 +1,5 @@
 /* Judges by the balance of energy whether a run is sound; the header derives the bounds. */
-#include "study/energy_monitor.h"
+#include "session/energy_monitor.h"
 
 #include "model/contact/posed_collider.h"
 #include "model/event/event_state.h"
@@ -7,6 +7,7 @@
 #include "model/force/terms.h"
 #include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/contact_keys.h"
 #include "scene/force_keys.h"
 
 #include <math.h>
@@ -364,4 +365,8 @@ void cs_energy_monitor_print_row(const struct cs_energy_monitor_row *row, uint32
     cs_csv_add_number(out, row->bound);
     cs_csv_add_number(out, row->depth);
     cs_text_add(out, "\n");
+}
+
+bool cs_system_untangles(const struct cs_system *system) {
+    return system->scene->contact->untangle > 0;
 }

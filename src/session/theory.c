@@ -1,13 +1,12 @@
 /* Measures the amplification matrix of a method's step on a damped oscillator, and finds the
  * largest stable step of a method on a system by linear theory. */
-#include "study/stability/theory.h"
+#include "session/theory.h"
 
 #include "model/elastic/membranes.h"
 #include "model/force/diagnostics.h"
 #include "scene/body_keys.h"
 #include "scene/contact_keys.h"
-#include "study/follow.h"
-#include "study/session.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <string.h>

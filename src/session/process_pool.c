@@ -1,5 +1,5 @@
 /* Distributes independent tasks over forked processes. */
-#include "study/process_pool.h"
+#include "session/process_pool.h"
 
 #include "base/clock.h"
 #include "sim/crash.h"

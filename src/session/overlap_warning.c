@@ -1,5 +1,5 @@
 /* Bounding boxes of bodies, and of the positions they can reach. */
-#include "study/overlap_warning.h"
+#include "session/scene_findings.h"
 
 #include "base/vec3.h"
 #include "model/contact/ccd/edge_triangle.h"

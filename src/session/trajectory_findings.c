@@ -1,7 +1,7 @@
 /* Finds mistakes in what is prescribed, which is known before a run: particles that pins hold,
  * grabs and moves. Only what is certain is reported. Passed over are colliders that
  * turn, carry particles or have no distance, and particles that an event may let go. */
-#include "study/scene_findings.h"
+#include "session/scene_findings.h"
 
 #include "base/vec3.h"
 #include "model/contact/posed_collider.h"

@@ -1,10 +1,11 @@
 /* Writes provenance as JSON. */
-#include "study/provenance_write.h"
+#include "session/provenance_write.h"
 
 #include "base/hash.h"
 #include "base/json_writer.h"
 #include "scene/body_keys.h"
 #include "scene/collider_keys.h"
+#include "scene/contact_keys.h"
 #include "scene/file/key_frames_read.h"
 #include "sim/module.h"
 
@@ -103,6 +104,13 @@ enum cs_status cs_provenance_out_print_scene(const struct cs_scene *scene, struc
     if (!error->status && out->failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the provenance of a result");
     return error->status;
+}
+
+void cs_provenance_out_print_given(struct cs_scene *scene, struct cs_text *out) {
+    struct cs_contact_keys *contact = scene->contact;
+    contact->law = contact->law_is_default ? -1 : contact->law;
+    contact->damping = contact->damping_is_default ? (double)NAN : contact->damping;
+    cs_scene_print(scene, NULL, NULL, 2, out);
 }
 
 enum cs_status cs_provenance_out_print(struct cs_session *session, const char *hash,

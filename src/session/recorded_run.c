@@ -1,5 +1,5 @@
 /* Runs a method on a scene without post-step corrections, and records its trajectory. */
-#include "study/recorded_run.h"
+#include "session/recorded_run.h"
 
 #include "model/event/events.h"
 #include "scene/body_keys.h"
@@ -161,6 +161,11 @@ enum cs_status cs_recorded_run_execute(struct cs_recorded_run *recording, double
         snprintf(result->note, sizeof result->note, "%.239s", result->result.message);
     cs_run_finish(&session->run);
     return error->status ? error->status : renew(recording, error);
+}
+
+uint32_t cs_recorded_run_count_stops(const struct cs_recorded_run *recording, double t) {
+    const struct cs_events *events = recording->session.system.events;
+    return events ? cs_events_count_stops(events, t) : 0;
 }
 
 void cs_recorded_run_close(struct cs_recorded_run *recording) {

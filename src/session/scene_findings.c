@@ -6,7 +6,7 @@
  * A grab's points are positions, a move's are shifts, unless `relative` says otherwise: a path
  * written as the other kind begins with a jump. A grabbed particle that is faster than waves in
  * its springs, c = L sqrt(k/m), stretches them to twice their length and more. */
-#include "study/scene_findings.h"
+#include "session/scene_findings.h"
 
 #include "base/options.h"
 #include "base/vec3.h"

@@ -3,7 +3,7 @@
 #define CS_PROVENANCE_WRITE_H
 
 #include "base/text.h"
-#include "study/session.h"
+#include "session/session.h"
 
 /* Calls take for each file that a scene was read from or names. what: "the scene", "a mesh", "a
  * texture". Standard input is skipped; a texture may be missing. */
@@ -13,6 +13,9 @@ void cs_scene_each_file(const struct cs_scene *scene,
 /* Adds the members of a scene, each line indented by two. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_provenance_out_print_scene(const struct cs_scene *scene, struct cs_text *out,
                                              struct cs_error *error);
+
+/* Prints a scene as given: what each method chooses of contact stays absent, in *scene too. */
+void cs_provenance_out_print_given(struct cs_scene *scene, struct cs_text *out);
 
 /* Adds those of an open session, scene and method; hash and method are those of
  * the resolved scene. As above. */

@@ -3,8 +3,8 @@
 #ifndef CS_SCENE_FINDINGS_H
 #define CS_SCENE_FINDINGS_H
 
-#include "model/system/particle_system.h"
 #include "scene/force_keys.h"
+#include "session/session.h"
 
 #include <math.h>
 
@@ -15,12 +15,6 @@ void cs_idle_keys_print(const struct cs_scene *scene, struct cs_text *out);
 /* Returns the index of the rule about a key, "bodies[].springs.shear", or -1: each key of a
  * scene must have one, if only that it always acts. */
 int cs_idle_keys_rule(const char *key);
-
-/* Findings about a scene, one per line. A warning is about a result that cannot be right, a
- * hint about one that may surprise. Zeroed: none. */
-struct cs_scene_findings {
-    struct cs_text warnings, hints;
-};
 
 /* s, at which an event begins. */
 static inline double cs_findings_begin(const struct cs_event *event) {
@@ -46,5 +40,33 @@ double cs_findings_first_speed(const struct cs_event *event, const struct cs_pat
 
 /* Adds moves that jump, and grabs that let go what pins hold. */
 void cs_path_findings_print(const struct cs_system *system, struct cs_text *out);
+
+/* --- bodies that overlap, or could collide during the run, while no contact is defined between
+ * them --- */
+
+/* Adds one line about the first pair, and how many more there are; nothing if there is none.
+ *
+ * Compared are the bounding boxes at the start, then boxes of all positions reachable within
+ * that many seconds: along its fall for a free body, and for a pinned body within the distance
+ * from its last pin to its farthest particle. Boxes are larger than bodies, so a warning can be
+ * false. CS_ERR_MEMORY. */
+enum cs_status cs_overlap_warning_print(const struct cs_scene *scene, double seconds,
+                                        struct cs_text *out, struct cs_error *error);
+
+/* Warns of colliders that are too small for the contact samples of a mesh.
+ */
+
+/* Adds one line about the first collider that can enter between the samples of the longest edge
+ * (model/contact/contact_samples.h), and how many more there are. Nothing if there is none, or
+ * without contact by force. */
+void cs_sampling_warning_print(const struct cs_system *system, struct cs_text *out);
+
+/* Warns of bodies that start inside a closed surface they collide with.
+ */
+
+/* Adds one line about the first body inside a closed body or mesh collider that it collides
+ * with, and how many more there are; nothing if there is none. Contact prevents crossing, hence
+ * such a body cannot get out. */
+void cs_containment_warning_print(const struct cs_system *system, struct cs_text *out);
 
 #endif

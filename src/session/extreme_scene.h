@@ -2,9 +2,7 @@
 #ifndef CS_EXTREME_SCENE_H
 #define CS_EXTREME_SCENE_H
 
-#include "base/status.h"
-
-#include <clothsim/integrator.h>
+#include "session/session.h"
 
 /* Method classes with one expectation each. Adaptive methods form one class, explicit or not.
  */

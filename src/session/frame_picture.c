@@ -1,18 +1,16 @@
 /* Draws the pictures of a run: copies its state, colours it, and paints it while the run goes
  * on. */
-#include "study/frame_picture.h"
+#include "session/frame_picture.h"
 
 #include "base/clock.h"
 #include "base/pool.h"
 #include "draw/srgb.h"
-#include "io/png.h"
 #include "model/contact/ccd/crossings.h"
 #include "model/elastic/membrane_strain.h"
 #include "model/event/event_state.h"
 #include "scene/body_keys.h"
 #include "scene/collider_keys.h"
 #include "scene/force_keys.h"
-#include "scene/picture_keys.h"
 #include "scene/shape.h"
 #include "sim/crash.h"
 

@@ -1,18 +1,16 @@
 /* Takes a scene to a running method: the only path, for every command and study. */
-#include "study/session.h"
+#include "session/session.h"
 
 #include "base/arena.h"
 #include "base/install_paths.h"
 #include "base/options.h"
 #include "base/pool.h"
 #include "model/contact/collider_params.h"
-#include "model/plan.h"
 #include "scene/body_keys.h"
-#include "scene/body_pairs.h"
 #include "scene/contact_keys.h"
 #include "scene/picture_keys.h"
 #include "scene/shape.h"
-#include "study/perturb.h"
+#include "session/perturb.h"
 
 #include <math.h>
 #include <stdio.h>

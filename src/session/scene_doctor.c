@@ -1,6 +1,6 @@
 /* Looks at the start of a scene for what will go wrong. Each check adds lines to the text of
  * its weight, or none; all of them are run. */
-#include "study/scene_doctor.h"
+#include "session/session.h"
 
 #include "base/options.h"
 #include "base/vec3.h"
@@ -12,9 +12,8 @@
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"
 #include "scene/force_keys.h"
-#include "study/contact_capacity.h"
-#include "study/overlap_warning.h"
-#include "study/scene_findings.h"
+#include "session/contact_capacity.h"
+#include "session/scene_findings.h"
 
 #include <math.h>
 #include <stdlib.h>

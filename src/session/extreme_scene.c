@@ -1,6 +1,6 @@
 /* Reads the scenes of the catalogue and the outcomes that each expects of every method class.
  */
-#include "study/stability/extreme_scene.h"
+#include "session/extreme_scene.h"
 
 #include "base/file.h"
 #include "scene/file/json.h"

@@ -8,7 +8,7 @@
  * New vectors are orthogonalised against the whole basis, not only the last two as in the
  * three-term recurrence of Lanczos. Rounding otherwise destroys the orthogonality once a Ritz
  * value has converged (Golub and Van Loan 2013, sec. 10.3). */
-#include "study/stability/stiffest_modes.h"
+#include "session/stiffest_modes.h"
 
 #include "model/force/terms.h"
 #include "scene/contact_keys.h"

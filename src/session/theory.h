@@ -26,9 +26,7 @@
 #define CS_THEORY_H
 
 #include "base/status.h"
-#include "study/stability/stiffest_modes.h"
-
-#include <clothsim/integrator.h>
+#include "session/stiffest_modes.h"
 
 /* Measures the amplification matrix of one step of a method on a damped
  * oscillator.

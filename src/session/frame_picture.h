@@ -10,6 +10,8 @@
 #include "base/worker_thread.h"
 #include "draw/look.h"
 #include "draw/render.h"
+#include "io/png.h"
+#include "scene/picture_keys.h"
 #include "sim/run.h"
 
 /* A ramp of a number that only pictures show (cs_event_key_is_picture). */

@@ -1,5 +1,5 @@
 /* Compares the capacity of the barrier with the energy of approach, interface by interface. */
-#include "study/contact_capacity.h"
+#include "session/contact_capacity.h"
 
 #include "model/contact/approach.h"
 #include "model/contact/barrier_law.h"

@@ -1,0 +1,44 @@
+/* scene_axis.h - varies one value of a scene over the columns of a stability map. */
+#ifndef CS_SCENE_AXIS_H
+#define CS_SCENE_AXIS_H
+
+#include "session/session.h"
+
+/* Values that a map can vary. */
+enum cs_axis {
+    CS_AXIS_STIFFNESS,
+    CS_AXIS_DAMPING,
+    CS_AXIS_MASS,
+    CS_AXIS_RESOLUTION,
+    CS_AXIS_YOUNG,
+    CS_AXES
+};
+
+extern const char *const cs_axis_names[]; /* closed by NULL */
+
+/* Unit of the axis, as text. */
+const char *cs_axis_unit(enum cs_axis axis);
+
+/* Values from..to; 0, 0: chosen by the scene. */
+struct cs_range {
+    double from, to;
+};
+
+/* Appends to the session's overrides those that give every body of the scene the value on the
+ * axis, in proportion to what the scene has; cells of the grid for the resolution. The longer
+ * list is the arena's. */
+enum cs_status cs_axis_overrides(const struct cs_system *system, enum cs_axis axis,
+                                 double value, struct cs_arena *arena,
+                                 struct cs_session_settings *session, struct cs_error *error);
+
+/* The scene's own value: that of the first body (stretch stiffness, damping, mass of a
+ * particle, columns of the grid, Young's modulus or that of the warp); 0 where it has none. */
+double cs_axis_scene_value(const struct cs_system *system, enum cs_axis axis);
+
+/* Values that the axis covers where none are asked for. */
+struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis);
+
+/* Columns and rows of a body's grid, borrowed from the scene; NULL: it is a mesh. */
+const int64_t *cs_scene_grid(const struct cs_scene *scene, uint32_t body);
+
+#endif
