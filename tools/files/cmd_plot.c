@@ -88,10 +88,7 @@ static enum cs_status check_family(const char *family, struct cs_error *error) {
 static enum cs_status read_formats(const char *list, unsigned *formats,
                                    struct cs_error *error) {
     *formats = list ? 0 : CS_FORMATS_ALL;
-    for (size_t length; list && *list; list += length + (list[length] == ',')) {
-        char name[16];
-        length = strcspn(list, ",");
-        snprintf(name, sizeof name, "%.*s", (int)length, list);
+    for (char name[CS_LIST_BYTES]; cs_list_next(&list, name);) {
         int k = 0;
         while (cs_format_names[k] && strcmp(cs_format_names[k], name) != 0)
             k++;
@@ -205,11 +202,28 @@ static enum cs_status finish(struct cs_args *args, const struct cs_diagram *diag
     return cs_print_out(stdout, &text, error);
 }
 
-/* Keeps the cells of the family and methods that were given. Fails if there are none: an empty
- * diagram would hide a mistake in a name. */
+/* The first name of "a,b" that no cell has; a series may have commas itself. NULL: none. */
+static const char *find_unknown(const char *list, const struct cs_cell *cells, uint32_t n) {
+    for (size_t most; list && *list; list += most + (list[most] == ',')) {
+        most = 0;
+        for (uint32_t k = 0; k < 2 * n; k++) {
+            const char *name = k < n ? cells[k].series : cells[k - n].method;
+            const size_t length = strlen(name);
+            if (!strncmp(list, name, length) && strchr(",", list[length]) && length > most)
+                most = length;
+        }
+        if (!most)
+            return list;
+    }
+    return NULL;
+}
+
+/* Keeps the cells of the family and methods that were given. Fails if there are none, or none
+ * of a method: an empty diagram would hide a mistake in a name. */
 static enum cs_status select_cells(const struct options *options, const char *file,
                                    struct cs_cell *cells, uint32_t *n, struct cs_error *error) {
-    const char *family = options->family, *methods = options->methods;
+    const char *family = options->family, *methods = options->methods,
+               *unknown = find_unknown(methods, cells, *n);
     const uint32_t all = *n;
     *n = 0;
     for (uint32_t k = 0; k < all; k++)
@@ -217,10 +231,14 @@ static enum cs_status select_cells(const struct options *options, const char *fi
             (!methods || cs_list_has(methods, cells[k].series) ||
              cs_list_has(methods, cells[k].method)))
             cells[(*n)++] = cells[k];
-    return *n || !(family || methods)
-               ? CS_OK
-               : cs_fail(error, CS_ERR_USAGE, "--%s: found no \"%s\" series in %s",
-                         family ? "family" : "methods", family ? family : methods, file);
+    if (!all)
+        return cs_fail(error, CS_ERR_FILE, "%s: found no rows below names of columns", file);
+    if (unknown)
+        return cs_fail(error, CS_ERR_USAGE, "--methods: found no \"%.*s\" series in %s",
+                       (int)strcspn(unknown, ","), unknown, file);
+    return *n ? CS_OK
+              : cs_fail(error, CS_ERR_USAGE, "--family: found no \"%s\" series in %s%s", family,
+                        file, methods ? " of --methods" : "");
 }
 
 static enum cs_status plot_comparison(struct cs_args *args, struct cs_error *error) {
@@ -258,8 +276,12 @@ static enum cs_status add_spectrum(struct cs_plot *plot, struct cs_number_table 
     if (cs_spectrum_make(table, joint ? name : NULL, &seconds, &plot->arena, error) ||
         cs_table_lines_add(plot, table, lines, error))
         return error->status;
-    if (joint)
-        snprintf(plot->panels->y.label, CS_LABEL_BYTES, "amplitude in m");
+    for (struct cs_panel *p = plot->panels; p < plot->panels + plot->diagram.n_panels; p++) {
+        char label[CS_LABEL_BYTES];
+        snprintf(label, sizeof label, "%s", p->y.label);
+        snprintf(p->y.label, CS_LABEL_BYTES, "amplitude %s%.140s", joint ? "in m" : "of ",
+                 joint ? "" : label);
+    }
     cs_spectrum_add_peaks(plot, table, seconds);
     return CS_OK;
 }
@@ -327,6 +349,8 @@ static enum cs_status find_kind(const char *path, bool *comparison, struct cs_er
 
 static enum cs_status plot(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
+    static const char *const of_comparisons[] = {"family", "methods"}, *const of_others[] = {
+                                                                           "log", "spectrum"};
     const char *ending = strrchr(args->operands[0], '.');
     bool comparison = false;
     if (options->show && options->out)
@@ -345,8 +369,12 @@ static enum cs_status plot(struct cs_args *args, struct cs_error *error) {
         cs_args_refuse_both(args, "stretch", "spectrum", error) ||
         (!computed && find_kind(args->operands[0], &comparison, error)))
         return error->status;
-    if (comparison && options->spectrum)
-        return cs_fail(error, CS_ERR_USAGE, "--spectrum: a comparison has none");
+    for (int k = 0; k < 2; k++) {
+        const char *option = (comparison ? of_others : of_comparisons)[k];
+        if (cs_args_is_given(args, option))
+            return cs_fail(error, CS_ERR_USAGE, "--%s: %s is %s comparison: remove it", option,
+                           args->operands[0], comparison ? "a" : "no");
+    }
     return (comparison ? plot_comparison : plot_table)(args, error);
 }
 

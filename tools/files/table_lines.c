@@ -22,6 +22,15 @@ bool cs_list_has(const char *list, const char *word) {
     return false;
 }
 
+bool cs_list_next(const char **list, char word[CS_LIST_BYTES]) {
+    if (!*list || !**list)
+        return false;
+    const size_t length = strcspn(*list, ",");
+    snprintf(word, CS_LIST_BYTES, "%.*s", (int)length, *list);
+    *list += length + ((*list)[length] == ',');
+    return true;
+}
+
 /* True for a column that was asked for; else for one that is not zero throughout, but for
  * indices, and bounds that are far above what they bound. */
 static bool is_drawn(const struct cs_number_table *table, uint32_t c, const char *y) {
@@ -95,16 +104,11 @@ static enum cs_status add_lines(struct cs_plot *plot, const struct cs_number_tab
 /* Refuses names that no column has. */
 static enum cs_status check_names(const struct cs_number_table *table, const char *option,
                                   const char *names, struct cs_error *error) {
-    for (size_t length; names && *names; names += length + (names[length] == ',')) {
-        char name[64];
-        length = strcspn(names, ",");
-        snprintf(name, sizeof name, "%.*s", (int)length, names);
+    for (char name[CS_LIST_BYTES]; cs_list_next(&names, name) && !error->status;)
         if (cs_number_table_find(table, name) == table->columns)
-            return cs_fail(error, CS_ERR_USAGE,
-                           "--%s: found no column \"%s\" in the first line of the file", option,
-                           name);
-    }
-    return CS_OK;
+            cs_fail(error, CS_ERR_USAGE,
+                    "--%s: found no column \"%s\" in the first line of the file", option, name);
+    return error->status;
 }
 
 enum cs_status cs_table_lines_add(struct cs_plot *plot, const struct cs_number_table *table,
