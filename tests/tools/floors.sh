@@ -14,7 +14,7 @@ awk '
         n = split("base mesh scene model/spring model/system model/elastic model/force model/contact model/contact/broad_phase" \
             " model/contact/narrow_phase model/contact/ccd model/solver,model/event model/post_step model" \
             " scene/file io,draw,sim io/export draw/gl,draw/cpu,draw/cairo session study study/reference" \
-            " study/compare,study/stability cli/line cli/show cli cli/run sweep shared advise,bisect,conform,describe,files,film,golden,integrators,new,reproduce,soft", floors, " ")
+            " study/compare,study/stability cli/line cli/show cli cli/run sweep shared advise,bisect,conform,describe,files,film,golden,integrators,new,reproduce,soft,stability", floors, " ")
         for (i = 1; i <= n; i++) {
             count_of = split(floors[i], folders, ",")
             for (k = 1; k <= count_of; k++) floor[folders[k]] = i

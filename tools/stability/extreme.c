@@ -1,5 +1,5 @@
 /* Runs the catalogue of extreme scenes with every method, against what each scene expects. */
-#include "study/stability/extreme.h"
+#include "stability/extreme.h"
 
 #include "base/clock.h"
 #include "session/extreme_scene.h"

@@ -14,7 +14,7 @@
 #include "cli/stability_map.h"
 #include "session/process_pool.h"
 #include "session/recorded_run.h"
-#include "study/stability/extreme.h"
+#include "stability/extreme.h"
 
 #include <stdio.h>
 #include <string.h>
