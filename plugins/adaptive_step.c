@@ -37,7 +37,7 @@ enum cs_step adaptive_step_init(struct adaptive_step *self, const struct cs_host
         if (!(*arrays[k] = (double *)host->alloc(host->ctx, self->length * sizeof(double))))
             return CS_STEP_FAIL;
     // with the largest atol, 1 m, nothing but the caller's frames bounds steps
-    const bool passes = !self->fixed && CS_HAS(host, overstep_until) &&
+    const bool passes = !options->fixed && CS_HAS(host, overstep_until) &&
                         host->overstep_until > 0 && self->asked.atol < 1;
     self->ends = !passes ? 0 : hermite_ends_for(power);
     for (int k = 0; k < self->ends - 1; k++)
@@ -130,8 +130,11 @@ static double cut(double planned, double left) {
 static double longest_step(struct adaptive_step *self, double t, const double *y) {
     const struct cs_host *host = self->host;
     const double span = self->ends ? LONGEST_PAST_FRAMES : self->end - self->begin;
-    double most = least(self->contact, self->asked.dt_max > 0 ? self->asked.dt_max : span);
-    if (self->limit)
+    double most = self->asked.dt_max > 0 ? self->asked.dt_max : span;
+    if (self->asked.fixed) // equal parts of an advance
+        most = span / ceil(span / most * (1 - 1e-9));
+    most = least(self->contact, most);
+    if (self->limit && !self->asked.fixed)
         most = least(most, self->limit(self, t, y));
     if (CS_HAS(host, longest_step) && host->longest_step)
         most = least(most, host->longest_step(host->ctx, t, y, y + self->length / 2));
@@ -179,6 +182,8 @@ static enum cs_step try_steps(struct adaptive_step *self, double t, const double
         const enum cs_step status = self->attempt(self, t, *h, y, &error);
         if (status != CS_STEP_OK)
             return status;
+        if (self->asked.fixed && isfinite(error))
+            error = 0;
         if (error <= 1 && is_refused(self, t, *h, y))
             continue;
         if (step_control_judge(control, *h, error, *h < control->h)) {
@@ -288,11 +293,12 @@ enum cs_step adaptive_step_restart(void *object, double t, const double *x, cons
     struct adaptive_step *self = object;
     self->reached = t;
     self->length_of[0] = 0;
-    self->control = (struct step_control){.power = self->control.power};
+    self->started = self->asked.fixed;
+    self->control = (struct step_control){.power = self->control.power,
+                                          .h = self->started ? self->asked.dt_max : 0};
     self->contact = HUGE_VAL;
     self->fresh = true;
     self->changed = false;
-    self->started = false;
     return CS_STEP_OK;
 }
 

@@ -19,6 +19,7 @@
 struct adaptive_options {
     double rtol, atol, dt_max;
     int64_t max_steps;
+    bool fixed; /* no option: steps of dt_max, whose errors are taken for 0 */
 };
 #define ADAPTIVE_ROWS(struct_, rtol_)                                                          \
     CS_OPTION(struct_, rtol, "", rtol_, 1e-14, 0.1,                                            \
@@ -54,7 +55,6 @@ struct adaptive_step {
     bool fresh;     /* slope is not that of the state */
     bool changed;   /* the last commit changed the state */
     bool started;   /* control.h was chosen */
-    bool fixed;     /* set before init: steps of dt_max, whose errors are taken for 0 */
     uint64_t rejected;
     double local_error; /* m, of all accepted steps, added up */
     double begin, end;  /* s, of the advance */

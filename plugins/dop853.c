@@ -90,7 +90,7 @@ static const struct cs_option rows[] = {
 static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
     const struct dop853_options *asked = options;
     const struct adaptive_options adaptive = {asked->rtol, asked->atol, asked->dt_max,
-                                              asked->max_steps};
+                                              asked->max_steps, false};
     return nystrom_create(host, &adaptive, &dop853_pair,
                           asked->order == ORDER_AUTOMATIC ? &dopri5_pair : NULL, out);
 }

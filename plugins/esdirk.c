@@ -1,17 +1,19 @@
-/* esdirk.c - the diagonally implicit pair 4(3) of six stages with error control, L-stable.
+/* esdirk.c - diagonally implicit pairs with error control, and that of orders 4(3) with six
+ * stages, L-stable.
  *
- * In Nystrom form (nystrom.h) stage i has the equation of newton.h with g = h/4:
+ * In Nystrom form (nystrom.h) stage i has the equation of newton.h with g = a_ii h:
  *   M (u - ub) = g f(t + c_i h, xb + g u, u),   k_i = (u - ub) / g
- *   ub = v + h sum_j a_ij k_j,  xb = x + (c_i - 1/4) h v + h^2 sum_jl a_ij a_jl k_l,  j < i
+ *   ub = v + h sum_j a_ij k_j,  xb = x + (c_i - a_ii) h v + h^2 sum_jl a_ij a_jl k_l,  j < i
  * The first stage is explicit: its k is that of the last stage of the step before, which stands
  * at the new state. Taken from u it has no error that stiff springs enlarge, other than f(u).
+ * Other stages with a_ii = 0 cost an evaluation.
  *
  * Newton starts at the k of a polynomial in time through the latest stages, those of the step
  * before too, and ends at a residual below newton_rtol of the tolerance.
  *
  * Coefficients: the implicit part of ARK4(3)6L[2]SA, Kennedy, Carpenter 2003. */
+#include "esdirk.h"
 #include "newton_methods.h"
-#include "nystrom.h"
 
 #include <string.h>
 
@@ -31,43 +33,34 @@ static const double table[STAGES][NYSTROM_STAGES] = {
      2285395.0 / 8070912, 1.0 / 4},
     {82889.0 / 524892, 0, 15625.0 / 83664, 69875.0 / 102672, -2260.0 / 8211, 1.0 / 4},
 };
-static const double order_3[STAGES] = {
-    4586570599.0 / 29645900160, 0, 178811875.0 / 945068544, 814220225.0 / 1159782912,
-    -3700637.0 / 11593932, 61727.0 / 225920};
+// b minus that of the method of order 3
+static const double difference[STAGES] = {
+    82889.0 / 524892 - 4586570599.0 / 29645900160, 0, 15625.0 / 83664 - 178811875.0 / 945068544,
+    69875.0 / 102672 - 814220225.0 / 1159782912, -2260.0 / 8211 - -3700637.0 / 11593932,
+    1.0 / 4 - 61727.0 / 225920};
 // clang-format on
+static const struct nystrom_pair pair_43 = {
+    .stages = STAGES, .power = 4, .nodes = nodes, .table = table, .difference = difference};
 
 /* Part of the rounding bound that stages are solved to: their errors add up. */
 #define NOISE_SHARE 0.0625
 
-struct esdirk_options {
-    double rtol, atol, dt_max;
-    int64_t max_steps;
-    double dt, newton_rtol;
-    int64_t iterations;
-};
-
-static const struct cs_option rows[] = {
-    ADAPTIVE_ROWS(struct esdirk_options, 1e-4),
-    CS_OPTION(
-        struct esdirk_options, dt, "s", 0, 0, 10,
-        "step without error control, rtol then being that of the stages; 0: by the error"),
-    CS_OPTION(struct esdirk_options, newton_rtol, "", 0.05, 1e-14, 1,
-              "residual of a stage, as a velocity, relative to the tolerance"),
-    CS_OPTION(struct esdirk_options, iterations, "", 10, 1, 1000,
-              "maximum Newton iterations of a stage; then the step is shortened"),
-};
+static const struct cs_option rows[] = {ESDIRK_ROWS};
 
 struct esdirk {
     struct adaptive_step base;
     struct newton newton;
     uint64_t failed_solves; /* tries in a row that ended by a linear solve that failed */
-    struct nystrom_sum known[STAGES], difference;
-    double *k[STAGES];  /* (3,n) in m/s2 each; the first is base.slope */
-    double *past[PAST]; /* (3,n): k of stages 3 to 5 of the last accepted step */
-    double past_h;      /* s, its length; 0: there is none */
-    double tried_h;     /* s, of the last try */
-    double *start;      /* (6n): (xb, ub) of a stage */
-    double *u;          /* (3,n) */
+    const struct nystrom_pair *pair;
+    struct nystrom_sum known[NYSTROM_STAGES], difference;
+    double *k[NYSTROM_STAGES]; /* (3,n) in m/s2 each; the first is base.slope */
+    /* (3,n): k of the stages of the last accepted step from first_past on, but for the last */
+    double *past[PAST];
+    int first_past;
+    double past_h;  /* s, its length; 0: there is none */
+    double tried_h; /* s, of the last try */
+    double *start;  /* (6n): (xb, ub) of a stage */
+    double *u;      /* (3,n) */
 };
 
 /* A point of the polynomial that Newton starts from: time in steps from t, and k there. */
@@ -76,18 +69,27 @@ struct point {
     const double *k;
 };
 
-/* The POINTS latest stages that are known before stage i; returns how many there are. */
+/* Adds a point before those that are there, unless one has its time. */
+static void add_point(struct point *points, int *n, struct point point) {
+    for (int j = POINTS - *n; j < POINTS; j++)
+        if (fabs(points[j].time - point.time) < 1e-6)
+            return;
+    if (*n < POINTS)
+        points[POINTS - ++*n] = point;
+}
+
+/* The POINTS latest stages that are known before stage i, at the end of the array; returns how
+ * many there are. */
 static int latest_points(const struct esdirk *self, int i, double h, struct point *points) {
-    struct point all[PAST + STAGES];
+    const double *times = self->pair->nodes;
     int n = 0;
-    for (int j = 0; j < PAST && self->past_h > 0; j++)
-        all[n++] = (struct point){(nodes[2 + j] - 1) * self->past_h / h, self->past[j]};
-    for (int j = 0; j < i; j++)
-        all[n++] = (struct point){nodes[j], self->k[j]};
-    const int first = n > POINTS ? n - POINTS : 0;
-    for (int j = first; j < n; j++)
-        points[j - first] = all[j];
-    return n - first;
+    while (i-- > 0)
+        add_point(points, &n, (struct point){times[i], self->k[i]});
+    for (int j = self->pair->stages - 1; self->past_h > 0 && --j >= self->first_past;)
+        add_point(points, &n,
+                  (struct point){(times[j] - 1) * self->past_h / h,
+                                 self->past[j - self->first_past]});
+    return n;
 }
 
 /* Lagrange's weight of point j at a time. */
@@ -102,11 +104,13 @@ static double weight_at(const struct point *points, int n, int j, double time) {
 /* u = ub + g k, k from the polynomial at the time of stage i. */
 static void predict(struct esdirk *self, int i, double h, const double *ub) {
     const size_t n3 = self->base.length / 2;
-    struct point points[POINTS];
-    const int n = latest_points(self, i, h, points);
+    const double g = self->pair->table[i][i] * h, node = self->pair->nodes[i];
+    struct point all[POINTS];
+    const int n = latest_points(self, i, h, all);
+    const struct point *points = all + POINTS - n;
     for (int j = 0; j < n; j++)
-        self->base.host->vector->linear_sum(n3, h / 4 * weight_at(points, n, j, nodes[i]),
-                                            points[j].k, 1, j ? self->u : ub, self->u);
+        self->base.host->vector->linear_sum(n3, g * weight_at(points, n, j, node), points[j].k,
+                                            1, j ? self->u : ub, self->u);
 }
 
 /* Solves stage i of a step of h from y at t: leaves X in newton.x, the velocity in self->u and
@@ -114,17 +118,17 @@ static void predict(struct esdirk *self, int i, double h, const double *ub) {
 static enum cs_step solve_stage(struct esdirk *self, int i, double t, double h, const double *y,
                                 bool *converged) {
     const size_t n3 = self->base.length / 2;
-    const double g = h / 4;
+    const double g = self->pair->table[i][i] * h, c = self->pair->nodes[i] * h;
     const double *xb = self->start, *ub = xb + n3;
     nystrom_combine(self->base.host, self->known + i, self->k, h, y, self->start);
     predict(self, i, h, ub);
-    const struct newton_stage stage = {.t = t + nodes[i] * h,
+    const struct newton_stage stage = {.t = t + c,
                                        .s = g,
                                        .gx = g,
                                        .gv = 1,
                                        .xb = xb,
                                        .ub = ub,
-                                       .c = nodes[i] * h,
+                                       .c = c,
                                        .x0 = y,
                                        .v0 = y + n3};
     // a start that is good enough takes no solve, and says nothing of them
@@ -142,8 +146,16 @@ static enum cs_step attempt(struct adaptive_step *base, double t, double h, cons
                             double *error) {
     struct esdirk *self = (struct esdirk *)base;
     const size_t n3 = base->length / 2;
-    for (int i = 1; i < STAGES; i++) {
+    const struct nystrom_pair *pair = self->pair;
+    const int last = pair->stages - 1;
+    for (int i = 1; i <= last; i++) {
         bool converged = false;
+        if (!(pair->table[i][i] > 0)) {
+            nystrom_combine(base->host, self->known + i, self->k, h, y, base->next);
+            adaptive_step_evaluate(base, t + pair->nodes[i] * h, base->next, base->next + n3,
+                                   self->k[i]);
+            continue;
+        }
         const enum cs_step status = solve_stage(self, i, t, h, y, &converged);
         if (status != CS_STEP_OK)
             return status;
@@ -154,14 +166,17 @@ static enum cs_step attempt(struct adaptive_step *base, double t, double h, cons
         if (!converged)
             return CS_STEP_OK;
     }
-    // stiffly accurate: the last stage is the new state
-    memcpy(base->next, self->newton.x, n3 * sizeof *y);
-    memcpy(base->next + n3, self->u, n3 * sizeof *y);
-    adaptive_step_weigh(base, y, base->next);
-    nystrom_combine(base->host, &self->difference, self->k, h, NULL, base->error);
-    *error = adaptive_step_norm(base, base->error);
-    if (self->base.fixed && isfinite(*error))
-        *error = 0;
+    // the last stage is the new state
+    if (pair->table[last][last] > 0) {
+        memcpy(base->next, self->newton.x, n3 * sizeof *y);
+        memcpy(base->next + n3, self->u, n3 * sizeof *y);
+    }
+    *error = 0;
+    if (self->difference.terms) {
+        adaptive_step_weigh(base, y, base->next);
+        nystrom_combine(base->host, &self->difference, self->k, h, NULL, base->error);
+        *error = adaptive_step_norm(base, base->error);
+    }
     self->tried_h = h;
     return CS_STEP_OK;
 }
@@ -175,9 +190,10 @@ static void swap(double **a, double **b) {
 /* The last stage is the first of the next step. */
 static bool accept(struct adaptive_step *base) {
     struct esdirk *self = (struct esdirk *)base;
-    for (int j = 0; j < PAST; j++)
-        swap(self->past + j, self->k + 2 + j);
-    swap(self->k, self->k + STAGES - 1);
+    const int last = self->pair->stages - 1;
+    for (int j = self->first_past; j < last; j++)
+        swap(self->past + j - self->first_past, self->k + j);
+    swap(self->k, self->k + last);
     base->slope = self->k[0];
     self->past_h = self->tried_h;
     return true;
@@ -202,21 +218,40 @@ static double limit(struct adaptive_step *base, double t, const double *y) {
 
 /* The sums that a step takes. */
 static void make_sums(struct esdirk *self) {
-    double before[STAGES] = {0}, difference[STAGES];
-    for (int i = 1; i < STAGES; i++) {
-        memcpy(before, table[i], (size_t)i * sizeof *before);
-        self->known[i] = nystrom_sum_of(STAGES, table, before, NULL);
-        self->known[i].node = nodes[i] - 0.25;
+    const struct nystrom_pair *pair = self->pair;
+    double before[NYSTROM_STAGES] = {0};
+    for (int i = 1; i < pair->stages; i++) {
+        memcpy(before, pair->table[i], (size_t)i * sizeof *before);
+        self->known[i] = nystrom_sum_of(pair->stages, pair->table, before, NULL);
+        self->known[i].node = pair->nodes[i] - pair->table[i][i];
     }
-    for (int j = 0; j < STAGES; j++)
-        difference[j] = table[STAGES - 1][j] - order_3[j];
-    self->difference = nystrom_sum_of(STAGES, table, difference, NULL);
+    self->difference = nystrom_sum_of(pair->stages, pair->table, pair->difference, NULL);
 }
 
-static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
-    const struct esdirk_options *asked = options;
-    const struct adaptive_options adaptive = {
-        asked->rtol, asked->atol, asked->dt > 0 ? asked->dt : asked->dt_max, asked->max_steps};
+struct adaptive_options esdirk_adaptive_options(const struct esdirk_options *asked) {
+    return (struct adaptive_options){.rtol = asked->rtol,
+                                     .atol = asked->atol,
+                                     .dt_max = asked->dt > 0 ? asked->dt : asked->dt_max,
+                                     .max_steps = asked->max_steps,
+                                     .fixed = asked->dt > 0};
+}
+
+static enum cs_step alloc_arrays(struct esdirk *self) {
+    const struct cs_host *host = self->base.host;
+    self->k[0] = self->base.slope;
+    self->start = host->alloc(host->ctx, self->base.length * sizeof(double));
+    double **arrays[NYSTROM_STAGES + PAST] = {&self->u};
+    size_t n = 1;
+    for (int i = 1; i < self->pair->stages; i++)
+        arrays[n++] = self->k + i;
+    for (int j = 0; j < PAST; j++)
+        arrays[n++] = self->past + j;
+    return self->start ? step_halving_alloc(host, arrays, n) : CS_STEP_FAIL;
+}
+
+enum cs_step esdirk_create(const struct cs_host *host, const struct esdirk_options *asked,
+                           const struct nystrom_pair *pair, void **out) {
+    const struct adaptive_options adaptive = esdirk_adaptive_options(asked);
     struct esdirk *self = host->alloc(host->ctx, sizeof *self);
     if (!self)
         return CS_STEP_FAIL;
@@ -224,34 +259,35 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     self->base.attempt = attempt;
     self->base.accept = accept;
     self->base.limit = limit;
-    self->base.fixed = asked->dt > 0;
+    self->pair = pair;
+    self->first_past = pair->stages > PAST + 2 ? pair->stages - 1 - PAST : 1;
     make_sums(self);
-    // stages end by the tolerance of the step, not by their own impulse
-    if (adaptive_step_init(&self->base, host, &adaptive, 4) != CS_STEP_OK ||
-        newton_init(&self->newton, host, 0, asked->iterations) != CS_STEP_OK)
+    // stages of pairs end by the tolerance of the step, not by their own impulse
+    const double rtol = asked->newton_rtol > 0 ? 0 : asked->rtol;
+    if (adaptive_step_init(&self->base, host, &adaptive, pair->power) != CS_STEP_OK ||
+        newton_init(&self->newton, host, rtol, asked->iterations) != CS_STEP_OK)
         return CS_STEP_FAIL;
     self->newton.absolute =
         asked->newton_rtol * self->base.tolerance.speed * sqrt(self->newton.mass);
     self->newton.residual_floor = NOISE_SHARE;
-    self->k[0] = self->base.slope;
-    double **const arrays[] = {self->k + 1,    self->k + 2,    self->k + 3,
-                               self->k + 4,    self->k + 5,    self->past,
-                               self->past + 1, self->past + 2, &self->u};
-    self->start = (double *)host->alloc(host->ctx, self->base.length * sizeof(double));
-    return self->start ? step_halving_alloc(host, arrays, 9) : CS_STEP_FAIL;
+    return alloc_arrays(self);
 }
 
-static enum cs_step restart(void *object, double t, const double *x, const double *v) {
+static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
+    return esdirk_create(host, options, &pair_43, out);
+}
+
+enum cs_step esdirk_restart(void *object, double t, const double *x, const double *v) {
     ((struct esdirk *)object)->past_h = 0;
     return adaptive_step_restart(object, t, x, v);
 }
 
-static void stats(const void *object, struct cs_stats *out) {
+void esdirk_stats(const void *object, struct cs_stats *out) {
     adaptive_step_stats(object, out);
     out->newton = ((const struct esdirk *)object)->newton.converged;
 }
 
-static enum cs_step archive(void *object, const struct cs_archive *archive) {
+enum cs_step esdirk_archive(void *object, const struct cs_archive *archive) {
     struct esdirk *self = object;
     archive->integers(archive->ctx, &self->newton.converged, 1);
     archive->integers(archive->ctx, &self->failed_solves, 1);
@@ -262,23 +298,13 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
 }
 
 const struct cs_integrator esdirk = {
-    .size = sizeof(struct cs_integrator),
+    ESDIRK_METHOD(rows),
     .name = "esdirk",
     .summary = "implicit pair 4(3) by Newton with error control, L-stable: ark-dirk at less "
                "than half its work where dampers rule",
     .source = "Kennedy, Carpenter 2003",
     .order = 4,
     .order_damped = 4,
-    .needs = CS_NEED_ENERGY | CS_NEED_SOLVE | CS_NEED_LAGGED_FRICTION,
     .traits = CS_IMPLICIT | CS_ADAPTIVE,
-    .fidelity = CS_FIDELITY_ODE,
-    .options = rows,
-    .n_options = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct esdirk_options),
     .create = create,
-    .restart = restart,
-    .advance = adaptive_step_advance,
-    .stats = stats,
-    .save = archive,
-    .load = archive,
 };

@@ -147,6 +147,8 @@ static double error_of(struct nystrom *self, double h, const double *y) {
     struct adaptive_step *base = &self->base;
     const struct pair_sums *sums = self->taken;
     self->lower_error = 0;
+    if (!sums->difference.terms)
+        return 0;
     adaptive_step_weigh(base, y, base->next);
     nystrom_combine(base->host, &sums->difference, self->f, h, NULL, base->error);
     const double error = adaptive_step_norm(base, base->error);
@@ -210,8 +212,9 @@ static bool accept(struct adaptive_step *base) {
 }
 
 struct nystrom_sum nystrom_stage(const struct nystrom_pair *pair, int i) {
-    struct nystrom_sum sum = nystrom_sum_of(pair->stages, pair->table, pair->table[i],
-                                            i == pair->stages - 1 ? pair->nodes : NULL);
+    struct nystrom_sum sum =
+        nystrom_sum_of(pair->stages, pair->table, pair->table[i],
+                       i < pair->stages - 1 || pair->by_table ? NULL : pair->nodes);
     sum.node = pair->nodes[i];
     return sum;
 }

@@ -10,12 +10,15 @@
 
 #include "adaptive_step.h"
 
-enum { NYSTROM_STAGES = 13 };
+#include <clothsim/tableau.h>
+
+enum { NYSTROM_STAGES = CS_TABLEAU_STAGES + 2 };
 
 /* A pair of stages `stages`, the last of which stands at the new state: its row is b. Needs
- * sum_i b_i a_ij = b_j (1 - c_j). */
+ * sum_i b_i a_ij = b_j (1 - c_j), unless by_table. a_ij may have a diagonal for esdirk.h. */
 struct nystrom_pair {
     int stages, power;                     /* power: that of the local error in h */
+    bool by_table;                         /* the sum of the last stage takes all a_ij */
     const double *nodes;                   /* (stages) */
     const double (*table)[NYSTROM_STAGES]; /* (stages, NYSTROM_STAGES) a_ij */
     const double *difference;              /* (stages): weights of the error estimate */

@@ -9,7 +9,7 @@
 
 #include <clothsim/integrator.h>
 #include <clothsim/program.h>
-#include <sys/types.h>
+#include <clothsim/tableau.h>
 
 /* Opens an integrator module by its absolute path and checks the contract: symbol, ABI,
  * sizes, names, required calls, option tables with every default in its range. The file and
@@ -23,48 +23,29 @@ enum cs_status cs_module_open(const char *file, const struct cs_module **module,
 enum cs_status cs_module_check_integrator(const struct cs_integrator *integrator,
                                           struct cs_error *error);
 
-/* A method that another process computes (<clothsim/program.h>), as it has described itself. */
+/* A method that another process computes (<clothsim/program.h>), as it has described itself, or
+ * that of a file of coefficients. */
 enum { CS_PROGRAM_WORDS_MAX = 64 };
 struct cs_program_method {
     struct cs_integrator integrator; /* first: the calls of the method find the program by it */
     struct cs_option options[CS_PROGRAM_OPTIONS_MAX];
     const char *fails[CS_PROGRAM_FAILS_MAX + 1];
     struct cs_program_description description;   /* the texts of the method are in it */
-    const struct cs_integrator *calls;           /* of plugins/program.c: the others */
+    struct cs_tableau tableau;                   /* of a file */
+    const struct cs_integrator *calls;           /* of the module, which create needs */
     char *key, *command;                         /* the text that named it; its words, cut */
     const char *words[CS_PROGRAM_WORDS_MAX + 1]; /* closed by NULL */
     char file[4096];                             /* see cs_program_method_open */
     struct cs_program_method *next;
 };
 
-/* Replaces create and destroy of a method by those that start and end its process. */
-void cs_program_set_calls(struct cs_integrator *method);
+/* Reads the coefficients of a Runge-Kutta method, and fills name, summary, source, order and
+ * traits of *texts. CS_ERR_MODULE with file, line and column, CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_tableau_read(const char *path, struct cs_program_description *texts,
+                               struct cs_tableau *out, struct cs_error *error);
 
-/* A process that was started, and the memory shared with it. */
-struct cs_program_process {
-    const struct cs_program_method *program;
-    pid_t pid; /* 0: none */
-    int socket;
-    struct cs_program_head *head; /* mapped */
-    size_t bytes;                 /* of the mapping */
-};
-
-/* Starts a program that shares arrays of n particles. CS_ERR_MEMORY; a command that cannot be
- * run is told by its first message, of code 0 and an errno. */
-enum cs_status cs_program_process_start(struct cs_program_process *process,
-                                        const struct cs_program_method *program, size_t n,
-                                        struct cs_error *error);
-/* Closes the socket, which asks the program to end, ends it by force after a second, and frees
- * what was shared. Adds how it ended to out, unless that is NULL. */
-void cs_program_process_end(struct cs_program_process *process, struct cs_text *out);
-
-/* Waits for the first message, which follows the description, for a minute. Returns 1; 0 if the
- * program has ended; -1 if it was silent, or a signal came (errno EINTR). */
-int cs_program_receive_hello(const struct cs_program_process *process,
-                             struct cs_program_message *message);
-
-/* Starts "program:COMMAND", "program:NAME=COMMAND", or the program that reads the coefficients
- * of "tableau:FILE", reads its description, and ends it. Each
+/* Opens "tableau:FILE", a file of coefficients; or starts "program:COMMAND" or
+ * "program:NAME=COMMAND", reads its description, and ends it. Each
  * run starts a process of its own. COMMAND is cut into words at spaces; a word that begins with
  * ' or " ends at the next one. No shell reads it. The method, and *file, the absolute path of
  * the first argument that is a file, else of what was started, stay until the end of this

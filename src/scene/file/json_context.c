@@ -9,6 +9,19 @@
 #include <stdio.h>
 #include <string.h>
 
+enum cs_status cs_json_parse_named(const char *name, const char *text, size_t length,
+                                   struct cs_json **root, struct cs_error *error) {
+    struct cs_json_fault fault = {0};
+    uint32_t line, column;
+    const enum cs_status status = cs_json_parse(text, length, root, &fault);
+    if (status == CS_ERR_MEMORY)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", name);
+    if (!status)
+        return CS_OK;
+    cs_json_locate(text, fault.offset, &line, &column);
+    return cs_fail(error, CS_ERR_SCENE, "%s:%u:%u: %s", name, line, column, fault.message);
+}
+
 bool cs_key_is_free(const char *key) {
     return !strncmp(key, "x-", 2) || key[0] == '$';
 }

@@ -16,6 +16,10 @@ struct cs_json_context {
     const char *skipped_key; /* key of the root that is read elsewhere, or NULL */
 };
 
+/* Parses a text as cs_json_parse; a fault is CS_ERR_SCENE with name, line and column. */
+enum cs_status cs_json_parse_named(const char *name, const char *text, size_t length,
+                                   struct cs_json **root, struct cs_error *error);
+
 /* Returns true for keys that are the user's own: "x-..." and "$...". */
 bool cs_key_is_free(const char *key);
 

@@ -87,20 +87,10 @@ static enum cs_status store_source(struct cs_scene *scene, const char *path, con
     return CS_OK;
 }
 
-/* Parses the stored text; a failure gets file, line and column. */
+/* Parses the stored text. */
 static enum cs_status parse(const struct cs_scene *scene, struct cs_json **root,
                             struct cs_error *error) {
-    struct cs_json_fault fault = {0};
-    const enum cs_status status = cs_json_parse(scene->text, scene->text_bytes, root, &fault);
-    if (status == CS_ERR_MEMORY)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", scene->path);
-    if (status) {
-        uint32_t line, column;
-        cs_json_locate(scene->text, fault.offset, &line, &column);
-        return cs_fail(error, CS_ERR_SCENE, "%s:%u:%u: %s", scene->path, line, column,
-                       fault.message);
-    }
-    return CS_OK;
+    return cs_json_parse_named(scene->path, scene->text, scene->text_bytes, root, error);
 }
 
 /* Applies the overrides to the tree, in their order. */

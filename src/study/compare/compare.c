@@ -170,7 +170,7 @@ static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *er
                                                 .fps = compare->fps,
                                                 .omega = compare->omega};
     for (uint32_t k = 0; k < asked.n_plugins; k++)
-        compare->by_work |= cs_names_program(asked.plugins[k]);
+        compare->by_work |= !strncmp(asked.plugins[k], "program:", 8);
     if (!cs_cell_list_parse(&compare->cells, &asked, error) && !check_methods(compare, error))
         store_shard(compare);
     return error->status;
