@@ -218,10 +218,15 @@ def check_studies(method="program:./midpoint"):
     """The studies that choose steps by themselves."""
     build_client()
     advised = call("advise", "scene.json", "-t", "0.05", "-i", method)
-    told(f"advise takes {method}", advised[0] == 0 and "dt" in advised[1], advised)
+    row = next((line.split() for line in advised[1].splitlines() if line.startswith(method)), [])
+    told(f"advise takes {method}", advised[0] == 0 and len(row) == 5 and 0 < float(row[2]) < float(row[1]), advised)
     mapped = call("stability", "scene.json", "-i", method, "--columns", "2", "--rows", "2", "-t", "0.05",
                   "-o", "map", "-q", "-y")
-    told(f"stability takes {method}", mapped[0] == 0 and "stability.csv" in os.listdir("map"), mapped)
+    tables = [name for name in os.listdir("map") if name.endswith(".csv") and not name.endswith("_border.csv")]
+    verdicts = [row["verdict"] for name in tables for row in csv.DictReader(open(f"map/{name}"))]
+    told(f"stability takes {method}", mapped[0] == 0 and len(verdicts) == 4
+         and {"bounded", "global instability"} <= set(verdicts), f"{mapped}\n{tables}\n{verdicts}")
+    shutil.rmtree("map")
     same = call("bisect", "scene.json", "-n", "2", "-i", method, "--b", "threads=2")
     told(f"bisect takes {method}", same[0] == 0 and "2 frames" in same[1], same)
 
