@@ -105,8 +105,9 @@ static void order_around(const struct work *work, struct cs_raw_side *sides, uin
         sides[i].angle = a >= 0 ? slope : 2 - slope;
     }
     qsort(sides, n, sizeof *sides, by_angle);
+    // the first that falls after one that does not begins
     uint32_t first = 0;
-    while (first < n && !(sides[first].falls && !sides[(first + n - 1) % n].falls))
+    while (!sides[first].falls || sides[(first + n - 1) % n].falls)
         first++;
     for (uint32_t i = 0; i < first; i++)
         sides[i].angle += 4;

@@ -317,8 +317,6 @@ static void check_gaps(const struct cs_system *system, struct cs_text *out) {
     }
 }
 
-/* --- meshes --- */
-
 /* Changes by the reading of meshes; several pieces of a mesh that nothing joins. */
 static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings *out) {
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
@@ -329,10 +327,9 @@ static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings 
         if (*mesh->mends)
             cs_text_add(&out->warnings, "bodies[%u].mesh.file: %s: %s\n", b, source->file,
                         mesh->mends);
-        if (*source->file && !(mesh->edge > 1e-6 && mesh->edge < 1e4))
-            cs_text_add(&out->hints,
-                        "bodies[%u].mesh.file: edges of %s are %.3g m long: see units, scale\n",
-                        b, source->file, mesh->edge);
+        if (!(mesh->edge > 1e-6 && mesh->edge < 1e4))
+            cs_text_add(&out->hints, "bodies[%u].mesh: edges of %.3g m, see units\n", b,
+                        mesh->edge);
         if (mesh->pieces > 1 && !scene->seams.n)
             cs_text_add(&out->hints,
                         "bodies[%u].mesh.file: %s is in %u pieces that nothing joins\n", b,

@@ -236,6 +236,15 @@ static void check_release(const struct cs_system *system, uint32_t e, const void
                     cs_findings_begin(event));
 }
 
+/* First particle that a grab takes, or view.n. */
+static size_t first_target(const struct cs_system *system, const struct cs_grab *grab) {
+    cs_event_mark(system, &grab->target);
+    size_t i = 0;
+    while (i < system->view.n && !system->events->work[i])
+        i++;
+    return i;
+}
+
 /* A grab whose positions begin with a jump that shifts by the same numbers would not have. */
 static void check_jump(const struct cs_system *system, uint32_t e, const void *arg,
                        struct cs_text *out) {
@@ -246,11 +255,9 @@ static void check_jump(const struct cs_system *system, uint32_t e, const void *a
     (void)arg;
     if (!event->grab.present || !path.n || event->grab.relative)
         return;
-    cs_event_mark(system, &event->grab.target);
-    const bool *first = memchr(system->events->work, true, n);
-    if (!first)
+    const size_t i = first_target(system, &event->grab);
+    if (i == n)
         return;
-    const size_t i = (size_t)(first - system->events->work);
     const double *to = path.points->point, seconds = path.points->at - cs_findings_begin(event);
     for (size_t c = 0; c < 3; c++)
         way[c] = to[c] - system->state[c * n + i];
@@ -277,11 +284,10 @@ static void check_apart(const struct cs_system *system, uint32_t e, const void *
     const size_t n = system->view.n;
     if (!grab->present || !path.n || !cs_vec3_is_zero(grab->spin))
         return;
-    cs_event_mark(system, &grab->target);
-    const bool *first = memchr(system->events->work, true, n);
-    if (!first)
+    const uint32_t i = (uint32_t)first_target(system, grab);
+    if (i == n)
         return;
-    const uint32_t i = (uint32_t)(first - system->events->work), b = body_of(system, i);
+    const uint32_t b = body_of(system, i);
     const struct cs_body_range *range = system->bodies + b;
     const struct cs_cloth *cloth = &cs_scene_bodies(system->scene)[b].cloth;
     for (uint32_t k = 0; k < path.n * held->n; k++) {
@@ -309,15 +315,6 @@ static void check_apart(const struct cs_system *system, uint32_t e, const void *
             e, p, b, to->at, length, q, rest);
         return;
     }
-}
-
-/* First particle that a grab takes, or view.n. */
-static size_t first_target(const struct cs_system *system, const struct cs_grab *grab) {
-    cs_event_mark(system, &grab->target);
-    size_t i = 0;
-    while (i < system->view.n && !system->events->work[i])
-        i++;
-    return i;
 }
 
 /* m/s, speed of waves in the springs at a particle; 0: it has none. */

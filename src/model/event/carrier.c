@@ -1,14 +1,12 @@
 /* carrier.c - colliders that carry particles: triangles that deform, their frames, rates and
- * points; what pins and seams give to a collider at the start. */
+ * points; the points that particles are sewn to. */
 #include "model/event/carrier.h"
 
 #include "base/vec3.h"
 #include "model/event/event_state.h"
 #include "model/system/seams.h"
 #include "scene/body_keys.h"
-#include "scene/body_pairs.h"
 #include "scene/collider_keys.h"
-#include "scene/shape.h"
 
 #include <math.h>
 #include <string.h>
@@ -97,63 +95,14 @@ static double find_nearest_of(const struct cs_posed_collider *mesh, uint32_t tri
     return least;
 }
 
-/* Makes a pin's collider the holder of a particle; fails if another pin holds it elsewhere. */
-static enum cs_status hold(struct cs_system *system, uint32_t b, uint32_t p, uint32_t i,
-                           struct cs_error *error) {
-    const struct cs_body *body = cs_scene_bodies(system->scene) + b;
-    const struct cs_pin *pins = body->pins.items;
-    const struct cs_body_range *range = system->bodies + b;
-    for (uint32_t k = 0; k < body->pins.n; k++) {
-        const bool same = pins[k].to.present && pins[k].to.collider == pins[p].to.collider;
-        if (!same && cs_shape_pin_selects(body, pins + k, system->view.n, range->first,
-                                          i - range->first, system->start))
-            return cs_fail(
-                error, CS_ERR_SCENE,
-                "bodies[%u].pins[%u].to: pins[%u] holds particle %u of the body too, "
-                "but not to collider %lld; expected one pin for each particle",
-                b, p, k, i - range->first, (long long)pins[p].to.collider);
-    }
-    system->events->held_by[i] = system->scene->events.n + 1 + (uint32_t)pins[p].to.collider;
-    return CS_OK;
-}
-
-enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *error) {
-    struct cs_events *events = system->events;
-    const uint32_t n = system->view.n, first = system->scene->events.n + 1;
-    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
-        const struct cs_body *body = cs_scene_bodies(system->scene) + b;
-        const struct cs_pin *pins = body->pins.items;
-        const struct cs_body_range *range = system->bodies + b;
-        for (uint32_t p = 0; p < body->pins.n; p++)
-            for (uint32_t i = range->first;
-                 pins[p].to.present && i < range->first + range->count; i++)
-                if (cs_shape_pin_selects(body, pins + p, n, range->first, i - range->first,
-                                         system->start) &&
-                    hold(system, b, p, i, error))
-                    return error->status;
-    }
-    // the offsets need a collider's frame, one collider after the other
-    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
-        for (uint32_t i = 0; i < n; i++)
-            events->work[i] = events->held_by[i] == first + k;
-        cs_event_store_offsets(system, first + k, events->work, 0);
-    }
-    // key frames move from the start, before any event
-    if (cs_scene_carries_pins(system->scene, true)) {
-        cs_event_find_held(system, 0);
-        cs_events_apply_paths(system, 0, system->state, system->state + 3 * (size_t)n);
-    }
-    return CS_OK;
-}
-
-/* The points of a collider that particles are sewn to, at time 0; owned. */
+/* The points of a collider that particles are sewn to, at time 0. */
 struct sewing {
     struct cs_posed_collider posed;
     struct cs_body mesh; /* of the collider, whose vertices are n */
     uint32_t n;
-    double *vertices, *targets;          /* (3, vertices) and (3, particles) m */
-    uint32_t *chosen, *list, *colliders; /* (vertices), (particles), (particles) */
-    bool *marks;                         /* (vertices) */
+    double *vertices, *targets; /* (3, vertices) and (3, particles) m */
+    uint32_t *chosen, *list;    /* (vertices) and (particles) */
+    bool *marks;                /* (vertices) */
 };
 
 /* Sets p to the nearest point of the collider. */
@@ -203,60 +152,55 @@ static void find_target(const struct sewing *sewing, const struct cs_seam *seam,
     }
 }
 
-/* Sews the particles of seam s to its collider. */
+/* Finds the points of the collider for the particles of a seam. */
 static enum cs_status sew(struct cs_system *system, uint32_t s, struct sewing *sewing,
                           struct cs_error *error) {
     const struct cs_seam *seam = (const struct cs_seam *)system->scene->seams.items + s;
     const struct cs_list *to = &seam->to.side.particles;
     const struct cs_seam_points side = cs_seam_points_of(system, &seam->side);
+    struct cs_events *events = system->events;
     const size_t n = system->view.n;
-    memset(system->events->work, 0, n * sizeof *system->events->work);
-    memset(sewing->colliders, 0, n * sizeof *sewing->colliders);
+    memset(events->work, 0, n * sizeof *events->work);
     uint32_t count[2];
-    count[0] =
-        cs_seam_points_list(&side, &seam->side.particles, system->events->work, sewing->list);
+    count[0] = cs_seam_points_list(&side, &seam->side.particles, events->work, sewing->list);
     count[1] = to->n ? list_vertices(sewing, to) : count[0];
     if (cs_seam_check_counts(s, seam, count, error))
         return error->status;
     for (uint32_t k = 0; k < count[0]; k++) {
         const size_t i = sewing->list[k];
-        double p[3] = {system->state[i], system->state[n + i], system->state[2 * n + i]};
+        const double *x = system->state + i, from[3] = {x[0], x[n], x[2 * n]};
+        double p[3] = {from[0], from[1], from[2]}, squared = 0;
         if (system->inv_mass[i] == 0)
             return cs_fail(error, CS_ERR_SCENE,
                            "seams[%u]: particle %u of body %u is pinned, or sewn to a collider "
                            "already; expected a free one",
                            s, (uint32_t)i - side.first, (uint32_t)seam->side.body);
         find_target(sewing, seam, k, p);
-        for (size_t c = 0; c < 3; c++)
+        for (size_t c = 0; c < 3; c++) {
             sewing->targets[c * n + i] = p[c];
-        sewing->colliders[i] = (uint32_t)seam->to.collider + 1;
-        system->events->seam_of[i] = s + 1;
+            squared += (p[c] - from[c]) * (p[c] - from[c]);
+        }
+        events->gap_of = sqrt(squared) > events->gap ? (uint32_t)i : events->gap_of;
+        events->gap = fmax(events->gap, sqrt(squared));
+        events->seam_of[i] = s + 1;
     }
-    return cs_event_lead(system, sewing->colliders, sewing->targets, seam->closing_time,
-                         CS_TANGLED_SEWN, error);
+    return CS_OK;
 }
 
-enum cs_status cs_event_attach_seams(struct cs_system *system, struct cs_error *error) {
-    const struct cs_seam *seams = system->scene->seams.items;
-    const size_t n = system->view.n;
-    CS_ARENA_ARRAY(&system->arena, system->events->seam_of, n, error);
-    for (uint32_t s = 0; s < system->scene->seams.n && !error->status; s++) {
-        if (seams[s].to.collider < 0)
-            continue;
-        struct sewing sewing = {.vertices = NULL};
-        cs_posed_collider_at(system, (uint32_t)seams[s].to.collider, 0, &sewing.posed);
-        sewing.mesh.mesh = sewing.posed.collider->mesh;
-        sewing.n = sewing.mesh.mesh.present ? sewing.mesh.mesh.geometry->n : 0;
-        struct cs_arena arena = {0};
-        CS_ARENA_ARRAY(&arena, sewing.vertices, 3 * (size_t)sewing.n, error);
-        CS_ARENA_ARRAY(&arena, sewing.targets, 3 * n, error);
-        CS_ARENA_ARRAY(&arena, sewing.chosen, sewing.n, error);
-        CS_ARENA_ARRAY(&arena, sewing.list, n, error);
-        CS_ARENA_ARRAY(&arena, sewing.colliders, n, error);
-        CS_ARENA_ARRAY(&arena, sewing.marks, sewing.n, error);
-        if (!error->status)
-            sew(system, s, &sewing, error);
-        cs_arena_finish(&arena);
-    }
+enum cs_status cs_carrier_sew(struct cs_system *system, uint32_t seam, double *targets,
+                              struct cs_error *error) {
+    const struct cs_seam *of = (const struct cs_seam *)system->scene->seams.items + seam;
+    struct sewing sewing = {.targets = targets};
+    struct cs_arena arena = {0};
+    cs_posed_collider_at(system, (uint32_t)of->to.collider, 0, &sewing.posed);
+    sewing.mesh.mesh = sewing.posed.collider->mesh;
+    sewing.n = sewing.mesh.mesh.present ? sewing.mesh.mesh.geometry->n : 0;
+    CS_ARENA_ARRAY(&arena, sewing.vertices, 3 * (size_t)sewing.n, error);
+    CS_ARENA_ARRAY(&arena, sewing.chosen, sewing.n, error);
+    CS_ARENA_ARRAY(&arena, sewing.list, system->view.n, error);
+    CS_ARENA_ARRAY(&arena, sewing.marks, sewing.n, error);
+    if (!error->status)
+        sew(system, seam, &sewing, error);
+    cs_arena_finish(&arena);
     return error->status;
 }

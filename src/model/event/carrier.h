@@ -20,4 +20,9 @@ void cs_carrier_at(const struct cs_posed_collider *collider, uint32_t triangle,
  * the triangle, which is exact over its inside; HUGE_VAL of a triangle without area. */
 double cs_carrier_find(const struct cs_carrier *at, const double p[3], double own[3]);
 
+/* Sets targets (3, particles), in m at time 0, of the particles of a seam to its collider, and
+ * their entries of events->seam_of. CS_ERR_SCENE if one is held or numbers differ. */
+enum cs_status cs_carrier_sew(struct cs_system *system, uint32_t seam, double *targets,
+                              struct cs_error *error);
+
 #endif

@@ -4,6 +4,7 @@
  * same change of velocity, J / m with m their total free mass: a cloth that is hit as a whole
  * moves as a whole. At once the velocities jump; over an interval T a constant acceleration J
  * / (m T) acts. */
+#include "model/event/carrier.h"
 #include "model/event/event_state.h"
 
 #include "base/vec3.h"
@@ -217,13 +218,6 @@ void cs_event_start(struct cs_system *system, uint32_t event) {
     }
 }
 
-void cs_event_list_pinned(struct cs_system *system) {
-    system->n_pinned = 0;
-    for (uint32_t i = 0; i < system->view.n; i++)
-        if (system->inv_mass[i] == 0)
-            system->pinned[system->n_pinned++] = i;
-}
-
 /* A particle is freed only by the event that holds it: a later one may have taken it over. */
 void cs_event_finish(struct cs_system *system, uint32_t event) {
     struct cs_events *events = system->events;
@@ -256,6 +250,77 @@ void cs_event_refresh_springs(struct cs_system *system) {
         }
     }
     cs_shape_clusters_refresh(system);
+}
+
+/* Makes a pin's collider the holder of a particle; fails if another pin holds it elsewhere. */
+static enum cs_status hold(struct cs_system *system, uint32_t b, uint32_t p, uint32_t i,
+                           struct cs_error *error) {
+    const struct cs_body *body = cs_scene_bodies(system->scene) + b;
+    const struct cs_pin *pins = body->pins.items;
+    const struct cs_body_range *range = system->bodies + b;
+    for (uint32_t k = 0; k < body->pins.n; k++) {
+        const bool same = pins[k].to.present && pins[k].to.collider == pins[p].to.collider;
+        if (!same && cs_shape_pin_selects(body, pins + k, system->view.n, range->first,
+                                          i - range->first, system->start))
+            return cs_fail(
+                error, CS_ERR_SCENE,
+                "bodies[%u].pins[%u].to: pins[%u] holds particle %u of the body too, "
+                "but not to collider %lld; expected one pin for each particle",
+                b, p, k, i - range->first, (long long)pins[p].to.collider);
+    }
+    system->events->held_by[i] = system->scene->events.n + 1 + (uint32_t)pins[p].to.collider;
+    return CS_OK;
+}
+
+enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *error) {
+    struct cs_events *events = system->events;
+    const uint32_t n = system->view.n, first = system->scene->events.n + 1;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_body *body = cs_scene_bodies(system->scene) + b;
+        const struct cs_pin *pins = body->pins.items;
+        const struct cs_body_range *range = system->bodies + b;
+        for (uint32_t p = 0; p < body->pins.n; p++)
+            for (uint32_t i = range->first;
+                 pins[p].to.present && i < range->first + range->count; i++)
+                if (cs_shape_pin_selects(body, pins + p, n, range->first, i - range->first,
+                                         system->start) &&
+                    hold(system, b, p, i, error))
+                    return error->status;
+    }
+    // the offsets need a collider's frame, one collider after the other
+    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
+        for (uint32_t i = 0; i < n; i++)
+            events->work[i] = events->held_by[i] == first + k;
+        cs_event_store_offsets(system, first + k, events->work, 0);
+    }
+    // key frames move from the start, before any event
+    if (cs_scene_carries_pins(system->scene, true)) {
+        cs_event_find_held(system, 0);
+        cs_events_apply_paths(system, 0, system->state, system->state + 3 * (size_t)n);
+    }
+    return CS_OK;
+}
+
+/* Gives colliders what is sewn to them, seam by seam. */
+enum cs_status cs_event_attach_seams(struct cs_system *system, struct cs_error *error) {
+    const struct cs_seam *seams = system->scene->seams.items;
+    const size_t n = system->view.n;
+    uint32_t *colliders = NULL;
+    struct cs_arena arena = {0};
+    double *targets = cs_arena_alloc_array(&arena, 3 * n, sizeof *targets, error);
+    CS_ARENA_ARRAY(&arena, colliders, n, error);
+    CS_ARENA_ARRAY(&system->arena, system->events->seam_of, n, error);
+    for (uint32_t s = 0; s < system->scene->seams.n && !error->status; s++) {
+        if (seams[s].to.collider < 0 || cs_carrier_sew(system, s, targets, error))
+            continue;
+        for (size_t i = 0; i < n; i++)
+            colliders[i] =
+                system->events->seam_of[i] == s + 1 ? (uint32_t)seams[s].to.collider + 1 : 0;
+        cs_event_lead(system, colliders, targets, seams[s].closing_time, CS_TANGLED_SEWN,
+                      error);
+    }
+    cs_arena_finish(&arena);
+    return error->status;
 }
 
 bool cs_events_turn_particles(const struct cs_scene *scene) {

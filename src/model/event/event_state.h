@@ -179,7 +179,12 @@ enum cs_status cs_event_attach_seams(struct cs_system *system, struct cs_error *
  * again. */
 void cs_event_release_tangled(struct cs_system *system, double t);
 /* Lists the particles without inverse mass, ascending. */
-void cs_event_list_pinned(struct cs_system *system);
+static inline void cs_event_list_pinned(struct cs_system *system) {
+    system->n_pinned = 0;
+    for (uint32_t i = 0; i < system->view.n; i++)
+        if (system->inv_mass[i] == 0)
+            system->pinned[system->n_pinned++] = i;
+}
 
 /* Sets has_grabs, has_turns and held_speed for the segment that begins at t. */
 void cs_event_find_held(struct cs_system *system, double t);

@@ -366,10 +366,6 @@ static void lead(struct cs_system *system, const struct frame *frame, size_t i,
     if (end > 0)
         events->way_speed = fmax(events->way_speed, 1.5 * sqrt(squared) / end);
     system->inv_mass[i] = 0;
-    if (events->seam_of && events->seam_of[i] && sqrt(squared) > events->gap) {
-        events->gap = sqrt(squared);
-        events->gap_of = (uint32_t)i;
-    }
 }
 
 enum cs_status cs_event_lead(struct cs_system *system, const uint32_t *colliders,
