@@ -181,6 +181,16 @@ bool cs_parse_real(const char *s, double *value) {
     return true;
 }
 
+bool cs_parse_range(const char *s, double *low, double *high) {
+    char first[64];
+    const char *dots = strstr(s, "..");
+    if (!dots || dots - s >= (ptrdiff_t)sizeof first)
+        return false;
+    snprintf(first, sizeof first, "%.*s", (int)(dots - s), s);
+    return cs_parse_real(first, low) && cs_parse_real(dots + 2, high) && 0 < *low &&
+           *low <= *high;
+}
+
 static size_t min_of(size_t a, size_t b) {
     return a < b ? a : b;
 }

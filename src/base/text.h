@@ -56,6 +56,8 @@ void cs_text_finish(struct cs_text *text);
 /* Parses a whole string as a finite double, with a decimal point in every locale. Returns
  * false, and leaves *value, if it is none. */
 bool cs_parse_real(const char *s, double *value);
+/* Reads LOW..HIGH, 0 < LOW <= HIGH; false for anything else. */
+bool cs_parse_range(const char *s, double *low, double *high);
 
 /* Returns the candidate (list closed by NULL) nearest to word, or NULL if none is near: at most
  * a third of its letters edited, where a swap of neighbours is one edit, or word is its

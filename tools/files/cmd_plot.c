@@ -291,17 +291,12 @@ static enum cs_status open_table(const struct cs_args *args, struct cs_plot *plo
                                  struct cs_number_table *table, struct cs_error *error) {
     const struct options *options = args->options;
     const char *file = args->operands[0];
-    const char *dots = options->stretch ? strstr(options->stretch, "..") : NULL;
     double low, high;
-    char text[64] = "";
     if (is_of_particle(options))
         return cs_particle_read(file, options->particle, &plot->arena, table, error);
     if (!options->stretch)
         return cs_table_plot_read(plot, table, file, error);
-    if (dots && dots - options->stretch < (ptrdiff_t)sizeof text)
-        memcpy(text, options->stretch, (size_t)(dots - options->stretch));
-    if (!dots || !cs_parse_real(text, &low) || !cs_parse_real(dots + 2, &high) ||
-        !(low > 0 && low < high && high <= 100))
+    if (!cs_parse_range(options->stretch, &low, &high) || !(low < high && high <= 100))
         return cs_fail(error, CS_ERR_USAGE,
                        "--stretch: expected LOW..HIGH, both above 0 and up to 100, found "
                        "\"%.60s\"",

@@ -86,17 +86,10 @@ static const struct cs_arg rows[] = {
 
 static enum cs_status read_range(const char *option, const char *text, struct cs_range *range,
                                  struct cs_error *error) {
-    const char *dots = text ? strstr(text, "..") : NULL;
-    char low[64] = "";
-    if (!text)
+    if (!text || (cs_parse_range(text, &range->from, &range->to) && range->to <= 1e15))
         return CS_OK;
-    if (dots && dots - text < (ptrdiff_t)sizeof low)
-        memcpy(low, text, (size_t)(dots - text));
-    if (!dots || !cs_parse_real(low, &range->from) || !cs_parse_real(dots + 2, &range->to) ||
-        !(range->from > 0 && range->from <= range->to && range->to <= 1e15))
-        return cs_fail(error, CS_ERR_USAGE,
-                       "--%s: expected LOW..HIGH, both above 0, found \"%.60s\"", option, text);
-    return CS_OK;
+    return cs_fail(error, CS_ERR_USAGE,
+                   "--%s: expected LOW..HIGH, both above 0, found \"%.60s\"", option, text);
 }
 
 /* Reads the axis from --axis, or from the option that has its values and its name. */

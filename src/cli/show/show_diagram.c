@@ -210,13 +210,6 @@ static void add_keys(const struct cs_screen *screen, const struct cs_diagram *di
     cs_text_add(out, "%s", column ? "\n" : "");
 }
 
-static uint32_t count_lines(const struct cs_text *text) {
-    uint32_t n = 0;
-    for (const char *c = cs_text_get(text); *c; c++)
-        n += *c == '\n';
-    return n;
-}
-
 static void add_panel(struct box *box, struct cs_text *out) {
     cs_print_wrapped("up:", box->panel->y.label, 4, box->screen->columns, out);
     cs_print_wrapped("right:", box->panel->x.label, 7, box->screen->columns, out);
@@ -233,7 +226,9 @@ void cs_screen_print_diagram(const struct cs_screen *screen, const struct cs_dia
     cs_text_add_plain(&title, diagram->title ? diagram->title : "");
     cs_print_wrapped("", cs_text_get(&title), 0, screen->columns, out);
     /* of the window's height what text and axes leave, with a line for the next command */
-    const uint32_t others = count_lines(&keys) + 2 + 4 * diagram->n_panels;
+    uint32_t others = 2 + 4 * diagram->n_panels;
+    for (const char *c = cs_text_get(&keys); *c; c++)
+        others += *c == '\n';
     const uint32_t rows =
         screen->rows > others ? (screen->rows - others) / diagram->n_panels : 0;
     box.rows = rows < ROWS_MIN ? ROWS_MIN : rows > ROWS_MAX ? ROWS_MAX : rows;
