@@ -42,6 +42,19 @@ TEST(reals_are_short) {
     check_real((double)NAN, "null");
 }
 
+TEST(ranges_have_two_positive_ends) {
+    static const char *const none[] = {"",        "1",      "..",   "1..",
+                                       "..2",     "2..1",   "0..1", "-1..1",
+                                       "1..2..3", "1...2x", "a..b", "1..1e999"};
+    double low, high;
+    ck_assert(cs_parse_range("0.5..2e3", &low, &high));
+    ck_assert_double_eq(low, 0.5);
+    ck_assert_double_eq(high, 2000);
+    ck_assert(cs_parse_range("3..3", &low, &high));
+    for (size_t k = 0; k < sizeof none / sizeof *none; k++)
+        ck_assert_msg(!cs_parse_range(none[k], &low, &high), "\"%s\" is a range", none[k]);
+}
+
 /* 100 000 bit patterns from all over the range */
 TEST(reals_read_back_the_same) {
     uint64_t bits = 1;
