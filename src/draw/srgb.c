@@ -50,10 +50,10 @@ uint32_t cs_srgb_blend_rows(uint32_t under, uint32_t over, uint32_t share) {
     return out;
 }
 
-uint32_t cs_srgb_mean_clear(const struct cs_srgb *srgb, const uint32_t samples[4]) {
+uint32_t cs_srgb_mean_clear(const struct cs_srgb *srgb, const uint32_t samples[CS_SAMPLES]) {
     float light[3] = {0, 0, 0};
     uint32_t whole = 0;
-    for (int s = 0; s < 4; s++) {
+    for (int s = 0; s < CS_SAMPLES; s++) {
         const uint32_t cover = 255 - (samples[s] >> 24);
         whole += cover;
         for (int k = 0; k < 3; k++)
@@ -65,7 +65,8 @@ uint32_t cs_srgb_mean_clear(const struct cs_srgb *srgb, const uint32_t samples[4
         const float mean = light[k] / (float)whole;
         light[k] = mean < 1 ? mean : 1;
     }
-    return cs_srgb_pack(srgb, light[0], light[1], light[2]) | (255 - (whole + 2) / 4) << 24;
+    return cs_srgb_pack(srgb, light[0], light[1], light[2]) |
+           (255 - (whole + CS_SAMPLES / 2) / CS_SAMPLES) << 24;
 }
 
 uint32_t cs_srgb_blend_on_white(const struct cs_srgb *srgb, uint32_t colour) {

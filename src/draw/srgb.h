@@ -19,6 +19,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+enum { CS_SAMPLES = 8 }; /* of a pixel; fewer are repeated */
+
 /* Tables of both directions, about 6 KiB. Zero: not made. */
 struct cs_srgb {
     uint8_t segment_start[4098]; /* byte of y = i / 4096 */
@@ -90,18 +92,23 @@ CS_INLINE uint32_t cs_srgb_blend(uint32_t under, uint32_t over, uint32_t share) 
 
 /* cs_srgb_mean for samples with transparency: the mean weighted by opacity, and mean opacity.
  */
-uint32_t cs_srgb_mean_clear(const struct cs_srgb *srgb, const uint32_t samples[4]);
+uint32_t cs_srgb_mean_clear(const struct cs_srgb *srgb, const uint32_t samples[CS_SAMPLES]);
 
-/* The mean of four samples' linear light, not of their bytes: a surface that covers half of a
- * pixel gives half of its light. Four equal colours give the same colour. */
-CS_INLINE uint32_t cs_srgb_mean(const struct cs_srgb *srgb, const uint32_t samples[4]) {
+/* The mean of the samples' linear light, not of their bytes: a surface that covers half of a
+ * pixel gives half of its light. Equal colours give the same colour. */
+CS_INLINE uint32_t cs_srgb_mean(const struct cs_srgb *srgb,
+                                const uint32_t samples[CS_SAMPLES]) {
+    const float part = 1.0f / CS_SAMPLES;
     float light[3] = {0, 0, 0};
-    if ((samples[0] | samples[1] | samples[2] | samples[3]) >> 24)
-        return cs_srgb_mean_clear(srgb, samples);
-    for (int s = 0; s < 4; s++)
+    uint32_t any = 0;
+    for (int s = 0; s < CS_SAMPLES; s++) {
+        any |= samples[s];
         for (int k = 0; k < 3; k++)
             light[k] += srgb->linear[samples[s] >> 8 * k & 255];
-    return cs_srgb_pack(srgb, light[0] * 0.25f, light[1] * 0.25f, light[2] * 0.25f);
+    }
+    if (any >> 24)
+        return cs_srgb_mean_clear(srgb, samples);
+    return cs_srgb_pack(srgb, light[0] * part, light[1] * part, light[2] * part);
 }
 
 /* Blends a colour with transparency over white, in linear light; the result covers. */

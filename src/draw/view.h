@@ -31,6 +31,7 @@ struct cs_view_block {
     float top_colour[4],
         bottom_colour[4]; /* background at the upper and the lower edge; 1: it covers */
     float colour_stops[CS_VIEW_STOPS][4]; /* the colour map, linear RGB, lowest first */
+    float jitter[4]; /* of OpenGL: pixels by which this pass moves the picture, x and y up */
     struct cs_view_light lights[CS_LIGHTS];
 };
 

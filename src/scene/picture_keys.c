@@ -94,7 +94,7 @@ static const struct cs_option mark_rows[] = {
 static const struct cs_table mark_table = {ROWS(mark_rows), .size = sizeof(struct cs_marks)};
 static const struct cs_option render_rows[] = {
     COUNTS(struct cs_render, size, 2, "pixels", vga, 16, 8192, "width and height"),
-    INT(struct cs_render, samples, "", 4, 1, 4, "of multisampling, 1 or 4"),
+    INT(struct cs_render, samples, "", 8, 1, 8, "of each pixel: 1, 4 or 8"),
     CHOICE(struct cs_render, look, cs_look_names, CS_LOOK_LIT, "content of the picture"),
     VECTOR(struct cs_render, range, 2, "N or 1", absent3, -BIG, BIG,
            "force or strain at the ends of the colours; absent: the range of each frame, from "

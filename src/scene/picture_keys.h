@@ -62,7 +62,7 @@ enum cs_ground_kind { CS_GROUND_AUTO, CS_GROUND_NONE, CS_GROUND_SHADOW, CS_GROUN
 
 struct cs_render {
     int64_t size[2]; /* pixels: width, height */
-    int64_t samples; /* of multisampling: 1 or 4 */
+    int64_t samples; /* of each pixel: 1, 4 or 8 */
     int32_t look;    /* enum cs_look */
     double range[2]; /* of the colours of looks force [N], strain and stress [N/m]; NAN: from
                         the frame */

@@ -353,8 +353,8 @@ static enum cs_status check_marks(const struct cs_check *check, const struct cs_
 /* Checks samples, range and background of the pictures. */
 static enum cs_status check_render(const struct cs_check *check,
                                    const struct cs_render *render) {
-    if (render->samples != 1 && render->samples != 4)
-        return cs_check_refuse(check, "render.samples", "found %lld, expected 1 or 4",
+    if (render->samples != 1 && render->samples != 4 && render->samples != 8)
+        return cs_check_refuse(check, "render.samples", "found %lld, expected 1, 4 or 8",
                                (long long)render->samples);
     if (!isnan(render->range[0]) && !(render->range[0] < render->range[1]))
         return cs_check_refuse(check, "render.range",

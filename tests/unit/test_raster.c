@@ -12,8 +12,8 @@
 enum { SIZE = 64, PIXELS = SIZE * SIZE };
 
 struct field {
-    cs_f4 depth[PIXELS];
-    cs_i4 shown[PIXELS];
+    cs_f8 depth[PIXELS];
+    cs_i8 shown[PIXELS];
 };
 
 static struct field field;
@@ -22,8 +22,8 @@ static const struct cs_samples samples = {
 
 static void clear(void) {
     for (size_t i = 0; i < PIXELS; i++) {
-        field.depth[i] = (cs_f4){0};
-        field.shown[i] = (cs_i4){CS_NOTHING, CS_NOTHING, CS_NOTHING, CS_NOTHING};
+        field.depth[i] = (cs_f8){0};
+        field.shown[i] = (cs_i8){0} + CS_NOTHING;
     }
 }
 
@@ -35,6 +35,7 @@ static struct cs_clip_transform parallel(void) {
     cs_matrix_parallel(1, 1, -1, 1, matrix);
     cs_matrix_to_float(matrix, as_float);
     cs_clip_transform_make(&clip, as_float, 0, SIZE, SIZE);
+    cs_sample_pattern_jitter(cs_sample_pattern_of(8), &clip);
     return clip;
 }
 
@@ -45,6 +46,7 @@ static struct cs_clip_transform perspective(double near) {
     cs_matrix_perspective(1, 1, near, 100, matrix);
     cs_matrix_to_float(matrix, as_float);
     cs_clip_transform_make(&clip, as_float, (float)near, SIZE, SIZE);
+    cs_sample_pattern_jitter(cs_sample_pattern_of(8), &clip);
     return clip;
 }
 
@@ -71,9 +73,9 @@ static uint32_t covered(const struct cs_triangles *triangles, size_t from, size_
     uint32_t n = 0;
     clear();
     for (size_t i = from; i < to; i++)
-        cs_raster_fill(triangles->items + i, (int32_t)i, &cs_sample_pattern_four, &samples);
+        cs_raster_fill(triangles->items + i, (int32_t)i, cs_sample_pattern_of(8), &samples);
     for (size_t i = 0; i < PIXELS; i++)
-        for (int s = 0; s < 4; s++)
+        for (int s = 0; s < CS_SAMPLES; s++)
             n += field.shown[i][s] != CS_NOTHING;
     return n;
 }
@@ -104,12 +106,29 @@ TEST(a_triangle_covers_its_area) {
         const double c = (double)(p[2][0] - p[0][0]), d = (double)(p[2][1] - p[0][1]);
         const double area = fabs(a * d - b * c) / 2 * SIZE * SIZE / 4;
         const double outline = (hypot(a, b) + hypot(c, d) + hypot(a - c, b - d)) * SIZE / 2;
-        const double found = covered(&triangles, 0, 1) / 4.0;
+        const double found = covered(&triangles, 0, 1) / (double)CS_SAMPLES;
         ck_assert_double_le(fabs(found - area), 0.5 * outline + 1);
         // errors of the three sides cancel: far below their bound
         ck_assert(area < 100 || fabs(found - area) < 0.05 * outline + 1);
     }
     cs_triangles_finish(&triangles);
+}
+
+/* Eight samples have a row and a column of sixteenths each, counted modulo a pixel: an edge
+ * along either axis has eight steps. Four have four, and the passes of eight are those four
+ * moved. */
+TEST(samples_share_no_row_and_no_column) {
+    const struct cs_sample_pattern *eight = cs_sample_pattern_of(8);
+    const struct cs_sample_pattern *four = cs_sample_pattern_of(4);
+    uint32_t columns = 0, rows = 0;
+    for (int s = 0; s < CS_SAMPLES; s++) {
+        columns |= 1u << ((eight->x[s] + 256) / 16 & 15);
+        rows |= 1u << (eight->y[s] / 16 & 15);
+        ck_assert_int_eq(eight->x[s] + (int)(256 * eight->right[s]), four->x[s]);
+        ck_assert_int_eq(eight->y[s] - (int)(256 * eight->up[s]), four->y[s]);
+    }
+    ck_assert_uint_eq(columns, 0xaaaa);
+    ck_assert_uint_eq(rows, 0xaaaa);
 }
 
 /* A fan about a point covers every sample of the picture exactly once, however it lies. */
@@ -138,8 +157,8 @@ TEST(neighbours_share_no_sample_and_leave_none) {
         ck_assert_uint_ge(triangles.n, SPOKES);
         for (size_t i = 0; i < triangles.n; i++)
             sum += covered(&triangles, i, i + 1);
-        ck_assert_uint_eq(sum, 4 * PIXELS);
-        ck_assert_uint_eq(covered(&triangles, 0, triangles.n), 4 * PIXELS);
+        ck_assert_uint_eq(sum, CS_SAMPLES * PIXELS);
+        ck_assert_uint_eq(covered(&triangles, 0, triangles.n), CS_SAMPLES * PIXELS);
     }
     cs_triangles_finish(&triangles);
 }
@@ -159,9 +178,9 @@ TEST(the_nearer_one_shows) {
         ck_assert_uint_eq(triangles.n, 2);
         ck_assert_uint_gt(covered(&triangles, 0, 2), 0);
         for (int i = 0; i < PIXELS; i++)
-            for (int s = 0; s < 4; s++) {
+            for (int s = 0; s < CS_SAMPLES; s++) {
                 const int32_t id = field.shown[i][s];
-                const double x = i % SIZE + cs_sample_pattern_four.x[s] / 256.0 - SIZE / 2;
+                const double x = i % SIZE + cs_sample_pattern_of(8)->x[s] / 256.0 - SIZE / 2;
                 const bool right = x > 0;
                 if (id == CS_NOTHING || fabs(x) < 0.01)
                     continue;
@@ -182,7 +201,7 @@ TEST(of_equals_the_later_one_shows) {
     add(&triangles, &clip, p, false);
     covered(&triangles, 0, 2);
     for (size_t i = 0; i < PIXELS; i++)
-        for (int s = 0; s < 4; s++)
+        for (int s = 0; s < CS_SAMPLES; s++)
             ck_assert_int_ne(field.shown[i][s], 0);
     cs_triangles_finish(&triangles);
 }
@@ -199,22 +218,22 @@ TEST(what_lies_behind_the_eye_is_cut_off) {
     ck_assert_uint_ge(triangles.n, 1);
     covered(&triangles, 0, triangles.n);
     for (int i = 0; i < PIXELS; i++) {
-        const cs_i4 shown = field.shown[i];
-        for (int s = 0; s < 4; s++) {
-            const double up = 1 - (i / SIZE + cs_sample_pattern_four.y[s] / 256.0) * 2 / SIZE;
+        const cs_i8 *shown = field.shown + i;
+        for (int s = 0; s < CS_SAMPLES; s++) {
+            const double up = 1 - (i / SIZE + cs_sample_pattern_of(8)->y[s] / 256.0) * 2 / SIZE;
             const double right =
-                (i % SIZE + cs_sample_pattern_four.x[s] / 256.0) * 2 / SIZE - 1;
+                (i % SIZE + cs_sample_pattern_of(8)->x[s] / 256.0) * 2 / SIZE - 1;
             const double along = up < 0 ? -1 / up : 1e9; // the ray's w at the plane
             const bool inside = along < 59 && fabs(right * along) < 50 * (1 - along / 60);
             if (along < 58 && inside && along > 1.05 * (double)near) {
-                ck_assert_int_ne(shown[s], CS_NOTHING);
+                ck_assert_int_ne((*shown)[s], CS_NOTHING);
                 const double exact = nearness((double)near, along);
                 ck_assert_double_le(fabs((double)field.depth[i][s] - exact), 4 + 1e-4 * exact);
             }
             if (up > 0.02)
-                ck_assert_int_eq(shown[s], CS_NOTHING);
+                ck_assert_int_eq((*shown)[s], CS_NOTHING);
         }
-        const int32_t id = shown[0];
+        const int32_t id = (*shown)[0];
         if (id == CS_NOTHING || i / SIZE < SIZE / 2 + 4)
             continue;
         // attributes are places: those of the ray through the middle
@@ -238,7 +257,7 @@ TEST(what_reaches_far_out_is_cut) {
     struct cs_triangles triangles = {0};
     float p[3][3] = {{-1e5f, -1e5f, -0.02f}, {1e5f, -1e5f, -0.02f}, {0, 1e5f, -0.02f}};
     add(&triangles, &clip, p, false);
-    ck_assert_uint_eq(covered(&triangles, 0, triangles.n), 4 * PIXELS);
+    ck_assert_uint_eq(covered(&triangles, 0, triangles.n), CS_SAMPLES * PIXELS);
     for (size_t i = 0; i < PIXELS; i++)
         ck_assert_double_le(fabs((double)field.depth[i][0] - nearness(0.01, 0.02)), 4);
     cs_triangles_finish(&triangles);

@@ -74,22 +74,24 @@ TEST(blending_is_a_mean) {
     ck_assert_uint_eq(wrong, 0);
 }
 
-/* Four samples give the byte of the mean of their light; whoever of them comes first. */
+/* Samples give the byte of the mean of their light; whoever of them comes first. */
 TEST(samples_give_the_mean_of_their_light) {
     uint32_t wrong = 0;
     cs_srgb_make(&srgb);
     for (uint32_t a = 0; a < 256; a++)
         for (uint32_t b = 0; b < 256; b += 3) {
             const uint32_t pair[2] = {a << 16 | b << 8 | 255, b << 16 | a << 8};
-            const double light = 0.75 * decode(a / 255.0) + 0.25 * decode(b / 255.0);
-            for (uint32_t odd = 0; odd < 4; odd++) {
-                uint32_t samples[4] = {pair[0], pair[0], pair[0], pair[0]};
+            const double light = 0.875 * decode(a / 255.0) + 0.125 * decode(b / 255.0);
+            for (uint32_t odd = 0; odd < CS_SAMPLES; odd++) {
+                uint32_t samples[CS_SAMPLES];
+                for (int s = 0; s < CS_SAMPLES; s++)
+                    samples[s] = pair[0];
                 wrong += cs_srgb_mean(&srgb, samples) != pair[0];
                 samples[odd] = pair[1];
                 const double found = cs_srgb_mean(&srgb, samples) >> 16;
                 wrong += fabs(found - 255 * encode(light)) > 0.5 + 1e-4;
-                // three parts of white light and one of none
-                wrong += (cs_srgb_mean(&srgb, samples) & 255) != 225;
+                // seven parts of white light and one of none
+                wrong += (cs_srgb_mean(&srgb, samples) & 255) != 240;
             }
         }
     ck_assert_uint_eq(wrong, 0);
@@ -107,18 +109,21 @@ TEST(colours_lie_on_nothing) {
     ck_assert_uint_eq(cs_srgb_blend(0x99000064, 200, 255), 200);
 }
 
-/* What three of four samples show is the pixel's colour, and they cover three quarters; on
+/* What six of eight samples show is the pixel's colour, and they cover three quarters; on
  * white it is the mean of the light. */
 TEST(samples_of_nothing_leave_the_colour) {
     const uint32_t nothing = 0xff000000, colour = 0x4080c0, white = 0xffffff;
-    const uint32_t none[4] = {nothing, nothing, nothing, nothing};
-    uint32_t some[4] = {colour, nothing, colour, colour}, on_white[4];
+    uint32_t none[CS_SAMPLES], some[CS_SAMPLES], on_white[CS_SAMPLES];
+    for (uint32_t s = 0; s < CS_SAMPLES; s++) {
+        none[s] = nothing;
+        some[s] = s % 4 == 1 ? nothing : colour;
+    }
     cs_srgb_make(&srgb);
     ck_assert_uint_eq(cs_srgb_mean(&srgb, some), colour | (255u - 191) << 24);
     ck_assert_uint_eq(cs_srgb_mean(&srgb, none), nothing);
     ck_assert_uint_eq(cs_srgb_blend_on_white(&srgb, nothing), white);
-    for (uint32_t covered = 0; covered <= 4; covered++) {
-        for (uint32_t s = 0; s < 4; s++) {
+    for (uint32_t covered = 0; covered <= CS_SAMPLES; covered++) {
+        for (uint32_t s = 0; s < CS_SAMPLES; s++) {
             some[s] = s < covered ? colour : nothing;
             on_white[s] = s < covered ? colour : white;
         }

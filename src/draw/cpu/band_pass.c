@@ -4,9 +4,6 @@
  * once per visible triangle; a slot collects fragments of one surface for the vector loops. */
 #include "draw/cpu/band_pass.h"
 
-#include <math.h>
-#include <string.h>
-
 void cs_band_pass_bin(struct cs_band_pass *pass) {
     const struct cs_triangles *all = &pass->triangles;
     cs_bins_clear(&pass->bins);
@@ -69,8 +66,9 @@ static struct cs_fragments *slot_of(const struct cs_band_pass *pass,
 static float along_of(const struct cs_band_pass *pass, const struct cs_triangle *t,
                       const struct cs_shading_material *material, int x, int y) {
     const float *depth = pass->shading.rays.depth;
-    const float up = (float)(pass->shading.height - 1 - y) + 0.5f;
-    const float z = value_at(&t->depth, (float)x + 0.5f, up);
+    const struct cs_sample_pattern *pattern = pass->sample_pattern;
+    const float up = (float)(pass->shading.height - 1 - y) + 0.5f + pattern->up[0];
+    const float z = value_at(t->depth, (float)x + 0.5f + pattern->right[0], up);
     return depth[0] + z * (depth[1] - depth[0]) - material->depth_bias;
 }
 
@@ -118,50 +116,49 @@ static void add_fragments(const struct cs_band_pass *pass, const struct cs_trian
 }
 
 // a pixel whose samples show several triangles: one fragment of each, colours in a row
-static void add_mixed(const struct cs_band_pass *pass, cs_i4 shown, const struct spot *spot,
-                      struct cs_tile_buffer *tiles) {
-    int samples[4]; // the first that shows each thing
+static void add_mixed(const struct cs_band_pass *pass, const int32_t *shown,
+                      const struct spot *spot, struct cs_tile_buffer *tiles) {
+    int32_t things[CS_SAMPLES];
     uint32_t n = 0, code = 0;
-    for (int s = 0; s < 4; s++) {
+    for (int s = 0; s < CS_SAMPLES; s++) {
         uint32_t k = 0;
-        while (k < n && shown[samples[k]] != shown[s])
+        while (k < n && things[k] != shown[s])
             k++;
         if (k == n)
-            samples[n++] = s;
-        code |= k << 2 * s;
+            things[n++] = shown[s];
+        code |= k << 3 * s;
     }
     const uint32_t first = tiles->n_colours;
     tiles->first_colour[spot->pixel] = first;
-    tiles->sample_codes[spot->pixel] = (uint8_t)code;
+    tiles->sample_codes[spot->pixel] = code;
     tiles->n_colours += n;
     for (uint32_t k = 0; k < n; k++)
-        if (shown[samples[k]] == CS_NOTHING)
+        if (things[k] == CS_NOTHING)
             tiles->colours[first + k] = tiles->colours[spot->sky];
         else
-            add_fragments(pass, pass->triangles.items + shown[samples[k]], spot, first + k,
-                          tiles);
+            add_fragments(pass, pass->triangles.items + things[k], spot, first + k, tiles);
 }
 
-static bool shows_only(cs_i4 shown, int32_t id) {
-    return ((shown[0] ^ id) | (shown[1] ^ id) | (shown[2] ^ id) | (shown[3] ^ id)) == 0;
+static bool shows_only(const cs_i8 *shown, int32_t id) {
+    const cs_i4 *half = (const cs_i4 *)shown, other = (half[0] ^ id) | (half[1] ^ id);
+    return (other[0] | other[1] | other[2] | other[3]) == 0;
 }
 
 /* Adds the pixel where the spot begins and all after it that show the same triangle or sky in
  * all samples, which is the usual case, with one colour each. Sets spot->n. */
 static void add_pixels(const struct cs_band_pass *pass, struct spot *spot,
                        struct cs_tile_buffer *tiles) {
-    const cs_i4 *shown = tiles->samples.triangle_ids + spot->pixel;
+    const cs_i8 *shown = tiles->samples.triangle_ids + spot->pixel;
     const int32_t id = (*shown)[0];
     const bool is_sky = id == CS_NOTHING;
     uint32_t *first = tiles->first_colour + spot->pixel;
     spot->n = 1;
-    if (!shows_only(*shown, id)) {
-        add_mixed(pass, *shown, spot, tiles);
+    if (!shows_only(shown, id)) {
+        add_mixed(pass, (const int32_t *)shown, spot, tiles);
         return;
     }
-    while (spot->n < tiles->samples.width - spot->x && shows_only(shown[spot->n], id))
+    while (spot->n < tiles->samples.width - spot->x && shows_only(shown + spot->n, id))
         spot->n++;
-    memset(tiles->sample_codes + spot->pixel, 0, (size_t)spot->n);
     for (int i = 0; i < spot->n; i++)
         first[i] = is_sky ? spot->sky : tiles->n_colours + (uint32_t)i;
     if (is_sky)

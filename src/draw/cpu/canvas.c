@@ -26,8 +26,7 @@ struct cs_canvas {
     struct cs_srgb srgb;
     struct cs_shadow_map lightmaps[CS_LIGHTS];
     struct cs_triangles light_fixed[CS_LIGHTS]; /* casters: colliders */
-    struct cs_triangles light_moving;           /* bodies, for one light after the other */
-    uint32_t light;                             /* that one */
+    uint32_t light;                             /* whose shadow map is drawn */
     struct cs_ground ground;
     struct cs_collider_geometry geometries; /* colliders and the ground */
     struct cs_body_geometry *bodies;        /* (scene->bodies.n) */
@@ -67,6 +66,7 @@ static void aim_camera(struct cs_canvas *canvas) {
     cs_clip_transform_make(&canvas->clip, canvas->view.block.world_to_clip,
                            canvas->view.block.size[2], (int)render->size[0],
                            (int)render->size[1]);
+    cs_sample_pattern_jitter(canvas->pass.sample_pattern, &canvas->clip);
     aim_rays(&canvas->pass.shading.rays, &canvas->view, render);
 }
 
@@ -78,6 +78,7 @@ static void init_view(struct cs_canvas *canvas) {
     const struct cs_bounding_sphere sphere =
         cs_scene_extent_solid(system, system->view.start, canvas->settings.colliders);
     struct cs_band_pass *pass = &canvas->pass;
+    pass->sample_pattern = cs_sample_pattern_of(scene->render->samples);
     cs_view_init(&canvas->view, system, canvas->settings.colliders, &sphere);
     aim_camera(canvas);
     cs_srgb_make(&canvas->srgb);
@@ -86,8 +87,6 @@ static void init_view(struct cs_canvas *canvas) {
     pass->shading.view = &canvas->view.block;
     pass->shading.shadow_maps = canvas->lightmaps;
     pass->shading.srgb = &canvas->srgb;
-    pass->sample_pattern =
-        scene->render->samples > 1 ? &cs_sample_pattern_four : &cs_sample_pattern_one;
     cs_ground_make(&canvas->ground, system, canvas->settings.colliders, &sphere);
 }
 
@@ -158,7 +157,6 @@ static void destroy(struct cs_canvas *canvas) {
         return;
     for (int l = 0; l < CS_LIGHTS; l++)
         cs_triangles_finish(canvas->light_fixed + l);
-    cs_triangles_finish(&canvas->light_moving);
     cs_triangles_finish(&canvas->pass.triangles);
     cs_bins_finish(&canvas->pass.bins);
     cs_thick_lines_finish(&canvas->pass.thick_lines);
@@ -193,8 +191,13 @@ static void share(struct cs_canvas *canvas, uint32_t blocks,
 
 static void draw_stripe(void *arg, uint32_t stripe) {
     struct cs_canvas *canvas = arg;
-    cs_shadow_map_draw(canvas->lightmaps + canvas->light, stripe,
-                       canvas->light_fixed + canvas->light, &canvas->light_moving);
+    const struct cs_band_pass *pass = &canvas->pass;
+    struct cs_triangles lists[2] = {canvas->light_fixed[canvas->light], pass->triangles};
+    // bodies lie behind the colliders that the camera sees
+    lists[1].n -= pass->n_fixed;
+    if (lists[1].n)
+        lists[1].items += pass->n_fixed;
+    cs_shadow_map_draw(canvas->lightmaps + canvas->light, stripe, lists);
 }
 
 /* Moves a camera that follows a path or fits the bodies. */
@@ -221,9 +224,11 @@ static void draw_shadow(struct cs_canvas *canvas, uint32_t l, bool moved) {
                                         canvas->light_fixed + l);
     }
     canvas->light = l;
-    canvas->light_moving.n = 0;
+    // in the memory of those for the camera, which are added later
+    canvas->pass.triangles.n = canvas->pass.n_fixed;
     for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++)
-        cs_body_geometry_add(canvas->bodies + b, &map->transform, &kind, &canvas->light_moving);
+        cs_body_geometry_add(canvas->bodies + b, &map->transform, &kind,
+                             &canvas->pass.triangles);
     share(canvas, CS_SHADOW_MAP_STRIPES, draw_stripe);
     cs_shadow_map_bound(map);
 }
@@ -260,8 +265,8 @@ static bool out_of_memory(const struct cs_canvas *canvas) {
     for (int l = 0; l < CS_LIGHTS; l++)
         if (canvas->light_fixed[l].failed)
             return true;
-    return canvas->light_moving.failed || pass->triangles.failed || pass->bins.failed ||
-           pass->thick_lines.failed || pass->thick_lines.bins.failed;
+    return pass->triangles.failed || pass->bins.failed || pass->thick_lines.failed ||
+           pass->thick_lines.bins.failed;
 }
 
 /* Takes lights, background and materials of bodies from a scene whose values change; those of
@@ -282,7 +287,7 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
     if (canvas->settings.scene_varies)
         restyle(canvas);
     for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++)
-        cs_body_geometry_update(canvas->bodies + b, canvas->settings.system->view.n, frame);
+        cs_mesh_update(&canvas->bodies[b].mesh, canvas->settings.system->view.n, frame);
     const struct cs_bounding_sphere sphere =
         cs_scene_extent_solid(canvas->settings.system, frame->x, frame->colliders);
     const bool varies = canvas->settings.scene_varies || cs_view_varies(canvas->settings.scene);
@@ -307,7 +312,7 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
 
 static const char *description(const struct cs_canvas *canvas) {
     (void)canvas;
-    return "cpu 2 | the same pixels on every machine";
+    return "cpu 3 | the same pixels on every machine";
 }
 
 #define EXPORT __attribute__((visibility("default")))

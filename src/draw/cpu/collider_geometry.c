@@ -6,23 +6,7 @@
 #include "scene/collider_keys.h"
 #include "scene/picture_keys.h"
 
-#include <math.h>
 #include <string.h>
-
-/* Moves only the depth away from the eye, by `by` m. Between its particles a cloth is a chord
- * that cuts into a sphere below it; without the bias specks of the sphere would show. */
-static void add_depth_bias(const struct cs_clip_transform *clip, const float place[3],
-                           const float eye[4], float by, struct cs_clip_vertex *corner) {
-    float d[3], square = 0, moved[3];
-    for (int i = 0; i < 3; i++) {
-        d[i] = eye[3] * place[i] - eye[i];
-        square += d[i] * d[i];
-    }
-    const float share = square > 0 ? by / sqrtf(square) : 0;
-    for (int i = 0; i < 3; i++)
-        moved[i] = place[i] + share * d[i];
-    cs_clip_transform_move_depth(clip, moved, corner);
-}
 
 // viewer and destination of triangles
 struct projection {
@@ -33,31 +17,24 @@ struct projection {
 };
 
 // triangles of three vertices each, none shared
-static void add_vertices(const struct cs_vertex *vertices, uint32_t n,
-                         const struct cs_surface_style *style,
-                         const struct cs_triangle_kind *kind,
-                         const struct projection *projection) {
-    for (uint32_t v = 0; v < n; v += 3) {
-        struct cs_clip_vertex corners[3];
-        const struct cs_clip_vertex *three[3] = {corners, corners + 1, corners + 2};
-        for (uint32_t i = 0; i < 3; i++) {
-            const struct cs_vertex *vertex = vertices + v + i;
-            cs_clip_transform_corner(projection->clip, vertex->position, corners + i);
-            memcpy(corners[i].attributes, vertex->normal, sizeof vertex->normal);
-            if (projection->sinks && style->depth_bias > 0)
-                add_depth_bias(projection->clip, vertex->position, projection->eye,
-                               (float)style->depth_bias, corners + i);
-        }
-        cs_triangles_add(projection->triangles, projection->clip, three, kind);
-    }
-}
-
 static void add_obstacle(const struct cs_collider_geometry *geometries, uint32_t i,
                          const struct cs_surface_style *style,
                          const struct cs_triangle_kind *kind,
                          const struct projection *projection) {
+    struct cs_clip_vertex corners[3];
+    const struct cs_clip_vertex *const three[3] = {corners, corners + 1, corners + 2};
     cs_solids_fill(geometries, i, projection->eye);
-    add_vertices(geometries->vertices, geometries->of[i].n, style, kind, projection);
+    for (uint32_t v = 0; v < geometries->of[i].n; v++) {
+        const struct cs_vertex *vertex = geometries->vertices + v;
+        struct cs_clip_vertex *corner = corners + v % 3;
+        cs_clip_transform_corner(projection->clip, vertex->position, corner);
+        memcpy(corner->attributes, vertex->normal, sizeof vertex->normal);
+        if (projection->sinks && style->depth_bias > 0)
+            cs_clip_transform_move_depth(projection->clip, vertex->position, projection->eye,
+                                         (float)style->depth_bias, corner);
+        if (v % 3 == 2)
+            cs_triangles_add(projection->triangles, projection->clip, three, kind);
+    }
 }
 
 void cs_collider_geometry_add(const struct cs_collider_geometry *geometries,
@@ -137,11 +114,6 @@ void cs_body_geometry_restyle(struct cs_body_geometry *body, const struct cs_sce
     cs_style_cloth(&style, &cs_scene_bodies(scene)[b].material, body->textured,
                    scene->render->look);
     cs_shading_material_make(body->material, &style);
-}
-
-void cs_body_geometry_update(struct cs_body_geometry *body, uint32_t n,
-                             const struct cs_frame *frame) {
-    cs_mesh_update(&body->mesh, n, frame);
 }
 
 /* Attributes of a corner: normal, value, texture coordinates, in the order that shading

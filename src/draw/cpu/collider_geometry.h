@@ -43,10 +43,6 @@ enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
 void cs_body_geometry_restyle(struct cs_body_geometry *body, const struct cs_scene *scene,
                               uint32_t b);
 
-/* Takes positions and values of a frame of n particles. */
-void cs_body_geometry_update(struct cs_body_geometry *body, uint32_t n,
-                             const struct cs_frame *frame);
-
 /* Projects the vertices and adds the triangles; kind says how many attributes are needed. */
 void cs_body_geometry_add(struct cs_body_geometry *body, const struct cs_clip_transform *clip,
                           const struct cs_triangle_kind *kind, struct cs_triangles *triangles);

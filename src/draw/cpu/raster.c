@@ -1,4 +1,4 @@
-/* raster.c - filling by edge functions (Pineda 1988), a pixel of four samples at a time.
+/* raster.c - filling by edge functions (Pineda 1988), a pixel of eight samples at a time.
  *
  * The edge functions E_k of triangle.c are linear: one pixel to the right changes E_k by
  * -256 dy_k. A small triangle walks all pixels of its box with three additions each. A large
@@ -10,12 +10,31 @@
  * removes the overshoot. */
 #include "draw/cpu/raster.h"
 
-// OpenGL's standard pattern of four, (x, y) = (6, 2), (14, 6), (2, 10), (10, 14) / 16 from the
-// bottom left; rows of the picture count from the top, so y is turned
-const struct cs_sample_pattern cs_sample_pattern_four = {{96, 224, 32, 160},
-                                                         {224, 160, 96, 32}};
-const struct cs_sample_pattern cs_sample_pattern_one = {{128, 128, 128, 128},
-                                                        {128, 128, 128, 128}};
+/* Four are OpenGL's standard pattern, (x, y) = (6, 2), (14, 6), (2, 10), (10, 14) / 16 from the
+ * bottom left; rows of the picture count from the top, so y is turned. Eight are the same moved
+ * by (3, -1) / 16 and by (-3, 1) / 16, each with a row and a column of its own; two lie 1/16
+ * outside, in the neighbours' columns. Over edges of all directions the root mean square error
+ * of coverage is 0.058; four have 0.085, Direct3D's eight, which OSMesa cannot draw, 0.053. */
+const struct cs_sample_pattern *cs_sample_pattern_of(int64_t samples) {
+    static const struct cs_sample_pattern one = {.x = {128, 128, 128, 128, 128, 128, 128, 128},
+                                                 .y = {128, 128, 128, 128, 128, 128, 128, 128}};
+    static const struct cs_sample_pattern four = {.x = {96, 224, 32, 160, 96, 224, 32, 160},
+                                                  .y = {224, 160, 96, 32, 224, 160, 96, 32}};
+    static const struct cs_sample_pattern eight = {
+        .x = {144, 272, 80, 208, 48, 176, -16, 112},
+        .y = {240, 176, 112, 48, 208, 144, 80, 16},
+        .right = {-0.1875f, -0.1875f, -0.1875f, -0.1875f, 0.1875f, 0.1875f, 0.1875f, 0.1875f},
+        .up = {0.0625f, 0.0625f, 0.0625f, 0.0625f, -0.0625f, -0.0625f, -0.0625f, -0.0625f}};
+    return samples == 1 ? &one : samples == 4 ? &four : &eight;
+}
+
+void cs_sample_pattern_jitter(const struct cs_sample_pattern *pattern,
+                              struct cs_clip_transform *clip) {
+    for (int pass = 0; pass < 2; pass++) {
+        clip->jitter[pass][0] = 2 * pattern->right[4 * pass] / (float)clip->width;
+        clip->jitter[pass][1] = 2 * pattern->up[4 * pass] / (float)clip->height;
+    }
+}
 
 // the three edge vectors in 1/256 pixel, and the bias of the top-left rule
 struct edges {
@@ -26,6 +45,7 @@ struct edges {
 struct fill {
     const struct cs_triangle *triangle;
     struct edges edges;
+    struct cs_row_depth depth;
     const struct cs_sample_pattern *pattern;
     int32_t id;
 };
@@ -53,48 +73,43 @@ CS_INLINE cs_f4 to_float(cs_i4 v) {
     return __builtin_convertvector(v, cs_f4);
 }
 
-// depth of a row of samples at the picture's left edge, and of those of a pixel in it
-CS_INLINE cs_f4 row_depth(const struct cs_triangle *t, const struct cs_sample_pattern *pattern,
-                          int y) {
-    const cs_f4 up = to_float(256 - pattern->y) * (1.0f / 256) + (float)(t->bottom_row - y);
-    return t->depth.d_dy * up;
+/* Depth test of the samples of a pixel inside a mask: nearness, not beyond that of the corners.
+ * A later triangle at equal depth replaces an earlier one. */
+CS_INLINE void put(const struct fill *fill, int x, int y, const cs_i8 *inside, cs_f8 *depth,
+                   cs_i8 *shown) {
+    const struct cs_triangle *t = fill->triangle;
+    const cs_f8 least = (cs_f8){0} + t->depth_min, most = (cs_f8){0} + t->depth_max;
+    cs_f8 z;
+    cs_row_depth_at(&fill->depth, x, t->bottom_row - y, &z);
+    const cs_i8 below = z<least, above = z> most;
+    z = (cs_f8)((below & (cs_i8)least) | (above & (cs_i8)most) | (~(below | above) & (cs_i8)z));
+    const cs_i8 mask = *inside & (z >= *depth);
+    *depth = (cs_f8)((mask & (cs_i8)z) | (~mask & (cs_i8)*depth));
+    *shown = (mask & fill->id) | (~mask & *shown);
 }
 
-CS_INLINE cs_f4 across_at(const struct cs_sample_pattern *pattern) {
-    return to_float(pattern->x) * (1.0f / 256);
-}
-
-// nearness, not beyond that of the corners; the sums' order is that of OpenGL
-CS_INLINE cs_f4 nearness_at(const struct cs_triangle *t, cs_f4 across, cs_f4 rise) {
-    const cs_f4 z = (t->depth.value + t->depth.d_dx * across) + rise;
-    return cs_clamp4(CS_DEPTH_STEPS - z * CS_DEPTH_STEPS, t->depth_min, t->depth_max);
-}
-
-// depth test of a pixel's samples: a later triangle at equal depth replaces an earlier one
-CS_INLINE void put(cs_f4 *depth, cs_i4 *shown, cs_i4 mask, cs_f4 z, int32_t id) {
-    const cs_f4 old = *depth;
-    const cs_i4 ids = {id, id, id, id};
-    mask &= z >= old;
-    *depth = (cs_f4)cs_select(mask, (cs_i4)z, (cs_i4)old);
-    *shown = cs_select(mask, ids, *shown);
-}
-
-/* Fills a row of a small triangle: E of the first pixel, then steps of -256 dy. depth and shown
- * point at its first pixel. The sign bit of (E_0 | E_1 | E_2) is set if any E is negative. */
-CS_INLINE void fill_small_row(const struct fill *fill, int y, cs_f4 *depth, cs_i4 *shown) {
+/* Fills rows from `top` on of a small triangle: E of the first pixel, then steps of -256 dy to
+ * the right and 256 dx down. The sign bit of (E_0 | E_1 | E_2) is set if any E is negative. */
+CS_INLINE void fill_small(const struct fill *fill, int top, int bottom,
+                          const struct cs_samples *samples) {
     const struct cs_triangle *t = fill->triangle;
     const struct edges *e = &fill->edges;
     const struct cs_sample_pattern *pattern = fill->pattern;
-    cs_i4 inside[3];
+    size_t at = (size_t)(top - samples->top) * (size_t)samples->width;
+    cs_i8 row[3];
     for (int k = 0; k < 3; k++)
-        inside[k] = e->dx[k] * (pattern->y + (y * 256 - t->y[k])) -
-                    e->dy[k] * (pattern->x + (t->left * 256 - t->x[k])) + e->bias[k];
-    const cs_f4 rise = row_depth(t, pattern, y), across = across_at(pattern);
-    for (int x = t->left; x <= t->right; x++, depth++, shown++) {
-        const cs_i4 mask = (inside[0] | inside[1] | inside[2]) >= 0;
-        put(depth, shown, mask, nearness_at(t, across + (float)x, rise), fill->id);
+        row[k] = e->dx[k] * (pattern->y + (top * 256 - t->y[k])) -
+                 e->dy[k] * (pattern->x + (t->left * 256 - t->x[k])) + e->bias[k];
+    for (int y = top; y <= bottom; y++, at += (size_t)samples->width) {
+        cs_i8 inside[3] = {row[0], row[1], row[2]};
+        for (int x = t->left; x <= t->right; x++) {
+            const cs_i8 mask = (inside[0] | inside[1] | inside[2]) >= 0;
+            put(fill, x, y, &mask, samples->depth + at + x, samples->triangle_ids + at + x);
+            for (int k = 0; k < 3; k++)
+                inside[k] -= 256 * e->dy[k];
+        }
         for (int k = 0; k < 3; k++)
-            inside[k] -= 256 * e->dy[k];
+            row[k] += 256 * e->dx[k];
     }
 }
 
@@ -128,14 +143,14 @@ CS_INLINE struct run span(const struct cs_triangle *t, const struct edges *e, in
     return run;
 }
 
-// fills a row of a large triangle between the outermost bounds of the four samples
-CS_INLINE void fill_large_row(const struct fill *fill, int y, cs_f4 *depth, cs_i4 *shown) {
+// fills a row of a large triangle between the outermost bounds of the samples
+CS_INLINE void fill_large_row(const struct fill *fill, int y, cs_f8 *depth, cs_i8 *shown) {
     const struct cs_triangle *t = fill->triangle;
     const struct cs_sample_pattern *pattern = fill->pattern;
-    cs_i4 left, right;
+    cs_i8 left, right;
     int from = t->right + 1, to = t->left - 1;
     // each sample has a row of its own; 1..0 where none of it lies inside
-    for (int s = 0; s < 4; s++) {
+    for (int s = 0; s < CS_SAMPLES; s++) {
         const struct run run = span(t, &fill->edges, pattern->x[s], pattern->y[s], y);
         const bool some = run.left <= run.right;
         left[s] = some ? (int)run.left : 1;
@@ -143,26 +158,24 @@ CS_INLINE void fill_large_row(const struct fill *fill, int y, cs_f4 *depth, cs_i
         from = some ? cs_min(from, (int)run.left) : from;
         to = some ? cs_max(to, (int)run.right) : to;
     }
-    const cs_f4 rise = row_depth(t, pattern, y), across = across_at(pattern);
     for (int x = from; x <= to; x++) {
-        const cs_i4 at = {x, x, x, x};
-        put(depth + (x - t->left), shown + (x - t->left), (at >= left) & (at <= right),
-            nearness_at(t, across + (float)x, rise), fill->id);
+        const cs_i8 mask = (x >= left) & (x <= right);
+        put(fill, x, y, &mask, depth + (x - t->left), shown + (x - t->left));
     }
 }
 
 CS_CLONES void cs_raster_fill(const struct cs_triangle *t, int32_t id,
                               const struct cs_sample_pattern *pattern,
                               const struct cs_samples *samples) {
-    const struct fill fill = {t, edges_of(t), pattern, id};
+    struct fill fill = {.triangle = t, .edges = edges_of(t), .pattern = pattern, .id = id};
+    cs_row_depth_make(&fill.depth, t->depth, pattern);
     const int top = cs_max(t->top, samples->top);
     const int bottom = cs_min(t->bottom, samples->top + samples->rows - 1);
-    for (int y = top; y <= bottom; y++) {
+    if (t->fits_32_bits)
+        fill_small(&fill, top, bottom, samples);
+    for (int y = top; y <= bottom && !t->fits_32_bits; y++) {
         const size_t at = (size_t)(y - samples->top) * (size_t)samples->width + (size_t)t->left;
-        if (t->fits_32_bits)
-            fill_small_row(&fill, y, samples->depth + at, samples->triangle_ids + at);
-        else
-            fill_large_row(&fill, y, samples->depth + at, samples->triangle_ids + at);
+        fill_large_row(&fill, y, samples->depth + at, samples->triangle_ids + at);
     }
 }
 
@@ -180,7 +193,7 @@ CS_CLONES void cs_raster_raise(const struct cs_triangle *t, float *map, size_t s
     const struct edges e = edges_of(t);
     const int last = cs_min(t->bottom, top + rows - 1);
     for (int y = cs_max(t->top, top); y <= last; y++) {
-        const cs_f4 rise = row_depth(t, &cs_sample_pattern_one, y);
+        const float rise = t->depth[0].d_dy * ((float)(t->bottom_row - y) + 0.5f);
         float *at = map + (size_t)y * stride;
         // edges of a large triangle do not fit into the mask's 32 bits: its row is cut before
         const struct run run =
@@ -192,7 +205,11 @@ CS_CLONES void cs_raster_raise(const struct cs_triangle *t, float *map, size_t s
                 mask &= e.dx[k] * (128 + y * 256 - t->y[k]) + e.bias[k] -
                             e.dy[k] * (column * 256 + (128 - t->x[k])) >=
                         0;
-            raise_four(at + x, mask, nearness_at(t, to_float(column) + 0.5f, rise));
+            const cs_f4 z =
+                (t->depth[0].value + t->depth[0].d_dx * (to_float(column) + 0.5f)) + rise;
+            raise_four(
+                at + x, mask,
+                cs_clamp4(CS_DEPTH_STEPS - z * CS_DEPTH_STEPS, t->depth_min, t->depth_max));
         }
     }
 }

@@ -34,13 +34,11 @@ enum cs_status cs_shadow_map_init(struct cs_shadow_map *map, struct cs_arena *ar
     const size_t all = (size_t)CS_SHADOW_MAP_STRIDE * CS_SHADOW_MAP_STRIDE,
                  half = (size_t)HALF * HALF;
     // four floats at once may be written past the last row
-    float *memory = cs_arena_alloc_array(arena, all + 4 * half + 8, sizeof *memory, error);
+    float *memory = cs_arena_alloc_array(arena, all + 2 * half + 8, sizeof *memory, error);
     if (!memory)
         return error->status;
     map->depth = memory;
-    map->min_max_2x2[0] = memory + all;
-    map->min_max_2x2[1] = map->min_max_2x2[0] + half;
-    map->min_8x8 = map->min_max_2x2[1] + half;
+    map->min_8x8 = memory + all;
     map->max_8x8 = map->min_8x8 + half;
     return CS_OK;
 }
@@ -59,17 +57,16 @@ bool cs_shadow_map_set_frustum(struct cs_shadow_map *map, const struct cs_view_l
 }
 
 void cs_shadow_map_draw(struct cs_shadow_map *map, uint32_t stripe,
-                        const struct cs_triangles *fixed, const struct cs_triangles *moving) {
+                        const struct cs_triangles lists[2]) {
     enum { ROWS = CS_SHADOW_SIDE / CS_SHADOW_MAP_STRIPES };
-    const struct cs_triangles *lists[2] = {fixed, moving};
     const int top = (int)stripe * ROWS;
     float *first =
         map->depth + CS_SHADOW_MAP_BORDER * CS_SHADOW_MAP_STRIDE + CS_SHADOW_MAP_BORDER;
     memset(first - CS_SHADOW_MAP_BORDER + (size_t)top * CS_SHADOW_MAP_STRIDE, 0,
            sizeof(float) * ROWS * CS_SHADOW_MAP_STRIDE);
     for (int l = 0; l < 2; l++)
-        for (size_t i = 0; i < lists[l]->n; i++) {
-            const struct cs_triangle *t = lists[l]->items + i;
+        for (size_t i = 0; i < lists[l].n; i++) {
+            const struct cs_triangle *t = lists[l].items + i;
             if (t->bottom >= top && t->top < top + ROWS)
                 cs_raster_raise(t, first, CS_SHADOW_MAP_STRIDE, top, ROWS);
         }
@@ -87,23 +84,23 @@ CS_CLONES static void bound_pairs(struct cs_shadow_map *map) {
                 least = z < least ? z : least;
                 largest = z > largest ? z : largest;
             }
-            map->min_max_2x2[0][y * HALF + x] = least;
-            map->min_max_2x2[1][y * HALF + x] = largest;
+            map->min_8x8[y * HALF + x] = least;
+            map->max_8x8[y * HALF + x] = largest;
         }
     }
 }
 
-// an 8 x 8 block is 4 x 4 blocks of 2 x 2; the last three of each row and column have none
+/* An 8 x 8 block is 4 x 4 blocks of 2 x 2, itself the first of them: it takes its place. The
+ * last three of each row and column have none. */
 CS_CLONES void cs_shadow_map_bound(struct cs_shadow_map *map) {
     bound_pairs(map);
     for (size_t y = 0; y + 3 < HALF; y++)
         for (size_t x = 0; x + 3 < HALF; x++) {
             const size_t at = y * HALF + x;
-            float least = map->min_max_2x2[0][at], largest = map->min_max_2x2[1][at];
+            float least = map->min_8x8[at], largest = map->max_8x8[at];
             for (size_t k = 1; k < 16; k++) {
                 const size_t beside = at + k / 4 * HALF + k % 4;
-                const float low = map->min_max_2x2[0][beside],
-                            high = map->min_max_2x2[1][beside];
+                const float low = map->min_8x8[beside], high = map->max_8x8[beside];
                 least = low < least ? low : least;
                 largest = high > largest ? high : largest;
             }

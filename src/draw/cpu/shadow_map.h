@@ -19,8 +19,8 @@ struct cs_shadow_map {
     float texel_size;         /* m: side of a texel at the distance of the casters' centre */
     bool enabled;             /* false: no shadow, all surfaces that face the light are lit */
     float *depth;             /* (CS_SHADOW_MAP_STRIDE, CS_SHADOW_MAP_STRIDE) */
-    float *min_max_2x2[2];    /* minimum, maximum of 2 x 2 texels; rows of STRIDE / 2 */
-    float *min_8x8, *max_8x8; /* of 8 x 8 texels whose first row and column are even */
+    float *min_8x8, *max_8x8; /* of 8 x 8 texels whose first row and column are even; rows of
+                                 STRIDE / 2 */
 };
 
 /* Allocates the arrays from the arena. Fails with CS_ERR_MEMORY. */
@@ -34,7 +34,7 @@ bool cs_shadow_map_set_frustum(struct cs_shadow_map *map, const struct cs_view_l
 /* Draws stripe 0..CS_SHADOW_MAP_STRIPES-1 of the map from the triangles of two lists. Stripes
  * share no texel, so threads may draw them at the same time. */
 void cs_shadow_map_draw(struct cs_shadow_map *map, uint32_t stripe,
-                        const struct cs_triangles *fixed, const struct cs_triangles *moving);
+                        const struct cs_triangles lists[2]);
 /* Computes the bounds of blocks; call it after all stripes are drawn. */
 void cs_shadow_map_bound(struct cs_shadow_map *map);
 

@@ -1,7 +1,7 @@
 /* thick_lines.c - set-up of thick lines: projection, clipping, a quad around each line.
  *
  * A line is given by its ends in m. It is cut at the near plane, projected, and widened on the
- * picture, so its width in pixels does not depend on the distance. Its quad reaches one pixel
+ * picture, so its width in pixels does not depend on the distance. Its quad reaches 1.5 pixels
  * beyond the line on all sides; depth is a plane over the quad through the depths of both
  * ends. */
 #include "draw/cpu/thick_lines.h"
@@ -21,36 +21,19 @@ static struct cs_thick_line *next(struct cs_thick_lines *lines) {
     return lines->items + lines->n;
 }
 
-// pixels from least - by to most + by inside the picture; false where there are none
-static bool bound(float least, float most, float by, int size, int *from, int *to) {
-    *from = (int)cs_clamp(least - by, 0, (float)size);
-    *to = (int)cs_clamp(most + by, -1, (float)(size - 1));
-    return *from <= *to && most + by >= 0;
+// pixels within `by` of the range from a to b, inside the picture; false where there are none
+static bool bound(float a, float b, float by, int size, int *from, int *to) {
+    const float least = (a < b ? a : b) - by, most = (a < b ? b : a) + by;
+    *from = (int)cs_clamp(least, 0, (float)size);
+    *to = (int)cs_clamp(most, -1, (float)(size - 1));
+    return *from <= *to && most >= 0;
 }
 
 /* Pixels within `reach` of the line, inside the picture; false if there are none. */
 static bool set_box(const struct cs_shading_context *context, const float ends[4], float reach,
                     struct cs_thick_line *s) {
-    const float left = ends[0] < ends[2] ? ends[0] : ends[2];
-    const float right = ends[0] < ends[2] ? ends[2] : ends[0];
-    const float top = ends[1] < ends[3] ? ends[1] : ends[3];
-    const float bottom = ends[1] < ends[3] ? ends[3] : ends[1];
-    return bound(left, right, reach, context->width, &s->left, &s->right) &&
-           bound(top, bottom, reach, context->height, &s->top, &s->bottom);
-}
-
-// gives a corner the depth of its point moved towards the eye by `lift` m
-static void add_depth_offset(const struct cs_thick_lines *lines, const float place[3],
-                             float lift, struct cs_clip_vertex *corner) {
-    const float *eye = lines->shading->view->eye;
-    float d[3], moved[3];
-    for (int i = 0; i < 3; i++)
-        d[i] = eye[i] - eye[3] * place[i];
-    const float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-    const float share = square > 0 ? 1 / sqrtf(square) : 0;
-    for (int i = 0; i < 3; i++)
-        moved[i] = place[i] + lift * (d[i] * share);
-    cs_clip_transform_move_depth(lines->transform, moved, corner);
+    return bound(ends[0], ends[2], reach, context->width, &s->left, &s->right) &&
+           bound(ends[1], ends[3], reach, context->height, &s->top, &s->bottom);
 }
 
 /* Cuts a line at the near plane and projects it: ends in pixels from the bottom left. Returns
@@ -77,7 +60,7 @@ static bool project(const struct cs_thick_lines *lines, float p[2][3], float lif
         const float inverse = 1 / c->clip[3];
         ends[2 * e] = (c->clip[0] * inverse * 0.5f + 0.5f) * (float)clip->width;
         ends[2 * e + 1] = (c->clip[1] * inverse * 0.5f + 0.5f) * (float)clip->height;
-        add_depth_offset(lines, p[e], lift, c);
+        cs_clip_transform_move_depth(clip, p[e], lines->shading->view->eye, -lift, c);
     }
     return true;
 }
@@ -114,9 +97,8 @@ static void set_line(const float ends[4], const struct cs_line_style *style,
     s->direction[1] = length > 1e-6f ? dy * share : 0;
     // below half a pixel a line gets paler instead of thinner
     s->half_width = half > 0.5f ? half : 0.5f;
-    s->extent = half + 1;
+    s->extent = half + 1.5f;
     s->coverage = (float)style->alpha * half / s->half_width;
-    s->fits_32_bits = s->length + 2 * s->extent < 40;
 }
 
 /* Corners of the quad around a line: behind the first end to the left and right, then beyond
@@ -138,8 +120,6 @@ static void set_rectangle(const struct cs_thick_lines *lines, const float ends[4
         corners[k].clip[2] = end->clip[2];
         corners[k].clip[3] = end->clip[3];
         cs_clip_transform_project(clip, corners + k);
-        s->quad[0][k] = (int32_t)floor((double)corners[k].x * 256 + 0.5);
-        s->quad[1][k] = (int32_t)floor(((double)size[1] - (double)corners[k].y) * 256 + 0.5);
     }
 }
 
@@ -159,6 +139,7 @@ static void add_line(struct cs_thick_lines *lines, const float *from,
     const int height = lines->shading->height;
     float p[2][3], ends[4];
     struct cs_clip_vertex corners[2], rectangle[4];
+    const struct cs_clip_vertex *const order[3] = {rectangle + 1, rectangle, rectangle + 2};
     struct cs_thick_line *s = next(lines);
     memcpy(p, from, sizeof p);
     if (style->flat)
@@ -169,7 +150,7 @@ static void add_line(struct cs_thick_lines *lines, const float *from,
     *s = (struct cs_thick_line){.colour = colour, .on_top = style->on_top || style->flat};
     set_line(ends, style, s);
     set_rectangle(lines, ends, corners, s, rectangle);
-    s->depth = cs_depth_of(rectangle + 1, rectangle, rectangle + 2);
+    cs_depth_of(lines->transform, order, s->depth);
     // from here on y is down, as in the picture
     s->y = (float)height - s->y;
     s->direction[1] = -s->direction[1];

@@ -9,23 +9,22 @@
 #include "draw/glyph.h"
 
 /* Pixels of a band of rows while it is drawn: visible fragments first, then lines over them, at
- * last the mean of the samples. Most pixels show one fragment in all
- * four samples and store one colour; four only if an edge or a blend distinguishes the samples.
- */
+ * last the mean of the samples. Most pixels show one fragment in all samples and store one
+ * colour; eight only if an edge or a blend distinguishes the samples. */
 
 enum {
-    CS_FRAGMENT_SLOTS = 16,   /* surfaces' sides whose fragments are collected at a time */
-    CS_COLOURS_PER_PIXEL = 8, /* four shown, four laid over */
-    CS_PIXEL_SPLIT = 0xe4,    /* codes: a colour for each sample, in their order */
+    CS_FRAGMENT_SLOTS = 16, /* surfaces' sides whose fragments are collected at a time */
+    CS_COLOURS_PER_PIXEL = 2 * CS_SAMPLES, /* shown, laid over */
+    CS_PIXEL_SPLIT = 076543210,            /* codes: a colour for each sample, in their order */
 };
 
-/* Sample s of pixel i has colours[first_colour[i] + (sample_codes[i] >> 2 s & 3)]. Colours are
+/* Sample s of pixel i has colours[first_colour[i] + (sample_codes[i] >> 3 s & 7)]. Colours are
  * packed sRGB (srgb.h). All arrays are of the arena, and are reused from band to band. */
 struct cs_tile_buffer {
     struct cs_samples samples; /* visible surfaces */
     uint32_t *first_colour;    /* (rows, width) index of a pixel's first colour */
-    uint8_t *sample_codes;     /* (rows, width) four offsets of 2 bits; 0: one colour for all */
-    uint32_t *colours;         /* (colours_capacity) */
+    uint32_t *sample_codes; /* (rows, width) eight offsets of 3 bits; 0: one colour for all */
+    uint32_t *colours;      /* (colours_capacity) */
     uint32_t n_colours, colours_capacity;
     struct cs_fragments *slots; /* (CS_FRAGMENT_SLOTS) fragments not yet shaded */
 };
@@ -37,27 +36,29 @@ enum cs_status cs_tile_buffer_init(struct cs_tile_buffer *tiles, int width,
 /* Starts a band: no sample shows anything. */
 void cs_tile_buffer_clear(struct cs_tile_buffer *tiles, int top, int rows);
 
-/* Returns the four colours of a pixel, one per sample; copies them apart if they are shared. */
+/* Returns the colours of a pixel, one per sample; copies them apart if they are shared. */
 CS_INLINE uint32_t *cs_tile_buffer_split_pixel(struct cs_tile_buffer *tiles, size_t pixel) {
     const uint32_t first = tiles->first_colour[pixel], code = tiles->sample_codes[pixel];
     if (code == CS_PIXEL_SPLIT)
         return tiles->colours + first;
     uint32_t *apart = tiles->colours + tiles->n_colours;
-    for (uint32_t s = 0; s < 4; s++)
-        apart[s] = tiles->colours[first + (code >> 2 * s & 3)];
+    for (uint32_t s = 0; s < CS_SAMPLES; s++)
+        apart[s] = tiles->colours[first + (code >> 3 * s & 7)];
     tiles->first_colour[pixel] = tiles->n_colours;
     tiles->sample_codes[pixel] = CS_PIXEL_SPLIT;
-    tiles->n_colours += 4;
+    tiles->n_colours += CS_SAMPLES;
     return apart;
 }
 
 /* Blends a colour over the samples of a mask, with an opacity of 0..255. */
-CS_INLINE void cs_tile_buffer_blend(struct cs_tile_buffer *tiles, size_t pixel, unsigned mask,
-                                    uint32_t colour, uint32_t share) {
-    uint32_t *apart = cs_tile_buffer_split_pixel(tiles, pixel);
-    for (int s = 0; s < 4; s++)
-        if (mask >> s & 1)
+CS_INLINE void cs_tile_buffer_blend(struct cs_tile_buffer *tiles, size_t pixel,
+                                    const cs_i8 *mask, uint32_t colour, uint32_t share) {
+    uint32_t *apart = NULL;
+    for (int s = 0; s < CS_SAMPLES; s++)
+        if ((*mask)[s]) {
+            apart = apart ? apart : cs_tile_buffer_split_pixel(tiles, pixel);
             apart[s] = cs_srgb_blend(apart[s], colour, share);
+        }
 }
 
 /* Writes the mean of the samples of each pixel into the picture's rows. */
@@ -116,12 +117,11 @@ struct cs_thick_line {
     float x, y;                 /* first end, or corner of the rectangle */
     float direction[2], length; /* unit vector to the other end and distance; or width, height
                                    of the rectangle */
-    struct cs_plane_equation depth;     /* of the quad around the line, as of a triangle */
+    struct cs_plane_equation depth[2];  /* of the quad around the line, as of a triangle */
     float half_width, extent, coverage; /* half width; that of the quad; opacity 0..1 */
     uint32_t colour;
-    int32_t quad[2][4];           /* x and y of the quad's corners in 1/256 pixel */
     int left, right, top, bottom; /* pixels that it may touch */
-    bool on_top, uses_colour_map, fits_32_bits; /* fits: edge functions fit into 32 bits */
+    bool on_top, uses_colour_map;
 };
 
 /* All lines of a picture, as a renderer's cs_lines. */

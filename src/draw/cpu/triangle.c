@@ -23,7 +23,7 @@
 #include <string.h>
 
 /* Side in 1/256 pixel up to which edge functions are computed in 32 bits. Both factors of a
- * product are below 16000 + 256, thus |product| < 2^28 and |E_k| < 2^29 in the box. */
+ * product are below 16000 + 288, thus |product| < 2^28 and |E_k| < 2^29 in the box. */
 enum { SMALL = 16000 };
 
 /* Common part of all planes of a triangle: two sides (pixels, y down) divided by twice the area
@@ -66,25 +66,44 @@ static struct frame make_frame(const struct cs_triangle *t,
     return f;
 }
 
-struct cs_plane_equation cs_depth_of(const struct cs_clip_vertex *a,
-                                     const struct cs_clip_vertex *b,
-                                     const struct cs_clip_vertex *c) {
-    const float ab[3] = {a->x - b->x, a->y - b->y, a->z - b->z};
-    const float ca[3] = {c->x - a->x, c->y - a->y, c->z - a->z};
+// plane through three points (x, y, z)
+static struct cs_plane_equation depth_plane(const float a[3], const float b[3],
+                                            const float c[3]) {
+    const float ab[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    const float ca[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
     const float area = ab[0] * ca[1] - ca[0] * ab[1];
     const float least = 1.0f / 512, share = area > least || area < -least ? 1 / area : 0;
     const float x = ab[2] * (ca[1] * share) - (ab[1] * share) * ca[2];
     const float y = ca[2] * (ab[0] * share) - ab[2] * (ca[0] * share);
-    return (struct cs_plane_equation){a->z - (x * a->x + y * a->y), x, y};
+    return (struct cs_plane_equation){a[2] - (x * a[0] + y * a[1]), x, y};
+}
+
+void cs_depth_of(const struct cs_clip_transform *clip,
+                 const struct cs_clip_vertex *const corners[3],
+                 struct cs_plane_equation depth[2]) {
+    const float half[2] = {0.5f * (float)clip->width, 0.5f * (float)clip->height};
+    for (int pass = 0; pass < 2; pass++) {
+        const float *jitter = clip->jitter[pass];
+        float p[3][3];
+        for (int i = 0; i < 3; i++) {
+            const struct cs_clip_vertex *c = corners[i];
+            for (int k = 0; k < 2; k++)
+                p[i][k] =
+                    (c->clip[k] + jitter[k] * c->clip[3]) * c->inverse * half[k] + half[k];
+            p[i][2] = c->z;
+        }
+        depth[pass] = depth_plane(p[0], p[1], p[2]);
+    }
 }
 
 /* Depth plane from the corners in the caller's order, and the range of reversed depth that
  * bounds extrapolated samples. */
-static void set_depth(struct cs_triangle *t, const struct cs_clip_vertex *const corners[3]) {
-    const struct cs_clip_vertex *a = corners[t->is_back_facing ? 0 : 1],
-                                *b = corners[t->is_back_facing ? 1 : 0];
-    t->depth = cs_depth_of(a, b, corners[2]);
-    t->depth_min = t->depth_max = cs_reversed_depth(a->z);
+static void set_depth(struct cs_triangle *t, const struct cs_clip_transform *clip,
+                      const struct cs_clip_vertex *const corners[3]) {
+    const struct cs_clip_vertex *const order[3] = {
+        corners[t->is_back_facing ? 0 : 1], corners[t->is_back_facing ? 1 : 0], corners[2]};
+    cs_depth_of(clip, order, t->depth);
+    t->depth_min = t->depth_max = cs_reversed_depth(order[0]->z);
     for (int i = 0; i < 3; i++) {
         const float near = cs_reversed_depth(corners[i]->z);
         t->depth_min = near < t->depth_min ? near : t->depth_min;
@@ -139,8 +158,9 @@ static bool set_box(struct cs_triangle *t, int width, int height) {
         bottom = cs_max(bottom, t->y[i]);
     }
     t->fits_32_bits = right - left < SMALL && bottom - top < SMALL;
-    t->left = cs_max(left >> 8, 0);
-    t->right = cs_min(right >> 8, width - 1);
+    // samples lie up to 16 beside their pixel (raster.c)
+    t->left = cs_max((left - 17) >> 8, 0);
+    t->right = cs_min((right + 16) >> 8, width - 1);
     t->top = cs_max(top >> 8, 0);
     t->bottom = cs_min(bottom >> 8, height - 1);
     return t->left <= t->right && t->top <= t->bottom;
@@ -167,7 +187,7 @@ static void add_triangle(struct cs_triangles *triangles, const struct cs_clip_tr
         return;
     t->surface = kind->surface;
     t->bottom_row = clip->height - 1;
-    set_depth(t, corners);
+    set_depth(t, clip, corners);
     set_planes(t, p, kind->attributes);
     triangles->n++;
 }
@@ -206,7 +226,7 @@ void cs_triangles_finish(struct cs_triangles *triangles) {
  * by less are not clipped, and edge functions still fit into 64 bits. */
 static const float guard = 16;
 
-enum { NEAR = 1, LEFT = 2, RIGHT = 4, BELOW = 8, ABOVE = 16, PLANES = 5 };
+enum { PLANES = 5 }; // near, left, right, below, above
 
 void cs_clip_transform_make(struct cs_clip_transform *clip, const float matrix[16], float near,
                             int width, int height) {
@@ -217,6 +237,7 @@ void cs_clip_transform_make(struct cs_clip_transform *clip, const float matrix[1
         clip->w[i] = matrix[4 * i + 3];
     }
     clip->near = near > 0 ? near : 0.5f;
+    memset(clip->jitter, 0, sizeof clip->jitter);
     clip->width = width;
     clip->height = height;
 }
@@ -228,19 +249,8 @@ static float row(const float r[4], const float p[3]) {
 // signed distance to a plane, in units of w; w alone decides about the near one
 static float inside(const struct cs_clip_transform *clip, const struct cs_clip_vertex *c,
                     int plane) {
-    const float reach = guard * c->clip[3];
-    switch (1 << plane) {
-    case NEAR:
-        return c->clip[3] - clip->near;
-    case LEFT:
-        return c->clip[0] + reach;
-    case RIGHT:
-        return reach - c->clip[0];
-    case BELOW:
-        return c->clip[1] + reach;
-    default:
-        return reach - c->clip[1];
-    }
+    const float at = c->clip[plane > 2], reach = guard * c->clip[3];
+    return plane == 0 ? c->clip[3] - clip->near : plane & 1 ? at + reach : reach - at;
 }
 
 // viewport: clip coordinates -w..w to pixels, and depth to 0..1
@@ -257,7 +267,7 @@ void cs_clip_transform_project(const struct cs_clip_transform *clip, struct cs_c
     for (int plane = 0; plane < PLANES; plane++)
         // true for NAN too
         c->clip_mask |= (uint32_t)(!(inside(clip, c, plane) >= 0)) << plane;
-    if (!(c->clip_mask & NEAR))
+    if (!(c->clip_mask & 1))
         set_pixel(clip, c);
 }
 
@@ -271,8 +281,16 @@ void cs_clip_transform_corner(const struct cs_clip_transform *clip, const float 
 }
 
 void cs_clip_transform_move_depth(const struct cs_clip_transform *clip, const float place[3],
-                                  struct cs_clip_vertex *corner) {
-    const float z = row(clip->z, place), w = row(clip->w, place);
+                                  const float eye[4], float by, struct cs_clip_vertex *corner) {
+    float d[3], square = 0, moved[3];
+    for (int i = 0; i < 3; i++) {
+        d[i] = eye[3] * place[i] - eye[i];
+        square += d[i] * d[i];
+    }
+    const float share = square > 0 ? by / sqrtf(square) : 0;
+    for (int i = 0; i < 3; i++)
+        moved[i] = place[i] + share * d[i];
+    const float z = row(clip->z, moved), w = row(clip->w, moved);
     if (!(w > 0 && corner->clip[3] > 0))
         return;
     corner->clip[2] = z / w * corner->clip[3];

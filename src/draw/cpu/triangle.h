@@ -10,15 +10,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Lanes: the four samples of a pixel, or neighbours in a row. + - * / sqrt, comparisons and
- * whole numbers only, in one order and without contraction: the bits do not depend on the
- * compiler or the processor. Minima and maxima are comparisons, since fmin and fmax are calls.
- */
+/* Lanes: the samples of a pixel, or neighbours in a row. + - * / sqrt, comparisons and whole
+ * numbers only, in one order and without contraction: the bits do not depend on the compiler or
+ * the processor. Minima and maxima are comparisons, since fmin and fmax are calls. Eights are
+ * passed by address: without AVX they have no registers, and the ABI none for them. */
 
 /* four floats; four integers, or a mask of all ones and zeros; four floats at any address */
 typedef float cs_f4 __attribute__((vector_size(16)));
 typedef int32_t cs_i4 __attribute__((vector_size(16)));
 typedef float cs_f4_unaligned __attribute__((vector_size(16), aligned(4)));
+typedef float cs_f8 __attribute__((vector_size(32)));
+typedef int32_t cs_i8 __attribute__((vector_size(32)));
 
 /* Selects per lane: a if mask is all ones, b if it is 0. */
 CS_INLINE cs_i4 cs_select(cs_i4 mask, cs_i4 a, cs_i4 b) {
@@ -57,6 +59,7 @@ enum { CS_ATTRIBUTES = 6 }; /* normal, a value, texture coordinates */
 struct cs_clip_transform {
     float x[4], y[4], z[4], w[4]; /* rows of the matrix: clip coordinates from (place, 1) */
     float near;                   /* smallest w that is not clipped */
+    float jitter[2][2];           /* of two passes: x and y that are added to clip x/w, y/w */
     int width, height;            /* pixels */
 };
 
@@ -91,10 +94,11 @@ void cs_clip_transform_corner(const struct cs_clip_transform *clip, const float 
 void cs_clip_transform_project(const struct cs_clip_transform *clip,
                                struct cs_clip_vertex *corner);
 
-/* Gives a corner the depth of another point in m, at its own pixel. Leaves it unchanged if one
- * of them is behind the eye. */
+/* Moves the depth of a corner at a place away from the eye by `by` m, and keeps its pixel, if
+ * both points are before the eye. Between its particles a cloth is a chord that cuts into a
+ * sphere below it; unmoved, specks of the sphere would show. */
 void cs_clip_transform_move_depth(const struct cs_clip_transform *clip, const float place[3],
-                                  struct cs_clip_vertex *corner);
+                                  const float eye[4], float by, struct cs_clip_vertex *corner);
 
 /* Clips a triangle: writes a convex polygon with pixels set and returns its number of corners;
  * 0: nothing is left. Each of five planes adds at most one corner to three; one is spare. */
@@ -126,9 +130,10 @@ struct cs_plane_equation {
  * coverage test uses the rounded corners x, y; the planes use the unrounded ones. */
 struct cs_triangle {
     int32_t x[3], y[3]; /* corners in 1/256 pixel, y down, turned clockwise as seen */
-    int32_t left, right, top, bottom; /* pixels that it may touch, inside the picture */
-    int32_t bottom_row;               /* of the picture: its height less 1 */
-    struct cs_plane_equation depth;   /* of the window, 0 near to 1 far, with the depth bias */
+    int32_t left, right, top, bottom;  /* pixels that it may touch, inside the picture */
+    int32_t bottom_row;                /* of the picture: its height less 1 */
+    struct cs_plane_equation depth[2]; /* of the window, 0 near to 1 far, with the depth bias;
+                                          of both passes */
     float depth_min, depth_max;       /* reversed depth of the corners: bounds of the samples */
     struct cs_plane_equation inverse; /* 1/w, in 1/m for perspective */
     struct cs_plane_equation attributes[CS_ATTRIBUTES]; /* divided by w; see triangle.c */
@@ -159,12 +164,14 @@ void cs_triangles_add(struct cs_triangles *triangles, const struct cs_clip_trans
                       const struct cs_clip_vertex *const corners[3],
                       const struct cs_triangle_kind *kind);
 
-/* Plane of window depth through three corners, with the roundings of Mesa's software renderer:
+/* Planes of window depth through three corners, with the roundings of Mesa's software renderer:
  * relative to the first corner, in single precision. Mesa starts from the second corner of a
- * front-facing triangle and from the first of a back-facing one. */
-struct cs_plane_equation cs_depth_of(const struct cs_clip_vertex *a,
-                                     const struct cs_clip_vertex *b,
-                                     const struct cs_clip_vertex *c);
+ * front-facing triangle and from the first of a back-facing one. OpenGL draws eight samples in
+ * two passes of four (gl/canvas.c), each with its picture moved and roundings of its own, which
+ * decide whether a line just above a steep surface is visible. */
+void cs_depth_of(const struct cs_clip_transform *clip,
+                 const struct cs_clip_vertex *const corners[3],
+                 struct cs_plane_equation depth[2]);
 
 /* Frees the array and leaves it empty. */
 void cs_triangles_finish(struct cs_triangles *triangles);

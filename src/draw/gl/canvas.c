@@ -298,6 +298,18 @@ static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
     cs_overlay_draw(&canvas->overlay, frame);
 }
 
+/* Draws and copies the samples of a pass. OpenGL in OSMesa has four samples at most: eight are
+ * those of two pictures, moved so that the pattern is that of the other renderer
+ * (cpu/raster.c). */
+static void draw_pass(struct cs_canvas *canvas, const struct cs_frame *frame, uint32_t pass) {
+    const float side = pass ? 1.0f / 16 : -1.0f / 16, on = canvas->target.passes > 1;
+    canvas->view.block.jitter[0] = on * 3 * side;
+    canvas->view.block.jitter[1] = -on * side;
+    cs_view_upload(&canvas->view);
+    draw_scene(canvas, frame);
+    cs_framebuffer_copy(&canvas->target, pass);
+}
+
 /* Takes lights, background and materials of bodies from a scene whose values change. */
 static void restyle(struct cs_canvas *canvas) {
     cs_view_set_colours(&canvas->view, canvas->scene);
@@ -329,8 +341,9 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
     cs_ground_aim(&canvas->ground, &sphere);
     gl_colliders_move(&canvas->colliders, frame->colliders, varies);
     draw_shadow(canvas, &sphere);
-    draw_scene(canvas, frame);
-    cs_framebuffer_read(&canvas->target, image);
+    for (uint32_t pass = 0; pass < canvas->target.passes; pass++)
+        draw_pass(canvas, frame, pass);
+    cs_framebuffer_resolve(&canvas->target, image);
     return cs_gl_check("drawing a frame", error);
 }
 

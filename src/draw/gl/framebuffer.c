@@ -70,7 +70,7 @@ static enum cs_status allocate_pixels(struct cs_framebuffer *target, struct cs_a
     if (srgb)
         cs_srgb_make(srgb);
     target->srgb = srgb;
-    for (uint32_t s = 0; s < target->n_samples && !error->status; s++)
+    for (uint32_t s = 0; s < target->passes * target->n_samples && !error->status; s++)
         target->rgba[s] = cs_arena_alloc_array(arena, n, sizeof *target->rgba[s], error);
     return error->status;
 }
@@ -88,6 +88,7 @@ enum cs_status cs_framebuffer_init(struct cs_framebuffer *target,
     target->width = width;
     target->height = height;
     target->n_samples = render->samples > 1 ? 4 : 1;
+    target->passes = render->samples > 4 ? 2 : 1;
     target->clear = render->background.kind == CS_BACKGROUND_NONE;
     if (allocate_pixels(target, arena, error) || make_drawn(target, error))
         return error->status;
@@ -132,23 +133,29 @@ static uint32_t sample_of(const struct cs_framebuffer *target, uint32_t s, size_
 
 // packed colour of pixel i, rows from the bottom
 static uint32_t colour_of(const struct cs_framebuffer *target, size_t i) {
-    uint32_t samples[4] = {sample_of(target, 0, i)}, differ = 0;
-    for (uint32_t s = 1; s < target->n_samples; s++) {
-        samples[s] = sample_of(target, s, i);
+    const uint32_t n = target->passes * target->n_samples;
+    uint32_t samples[CS_SAMPLES] = {sample_of(target, 0, i)}, differ = 0;
+    for (uint32_t s = 1; s < CS_SAMPLES; s++) {
+        samples[s] = s < n ? sample_of(target, s, i) : samples[s % n];
         differ |= samples[s] ^ samples[0];
     }
     return differ ? cs_srgb_mean(target->srgb, samples) : samples[0];
 }
 
-void cs_framebuffer_read(const struct cs_framebuffer *target, struct cs_image *image) {
-    const int w = target->width, h = target->height;
+void cs_framebuffer_copy(const struct cs_framebuffer *target, uint32_t pass) {
+    uint32_t *const *rgba = target->rgba + pass * target->n_samples;
     gl.BindFramebuffer(GL_FRAMEBUFFER, target->read_framebuffer);
     gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
     for (uint32_t s = 0; s < target->n_samples; s++) {
         if (target->read_framebuffer != target->draw_framebuffer)
             copy_sample(target, s);
-        gl.ReadPixels(0, 0, w, h, GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV, target->rgba[s]);
+        gl.ReadPixels(0, 0, target->width, target->height, GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV,
+                      rgba[s]);
     }
+}
+
+void cs_framebuffer_resolve(const struct cs_framebuffer *target, struct cs_image *image) {
+    const int w = target->width, h = target->height;
     image->width = (uint32_t)w;
     image->height = (uint32_t)h;
     size_t out = 0;

@@ -71,12 +71,13 @@ struct cs_framebuffer {
     unsigned draw_framebuffer,
         read_framebuffer; /* frame buffers; the same where a pixel has one sample */
     int width, height;
-    uint32_t n_samples; /* per pixel: 1 or 4 */
+    uint32_t n_samples; /* per pixel and pass: 1 or 4 */
+    uint32_t passes;    /* 2: eight samples, four at a time */
     bool clear;         /* transparent background */
     unsigned samples, program,
-        object;        /* texture of the samples; the program that copies one of each pixel */
-    int number;        /* location of the uniform: which sample */
-    uint32_t *rgba[4]; /* (height, width) per sample, bottom row first, of the arena */
+        object; /* texture of the samples; the program that copies one of each pixel */
+    int number; /* location of the uniform: which sample */
+    uint32_t *rgba[CS_SAMPLES]; /* (height, width) per sample, bottom row first, of the arena */
     const struct cs_srgb *srgb; /* owned by the arena */
 };
 
@@ -89,9 +90,12 @@ enum cs_status cs_framebuffer_init(struct cs_framebuffer *target,
 /* Clears the depth; what is drawn until the next frame buffer goes here. */
 void cs_framebuffer_begin(const struct cs_framebuffer *target);
 
-/* Copies the picture, top row first. Each pixel is the mean of its samples in linear light
- * (cs_srgb_mean); the resolve of drivers averages bytes. */
-void cs_framebuffer_read(const struct cs_framebuffer *target, struct cs_image *image);
+/* Copies the samples of a pass. */
+void cs_framebuffer_copy(const struct cs_framebuffer *target, uint32_t pass);
+
+/* Makes the picture of all samples, top row first. Each pixel is the mean of its samples in
+ * linear light (cs_srgb_mean); the resolve of drivers averages bytes. */
+void cs_framebuffer_resolve(const struct cs_framebuffer *target, struct cs_image *image);
 
 /* Shadow maps through OpenGL: depth seen from each light. */
 

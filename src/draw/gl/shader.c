@@ -31,8 +31,13 @@ static const char common[] = GLSL(
         vec4 above;
         vec4 below;
         vec4 stops[6];
+        vec4 jitter;
         Light lights[4];
     };
+    // for vertices: moves the picture by the jitter of the pass
+    vec4 jittered(vec4 clip) {
+        return clip + vec4(2.0 * jitter.xy / size.xy * clip.w, 0.0, 0.0);
+    }
     vec3 encode(vec3 c) {
         vec3 curve = 1.055 * pow(max(c, 0.0031308), vec3(1.0 / 2.4)) - 0.055;
         return mix(curve, 12.92 * c, vec3(lessThan(c, vec3(0.0031308))));
@@ -51,6 +56,12 @@ static const char shadow[] = GLSL(
     uniform sampler2DShadow depth1;
     uniform sampler2DShadow depth2;
     uniform sampler2DShadow depth3;
+    // a varying in the middle of the pixel of a picture without jitter: v / w and 1 / w are linear
+    vec3 unmoved(vec3 v) {
+        vec4 over = vec4(v, 1.0) * gl_FragCoord.w;
+        over += jitter.x * dFdx(over) + jitter.y * dFdy(over);
+        return over.xyz / max(over.w, 1e-6);
+    }
     // what an ordered dither of 16 rows adds to a channel (srgb.h: cs_srgb_dither)
     float dither() {
         int y = int(size.y - gl_FragCoord.y);

@@ -78,14 +78,14 @@ static const char line_vertex[] = OVERLAY_GLSL(
         along = n > 1e-6 ? along / n : vec2(1.0, 0.0);
         bool first = gl_VertexID < 2;
         float side = gl_VertexID % 2 == 0 ? 1.0 : -1.0;
-        // a pixel more on all sides, for the smooth edge
-        float reach = half_width + 1.0;
+        // half a pixel more on all sides for the smooth edge, and the farthest sample of it
+        float reach = half_width + 1.5;
         vec2 pixel = first ? ends.xy - reach * along : ends.zw + reach * along;
         pixel += side * reach * vec2(-along.y, along.x);
         vec4 end = first ? a : b;
         if (flat_ == 0)
             end.z = lifted(first ? pa : pb, end);
-        gl_Position = vec4((pixel / size.xy * 2.0 - 1.0) * end.w, end.z, end.w);
+        gl_Position = jittered(vec4((pixel / size.xy * 2.0 - 1.0) * end.w, end.z, end.w));
     }
 );
 
@@ -114,7 +114,7 @@ static const char bar_vertex[] = OVERLAY_GLSL(
         vec2 pixel = box.xy + box.zw * corner;
         value = 1.0 - corner.y;
         vec2 at = 2.0 * pixel / size.xy - 1.0;
-        gl_Position = vec4(at.x, -at.y, 0.0, 1.0);
+        gl_Position = jittered(vec4(at.x, -at.y, 0.0, 1.0));
     }
 );
 
@@ -148,28 +148,30 @@ static const char surface_vertex[] = GLSL(
     layout(location = 2) in vec2 in_uv;
     layout(location = 3) in float in_value;
     uniform float sink;
-    out vec3 place;
-    out vec3 normal;
-    out vec2 uv;
-    out float value;
+    out vec3 moved_place;
+    out vec3 moved_normal;
+    out vec3 moved_other;
     void main() {
-        place = in_place;
-        normal = in_normal;
-        uv = in_uv;
-        value = in_value;
-        gl_Position = world_to_clip * vec4(place, 1.0);
-        vec4 behind = world_to_clip * vec4(place + sink * normalize(eye.w * place - eye.xyz), 1.0);
+        moved_place = in_place;
+        moved_normal = in_normal;
+        moved_other = vec3(in_uv, in_value);
+        gl_Position = world_to_clip * vec4(in_place, 1.0);
+        vec4 behind = world_to_clip * vec4(in_place + sink * normalize(eye.w * in_place - eye.xyz), 1.0);
         if (sink > 0.0 && gl_Position.w > 0.0 && behind.w > 0.0)
             gl_Position.z = behind.z / behind.w * gl_Position.w;
+        gl_Position = jittered(gl_Position);
     }
 );
 
 // mode: 0 plain, 1 textured, 2 by value, 3 faint, 4 normals, 5 texture coordinates
 static const char surface_fragment[] = GLSL(
-    in vec3 place;
-    in vec3 normal;
-    in vec2 uv;
-    in float value;
+    in vec3 moved_place;
+    in vec3 moved_normal;
+    in vec3 moved_other;
+    vec3 place;
+    vec3 normal;
+    vec2 uv;
+    float value;
     uniform int mode;
     uniform vec3 front;
     uniform vec3 back;
@@ -256,6 +258,11 @@ static const char surface_fragment[] = GLSL(
     }
 
     void main() {
+        place = unmoved(moved_place);
+        normal = unmoved(moved_normal);
+        vec3 other = unmoved(moved_other);
+        uv = other.xy;
+        value = other.z;
         vec3 n = normalize(gl_FrontFacing ? normal : -normal);
         vec3 v = normalize(eye.xyz - eye.w * place);
         vec3 base = gl_FrontFacing ? front : back;
