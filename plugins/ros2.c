@@ -25,6 +25,9 @@
  * for the forces in J. The slope of friction by its load is not in J: friction under the
  * loads of such a state created energy. Where friction acts and a step does not resolve all
  * rates, g is (1 + 1/sqrt 2) h, of the same order and L-stable too, with 1 - h/g = 0.41.
+ * Nor is the turn of springs within a step in J. A sheet of particles of 1e-9 kg on springs of
+ * 100 N/m, damped or not, gains energy at 1e-4 to 2e-3 s. A residual of 1e-12 or the exact
+ * matrix changes nothing. It is stable at 5e-5 s, and with the larger g at 5e-4 and 2e-3 s.
  */
 #include "newton_methods.h"
 
