@@ -241,8 +241,8 @@ const struct cs_integrator ros2 = {
     STEP_HALVING_METHOD(struct ros2_options, rows, step_halving_archive),
     .name = "ros2",
     .summary = "Rosenbrock method: two linear solves with one matrix, L-stable, no Newton; "
-               "throws "
-               "what slips to and fro where a step is long against friction",
+               "throws what slips to and fro where a step is long against friction, and gains "
+               "energy where tiny masses turn springs within a step",
     .source = "Verwer et al. 1999",
     .order = 2,
     .order_damped = 2,
