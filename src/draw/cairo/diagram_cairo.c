@@ -1,8 +1,7 @@
 /* The module diagram-cairo.so: lays a diagram out and draws it as PNG, SVG or PDF.
  *
  *   surface -> title -> panels, row by row: boxes, grid, series, names at the right -> keys
- * All lengths are in points at print size. A first pass on an empty surface finds the height.
- */
+ * Lengths are in points at print size. A first pass on an empty surface finds the height. */
 #include "draw/cairo/cairo_marks.h"
 
 #include <math.h>

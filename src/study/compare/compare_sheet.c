@@ -78,7 +78,7 @@ static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
     }
 }
 
-/* What the tiles of all cells share, and the end of the run of one. */
+/* Shared by the tiles of all cells; then the end of the run of one. */
 struct tile {
     const struct cs_compare *compare;
     enum cs_renderer_kind kind;
