@@ -10,8 +10,7 @@
 #include "cli/show/screen.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
-#include "study/compare/mesh_error.h"
-#include "study/compare/ranking.h"
+#include "study/compare/equal_error.h"
 
 #include <math.h>
 #include <stdio.h>

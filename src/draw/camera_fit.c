@@ -1,7 +1,7 @@
 /* camera_fit.c - fits a camera to points, by the maxima that camera_fit.h derives. */
 #include "draw/camera_fit.h"
 
-#include "draw/colour_bar.h"
+#include "draw/glyph.h"
 #include "draw/matrix.h"
 #include "scene/collider_keys.h"
 #include "scene/force_keys.h"

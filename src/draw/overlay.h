@@ -2,7 +2,6 @@
 #ifndef CS_DRAW_OVERLAY_H
 #define CS_DRAW_OVERLAY_H
 
-#include "draw/colour_bar.h"
 #include "draw/glyph.h"
 #include "draw/render.h"
 #include "model/system/particle_system.h"

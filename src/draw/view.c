@@ -1,7 +1,7 @@
 /* Sets up the camera, light, background and colour map that all shaders share. */
 #include "draw/view.h"
 
-#include "draw/colour_bar.h"
+#include "draw/glyph.h"
 #include "draw/matrix.h"
 #include "draw/mesh.h"
 #include "draw/srgb.h"

@@ -6,7 +6,7 @@
 #include "base/pool.h"
 #include "draw/srgb.h"
 #include "model/contact/ccd/crossings.h"
-#include "model/elastic/membrane_strain.h"
+#include "model/elastic/membrane_forces.h"
 #include "model/event/event_state.h"
 #include "scene/body_keys.h"
 #include "scene/collider_keys.h"

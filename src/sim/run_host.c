@@ -4,7 +4,7 @@
 
 #include "base/vector.h"
 #include "model/contact/ccd/step_limit.h"
-#include "model/elastic/membrane_matrix.h"
+#include "model/elastic/membrane_forces.h"
 #include "model/event/event_state.h"
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"

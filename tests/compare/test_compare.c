@@ -3,7 +3,7 @@
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_cell.h"
 #include "study/compare/compare_curves.h"
-#include "study/compare/ranking.h"
+#include "study/compare/equal_error.h"
 
 #include <math.h>
 #include <string.h>
@@ -285,7 +285,8 @@ TEST(crossings_are_ringed) {
         for (uint32_t k = 0; k < n; k++)
             ck_assert_int_eq(line->points[k].ring, cells[k].crossings > 0);
         for (uint32_t k = 0; k < plot.diagram.n_keys; k++)
-            key |= plot.diagram.keys[k].kind == CS_KEY_SAMPLE && plot.diagram.keys[k].mark == CS_MARK_RING;
+            key |= plot.diagram.keys[k].kind == CS_KEY_SAMPLE &&
+                   plot.diagram.keys[k].mark == CS_MARK_RING;
         ck_assert_int_eq(key, n == 3);
         cs_plot_finish(&plot);
     }

@@ -1,7 +1,7 @@
 /* Factors at equal error, on methods with planted errors and costs: what the search finds is
  * what a grid ten times denser shows, and a row at another error gives no number. */
 #include "../suite.h"
-#include "study/compare/ranking.h"
+#include "study/compare/equal_error.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #include "place.h"
 #include "study/compare/compare_cell.h"
 #include "study/compare/compare_state.h"
-#include "study/compare/ranking.h"
+#include "study/compare/equal_error.h"
 
 #include <math.h>
 #include <sys/stat.h>

@@ -1,6 +1,6 @@
 /* The verdict: whichever rows there are, each of its sentences is true of them. */
 #include "scene.h"
-#include "study/compare/ranking.h"
+#include "study/compare/equal_error.h"
 
 #include <math.h>
 #include <string.h>

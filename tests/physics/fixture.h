@@ -4,8 +4,8 @@
 
 #include "../suite.h"
 #include "session/perturb.h"
+#include "session/recorded_run.h"
 #include "session/session.h"
-#include "study/trajectory_error.h"
 
 struct fixture {
     struct cs_session session;

@@ -2,7 +2,7 @@
  * motion in a moving frame, the bound on their frequency, the order of the methods. */
 #include "base/pool.h"
 #include "methods.h"
-#include "model/elastic/membrane_strain.h"
+#include "model/elastic/membrane_forces.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "sheet.h"

@@ -1,7 +1,6 @@
 /* Bending by the curvature along the normal: sheets curved at rest, and damping. */
 #include "fixture.h"
-#include "model/elastic/bending_forces.h"
-#include "model/elastic/bending_sums.h"
+#include "model/elastic/normal_stencil.h"
 #include "model/force/terms.h"
 #include "scene/elastic_keys.h"
 #include "sheet.h"

@@ -24,7 +24,7 @@ awk '
     BEGIN {
         walled = "^(study|cli|sweep|shared|bisect|describe|film|golden|integrators|new|reproduce)(/|$)"
         inner = "^(mesh|scene|model|sim|io|draw)(/|$)"
-        split("draw/camera_fit.h draw/colour_bar.h draw/diagram.h draw/glyph.h draw/srgb.h io/checkpoint.h" \
+        split("draw/camera_fit.h draw/diagram.h draw/glyph.h draw/srgb.h io/checkpoint.h" \
             " io/export/export.h io/file_conflicts.h io/frame_writer.h io/npy.h io/png.h io/row_log.h" \
             " scene/file/json.h", doors, " ")
         for (i in doors) door[doors[i]]

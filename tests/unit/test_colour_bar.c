@@ -2,7 +2,7 @@
  * that the colours of a frame end at. */
 #include "unit.h"
 
-#include "draw/colour_bar.h"
+#include "draw/glyph.h"
 #include "draw/srgb.h"
 #include "model/force/diagnostics.h"
 #include "scene/picture_keys.h"

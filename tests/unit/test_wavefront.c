@@ -1,6 +1,6 @@
 /* Loops in a wave leave what they leave one after the other, and do each block once. */
 #include "base/pool.h"
-#include "model/solver/wavefront.h"
+#include "model/solver/level_kernels.h"
 #include "unit.h"
 
 #include <stdatomic.h>

@@ -19,7 +19,7 @@
 #include "session/process_pool.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
-#include "study/compare/ranking.h"
+#include "study/compare/equal_error.h"
 #include "study/stability/stability_state.h"
 
 #include <math.h>

@@ -20,8 +20,8 @@
 #include "base/status.h"
 #include "base/text.h"
 #include "session/perturb.h"
+#include "session/recorded_run.h"
 #include "session/session.h"
-#include "study/trajectory_error.h"
 
 #include <clothsim/integrator.h>
 #include <signal.h>

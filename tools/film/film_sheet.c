@@ -5,7 +5,6 @@
 #include "base/file.h"
 #include "base/image.h"
 #include "base/serialise.h"
-#include "draw/colour_bar.h"
 #include "draw/glyph.h"
 #include "draw/srgb.h"
 #include "io/npy.h"

@@ -1,7 +1,7 @@
 /* Draws flat lines, figures and the colour bar on an image in memory. */
 #include "film/image_lines.h"
 
-#include "draw/colour_bar.h"
+#include "draw/glyph.h"
 
 #include <math.h>
 

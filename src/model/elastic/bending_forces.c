@@ -1,11 +1,9 @@
 /* Bending forces f = -K x in two passes: the moments A D k of each stencil, by all threads, and
  * then at each particle the sum of its weights times moments, in one order. Bodies that are
  * curved at rest, and damping: normal_curvature.c. */
-#include "model/elastic/bending_forces.h"
+#include "model/elastic/normal_stencil.h"
 
 #include "base/pool.h"
-#include "model/elastic/bending_sums.h"
-#include "model/elastic/normal_curvature.h"
 #include "scene/elastic_keys.h"
 
 #include <clothsim/clones.h>

@@ -1,6 +1,6 @@
 /* bendings.h - bending of sheets: curvature as sums of positions with constant weights. Those
  * of a mesh that is curved at rest are of the triangles beyond the edges unfolded into the
- * plane of the triangle; its energy, and damping, are in normal_curvature.h.
+ * plane of the triangle; its energy, and damping, are in normal_stencil.h.
  *
  * A stencil has weights b_aj of its particles j for each curvature a of XX, YY, 2 XY in the
  * cloth's axes, and an area A. With the moduli D (scene/elastic_keys.h):

@@ -225,4 +225,66 @@ struct membrane_law cs_membrane_law_of(const struct membrane_job *job,
 void cs_membrane_job_prepare(const struct membrane_job *job);
 void cs_membrane_job_add(const struct membrane_job *job, const struct cs_block *block);
 
+/* Energies and bounds of membranes, and their part of the solver's matrix.
+ */
+
+/* Elastic energy in J; that of all triangles at twice their rest lengths. */
+double cs_membranes_energy(const struct cs_system *system, const double *x);
+double cs_membranes_energy_at_twice(const struct cs_system *system);
+
+/* Adds a membrane's row sums (struct cs_gershgorin of term.h) to stiffness and damping (n), at
+ * the state `at`, or for NULL at rest. Masses are divided among the triangles at a particle.
+ * With these, the stiffness of a triangle along its edges has frequencies of at most w; each
+ * corner gets w^2 times its mass, and 2 |t| of the edges that end there. */
+void cs_membranes_add_bound(const struct cs_system *system, const struct cs_eval *at,
+                            double *stiffness, double *damping);
+
+/* --- in the solver's matrix --- */
+
+/* Finds the diagonal blocks at the matrix's state; kept: its products too. All threads. */
+void cs_membranes_prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
+                                 bool kept);
+/* y += the kept matrix times p, without its diagonal blocks. All threads. */
+void cs_membranes_add_product(const struct cs_system *system, const double *p, double *y);
+/* y += the elastic part of the kept matrix times v. */
+void cs_membranes_add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
+                               double *y);
+
+/* Springs that stand for a membrane in the levels of the solver's
+ * preconditioner, which knows springs alone.
+ *
+ * The matrix of a triangle is sum over i, j of 2 kappa K_ij g_i g_j^T, g_i the gradient of edge
+ * i times d_i, and tensions s_i (membrane_matrix.c). With a_i = d_i.u_i and l_i the rest
+ * lengths, |2 a_i a_j| <= a_i^2 l_j/l_i + a_j^2 l_i/l_j bounds it from above by springs along
+ * the edges:
+ *
+ *   s = max(s_i, 0),   w = sqrt(2 kappa k_i) d_i,   k_i = sum over j of |K_ij| l_j / l_i
+ *
+ * summed over the triangles at an edge. Products with the matrix do not use them. */
+
+/* Makes the runs of all membranes. CS_ERR_MEMORY. */
+enum cs_status cs_membrane_surrogate_build(struct cs_system *system, struct cs_error *error);
+
+/* Edges of all membranes; 0 without any, or without a solver. */
+uint32_t cs_membrane_surrogate_count(const struct cs_system *system);
+
+/* Sets the factors of the runs (4 doubles a spring, as cs_springs_factor) for the matrix kept
+ * last. All threads. */
+void cs_membrane_surrogate_factor(const struct cs_system *system, double *factors);
+
+/* Strains and stresses of membranes. */
+
+/* Largest magnitude of the principal strains of all triangles: with the eigenvalues e of
+ * Green's strain, sqrt(1 + 2 e) - 1, the change of length over the length. NaNs are skipped; 0
+ * without membranes. extends: of triangles that extend more than they shrink. */
+double cs_membranes_largest_strain(const struct cs_system *system, const double *x,
+                                   bool extends);
+
+/* out (n): the principal strain of largest magnitude among a particle's triangles, with its
+ * sign, where it is larger than what is there. */
+void cs_membranes_particle_strain(const struct cs_system *system, const double *x, double *out);
+/* out (n): likewise of the elastic stress of St. Venant and Kirchhoff, in N per m of the sheet
+ * at rest; 0 outside membranes. */
+void cs_membranes_particle_stress(const struct cs_system *system, const double *x, double *out);
+
 #endif

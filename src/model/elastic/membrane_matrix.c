@@ -9,11 +9,10 @@
  * stress S; with psd, S is replaced by its positive part, the nearest such (Teran et al. 2005
  * clamp the whole 6x6 matrix instead). The position derivative of the damping, which is not
  * symmetric, is left out, as with springs. */
-#include "model/elastic/membrane_matrix.h"
+#include "model/elastic/membrane_forces.h"
 
 #include "base/pool.h"
 #include "base/vec3.h"
-#include "model/elastic/membrane_forces.h"
 #include "scene/elastic_keys.h"
 
 #include <math.h>

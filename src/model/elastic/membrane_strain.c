@@ -1,5 +1,5 @@
 /* Principal strains and stresses of membranes. */
-#include "model/elastic/membrane_strain.h"
+#include "model/elastic/membrane_forces.h"
 
 #include "scene/elastic_keys.h"
 

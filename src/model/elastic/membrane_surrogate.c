@@ -1,5 +1,5 @@
 /* Springs along the edges of membranes for the preconditioner. */
-#include "model/elastic/membrane_surrogate.h"
+#include "model/elastic/membrane_forces.h"
 
 #include "base/pool.h"
 #include "mesh/trimesh.h"

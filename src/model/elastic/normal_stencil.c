@@ -1,5 +1,5 @@
 /* Curvatures along the normal of one stencil. The derivatives are those of the formulas of
- * normal_curvature.h by the product rule. */
+ * normal_stencil.h by the product rule. */
 #include "model/elastic/normal_stencil.h"
 
 #include "base/vec3.h"

@@ -1,7 +1,7 @@
 /* Measures a state: energies, strains and forces. */
 #include "model/force/diagnostics.h"
 
-#include "model/elastic/membrane_strain.h"
+#include "model/elastic/membrane_forces.h"
 #include "model/force/terms.h"
 #include "scene/body_keys.h"
 #include "scene/contact_keys.h"

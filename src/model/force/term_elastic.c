@@ -1,11 +1,7 @@
 /* Elastic bodies as terms: membranes by the kernels of elastic/membrane_forces.h, their bending
- * by those of elastic/bending_forces.h. */
-#include "model/elastic/bending_forces.h"
-#include "model/elastic/bending_sums.h"
+ * by those of elastic/normal_stencil.h. */
 #include "model/elastic/membrane_forces.h"
-#include "model/elastic/membrane_matrix.h"
-#include "model/elastic/membrane_surrogate.h"
-#include "model/elastic/normal_curvature.h"
+#include "model/elastic/normal_stencil.h"
 #include "model/force/term.h"
 #include "scene/body_keys.h"
 

@@ -16,7 +16,7 @@
 
 #include "base/vector.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
-#include "model/elastic/membrane_surrogate.h"
+#include "model/elastic/membrane_forces.h"
 #include "model/force/terms.h"
 
 #include <clothsim/clones.h>

@@ -3,7 +3,7 @@
 #include "scene/file/obj_read.h"
 
 #include "base/text.h"
-#include "mesh/polygon.h"
+#include "mesh/mesh_mend.h"
 
 #include <stdarg.h>
 #include <stdio.h>

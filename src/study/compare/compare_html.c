@@ -4,7 +4,7 @@
 #include "session/provenance_write.h"
 #include "study/compare/compare.h"
 #include "study/compare/compare_curves.h"
-#include "study/compare/ranking.h"
+#include "study/compare/equal_error.h"
 
 #include <math.h>
 

@@ -7,7 +7,7 @@
 #include "base/json_writer.h"
 #include "session/provenance_write.h"
 #include "study/compare/compare_curves.h"
-#include "study/compare/ranking.h"
+#include "study/compare/equal_error.h"
 
 #include <math.h>
 #include <stdio.h>

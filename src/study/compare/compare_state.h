@@ -120,9 +120,10 @@ struct cs_compare {
 struct cs_compare_reference_settings
 cs_compare_reference_query(const struct cs_compare_settings *settings);
 
-/* Times the contenders for the verdict (ranking.h) in rounds. Ends when their ratios are known
- * well enough, after settings.runs rounds, or when the work for rounds is used up. Updates cpu,
- * cpu_low, cpu_high, runs and outliers of the cells. CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
+/* Times the contenders for the verdict (equal_error.h) in rounds. Ends when their ratios are
+ * known well enough, after settings.runs rounds, or when the work for rounds is used up.
+ * Updates cpu, cpu_low, cpu_high, runs and outliers of the cells. CS_ERR_INTERRUPT,
+ * CS_ERR_MEMORY. */
 enum cs_status cs_compare_time(struct cs_compare *compare, struct cs_error *error);
 
 /* Runs one cell within compare->budget and fills its errors, counts, outcome and module. cpu is

@@ -8,7 +8,7 @@
  * Contenders are chosen again in every round, because better times change the ranking. */
 #include "study/compare/compare_state.h"
 
-#include "study/compare/ranking.h"
+#include "study/compare/equal_error.h"
 
 #include <math.h>
 #include <stdlib.h>

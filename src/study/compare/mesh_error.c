@@ -1,5 +1,5 @@
 /* Levels of meshes, and their distances to the finest. */
-#include "study/compare/mesh_error.h"
+#include "study/compare/compare.h"
 
 #include "base/file.h"
 #include "session/scene_axis.h"

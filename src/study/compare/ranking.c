@@ -1,5 +1,5 @@
 /* Finds the Pareto front and the ranks of cells. */
-#include "study/compare/ranking.h"
+#include "study/compare/equal_error.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Prints the verdict and the warnings of a comparison in words. */
-#include "study/compare/ranking.h"
+#include "study/compare/equal_error.h"
 
 #include <math.h>
 #include <stdlib.h>

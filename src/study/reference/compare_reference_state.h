@@ -3,7 +3,6 @@
 #define CS_COMPARE_REFERENCE_STATE_H
 
 #include "session/recorded_run.h"
-#include "study/trajectory_error.h"
 
 /* Measures how long a trajectory can be compared point by point.
  *
