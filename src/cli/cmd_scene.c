@@ -163,7 +163,7 @@ static enum cs_status open_scene(struct options *options, struct cs_error *error
         options->plan ? cs_session_open : cs_session_open_plan;
     /* what starts inside a collider, or through or inside a body, shows in a system alone */
     if (!open(&session, &options->session, error) &&
-        (session.system.arena.used || !cs_session_build(&session, error)))
+        (session.system.view.n || !cs_session_build(&session, error)))
         print_scene(options, &session, error);
     cs_session_close(&session);
     return error->status;

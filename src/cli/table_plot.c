@@ -1,7 +1,6 @@
 /* Reads tables of numbers, and makes the diagrams of stability maps. */
 #include "cli/table_plot.h"
 
-#include "study/stability/stability.h"
 #include "study/stability/stability_state.h"
 
 #include <math.h>

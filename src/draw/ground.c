@@ -4,7 +4,6 @@
 #include "draw/srgb.h"
 #include "draw/view.h"
 #include "mesh/trimesh.h"
-#include "model/contact/posed_collider.h"
 #include "model/system/particle_system.h"
 #include "scene/body_keys.h"
 #include "scene/collider_keys.h"

@@ -7,7 +7,6 @@
 #include "model/force/terms.h"
 #include "scene/body_keys.h"
 #include "scene/body_pairs.h"
-#include "scene/contact_keys.h"
 #include "scene/force_keys.h"
 
 #include <math.h>
@@ -365,8 +364,4 @@ void cs_energy_monitor_print_row(const struct cs_energy_monitor_row *row, uint32
     cs_csv_add_number(out, row->bound);
     cs_csv_add_number(out, row->depth);
     cs_text_add(out, "\n");
-}
-
-bool cs_system_untangles(const struct cs_system *system) {
-    return system->scene->contact->untangle > 0;
 }

@@ -153,9 +153,6 @@ void cs_energy_monitor_print(const struct cs_energy_monitor *monitor,
 void cs_energy_monitor_print_beyond(const struct cs_energy_monitor *monitor,
                                     struct cs_text *out);
 
-/* True if particles are led out of colliders, which gives energy (contact.untangle). */
-bool cs_system_untangles(const struct cs_system *system);
-
 /* The columns of its CSV. */
 extern const struct cs_column cs_energy_monitor_columns[];
 extern const uint32_t cs_energy_monitor_n_columns;

@@ -8,7 +8,6 @@
 #include "model/system/surfaces.h"
 #include "scene/body_keys.h"
 #include "scene/body_pairs.h"
-#include "scene/force_keys.h"
 #include "scene/shape.h"
 
 #include <math.h>

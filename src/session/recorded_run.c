@@ -222,6 +222,11 @@ void cs_crossing_stats_add(struct cs_crossing_stats *stats, const struct cs_run 
     }
 }
 
+const uint32_t *cs_crossing_stats_edge(const struct cs_crossing_stats *stats,
+                                       const struct cs_system *system) {
+    return system->surfaces->edges + 2 * (size_t)stats->first.edge;
+}
+
 void cs_crossing_stats_print(const struct cs_crossing_stats *stats,
                              const struct cs_system *system, struct cs_text *out) {
     if (!stats->max_count) {

@@ -30,6 +30,10 @@ struct cs_crossing_stats {
  * after each frame. */
 void cs_crossing_stats_add(struct cs_crossing_stats *stats, const struct cs_run *run);
 
+/* The particles (2) of the first edge; a max_count above 0. */
+const uint32_t *cs_crossing_stats_edge(const struct cs_crossing_stats *stats,
+                                       const struct cs_system *system);
+
 /* "3 at the end, 12 at most, at t = 0.5 s; from t = 0.2 s on: ..." */
 void cs_crossing_stats_print(const struct cs_crossing_stats *stats,
                              const struct cs_system *system, struct cs_text *out);

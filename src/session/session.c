@@ -7,7 +7,6 @@
 #include "base/pool.h"
 #include "model/contact/collider_params.h"
 #include "scene/body_keys.h"
-#include "scene/contact_keys.h"
 #include "scene/picture_keys.h"
 #include "scene/shape.h"
 #include "session/perturb.h"

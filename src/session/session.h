@@ -157,6 +157,19 @@ enum cs_status cs_follow_check(const struct cs_run *run, const char *interrupted
  * up to rounding (a relative 1e-9) gets no extra frame. */
 double cs_follow_frames(const struct cs_scene *scene, double seconds);
 
+/* --- what else studies ask of a system --- */
+
+/* True if particles are led out of colliders, which gives energy (contact.untangle). */
+bool cs_system_untangles(const struct cs_system *system);
+/* True if a body bends by its mesh (elastic.bending). */
+bool cs_system_bends(const struct cs_system *system);
+/* m, rest length of the longest spring; 0 without any. */
+double cs_system_longest_spring(const struct cs_system *system);
+/* Adds the particle, then its neighbours by stretch and shear springs, as numbers within its
+ * body: a value of render.marks. */
+void cs_system_print_marks(const struct cs_system *system, uint32_t particle,
+                           struct cs_text *out);
+
 /* --- where a scene will go wrong, told before the first step, with the value that would do ---
  */
 

@@ -2,7 +2,6 @@
  * largest stable step of a method on a system by linear theory. */
 #include "session/theory.h"
 
-#include "model/elastic/membranes.h"
 #include "model/force/diagnostics.h"
 #include "scene/body_keys.h"
 #include "scene/contact_keys.h"

@@ -4,8 +4,6 @@
  * The powers come with the forces that the method asks for. A step costs a sum over the
  * particles, and only if something can give energy. What needs evaluations of its own waits
  * until the method has done SHARE times their work. */
-#include "base/vector.h"
-#include "model/contact/posed_collider.h"
 #include "model/contact/rebound.h"
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"

@@ -10,7 +10,6 @@
 #include "model/contact/rebound.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
-#include "scene/body_pairs.h"
 #include "sim/energy_ledger.h"
 #include "sim/run_host.h"
 

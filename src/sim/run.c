@@ -1,7 +1,6 @@
 /* run.c - creates a method, advances it frame by frame, and restarts it at events. */
 #include "sim/run.h"
 
-#include "base/clock.h"
 #include "model/contact/bristle_law.h"
 #include "model/system/seams.h"
 #include "sim/crash.h"

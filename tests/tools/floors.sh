@@ -7,7 +7,7 @@
 # stands above it.
 # What opens a file to write it, renames or removes one, is base/file.c, which looks at the target.
 # Behind a wall, studies, commands and most tools see session in place of the rooms below it.
-# The host is known to sim alone, only a session begins a run, and only follow.c steps one.
+# The host is known to sim alone, only a session begins a run, and only session_calls.c steps one.
 cd "$1" || exit 1
 awk '
     BEGIN {
@@ -63,7 +63,7 @@ awk '
     /cs_run_begin\(/ && from != "sim" && FILENAME != "src/session/session.c" {
         wrong(FILENAME " begins a run: see cs_session_begin")
     }
-    /cs_run_frame\(/ && FILENAME ~ /^(src|tools)/ && from != "sim" && FILENAME != "src/session/follow.c" {
+    /cs_run_frame\(/ && FILENAME ~ /^(src|tools)/ && from != "sim" && FILENAME != "src/session/session_calls.c" {
         wrong(FILENAME " steps a run: see cs_follow_next")
     }
     FILENAME ~ /^include/ && /^#include </ && !/<(clothsim\/|std|math)/ {
@@ -80,6 +80,12 @@ awk '
         if (in_comment && !sub(/^.*\*\//, "", line)) next
         gsub(/\/\*([^*]|\*[^\/])*\*\//, "", line)
         in_comment = sub(/\/\*.*/, "", line)
+    }
+    # what studies and commands read of a system, until it is opaque to them
+    from ~ /^(study|cli)/ {
+        read = line
+        gsub(/system(->|\.)(inv_mass|mass|plan|scene|state|view)([^a-z_]|$)/, "", read)
+        if (match(read, /system(->|\.)[a-z_]+/)) wrong(FILENAME ":" FNR ": reads " substr(read, RSTART, RLENGTH) ": see src/session")
     }
     # a path that is a text is one of /dev or /proc
     here != "base/file" && (line ~ /(^|[^a-z_.>])(rename|unlink|remove|mkdir|creat|mkstemp|truncate)(at)?\(/ ||

@@ -1,7 +1,6 @@
 /* arg_programs.c - the one place where a list of methods can start programs: the command line.
  */
 #include "cli/line/args.h"
-#include "session/session.h"
 
 #include <string.h>
 

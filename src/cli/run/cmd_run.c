@@ -6,7 +6,6 @@
  * of a module or a hung call becomes an error message. A blow-up is a result: it is reported
  * and exits with 0, unless
  * --strict asks for an error. */
-#include "base/file.h"
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"

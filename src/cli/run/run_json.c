@@ -4,7 +4,6 @@
 #include "base/pool.h"
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
-#include "cli/run_output.h"
 #include "session/contact_capacity.h"
 #include "session/provenance_write.h"
 
@@ -110,8 +109,7 @@ static void add_crossings(const struct cs_job *job, struct cs_text *out) {
                   (unsigned long long)stats->start_count, (unsigned long long)stats->max_count,
                   (unsigned long long)stats->last_count);
     if (stats->max_count) {
-        const uint32_t *ends =
-            job->session.system.surfaces->edges + 2 * (size_t)stats->first.edge;
+        const uint32_t *ends = cs_crossing_stats_edge(stats, &job->session.system);
         cs_json_write(out, ", 'most_at': %g, 'first': {'time': %g, 'edge': [%u, %u]}",
                       stats->max_time, stats->first_time, ends[0], ends[1]);
     }
@@ -176,7 +174,7 @@ static void print_report(const struct cs_job *job, struct cs_text *out) {
     cs_provenance_out_add_restarts(cs_job_restarts(job), out);
     cs_text_add(out, "%s", cs_text_get(&job->provenance));
     cs_json_write(out, ",\n  'particles': %u,\n  'springs': %u,\n", run->system->view.n,
-                  run->system->springs.n);
+                  run->system->plan.n_springs);
     add_outcome(job, out);
     add_error(job, out);
     add_counts(&run->counts, out);

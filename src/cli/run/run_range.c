@@ -123,26 +123,6 @@ enum cs_status cs_run_range_set(struct cs_run_range *range, const char *text,
                          : CS_OK;
 }
 
-/* Adds the particle, then its neighbours by stretch and shear springs, as numbers within its
- * body: a value of render.marks. */
-static void print_marks(const struct cs_system *system, uint32_t particle,
-                        struct cs_text *out) {
-    uint32_t b = 0;
-    while (particle >= system->bodies[b].first + system->bodies[b].count)
-        b++;
-    const uint32_t first = system->bodies[b].first;
-    cs_text_add(out, "{\"body\": %u, \"particles\": [%u", b, particle - first);
-    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
-        const struct cs_spring_run *run = system->springs.runs + r;
-        for (uint32_t i = 0; run->kind != CS_SPRING_BEND && i < run->count; i++) {
-            const uint32_t from = cs_spring_a(run, i), to = cs_spring_b(run, i);
-            if (from == particle || to == particle)
-                cs_text_add(out, ", %u", (from == particle ? to : from) - first);
-        }
-    }
-    cs_text_add(out, "]}");
-}
-
 /* Runs the scene to its first instability, or to its end. */
 static enum cs_status search_instability(const struct cs_job_settings *settings,
                                          struct cs_text *marks, struct cs_error *error) {
@@ -162,9 +142,9 @@ static enum cs_status search_instability(const struct cs_job_settings *settings,
         while (first->verdict == CS_STABILITY_BOUNDED && cs_follow_next(&follow, error))
             cs_energy_monitor_sample(&monitor, run, &row);
     if (first->verdict != CS_STABILITY_BOUNDED)
-        print_marks(&session.system, first->particle, marks);
+        cs_system_print_marks(&session.system, first->particle, marks);
     else if (cs_outcome_is_blow_up(run->outcome))
-        print_marks(&session.system, run->blow_up.particle, marks);
+        cs_system_print_marks(&session.system, run->blow_up.particle, marks);
     cs_follow_check(run, " in the run that finds the instability", error);
     cs_session_close(&session);
     return error->status;

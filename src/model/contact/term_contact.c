@@ -7,7 +7,6 @@
 #include "model/contact/point_query.h"
 #include "model/contact/rebound.h"
 #include "model/force/term.h"
-#include "model/force/terms.h"
 #include "scene/body_pairs.h"
 
 #include <clothsim/clones.h>

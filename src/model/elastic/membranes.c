@@ -4,7 +4,6 @@
 #include "base/vec3.h"
 #include "mesh/trimesh.h"
 #include "scene/body_keys.h"
-#include "scene/shape.h"
 
 #include <math.h>
 

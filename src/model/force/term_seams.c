@@ -8,7 +8,6 @@
  * u u^T if L = 0) where 1 - L/l is not below 0 in a clamped A. The preconditioner knows the
  * diagonal blocks. */
 #include "model/force/term.h"
-#include "model/force/terms.h"
 #include "model/system/seams.h"
 
 #include "base/vec3.h"

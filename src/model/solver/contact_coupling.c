@@ -1,7 +1,6 @@
 /* Extra springs of bodies in contact: from contact pairs to the first level, and from level to
  * level. */
 #include "model/solver/contact_coupling.h"
-#include "base/vec3.h"
 
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/solver/extra_springs.h"

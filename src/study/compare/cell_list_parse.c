@@ -2,7 +2,6 @@
 #include "study/compare/cell_list_parse.h"
 
 #include "base/options.h"
-#include "session/session.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -5,7 +5,6 @@
 
 #include "session/provenance_write.h"
 #include "study/reference/compare_reference.h"
-#include "study/stability_verdict.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -72,7 +72,7 @@ static bool is_tightest(struct way *way, const struct cs_eval *at) {
         (way->steps++ % STEPS_PER_BOUND && !cs_spectral_bounds_can_jump(way->system)))
         return false;
     cs_spectral_bounds_rate(way->system, at, false, way->theory->modes.dx, &w, &delta);
-    charge(way, way->system->bendings ? BENDING_PASSES : BOUND_PASSES);
+    charge(way, cs_system_bends(way->system) ? BENDING_PASSES : BOUND_PASSES);
     const double limit = limit_by_rate(w, 2 * way->system->view.delta);
     if (!(limit < TIGHTER * way->smallest_rate))
         return false;
@@ -208,10 +208,7 @@ static void run_reference(struct cs_reference *reference,
  * perturbation. */
 static double growth_of(const struct cs_system *system,
                         const struct cs_sampled_run_settings *settings) {
-    double length = 0;
-    for (uint32_t r = 0; r < system->springs.n_runs; r++)
-        for (uint32_t i = 0; i < system->springs.runs[r].count; i++)
-            length = fmax(length, cs_spring_length(system->springs.runs + r, i));
+    const double length = cs_system_longest_spring(system);
     return settings->session.perturbation > 0 && length > settings->session.perturbation
                ? log(length / settings->session.perturbation) / settings->seconds
                : 0;

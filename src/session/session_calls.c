@@ -1,7 +1,8 @@
-/* Steps a run from frame to frame, and reports how it ended. */
+/* The loop over the frames of a session, and what studies ask of its system. */
 #include "session/session.h"
 
 #include "base/clock.h"
+#include "scene/contact_keys.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -54,4 +55,38 @@ enum cs_status cs_follow_result(const struct cs_run *run, const char *interrupte
 double cs_follow_frames(const struct cs_scene *scene, double seconds) {
     // a product that is whole but for rounding takes no frame more
     return ceil(seconds * scene->time.fps * (1 - 1e-9));
+}
+
+bool cs_system_untangles(const struct cs_system *system) {
+    return system->scene->contact->untangle > 0;
+}
+
+bool cs_system_bends(const struct cs_system *system) {
+    return system->bendings;
+}
+
+double cs_system_longest_spring(const struct cs_system *system) {
+    double length = 0;
+    for (uint32_t r = 0; r < system->springs.n_runs; r++)
+        for (uint32_t i = 0; i < system->springs.runs[r].count; i++)
+            length = fmax(length, cs_spring_length(system->springs.runs + r, i));
+    return length;
+}
+
+void cs_system_print_marks(const struct cs_system *system, uint32_t particle,
+                           struct cs_text *out) {
+    uint32_t b = 0;
+    while (particle >= system->bodies[b].first + system->bodies[b].count)
+        b++;
+    const uint32_t first = system->bodies[b].first;
+    cs_text_add(out, "{\"body\": %u, \"particles\": [%u", b, particle - first);
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *run = system->springs.runs + r;
+        for (uint32_t i = 0; run->kind != CS_SPRING_BEND && i < run->count; i++) {
+            const uint32_t from = cs_spring_a(run, i), to = cs_spring_b(run, i);
+            if (from == particle || to == particle)
+                cs_text_add(out, ", %u", (from == particle ? to : from) - first);
+        }
+    }
+    cs_text_add(out, "]}");
 }
