@@ -1,12 +1,11 @@
 /* clothsim scene: checks a scene file and prints its plan, its values or the schema.
  *
  * The scene is built, not only planned, because bodies that start inside colliders or through
- * each other only show in a system, as do the findings of scene_doctor.h. */
+ * each other only show in a system, as do the findings of session.h. */
 #include "base/json_writer.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "io/file_conflicts.h"
-#include "session/contact_capacity.h"
 #include "session/session.h"
 
 #include <stdio.h>

@@ -15,7 +15,7 @@ CS_COMMAND_LIST(X)
 
 /* True if a command may load a module from outside: --plugin is given, one of the texts (n)
  * names a file in place of a method, or folders of modules are set up. Such code runs in a
- * child process (study/process_pool.h). */
+ * child process (session/process_pool.h). */
 bool cs_external_modules_requested(const struct cs_args *args, const char *const *texts,
                                    uint32_t n);
 

@@ -236,7 +236,7 @@ static void front_uv(const struct cs_trimesh *mesh, uint32_t i, const double low
 }
 
 /* The texel of a triangle in a row of one for each colour of faces, and the last for the rest
- * (make_palette in study/frame_picture.c). */
+ * (make_palette in session/frame_picture.c). */
 static double face_texel(const struct cs_mesh *mesh, uint32_t triangle) {
     const struct cs_trimesh *from = mesh->range.mesh;
     const struct cs_face_colour *faces = mesh->faces->items;

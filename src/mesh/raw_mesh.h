@@ -63,7 +63,7 @@ void cs_raw_mesh_finish(struct cs_raw_mesh *raw);
 /* Adds the faults, separated by commas; nothing if there are none. */
 void cs_mesh_mends_print(const struct cs_mesh_mends *mends, struct cs_text *out);
 
-/* --- vertices in one place: near_vertices.c --- */
+/* --- vertices in one place --- */
 
 /* Sets places[i] of each vertex that `among` marks to the first marked vertex within the given
  * fraction of the diagonal of the box of all n positions, of those that are the first in their

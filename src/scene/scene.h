@@ -68,7 +68,7 @@ extern const struct cs_table cs_scene_table, cs_pin_table, cs_event_table, cs_se
 extern const struct cs_table cs_spring_table, cs_elastic_table;
 extern const char *const cs_pin_names[];
 extern const char *const cs_mesh_shape_names[];
-/* the method of a scene that names none: study/session.c chooses it by the scene */
+/* the method of a scene that names none: session/session.c chooses it by the scene */
 #define CS_INTEGRATOR_DEFAULT "automatic"
 /* Typed access to the lists of a scene. */
 static inline struct cs_body *cs_scene_bodies(const struct cs_scene *scene) {

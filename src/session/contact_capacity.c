@@ -1,5 +1,5 @@
 /* Compares the capacity of the barrier with the energy of approach, interface by interface. */
-#include "session/contact_capacity.h"
+#include "session/session.h"
 
 #include "model/contact/approach.h"
 #include "model/contact/barrier_law.h"

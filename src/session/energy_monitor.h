@@ -41,7 +41,7 @@
 #define CS_ENERGY_MONITOR_H
 
 #include "base/table.h"
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 #include "model/force/diagnostics.h"
 

@@ -12,7 +12,7 @@
 #include "draw/render.h"
 #include "io/png.h"
 #include "scene/picture_keys.h"
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 /* A ramp of a number that only pictures show (cs_event_key_is_picture). */
 struct cs_picture_ramp {

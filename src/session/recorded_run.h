@@ -12,7 +12,7 @@
 #include "model/contact/ccd/crossings.h"
 #include "session/energy_monitor.h"
 #include "session/session.h"
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 /* Statistics of crossings over the frames of a run. */
 

@@ -12,7 +12,6 @@
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"
 #include "scene/force_keys.h"
-#include "session/contact_capacity.h"
 #include "session/scene_findings.h"
 
 #include <math.h>

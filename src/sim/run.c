@@ -1,5 +1,5 @@
 /* run.c - creates a method, advances it frame by frame, and restarts it at events. */
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 #include "model/contact/bristle_law.h"
 #include "model/system/seams.h"

@@ -4,7 +4,7 @@
  * system, counts, history of the method. On reading, the method is restarted on the restored
  * system first, and then loads its history. Counts are restored last, because these calls
  * count too. */
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 #include "model/contact/bristle_law.h"
 #include "model/event/event_state.h"

@@ -1,7 +1,6 @@
 /* The reference: its own error, a planted bug, the horizon, the cache. */
 #include "scene.h"
 
-#include "study/reference/compare_reference.h"
 #include "study/reference/compare_reference_state.h"
 
 #include <math.h>

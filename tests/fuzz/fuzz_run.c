@@ -7,7 +7,7 @@
 #include "scene/shape.h"
 #include "session/session.h"
 #include "sim/crash.h"
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "fixture.h"
 #include "model/contact/approach.h"
 #include "model/contact/barrier_law.h"
-#include "session/contact_capacity.h"
+#include "session/session.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 
 #include "base/pool.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
  * which events, contact and methods with a memory are at work. */
 #include "fixture.h"
 
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 #include <string.h>
 

@@ -6,7 +6,7 @@
 #include "base/pool.h"
 #include "model/contact/barrier_law.h"
 #include "model/contact/bristle_law.h"
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 #include <math.h>
 #include <string.h>

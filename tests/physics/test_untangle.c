@@ -5,7 +5,7 @@
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/posed_collider.h"
 #include "model/force/diagnostics.h"
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 #include <math.h>
 #include <stdio.h>

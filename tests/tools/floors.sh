@@ -54,7 +54,7 @@ awk '
                 wrong(FILENAME " includes " quoted[2] ": not on a lower floor")
             connect(here, unit_of(quoted[2]), "includes " quoted[2])
         }
-        if (quoted[2] ~ /^sim\/(run_)?host.h$/ && from != "sim") wrong(FILENAME " includes sim/host.h: see the doors in sim/run.h")
+        if (quoted[2] ~ /^sim\/(run_)?host.h$/ && from != "sim") wrong(FILENAME " includes sim/host.h: see the doors in sim/run_state.h")
         if (from ~ walled && to ~ inner && !(quoted[2] in door)) {
             wrong(FILENAME " includes " quoted[2] ": behind the wall, see src/session")
         }

@@ -15,10 +15,10 @@ import sources
 # the figure, its limit, what it is
 # lowered with each thing that is made smaller, towards 300 units, 180 headers, 48,000 lines
 LIMITS = (
-    ("units", "most", 303, "units in src (NAME.c, NAME.h or both)"),
-    ("headers", "most", 185, "headers in src"),
+    ("units", "most", 301, "units in src (NAME.c, NAME.h or both)"),
+    ("headers", "most", 181, "headers in src"),
     ("arrows", "most", 38, "arrows between rooms"),
-    ("code", "most", 63594, "lines of code in src"),
+    ("code", "most", 63569, "lines of code in src"),
     ("comments", "least", 15.0, "% of the lines of code and comment in src are comment"),
 )
 # a type that one header declares, and that alternatives define: no program sees two of them

@@ -2,10 +2,10 @@
 #include "stability/extreme.h"
 
 #include "base/clock.h"
-#include "session/extreme_scene.h"
 #include "session/perturb.h"
 #include "session/process_pool.h"
 #include "session/session.h"
+#include "session/study_scenes.h"
 
 #include <math.h>
 #include <stdio.h>

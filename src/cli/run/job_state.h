@@ -125,7 +125,7 @@ struct cs_job {
     struct cs_row_log ledger_log;       /* CSV of it */
     struct cs_text scene;               /* the resolved scene, indented by two */
     struct cs_text method;              /* "NAME:key=value,..." with every option */
-    struct cs_text provenance;          /* see study/provenance_write.h */
+    struct cs_text provenance;          /* see session/provenance_write.h */
     struct cs_text picture_provenance;  /* what each picture carries */
     struct cs_text renderer;            /* description; empty unless pictures are drawn */
     char scene_hash[CS_HASH_DIGITS];    /* see scene/file/scene_hash.h */

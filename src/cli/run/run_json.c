@@ -4,8 +4,8 @@
 #include "base/pool.h"
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
-#include "session/contact_capacity.h"
 #include "session/provenance_write.h"
+#include "session/session.h"
 
 #include <cjson/cJSON.h>
 #include <stdlib.h>

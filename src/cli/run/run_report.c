@@ -3,7 +3,6 @@
 
 #include "base/pool.h"
 #include "cli/line/print.h"
-#include "session/contact_capacity.h"
 #include "session/session.h"
 
 #include <stdarg.h>

@@ -22,7 +22,7 @@
 #include "model/system/surfaces.h"
 
 /* Largest number of parts of an edge. Colliders that are finer still can pass, and
- * study/overlap_warning.h warns of them. */
+ * session/scene_findings.h warns of them. */
 enum { CS_CONTACT_SAMPLE_PARTS_MAX = 16 };
 
 /* Edges or triangles [begin, end) of a system against one collider; one thread at a time

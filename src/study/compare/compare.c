@@ -11,7 +11,7 @@
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_state.h"
 #include "study/compare/equal_error.h"
-#include "study/reference/compare_reference.h"
+#include "study/reference/compare_reference_state.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,11 +6,11 @@
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_cell.h"
 #include "study/compare/timing_rounds.h"
-#include "study/reference/compare_reference.h"
+#include "study/reference/compare_reference_state.h"
 
 /* The error norms that a comparison can be ranked by. */
 
-/* Position norms come first (see compare_state.c); all are distances to the reference. */
+/* Position norms come first (see compare_measure.c); all are distances to the reference. */
 enum cs_norm {
     CS_NORM_END,
     CS_NORM_PATH,

@@ -2,7 +2,7 @@
 #include "study/compare/compare.h"
 
 #include "base/file.h"
-#include "session/scene_axis.h"
+#include "session/study_scenes.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,4 @@
 /* Computes the verified reference: four runs, their differences, and whether they agree. */
-#include "study/reference/compare_reference.h"
-
 #include "study/reference/compare_reference_state.h"
 
 #include <math.h>

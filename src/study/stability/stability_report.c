@@ -3,7 +3,7 @@
 #include "study/stability/stability.h"
 
 #include "base/json_writer.h"
-#include "session/contact_capacity.h"
+#include "session/session.h"
 #include "study/stability/stability_state.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "base/hash.h"
 #include "base/table.h"
 #include "base/text.h"
-#include "session/scene_axis.h"
+#include "session/study_scenes.h"
 #include "session/theory.h"
 #include "study/stability_verdict.h"
 
