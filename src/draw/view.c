@@ -211,7 +211,11 @@ static struct cs_bounding_sphere coarse(const struct cs_bounding_sphere *solid) 
     return ball;
 }
 
-void cs_light_frustum_fit(const struct cs_bounding_sphere *solid, struct cs_view_light *block) {
+/* Fits a light's frustum to the sphere `solid` of all casters. Writes world_to_light and
+ * shadow_params[0..2]: 1 / side; texel size in m at the centre; 1 or 0: shadows on. They are
+ * off if a lamp is within 1.05 radii of the centre. */
+static void fit_light_frustum(const struct cs_bounding_sphere *solid,
+                              struct cs_view_light *block) {
     static const double up[3] = {0, 1, 0};
     double eye[3], from[3], look[16], lens[16], both[16];
     const struct cs_bounding_sphere ball = coarse(solid), *lit = &ball;
@@ -242,7 +246,7 @@ void cs_light_frustum_fit(const struct cs_bounding_sphere *solid, struct cs_view
 void cs_light_frusta_fit(const struct cs_bounding_sphere *sphere, struct cs_view_state *view) {
     for (uint32_t k = 0; k < view->n_lights; k++)
         if (view->casts[k])
-            cs_light_frustum_fit(sphere, view->block.lights + k);
+            fit_light_frustum(sphere, view->block.lights + k);
 }
 
 struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, const double *x,

@@ -84,11 +84,6 @@ void cs_view_upload(struct cs_view_state *view);
 
 enum { CS_SHADOW_SIDE = 512 }; /* texels: coarse enough to blur the edges */
 
-/* Fits a light's frustum to the sphere `solid` of all casters. Writes world_to_light and
- * shadow_params[0..2]: 1 / side; texel size in m at the centre; 1 or 0: shadows on. They are
- * off if a lamp is within 1.05 radii of the centre. */
-void cs_light_frustum_fit(const struct cs_bounding_sphere *sphere, struct cs_view_light *light);
-
 /* Fits those of all lights of the view that cast shadows. */
 void cs_light_frusta_fit(const struct cs_bounding_sphere *sphere, struct cs_view_state *view);
 

@@ -173,7 +173,9 @@ static bool is_pictured(const char *plain) {
     return false;
 }
 
-bool cs_event_key_is_picture(const char *path) {
+/* Returns true for a key of the pictures: a ramp of it changes neither steps nor states, and
+ * pictures take its value at their time (session/frame_picture.h). */
+static bool is_picture_key(const char *path) {
     char plain[CS_TEXT_MAX];
     size_t n = 0;
     bool inside = false;
@@ -187,7 +189,7 @@ bool cs_event_key_is_picture(const char *path) {
 }
 
 bool cs_event_is_picture(const struct cs_event *event) {
-    return event->ramp.present && cs_event_key_is_picture(event->ramp.key);
+    return event->ramp.present && is_picture_key(event->ramp.key);
 }
 
 /* Checks that the number may change during a run. */

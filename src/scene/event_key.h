@@ -18,10 +18,6 @@ struct cs_event_key {
 enum cs_status cs_event_key_find(struct cs_scene *scene, const char *path,
                                  struct cs_event_key *key, struct cs_error *error);
 
-/* Returns true for a key of the pictures: a ramp of it changes neither steps nor states, and
- * pictures take its value at their time (session/frame_picture.h). */
-bool cs_event_key_is_picture(const char *path);
-
 /* Returns true for an event that is a ramp of such a key: it has no times in a run. */
 bool cs_event_is_picture(const struct cs_event *event);
 

@@ -14,7 +14,7 @@
 #include "scene/picture_keys.h"
 #include "sim/run_state.h"
 
-/* A ramp of a number that only pictures show (cs_event_key_is_picture). */
+/* A ramp of a number that only pictures show (is_picture_key). */
 struct cs_picture_ramp {
     double *value;          /* in `drawn` */
     double from, to, start; /* s, s, the number before all ramps */

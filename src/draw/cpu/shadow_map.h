@@ -27,7 +27,7 @@ struct cs_shadow_map {
 enum cs_status cs_shadow_map_init(struct cs_shadow_map *map, struct cs_arena *arena,
                                   struct cs_error *error);
 
-/* Takes the light frustum of a light (cs_light_frustum_fit). Returns true if it changed
+/* Takes the light frustum of a light (fit_light_frustum). Returns true if it changed
  * and shadows are on: the lists of casters must then be projected again. */
 bool cs_shadow_map_set_frustum(struct cs_shadow_map *map, const struct cs_view_light *light);
 

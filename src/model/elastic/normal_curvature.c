@@ -140,7 +140,8 @@ void cs_normal_curvature_add(const struct cs_system *system, const struct cs_blo
     }
 }
 
-double cs_normal_curvature_energy(const struct cs_system *system, const double *x) {
+/* Energy in J of the bodies that are curved at rest. */
+static double curvature_energy(const struct cs_system *system, const double *x) {
     double sum = 0;
     for (uint32_t b = 0; b < system->bendings->n; b++) {
         const struct cs_bending *bending = system->bendings->bodies + b;
@@ -215,8 +216,9 @@ static bool next_stencil(const struct cs_system *system, struct walk *walk) {
     return true;
 }
 
-void cs_normal_curvature_add_bound(const struct cs_system *system, const double *x,
-                                   double *stiffness, double *damping) {
+/* Adds row sums at a state. */
+static void add_curvature_bound(const struct cs_system *system, const double *x,
+                                double *stiffness, double *damping) {
     struct walk walk = {0};
     while (next_stencil(system, &walk))
         for (int damped = 0; damped < 2; damped++) {
@@ -322,7 +324,7 @@ double cs_bendings_energy(const struct cs_system *system, const double *x) {
             sum += stencil_energy(&stencil, system->view.n, x);
         }
     }
-    return sum + cs_normal_curvature_energy(system, x);
+    return sum + curvature_energy(system, x);
 }
 
 /* Adds rows of a stencil's matrix: its diagonal, or the sum of magnitudes. */
@@ -373,5 +375,5 @@ void cs_bendings_add_bound(const struct cs_system *system, const double *x, doub
     for (uint32_t i = 0; i < system->view.n; i++)
         stiffness[i] += system->bendings->row_sums[i];
     if (system->bendings->normal.x)
-        cs_normal_curvature_add_bound(system, x, stiffness, damping);
+        add_curvature_bound(system, x, stiffness, damping);
 }

@@ -89,11 +89,6 @@ void cs_normal_curvature_prepare_product(const struct cs_system *system, const d
 void cs_normal_curvature_add(const struct cs_system *system, const struct cs_block *block,
                              double factor, double *y);
 
-/* Energy in J of the bodies that are curved at rest. */
-double cs_normal_curvature_energy(const struct cs_system *system, const double *x);
-/* Adds row sums at a state. */
-void cs_normal_curvature_add_bound(const struct cs_system *system, const double *x,
-                                   double *stiffness, double *damping);
 /* Sets the diagonal blocks (6,n) of cd df/dv + ck df/dx at the matrix's state, and stores the
  * state if it is kept; with matrix->bound and not kept, their upper bound. */
 void cs_normal_curvature_prepare_matrix(const struct cs_system *system,

@@ -36,10 +36,6 @@ void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out);
 /* Names of the columns of the energy balance, by enum cs_ledger_work. */
 extern const char *const cs_table_work_names[];
 
-/* True if a column of the energy balance has an entry; the method's own work is always shown.
- */
-bool cs_table_shows_work(const struct cs_compare *compare, int work);
-
 /* Makes the comparison and fills compare.csv. If there is no valid reference, the cells have
  * costs and counts only: that is a result. On failure the finished rows stay in compare.csv.
  * settings must outlive *compare; cs_compare_finish must be called in any case. CS_ERR_USAGE

@@ -164,7 +164,9 @@ const char *const cs_table_work_names[] = {
 #undef X
 };
 
-bool cs_table_shows_work(const struct cs_compare *compare, int work) {
+/* True if a column of the energy balance has an entry; the method's own work is always shown.
+ */
+static bool shows_work(const struct cs_compare *compare, int work) {
     const struct cs_cell_list *list = &compare->cells;
     bool shown = false, any = false;
     for (uint32_t k = 0; k < list->n; k++) {
@@ -177,11 +179,11 @@ bool cs_table_shows_work(const struct cs_compare *compare, int work) {
 void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out) {
     const struct cs_cell_list *list = &compare->cells;
     const int width = name_width(compare);
-    if (!cs_table_shows_work(compare, CS_WORK_INTEGRATOR))
+    if (!shows_work(compare, CS_WORK_INTEGRATOR))
         return;
     cs_text_add(out, "%-*s %-14s", width, "J since the start", "");
     for (int w = 0; w < CS_WORKS; w++)
-        if (cs_table_shows_work(compare, w))
+        if (shows_work(compare, w))
             cs_text_add(out, " %10s", cs_table_work_names[w]);
     cs_text_add(out, "\n");
     for (uint32_t k = 0; k < list->n; k++) {
@@ -190,7 +192,7 @@ void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out) 
             continue;
         add_control(cell, width, out);
         for (int w = 0; w < CS_WORKS; w++)
-            if (cs_table_shows_work(compare, w))
+            if (shows_work(compare, w))
                 cs_text_add(out, " %10.2e", cell->ledger[w]);
         cs_text_add(out, "\n");
     }

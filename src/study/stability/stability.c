@@ -48,9 +48,12 @@ static enum cs_status try_step(const struct cs_sampled_run_settings *settings,
     return CS_OK;
 }
 
-enum cs_status cs_stability_run_cell(const struct cs_sampled_run_settings *settings,
-                                     const struct cs_reference *reference, double dt,
-                                     struct cs_stability_cell *cell, struct cs_error *error) {
+/* Runs one cell with the step dt in s and judges it by a reference, over the time of the
+ * reference or CS_CELL_STEPS steps, whichever is shorter. A blow-up or a failed method is a
+ * verdict. Errors: those of cs_sampled_run_execute; *cell is then undefined. */
+static enum cs_status run_map_cell(const struct cs_sampled_run_settings *settings,
+                                   const struct cs_reference *reference, double dt,
+                                   struct cs_stability_cell *cell, struct cs_error *error) {
     return try_step(settings, reference, dt, CS_CELL_STEPS * dt, cell, error);
 }
 
@@ -155,7 +158,7 @@ static enum cs_status try_cell(const struct cs_sampled_run_settings *settings,
                                const struct cs_stability_column *column, double dt,
                                struct cs_stability_cell *cell, struct cs_error *error) {
     if (column->reference.exists)
-        return cs_stability_run_cell(settings, &column->reference, dt, cell, error);
+        return run_map_cell(settings, &column->reference, dt, cell, error);
     *cell = (struct cs_stability_cell){.dt = dt,
                                        .verdict = CS_STABILITY_UNJUDGED,
                                        .drift = (double)NAN,

@@ -67,13 +67,6 @@ struct cs_stability_cell {
     double crossings;   /* most of all samples; NAN where they are not counted */
 };
 
-/* Runs one cell with the step dt in s and judges it by a reference, over the time of the
- * reference or CS_CELL_STEPS steps, whichever is shorter. A blow-up or a failed method is a
- * verdict. Errors: those of cs_sampled_run_execute; *cell is then undefined. */
-enum cs_status cs_stability_run_cell(const struct cs_sampled_run_settings *settings,
-                                     const struct cs_reference *reference, double dt,
-                                     struct cs_stability_cell *cell, struct cs_error *error);
-
 /* Finds the largest stable step in s, *border, to 1 %.
  *
  * stable: a stable step, 0 if none is known. unstable: an unstable one, HUGE_VAL if none is
