@@ -3,7 +3,7 @@
  * Every shape but planes and meshes is a core - a point, a segment or a box - and all points
  * within `radius` of it: sphere, capsule, box with rounded edges. A floor is a plane. A mesh
  * has no distance here: bodies meet its features in pairs (model/contact/narrow_phase), and
- * model/contact/surface_points.h gives the positions of its vertices.
+ * model/contact/contact_samples.h gives the positions of its vertices.
  *
  * A new shape needs: its keys and its line in CS_SHAPE_LIST (collider_keys.h), shape_NAME.c
  * with cs_NAME_keys and cs_shape_NAME, and that file in meson.build.

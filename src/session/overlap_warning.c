@@ -4,7 +4,6 @@
 #include "base/vec3.h"
 #include "model/contact/ccd/edge_triangle.h"
 #include "model/contact/contact_samples.h"
-#include "model/contact/surface_points.h"
 #include "model/system/surfaces.h"
 #include "scene/body_keys.h"
 #include "scene/body_pairs.h"

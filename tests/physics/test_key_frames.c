@@ -5,9 +5,9 @@
 
 #include "base/vec3.h"
 #include "model/contact/ccd/crossings.h"
+#include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/posed_collider.h"
-#include "model/contact/surface_points.h"
 #include "sim/energy_ledger.h"
 
 #include <math.h>

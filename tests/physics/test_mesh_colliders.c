@@ -4,9 +4,9 @@
 
 #include "model/contact/ccd/accd.h"
 #include "model/contact/ccd/crossings.h"
+#include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/posed_collider.h"
-#include "model/contact/surface_points.h"
 #include "model/force/terms.h"
 #include "model/plan.h"
 #include "scene/file/scene_read.h"

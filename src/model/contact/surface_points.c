@@ -1,5 +1,5 @@
 /* Copies particles beside the vertices of mesh colliders, which are posed like any collider. */
-#include "model/contact/surface_points.h"
+#include "model/contact/contact_samples.h"
 
 #include "mesh/trimesh.h"
 #include "model/contact/posed_collider.h"

@@ -20,7 +20,6 @@
 #include "model/contact/collider_params.h"
 #include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
-#include "model/contact/surface_points.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "model/post_step/contact_projection.h"

@@ -1,8 +1,8 @@
 /* Refuses surfaces in contact that touch at the start. */
 #include "base/text.h"
 #include "model/contact/ccd/accd.h"
+#include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
-#include "model/contact/surface_points.h"
 #include "model/post_step/contact_projection.h"
 
 /* m: surfaces this close touch. No side of the other one can be told from rounding then, so

@@ -124,7 +124,7 @@ struct cs_system {
     struct cs_lagged_friction
         *lagged_friction; /* NULL unless the method asks for it (lagged_friction.h) */
     const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
-    struct cs_points *points;       /* NULL unless colliders are meshes (surface_points.h) */
+    struct cs_points *points;       /* NULL unless colliders are meshes (contact_samples.h) */
     struct cs_crossings *crossings; /* NULL unless asked for (body_pairs.h) */
     struct cs_seams *seams;         /* stitches between particles; NULL: none (seams.h) */
     struct cs_gas *gas;             /* shut in; NULL: none is (force/term_pressure.c) */

@@ -9,7 +9,6 @@
 #include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/step_check.h"
-#include "model/contact/surface_points.h"
 #include "model/system/surfaces.h"
 #include "scene/body_pairs.h"
 

@@ -14,8 +14,8 @@
 #include "base/pool.h"
 #include "model/contact/ccd/accd.h"
 #include "model/contact/ccd/edge_triangle.h"
+#include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
-#include "model/contact/surface_points.h"
 #include "model/system/seams.h"
 #include "scene/body_pairs.h"
 

@@ -5,7 +5,7 @@
 #include "model/contact/narrow_phase/active_contacts.h"
 
 #include "base/pool.h"
-#include "model/contact/surface_points.h"
+#include "model/contact/contact_samples.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -7,9 +7,9 @@
 #include "model/contact/narrow_phase/contact_pairs.h"
 
 #include "base/vector.h"
+#include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/active_contacts.h"
 #include "model/contact/narrow_phase/narrow_phase.h"
-#include "model/contact/surface_points.h"
 #include "model/force/terms.h"
 #include "scene/body_pairs.h"
 

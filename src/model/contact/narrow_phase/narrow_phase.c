@@ -17,9 +17,9 @@
 
 #include "base/pool.h"
 #include "model/contact/collider_params.h"
+#include "model/contact/contact_samples.h"
 #include "model/contact/lagged_friction.h"
 #include "model/contact/narrow_phase/pair_lanes.h"
-#include "model/contact/surface_points.h"
 #include "scene/contact_keys.h"
 
 #include <string.h>

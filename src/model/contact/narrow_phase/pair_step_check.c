@@ -10,9 +10,9 @@
 #include "base/pool.h"
 #include "base/vector.h"
 #include "model/contact/barrier_law.h"
+#include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/pair_contact.h"
 #include "model/contact/step_check.h"
-#include "model/contact/surface_points.h"
 
 #include <math.h>
 
