@@ -257,19 +257,18 @@ struct look {
     uint32_t number;
 };
 
-/* Checks that the owner of a side, which name says, has the particles; part: "" or ".to". */
-static enum cs_status check_particles(const struct look *look, const char *part,
-                                      const struct cs_list *particles,
-                                      const struct cs_body *owner, const char *name) {
+enum cs_status cs_particles_check(const struct cs_check *check, const char *path,
+                                  const struct cs_list *particles, const struct cs_body *owner,
+                                  const char *name) {
     const struct cs_pin *pins = particles->items;
-    char path[96], fault[160];
+    char place[128], fault[160];
     for (uint32_t p = 0; p < particles->n; p++) {
-        snprintf(path, sizeof path, "seams[%u]%s.particles[%u]", look->number, part, p);
+        snprintf(place, sizeof place, "%s.particles[%u]", path, p);
         if (cs_shape_pin_fault(owner, pins + p, fault, sizeof fault))
-            return cs_check_refuse(look->check, path, "%s: %s", name, fault);
+            return cs_check_refuse(check, place, "%s: %s", name, fault);
         if (pins[p].to.present)
-            return cs_check_refuse(look->check, path,
-                                   "found to, which only pins of a body have");
+            return cs_check_refuse(check, place,
+                                   "found to, which only pins of a body and a grab have");
     }
     return CS_OK;
 }
@@ -290,8 +289,9 @@ static enum cs_status check_side(const struct look *look, const char *part,
         return cs_check_refuse(look->check, path, "body %lld does not exist (0..%u)",
                                (long long)side->body, n - 1);
     snprintf(name, sizeof name, "body %u", (uint32_t)side->body);
-    return check_particles(look, part, &side->particles,
-                           cs_scene_bodies(look->scene) + side->body, name);
+    snprintf(path, sizeof path, "seams[%u]%s", look->number, part);
+    return cs_particles_check(look->check, path, &side->particles,
+                              cs_scene_bodies(look->scene) + side->body, name);
 }
 
 /* Checks the side of a seam that is a collider, which takes no spring. */
@@ -321,7 +321,8 @@ static enum cs_status check_collider(const struct look *look, const struct cs_se
                                "stiffness, damping, length, breaking_length or breaking_force; "
                                "expected closing_time alone, and an event unsew to open it");
     snprintf(name, sizeof name, "collider %u", (uint32_t)holder.collider);
-    return check_particles(look, ".to", particles, &mesh, name);
+    snprintf(path, sizeof path, "seams[%u].to", look->number);
+    return cs_particles_check(look->check, path, particles, &mesh, name);
 }
 
 /* Checks one seam: sides, weights, lengths. */

@@ -37,6 +37,12 @@ enum cs_status cs_check_faces(const struct cs_check *check, const char *body,
 enum cs_status cs_elastic_check(const struct cs_check *check, const char *body,
                                 const struct cs_body *of);
 
+/* Checks that a body, or the mesh of a collider, has the particles of a list at `path`; name:
+ * "body 0". */
+enum cs_status cs_particles_check(const struct cs_check *check, const char *path,
+                                  const struct cs_list *particles, const struct cs_body *owner,
+                                  const char *name);
+
 /* Checks that bodies, particles, weights and lengths of the scene's seams are possible. */
 enum cs_status cs_seams_check(const struct cs_check *check, const struct cs_scene *scene);
 

@@ -74,36 +74,24 @@ static enum cs_status check_times(const struct look *at, const struct cs_event *
     return CS_OK;
 }
 
-/* Checks that a body has the selected particles. */
-static enum cs_status check_particles(const struct look *at, const char *part,
-                                      const struct cs_event_target *target, uint32_t body) {
-    const struct cs_pin *pins = target->particles.items;
-    char place[64], fault[160];
-    for (uint32_t p = 0; p < target->particles.n; p++) {
-        snprintf(place, sizeof place, "%s.particles[%u]", part, p);
-        if (cs_shape_pin_fault(cs_scene_bodies(at->scene) + body, pins + p, fault,
-                               sizeof fault))
-            return refuse_event(at, place, "body %u: %s", body, fault);
-        if (pins[p].to.present)
-            return refuse_event(at, place,
-                                "found to, which only pins of a body and a grab have");
-    }
-    return CS_OK;
-}
-
 /* Checks that the target's body exists, and its particles in each body that it means. */
 static enum cs_status check_aim(const struct look *at, const char *part,
                                 const struct cs_event_target *target) {
     const uint32_t n = at->scene->bodies.n;
-    char place[64];
+    const struct cs_check check = {at->path, at->error};
+    char place[64], name[32];
     snprintf(place, sizeof place, "%s.body", part);
     if (target->body >= n)
         return refuse_event(at, place, "body %lld does not exist (0..%u)",
                             (long long)target->body, n - 1);
-    for (uint32_t b = 0; b < n; b++)
-        if ((target->body < 0 || target->body == b) && check_particles(at, part, target, b))
-            return at->error->status;
-    return CS_OK;
+    snprintf(place, sizeof place, "events[%u]%s", at->number, part);
+    for (uint32_t b = 0; b < n && !at->error->status; b++) {
+        snprintf(name, sizeof name, "body %u", b);
+        if (target->body < 0 || target->body == b)
+            cs_particles_check(&check, place, &target->particles,
+                               cs_scene_bodies(at->scene) + b, name);
+    }
+    return at->error->status;
 }
 
 /* Returns true if the scene's wind, or that of an earlier event, has a direction. */
