@@ -98,7 +98,7 @@ static bool grabs(const struct cs_event *event) {
 }
 
 static bool releases(const struct cs_event *event) {
-    return event->release.present || event->unsew.present ||
+    return event->release.present ||
            ((event->pin.present || event->grab.present) && isnan(event->at));
 }
 
@@ -198,7 +198,8 @@ void cs_events_set_bounds(struct cs_system *system, double *work) {
             *state->value = event->ramp.value;
     }
     refresh(system);
-    if (any(&events->scene, releases))
+    // what is sewn to colliders may be opened
+    if (any(&events->scene, releases) || events->seam_of)
         for (uint32_t p = 0; p < system->n_pinned; p++)
             system->inv_mass[system->pinned[p]] = 1 / system->mass[system->pinned[p]];
     cs_spectral_bounds_set(system, work);
