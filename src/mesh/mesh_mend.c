@@ -390,8 +390,10 @@ bool cs_polygon_cut(const double (*x)[3], uint32_t n, uint32_t *next, uint32_t *
     bool is_fan = true;
     for (uint32_t i = 0; i < n; i++)
         next[i] = (i + 1) % n;
+    // one too long for ears is a fan if it is convex but for rounding
     for (uint32_t i = 2; i < n && n > 3; i++)
-        is_fan = is_fan && turn_of(x[0], x[i - 1], x[i], normal) > least;
+        is_fan = is_fan &&
+                 turn_of(x[0], x[i - 1], x[i], normal) > (n > CS_POLYGON_MAX ? -least : least);
     /* goes round until an ear is cut off, or a whole round has found none */
     uint32_t before = 0, left = n, missed = 0;
     while (!is_fan && n <= CS_POLYGON_MAX && left > 3 && missed < left) {
