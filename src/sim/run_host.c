@@ -13,6 +13,7 @@
 #include "scene/body_pairs.h"
 #include "scene/force_keys.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
 #include <string.h>
 
@@ -239,13 +240,12 @@ void cs_blow_up_check_after_events(struct cs_blow_up_check *check, struct cs_sys
         check->speed += 2 * system->mass[i] * speed * speed;
 }
 
-typedef double lanes __attribute__((vector_size(2 * sizeof(double))));
-
-static inline lanes load(const double *from) {
-    lanes out;
-    memcpy(&out, from, sizeof out);
-    return out;
-}
+/* Four lanes of a sum, at any address. */
+enum { LANES = 4 };
+typedef double lanes __attribute__((vector_size(LANES * sizeof(double))));
+typedef double loaded
+    __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
+#define load(from) (*(const loaded *)(from))
 
 /* The state to check, component-major. */
 struct watched {
@@ -256,24 +256,19 @@ struct watched {
 /* Kinetic energy in J of the particles [begin, end); not finite if a position or velocity
  * there is not: s - s is 0 for a finite s = x + y + z, else NaN. In lanes, because it runs
  * after every step. */
-static double watch_part(const void *arg, size_t begin, size_t end) {
-    enum { LANES = sizeof(lanes) / sizeof(double) };
+CS_CLONES static double watch_part(const void *arg, size_t begin, size_t end) {
     const struct watched *watched = arg;
     const size_t n = watched->n;
     const double *mass = watched->mass, *x = watched->x, *v = watched->v;
-    /* two sums of each, so that one addition need not wait for the one before */
-    lanes e[2] = {{0}}, p[2] = {{0}};
+    lanes e = {0}, p = {0};
     size_t i = begin;
-    for (; i + 2 * LANES <= end; i += 2 * LANES)
-        for (size_t k = 0; k < 2; k++) {
-            const size_t at = i + k * LANES;
-            const lanes a = load(v + at), b = load(v + n + at), c = load(v + 2 * n + at);
-            const lanes sum = load(x + at) + load(x + n + at) + load(x + 2 * n + at);
-            e[k] += load(mass + at) * (a * a + b * b + c * c);
-            p[k] += sum - sum;
-        }
-    double energy = e[0][0] + e[0][1] + e[1][0] + e[1][1];
-    double places = p[0][0] + p[0][1] + p[1][0] + p[1][1];
+    for (; i + LANES <= end; i += LANES) {
+        const lanes a = load(v + i), b = load(v + n + i), c = load(v + 2 * n + i);
+        const lanes sum = load(x + i) + load(x + n + i) + load(x + 2 * n + i);
+        e += load(mass + i) * (a * a + b * b + c * c);
+        p += sum - sum;
+    }
+    double energy = e[0] + e[1] + e[2] + e[3], places = p[0] + p[1] + p[2] + p[3];
     for (; i < end; i++) {
         const double sum = x[i] + x[n + i] + x[2 * n + i];
         energy += mass[i] * (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);

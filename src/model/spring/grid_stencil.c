@@ -11,7 +11,7 @@ struct tile {
     /* rows of a direction, and from one to the next; zeros if the direction does not exist */
     const double *results[CS_DIRECTIONS];
     size_t strides[CS_DIRECTIONS];
-    size_t start, count;
+    size_t start, count, column; /* of its first particle, where rows are packed */
     _Alignas(64) double rows[CS_DIRECTIONS * NUMBERS_PER_SPRING_MAX * PADDED_TILE];
 };
 
@@ -97,6 +97,13 @@ CS_INLINE void drop_none(struct tile *tile, unsigned way) {
         *(last + k * PADDED_TILE - 1) = 0;
 }
 
+/* Directions that are computed side by side: from one number up to the next. Zeroes go into a
+ * group's results before the next group is computed: a vector that is read soon after a number
+ * in it was stored waits for that store. */
+static const unsigned groups[] = {CS_DIRECTION_RIGHT, CS_DIRECTION_DOWN, CS_DIRECTION_DOWN_TWO,
+                                  CS_DIRECTIONS};
+enum { GROUPS = sizeof groups / sizeof *groups - 1 };
+
 /* Computes those of the directions [first, last) that exist, side by side if the kernel can. */
 CS_INLINE void make_directions(struct tile *tile, const struct stencil_input *in,
                                unsigned first, unsigned last) {
@@ -132,15 +139,13 @@ CS_INLINE void make_tile(struct tile *tile, const bool at[3]) {
     for (unsigned way = 0; way < CS_DIRECTIONS && alone; way++)
         if (tile->fan->directions[way])
             make_alone(tile, &in, way);
-    if (!alone && at[0])
-        make_directions(tile, &in, CS_DIRECTION_RIGHT, CS_DIRECTION_DOWN);
-    if (!alone && (at[0] || at[1]))
-        make_directions(tile, &in, CS_DIRECTION_DOWN, CS_DIRECTION_DOWN_TWO);
-    if (!alone && (at[0] || at[2]))
-        make_directions(tile, &in, CS_DIRECTION_DOWN_TWO, CS_DIRECTIONS);
-    for (unsigned way = 0; way < CS_DIRECTIONS && !alone; way++)
-        if (tile->fan->directions[way])
-            drop_none(tile, way);
+    for (unsigned g = 0; g < GROUPS && !alone; g++) {
+        if (at[0] || (g > 0 && at[g]))
+            make_directions(tile, &in, groups[g], groups[g + 1]);
+        for (unsigned way = groups[g]; way < groups[g + 1]; way++)
+            if (tile->fan->directions[way])
+                drop_none(tile, way);
+    }
 }
 
 /* Copies the results of the tile's last two particles to the margin before the next tile, whose
@@ -277,8 +282,8 @@ CS_CLONES void cs_grid_stencil_add(const struct spring_job *job, const struct cs
 CS_INLINE void drop_column(struct tile *tile, unsigned way, size_t column) {
     const size_t columns = tile->fan->first->columns;
     double *rows = rows_of(tile, way);
-    for (size_t i = (column + columns - tile->start % columns) % columns; i < tile->count;
-         i += columns)
+    for (size_t i = column + (column < tile->column ? columns : 0) - tile->column;
+         i < tile->count; i += columns)
         for (size_t k = 0; k < tile->parts; k++)
             rows[k * PADDED_TILE + i] = 0;
 }
@@ -296,26 +301,31 @@ CS_INLINE void drop_packed(struct tile *tile, unsigned way, size_t end) {
             rows_of(tile, way)[k * PADDED_TILE + i] = 0;
 }
 
+/* Computes a direction, unless `in` is NULL because it was computed, and drops what does not
+ * exist of it. The grid has `left` particles from the tile on. */
+CS_INLINE void finish_packed(struct tile *tile, unsigned way, const struct stencil_input *in,
+                             size_t left) {
+    if (!tile->fan->directions[way])
+        return;
+    const struct stencil_direction alone = direction_of(tile, way);
+    const size_t stop = left > alone.offset ? left - alone.offset : 0;
+    const size_t end = stop < tile->count ? stop : tile->count;
+    if (in)
+        tile->kernel->passes[0](in, &alone, 0, end);
+    drop_packed(tile, way, end);
+}
+
 /* Computes a tile of a grid of `all` particles; near its end direction by direction, so that
  * nothing beyond it is read. */
 CS_INLINE void make_packed(struct tile *tile, size_t all) {
     const struct stencil_input in = in_of(tile);
     const size_t left = all - tile->start;
     const bool inside = tile->count + 2 * (size_t)tile->fan->first->columns < left;
-    if (inside) {
-        make_directions(tile, &in, CS_DIRECTION_RIGHT, CS_DIRECTION_DOWN);
-        make_directions(tile, &in, CS_DIRECTION_DOWN, CS_DIRECTION_DOWN_TWO);
-        make_directions(tile, &in, CS_DIRECTION_DOWN_TWO, CS_DIRECTIONS);
-    }
-    for (unsigned way = 0; way < CS_DIRECTIONS; way++) {
-        if (!tile->fan->directions[way])
-            continue;
-        const struct stencil_direction alone = direction_of(tile, way);
-        const size_t stop = left > alone.offset ? left - alone.offset : 0;
-        const size_t end = stop < tile->count ? stop : tile->count;
-        if (!inside)
-            tile->kernel->passes[0](&in, &alone, 0, end);
-        drop_packed(tile, way, end);
+    for (unsigned g = 0; g < GROUPS; g++) {
+        if (inside)
+            make_directions(tile, &in, groups[g], groups[g + 1]);
+        for (unsigned way = groups[g]; way < groups[g + 1]; way++)
+            finish_packed(tile, way, inside ? NULL : &in, left);
     }
 }
 
@@ -348,7 +358,7 @@ CS_INLINE void keep_before(struct tile *tile, bool first) {
         const ptrdiff_t kept = (ptrdiff_t)direction_of(tile, way).offset + 1;
         for (size_t k = 0; k < tile->parts; k++, rows += PADDED_TILE)
             for (ptrdiff_t i = -kept; i < 0; i++)
-                rows[i] = first ? 0 : rows[i + TILE];
+                rows[i] = first ? 0 : rows[i + PACKED_TILE];
     }
 }
 
@@ -364,9 +374,10 @@ CS_CLONES void cs_grid_stencil_add_packed(const struct spring_job *job,
     tile.job = job, tile.fan = stencil, tile.kernel = kernel;
     tile.parts = kernel->n_force + kernel->n_dfdx + kernel->n_dfdv;
     find_rows(&tile);
-    for (tile.start = 0; tile.start < end; tile.start += TILE) {
+    for (tile.start = 0; tile.start < end; tile.start += PACKED_TILE) {
         keep_before(&tile, tile.start == 0);
-        tile.count = end - tile.start < TILE ? end - tile.start : TILE;
+        tile.count = end - tile.start < PACKED_TILE ? end - tile.start : PACKED_TILE;
+        tile.column = tile.start % first->columns;
         make_packed(&tile, all);
         const size_t from = begin > tile.start ? begin - tile.start : 0;
         for (size_t k = 0; k < tile.parts; k++)

@@ -28,7 +28,8 @@ enum {
     MARGIN = 8, /* more than any spring reaches along the row, and a whole vector */
     PACKED_COLUMNS_MAX = 24, /* of rows that a tile packs; wider ones gain nothing */
     BEFORE = 2 * PACKED_COLUMNS_MAX + MARGIN, /* results that tiles of packed rows keep */
-    PADDED_TILE = BEFORE + TILE + MARGIN,
+    PACKED_TILE = 128,                        /* size of tiles of packed rows */
+    PADDED_TILE = BEFORE + PACKED_TILE + 2 * MARGIN, /* odd in cache lines */
     NUMBERS_PER_SPRING_MAX = 15, /* most results per spring: force 3, df/dx 6, df/dv 6 */
     DIRECTIONS_AT_ONCE = 3       /* directions that one loop computes side by side */
 };
