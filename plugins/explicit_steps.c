@@ -72,6 +72,13 @@ static void share(struct move *move) {
     parallel_for(host, host->view->n, move_part, move);
 }
 
+/* Stores the force at (t, x, v) in a, and runs a loop, in one pass where the host can. The loop
+ * divides the force by the mass, which saves a pass over memory. */
+static void evaluate_and_share(struct move *move, double t, const double *x, const double *v) {
+    const struct cs_loop loop = {move_part, move};
+    force_then(move->self->fixed.host, t, x, v, move->self->a, &loop);
+}
+
 /* Runs a loop over rows that updates x and v. */
 static void move_all(const struct explicit_method *self, double h, double *x, double *v,
                      void (*row)(const struct row *row)) {
@@ -79,11 +86,11 @@ static void move_all(const struct explicit_method *self, double h, double *x, do
     share(&move);
 }
 
-/* Stores the force in a. The next loop divides it by the mass, which saves a pass over
- * memory. */
-static void evaluate(struct explicit_method *self, double t, const double *x, const double *v) {
-    const struct cs_host *host = self->fixed.host;
-    host->force(host->ctx, t, x, v, CS_PART_ALL, self->a);
+/* The same with the force at (t, x, v). */
+static void evaluate_and_move(const struct explicit_method *self, double t, double h, double *x,
+                              double *v, void (*row)(const struct row *row)) {
+    struct move move = {.row = row, .self = self, .x = x, .v = v, .h = h};
+    evaluate_and_share(&move, t, x, v);
 }
 
 CS_CLONES static void explicit_euler_row(const struct row *row) {
@@ -97,8 +104,7 @@ CS_CLONES static void explicit_euler_row(const struct row *row) {
 
 enum cs_step step_explicit_euler(struct fixed_step *loop, double t, double h, double *x,
                                  double *v) {
-    evaluate(method_of(loop), t, x, v);
-    move_all(method_of(loop), h, x, v, explicit_euler_row);
+    evaluate_and_move(method_of(loop), t, h, x, v, explicit_euler_row);
     return CS_STEP_OK;
 }
 
@@ -113,8 +119,7 @@ CS_CLONES static void symplectic_euler_row(const struct row *row) {
 
 enum cs_step step_symplectic_euler(struct fixed_step *loop, double t, double h, double *x,
                                    double *v) {
-    evaluate(method_of(loop), t, x, v);
-    move_all(method_of(loop), h, x, v, symplectic_euler_row);
+    evaluate_and_move(method_of(loop), t, h, x, v, symplectic_euler_row);
     return CS_STEP_OK;
 }
 
@@ -130,8 +135,7 @@ CS_CLONES static void averaged_euler_row(const struct row *row) {
 
 enum cs_step step_averaged_euler(struct fixed_step *loop, double t, double h, double *x,
                                  double *v) {
-    evaluate(method_of(loop), t, x, v);
-    move_all(method_of(loop), h, x, v, averaged_euler_row);
+    evaluate_and_move(method_of(loop), t, h, x, v, averaged_euler_row);
     return CS_STEP_OK;
 }
 
@@ -167,13 +171,10 @@ CS_CLONES static void kick_row(const struct row *row) {
 enum cs_step step_velocity_verlet(struct fixed_step *loop, double t, double h, double *x,
                                   double *v) {
     struct explicit_method *self = method_of(loop);
-    if (loop->history_void) {
-        evaluate(self, t, x, v);
-        move_all(self, h, x, v, accelerate_row);
-    }
+    if (loop->history_void)
+        evaluate_and_move(self, t, h, x, v, accelerate_row);
     move_all(self, h, x, v, drift_row);
-    evaluate(self, t + h, x, v);
-    move_all(self, h, x, v, kick_row);
+    evaluate_and_move(self, t + h, h, x, v, kick_row);
     return CS_STEP_OK;
 }
 
@@ -220,17 +221,13 @@ enum cs_step step_position_verlet(struct fixed_step *loop, double t, double h, d
         self->h = self->h_before;
     }
     const bool start = self->h <= 0;
-    if (start) {
-        evaluate(self, t, x, v);
-        move_all(self, h, x, v, accelerate_row);
-    }
+    if (start)
+        evaluate_and_move(self, t, h, x, v, accelerate_row);
     const bool unknown = start || (loop->refused ? self->u_was_unknown : loop->history_void);
     if (unknown)
         move_all(self, h, x, v, last_half_step_row);
-    if (!start) {
-        evaluate(self, t, x, self->history);
-        move_all(self, h, x, v, accelerate_row);
-    }
+    if (!start)
+        evaluate_and_move(self, t, h, x, self->history, accelerate_row);
     const bool same = unknown || fabs(h - self->h) <= 1e-9 * h;
     struct move move = {.row = position_verlet_row,
                         .self = self,
@@ -296,8 +293,7 @@ enum cs_step step_rk4(struct fixed_step *loop, double t, double h, double *x, do
                              .v = v,
                              .weight = weight[k],
                              .forth = reach[k] * h};
-        evaluate(self, stage_t, stage_x, stage_v);
-        share(&stage);
+        evaluate_and_share(&stage, stage_t, stage_x, stage_v);
         stage_t = t + stage.forth;
     }
     move_all(self, h, x, v, rk4_end_row);

@@ -47,6 +47,12 @@ struct cs_vector_kernels {
                          void *arg);
 };
 
+/* A loop over all particles: part(arg, begin, end), as of parallel_for. */
+struct cs_loop {
+    void (*part)(void *arg, size_t begin, size_t end);
+    void *arg;
+};
+
 /* Data that stay the same during a run, or change only at a restart. */
 struct cs_view {
     /* sizeof at the host's build: see CS_HAS. */

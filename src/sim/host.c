@@ -3,7 +3,6 @@
  * Every call follows one pattern: move ramped values to the time asked for, start the clock
  * of its stage, call the model, count, stop the clock, trace arguments and results. Neither
  * clock nor trace reaches a number that the method sees. */
-
 #include "base/vector.h"
 #include "model/contact/ccd/step_limit.h"
 #include "model/contact/lagged_friction.h"
@@ -77,11 +76,20 @@ static void host_force(void *ctx, double t, const double *x, const double *v, ui
     update_normals(host, x, parts);
     const struct cs_stage_start begin = cs_stage_begin(host);
     const struct cs_eval at = cs_energy_input_eval(host, t, x, v, parts);
-    cs_terms_force(host->run->system, &at, f);
+    cs_terms_force_then(host->run->system, &at, f, host->loop);
     host->run->counts.forces++;
     cs_stage_end(host, CS_STAGE_FORCE, begin);
     cs_trace_state(host, "force", t, x, v);
     cs_trace_vector(host, "force", "f", t, f);
+}
+
+/* host_force of all parts and a loop after it, timed with it; not in traced runs. */
+static void host_force_then(void *ctx, double t, const double *x, const double *v, double *f,
+                            const struct cs_loop *loop) {
+    struct cs_run_host *host = ctx;
+    host->loop = loop;
+    host_force(ctx, t, x, v, CS_PART_ALL, f);
+    host->loop = NULL;
 }
 
 /* Kinetic and potential energy in J at (t, x, v). */
@@ -344,6 +352,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .jvp = host_jvp,
         .diagonal = host_diagonal,
         .force_diagonal = host_force_diagonal,
+        .force_then = host->settings.trace ? NULL : host_force_then,
         .solve_setup = cs_host_solve_setup,
         .solve = host_solve,
         .matrix_product = host_matrix_product,

@@ -136,6 +136,7 @@ struct cs_run_host {
     bool corrects;      /* strain limit or contact by projection act */
     double *held;    /* two copies (6,n) of a state, for cs_host_held_at; NULL: nothing turns */
     double lag_time; /* s, of the friction that is lagged */
+    const struct cs_loop *loop; /* after the force that is asked for; NULL: none */
     struct cs_arena arena;      /* memory of the method and of the solver */
     struct cs_view_pages pages; /* what a module from outside sees of the system */
 };

@@ -1,6 +1,9 @@
 /* The outer forces against closed forms, and the parts of the sum. */
+#include "base/pool.h"
 #include "model/force/terms.h"
 #include "sheet.h"
+
+#include <stdatomic.h>
 
 /* hanging in the xy plane: its normals are +z */
 #define SCENE                                                                                  \
@@ -164,4 +167,77 @@ TEST(derivative_is_zero_on_pins) {
     SHEET_ASSERT_AT(&sheet, df, 5, 0, 0, 0, 0);
     ck_assert_double_ne(df[6], 0);
     sheet_close(&sheet);
+}
+
+/* two broad grids about a narrow one, whose rows are packed, and a single row */
+#define ROWS                                                                                   \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [40, 50]}, \"springs\": {\"damping\": 0.2}, "        \
+    "\"mass\":"                                                                                \
+    " {\"total\": 1}, \"pins\": [\"top\", 500]}, {\"cloth\": {\"grid\": [7, 90]}, \"mass\":"   \
+    " {\"total\": 1}}, {\"cloth\": {\"grid\": [30, 1]}, \"mass\": {\"total\": 1}},"            \
+    " {\"cloth\": {\"grid\": [300, 9]}, \"mass\": {\"total\": 1}}], \"forces\": {\"drag\": "   \
+    "0.1 %s}}"
+
+/* What a loop after the force has been given. */
+struct moved {
+    struct sheet sheet;
+    double *f, *found; /* (3,n) of the force, and as the loop found it */
+    unsigned *visits;  /* (n) */
+    atomic_uint ranges;
+};
+
+/* Leaves nothing of the state of its particles: a force that reads it later is not finite. */
+static void spoil(void *arg, size_t begin, size_t end) {
+    struct moved *moved = arg;
+    const size_t n = moved->sheet.n;
+    atomic_fetch_add(&moved->ranges, 1);
+    for (size_t i = begin; i < end; i++) {
+        moved->visits[i]++;
+        for (size_t k = i; k < 3 * n; k += n) {
+            moved->found[k] = moved->f[k];
+            moved->sheet.x[k] = moved->sheet.v[k] = (double)NAN;
+        }
+    }
+}
+
+/* The force, and a loop after it that spoils the state, against the force alone. Returns the
+ * number of ranges of the loop. */
+static unsigned check_loop_after_force(uint32_t threads, const char *forces) {
+    struct moved moved = {.ranges = 0};
+    struct cs_error error = {0};
+    cs_pool_start(threads, &error);
+    UNIT_ASSERT_OK(&error);
+    sheet_open(&moved.sheet, 0, ROWS, forces);
+    sheet_stir(&moved.sheet, 0.01, 1);
+    const size_t n = moved.sheet.n, bytes = 3 * n * sizeof(double);
+    double *alone = malloc(bytes);
+    moved.f = malloc(bytes), moved.found = malloc(bytes);
+    moved.visits = calloc(n, sizeof *moved.visits);
+    ck_assert(alone && moved.f && moved.found && moved.visits);
+    const struct cs_eval at = {.x = moved.sheet.x, .v = moved.sheet.v, .parts = CS_PART_ALL};
+    if (cs_terms_need_normals(&moved.sheet.system, at.parts))
+        cs_normals_update(&moved.sheet.system, at.x);
+    cs_terms_force(&moved.sheet.system, &at, alone);
+    memset(moved.f, 1, bytes);
+    cs_terms_force_then(&moved.sheet.system, &at, moved.f,
+                        &(struct cs_loop){.part = spoil, .arg = &moved});
+    ck_assert_mem_eq(moved.found, alone, bytes);
+    for (size_t i = 0; i < n; i++)
+        ck_assert_uint_eq(moved.visits[i], 1);
+    free(alone), free(moved.f), free(moved.found), free(moved.visits);
+    sheet_close(&moved.sheet);
+    cs_pool_stop();
+    return moved.ranges;
+}
+
+TEST(rows_move_before_the_next_are_summed) {
+    for (uint32_t threads = 1; threads <= 4; threads++)
+        ck_assert_uint_gt(check_loop_after_force(threads, ""), 4);
+}
+
+/* the wind's power belongs to the whole sum */
+TEST(other_forces_are_summed_before_the_loop) {
+    const char *wind = ", \"wind\": {\"direction\": [0, 0, 1], \"strength\": 2}";
+    check_loop_after_force(3, wind);
+    ck_assert_uint_le(check_loop_after_force(1, wind), 2);
 }

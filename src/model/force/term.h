@@ -47,6 +47,7 @@ struct cs_term {
         *rampable_keys; /* keys that events may change while it acts, closed by NULL */
 
     /* --- the force --- */
+    bool is_local; /* add_force reads x and v of the block alone, and needs no prepare */
     /* Called once before the blocks of one force, or of one derivative (at->dx or at->dv is
      * given), with all threads; at->block is NULL. NULL: nothing to prepare. */
     void (*prepare)(const struct cs_system *system, const struct cs_eval *at);

@@ -9,6 +9,7 @@
 #include "scene/event_key.h"
 #include "scene/force_keys.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
 
 /* Area of particle i in m2, or 1 if the coefficient is per particle. */
@@ -33,8 +34,8 @@ static uint32_t drag_uses(const struct cs_scene *scene) {
 }
 
 /* f -= c v, which is linear: v may be a direction */
-static void add_drag(const struct cs_system *system, const double *v,
-                     const struct cs_block *block, double *f) {
+CS_CLONES static void add_drag(const struct cs_system *system, const double *v,
+                               const struct cs_block *block, double *f) {
     const uint32_t n = system->view.n;
     for (uint32_t c = 0; c < 3; c++, f += n, v += n)
         for (uint32_t i = block->begin; i < block->end; i++)
@@ -70,6 +71,7 @@ const struct cs_term cs_term_drag = {
     .plan = drag_plan,
     .uses = drag_uses,
     .rampable_keys = drag_ramps,
+    .is_local = true,
     .add_force = drag_force,
     .add_jvp = drag_jvp,
     .add_scalar = drag_scalar,

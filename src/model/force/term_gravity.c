@@ -4,6 +4,7 @@
 #include "scene/event_key.h"
 #include "scene/force_keys.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
 
 static struct cs_plan_row plan_gravity(const struct cs_scene *scene) {
@@ -14,7 +15,8 @@ static struct cs_plan_row plan_gravity(const struct cs_scene *scene) {
                                 .reason = acts ? "forces.gravity" : "forces.gravity is 0"};
 }
 
-static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
+CS_CLONES static void add_force(const struct cs_system *system, const struct cs_eval *at,
+                                double *f) {
     const size_t n = system->view.n;
     for (size_t c = 0; c < 3; c++) {
         const double g = system->scene->forces->gravity[c];
@@ -45,6 +47,7 @@ const struct cs_term cs_term_gravity = {
     .part_bits = CS_PART_GRAVITY,
     .plan = plan_gravity,
     .rampable_keys = ramps,
+    .is_local = true,
     .add_force = add_force,
     .energy = energy,
     .energy_kind = CS_ENERGY_GRAVITY,

@@ -2,6 +2,7 @@
 #include "model/force/terms.h"
 
 #include "base/pool.h"
+#include "base/vector.h"
 
 #include <string.h>
 
@@ -80,18 +81,12 @@ static void prepare(const struct job *job) {
             system->terms[k]->prepare(system, &job->at);
 }
 
-/* Sums forces at one block, or their derivative along dx and dv, term by term in the order of
- * the list. A block is written by one thread. */
-static void sum_block(void *arg, uint32_t number) {
-    const struct job *job = arg;
+/* Adds the terms from number `first` on at a block, in the order of the list. */
+static void add_terms(const struct job *job, const struct cs_block *block, uint32_t first) {
     const struct cs_system *system = job->system;
-    const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
     struct cs_eval at = job->at;
-    at.block = &block;
-    clear(system, &block, job->out);
-    if (at.power)
-        memset(at.power + block.begin, 0, sizeof *at.power * (block.end - block.begin));
-    for (uint32_t k = 0; k < system->n_terms; k++) {
+    at.block = block;
+    for (uint32_t k = first; k < system->n_terms; k++) {
         const struct cs_term *term = system->terms[k];
         const bool asked = is_asked(term, job);
         // without a direction it is the force
@@ -100,7 +95,114 @@ static void sum_block(void *arg, uint32_t number) {
         else if (asked && term->add_jvp)
             term->add_jvp(system, &at, job->out);
     }
-    clear_pinned(system, &block, &at, job->out);
+    clear_pinned(system, block, &at, job->out);
+}
+
+/* Sums forces at one block, or their derivative along dx and dv, term by term in the order of
+ * the list. A block is written by one thread. */
+static void sum_block(void *arg, uint32_t number) {
+    const struct job *job = arg;
+    const struct cs_system *system = job->system;
+    const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
+    double *power = job->at.power;
+    clear(system, &block, job->out);
+    if (power)
+        memset(power + block.begin, 0, sizeof *power * (block.end - block.begin));
+    add_terms(job, &block, 0);
+}
+
+/* A sum row by row with a loop over particles after it. */
+struct rows_job {
+    struct job job;
+    const struct cs_loop *loop;
+    uint32_t reach; /* particles in two of the longest rows: no spring reaches further */
+};
+
+/* Tells if forces can be summed row by row: springs come first in the list and are those of
+ * grids, and each other force reads its own particle alone. */
+static bool goes_by_rows(struct rows_job *rows) {
+    const struct cs_system *system = rows->job.system;
+    bool goes =
+        system->springs.n_runs && !rows->job.at.power && system->terms[0] == &cs_term_springs;
+    for (uint32_t k = 1; k < system->n_terms; k++)
+        goes &= system->terms[k]->is_local;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_body_range *body = system->bodies + b;
+        goes &= !body->mesh;
+        rows->reach = body->columns > rows->reach / 2 ? 2 * body->columns : rows->reach;
+    }
+    return goes;
+}
+
+/* Particles of a block whose places no other block reads. */
+static struct cs_block inner_of(const struct rows_job *rows, const struct cs_block *block) {
+    const uint32_t from = block->begin > 0 ? rows->reach : 0;
+    const uint32_t to = block->end < rows->job.system->view.n ? rows->reach : 0;
+    if (block->end - block->begin <= from + to)
+        return (struct cs_block){.begin = block->end, .end = block->end};
+    return (struct cs_block){.begin = block->begin + from, .end = block->end - to};
+}
+
+static uint32_t smaller(uint32_t a, uint32_t b) {
+    return a < b ? a : b;
+}
+
+static uint32_t larger(uint32_t a, uint32_t b) {
+    return a > b ? a : b;
+}
+
+static void run_part(const struct rows_job *rows, uint32_t begin, uint32_t end) {
+    if (begin < end)
+        rows->loop->part(rows->loop->arg, begin, end);
+}
+
+/* Springs reach two rows down: a row is complete, and read for the last time, with those that
+ * begin in it. Zeroes run ahead of the springs, and the other forces follow them. */
+static void sum_rows(void *arg, uint32_t number) {
+    const struct rows_job *rows = arg;
+    const struct cs_system *system = rows->job.system;
+    const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
+    const struct cs_block inner = inner_of(rows, &block);
+    struct cs_block ahead = {.end = block.begin}, done = ahead, next = block;
+    struct cs_eval at = rows->job.at;
+    at.block = &next;
+    for (; done.end < block.end; next.first_run = next.end_run) {
+        const struct cs_block some =
+            cs_springs_rows(&system->springs, system->view.n, next.first_run, block.end_run);
+        next.end_run = some.end_run;
+        done.begin = done.end;
+        done.end = larger(done.end, smaller(some.begin, block.end));
+        ahead.begin = ahead.end;
+        ahead.end = larger(larger(ahead.end, done.end), smaller(some.end, block.end));
+        clear(system, &ahead, rows->job.out);
+        cs_springs_add_force(&system->springs, system->view.n, &at, rows->job.out);
+        add_terms(&rows->job, &done, 1);
+        run_part(rows, larger(done.begin, inner.begin), smaller(done.end, inner.end));
+    }
+}
+
+/* Runs the loop over the first and last rows of a block, which other blocks have read. */
+static void finish_rows(void *arg, uint32_t number) {
+    const struct rows_job *rows = arg;
+    const struct cs_system *system = rows->job.system;
+    const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
+    const struct cs_block inner = inner_of(rows, &block);
+    run_part(rows, block.begin, inner.begin);
+    run_part(rows, inner.end, block.end);
+}
+
+void cs_terms_force_then(const struct cs_system *system, const struct cs_eval *at, double *f,
+                         const struct cs_loop *loop) {
+    struct rows_job rows = {{.system = system, .at = *at, .out = f}, loop, 0};
+    if (!loop || !goes_by_rows(&rows)) {
+        cs_terms_force(system, at, f);
+        if (loop)
+            cs_vector_parallel_for(system->view.n, loop->part, loop->arg);
+        return;
+    }
+    cs_pool_run(system->springs.n_blocks, sum_rows, &rows);
+    if (system->springs.n_blocks > 1)
+        cs_pool_run(system->springs.n_blocks, finish_rows, &rows);
 }
 
 void cs_terms_force(const struct cs_system *system, const struct cs_eval *at, double *f) {

@@ -33,6 +33,11 @@ extern const uint32_t cs_n_terms;
 /* f (3,n) = sum of the chosen parts, 0 on pinned particles, by all threads. If a part uses
  * normals (cs_terms_need_normals), they must be up to date. */
 void cs_terms_force(const struct cs_system *system, const struct cs_eval *at, double *f);
+/* The same, and then a loop (NULL: none) by all threads: row by row if springs are those of
+ * grids and other forces need no particle but their own. The loop may change x and v of its
+ * range, which nothing reads again. */
+void cs_terms_force_then(const struct cs_system *system, const struct cs_eval *at, double *f,
+                         const struct cs_loop *loop);
 /* df (3,n) = (df/dx) dx + (df/dv) dv of the chosen parts, 0 on pinned particles. Normals as
  * above. */
 void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, double *df);

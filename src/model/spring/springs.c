@@ -242,6 +242,28 @@ CS_CLONES void cs_springs_add_force(const struct cs_springs *springs, uint32_t n
     add_runs(&job, at->block, has_force, choose, force_piece);
 }
 
+/* Least particles of rows that go together: fewer cost calls, more leave the first cache. */
+enum { ROWS_LEAST = 256 };
+
+struct cs_block cs_springs_rows(const struct cs_springs *springs, uint32_t n,
+                                uint32_t first_run, uint32_t end_run) {
+    const struct cs_spring_run *runs = springs->runs, *end = runs + end_run;
+    const struct cs_spring_run *run = runs + first_run, *last = run;
+    while (run < end &&
+           (run->row < runs[first_run].row + ROWS_LEAST || run->row == last->row)) {
+        last = run++;
+        // packed rows of a grid are summed as a whole
+        while (last->columns <= PACKED_COLUMNS_MAX && run < end && run->body == last->body)
+            run++;
+    }
+    struct cs_block rows = {n, n, first_run, (uint32_t)(run - runs)};
+    if (run < end) {
+        rows.begin = run->row;
+        rows.end = run[-1].row + 3 * run[-1].columns;
+    }
+    return rows;
+}
+
 /* Forces of one chunk of a mesh into its slots. */
 CS_CLONES static void wait_force_chunk(void *job, uint32_t chunk) {
     compute_chunk_to_slots(job, ((const struct spring_job *)job)->springs->chunks + chunk,

@@ -40,6 +40,11 @@ void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body);
  * remaining blocks. */
 void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
                           const struct cs_eval *at, double *f);
+/* Some rows of grids from a run on, the first of its row, and before end_run: the runs of the
+ * result, which add to particles before its `end`. Those before its `begin` have then all that
+ * springs give them; after the last run both are n. */
+struct cs_block cs_springs_rows(const struct cs_springs *springs, uint32_t n,
+                                uint32_t first_run, uint32_t end_run);
 /* Computes the forces of meshes into slots, by all threads, before any block. Does nothing if
  * meshes are not shared. */
 void cs_springs_force_to_slots(const struct cs_springs *springs, uint32_t n,
