@@ -29,6 +29,8 @@ struct bridge {
     double *x, *v, *f, *dx, *dv, *kxx, *dvv, *mass, *inv_mass, *start, *history;
     bool is_set_up;      /* there is a matrix to solve with */
     bool solve_may_fail; /* CS_SOLVE_MAY_FAIL of the last set-up */
+    bool is_back;        /* a commit took the step back: what the program does until it is done
+                            counts no more */
 };
 
 /* Copies a text of the program as one line. */
@@ -93,13 +95,17 @@ static enum cs_step commit(struct bridge *bridge, struct cs_program_message *mes
     const struct cs_host *host = bridge->host;
     const size_t bytes = host->view->n * sizeof *x;
     bool changed = false;
+    message->count = 0;
+    if (bridge->is_back)
+        return CS_STEP_OK;
     memcpy(x, bridge->x, 6 * bytes);
     const enum cs_step step =
         host->commit(host->ctx, message->values[0], message->values[1], x, v, &changed);
     memcpy(bridge->x, x, 6 * bytes);
     memcpy(bridge->inv_mass, host->view->inv_mass, bytes);
     message->count = changed;
-    return step;
+    bridge->is_back = step == CS_STEP_BACK;
+    return bridge->is_back ? CS_STEP_OK : step;
 }
 
 /* Answers a request into the message. */
@@ -201,7 +207,7 @@ static enum cs_step serve(struct bridge *bridge, const struct cs_program_message
         if (step == CS_STEP_OK)
             step = check_request(bridge, allowed, message.code);
         if (step != CS_STEP_OK || message.code == 'D')
-            return step;
+            return step == CS_STEP_OK && bridge->is_back ? CS_STEP_BACK : step;
         step = answer(bridge, &message, x, v);
         const bool may_fail = message.code == 'S' && bridge->solve_may_fail;
         if (step != CS_STEP_OK && !may_fail)
@@ -271,6 +277,7 @@ static void show_state(struct bridge *bridge, const double *x, const double *v) 
 
 static enum cs_step restart(void *self, double t, const double *x, const double *v) {
     struct bridge *bridge = self;
+    bridge->is_back = false;
     show_state(bridge, x, v);
     return serve(bridge, &(struct cs_program_message){'R', 0, {t}}, "DNXFJGEBT", NULL, NULL);
 }

@@ -53,7 +53,10 @@ enum cs_step {
      * alone, no step is short enough: host->fail was told, x and v are of the last commit. */
     CS_STEP_HALT,
     /* The reason was given to host->fail. */
-    CS_STEP_FAIL
+    CS_STEP_FAIL,
+    /* commit takes the step back: return it upwards at once. restart with the state before the
+     * step follows, then advance over a shorter stretch of time. */
+    CS_STEP_BACK
 };
 
 /* Services that the host builds for the method. You pay only for those that you ask for. A call
@@ -339,7 +342,8 @@ struct cs_integrator {
 
     /* [after restart, any number of times; t0 is the t1 of the call before] Takes x and v, in
      * place, from t0 to exactly t1, in as many internal steps as the method likes, each of them
-     * followed by host->commit. After anything but CS_STEP_OK only stats and destroy follow. */
+     * followed by host->commit. After CS_STEP_BACK restart follows; after anything else but
+     * CS_STEP_OK only stats and destroy. */
     enum cs_step (*advance)(void *self, double t0, double t1, double *x, double *v);
 
     /* [any time after create, between calls and in host->commit] May be NULL. Sets the counts;

@@ -6,6 +6,7 @@
  *    error.
  * 3. Strain limit, contact projection, velocity loss, positions on grabbed paths. The ledger
  *    books each.
+ *    A step that leaves particles inside colliders is taken back here.
  * 4. Anchors of sticking friction follow the points that slip.
  * 5. Checks: blow-up, interrupt, budget, a step over contact that the method did not ask about,
  *    then a first crossing of surfaces if the scene stops there.
@@ -58,6 +59,7 @@ static bool store_contact(struct cs_run_host *host, double t, const double *x, c
     struct cs_contact_projection *contact = &host->contact;
     const struct cs_stage_start begin = cs_stage_begin(host);
     cs_contact_projection_store(contact, x, v, !moved);
+    contact->cut.t = t;
     if (observed)
         cs_static_friction_clear(&contact->static_friction);
     const bool others = cs_static_friction_update(&contact->static_friction, contact->colliders,
@@ -173,13 +175,46 @@ static void correct(struct cs_run_host *host, double t, double dt, double *x, do
     }
 }
 
+/* What a step that is taken back has booked. */
+struct account {
+    struct cs_energy_input input;
+    struct cs_energy_ledger ledger;
+    double missed;
+};
+
+static void save_account(const struct cs_run_host *host, struct account *account) {
+    account->input = host->run->energy_input;
+    account->missed = host->run->strain_limit.missed;
+    if (host->settings.ledger)
+        account->ledger = *host->settings.ledger;
+}
+
+/* Returns true if the step is taken back, with nothing booked of it. */
+static bool take_back(struct cs_run_host *host, double t, double dt, const double *x,
+                      const struct account *account) {
+    if (!cs_contact_projection_refuses(&host->contact, t, dt, x))
+        return false;
+    host->run->energy_input = account->input;
+    host->run->strain_limit.missed = account->missed;
+    if (host->settings.ledger)
+        *host->settings.ledger = account->ledger;
+    host->took_back = true;
+    host->run->counts.steps--;
+    host->run->counts.subdivided_steps++;
+    return true;
+}
+
 /* A step that ends the run is observed and booked too: outputs then show where it ended. */
 enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v,
                             bool *changed) {
     struct cs_run_host *host = ctx;
     const struct cs_plan_row *rows = host->run->system->plan.rows;
     const struct cs_run_settings *settings = &host->settings;
+    const bool projects = rows[CS_FEATURE_CONTACT].built;
+    struct account account;
     *changed = false;
+    if (projects)
+        save_account(host, &account);
     host->run->counts.steps++;
     host->advance_check.last_commit = t;
     cs_move_values(host, t);
@@ -190,6 +225,8 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
         cs_energy_ledger_book_step(settings->ledger, t, x, v);
     cs_energy_input_step(host, t, dt, x, v);
     correct(host, t, dt, x, v, changed);
+    if (projects && take_back(host, t, dt, x, &account))
+        return CS_STEP_BACK;
     cs_friction_anchors_commit(host->run->system, t, x, v);
     *changed |= cs_seams_break(host->run->system, x);
     if (cs_step_limit_failed(host->run->system))
@@ -205,7 +242,7 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
     *changed |= observed;
     if (settings->ledger)
         cs_energy_ledger_store_state(settings->ledger, t, x, v);
-    if (rows[CS_FEATURE_CONTACT].built)
+    if (projects)
         *changed |= store_contact(host, t, x, v, observed, moved);
     cs_host_store_step(host, t, x);
     return step;

@@ -117,10 +117,7 @@ static void note_give_up(struct cs_run *run) {
 }
 
 /* The method's advance, with its post-conditions checked. */
-static enum cs_step advance(struct cs_run *run, double from, double to) {
-    const struct cs_events *events = run->system->events;
-    if (events && run->host->table.overstep_until > 0)
-        run->host->table.overstep_until = cs_events_next(events);
+static enum cs_step advance_part(struct cs_run *run, double from, double to) {
     if (!run->host->settings.skip_advance_check)
         cs_advance_check_begin(&run->host->advance_check, run->system, from);
     cs_host_store_step(run->host, from, run->x);
@@ -132,7 +129,35 @@ static enum cs_step advance(struct cs_run *run, double from, double to) {
     cs_host_pin(run->host, false);
     if (step == CS_STEP_HALT)
         note_give_up(run);
-    return step == CS_STEP_OK ? check_left(run, to) : step;
+    return step == CS_STEP_OK && !run->host->took_back ? check_left(run, to) : step;
+}
+
+/* Restarts the method where the step began that commit took back. */
+static enum cs_step restart_step(struct cs_run *run) {
+    const struct cs_contact_projection *contact = &run->host->contact;
+    run->host->took_back = false;
+    memcpy(run->x, contact->state_before, 6 * sizeof *run->x * run->system->view.n);
+    return restart(run, contact->cut.t);
+}
+
+/* Advances in one call of the method, or in parts where contact by projection needs shorter
+ * steps. */
+static enum cs_step advance(struct cs_run *run, double from, double to) {
+    struct cs_contact_projection *contact = &run->host->contact;
+    const struct cs_events *events = run->system->events;
+    const bool projects = run->system->plan.rows[CS_FEATURE_CONTACT].built;
+    enum cs_step step = CS_STEP_OK;
+    if (events && run->host->table.overstep_until > 0)
+        run->host->table.overstep_until = cs_events_next(events);
+    for (double t = from, end; t < to && step == CS_STEP_OK; t = end) {
+        end = projects ? cs_contact_projection_end(contact, t == from, t, to) : to;
+        step = advance_part(run, t, end);
+        if (run->host->took_back) {
+            step = restart_step(run);
+            end = contact->cut.t;
+        }
+    }
+    return step;
 }
 
 /* Adds the times since then to those inside the method. */

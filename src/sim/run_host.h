@@ -134,6 +134,7 @@ struct cs_run_host {
     double impact_work; /* J that colliders did on them: by their impulse, since their contact
                            may have come and gone within the step */
     bool corrects;      /* strain limit or contact by projection act */
+    bool took_back;     /* the last commit: contact.state_before is the state again */
     double *held;    /* two copies (6,n) of a state, for cs_host_held_at; NULL: nothing turns */
     double lag_time; /* s, of the friction that is lagged */
     const struct cs_loop *loop; /* after the force that is asked for; NULL: none */

@@ -103,6 +103,12 @@ static enum cs_project_result project_particle(const struct cs_posed_collider *b
     return stopped && kept && cs_vec3_is_zero(surface_v) ? CS_PROJECT_STUCK : CS_PROJECT_PUSHED;
 }
 
+/* Part of the largest depth after which a longer step may be tried; the depth falls with the
+ * square of the step at least. */
+#define ROOM 0.125
+/* relative rounding of the times of parts */
+#define ROUNDING 1e-9
+
 /* One commit. */
 struct step {
     struct cs_contact_projection *contact;
@@ -257,6 +263,7 @@ bool cs_contact_projection_resolve(struct cs_contact_projection *contact, double
                                    double *x, double *v) {
     const size_t n = count_of(contact);
     struct step step = {.contact = contact, .t = t, .dt = dt, .x = x, .v = v};
+    contact->memory_before = contact->energy_limit.memory;
     const bool restored =
         cs_static_friction_restore(&contact->static_friction, dt, contact->state_before, x, v);
     pose_step(contact, t - dt, t);
@@ -265,10 +272,47 @@ bool cs_contact_projection_resolve(struct cs_contact_projection *contact, double
     contact->counts.projected += step.pushed;
     if (step.pushed > 0)
         push(&step);
-    contact->energy_limit.has_last_energy = step.pushed > 0;
-    contact->energy_limit.in_contact &=
+    contact->energy_limit.memory.has_last_energy = step.pushed > 0;
+    contact->energy_limit.memory.in_contact &=
         step.pushed > 0 || contact->static_friction.n_sticking > 0;
     return step.pushed > 0 || restored;
+}
+
+/* A frame without a refusal in which little stayed inside lets the next have longer steps. */
+double cs_contact_projection_end(struct cs_contact_projection *contact, bool begins, double t,
+                                 double end) {
+    struct cs_projection_cut *cut = &contact->cut;
+    const double frame = 1 / contact->system->scene->time.fps;
+    if (begins && t - cut->tight >= frame * (1 - ROUNDING) && cut->longest < HUGE_VAL) {
+        cut->longest *= 2;
+        if (cut->longest > frame * (1 - ROUNDING))
+            cut->longest = HUGE_VAL;
+    }
+    const double parts = ceil((end - t) / cut->longest * (1 - ROUNDING));
+    return parts > 1 ? t + (end - t) / parts : end;
+}
+
+/* What deeper steps than this one have left is no reason: shorter steps may not lift it. What
+ * commits leave to each other is then as before the step; no particle rested that did not
+ * stick. */
+bool cs_contact_projection_refuses(struct cs_contact_projection *contact, double t, double dt,
+                                   const double *x) {
+    struct cs_projection_cut *cut = &contact->cut;
+    const double shortest = 1 / (contact->system->scene->time.fps * CS_PROJECTION_PARTS);
+    const double depth = contact->energy_limit.memory.has_last_energy
+                             ? cs_posed_colliders_depth(contact->system, t, x)
+                             : 0;
+    const bool refused =
+        depth > fmax(contact->depth_max, cut->depth) && dt > 2 * shortest * (1 - ROUNDING);
+    if (refused) {
+        contact->energy_limit.memory = contact->memory_before;
+        cs_static_friction_reject(&contact->static_friction);
+        cut->longest = dt / 2;
+    }
+    if (depth > ROOM * contact->depth_max)
+        cut->tight = t;
+    cut->depth = refused ? cut->depth : depth;
+    return refused;
 }
 
 void cs_contact_projection_store(struct cs_contact_projection *contact, const double *x,
@@ -276,7 +320,7 @@ void cs_contact_projection_store(struct cs_contact_projection *contact, const do
     const size_t n3 = 3 * count_of(contact);
     memcpy(contact->state_before, x, n3 * sizeof *x);
     memcpy(contact->state_before + n3, v, n3 * sizeof *v);
-    contact->energy_limit.has_last_energy &= resolved;
+    contact->energy_limit.memory.has_last_energy &= resolved;
 }
 
 double cs_contact_projection_fraction(struct cs_contact_projection *contact, double t0,
@@ -304,14 +348,17 @@ void cs_contact_projection_serialise(struct cs_contact_projection *contact,
                         6 * count_of(contact) * sizeof *contact->state_before);
     CS_SERIALISER(serialiser, contact->counts);
     cs_static_friction_serialise(&contact->static_friction, serialiser);
-    cs_projection_energy_serialise(&contact->energy_limit, serialiser);
+    CS_SERIALISER(serialiser, contact->energy_limit.memory);
+    CS_SERIALISER(serialiser, contact->cut);
 }
 
 /* No energy is known yet, and no contact exists. */
 void cs_contact_start(struct cs_contact_projection *contact, double t, const double *x,
                       const double *v) {
     cs_contact_projection_store(contact, x, v, false);
-    contact->energy_limit.in_contact = false;
+    contact->cut.t = t;
+    contact->cut.depth = cs_posed_colliders_depth(contact->system, t, x);
+    contact->energy_limit.memory.in_contact = false;
     cs_posed_colliders_at(contact->system, t, contact->colliders);
     cs_static_friction_start(&contact->static_friction, contact->colliders, t, x, v,
                              contact->state_after);
@@ -339,7 +386,7 @@ enum cs_status cs_contact_projection_init(struct cs_contact_projection *contact,
                                           struct cs_system *system, struct cs_arena *arena,
                                           struct cs_error *error) {
     const size_t n = system->view.n;
-    *contact = (struct cs_contact_projection){.system = system};
+    *contact = (struct cs_contact_projection){.system = system, .cut.longest = HUGE_VAL};
     CS_ARENA_ARRAY(arena, contact->colliders, system->scene->colliders.n, error);
     contact->colliders_before = contact->colliders;
     if (system->motions)

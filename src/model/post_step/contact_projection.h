@@ -24,6 +24,17 @@ struct cs_projection_counts {
     uint64_t tests, projected;
 };
 
+/* Parts of a frame down to which steps are cut where projection leaves a particle too deep. */
+enum { CS_PROJECTION_PARTS = 64 };
+
+/* How steps are cut; part of a checkpoint. */
+struct cs_projection_cut {
+    double t;       /* s, where the next step begins */
+    double depth;   /* m, largest of a particle in a collider there */
+    double longest; /* s, longest step; HUGE_VAL: any */
+    double tight;   /* s, the last time that more than little stayed inside, or a refusal */
+};
+
 /* State of contact by projection between commits, and work arrays. */
 struct cs_contact_projection {
     const struct cs_system *system; /* borrowed */
@@ -43,6 +54,9 @@ struct cs_contact_projection {
     /* (n) pushed, or held by static friction, in the current commit */
     bool *is_pushed;
     struct cs_projection_counts counts;
+    double depth_max; /* m, of a particle in a collider that no step is cut for; the host's */
+    struct cs_projection_cut cut;
+    struct cs_projection_memory memory_before; /* of the energy, before the current commit */
 };
 
 /* Prepares contact by projection for a scene with colliders; the arena owns the arrays.
@@ -68,6 +82,18 @@ void cs_contact_start(struct cs_contact_projection *contact, double t, const dou
  * whether the state was changed. */
 bool cs_contact_projection_resolve(struct cs_contact_projection *contact, double t, double dt,
                                    double *x, double *v);
+
+/* Judges what cs_contact_projection_resolve made of a step of dt seconds that ended at t.
+ * Returns true if it leaves a particle too deep that was not so deep before, and is not of the
+ * shortest: it must be taken again from contact->state_before, at contact->cut.t, in shorter
+ * steps. */
+bool cs_contact_projection_refuses(struct cs_contact_projection *contact, double t, double dt,
+                                   const double *x);
+
+/* s, the time up to which methods may step from t on, in a stretch of time to `end`; begins: t
+ * is its begin. */
+double cs_contact_projection_end(struct cs_contact_projection *contact, bool begins, double t,
+                                 double end);
 
 /* Admissible fraction of a step from x0 (3,n) at t0 to x1 at t1: 0.5 if a free particle passes
  * a collider, else 1. Poses of the colliders are overwritten. */

@@ -134,10 +134,24 @@ static struct cs_energy_with_scale energy_after(struct cs_projection_energy *ene
                      step->corrected + 3 * energy->system->view.n);
 }
 
+/* J, work of a surface of velocity u by its friction on particle i, which has the normal n: the
+ * change of momentum across n, times u. */
+static double find_rubbed(const struct cs_projection_energy *energy,
+                          const struct cs_projection_step *step, size_t i, const double n[3],
+                          const double u[3]) {
+    const size_t count = energy->system->view.n;
+    const double *before = step->v, *after = step->corrected + 3 * count;
+    const double along = u[0] * n[0] + u[1] * n[1] + u[2] * n[2];
+    double sum = 0;
+    for (size_t c = 0; c < 3; c++)
+        sum += (after[c * count + i] - before[c * count + i]) * (u[c] - along * n[c]);
+    return energy->system->mass[i] * sum;
+}
+
 /* Energy after moving colliders have done their work: particles displaced by their motion, with
- * the velocities that projection gives. */
+ * the velocities that projection gives. *rubbed: J, their work by friction. */
 static double energy_with_collider_work(struct cs_projection_energy *energy,
-                                        const struct cs_projection_step *step) {
+                                        const struct cs_projection_step *step, double *rubbed) {
     const size_t n = energy->system->view.n;
     memcpy(energy->work, step->x, 3 * n * sizeof(double));
     for (uint32_t k = 0; k < energy->system->scene->colliders.n; k++)
@@ -153,6 +167,7 @@ static double energy_with_collider_work(struct cs_projection_energy *energy,
                                     &gap, normal))
                 gap = cs_posed_collider_signed_distance(step->colliders + k, p, normal);
             cs_posed_collider_velocity(step->colliders + k, p, provenance);
+            *rubbed += gap < 0 ? find_rubbed(energy, step, i, normal, provenance) : 0;
             const double along =
                 step->dt * (provenance[0] * normal[0] + provenance[1] * normal[1] +
                             provenance[2] * normal[2]);
@@ -192,20 +207,23 @@ static double find_fall(struct cs_projection_energy *energy,
 /* J, limit without external work: the energy of the last commit plus GIVEN_BACK of the loss, up
  * to that at first contact. */
 static double energy_allowed(const struct cs_projection_energy *energy) {
-    const double kept = energy->energy.total;
-    const double lost = fmax(energy->energy_limit - kept, energy->absorbed);
-    return fmin(kept + GIVEN_BACK * lost, fmax(energy->energy_limit, kept));
+    const double kept = energy->memory.energy.total;
+    const double lost = fmax(energy->memory.energy_limit - kept, energy->absorbed);
+    return fmin(kept + GIVEN_BACK * lost, fmax(energy->memory.energy_limit, kept));
 }
 
 /* J, limit with the work of this step from outside and by colliders, and room for rounding. */
 static double find_allowed(struct cs_projection_energy *energy,
                            const struct cs_projection_step *step) {
     const struct cs_energy_with_scale before = energy_of(energy, step->t, step->x, step->v);
-    energy->energy_limit = fmax(energy->energy_limit, before.total);
+    energy->memory.energy_limit = fmax(energy->memory.energy_limit, before.total);
     double allowed = fmax(before.total, energy_allowed(energy));
-    if (energy->system->motions)
-        allowed = fmax(allowed, energy_with_collider_work(energy, step));
-    return allowed + ROUNDING * fmax(before.scale, energy->energy.scale);
+    double rubbed = 0;
+    if (energy->system->motions) {
+        const double moved = energy_with_collider_work(energy, step, &rubbed);
+        allowed = fmax(allowed + fmax(rubbed, 0), moved);
+    }
+    return allowed + ROUNDING * fmax(before.scale, energy->memory.energy.scale);
 }
 
 /* 1/s, change of velocity per displacement of the pushed particles, in the least-squares sense:
@@ -321,14 +339,14 @@ static struct cs_energy_with_scale shorten(struct cs_projection_energy *energy,
 bool cs_projection_energy_limit(struct cs_projection_energy *energy,
                                 const struct cs_projection_step *step) {
     const size_t n = energy->system->view.n;
-    if (!energy->has_last_energy)
-        energy->energy =
+    if (!energy->memory.has_last_energy)
+        energy->memory.energy =
             energy_of(energy, step->t, step->before_step, step->before_step + 3 * n);
     energy->absorbed = energy_absorbed(energy, step);
-    if (!energy->in_contact)
-        energy->energy_limit =
-            energy->energy.total + GIVEN_BACK * energy->absorbed + find_fall(energy, step);
-    energy->has_last_energy = energy->in_contact = true;
+    if (!energy->memory.in_contact)
+        energy->memory.energy_limit = energy->memory.energy.total +
+                                      GIVEN_BACK * energy->absorbed + find_fall(energy, step);
+    energy->memory.has_last_energy = energy->memory.in_contact = true;
     energy->velocity_per_push = 0;
     struct cs_energy_with_scale found = energy_after(energy, step);
     if (found.total > energy_allowed(energy)) {
@@ -338,11 +356,11 @@ bool cs_projection_energy_limit(struct cs_projection_energy *energy,
             found = energy_after(energy, step);
         }
         if (found.total > allowed) {
-            energy->energy = shorten(energy, step, allowed);
+            energy->memory.energy = shorten(energy, step, allowed);
             return false;
         }
     }
-    energy->energy = found;
+    energy->memory.energy = found;
     return true;
 }
 
@@ -364,12 +382,4 @@ enum cs_status cs_projection_energy_init(struct cs_projection_energy *energy,
     CS_ARENA_ARRAY(arena, energy->work, 3 * (size_t)system->view.n, error);
     return error->status ? error->status
                          : response_init(&energy->elastic_response, system, arena, error);
-}
-
-void cs_projection_energy_serialise(struct cs_projection_energy *energy,
-                                    struct cs_serialiser *serialiser) {
-    CS_SERIALISER(serialiser, energy->energy);
-    CS_SERIALISER(serialiser, energy->energy_limit);
-    CS_SERIALISER(serialiser, energy->has_last_energy);
-    CS_SERIALISER(serialiser, energy->in_contact);
 }

@@ -17,7 +17,6 @@
 #ifndef CS_PROJECTION_ENERGY_H
 #define CS_PROJECTION_ENERGY_H
 
-#include "base/serialise.h"
 #include "model/contact/posed_collider.h"
 #include "model/post_step/static_friction.h"
 #include "model/solver/linear.h"
@@ -38,6 +37,16 @@ struct cs_energy_with_scale {
     double total, scale;
 };
 
+/* What a commit leaves to the next. */
+struct cs_projection_memory {
+    /* energy that the last commit with a push left */
+    struct cs_energy_with_scale energy;
+    /* J, energy before first contact, and what was added since */
+    double energy_limit;
+    bool has_last_energy,
+        in_contact; /* energy is that of the state before; most is of this contact */
+};
+
 /* State of the limit between commits. */
 struct cs_projection_energy {
     const struct cs_system *system; /* borrowed */
@@ -48,14 +57,9 @@ struct cs_projection_energy {
     double energy_scale;
     /* 1/s, velocity per displacement of an elastic response */
     double velocity_per_push;
-    /* energy that the last commit with a push left */
-    struct cs_energy_with_scale energy;
     /* J, kinetic energy that the pushes of this commit removed */
     double absorbed;
-    /* J, energy before first contact, and what was added since */
-    double energy_limit;
-    bool has_last_energy,
-        in_contact; /* energy is that of the state before; most is of this contact */
+    struct cs_projection_memory memory;
 };
 
 /* One commit with a push; all is borrowed. */
@@ -78,9 +82,5 @@ enum cs_status cs_projection_energy_init(struct cs_projection_energy *energy,
  * surface. */
 bool cs_projection_energy_limit(struct cs_projection_energy *energy,
                                 const struct cs_projection_step *step);
-
-/* Reads or writes what it leaves to the next commit, for a checkpoint. */
-void cs_projection_energy_serialise(struct cs_projection_energy *energy,
-                                    struct cs_serialiser *serialiser);
 
 #endif
