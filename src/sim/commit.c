@@ -175,7 +175,7 @@ static void correct(struct cs_run_host *host, double t, double dt, double *x, do
     }
 }
 
-/* What a step that is taken back has booked. */
+/* Accounts before a step, for one that is taken back. */
 struct account {
     struct cs_energy_input input;
     struct cs_energy_ledger ledger;

@@ -292,9 +292,7 @@ double cs_contact_projection_end(struct cs_contact_projection *contact, bool beg
     return parts > 1 ? t + (end - t) / parts : end;
 }
 
-/* What deeper steps than this one have left is no reason: shorter steps may not lift it. What
- * commits leave to each other is then as before the step; no particle rested that did not
- * stick. */
+/* A depth of before is no reason: shorter steps may not lift it. */
 bool cs_contact_projection_refuses(struct cs_contact_projection *contact, double t, double dt,
                                    const double *x) {
     struct cs_projection_cut *cut = &contact->cut;

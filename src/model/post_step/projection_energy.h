@@ -37,7 +37,7 @@ struct cs_energy_with_scale {
     double total, scale;
 };
 
-/* What a commit leaves to the next. */
+/* Memory of a commit for the next. */
 struct cs_projection_memory {
     /* energy that the last commit with a push left */
     struct cs_energy_with_scale energy;
