@@ -54,8 +54,7 @@ enum cs_step {
     CS_STEP_HALT,
     /* The reason was given to host->fail. */
     CS_STEP_FAIL,
-    /* commit takes the step back: return it upwards at once. restart with the state before the
-     * step follows, then advance over a shorter stretch of time. */
+    /* commit takes the step back: return it upwards at once; restart follows. */
     CS_STEP_BACK
 };
 
@@ -292,11 +291,9 @@ struct cs_host {
      * max_step_fraction about the whole step. 0 for the whole run: steps end at t1. Not in
      * older hosts: ask CS_HAS(host, overstep_until) first. */
     double overstep_until;
-    /* [restart, advance] force with CS_PART_ALL, and then a loop over all particles, on the
-     * host's threads: to the same bits as force and a loop after it, in less time. A range of
-     * the loop comes as soon as f is complete there and no force reads x and v there again: it
-     * may move them, but only there. NULL in runs that are traced, and not in hosts whose size
-     * ends before it: ask CS_HAS(host, force_then) first. */
+    /* [restart, advance] force with CS_PART_ALL, then a loop over all particles: the same bits.
+     * A range of the loop comes, on any thread, when f is complete there and no force reads x
+     * and v there again: it may move them. NULL in traced runs; see CS_HAS(host, force_then) */
     void (*force_then)(void *ctx, double t, const double *x, const double *v, double *f,
                        const struct cs_loop *loop);
 };

@@ -310,10 +310,6 @@ static double host_longest_step(void *ctx, double t, const double *x, const doub
     return step;
 }
 
-/* Steps are cut where projection leaves a particle deeper than this fraction of the scene's
- * size: half of what a run warns of, since later steps may add to it. */
-#define DEPTH_MAX 5e-4
-
 /* Contact by projection; for CS_FIDELITY_OTHER no force decides static friction. */
 static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *error) {
     struct cs_system *system = host->run->system;
@@ -321,7 +317,7 @@ static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *err
         return CS_OK;
     if (cs_contact_projection_init(&host->contact, system, &host->arena, error))
         return error->status;
-    host->contact.depth_max = DEPTH_MAX * host->table.length_scale;
+    host->contact.depth_max = CS_PROJECTION_DEPTH * host->table.length_scale;
     host->contact.static_friction.disabled =
         host->run->integrator->fidelity == CS_FIDELITY_OTHER;
     cs_contact_start(&host->contact, 0, host->run->x, host->run->v);

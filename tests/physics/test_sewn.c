@@ -4,7 +4,7 @@
 #include "methods.h"
 
 #include "model/contact/posed_collider.h"
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef CS_FORCE_LENGTH_H
 #define CS_FORCE_LENGTH_H
 
-#include "cli/table_plot.h"
+#include "shared/table_plot.h"
 
 /* Fills a table of "length over start" from `low` to `high` in 101 rows, and "force in N" along
  * x: the sum over the half of the body with smaller x of the elastic forces, which pull the

@@ -2,7 +2,7 @@
 #ifndef CS_PARTICLE_READ_H
 #define CS_PARTICLE_READ_H
 
-#include "cli/table_plot.h"
+#include "shared/table_plot.h"
 
 /* Reads the positions of a particle from run.npz, of clothsim run --export npz or numpy.savez:
  * a table of t, x, y and z. CS_ERR_USAGE: there are fewer particles; CS_ERR_FILE: "times" or

@@ -3,7 +3,7 @@
 #ifndef CS_SPECTRUM_H
 #define CS_SPECTRUM_H
 
-#include "cli/table_plot.h"
+#include "shared/table_plot.h"
 
 enum { CS_SPECTRUM_PEAKS = 3 };
 

@@ -2,7 +2,7 @@
 #ifndef CS_TABLE_LINES_H
 #define CS_TABLE_LINES_H
 
-#include "cli/table_plot.h"
+#include "shared/table_plot.h"
 
 enum { CS_LIST_BYTES = 64 };
 

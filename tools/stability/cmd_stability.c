@@ -11,7 +11,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/run_output.h"
-#include "cli/stability_map.h"
+#include "stability/stability_map.h"
 #include "session/process_pool.h"
 #include "session/recorded_run.h"
 #include "stability/extreme.h"

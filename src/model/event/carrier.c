@@ -166,6 +166,7 @@ static enum cs_status sew(struct cs_system *system, uint32_t s, struct sewing *s
     count[1] = to->n ? list_vertices(sewing, to) : count[0];
     if (cs_seam_check_counts(s, seam, count, error))
         return error->status;
+    // a particle has one holder, so that the order of seams does not matter
     for (uint32_t k = 0; k < count[0]; k++) {
         const size_t i = sewing->list[k];
         const double *x = system->state + i, from[3] = {x[0], x[n], x[2 * n]};

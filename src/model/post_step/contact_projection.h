@@ -24,7 +24,10 @@ struct cs_projection_counts {
     uint64_t tests, projected;
 };
 
-/* Parts of a frame down to which steps are cut where projection leaves a particle too deep. */
+/* Steps are cut where projection leaves a particle deeper than this fraction of the scene's
+ * size: half of what a run warns of, since later steps may add to it. */
+#define CS_PROJECTION_DEPTH 5e-4
+/* Parts of a frame down to which steps are cut. */
 enum { CS_PROJECTION_PARTS = 64 };
 
 /* How steps are cut; part of a checkpoint. */

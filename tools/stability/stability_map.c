@@ -1,5 +1,5 @@
 /* Makes the stability map of one method or of all, and writes its files. */
-#include "cli/stability_map.h"
+#include "stability/stability_map.h"
 
 #include "base/file.h"
 #include "base/install_paths.h"
@@ -7,7 +7,7 @@
 #include "cli/manifest.h"
 #include "cli/run_output.h"
 #include "cli/show/screen.h"
-#include "cli/table_plot.h"
+#include "shared/table_plot.h"
 #include "study/stability/stability.h"
 
 #include <stdio.h>

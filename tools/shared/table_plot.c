@@ -1,5 +1,5 @@
 /* Reads tables of numbers, and makes the diagrams of stability maps. */
-#include "cli/table_plot.h"
+#include "shared/table_plot.h"
 
 #include "study/stability/stability_state.h"
 
