@@ -119,9 +119,10 @@ static void add_counts(const struct cs_job *job, struct cs_text *out) {
         add_report_row(out, "clamped", "%llu indefinite matrices made definite",
                        (unsigned long long)c->clamped_setups);
     if (c->contact_tests)
-        add_report_row(out, "contacts", "%llu in %llu tests",
+        add_report_row(out, "contacts", "%llu in %llu tests, %llu steps cut",
                        (unsigned long long)c->projected_particles,
-                       (unsigned long long)c->contact_tests);
+                       (unsigned long long)c->contact_tests,
+                       (unsigned long long)c->subdivided_steps);
     if (c->strain_limit_moves)
         add_report_row(out, "strain limit", "%llu springs shortened",
                        (unsigned long long)c->strain_limit_moves);
