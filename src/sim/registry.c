@@ -89,19 +89,25 @@ static enum cs_status open_module(struct cs_registry *registry, const char *file
     return error->status;
 }
 
-/* Starts a program and adds it, unless it is there. */
+static enum cs_status open_listed(struct cs_registry *registry, const char *name,
+                                  struct cs_error *error);
+
+/* Starts a program, or reads a tableau, and adds it, unless it is there. A tableau takes no
+ * name of the build's own methods: it has no option that would give it another one. */
 static enum cs_status add_program(struct cs_registry *registry, const char *text,
                                   struct cs_error *error) {
     const struct cs_integrator *integrator;
     const char *file;
-    if (find_entry(registry, text) || cs_program_method_open(text, &integrator, &file, error))
+    const bool tableau = !strncmp(text, "tableau:", strlen("tableau:"));
+    if (find_entry(registry, text) || cs_program_method_open(text, &integrator, &file, error) ||
+        (tableau && open_listed(registry, integrator->name, error)))
         return error->status;
     const struct cs_registry_entry *first = find_entry(registry, integrator->name);
     if (first)
-        return cs_fail(error, CS_ERR_USAGE,
-                       "\"%.200s\": integrator \"%s\" is already in %s, expected --program "
-                       "NAME=COMMAND with another name",
-                       text, integrator->name, first->file);
+        return cs_fail(
+            error, CS_ERR_USAGE, "\"%.200s\": integrator \"%s\" is already in %s, expected %s",
+            text, integrator->name, first->file,
+            tableau ? "another name in the file" : "--program NAME=COMMAND with another name");
     return add_entry(registry, file, text, integrator, NULL, error);
 }
 

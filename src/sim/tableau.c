@@ -124,13 +124,17 @@ static enum cs_status take_all(struct reading *reading, const struct file *file,
     double lower[CS_TABLEAU_STAGES], p, q, one = 1, any = ABSENT;
     const int n = out->stages = (int)file->b.n;
     out->order = (int)file->order;
-    if (!*file->name || !*file->source || !out->order || n < 1 || n > CS_TABLEAU_STAGES ||
-        (int)file->A.n != n)
+    if (!*file->name || !*file->source || !out->order)
+        return cs_json_context_fail(&reading->context, at(reading, ""), false,
+                                    "missing key \"%s\"",
+                                    !*file->name  ? "name"
+                                    : !out->order ? "order"
+                                                  : "source");
+    if (n < 1 || n > CS_TABLEAU_STAGES || (int)file->A.n != n)
         return cs_json_context_fail(
             &reading->context, at(reading, ""), false,
-            "found %u rows of A and %d numbers of b, expected as many, 1 to %d, and name, "
-            "order and source",
-            file->A.n, n, CS_TABLEAU_STAGES);
+            "found %u rows of A and %d numbers of b, expected as many, 1 to %d", file->A.n, n,
+            CS_TABLEAU_STAGES);
     for (int k = 0; k < n && !file->c.n; k++)
         out->c[k] = ABSENT;
     if (take(reading, "b", n, &file->b, &one, out->b) ||
@@ -147,6 +151,12 @@ static enum cs_status take_all(struct reading *reading, const struct file *file,
         if (parse((const struct entry *)file->embedded.items + k, &r, &s))
             out->difference[k] = (p * s - r * q) / (q * s);
     }
+    bool differs = !file->embedded.n;
+    for (int k = 0; k < n; k++)
+        differs |= out->difference[k] != 0;
+    if (!differs)
+        return cs_json_context_fail(&reading->context, at(reading, "embedded"), false,
+                                    "found b again, expected a method of lower order");
     *traits = file->embedded.n ? CS_ADAPTIVE : 0;
     return take_stages(reading, file->A.items, traits);
 }

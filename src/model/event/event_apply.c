@@ -301,6 +301,27 @@ enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *e
     return CS_OK;
 }
 
+/* Refuses events that let particles go on the surface they are sewn to, where contact by force
+ * would have all its energy at once. */
+static enum cs_status check_opening(struct cs_system *system, struct cs_error *error) {
+    const struct cs_events *events = system->events;
+    for (uint32_t e = 0; e < system->scene->events.n; e++) {
+        const struct cs_event *event = cs_scene_events(system->scene) + e;
+        if (event->release.present)
+            cs_event_mark(system, &event->release.target);
+        for (uint32_t i = 0; i < system->view.n; i++) {
+            const uint32_t seam = events->seam_of[i];
+            if (seam && ((event->release.present && events->work[i]) ||
+                         (event->unsew.present && event->unsew.seam == seam - 1)))
+                return cs_fail(error, CS_ERR_SCENE,
+                               "events[%u] opens seams[%u] on a surface that contact by force "
+                               "keeps clear; expected contact.law project, or no such event",
+                               e, seam - 1);
+        }
+    }
+    return CS_OK;
+}
+
 /* Gives colliders what is sewn to them, seam by seam. */
 enum cs_status cs_event_attach_seams(struct cs_system *system, struct cs_error *error) {
     const struct cs_seam *seams = system->scene->seams.items;
@@ -320,7 +341,9 @@ enum cs_status cs_event_attach_seams(struct cs_system *system, struct cs_error *
                       error);
     }
     cs_arena_finish(&arena);
-    return error->status;
+    return error->status || system->scene->contact->law != CS_CONTACT_FORCE
+               ? error->status
+               : check_opening(system, error);
 }
 
 bool cs_events_turn_particles(const struct cs_scene *scene) {

@@ -283,11 +283,8 @@ double cs_contact_projection_end(struct cs_contact_projection *contact, bool beg
                                  double end) {
     struct cs_projection_cut *cut = &contact->cut;
     const double frame = 1 / contact->system->scene->time.fps;
-    if (begins && t - cut->tight >= frame * (1 - ROUNDING) && cut->longest < HUGE_VAL) {
-        cut->longest *= 2;
-        if (cut->longest > frame * (1 - ROUNDING))
-            cut->longest = HUGE_VAL;
-    }
+    if (begins && t - cut->tight >= frame * (1 - ROUNDING))
+        cut->longest = 2 * cut->longest > frame * (1 - ROUNDING) ? HUGE_VAL : 2 * cut->longest;
     const double parts = ceil((end - t) / cut->longest * (1 - ROUNDING));
     return parts > 1 ? t + (end - t) / parts : end;
 }
@@ -300,14 +297,16 @@ bool cs_contact_projection_refuses(struct cs_contact_projection *contact, double
     const double depth = contact->energy_limit.memory.has_last_energy
                              ? cs_posed_colliders_depth(contact->system, t, x)
                              : 0;
-    const bool refused =
-        depth > fmax(contact->depth_max, cut->depth) && dt > 2 * shortest * (1 - ROUNDING);
+    const bool deep = depth > fmax(contact->depth_max, cut->depth) && depth > cut->vain;
+    const bool refused = deep && dt > 2 * shortest * (1 - ROUNDING);
+    // the shortest steps did not help: only what is twice as deep is a reason to cut others
+    cut->vain = deep && !refused ? 2 * depth : depth > contact->depth_max ? cut->vain : 0;
     if (refused) {
         contact->energy_limit.memory = contact->memory_before;
         cs_static_friction_reject(&contact->static_friction);
         cut->longest = dt / 2;
     }
-    if (depth > ROOM * contact->depth_max)
+    if (depth > ROOM * contact->depth_max && depth > cut->vain)
         cut->tight = t;
     cut->depth = refused ? cut->depth : depth;
     return refused;

@@ -36,6 +36,7 @@ struct cs_projection_cut {
     double depth;   /* m, largest of a particle in a collider there */
     double longest; /* s, longest step; HUGE_VAL: any */
     double tight;   /* s, the last time that more than little stayed inside, or a refusal */
+    double vain;    /* m, depth that shorter steps do not lift; 0: none */
 };
 
 /* State of contact by projection between commits, and work arrays. */
