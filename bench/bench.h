@@ -25,7 +25,7 @@ struct bench_section {
 };
 
 extern const struct bench_section bench_limits, bench_kernels, bench_steps, bench_thesis,
-    bench_pairs, bench_contact, bench_pictures, bench_pipeline, bench_bdf;
+    bench_plain, bench_pairs, bench_contact, bench_pictures, bench_pipeline, bench_bdf;
 
 /* One line of progress on standard error. */
 void bench_report(const char *format, ...) __attribute__((format(printf, 1, 2)));

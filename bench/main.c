@@ -15,8 +15,8 @@
 #include <unistd.h>
 
 static const struct bench_section *const sections[] = {
-    &bench_limits,  &bench_kernels,  &bench_steps,    &bench_thesis, &bench_pairs,
-    &bench_contact, &bench_pictures, &bench_pipeline, &bench_bdf};
+    &bench_limits, &bench_kernels, &bench_steps,    &bench_plain,    &bench_thesis,
+    &bench_pairs,  &bench_contact, &bench_pictures, &bench_pipeline, &bench_bdf};
 enum { SECTIONS = sizeof sections / sizeof *sections };
 
 static const char *running = "bench"; /* the section, for bench_tell */

@@ -171,7 +171,7 @@ static enum cs_status million(const struct bench_settings *settings, struct benc
     const double particles = session.system.view.n;
     cs_session_close(&session);
     const char *const arguments[] = {"--integrator",
-                                     "implicit-linearised",
+                                     "implicit-linearised:dt=frame",
                                      "--set",
                                      "bodies[0].cloth.stretch=[1.02,0.99]",
                                      "--set",

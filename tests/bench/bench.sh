@@ -34,18 +34,19 @@ columns() {
         }')" ""
 }
 
-"$bench" --quick --csv "$work/csv" limits kernels steps thesis pairs contact pictures >"$work/tables" 2>"$work/progress"
+"$bench" --quick --csv "$work/csv" limits kernels steps plain thesis pairs contact pictures >"$work/tables" 2>"$work/progress"
 columns limits 2 loop,kib,median_ns,min_ns,max_ns,gb_a_s 5
 columns kernels 2 sheet,kernel,median_ns,min_ns,max_ns,spring_ns,limit_ns,bound_by,to_limit 42
 columns steps 5 method,sheet,stiffness,h,steps,median_ms,min_ms,max_ms,ns_particle,forces,to_limit,iterations,peak_mib 15
+columns plain 1 sheet,plain_ns,median_ns,min_ns,max_ns,ratio 2
 columns thesis 3 method,steps,r,total_ms,median_ms,max_ms,forces_ms,integration_ms,contact_ms,limit_ms,normals_ms,times_thesis 16
 columns pairs 3 sheet,state,stage,median_ns,min_ns,max_ns,number,each_ns,to_springs 33
 columns contact 3 scene,set,frames,steps,median_s,min_s,max_s,ms_a_step 7
 columns pictures 4 scene,look,size,by,median_ms,min_ms,max_ms,first_ms 4
-expect "sections printed" "$(grep -c '^[a-z]*: ' "$work/tables")" 7
+expect "sections printed" "$(grep -c '^[a-z]*: ' "$work/tables")" 8
 
 # a section that was not asked for leaves nothing behind
-expect "files" "$(ls "$work/csv" | tr '\n' ' ')" "contact.csv kernels.csv limits.csv pairs.csv pictures.csv steps.csv thesis.csv "
+expect "files" "$(ls "$work/csv" | tr '\n' ' ')" "contact.csv kernels.csv limits.csv pairs.csv pictures.csv plain.csv steps.csv thesis.csv "
 
 code=0
 "$bench" speed >"$work/out" 2>&1 || code=$?
