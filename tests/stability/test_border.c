@@ -1,5 +1,5 @@
 /* The bisected border of stability against linear theory, on shipped scenes. */
-#include "study/stability/stability.h"
+#include "borders/stability.h"
 
 #include "../physics/fixture.h"
 

@@ -14,7 +14,7 @@
 #ifndef CS_ADVISE_H
 #define CS_ADVISE_H
 
-#include "study/stability/stability_state.h"
+#include "borders/stability_state.h"
 
 /* Origin of an advised step. */
 enum cs_advice_kind {

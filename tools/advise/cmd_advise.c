@@ -6,6 +6,7 @@
 #include "advise/cheapest.h"
 #include "base/json_writer.h"
 #include "base/pool.h"
+#include "borders/stability_state.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
@@ -20,7 +21,6 @@
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
 #include "study/compare/equal_error.h"
-#include "study/stability/stability_state.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,10 +2,10 @@
  * tests/cli/files.py holds the lists to what the program writes. */
 #include "describe/output_keys.h"
 
+#include "borders/stability.h"
 #include "session/energy_monitor.h"
 #include "shared/known_columns.h"
 #include "study/compare/compare_cell.h"
-#include "study/stability/stability.h"
 #include "sweep/parameter_sweep.h"
 
 #define SCENE "path of the scene file; - for standard input"

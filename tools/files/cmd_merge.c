@@ -4,11 +4,11 @@
  *
  * A merged map is completed by repeating its command on the merged folder. */
 #include "base/file.h"
+#include "borders/stability_state.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
 #include "study/compare/compare_state.h"
-#include "study/stability/stability_state.h"
 #include "sweep/parameter_sweep.h"
 
 #include <dirent.h>

@@ -4,7 +4,6 @@
 #include "base/file.h"
 #include "base/serialise.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

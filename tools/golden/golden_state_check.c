@@ -5,7 +5,6 @@
 #include "session/session.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Splits "path=value;path=value" in place. Returns the number of overrides. */

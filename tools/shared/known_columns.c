@@ -1,10 +1,9 @@
 /* The columns of all tables that the program writes. */
 #include "shared/known_columns.h"
 
+#include "borders/stability.h"
 #include "session/energy_monitor.h"
-#include "session/session.h"
 #include "study/compare/compare_cell.h"
-#include "study/stability/stability.h"
 #include "sweep/parameter_sweep.h"
 
 #include <string.h>

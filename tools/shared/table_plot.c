@@ -1,7 +1,7 @@
 /* Reads tables of numbers, and makes the diagrams of stability maps. */
 #include "shared/table_plot.h"
 
-#include "study/stability/stability_state.h"
+#include "borders/stability_state.h"
 
 #include <math.h>
 #include <stdio.h>

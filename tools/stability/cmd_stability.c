@@ -3,7 +3,7 @@
  *   options -> axis and ranges -> per method: cs_stability_run -> table, NAME.csv,
  *   NAME_border.csv, NAME.json, NAME.png, NAME.svg, NAME.pdf
  *
- * With --extreme the catalogue of extreme scenes is run instead (study/stability/extreme.h). An
+ * With --extreme the catalogue of extreme scenes is run instead (extreme.h). An
  * interrupted map resumes from its journal when the command is repeated. */
 #include "base/install_paths.h"
 #include "base/json_writer.h"
@@ -11,10 +11,10 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/run_output.h"
-#include "stability/stability_map.h"
 #include "session/process_pool.h"
 #include "session/recorded_run.h"
 #include "stability/extreme.h"
+#include "stability/stability_map.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "session/perturb.h"
 #include "session/process_pool.h"
 #include "session/session.h"
-#include "session/study_scenes.h"
+#include "stability/extreme_scenes.h"
 
 #include <math.h>
 #include <stdio.h>

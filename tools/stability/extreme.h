@@ -17,7 +17,7 @@
 #ifndef CS_EXTREME_H
 #define CS_EXTREME_H
 
-#include "study/stability/stability_state.h"
+#include "borders/stability_state.h"
 
 /* Result of one scene with one method. Lives in memory shared with the workers; texts are those
  * of the catalogue and the registry. */

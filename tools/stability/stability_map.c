@@ -3,12 +3,12 @@
 
 #include "base/file.h"
 #include "base/install_paths.h"
+#include "borders/stability.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
 #include "cli/run_output.h"
 #include "cli/show/screen.h"
 #include "shared/table_plot.h"
-#include "study/stability/stability.h"
 
 #include <stdio.h>
 

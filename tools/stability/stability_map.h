@@ -2,7 +2,7 @@
 #ifndef CS_STABILITY_MAP_H
 #define CS_STABILITY_MAP_H
 
-#include "study/stability/stability.h"
+#include "borders/stability.h"
 
 /* Options of the command. */
 struct cs_stability_options {

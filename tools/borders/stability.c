@@ -1,12 +1,12 @@
 /* Makes a stability map. Its columns are distributed over worker processes, which write their
  * results to shared memory. A step is judged against the reference, and the border of stable
  * steps is bisected. */
-#include "study/stability/stability.h"
+#include "borders/stability.h"
 
 #include "base/clock.h"
+#include "borders/stability_state.h"
 #include "session/process_pool.h"
 #include "session/session.h"
-#include "study/stability/stability_state.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* Appends the results of a map to a file as binary records, and reads them back. */
-#include "study/stability/stability_state.h"
+#include "borders/stability_state.h"
 
 #include "base/file.h"
 #include "base/hash.h"

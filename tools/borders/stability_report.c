@@ -1,10 +1,10 @@
 /* Prints a stability map as text (letters for verdicts, border and theory below), as CSV and
  * JSON. */
-#include "study/stability/stability.h"
+#include "borders/stability.h"
 
 #include "base/json_writer.h"
+#include "borders/stability_state.h"
 #include "session/session.h"
-#include "study/stability/stability_state.h"
 
 #include <math.h>
 

@@ -11,7 +11,7 @@
 #define CS_STABILITY_H
 
 #include "base/table.h"
-#include "study/stability/stability_state.h"
+#include "borders/stability_state.h"
 
 /* Reads scene and method, and names the series. Returns CS_ERR_USAGE if the integrator has no
  * fixed dt; further CS_ERR_SCENE, CS_ERR_FILE, CS_ERR_MEMORY. settings must outlive the map.

@@ -9,7 +9,7 @@
  * are tightest so far, and at times of a fixed grid: tighten the limit of the worst mode, and
  * the Gershgorin limit.
  *   4. If the run is not stable, reset the limits to those of the start and halve the step. */
-#include "study/stability/stability_state.h"
+#include "borders/stability_state.h"
 
 #include "session/session.h"
 
