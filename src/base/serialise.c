@@ -5,7 +5,6 @@
 #include "base/arena.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Appends n bytes. Returns false if out of memory. */
 static bool write_bytes(struct cs_serialiser *serialiser, const void *value, size_t n) {

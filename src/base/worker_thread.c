@@ -1,7 +1,6 @@
 /* A worker thread that runs one task at a time, handed over by a condition variable. */
 #include "base/worker_thread.h"
 
-#include <pthread.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>

@@ -12,9 +12,7 @@
 #include "study/compare/compare.h"
 #include "study/compare/equal_error.h"
 
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* s for one call of a method: an advance of a reference at tight tolerances may take long. */

@@ -5,7 +5,6 @@
 #include "draw/matrix.h"
 #include "scene/collider_keys.h"
 #include "scene/force_keys.h"
-#include "scene/picture_keys.h"
 
 enum { MOST_POINTS = 200 }; // particles whose view is tested
 

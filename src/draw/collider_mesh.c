@@ -4,7 +4,6 @@
 
 #include "draw/matrix.h"
 #include "draw/view.h"
-#include "scene/collider_keys.h"
 #include "scene/shape_core.h"
 
 /* steps of angle from the middle of a cube's face to its border; lines of its grid, of which

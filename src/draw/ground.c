@@ -2,11 +2,8 @@
 #include "draw/ground.h"
 
 #include "draw/srgb.h"
-#include "draw/view.h"
 #include "mesh/trimesh.h"
-#include "model/system/particle_system.h"
 #include "scene/body_keys.h"
-#include "scene/collider_keys.h"
 #include "scene/force_keys.h"
 #include "scene/picture_keys.h"
 

@@ -4,7 +4,6 @@
 #include "draw/look.h"
 #include "draw/matrix.h"
 #include "draw/mesh.h"
-#include "draw/render.h"
 #include "draw/srgb.h"
 #include "draw/view.h"
 #include "mesh/trimesh.h"

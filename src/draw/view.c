@@ -5,10 +5,8 @@
 #include "draw/matrix.h"
 #include "draw/mesh.h"
 #include "draw/srgb.h"
-#include "mesh/trimesh.h"
 #include "scene/body_keys.h"
 #include "scene/force_keys.h"
-#include "scene/picture_keys.h"
 
 static void copy3(const double from[3], double last, float to[4]) {
     for (int i = 0; i < 3; i++)

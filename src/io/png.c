@@ -2,8 +2,6 @@
 #include "io/png.h"
 #include "base/install_paths.h"
 
-#include <errno.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 
 /* length of a file */

@@ -4,7 +4,6 @@
 #include "mesh/mesh_mend.h"
 
 #include "base/vec3.h"
-#include "mesh/raw_mesh.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -17,7 +17,6 @@
 #include "scene/picture_keys.h"
 #include "scene/shape.h"
 
-#include <clothsim/integrator.h>
 #include <math.h>
 
 /* Printed names of enum cs_feature. */

@@ -5,7 +5,6 @@
 #include "scene/body_keys.h"
 #include "scene/contact_keys.h"
 #include "scene/force_keys.h"
-#include "session/session.h"
 
 #include <math.h>
 #include <stdio.h>

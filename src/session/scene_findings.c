@@ -17,10 +17,8 @@
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"
 #include "scene/event_key.h"
-#include "scene/force_keys.h"
 #include "scene/picture_keys.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

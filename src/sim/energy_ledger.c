@@ -11,7 +11,6 @@
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { POINTS = 3 };

@@ -26,7 +26,6 @@
 #include "model/contact/rebound.h"
 #include "model/force/terms.h"
 #include "scene/body_pairs.h"
-#include "scene/contact_keys.h"
 
 #include <clothsim/clones.h>
 #include <string.h>

@@ -3,10 +3,8 @@
 #include "sim/run_host.h"
 
 #include "base/vector.h"
-#include "model/contact/ccd/step_limit.h"
 #include "model/elastic/membrane_forces.h"
 #include "model/event/event_state.h"
-#include "model/event/events.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "model/system/shape_clusters.h"
@@ -15,7 +13,6 @@
 
 #include <clothsim/clones.h>
 #include <math.h>
-#include <string.h>
 
 /* Relative to 1 + |t|: the rounding that a sum of steps may leave at the end. */
 #define ROUNDING 1e-9

@@ -1,10 +1,8 @@
 /* Parses a command's options and operands by its table of options. */
 #include "cli/line/args.h"
 
-#include "base/text.h"
 #include "cli/line/print.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

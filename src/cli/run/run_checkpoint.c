@@ -2,7 +2,6 @@
 #include "cli/run/run_checkpoint.h"
 
 #include "base/clock.h"
-#include "session/session.h"
 
 #include <stdio.h>
 #include <string.h>

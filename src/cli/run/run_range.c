@@ -8,7 +8,6 @@
 #include "session/frame_picture.h"
 #include "session/session.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,8 +3,6 @@
 
 #include "draw/overlay.h"
 #include "scene/body_keys.h"
-#include "scene/collider_keys.h"
-#include "scene/picture_keys.h"
 
 #include <string.h>
 

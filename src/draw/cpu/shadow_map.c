@@ -22,7 +22,6 @@
 #include "draw/cpu/shadow_map.h"
 
 #include "draw/cpu/raster.h"
-#include "draw/cpu/triangle.h"
 
 #include <math.h>
 #include <string.h>

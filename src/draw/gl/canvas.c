@@ -12,7 +12,6 @@
 #include "draw/render.h"
 #include "draw/view.h"
 #include "scene/body_keys.h"
-#include "scene/collider_keys.h"
 #include "scene/picture_keys.h"
 
 #include <stdbool.h>

@@ -3,9 +3,7 @@
 
 #include "draw/gl/context.h"
 #include "draw/view.h"
-#include "scene/picture_keys.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 

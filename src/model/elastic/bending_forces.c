@@ -7,7 +7,6 @@
 #include "scene/elastic_keys.h"
 
 #include <clothsim/clones.h>
-#include <math.h>
 
 /* Arguments of the loops over blocks: y (3,n) += factor K p. */
 struct job {

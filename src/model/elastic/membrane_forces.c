@@ -4,7 +4,6 @@
 #include "model/elastic/membrane_forces.h"
 
 #include "base/pool.h"
-#include "scene/elastic_keys.h"
 
 #include <string.h>
 

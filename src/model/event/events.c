@@ -3,7 +3,6 @@
 #include "model/event/events.h"
 
 #include "model/contact/posed_collider.h"
-#include "model/event/event_state.h"
 #include "model/force/diagnostics.h"
 #include "scene/body_pairs.h"
 #include "scene/event_key.h"

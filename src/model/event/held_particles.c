@@ -21,9 +21,7 @@
 #include "model/contact/posed_collider.h"
 #include "scene/body_pairs.h"
 #include "scene/collider_keys.h"
-#include "scene/contact_keys.h"
 #include "scene/force_keys.h"
-#include "scene/shape.h"
 
 #include <math.h>
 #include <string.h>

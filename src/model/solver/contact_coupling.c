@@ -4,7 +4,6 @@
 
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/solver/extra_springs.h"
-#include "model/solver/multigrid_hierarchy.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -12,7 +12,6 @@
 #include "base/pool.h"
 #include "model/elastic/membranes.h"
 #include "model/force/terms.h"
-#include "model/solver/contact_coupling.h"
 #include "model/solver/extra_springs.h"
 #include "scene/body_pairs.h"
 #include "scene/elastic_keys.h"

@@ -3,7 +3,6 @@
 #include "scene/file/obj_read.h"
 
 #include "base/text.h"
-#include "mesh/mesh_mend.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -6,7 +6,6 @@
 
 #include "base/file.h"
 #include "base/options.h"
-#include "base/status.h"
 #include "scene/body_pairs.h"
 #include "scene/contact_keys.h"
 #include "scene/file/json_context.h"

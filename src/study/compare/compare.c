@@ -9,8 +9,6 @@
 #include "session/provenance_write.h"
 #include "session/session.h"
 #include "study/compare/cell_list_parse.h"
-#include "study/compare/compare_state.h"
-#include "study/compare/equal_error.h"
 #include "study/reference/compare_reference_state.h"
 
 #include <math.h>

@@ -9,7 +9,6 @@
 #include "study/compare/compare_curves.h"
 #include "study/compare/equal_error.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
