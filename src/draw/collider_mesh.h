@@ -39,19 +39,13 @@ bool cs_collider_geometry_move(struct cs_collider_geometry *geometries,
 void cs_collider_geometry_style(const struct cs_collider_geometry *geometries, uint32_t i,
                                 struct cs_surface_style *style);
 
-/* Takes a collider's pose and key frame; returns true if it has moved, turned, grown or
- * deformed. */
-bool cs_solid_move(struct cs_solid *solid, const struct cs_posed_collider *now);
-
 /* Fills `vertices` with a visible collider in world coordinates, counter-clockwise seen from
  * outside. The square of a plane lies a little below its position, or it would show through
  * cloth on it. A sphere is filled as far as it is visible from eye (collider_mesh.h). */
 void cs_solids_fill(const struct cs_collider_geometry *geometries, uint32_t i,
                     const float eye[4]);
 
-/* The visible side of a sphere as triangles, computed without sines.
- */
-
+/* The visible side of a sphere as triangles, computed without sines. */
 enum {
     CS_SPHERE_CAP_STACKS = 16,  /* rings from the middle to the outline */
     CS_SPHERE_CAP_SECTORS = 64, /* corners of the inner rings */
@@ -62,11 +56,5 @@ enum {
         3 * CS_SPHERE_CAP_SECTORS *
         (1 + 2 * (CS_SPHERE_CAP_STACKS - 2) + CS_SPHERE_CAP_OUTLINE / CS_SPHERE_CAP_SECTORS + 1)
 };
-
-/* Fills CS_SPHERE_CAP_VERTICES vertices, three per triangle, counter-clockwise seen from
- * outside. They cover the part of a sphere (m) that is visible from eye: a position and 1, or
- * the direction to an eye far away and 0. An eye inside gets the whole sphere. */
-void cs_sphere_cap_fill(const double centre[3], double radius, const float eye[4],
-                        struct cs_vertex *out);
 
 #endif

@@ -6,51 +6,13 @@
 #include "draw/render.h"
 #include "model/system/particle_system.h"
 
-/* Cloth as lines: edges, springs by kind, pins, goals. */
-
-/* Sizes of lines on a picture; system is borrowed. */
-struct cs_wireframe {
-    const struct cs_system *system;
-    double line_unit;    /* pixels of a line of width 1: 1/480 of the height */
-    double cell;         /* pixels between neighbours at the camera's target */
-    double depth_offset; /* m by which lines are moved towards the eye */
-    uint8_t *rim;        /* (n) held particles with a free neighbour, of the last picture */
-};
-
-/* Half a line's width in pixels: the fraction `share` of the cell, so that fine grids keep
- * gaps, limited to least..most units. */
-double cs_wireframe_width(const struct cs_wireframe *wireframe, double share, double least,
-                          double most);
-
-/* Lines that the largest of these calls adds between two draws. */
-uint32_t cs_wireframe_capacity(const struct cs_system *system);
-
-/* Each adds and draws the lines of one kind from positions x (3,n). */
-void cs_wireframe_draw_edges(const struct cs_wireframe *wireframe, struct cs_lines *lines,
-                             const double *x);
-void cs_wireframe_draw_springs(const struct cs_wireframe *wireframe, struct cs_lines *lines,
-                               const double *x);
-void cs_wireframe_draw_seams(const struct cs_wireframe *wireframe, struct cs_lines *lines,
-                             const double *x); /* stitches that are not broken */
-void cs_wireframe_draw_pins(const struct cs_wireframe *wireframe, struct cs_lines *lines,
-                            const double *x, const double *inv_mass);
-
-/* Draws a line from each particle to its goal, and a dot there; goals (3,n). A particle at its
- * goal has the dot alone. */
-void cs_wireframe_draw_pegs(const struct cs_wireframe *wireframe, struct cs_lines *lines,
-                            const double *x,
-                            const double *inv_mass); /* and rods, where held meets free */
-void cs_wireframe_draw_goals(const struct cs_wireframe *wireframe, struct cs_lines *lines,
-                             const double *x, const double *goals);
-
-/* Draws bodies of one row or column of particles, which have no surface, as a thread with
- * knots. */
-void cs_wireframe_draw_threads(const struct cs_wireframe *wireframe, struct cs_lines *lines,
-                               const double *x);
-
 /* The lines of a scene's pictures. */
 struct cs_overlay {
-    struct cs_wireframe wireframe;
+    const struct cs_system *system; /* borrowed */
+    double line_unit;               /* pixels of a line of width 1: 1/480 of the height */
+    double cell;                    /* pixels between neighbours at the camera's target */
+    double depth_offset;            /* m by which lines are moved towards the eye */
+    uint8_t *rim; /* (n) held particles with a free neighbour, of the last picture */
     struct cs_colour_bar colour_bar;
     const uint8_t *marks;   /* of the canvas settings, which its owner sets; NULL: none */
     struct cs_lines *lines; /* borrowed: a renderer's, with its calls set */

@@ -54,38 +54,6 @@ static enum cs_step refuse_setup(struct cs_run_host *host, double cm, double cd,
     return CS_STEP_OK;
 }
 
-/* Prepares A at (t, x, v). Copies the state, because host_solve may have to set up again
- * after the method has moved on. A diagonal block that is not definite clamps at once. */
-enum cs_step cs_host_solve_setup(void *ctx, double t, const double *x, const double *v,
-                                 double cm, double cd, double ck, uint32_t flags) {
-    struct cs_run_host *host = ctx;
-    const size_t bytes = 3 * sizeof *x * host->run->system->view.n;
-    cs_host_state_at(host, t, &x, &v);
-    if (refuse_setup(host, cm, cd, ck))
-        return CS_STEP_FAIL;
-    cs_trace_state(host, "solve set-up", t, x, v);
-    const struct cs_stage_start begin = cs_stage_begin(host);
-    host->run->counts.solve_setups++;
-    // the b of a former euler_setup belongs to another A
-    host->euler.b = NULL;
-    host->solve_may_fail = flags & CS_SOLVE_MAY_FAIL;
-    memcpy(host->setup_x, x, bytes);
-    if (host->setup_v)
-        memcpy(host->setup_v, v, bytes);
-    const struct cs_matrix matrix = {.t = t,
-                                     .x = host->setup_x,
-                                     .v = host->setup_v,
-                                     .cm = cm,
-                                     .cd = cd,
-                                     .ck = ck,
-                                     .psd = flags & CS_SOLVE_PSD,
-                                     .bound = flags & CS_SOLVE_BOUND};
-    if (!cs_linear_setup(&host->linear, &matrix))
-        cs_host_clamp(host, NULL);
-    cs_stage_end(host, CS_STAGE_SETUP, begin);
-    return CS_STEP_OK;
-}
-
 /* b = h (f - D v) + (M v - A v), of springs and the forces whose part of A is a number. */
 CS_CLONES static void add_scalar_parts(const struct cs_view *view, double h, const double *v,
                                        const double *f, const double *av, double *b) {
@@ -204,7 +172,11 @@ void cs_host_euler_finish(void *ctx, double *x, double *v) {
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }
 
-bool cs_host_clamp(struct cs_run_host *host, const double *b) {
+/* Sets the last system up again with a matrix that is closer to positive definite: first
+ * CS_SOLVE_PSD, which drops the transverse part of compressed springs, then CS_SOLVE_BOUND
+ * for friction on curved surfaces too. If b is that of the last euler_setup, it follows.
+ * Returns false if both are already set. */
+static bool clamp_system(struct cs_run_host *host, const double *b) {
     struct cs_matrix matrix = host->linear.matrix;
     if (!clamp(&matrix))
         return false;
@@ -214,6 +186,38 @@ bool cs_host_clamp(struct cs_run_host *host, const double *b) {
     else
         cs_linear_setup(&host->linear, &matrix);
     return true;
+}
+
+/* Prepares A at (t, x, v). Copies the state, because host_solve may have to set up again
+ * after the method has moved on. A diagonal block that is not definite clamps at once. */
+enum cs_step cs_host_solve_setup(void *ctx, double t, const double *x, const double *v,
+                                 double cm, double cd, double ck, uint32_t flags) {
+    struct cs_run_host *host = ctx;
+    const size_t bytes = 3 * sizeof *x * host->run->system->view.n;
+    cs_host_state_at(host, t, &x, &v);
+    if (refuse_setup(host, cm, cd, ck))
+        return CS_STEP_FAIL;
+    cs_trace_state(host, "solve set-up", t, x, v);
+    const struct cs_stage_start begin = cs_stage_begin(host);
+    host->run->counts.solve_setups++;
+    // the b of a former euler_setup belongs to another A
+    host->euler.b = NULL;
+    host->solve_may_fail = flags & CS_SOLVE_MAY_FAIL;
+    memcpy(host->setup_x, x, bytes);
+    if (host->setup_v)
+        memcpy(host->setup_v, v, bytes);
+    const struct cs_matrix matrix = {.t = t,
+                                     .x = host->setup_x,
+                                     .v = host->setup_v,
+                                     .cm = cm,
+                                     .cd = cd,
+                                     .ck = ck,
+                                     .psd = flags & CS_SOLVE_PSD,
+                                     .bound = flags & CS_SOLVE_BOUND};
+    if (!cs_linear_setup(&host->linear, &matrix))
+        clamp_system(host, NULL);
+    cs_stage_end(host, CS_STAGE_SETUP, begin);
+    return CS_STEP_OK;
 }
 
 /* Sets the last euler_setup up again with friction by its chord to where the solution dv (3,n)
@@ -253,7 +257,7 @@ static enum cs_linear_end solve_clamped(struct cs_run_host *host, const double *
         cs_linear_solve(&host->linear, b, rtol, u, &result->iterations, &result->residual);
     host->run->counts.solve_iterations += result->iterations;
     // set-up tests diagonal blocks alone: an indefinite matrix may show only here
-    while (result->end == CS_LINEAR_INDEFINITE && cs_host_clamp(host, b)) {
+    while (result->end == CS_LINEAR_INDEFINITE && clamp_system(host, b)) {
         memset(u, 0, 3 * sizeof *u * host->run->system->view.n);
         result->end =
             cs_linear_solve(&host->linear, b, rtol, u, &result->iterations, &result->residual);

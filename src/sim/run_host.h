@@ -268,12 +268,6 @@ enum cs_step cs_host_euler_setup(void *ctx, double t, double h, const double *x,
 /* The call euler_finish. */
 void cs_host_euler_finish(void *ctx, double *x, double *v);
 
-/* Sets the last system up again with a matrix that is closer to positive definite: first
- * CS_SOLVE_PSD, which drops the transverse part of compressed springs, then CS_SOLVE_BOUND
- * for friction on curved surfaces too. If b is that of the last euler_setup, it follows.
- * Returns false if both are already set. */
-bool cs_host_clamp(struct cs_run_host *host, const double *b);
-
 /* --- the host of a run --- */
 
 /* Fills host->table for a run over run->system, and takes the memory of contact and of the

@@ -22,6 +22,142 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Projection, and clipping (Sutherland, Hodgman 1974) in clip coordinates.
+ *
+ * A point is inside the near plane if w >= near, and inside the side planes if |x|, |y| are at
+ * most 16 w. Before the division by w these are linear, so an edge from a to b with signed
+ * distances d_a >= 0 > d_b meets a plane at t = d_a / (d_a - d_b). Attributes are linear in
+ * space and take the same t. There is no far plane: reversed depth may fall below 0.
+ */
+
+/* Half pictures beyond which triangles are cut: a guard band. Triangles that leave the picture
+ * by less are not clipped, and edge functions still fit into 64 bits. */
+static const float guard = 16;
+
+enum { PLANES = 5 }; // near, left, right, below, above
+enum { CLIP_VERTICES_MAX = 9 };
+
+void cs_clip_transform_make(struct cs_clip_transform *clip, const float matrix[16], float near,
+                            int width, int height) {
+    for (int i = 0; i < 4; i++) {
+        clip->x[i] = matrix[4 * i];
+        clip->y[i] = matrix[4 * i + 1];
+        clip->z[i] = matrix[4 * i + 2];
+        clip->w[i] = matrix[4 * i + 3];
+    }
+    clip->near = near > 0 ? near : 0.5f;
+    memset(clip->jitter, 0, sizeof clip->jitter);
+    clip->width = width;
+    clip->height = height;
+}
+
+static float row(const float r[4], const float p[3]) {
+    return r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + r[3];
+}
+
+// signed distance to a plane, in units of w; w alone decides about the near one
+static float inside(const struct cs_clip_transform *clip, const struct cs_clip_vertex *c,
+                    int plane) {
+    const float at = c->clip[plane > 2], reach = guard * c->clip[3];
+    return plane == 0 ? c->clip[3] - clip->near : plane & 1 ? at + reach : reach - at;
+}
+
+// viewport: clip coordinates -w..w to pixels, and depth to 0..1
+static void set_pixel(const struct cs_clip_transform *clip, struct cs_clip_vertex *c) {
+    const float half[2] = {0.5f * (float)clip->width, 0.5f * (float)clip->height};
+    c->inverse = 1 / c->clip[3];
+    c->x = c->clip[0] * c->inverse * half[0] + half[0];
+    c->y = c->clip[1] * c->inverse * half[1] + half[1];
+    c->z = c->clip[2] * c->inverse * 0.5f + 0.5f;
+}
+
+void cs_clip_transform_project(const struct cs_clip_transform *clip, struct cs_clip_vertex *c) {
+    c->clip_mask = 0;
+    for (int plane = 0; plane < PLANES; plane++)
+        // true for NAN too
+        c->clip_mask |= (uint32_t)(!(inside(clip, c, plane) >= 0)) << plane;
+    if (!(c->clip_mask & 1))
+        set_pixel(clip, c);
+}
+
+void cs_clip_transform_corner(const struct cs_clip_transform *clip, const float place[3],
+                              struct cs_clip_vertex *corner) {
+    corner->clip[0] = row(clip->x, place);
+    corner->clip[1] = row(clip->y, place);
+    corner->clip[2] = row(clip->z, place);
+    corner->clip[3] = row(clip->w, place);
+    cs_clip_transform_project(clip, corner);
+}
+
+void cs_clip_transform_move_depth(const struct cs_clip_transform *clip, const float place[3],
+                                  const float eye[4], float by, struct cs_clip_vertex *corner) {
+    float d[3], square = 0, moved[3];
+    for (int i = 0; i < 3; i++) {
+        d[i] = eye[3] * place[i] - eye[i];
+        square += d[i] * d[i];
+    }
+    const float share = square > 0 ? by / sqrtf(square) : 0;
+    for (int i = 0; i < 3; i++)
+        moved[i] = place[i] + share * d[i];
+    const float z = row(clip->z, moved), w = row(clip->w, moved);
+    if (!(w > 0 && corner->clip[3] > 0))
+        return;
+    corner->clip[2] = z / w * corner->clip[3];
+    cs_clip_transform_project(clip, corner);
+}
+
+// the point at fraction t from a to b; its pixel is not set yet
+static struct cs_clip_vertex between(const struct cs_clip_vertex *a,
+                                     const struct cs_clip_vertex *b, float t) {
+    struct cs_clip_vertex c = {.clip_mask = 0};
+    for (int i = 0; i < 4; i++)
+        c.clip[i] = a->clip[i] + t * (b->clip[i] - a->clip[i]);
+    for (int i = 0; i < CS_ATTRIBUTES; i++)
+        c.attributes[i] = a->attributes[i] + t * (b->attributes[i] - a->attributes[i]);
+    return c;
+}
+
+/* Clips a polygon of n corners by one plane; returns the number of corners left. A corner
+ * inside is copied, an edge that crosses the plane adds the crossing. */
+static int cut(const struct cs_clip_transform *clip, int plane, const struct cs_clip_vertex *in,
+               int n, struct cs_clip_vertex *out) {
+    int kept = 0;
+    for (int i = 0; i < n; i++) {
+        const struct cs_clip_vertex *a = in + i, *b = in + (i + 1) % n;
+        const float at = inside(clip, a, plane), next = inside(clip, b, plane);
+        if (at >= 0)
+            out[kept++] = *a;
+        // from the inner end, so that both triangles of an edge find the same point
+        if (at >= 0 && next < 0)
+            out[kept++] = between(a, b, at / (at - next));
+        else if (at < 0 && next >= 0)
+            out[kept++] = between(b, a, next / (next - at));
+    }
+    return kept;
+}
+
+/* Clips a triangle: writes a convex polygon with pixels set and returns its number of corners;
+ * 0: nothing is left. Each of five planes adds at most one corner to three; one is spare. */
+static int clip_triangle(const struct cs_clip_transform *clip,
+                         const struct cs_clip_vertex *const corners[3],
+                         struct cs_clip_vertex out[CLIP_VERTICES_MAX]) {
+    struct cs_clip_vertex other[CLIP_VERTICES_MAX];
+    int n = 3;
+    for (int i = 0; i < 3; i++)
+        out[i] = *corners[i];
+    for (int plane = 0; plane < PLANES && n; plane++) {
+        const int kept = cut(clip, plane, out, n, other);
+        n = kept < 3 ? 0 : kept;
+        memcpy(out, other, (size_t)n * sizeof *out);
+    }
+    // a cut lies on its plane but for rounding: w stays above 0
+    for (int i = 0; i < n; i++)
+        set_pixel(clip, out + i);
+    return n;
+}
+
+/* Set-up of triangles. */
+
 /* Side in 1/256 pixel up to which edge functions are computed in 32 bits. Both factors of a
  * product are below 16000 + 288, thus |product| < 2^28 and |E_k| < 2^29 in the box. */
 enum { SMALL = 16000 };
@@ -195,7 +331,7 @@ static void add_triangle(struct cs_triangles *triangles, const struct cs_clip_tr
 void cs_triangles_add(struct cs_triangles *triangles, const struct cs_clip_transform *clip,
                       const struct cs_clip_vertex *const corners[3],
                       const struct cs_triangle_kind *kind) {
-    struct cs_clip_vertex polygon[CS_CLIP_VERTICES_MAX];
+    struct cs_clip_vertex polygon[CLIP_VERTICES_MAX];
     if (!(corners[0]->clip_mask | corners[1]->clip_mask | corners[2]->clip_mask)) {
         add_triangle(triangles, clip, corners[0], corners[1], corners[2], kind);
         return;
@@ -204,7 +340,7 @@ void cs_triangles_add(struct cs_triangles *triangles, const struct cs_clip_trans
     if (corners[0]->clip_mask & corners[1]->clip_mask & corners[2]->clip_mask)
         return;
     // the clipped polygon is convex: a fan about its first corner
-    const int n = cs_clip_transform_clip(clip, corners, polygon);
+    const int n = clip_triangle(clip, corners, polygon);
     for (int i = 2; i < n; i++)
         add_triangle(triangles, clip, polygon, polygon + i - 1, polygon + i, kind);
 }
@@ -212,135 +348,4 @@ void cs_triangles_add(struct cs_triangles *triangles, const struct cs_clip_trans
 void cs_triangles_finish(struct cs_triangles *triangles) {
     free(triangles->items);
     *triangles = (struct cs_triangles){0};
-}
-
-/* Projection, and clipping (Sutherland, Hodgman 1974) in clip coordinates.
- *
- * A point is inside the near plane if w >= near, and inside the side planes if |x|, |y| are at
- * most 16 w. Before the division by w these are linear, so an edge from a to b with signed
- * distances d_a >= 0 > d_b meets a plane at t = d_a / (d_a - d_b). Attributes are linear in
- * space and take the same t. There is no far plane: reversed depth may fall below 0.
- */
-
-/* Half pictures beyond which triangles are cut: a guard band. Triangles that leave the picture
- * by less are not clipped, and edge functions still fit into 64 bits. */
-static const float guard = 16;
-
-enum { PLANES = 5 }; // near, left, right, below, above
-
-void cs_clip_transform_make(struct cs_clip_transform *clip, const float matrix[16], float near,
-                            int width, int height) {
-    for (int i = 0; i < 4; i++) {
-        clip->x[i] = matrix[4 * i];
-        clip->y[i] = matrix[4 * i + 1];
-        clip->z[i] = matrix[4 * i + 2];
-        clip->w[i] = matrix[4 * i + 3];
-    }
-    clip->near = near > 0 ? near : 0.5f;
-    memset(clip->jitter, 0, sizeof clip->jitter);
-    clip->width = width;
-    clip->height = height;
-}
-
-static float row(const float r[4], const float p[3]) {
-    return r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + r[3];
-}
-
-// signed distance to a plane, in units of w; w alone decides about the near one
-static float inside(const struct cs_clip_transform *clip, const struct cs_clip_vertex *c,
-                    int plane) {
-    const float at = c->clip[plane > 2], reach = guard * c->clip[3];
-    return plane == 0 ? c->clip[3] - clip->near : plane & 1 ? at + reach : reach - at;
-}
-
-// viewport: clip coordinates -w..w to pixels, and depth to 0..1
-static void set_pixel(const struct cs_clip_transform *clip, struct cs_clip_vertex *c) {
-    const float half[2] = {0.5f * (float)clip->width, 0.5f * (float)clip->height};
-    c->inverse = 1 / c->clip[3];
-    c->x = c->clip[0] * c->inverse * half[0] + half[0];
-    c->y = c->clip[1] * c->inverse * half[1] + half[1];
-    c->z = c->clip[2] * c->inverse * 0.5f + 0.5f;
-}
-
-void cs_clip_transform_project(const struct cs_clip_transform *clip, struct cs_clip_vertex *c) {
-    c->clip_mask = 0;
-    for (int plane = 0; plane < PLANES; plane++)
-        // true for NAN too
-        c->clip_mask |= (uint32_t)(!(inside(clip, c, plane) >= 0)) << plane;
-    if (!(c->clip_mask & 1))
-        set_pixel(clip, c);
-}
-
-void cs_clip_transform_corner(const struct cs_clip_transform *clip, const float place[3],
-                              struct cs_clip_vertex *corner) {
-    corner->clip[0] = row(clip->x, place);
-    corner->clip[1] = row(clip->y, place);
-    corner->clip[2] = row(clip->z, place);
-    corner->clip[3] = row(clip->w, place);
-    cs_clip_transform_project(clip, corner);
-}
-
-void cs_clip_transform_move_depth(const struct cs_clip_transform *clip, const float place[3],
-                                  const float eye[4], float by, struct cs_clip_vertex *corner) {
-    float d[3], square = 0, moved[3];
-    for (int i = 0; i < 3; i++) {
-        d[i] = eye[3] * place[i] - eye[i];
-        square += d[i] * d[i];
-    }
-    const float share = square > 0 ? by / sqrtf(square) : 0;
-    for (int i = 0; i < 3; i++)
-        moved[i] = place[i] + share * d[i];
-    const float z = row(clip->z, moved), w = row(clip->w, moved);
-    if (!(w > 0 && corner->clip[3] > 0))
-        return;
-    corner->clip[2] = z / w * corner->clip[3];
-    cs_clip_transform_project(clip, corner);
-}
-
-// the point at fraction t from a to b; its pixel is not set yet
-static struct cs_clip_vertex between(const struct cs_clip_vertex *a,
-                                     const struct cs_clip_vertex *b, float t) {
-    struct cs_clip_vertex c = {.clip_mask = 0};
-    for (int i = 0; i < 4; i++)
-        c.clip[i] = a->clip[i] + t * (b->clip[i] - a->clip[i]);
-    for (int i = 0; i < CS_ATTRIBUTES; i++)
-        c.attributes[i] = a->attributes[i] + t * (b->attributes[i] - a->attributes[i]);
-    return c;
-}
-
-/* Clips a polygon of n corners by one plane; returns the number of corners left. A corner
- * inside is copied, an edge that crosses the plane adds the crossing. */
-static int cut(const struct cs_clip_transform *clip, int plane, const struct cs_clip_vertex *in,
-               int n, struct cs_clip_vertex *out) {
-    int kept = 0;
-    for (int i = 0; i < n; i++) {
-        const struct cs_clip_vertex *a = in + i, *b = in + (i + 1) % n;
-        const float at = inside(clip, a, plane), next = inside(clip, b, plane);
-        if (at >= 0)
-            out[kept++] = *a;
-        // from the inner end, so that both triangles of an edge find the same point
-        if (at >= 0 && next < 0)
-            out[kept++] = between(a, b, at / (at - next));
-        else if (at < 0 && next >= 0)
-            out[kept++] = between(b, a, next / (next - at));
-    }
-    return kept;
-}
-
-int cs_clip_transform_clip(const struct cs_clip_transform *clip,
-                           const struct cs_clip_vertex *const corners[3],
-                           struct cs_clip_vertex out[CS_CLIP_VERTICES_MAX]) {
-    struct cs_clip_vertex other[CS_CLIP_VERTICES_MAX];
-    int n = 3;
-    for (int i = 0; i < 3; i++)
-        out[i] = *corners[i];
-    for (int plane = 0; plane < PLANES && n; plane++) {
-        const int kept = cut(clip, plane, out, n, other);
-        n = kept < 3 ? 0 : kept;
-        memcpy(out, other, (size_t)n * sizeof *out);
-    }
-    // a cut lies on its plane but for rounding: w stays above 0
-    for (int i = 0; i < n; i++)
-        set_pixel(clip, out + i);
-    return n;
 }

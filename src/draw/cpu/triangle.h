@@ -100,14 +100,6 @@ void cs_clip_transform_project(const struct cs_clip_transform *clip,
 void cs_clip_transform_move_depth(const struct cs_clip_transform *clip, const float place[3],
                                   const float eye[4], float by, struct cs_clip_vertex *corner);
 
-/* Clips a triangle: writes a convex polygon with pixels set and returns its number of corners;
- * 0: nothing is left. Each of five planes adds at most one corner to three; one is spare. */
-enum { CS_CLIP_VERTICES_MAX = 9 };
-
-int cs_clip_transform_clip(const struct cs_clip_transform *clip,
-                           const struct cs_clip_vertex *const corners[3],
-                           struct cs_clip_vertex out[CS_CLIP_VERTICES_MAX]);
-
 /* Rays through pixels: their origin and axes (shade.h: cs_ray_direction). */
 struct cs_rays {
     float eye[3], right[3], up[3], back[3]; /* m; unit vectors */

@@ -8,6 +8,228 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* One method of a list, while it is read. */
+struct cs_cell_list_entry {
+    struct cs_method method;
+    char series[CS_SERIES_BYTES];
+    char fixed[sizeof((struct cs_cell *)0)->fixed]; /* options without the swept one */
+    const char *control;                            /* "dt", "rtol" or "" */
+    double low, high;                               /* of the control; NAN: the default sweep */
+    char module[CS_HASH_DIGITS]; /* hash of the file: a rebuilt module is a different one */
+};
+
+/* Expands a method to its steps or tolerances. */
+
+/* Steps of a default range, each half of the last, of which only those are run that are worth
+ * it (compare.c); and the limit of cells in any range. */
+enum { DEFAULT_STEPS = 20, MOST_POINTS = 64 };
+
+/* First step of an explicit method in units of 2/omega. omega is an upper bound: the true limit
+ * is up to 1.5 times longer for the leap-frog, and about twice for Runge-Kutta methods. 2.2 is
+ * just beyond both, so a series begins with an unstable step. */
+#define BEYOND_LIMIT 2.2
+
+/* Appends "name=value" to a list of options. */
+static void add_option(char *options, size_t size, const char *name, double value) {
+    char number[CS_REAL_DIGITS];
+    const size_t used = strlen(options);
+    cs_print_real(value, number);
+    snprintf(options + used, size - used, "%s%s=%s", used ? "," : "", name, number);
+}
+
+/* Marks a cell as refused, with the reason. */
+static void refuse_cell(struct cs_cell *cell, const char *why) {
+    snprintf(cell->outcome, sizeof cell->outcome, "refused");
+    snprintf(cell->note, sizeof cell->note, "%.239s", why);
+}
+
+/* A cell with the options that all cells of the entry share. */
+static void init_cell(struct cs_cell *cell, const struct cs_cell_list_entry *entry) {
+    const struct cs_integrator *integrator = entry->method.integrator;
+    cs_cell_init(cell, integrator->name);
+    memcpy(cell->series, entry->series, sizeof cell->series);
+    memcpy(cell->fixed, entry->fixed, sizeof cell->fixed);
+    snprintf(cell->family, sizeof cell->family, "%s", cs_family_of(integrator));
+    memcpy(cell->module, entry->module, sizeof cell->module);
+    cell->declared_order = cs_method_order(integrator, entry->method.options, false);
+    cell->adaptive = integrator->traits & CS_ADAPTIVE;
+    snprintf(cell->options, sizeof cell->options, "%s", entry->fixed);
+}
+
+/* Sets the values of the control that a cell of the entry may have: those of its range, or all
+ * that the option takes, up to one step per frame. */
+static void set_limits(struct cs_cell *cell, const struct cs_cell_list_entry *entry,
+                       double fps) {
+    const struct cs_option *row = cs_option_find(&entry->method.table, entry->control);
+    cell->open = isnan(entry->high);
+    cell->low = cell->open ? row->min : entry->low;
+    cell->high = cell->open ? cell->adaptive ? row->max : 1 / fps : entry->high;
+}
+
+/* Adds the cell of one step or tolerance. */
+static enum cs_status add_point(struct cs_cell_list *list,
+                                const struct cs_cell_list_entry *entry, double value,
+                                const struct cs_cell_list_settings *settings,
+                                struct cs_error *error) {
+    struct cs_cell cell;
+    init_cell(&cell, entry);
+    snprintf(cell.control, sizeof cell.control, "%s", entry->control);
+    if (*entry->control) {
+        set_limits(&cell, entry, settings->fps);
+        cell.value = value;
+        add_option(cell.options, sizeof cell.options, entry->control, value);
+    }
+    return cs_cell_list_add(list, &cell, error);
+}
+
+void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value) {
+    cs_cell_init(cell, of->method);
+    memcpy(cell->series, of->series, sizeof cell->series);
+    memcpy(cell->fixed, of->fixed, sizeof cell->fixed);
+    memcpy(cell->family, of->family, sizeof cell->family);
+    memcpy(cell->control, of->control, sizeof cell->control);
+    memcpy(cell->options, of->fixed, sizeof of->fixed);
+    cell->adaptive = of->adaptive;
+    cell->low = of->low;
+    cell->high = of->high;
+    cell->open = of->open;
+    cell->declared_order = of->declared_order;
+    if (!*of->control)
+        return;
+    cell->value = value;
+    add_option(cell->options, sizeof cell->options, of->control, value);
+}
+
+/* Default range: rtol from 1e-2 to 1e-13 of an adaptive method; DEFAULT_STEPS steps from one
+ * frame down of a fixed one. Explicit methods begin just beyond their stability limit. */
+static void default_range(const struct cs_cell_list_entry *entry,
+                          const struct cs_cell_list_settings *settings, double *high,
+                          double *low) {
+    const struct cs_option *row = cs_option_find(&entry->method.table, entry->control);
+    if (entry->method.integrator->traits & CS_ADAPTIVE) {
+        *high = fmin(1e-2, row->max);
+        *low = fmax(1e-13, row->min);
+        return;
+    }
+    *high = 1 / settings->fps;
+    if (!(entry->method.integrator->traits & CS_IMPLICIT))
+        while (*high > 2 * BEYOND_LIMIT * 2 / settings->omega)
+            *high /= 2;
+    *low = fmax(*high / (1 << (DEFAULT_STEPS - 1)), row->min);
+}
+
+/* Adds the cells of the entry over its range, or over the default range. A method of another
+ * model gets one refused cell. CS_ERR_USAGE, CS_ERR_MEMORY. */
+static enum cs_status expand_entry(struct cs_cell_list *list,
+                                   const struct cs_cell_list_entry *entry,
+                                   const struct cs_cell_list_settings *settings,
+                                   struct cs_error *error) {
+    double high = entry->high, low = entry->low;
+    if (entry->method.integrator->fidelity == CS_FIDELITY_OTHER) {
+        struct cs_cell cell;
+        init_cell(&cell, entry);
+        refuse_cell(
+            &cell,
+            "its model is not the equation of motion: an error against it has no meaning");
+        return cs_cell_list_add(list, &cell, error);
+    }
+    if (!*entry->control)
+        return add_point(list, entry, (double)NAN, settings, error);
+    if (isnan(high))
+        default_range(entry, settings, &high, &low);
+    const bool adaptive = entry->method.integrator->traits & CS_ADAPTIVE;
+    for (int k = 0; k < MOST_POINTS; k++) {
+        // powers, so that 1e-3 is 1e-3 to the bit and a step halves exactly
+        const double value =
+            adaptive ? high * pow(10, -0.5 * k) : high / (double)(UINT64_C(1) << k);
+        if (value < low * (1 - 1e-9) || add_point(list, entry, value, settings, error))
+            break;
+    }
+    return error->status;
+}
+
+/* Inserts a copy at an index; the capacity doubles when it is used up. */
+static enum cs_status insert(struct cs_cell_list *list, uint32_t at, const struct cs_cell *cell,
+                             struct cs_error *error) {
+    if (list->n == list->capacity) {
+        const uint32_t capacity = list->capacity ? 2 * list->capacity : 64;
+        struct cs_cell *cells = realloc(list->cells, capacity * sizeof *cells);
+        if (!cells)
+            return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u cells", capacity);
+        list->cells = cells;
+        list->capacity = capacity;
+    }
+    struct cs_cell *place = list->cells + at;
+    memmove(place + 1, place, (list->n++ - at) * sizeof *place);
+    *place = *cell;
+    return CS_OK;
+}
+
+/* Reports two different methods under one series name. */
+static enum cs_status refuse_series(const struct cs_cell *one, const struct cs_cell *other,
+                                    struct cs_error *error) {
+    return cs_fail(error, CS_ERR_USAGE,
+                   "series \"%s\" is %s%s%s and %s%s%s: give one of them another name",
+                   one->series, one->method, *one->fixed ? ":" : "", one->fixed, other->method,
+                   *other->fixed ? ":" : "", other->fixed);
+}
+
+/* Walks the whole series: a duplicate can be anywhere, and the place is before the first
+ * smaller value. */
+enum cs_status cs_cell_list_add(struct cs_cell_list *list, const struct cs_cell *cell,
+                                struct cs_error *error) {
+    uint32_t at = list->n;
+    for (uint32_t k = 0; k < list->n; k++) {
+        const struct cs_cell *other = list->cells + k;
+        if (!cs_cell_same_series(other, cell))
+            continue;
+        if (strcmp(other->method, cell->method) != 0 || strcmp(other->fixed, cell->fixed) != 0)
+            return refuse_series(other, cell, error);
+        if (!strcmp(other->options, cell->options))
+            return CS_OK;
+        at = k + 1;
+        if (other->value < cell->value) {
+            at = k;
+            break;
+        }
+    }
+    return insert(list, at, cell, error);
+}
+
+/* Replaces the cells of the series in place; the cells after it move up. */
+void cs_cell_list_refuse(struct cs_cell_list *list, uint32_t first, const char *why) {
+    const struct cs_cell *of = list->cells + first;
+    struct cs_cell cell;
+    uint32_t next = first + 1;
+    cs_cell_init(&cell, of->method);
+    memcpy(cell.series, of->series, sizeof cell.series);
+    memcpy(cell.fixed, of->fixed, sizeof cell.fixed);
+    refuse_cell(&cell, why);
+    while (next < list->n && cs_cell_same_series(list->cells + next, &cell))
+        next++;
+    memmove(list->cells + first + 1, list->cells + next,
+            (list->n - next) * sizeof *list->cells);
+    list->n -= next - first - 1;
+    list->cells[first] = cell;
+}
+
+void cs_cell_list_drop_unrun(struct cs_cell_list *list) {
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < list->n; k++)
+        if (*list->cells[k].outcome)
+            list->cells[kept++] = list->cells[k];
+    list->n = kept;
+}
+
+void cs_cell_list_finish(struct cs_cell_list *list) {
+    free(list->cells);
+    *list = (struct cs_cell_list){0};
+}
+
+void cs_cell_integrator(const struct cs_cell *cell, char *out, size_t size) {
+    snprintf(out, size, "%s%s%s", cell->method, *cell->options ? ":" : "", cell->options);
+}
+
 /* Reads "LOW..HIGH" or one number. Both ends are checked as values of the option. */
 static enum cs_status set_range(struct cs_cell_list_entry *entry, const char *key,
                                 const char *value, struct cs_error *error) {
@@ -92,7 +314,7 @@ static enum cs_status read_method(struct cs_cell_list *list, struct cs_registry 
                !cs_method_parse_pair(method.integrator->name, &rest, &key, &value, error))
             set_option(&entry, key, value, error);
         if (!error->status && !end_entry(&entry, name, error))
-            cs_cell_list_expand(list, &entry, settings, error);
+            expand_entry(list, &entry, settings, error);
     }
     cs_method_finish(&entry.method);
     return error->status;
@@ -169,213 +391,4 @@ enum cs_status cs_cell_list_add_modules(const char *list, struct cs_arena *arena
     }
     *plugins = all;
     return CS_OK;
-}
-
-/* Expands a method to its steps or tolerances. */
-
-/* Steps of a default range, each half of the last, of which only those are run that are worth
- * it (compare.c); and the limit of cells in any range. */
-enum { DEFAULT_STEPS = 20, MOST_POINTS = 64 };
-
-/* First step of an explicit method in units of 2/omega. omega is an upper bound: the true limit
- * is up to 1.5 times longer for the leap-frog, and about twice for Runge-Kutta methods. 2.2 is
- * just beyond both, so a series begins with an unstable step. */
-#define BEYOND_LIMIT 2.2
-
-/* Appends "name=value" to a list of options. */
-static void add_option(char *options, size_t size, const char *name, double value) {
-    char number[CS_REAL_DIGITS];
-    const size_t used = strlen(options);
-    cs_print_real(value, number);
-    snprintf(options + used, size - used, "%s%s=%s", used ? "," : "", name, number);
-}
-
-/* A cell with the options that all cells of the entry share. */
-static void init_cell(struct cs_cell *cell, const struct cs_cell_list_entry *entry) {
-    const struct cs_integrator *integrator = entry->method.integrator;
-    cs_cell_init(cell, integrator->name);
-    memcpy(cell->series, entry->series, sizeof cell->series);
-    memcpy(cell->fixed, entry->fixed, sizeof cell->fixed);
-    snprintf(cell->family, sizeof cell->family, "%s", cs_family_of(integrator));
-    memcpy(cell->module, entry->module, sizeof cell->module);
-    cell->declared_order = cs_method_order(integrator, entry->method.options, false);
-    cell->adaptive = integrator->traits & CS_ADAPTIVE;
-    snprintf(cell->options, sizeof cell->options, "%s", entry->fixed);
-}
-
-/* Sets the values of the control that a cell of the entry may have: those of its range, or all
- * that the option takes, up to one step per frame. */
-static void set_limits(struct cs_cell *cell, const struct cs_cell_list_entry *entry,
-                       double fps) {
-    const struct cs_option *row = cs_option_find(&entry->method.table, entry->control);
-    cell->open = isnan(entry->high);
-    cell->low = cell->open ? row->min : entry->low;
-    cell->high = cell->open ? cell->adaptive ? row->max : 1 / fps : entry->high;
-}
-
-/* Adds the cell of one step or tolerance. */
-static enum cs_status add_point(struct cs_cell_list *list,
-                                const struct cs_cell_list_entry *entry, double value,
-                                const struct cs_cell_list_settings *settings,
-                                struct cs_error *error) {
-    struct cs_cell cell;
-    init_cell(&cell, entry);
-    snprintf(cell.control, sizeof cell.control, "%s", entry->control);
-    if (*entry->control) {
-        set_limits(&cell, entry, settings->fps);
-        cell.value = value;
-        add_option(cell.options, sizeof cell.options, entry->control, value);
-    }
-    return cs_cell_list_add(list, &cell, error);
-}
-
-void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value) {
-    cs_cell_init(cell, of->method);
-    memcpy(cell->series, of->series, sizeof cell->series);
-    memcpy(cell->fixed, of->fixed, sizeof cell->fixed);
-    memcpy(cell->family, of->family, sizeof cell->family);
-    memcpy(cell->control, of->control, sizeof cell->control);
-    memcpy(cell->options, of->fixed, sizeof of->fixed);
-    cell->adaptive = of->adaptive;
-    cell->low = of->low;
-    cell->high = of->high;
-    cell->open = of->open;
-    cell->declared_order = of->declared_order;
-    if (!*of->control)
-        return;
-    cell->value = value;
-    add_option(cell->options, sizeof cell->options, of->control, value);
-}
-
-/* Default range: rtol from 1e-2 to 1e-13 of an adaptive method; DEFAULT_STEPS steps from one
- * frame down of a fixed one. Explicit methods begin just beyond their stability limit. */
-static void default_range(const struct cs_cell_list_entry *entry,
-                          const struct cs_cell_list_settings *settings, double *high,
-                          double *low) {
-    const struct cs_option *row = cs_option_find(&entry->method.table, entry->control);
-    if (entry->method.integrator->traits & CS_ADAPTIVE) {
-        *high = fmin(1e-2, row->max);
-        *low = fmax(1e-13, row->min);
-        return;
-    }
-    *high = 1 / settings->fps;
-    if (!(entry->method.integrator->traits & CS_IMPLICIT))
-        while (*high > 2 * BEYOND_LIMIT * 2 / settings->omega)
-            *high /= 2;
-    *low = fmax(*high / (1 << (DEFAULT_STEPS - 1)), row->min);
-}
-
-enum cs_status cs_cell_list_expand(struct cs_cell_list *list,
-                                   const struct cs_cell_list_entry *entry,
-                                   const struct cs_cell_list_settings *settings,
-                                   struct cs_error *error) {
-    double high = entry->high, low = entry->low;
-    if (entry->method.integrator->fidelity == CS_FIDELITY_OTHER) {
-        struct cs_cell cell;
-        init_cell(&cell, entry);
-        cs_cell_refuse(
-            &cell,
-            "its model is not the equation of motion: an error against it has no meaning");
-        return cs_cell_list_add(list, &cell, error);
-    }
-    if (!*entry->control)
-        return add_point(list, entry, (double)NAN, settings, error);
-    if (isnan(high))
-        default_range(entry, settings, &high, &low);
-    const bool adaptive = entry->method.integrator->traits & CS_ADAPTIVE;
-    for (int k = 0; k < MOST_POINTS; k++) {
-        // powers, so that 1e-3 is 1e-3 to the bit and a step halves exactly
-        const double value =
-            adaptive ? high * pow(10, -0.5 * k) : high / (double)(UINT64_C(1) << k);
-        if (value < low * (1 - 1e-9) || add_point(list, entry, value, settings, error))
-            break;
-    }
-    return error->status;
-}
-
-/* Inserts a copy at an index; the capacity doubles when it is used up. */
-static enum cs_status insert(struct cs_cell_list *list, uint32_t at, const struct cs_cell *cell,
-                             struct cs_error *error) {
-    if (list->n == list->capacity) {
-        const uint32_t capacity = list->capacity ? 2 * list->capacity : 64;
-        struct cs_cell *cells = realloc(list->cells, capacity * sizeof *cells);
-        if (!cells)
-            return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u cells", capacity);
-        list->cells = cells;
-        list->capacity = capacity;
-    }
-    struct cs_cell *place = list->cells + at;
-    memmove(place + 1, place, (list->n++ - at) * sizeof *place);
-    *place = *cell;
-    return CS_OK;
-}
-
-/* Reports two different methods under one series name. */
-static enum cs_status refuse_series(const struct cs_cell *one, const struct cs_cell *other,
-                                    struct cs_error *error) {
-    return cs_fail(error, CS_ERR_USAGE,
-                   "series \"%s\" is %s%s%s and %s%s%s: give one of them another name",
-                   one->series, one->method, *one->fixed ? ":" : "", one->fixed, other->method,
-                   *other->fixed ? ":" : "", other->fixed);
-}
-
-/* Walks the whole series: a duplicate can be anywhere, and the place is before the first
- * smaller value. */
-enum cs_status cs_cell_list_add(struct cs_cell_list *list, const struct cs_cell *cell,
-                                struct cs_error *error) {
-    uint32_t at = list->n;
-    for (uint32_t k = 0; k < list->n; k++) {
-        const struct cs_cell *other = list->cells + k;
-        if (!cs_cell_same_series(other, cell))
-            continue;
-        if (strcmp(other->method, cell->method) != 0 || strcmp(other->fixed, cell->fixed) != 0)
-            return refuse_series(other, cell, error);
-        if (!strcmp(other->options, cell->options))
-            return CS_OK;
-        at = k + 1;
-        if (other->value < cell->value) {
-            at = k;
-            break;
-        }
-    }
-    return insert(list, at, cell, error);
-}
-
-void cs_cell_refuse(struct cs_cell *cell, const char *why) {
-    snprintf(cell->outcome, sizeof cell->outcome, "refused");
-    snprintf(cell->note, sizeof cell->note, "%.239s", why);
-}
-
-/* Replaces the cells of the series in place; the cells after it move up. */
-void cs_cell_list_refuse(struct cs_cell_list *list, uint32_t first, const char *why) {
-    const struct cs_cell *of = list->cells + first;
-    struct cs_cell cell;
-    uint32_t next = first + 1;
-    cs_cell_init(&cell, of->method);
-    memcpy(cell.series, of->series, sizeof cell.series);
-    memcpy(cell.fixed, of->fixed, sizeof cell.fixed);
-    cs_cell_refuse(&cell, why);
-    while (next < list->n && cs_cell_same_series(list->cells + next, &cell))
-        next++;
-    memmove(list->cells + first + 1, list->cells + next,
-            (list->n - next) * sizeof *list->cells);
-    list->n -= next - first - 1;
-    list->cells[first] = cell;
-}
-
-void cs_cell_list_drop_unrun(struct cs_cell_list *list) {
-    uint32_t kept = 0;
-    for (uint32_t k = 0; k < list->n; k++)
-        if (*list->cells[k].outcome)
-            list->cells[kept++] = list->cells[k];
-    list->n = kept;
-}
-
-void cs_cell_list_finish(struct cs_cell_list *list) {
-    free(list->cells);
-    *list = (struct cs_cell_list){0};
-}
-
-void cs_cell_integrator(const struct cs_cell *cell, char *out, size_t size) {
-    snprintf(out, size, "%s%s%s", cell->method, *cell->options ? ":" : "", cell->options);
 }

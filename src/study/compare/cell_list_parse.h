@@ -39,9 +39,6 @@ void cs_cell_list_drop_unrun(struct cs_cell_list *list);
 /* Makes a cell of the same series with another value of its control, without results or key. */
 void cs_cell_derive(struct cs_cell *cell, const struct cs_cell *of, double value);
 
-/* Marks a cell as refused, with the reason. */
-void cs_cell_refuse(struct cs_cell *cell, const char *why);
-
 /* Replaces the series that begins at cell `first` by one refused cell with the reason. */
 void cs_cell_list_refuse(struct cs_cell_list *list, uint32_t first, const char *why);
 
@@ -50,8 +47,6 @@ enum { CS_CELL_INTEGRATOR = 336 };
 
 void cs_cell_integrator(const struct cs_cell *cell, char *out, size_t size);
 
-/* Expands one method of a list to cells. */
-
 /* Facts of the scene that steps and tolerances are derived from. */
 struct cs_cell_list_settings {
     const char *list;           /* NULL: every method there is, and its variants */
@@ -59,23 +54,6 @@ struct cs_cell_list_settings {
     uint32_t n_plugins;
     double fps, omega; /* of the scene: the default steps come from them */
 };
-
-/* One method of a list, while it is read. */
-struct cs_cell_list_entry {
-    struct cs_method method;
-    char series[CS_SERIES_BYTES];
-    char fixed[sizeof((struct cs_cell *)0)->fixed]; /* options without the swept one */
-    const char *control;                            /* "dt", "rtol" or "" */
-    double low, high;                               /* of the control; NAN: the default sweep */
-    char module[CS_HASH_DIGITS]; /* hash of the file: a rebuilt module is a different one */
-};
-
-/* Adds the cells of the entry over its range, or over the default range. A method of another
- * model gets one refused cell. CS_ERR_USAGE, CS_ERR_MEMORY. */
-enum cs_status cs_cell_list_expand(struct cs_cell_list *list,
-                                   const struct cs_cell_list_entry *entry,
-                                   const struct cs_cell_list_settings *settings,
-                                   struct cs_error *error);
 
 /* Reads the list of methods into cells. A module file is found by the name of its first method,
  * hence cs_cell_list_add_modules comes first. CS_ERR_USAGE for a list that cannot be read or an

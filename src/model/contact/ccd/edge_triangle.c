@@ -59,19 +59,6 @@ static bool are_on_same_side(const double edge[2][3], const double triangle[3][3
     return are_separated(edge, triangle, axis);
 }
 
-/* A product of signs >= 0 rejects ends on one side, and ends in the plane, whose sign is 0. The
- * last three signs use the moved end, so that none of them is 0 for a triangle with area. */
-bool cs_edge_crosses_triangle(const double edge[2][3], const double triangle[3][3]) {
-    if (has_gap(edge, triangle) || are_on_same_side(edge, triangle))
-        return false;
-    const double *a = triangle[0], *b = triangle[1], *c = triangle[2];
-    const double *p = edge[0], *q = edge[1];
-    if (cs_orient3d(a, b, c, p) * cs_orient3d(a, b, c, q) >= 0)
-        return false;
-    const int side = cs_orient3d_moved(a, b, p, q);
-    return side == cs_orient3d_moved(b, c, p, q) && side == cs_orient3d_moved(c, a, p, q);
-}
-
 /* Signs of determinants: an error-bounded test in double, then exact expansions. */
 
 /* Largest number of terms. A difference is a sum of two doubles; a product of three doubles is
@@ -213,13 +200,27 @@ static int cross_sign(const double a[3], const double b[3], const double c[3], i
     return sign_of_sum(&sum);
 }
 
-/* The determinant falls by the move times (a - c) x (b - c). e, e^2, e^3 are of decreasing
- * order, so the first component that is not 0 decides. */
-int cs_orient3d_moved(const double a[3], const double b[3], const double c[3],
-                      const double d[3]) {
+/* cs_orient3d with d moved by (e, e^2, e^3) for an infinitesimal e > 0: 0 only if a, b and c
+ * are collinear. The determinant falls by the move times (a - c) x (b - c). e, e^2, e^3 are of
+ * decreasing order, so the first component that is not 0 decides. */
+static int orient3d_moved(const double a[3], const double b[3], const double c[3],
+                          const double d[3]) {
     int sign = cs_orient3d(a, b, c, d);
     // the determinant falls by the move times (a - c) x (b - c)
     for (int i = 0; i < 3 && !sign; i++)
         sign = -cross_sign(a, b, c, i);
     return sign;
+}
+
+/* A product of signs >= 0 rejects ends on one side, and ends in the plane, whose sign is 0. The
+ * last three signs use the moved end, so that none of them is 0 for a triangle with area. */
+bool cs_edge_crosses_triangle(const double edge[2][3], const double triangle[3][3]) {
+    if (has_gap(edge, triangle) || are_on_same_side(edge, triangle))
+        return false;
+    const double *a = triangle[0], *b = triangle[1], *c = triangle[2];
+    const double *p = edge[0], *q = edge[1];
+    if (cs_orient3d(a, b, c, p) * cs_orient3d(a, b, c, q) >= 0)
+        return false;
+    const int side = orient3d_moved(a, b, p, q);
+    return side == orient3d_moved(b, c, p, q) && side == orient3d_moved(c, a, p, q);
 }

@@ -31,9 +31,4 @@ bool cs_edge_crosses_triangle(const double edge[2][3], const double triangle[3][
  */
 int cs_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]);
 
-/* The same with d moved by (e, e^2, e^3) for an infinitesimal e > 0: 0 only if a, b and c are
- * collinear. */
-int cs_orient3d_moved(const double a[3], const double b[3], const double c[3],
-                      const double d[3]);
-
 #endif
