@@ -318,6 +318,30 @@ TEST(runner_up_near_by_work_is_timed) {
     }
 }
 
+/* Errors that one series alone was run to have no factor: its rows there are not timed. */
+TEST(series_alone_is_not_timed) {
+    static const struct planted pair[] = {
+        {.order = 4, .scale = 0.3, .limit = 1, .seconds = 1e-4, .evals = 4},
+        {.order = 1, .scale = 0.3, .limit = 1, .seconds = 1e-4, .evals = 1}};
+    struct cs_ranking ranking;
+    struct cs_error error = {0};
+    uint32_t alone = 0;
+    begin(pair);
+    sweep(2, 1);
+    search();
+    ck_assert(!cs_ranking_make(&ranking, &compare, &error));
+    for (uint32_t k = 0; k < ranking.n; k++) {
+        const struct cs_rank *rank = ranking.ranks + k;
+        ck_assert_int_eq(ranking.is_contender[rank->best - compare.cells.cells],
+                         rank->runner_up != NULL);
+        alone += !rank->runner_up;
+    }
+    ck_assert_uint_gt(alone, 3);
+    ck_assert_uint_gt(ranking.n, alone);
+    cs_ranking_finish(&ranking);
+    cs_cell_list_finish(&compare.cells);
+}
+
 /* The verdict names the row that is not at the error, and gives no number. */
 TEST(no_number_without_equal_error) {
     static const struct planted pair[] = {

@@ -87,8 +87,8 @@ static void mark_contenders(struct cs_ranking *ranking, const struct cs_rank *ra
             cs_choice_cost(standing.cell, choice) <= far * cs_choice_cost(rank->best, choice))
             ranking->is_contender[standing.cell - list->cells] = true;
     }
-    if (rank->runner_up && (rank->runner_up->cpu <= FAR_NEXT * rank->best->cpu ||
-                            rank->runner_up->work <= FAR_NEXT * rank->best->work))
+    if (rank->runner_up->cpu <= FAR_NEXT * rank->best->cpu ||
+        rank->runner_up->work <= FAR_NEXT * rank->best->work)
         ranking->is_contender[rank->runner_up - list->cells] = true;
 }
 
@@ -127,7 +127,8 @@ static void find_best(struct cs_rank *rank, const struct cs_choice *choice,
 static void choose(struct cs_ranking *ranking, struct cs_rank *rank,
                    const struct cs_choice *choice, cs_choice_passes *pass) {
     find_best(rank, choice, pass);
-    if (rank->best)
+    /* a series alone has no factor that times could change */
+    if (rank->runner_up)
         mark_contenders(ranking, rank, choice, pass);
 }
 
