@@ -230,14 +230,14 @@ static enum cs_status print_verdict(struct screen *screen, struct cs_error *erro
 /* Draws error against work, which is the same on every machine. */
 static enum cs_status print_diagram(struct screen *screen, struct cs_error *error) {
     struct cs_plot_settings settings;
-    struct cs_plot plot;
+    struct cs_diagram plot;
     struct cs_text text = {0};
     cs_compare_plot_settings(&screen->compare, CS_WIDTH_COLUMN, &settings);
     settings.title = screen->compare.scene;
     settings.second = NULL;
     cs_text_add(&text, "\n");
     if (!cs_plot_make(&plot, &settings, error))
-        cs_screen_print_diagram(&screen->terminal, &plot.diagram, &text);
+        cs_screen_print_diagram(&screen->terminal, &plot, &text);
     cs_plot_finish(&plot);
     return error->status ? error->status : cs_print_raw(stdout, &text, error);
 }

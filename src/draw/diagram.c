@@ -119,28 +119,28 @@ struct cs_key *cs_diagram_add_key(struct cs_diagram *diagram, enum cs_key_kind k
     return key;
 }
 
-void cs_plot_begin(struct cs_plot *plot, const char *title, double width) {
-    *plot = (struct cs_plot){
-        .diagram = {.title = title, .width = width, .columns = 1, .panels = plot->panels}};
+void cs_plot_begin(struct cs_diagram *plot, const char *title, double width) {
+    *plot = (struct cs_diagram){.width = width, .columns = 1};
+    snprintf(plot->title, sizeof plot->title, "%s", title ? title : "");
 }
 
-void cs_plot_finish(struct cs_plot *plot) {
+void cs_plot_finish(struct cs_diagram *plot) {
     cs_arena_finish(&plot->arena);
-    *plot = (struct cs_plot){0};
+    *plot = (struct cs_diagram){0};
 }
 
-struct cs_panel *cs_plot_add_panel(struct cs_plot *plot, double aspect, uint32_t n_series,
+struct cs_panel *cs_plot_add_panel(struct cs_diagram *plot, double aspect, uint32_t n_series,
                                    struct cs_error *error) {
     const struct cs_plot_axis empty = {.range = {HUGE_VAL, -HUGE_VAL}};
-    struct cs_panel *panel = plot->panels + plot->diagram.n_panels;
+    struct cs_panel *panel = plot->panels + plot->n_panels;
     if (panel == plot->panels + CS_PANELS_MAX)
         return NULL;
     *panel = (struct cs_panel){.x = empty, .y = empty, .aspect = aspect};
-    plot->diagram.n_panels++;
+    plot->n_panels++;
     return CS_ARENA_ARRAY(&plot->arena, panel->series, n_series, error) ? panel : NULL;
 }
 
-struct cs_series *cs_plot_add_series(struct cs_plot *plot, struct cs_panel *panel,
+struct cs_series *cs_plot_add_series(struct cs_diagram *plot, struct cs_panel *panel,
                                      struct cs_series series, uint32_t n_points,
                                      struct cs_error *error) {
     if (!CS_ARENA_ARRAY(&plot->arena, series.points, n_points, error))

@@ -18,7 +18,7 @@
 #define CS_WIDTH_PAGE   180.0
 
 enum { CS_PANELS_MAX = 8, CS_TICKS_MAX = 512, CS_LABEL_BYTES = 160, CS_KEYS_MAX = 16 };
-enum { CS_STYLES = 12, CS_TICK_BYTES = 32 };
+enum { CS_STYLES = 12, CS_TICK_BYTES = 32, CS_TITLE_BYTES = 640 };
 
 /* The terminal's letter of a series is that of its style. */
 struct cs_style {
@@ -117,35 +117,30 @@ struct cs_key {
     const char *help; /* borrowed; follows the text in a terminal; NULL: nothing */
 };
 
+/* A diagram with its memory, in which series, points and boxes are. */
 struct cs_diagram {
-    const char *title; /* borrowed; NULL: none */
-    double width;      /* mm */
-    uint32_t columns;  /* panels side by side, with one y axis */
+    char title[CS_TITLE_BYTES]; /* "": none */
+    double width;               /* mm */
+    uint32_t columns;           /* panels side by side, with one y axis */
     uint32_t n_panels, n_keys;
-    struct cs_panel *panels; /* (n_panels) borrowed */
-    struct cs_key keys[CS_KEYS_MAX];
-};
-
-/* Adds a key unless there is no room; returns it for further settings. */
-struct cs_key *cs_diagram_add_key(struct cs_diagram *diagram, enum cs_key_kind kind,
-                                  uint32_t colour, char letter, const char *text);
-
-/* A diagram with its memory, in which series, points and boxes are. It must not move. */
-struct cs_plot {
-    struct cs_diagram diagram;
     struct cs_panel panels[CS_PANELS_MAX];
+    struct cs_key keys[CS_KEYS_MAX];
     struct cs_arena arena;
 };
 
-/* Begins a diagram without panels; cs_plot_finish must be called in any case. */
-void cs_plot_begin(struct cs_plot *plot, const char *title, double width);
-void cs_plot_finish(struct cs_plot *plot);
+/* Begins a diagram without panels; cs_plot_finish must be called in any case. title: copied;
+ * NULL: none. */
+void cs_plot_begin(struct cs_diagram *plot, const char *title, double width);
+void cs_plot_finish(struct cs_diagram *plot);
+/* Adds a key unless there is no room; returns it for further settings. */
+struct cs_key *cs_diagram_add_key(struct cs_diagram *diagram, enum cs_key_kind kind,
+                                  uint32_t colour, char letter, const char *text);
 /* Adds a panel of empty ranges, with room for so many series. NULL: no room for it, or
  * CS_ERR_MEMORY. */
-struct cs_panel *cs_plot_add_panel(struct cs_plot *plot, double aspect, uint32_t n_series,
+struct cs_panel *cs_plot_add_panel(struct cs_diagram *plot, double aspect, uint32_t n_series,
                                    struct cs_error *error);
 /* Adds a series, with room for so many points. NULL: CS_ERR_MEMORY. */
-struct cs_series *cs_plot_add_series(struct cs_plot *plot, struct cs_panel *panel,
+struct cs_series *cs_plot_add_series(struct cs_diagram *plot, struct cs_panel *panel,
                                      struct cs_series series, uint32_t n_points,
                                      struct cs_error *error);
 
@@ -156,7 +151,7 @@ enum cs_format { CS_FORMAT_PNG, CS_FORMAT_SVG, CS_FORMAT_PDF, CS_FORMATS };
 extern const char *const cs_format_names[]; /* closed by NULL */
 enum { CS_FORMATS_ALL = (1 << CS_FORMATS) - 1 };
 
-#define CS_DIAGRAM_ABI 3u /* raised with every change of the structs above or below */
+#define CS_DIAGRAM_ABI 4u /* raised with every change of the structs above or below */
 /* The module exports this table as clothsim_diagram. */
 struct cs_diagram_module {
     unsigned abi;

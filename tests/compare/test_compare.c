@@ -276,7 +276,7 @@ TEST(crossings_are_ringed) {
                                                   .x = cs_column_find("cpu"),
                                                   .y = cs_column_find("error"),
                                                   .width = CS_WIDTH_COLUMN};
-        struct cs_plot plot;
+        struct cs_diagram plot;
         struct cs_error error = {0};
         bool key = false;
         ck_assert_int_eq(cs_plot_make(&plot, &settings, &error), CS_OK);
@@ -284,9 +284,9 @@ TEST(crossings_are_ringed) {
         ck_assert_uint_eq(line->n, n);
         for (uint32_t k = 0; k < n; k++)
             ck_assert_int_eq(line->points[k].ring, cells[k].crossings > 0);
-        for (uint32_t k = 0; k < plot.diagram.n_keys; k++)
-            key |= plot.diagram.keys[k].kind == CS_KEY_SAMPLE &&
-                   plot.diagram.keys[k].mark == CS_MARK_RING;
+        for (uint32_t k = 0; k < plot.n_keys; k++)
+            key |= plot.keys[k].kind == CS_KEY_SAMPLE &&
+                   plot.keys[k].mark == CS_MARK_RING;
         ck_assert_int_eq(key, n == 3);
         cs_plot_finish(&plot);
     }

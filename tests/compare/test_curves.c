@@ -108,13 +108,13 @@ TEST(all_series_are_drawn_on_request) {
  * each other: of both panels y is the same. */
 TEST(points_are_those_of_the_cells) {
     struct cs_plot_settings settings = make();
-    struct cs_plot plot;
+    struct cs_diagram plot;
     struct cs_error error = {0};
     settings.second = settings.x;
     settings.width = CS_WIDTH_PAGE;
     ck_assert_int_eq(cs_plot_make(&plot, &settings, &error), CS_OK);
-    ck_assert_uint_eq(plot.diagram.n_panels, 2);
-    ck_assert_uint_eq(plot.diagram.columns, 2);
+    ck_assert_uint_eq(plot.n_panels, 2);
+    ck_assert_uint_eq(plot.columns, 2);
     for (const struct cs_panel *panel = plot.panels; panel < plot.panels + 2; panel++) {
         uint32_t full = 0, crosses = 0;
         for (const struct cs_series *s = panel->series; s < panel->series + panel->n_series;
@@ -138,7 +138,7 @@ TEST(points_are_those_of_the_cells) {
  * timed in rounds, since one time alone is that of the load. */
 TEST(probes_are_not_joined) {
     struct cs_plot_settings settings = make();
-    struct cs_plot plot;
+    struct cs_diagram plot;
     struct cs_error error = {0};
     settings.n = EACH;
     settings.width = CS_WIDTH_COLUMN;
@@ -164,7 +164,7 @@ TEST(probes_are_not_joined) {
  * probe that only one panel shows too, because both have one y axis. */
 TEST(what_is_drawn_is_within_the_axes) {
     struct cs_plot_settings settings = make();
-    struct cs_plot plot;
+    struct cs_diagram plot;
     struct cs_error error = {0};
     settings.n = EACH;
     settings.x = cs_column_find("work");

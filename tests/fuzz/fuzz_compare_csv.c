@@ -17,11 +17,11 @@ static void draw(const struct cs_cell *cells, uint32_t n) {
                                               .second = cs_column_find("cpu"),
                                               .y = cs_column_find("error"),
                                               .width = CS_WIDTH_PAGE};
-    struct cs_plot plot;
+    struct cs_diagram plot;
     struct cs_tick ticks[CS_TICKS_MAX];
     struct cs_error error = {0};
     CS_ASSERT(!cs_plot_make(&plot, &settings, &error));
-    for (uint32_t k = 0; k < plot.diagram.n_panels; k++) {
+    for (uint32_t k = 0; k < plot.n_panels; k++) {
         const struct cs_panel *panel = plot.panels + k;
         const struct cs_plot_axis *axes[] = {&panel->x, &panel->y};
         for (int a = 0; a < 2; a++) {

@@ -247,7 +247,7 @@ static enum cs_status plot_comparison(struct cs_args *args, struct cs_error *err
                                         .title =
                                             options->title ? options->title : args->operands[0],
                                         .width = options->width};
-    struct cs_plot plot = {0};
+    struct cs_diagram plot = {0};
     struct cs_cell *cells;
     if (read_axis("x", options->x ? options->x : "work", &settings.x, error) ||
         read_axis("y", options->y ? options->y : "error", &settings.y, error) ||
@@ -259,14 +259,14 @@ static enum cs_status plot_comparison(struct cs_args *args, struct cs_error *err
     settings.second = options->x || options->show ? NULL : cs_column_find("cpu");
     if (!select_cells(options, args->operands[0], cells, &settings.n, error) &&
         !cs_plot_make(&plot, &settings, error))
-        finish(args, &plot.diagram, &settings, NULL, error);
+        finish(args, &plot, &settings, NULL, error);
     cs_plot_finish(&plot);
     free(cells);
     return error->status;
 }
 
 /* Replaces the table by its spectrum, and draws it with its lowest frequencies. */
-static enum cs_status add_spectrum(struct cs_plot *plot, struct cs_number_table *table,
+static enum cs_status add_spectrum(struct cs_diagram *plot, struct cs_number_table *table,
                                    const struct cs_line_settings *lines, uint32_t particle,
                                    struct cs_error *error) {
     double seconds;
@@ -276,7 +276,7 @@ static enum cs_status add_spectrum(struct cs_plot *plot, struct cs_number_table 
     if (cs_spectrum_make(table, joint ? name : NULL, &seconds, &plot->arena, error) ||
         cs_table_lines_add(plot, table, lines, error))
         return error->status;
-    for (struct cs_panel *p = plot->panels; p < plot->panels + plot->diagram.n_panels; p++) {
+    for (struct cs_panel *p = plot->panels; p < plot->panels + plot->n_panels; p++) {
         char label[CS_LABEL_BYTES];
         snprintf(label, sizeof label, "%s", p->y.label);
         snprintf(p->y.label, CS_LABEL_BYTES, "amplitude %s%.140s", joint ? "in m" : "of ",
@@ -287,7 +287,7 @@ static enum cs_status add_spectrum(struct cs_plot *plot, struct cs_number_table 
 }
 
 /* Reads or makes the table that the options ask for: of a particle, of a force, or the file. */
-static enum cs_status open_table(const struct cs_args *args, struct cs_plot *plot,
+static enum cs_status open_table(const struct cs_args *args, struct cs_diagram *plot,
                                  struct cs_number_table *table, struct cs_error *error) {
     const struct options *options = args->options;
     const char *file = args->operands[0];
@@ -309,21 +309,21 @@ static enum cs_status plot_table(struct cs_args *args, struct cs_error *error) {
     const bool computed = options->spectrum || options->stretch || is_of_particle(options);
     const struct cs_line_settings lines = {options->x, options->y, options->log_axes,
                                            args->operands[0]};
-    struct cs_plot plot;
+    struct cs_diagram plot;
     struct cs_number_table table;
     cs_plot_begin(&plot, options->title ? options->title : args->operands[0], options->width);
     if (!open_table(args, &plot, &table, error)) {
         /* a map has its panel already */
-        if (plot.diagram.n_panels && options->spectrum)
+        if (plot.n_panels && options->spectrum)
             cs_fail(error, CS_ERR_USAGE, "--spectrum: a stability map has none");
         else if (options->spectrum)
             add_spectrum(&plot, &table, &lines, options->particle, error);
-        else if (!plot.diagram.n_panels)
+        else if (!plot.n_panels)
             cs_table_lines_add(&plot, &table, &lines, error);
         if (!error->status && is_of_particle(options) && !options->spectrum)
             snprintf(plot.panels->y.label, CS_LABEL_BYTES, "position in m");
         if (!error->status)
-            finish(args, &plot.diagram, &(struct cs_plot_settings){0}, computed ? &table : NULL,
+            finish(args, &plot, &(struct cs_plot_settings){0}, computed ? &table : NULL,
                    error);
     }
     cs_plot_finish(&plot);

@@ -167,9 +167,9 @@ static void mark_point(struct cs_series *series, double frequency) {
     nearest->mark = CS_MARK_FULL;
 }
 
-void cs_spectrum_add_peaks(struct cs_plot *plot, const struct cs_number_table *table,
+void cs_spectrum_add_peaks(struct cs_diagram *plot, const struct cs_number_table *table,
                            double seconds) {
-    for (uint32_t k = 0; k < plot->diagram.n_panels; k++)
+    for (uint32_t k = 0; k < plot->n_panels; k++)
         for (uint32_t s = 0; s < plot->panels[k].n_series; s++) {
             struct cs_series *series = plot->panels[k].series + s;
             double peaks[CS_SPECTRUM_PEAKS];
@@ -182,7 +182,7 @@ void cs_spectrum_add_peaks(struct cs_plot *plot, const struct cs_number_table *t
                 at += snprintf(text + at, sizeof text - (size_t)at, " %.4g Hz%s", peaks[p],
                                p + 1 < n ? "," : "");
             }
-            cs_diagram_add_key(&plot->diagram, CS_KEY_SAMPLE, series->style.colour, ' ',
+            cs_diagram_add_key(plot, CS_KEY_SAMPLE, series->style.colour, ' ',
                                n ? text : "no peak has two periods in the samples")
                 ->style = series->style;
         }

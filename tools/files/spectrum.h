@@ -22,7 +22,7 @@ enum cs_status cs_spectrum_make(struct cs_number_table *table, const char *joint
  * peak is above 0.04 of the highest one (the window has side lobes of 0.027), has two periods
  * in the seconds of the samples, and lies at the vertex of the parabola through three
  * logarithms. */
-void cs_spectrum_add_peaks(struct cs_plot *plot, const struct cs_number_table *table,
+void cs_spectrum_add_peaks(struct cs_diagram *plot, const struct cs_number_table *table,
                            double seconds);
 
 #endif

@@ -44,13 +44,13 @@ static bool is_drawn(const struct cs_number_table *table, uint32_t c, const char
 }
 
 /* The panel of a column's unit, or a new one; NULL: there is no room, or no memory. */
-static struct cs_panel *find_panel(struct cs_plot *plot, const struct cs_number_table *table,
+static struct cs_panel *find_panel(struct cs_diagram *plot, const struct cs_number_table *table,
                                    uint32_t x, uint32_t c, const char *log_axes,
                                    struct cs_error *error) {
     const struct cs_column *column = cs_known_column(table->names[c]), *other;
     struct cs_panel *panel = plot->panels;
     const bool grouped = !strcmp(table->names[0], "series");
-    for (; panel < plot->panels + plot->diagram.n_panels; panel++)
+    for (; panel < plot->panels + plot->n_panels; panel++)
         if (!grouped && ((other = cs_known_column(panel->series->name)) == column ||
                          (column && other && !strcmp(column->unit, other->unit)))) {
             /* of several lines their names say what they are */
@@ -72,7 +72,7 @@ static struct cs_panel *find_panel(struct cs_plot *plot, const struct cs_number_
 }
 
 /* Lines of all columns that are drawn; of a table of series one for each. */
-static enum cs_status add_lines(struct cs_plot *plot, const struct cs_number_table *table,
+static enum cs_status add_lines(struct cs_diagram *plot, const struct cs_number_table *table,
                                 const struct cs_line_settings *settings,
                                 struct cs_error *error) {
     const bool grouped = !strcmp(table->names[0], "series");
@@ -91,7 +91,7 @@ static enum cs_status add_lines(struct cs_plot *plot, const struct cs_number_tab
             if (r == 0 || strcmp(table->words[r], table->words[r - 1]) != 0)
                 cs_table_plot_add_series(plot, panel, table, columns, table->words[r], error);
     }
-    for (struct cs_panel *p = plot->panels; p < plot->panels + plot->diagram.n_panels; p++) {
+    for (struct cs_panel *p = plot->panels; p < plot->panels + plot->n_panels; p++) {
         p->is_single = p->n_series == 1 && !grouped;
         cs_panel_fit(p);
         cs_plot_axis_widen(&p->y);
@@ -111,13 +111,13 @@ static enum cs_status check_names(const struct cs_number_table *table, const cha
     return error->status;
 }
 
-enum cs_status cs_table_lines_add(struct cs_plot *plot, const struct cs_number_table *table,
+enum cs_status cs_table_lines_add(struct cs_diagram *plot, const struct cs_number_table *table,
                                   const struct cs_line_settings *settings,
                                   struct cs_error *error) {
     if (check_names(table, "x", settings->x, error) ||
         check_names(table, "y", settings->y, error) || add_lines(plot, table, settings, error))
         return error->status;
-    return plot->diagram.n_panels
+    return plot->n_panels
                ? CS_OK
                : cs_fail(error, CS_ERR_FILE, "%s: found no column with numbers to draw",
                          settings->path);

@@ -22,7 +22,7 @@ struct cs_line_settings {
 /* Adds lines over x ("t", or the first column), a panel per unit: of all columns that are not
  * zero throughout, but for indices and bounds. A table whose first column is "series" has a
  * line for each. CS_ERR_USAGE for names that are not there, CS_ERR_FILE, CS_ERR_MEMORY. */
-enum cs_status cs_table_lines_add(struct cs_plot *plot, const struct cs_number_table *table,
+enum cs_status cs_table_lines_add(struct cs_diagram *plot, const struct cs_number_table *table,
                                   const struct cs_line_settings *settings,
                                   struct cs_error *error);
 

@@ -31,7 +31,8 @@ struct layout {
     struct cs_contact_sheet *sheet;
     const struct cs_film_report *report;
     struct cs_image *image;
-    uint32_t width, height; /* of a shrunk picture */
+    uint32_t size[2];       /* of a picture */
+    uint32_t width, height; /* of a shrunk one */
     struct cs_srgb srgb;
     struct cs_image_lines lines;
 };
@@ -71,12 +72,10 @@ static bool has_one_range(const struct cs_film_report *report) {
     return true;
 }
 
-static enum cs_status read_picture(const struct layout *layout, const char *folder,
-                                   uint32_t tile, struct cs_image *image,
+static enum cs_status read_picture(const char *folder, uint32_t number, struct cs_image *image,
                                    struct cs_error *error) {
     char path[PATH_BYTES];
-    snprintf(path, sizeof path, "%.4000s/frame_%05u.png", folder,
-             picture_of(layout, tile)->number);
+    snprintf(path, sizeof path, "%.4000s/frame_%05u.png", folder, number);
     return cs_png_read_on_white(path, image, error);
 }
 
@@ -85,6 +84,8 @@ static enum cs_status init_sheet_image(struct layout *layout, const struct cs_im
                                        struct cs_error *error) {
     struct cs_contact_sheet *sheet = layout->sheet;
     const double scale = fmin((double)sheet->tile / first->width, 1);
+    layout->size[0] = first->width;
+    layout->size[1] = first->height;
     layout->width = (uint32_t)fmax(floor(scale * first->width + 0.5), 1);
     layout->height = (uint32_t)fmax(floor(scale * first->height + 0.5), 1);
     const uint64_t width = GAP + (uint64_t)sheet->columns * (layout->width + GAP) +
@@ -120,24 +121,30 @@ static void write_time(struct layout *layout, uint32_t tile, uint32_t left, uint
     write_text(layout, text, left + layout->width - 2.0, top);
 }
 
-static enum cs_status put_tile(struct layout *layout, const char *folder, uint32_t tile,
-                               const struct cs_image *first, struct cs_error *error) {
-    const uint32_t columns = layout->sheet->columns;
-    const uint32_t left = GAP + tile % columns * (layout->width + GAP),
-                   top = GAP + tile / columns * (layout->height + CAPTION + GAP);
+/* Shrinks a picture into its place. */
+static enum cs_status put_picture(struct layout *layout, const char *folder, uint32_t number,
+                                  uint32_t left, uint32_t top, struct cs_error *error) {
     struct cs_image image;
-    if (read_picture(layout, folder, tile, &image, error))
+    if (read_picture(folder, number, &image, error))
         return error->status;
-    if (image.width == first->width && image.height == first->height)
+    if (image.width == layout->size[0] && image.height == layout->size[1])
         cs_srgb_shrink(&layout->srgb, &image, (const uint32_t[]){layout->width, layout->height},
                        (size_t)top * layout->image->width + left, layout->image);
     else
         cs_fail(error, CS_ERR_FILE,
                 "%s/frame_%05u.png: found %u x %u pixels, expected %u x %u as in the first",
-                folder, picture_of(layout, tile)->number, image.width, image.height,
-                first->width, first->height);
+                folder, number, image.width, image.height, layout->size[0], layout->size[1]);
     free(image.rgb);
-    write_time(layout, tile, left, top + layout->height);
+    return error->status;
+}
+
+static enum cs_status put_tile(struct layout *layout, const char *folder, uint32_t tile,
+                               struct cs_error *error) {
+    const uint32_t columns = layout->sheet->columns;
+    const uint32_t left = GAP + tile % columns * (layout->width + GAP),
+                   top = GAP + tile / columns * (layout->height + CAPTION + GAP);
+    if (!put_picture(layout, folder, picture_of(layout, tile)->number, left, top, error))
+        write_time(layout, tile, left, top + layout->height);
     return error->status;
 }
 
@@ -159,41 +166,6 @@ static void put_bar(struct layout *layout) {
     const double length = 0.39 * height + 18 * fmax(height / 480, 0.75);
     layout->lines.top = floor((layout->image->height + length) / 2 - height);
     cs_colour_bar_draw(&bar, &layout->lines.lines, &frame);
-}
-
-static enum cs_status put_tiles(struct layout *layout, const char *folder,
-                                const struct cs_image *first, struct cs_error *error) {
-    const uint32_t tiles = layout->sheet->columns * layout->sheet->rows;
-    for (uint32_t tile = 0; tile < tiles && !error->status; tile++)
-        put_tile(layout, folder, tile, first, error);
-    if (!error->status && layout->sheet->colour_bar)
-        put_bar(layout);
-    return error->status;
-}
-
-enum cs_status cs_contact_sheet_make(struct cs_contact_sheet *sheet, const char *folder,
-                                     const struct cs_film_report *report,
-                                     struct cs_image *image, struct cs_error *error) {
-    struct layout layout = {.sheet = sheet, .report = report, .image = image};
-    struct cs_arena arena = {0};
-    struct cs_image first = {0};
-    *image = (struct cs_image){0};
-    sheet->captions = 1;
-    choose_grid(sheet, report->n);
-    sheet->colour_bar = has_one_range(report);
-    cs_srgb_make(&layout.srgb);
-    if (!read_picture(&layout, folder, 0, &first, error) &&
-        !init_sheet_image(&layout, &first, error) &&
-        !cs_image_lines_init(&layout.lines, CS_COLOUR_BAR_LINES, image, &layout.srgb, &arena,
-                             error))
-        put_tiles(&layout, folder, &first, error);
-    free(first.rgb);
-    cs_arena_finish(&arena);
-    if (error->status) {
-        free(image->rgb);
-        *image = (struct cs_image){0};
-    }
-    return error->status;
 }
 
 /* Positions (n,3) of a frame, as run --states writes them; NULL: there are none. The caller
@@ -247,19 +219,48 @@ static enum cs_status put_run(struct layout *layout, const struct cs_film_tiles 
                               uint32_t run, uint32_t k, struct cs_error *error) {
     const struct cs_film_report *report = tiles->reports + run;
     const struct cs_film_picture *at = report->pictures + (k < report->n ? k : report->n - 1);
-    const uint32_t head = tiles->titles ? 2 * CAPTION : 0;
-    const uint32_t left = GAP + run * (layout->width + GAP);
-    char path[PATH_BYTES];
-    struct cs_image image;
-    snprintf(path, sizeof path, "%.4000s/frame_%05u.png", tiles->folders[run], at->number);
-    if (cs_png_read_on_white(path, &image, error))
-        return error->status;
-    cs_srgb_shrink(&layout->srgb, &image, (const uint32_t[]){layout->width, layout->height},
-                   (size_t)(GAP + head) * layout->image->width + left, layout->image);
-    free(image.rgb);
-    if (tiles->titles)
+    const uint32_t left = GAP + run * (layout->width + GAP),
+                   top = GAP + (tiles->titles ? 2 * CAPTION : 0);
+    if (!put_picture(layout, tiles->folders[run], at->number, left, top, error) &&
+        tiles->titles)
         write_title(layout, tiles, run, at->frame, left);
-    return CS_OK;
+    return error->status;
+}
+
+/* Makes the image from pictures of one run, or from picture k of several. */
+static enum cs_status make(struct layout *layout, const char *folder,
+                           const struct cs_film_tiles *tiles, uint32_t k,
+                           struct cs_error *error) {
+    struct cs_arena arena = {0};
+    struct cs_image first = {0};
+    const uint32_t n = layout->sheet->columns * layout->sheet->rows;
+    *layout->image = (struct cs_image){0};
+    cs_srgb_make(&layout->srgb);
+    if (!read_picture(folder, picture_of(layout, 0)->number, &first, error) &&
+        !init_sheet_image(layout, &first, error))
+        cs_image_lines_init(&layout->lines, CS_COLOUR_BAR_LINES, layout->image, &layout->srgb,
+                            &arena, error);
+    free(first.rgb);
+    for (uint32_t tile = 0; tile < n && !error->status; tile++)
+        tiles ? put_run(layout, tiles, tile, k, error) : put_tile(layout, folder, tile, error);
+    if (!error->status && layout->sheet->colour_bar)
+        put_bar(layout);
+    cs_arena_finish(&arena);
+    if (error->status) {
+        free(layout->image->rgb);
+        *layout->image = (struct cs_image){0};
+    }
+    return error->status;
+}
+
+enum cs_status cs_contact_sheet_make(struct cs_contact_sheet *sheet, const char *folder,
+                                     const struct cs_film_report *report,
+                                     struct cs_image *image, struct cs_error *error) {
+    struct layout layout = {.sheet = sheet, .report = report, .image = image};
+    sheet->captions = 1;
+    choose_grid(sheet, report->n);
+    sheet->colour_bar = has_one_range(report);
+    return make(&layout, folder, NULL, 0, error);
 }
 
 enum cs_status cs_film_tiles_make(const struct cs_film_tiles *tiles, uint32_t k,
@@ -267,21 +268,5 @@ enum cs_status cs_film_tiles_make(const struct cs_film_tiles *tiles, uint32_t k,
     struct cs_contact_sheet sheet = {
         .columns = tiles->n, .rows = 1, .tile = tiles->tile, .captions = tiles->titles ? 2 : 0};
     struct layout layout = {.sheet = &sheet, .report = tiles->reports, .image = image};
-    struct cs_arena arena = {0};
-    struct cs_image first = {0};
-    *image = (struct cs_image){0};
-    cs_srgb_make(&layout.srgb);
-    if (!read_picture(&layout, tiles->folders[0], 0, &first, error) &&
-        !init_sheet_image(&layout, &first, error) &&
-        !cs_image_lines_init(&layout.lines, CS_COLOUR_BAR_LINES, image, &layout.srgb, &arena,
-                             error))
-        for (uint32_t run = 0; run < tiles->n && !error->status; run++)
-            put_run(&layout, tiles, run, k, error);
-    free(first.rgb);
-    cs_arena_finish(&arena);
-    if (error->status) {
-        free(image->rgb);
-        *image = (struct cs_image){0};
-    }
-    return error->status;
+    return make(&layout, tiles->folders[0], tiles, k, error);
 }

@@ -44,7 +44,7 @@ static enum cs_status read_table(const char *path, struct cs_arena *arena,
     return error->status;
 }
 
-struct cs_series *cs_table_plot_add_series(struct cs_plot *plot, struct cs_panel *panel,
+struct cs_series *cs_table_plot_add_series(struct cs_diagram *plot, struct cs_panel *panel,
                                            const struct cs_number_table *table,
                                            const uint32_t columns[2], const char *group,
                                            struct cs_error *error) {
@@ -68,7 +68,7 @@ struct cs_series *cs_table_plot_add_series(struct cs_plot *plot, struct cs_panel
 static const char *const edges[] = {"cell_left", "cell_right", "cell_bottom", "cell_top"};
 enum { EDGES = sizeof edges / sizeof *edges };
 
-static enum cs_status add_cells(struct cs_plot *plot, struct cs_panel *panel,
+static enum cs_status add_cells(struct cs_diagram *plot, struct cs_panel *panel,
                                 const struct cs_number_table *table, struct cs_error *error) {
     bool there[CS_STABILITY_VERDICTS] = {false};
     CS_ARENA_ARRAY(&plot->arena, panel->boxes, table->rows, error);
@@ -88,7 +88,7 @@ static enum cs_status add_cells(struct cs_plot *plot, struct cs_panel *panel,
         panel->boxes[panel->n_boxes++] = (struct cs_diagram_rect){
             at[0], at[1], at[2], at[3], cs_stability_colour(v), cs_stability_letter(v)};
         if (!there[v])
-            cs_diagram_add_key(&plot->diagram, CS_KEY_PATCH, cs_stability_colour(v),
+            cs_diagram_add_key(plot, CS_KEY_PATCH, cs_stability_colour(v),
                                cs_stability_letter(v), cs_stability_word(v))
                 ->help = cs_stability_help(v);
         there[v] = true;
@@ -108,7 +108,7 @@ static const struct {
 };
 enum { LIMITS = sizeof limits / sizeof *limits };
 
-static void add_limits(struct cs_plot *plot, struct cs_panel *panel,
+static void add_limits(struct cs_diagram *plot, struct cs_panel *panel,
                        const struct cs_number_table *border, struct cs_error *error) {
     for (int k = 0; k < LIMITS && !error->status; k++) {
         const uint32_t columns[2] = {0, cs_number_table_find(border, limits[k].column)};
@@ -125,7 +125,7 @@ static void add_limits(struct cs_plot *plot, struct cs_panel *panel,
     }
 }
 
-static enum cs_status add_map(struct cs_plot *plot, const struct cs_number_table *table,
+static enum cs_status add_map(struct cs_diagram *plot, const struct cs_number_table *table,
                               const char *path, struct cs_error *error) {
     struct cs_panel *panel = cs_plot_add_panel(plot, 0.75, LIMITS, error);
     struct cs_number_table border;
@@ -147,7 +147,7 @@ static enum cs_status add_map(struct cs_plot *plot, const struct cs_number_table
     return error->status;
 }
 
-enum cs_status cs_table_plot_read(struct cs_plot *plot, struct cs_number_table *table,
+enum cs_status cs_table_plot_read(struct cs_diagram *plot, struct cs_number_table *table,
                                   const char *path, struct cs_error *error) {
     bool map = strlen(path) > strlen(".csv");
     if (read_table(path, &plot->arena, table, error))

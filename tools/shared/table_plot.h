@@ -27,12 +27,12 @@ static inline double cs_number_table_at(const struct cs_number_table *table, uin
 /* Reads a CSV into the memory of a diagram that was begun, and makes the diagram of a stability
  * map, with its border in NAME_border.csv where that is there; that of another table has no
  * panels yet. CS_ERR_FILE, CS_ERR_MEMORY. */
-enum cs_status cs_table_plot_read(struct cs_plot *plot, struct cs_number_table *table,
+enum cs_status cs_table_plot_read(struct cs_diagram *plot, struct cs_number_table *table,
                                   const char *path, struct cs_error *error);
 
 /* Adds a line of the second column over the first to a panel, whose series have room for it,
  * through the rows whose word is `group`; NULL: all. Returns NULL if out of memory. */
-struct cs_series *cs_table_plot_add_series(struct cs_plot *plot, struct cs_panel *panel,
+struct cs_series *cs_table_plot_add_series(struct cs_diagram *plot, struct cs_panel *panel,
                                            const struct cs_number_table *table,
                                            const uint32_t columns[2], const char *group,
                                            struct cs_error *error);

@@ -36,13 +36,13 @@ static enum cs_status check_files(const struct cs_stability_options *options,
 
 /* Makes the diagram of the tables that were written. */
 static enum cs_status make_plot(const struct cs_stability_options *options,
-                                const struct cs_stability *stability, struct cs_plot *plot,
-                                char title[640], struct cs_error *error) {
-    char name[CS_SERIES_BYTES], path[4200];
+                                const struct cs_stability *stability, struct cs_diagram *plot,
+                                struct cs_error *error) {
+    char name[CS_SERIES_BYTES], path[4200], title[CS_TITLE_BYTES];
     struct cs_number_table table;
     cs_series_file_name(stability->series, name);
     snprintf(path, sizeof path, "%s/%s.csv", options->map.folder, name);
-    snprintf(title, 640, "%s: stable time steps, %.255s, %g s of motion per cell",
+    snprintf(title, sizeof title, "%s: stable time steps, %.255s, %g s of motion per cell",
              stability->series, stability->session.scene.path, stability->settings->seconds);
     cs_plot_begin(plot, title, 1.35 * CS_WIDTH_COLUMN);
     return cs_table_plot_read(plot, &table, path, error);
@@ -50,8 +50,8 @@ static enum cs_status make_plot(const struct cs_stability_options *options,
 
 /* *drawn: false without the module that draws, which is no failure. */
 static enum cs_status write_files(const struct cs_stability_options *options,
-                                  const struct cs_stability *stability, struct cs_plot *plot,
-                                  char title[640], bool *drawn, struct cs_error *error) {
+                                  const struct cs_stability *stability, struct cs_diagram *plot,
+                                  bool *drawn, struct cs_error *error) {
     static const struct {
         const char *ending;
         void (*print)(const struct cs_stability *stability, struct cs_text *out);
@@ -69,9 +69,8 @@ static enum cs_status write_files(const struct cs_stability_options *options,
     }
     /* the picture is made of the files above */
     snprintf(path, sizeof path, "%s/%s", options->map.folder, name);
-    if (!error->status && !make_plot(options, stability, plot, title, error))
-        *drawn = !cs_diagram_write(cs_renderer_folder(), &plot->diagram, path, CS_FORMATS_ALL,
-                                   &unseen);
+    if (!error->status && !make_plot(options, stability, plot, error))
+        *drawn = !cs_diagram_write(cs_renderer_folder(), plot, path, CS_FORMATS_ALL, &unseen);
     if (unseen.status == CS_ERR_MODULE)
         cs_print_message(unseen.message);
     else if (unseen.status)
@@ -85,13 +84,13 @@ static enum cs_status write_files(const struct cs_stability_options *options,
 /* Prints the table or, on a screen, the diagram of a finished map. */
 static enum cs_status print_map(const struct cs_stability_options *options,
                                 const struct cs_stability *stability,
-                                const struct cs_screen *screen, const struct cs_plot *plot,
+                                const struct cs_screen *screen, const struct cs_diagram *plot,
                                 bool drawn, struct cs_error *error) {
     char name[CS_SERIES_BYTES];
     struct cs_text out = {0};
     cs_series_file_name(stability->series, name);
     if (options->show) {
-        cs_screen_print_diagram(screen, &plot->diagram, &out);
+        cs_screen_print_diagram(screen, plot, &out);
         cs_print_raw(stdout, &out, error);
     } else
         cs_stability_print_table(stability, &out);
@@ -130,9 +129,8 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
     struct cs_stability stability;
     struct cs_stability_settings asked = options->map;
     const bool quiet = options->quiet;
-    struct cs_plot plot = {0};
+    struct cs_diagram plot = {0};
     struct cs_screen screen = {0};
-    char title[640];
     bool drawn = false;
     if (options->show && cs_screen_open(&screen, false, error))
         return error->status;
@@ -155,7 +153,7 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
         if (!cs_manifest_write_study(options->map.folder, error) && !quiet)
             print_shard(&stability, error);
     } else if (!error->status && !cs_folder_create(options->map.folder, error) &&
-               !write_files(options, &stability, &plot, title, &drawn, error) &&
+               !write_files(options, &stability, &plot, &drawn, error) &&
                (!quiet || options->show))
         print_map(options, &stability, &screen, &plot, drawn, error);
     cs_plot_finish(&plot);

@@ -225,7 +225,7 @@ void cs_screen_print_diagram(const struct cs_screen *screen, const struct cs_dia
     struct cs_text keys = {0}, title = {0};
     struct box box = {.screen = screen, .columns = screen->columns - LEFT - 1};
     add_keys(screen, diagram, &keys);
-    cs_text_add_plain(&title, diagram->title ? diagram->title : "");
+    cs_text_add_plain(&title, diagram->title);
     cs_print_wrapped("", cs_text_get(&title), 0, screen->columns, out);
     /* of the window's height what text and axes leave, with a line for the next command */
     uint32_t others = 2 + 4 * diagram->n_panels;
@@ -296,30 +296,18 @@ static void add_blocks(const struct cs_screen *screen, const struct cs_image *im
     }
 }
 
-/* Base64 of 3 n bytes. */
-static void encode_base64(const uint8_t *bytes, size_t n, char *out) {
-    static const char digits[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t k = 0; k < n; k++, bytes += 3) {
-        const uint32_t word = (uint32_t)bytes[0] << 16 | (uint32_t)bytes[1] << 8 | bytes[2];
-        for (int shift = 18; shift >= 0; shift -= 6)
-            *out++ = digits[word >> shift & 63];
-    }
-    *out = 0;
-}
-
 /* In pieces of at most 4096 bytes. The number of the image replaces the last one. */
 static void add_kitty(const struct cs_image *image, const uint32_t size[2],
                       struct cs_text *out) {
     enum { PIXELS = 1024 };
     const size_t n = (size_t)image->width * image->height;
-    char piece[4 * PIXELS + 1];
     cs_text_add(out, "\033_Ga=T,f=24,s=%u,v=%u,c=%u,r=%u,i=%ld,p=1,q=2,C=1,", image->width,
                 image->height, size[0], size[1], (long)getpid());
     for (size_t k = 0; k < n; k += PIXELS) {
         const size_t some = n - k < PIXELS ? n - k : PIXELS;
-        encode_base64(image->rgb + 3 * k, some, piece);
-        cs_text_add(out, "%sm=%d;%s\033\\", k ? "\033_G" : "", k + some < n, piece);
+        cs_text_add(out, "%sm=%d;", k ? "\033_G" : "", k + some < n);
+        cs_text_add_base64(out, image->rgb + 3 * k, 3 * some);
+        cs_text_add(out, "\033\\");
     }
 }
 

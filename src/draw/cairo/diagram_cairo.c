@@ -316,9 +316,9 @@ static double draw_page(cairo_t *cairo, const struct cs_diagram *diagram,
                      size > 0 ? room + NAME_LEFT : CS_FONT_SIZE; /* half of a tick's label */
     const double wide =
         (width - rooms.left - right - CS_MARGIN - (columns - 1) * GAP) / (double)columns;
-    double y = CS_MARGIN + (diagram->title ? CS_LINE_HEIGHT + 6 : 4);
+    double y = CS_MARGIN + (*diagram->title ? CS_LINE_HEIGHT + 6 : 4);
     cs_cairo_ink(cairo, 0, 1);
-    if (diagram->title)
+    if (*diagram->title)
         cs_cairo_fitted(cairo, diagram->title, width / 2, CS_MARGIN + CS_FONT_SIZE, 0.5,
                         width - 2 * CS_MARGIN);
     /* rows of panels, in each of which names and labels have room */

@@ -128,7 +128,7 @@ struct filling {
     const struct cs_curves *curves;
     const struct cs_column *x;
     struct cs_spot *spots; /* (settings->n) over x */
-    struct cs_plot *plot;
+    struct cs_diagram *plot;
     struct cs_panel *panel;
     bool there[KEYS];
 };
@@ -262,7 +262,7 @@ static void add_keys(const struct filling *at) {
         [BAR] = {CS_KEY_PATCH, .style.colour = CS_BAR_COLOUR,
                  .text = "below the reference's own error"},
     };
-    struct cs_diagram *diagram = &at->plot->diagram;
+    struct cs_diagram *diagram = at->plot;
     const bool empty = at->panel->n_series < 2;
     char more[80];
     for (int k = 0; k < KEYS; k++)
@@ -275,7 +275,7 @@ static void add_keys(const struct filling *at) {
                            empty ? "no cell has both values" : more);
 }
 
-enum cs_status cs_plot_make(struct cs_plot *plot, const struct cs_plot_settings *settings,
+enum cs_status cs_plot_make(struct cs_diagram *plot, const struct cs_plot_settings *settings,
                             struct cs_error *error) {
     const struct cs_column *columns[] = {settings->x, settings->second};
     const bool pair = settings->second, page = pair && settings->width >= CS_WIDTH_PAGE;
@@ -283,7 +283,7 @@ enum cs_status cs_plot_make(struct cs_plot *plot, const struct cs_plot_settings 
     struct filling at = {.settings = settings, .plot = plot};
     double y[2] = {HUGE_VAL, -HUGE_VAL};
     cs_plot_begin(plot, settings->title, settings->width);
-    plot->diagram.columns = page ? 2 : 1;
+    plot->columns = page ? 2 : 1;
     CS_ARENA_ARRAY(&plot->arena, at.spots, settings->n + 1ul, error);
     at.curves = CS_ARENA_ARRAY(&plot->arena, curves, 1, error);
     for (int k = 0; k <= pair && !error->status; k++) {
@@ -296,7 +296,7 @@ enum cs_status cs_plot_make(struct cs_plot *plot, const struct cs_plot_settings 
         if (at.panel)
             fill_panel(&at, y, error);
     }
-    for (uint32_t k = 0; k < plot->diagram.n_panels && !error->status; k++) {
+    for (uint32_t k = 0; k < plot->n_panels && !error->status; k++) {
         at.panel = plot->panels + k;
         finish_panel(&at, y, error);
     }

@@ -61,7 +61,7 @@ void cs_curves_make(struct cs_curves *curves, const struct cs_plot_settings *set
 /* Makes the diagram; settings and cells must outlive it. Crosses at the upper edge are runs
  * that did not finish; a ring marks a cell in which edges went through triangles.
  * CS_ERR_MEMORY. */
-enum cs_status cs_plot_make(struct cs_plot *plot, const struct cs_plot_settings *settings,
+enum cs_status cs_plot_make(struct cs_diagram *plot, const struct cs_plot_settings *settings,
                             struct cs_error *error);
 
 #endif

@@ -81,11 +81,11 @@ static void add_preformatted(const char *title, struct cs_text *text, struct cs_
 /* The figure, for a page that needs no other file; what it misses is in the table. */
 static void add_diagram(const struct cs_compare *compare, struct cs_text *out) {
     struct cs_plot_settings settings;
-    struct cs_plot plot;
+    struct cs_diagram plot;
     struct cs_error error = {0};
     cs_compare_plot_settings(compare, CS_WIDTH_PAGE, &settings);
     if (!cs_plot_make(&plot, &settings, &error))
-        cs_diagram_add_svg(cs_renderer_folder(), &plot.diagram, out, &error);
+        cs_diagram_add_svg(cs_renderer_folder(), &plot, out, &error);
     if (error.status) {
         cs_text_add(out, "<p>No diagram: ");
         cs_text_add_html(out, error.message);

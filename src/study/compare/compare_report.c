@@ -200,13 +200,13 @@ static enum cs_status draw(struct cs_compare *compare, struct cs_error *error) {
              compare->particles);
     for (int k = 0; k < 2 && !error->status; k++) {
         struct cs_plot_settings settings;
-        struct cs_plot plot;
+        struct cs_diagram plot;
         struct cs_error unseen = {0};
         cs_compare_plot_settings(compare, figures[k].width, &settings);
         settings.title = title;
         snprintf(path, sizeof path, "%s/%s", compare->settings->folder, figures[k].name);
         if (!cs_plot_make(&plot, &settings, error) &&
-            cs_diagram_write(cs_renderer_folder(), &plot.diagram, path, CS_FORMATS_ALL,
+            cs_diagram_write(cs_renderer_folder(), &plot, path, CS_FORMATS_ALL,
                              &unseen) == CS_ERR_MODULE)
             snprintf(compare->undrawn, sizeof compare->undrawn, "%.299s", unseen.message);
         else if (unseen.status)
