@@ -26,19 +26,48 @@ static double excess_of(const struct cs_collider_step *step,
     return mass < HUGE_VAL ? cs_collider_step_excess(step, mass, from, to) : 0;
 }
 
-/* J, the excess of the samples in the chunks [begin, end). */
+/* Returns whether every sample of an item stays out of range: its end lies in the box of the
+ * vertices' ends, and it moves no further than one of them. Its excess is then exactly 0. */
+static bool item_is_far(const struct cs_collider_step *step, const uint32_t *vertices,
+                        uint32_t n_vertices) {
+    const size_t n = step->system->view.n;
+    double moves[3] = {0}, middle[3], squared = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double *from = step->x0 + c * n, *to = step->x1 + c * n;
+        const double shift = step->at_t1.centre[c] - step->at_t0.centre[c];
+        double low = to[vertices[0]], high = low;
+        for (uint32_t k = 0; k < n_vertices; k++) {
+            const double end = to[vertices[k]], move = end - from[vertices[k]] - shift;
+            low = end < low ? end : low;
+            high = end > high ? end : high;
+            moves[k] += move * move;
+        }
+        middle[c] = 0.5 * (low + high);
+        squared += 0.25 * (high - low) * (high - low);
+    }
+    const double move = sqrt(fmax(moves[0], fmax(moves[1], moves[2])));
+    return !cs_posed_collider_is_near(&step->at_t1, step->params.range + move + sqrt(squared),
+                                      middle);
+}
+
+/* J, the excess of the samples in the chunks [begin, end), which are sorted by colliders. */
 static double sum_excess(const void *arg, size_t begin, size_t end) {
     const struct job *job = arg;
+    struct cs_collider_step step = {.x0 = job->x0, .x1 = job->x1};
     double sum = 0;
     for (size_t l = begin; l < end; l++) {
         const struct cs_contact_sample_chunk *chunk = job->covers->chunks + l;
-        struct cs_collider_step step = {.x0 = job->x0, .x1 = job->x1};
-        cs_collider_step_set(&step, job->covers->system, chunk->collider, job->t0, job->t1);
+        if (l == begin || chunk->collider != step.collider)
+            cs_collider_step_set(&step, job->covers->system, chunk->collider, job->t0, job->t1);
         if (cs_collider_step_is_far(&step, chunk->first,
                                     (size_t)chunk->last - chunk->first + 1))
             continue;
         for (uint32_t i = chunk->begin; i < chunk->end; i++) {
             struct cs_contact_sample_point point;
+            if (!chunk->subdivisions[i - chunk->begin] ||
+                item_is_far(&step, chunk->vertices + (size_t)chunk->vertices_per_item * i,
+                            chunk->vertices_per_item))
+                continue;
             for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
                 sum += excess_of(&step, &point);
         }

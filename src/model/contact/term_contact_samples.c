@@ -103,9 +103,11 @@ static void do_chunk(void *arg, uint32_t number) {
         if (!chunk->subdivisions[i - chunk->begin])
             continue;
         const uint32_t *vertices = chunk->vertices + (size_t)chunk->vertices_per_item * i;
-        const double reach =
-            law->params.range + box_of(x, n, vertices, 0, chunk->vertices_per_item, middle);
-        if (cs_posed_collider_is_near(&law->collider, reach, middle))
+        // constant numbers, so that there are no loops
+        const double half = chunk->vertices_per_item == 2
+                                ? box_of(x, n, vertices, 0, 2, middle)
+                                : box_of(x, n, vertices, 0, 3, middle);
+        if (cs_posed_collider_is_near(&law->collider, law->params.range + half, middle))
             for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
                 meet(job, law, &point, number);
     }
