@@ -269,8 +269,8 @@ static const struct cs_arg rows[] = {
     {"check", 0, NULL, "bisect the limits too, and print both",
      CS_ARG_INTO(struct options, study.bisect_too)},
     {"error", 0, "METRES",
-     "run a comparison to find the cheapest method and step with this position error at the "
-     "end of the time (default: 0.5 s)",
+     "find the cheapest method and step for this position error by a comparison over --time "
+     "(then 0.5 s by default)",
      CS_ARG_INTO(struct options, error)},
     {"out", 'o', "DIR",
      "folder of that comparison, which continues where it stopped (default: advise)",

@@ -34,7 +34,7 @@ struct options {
 static const struct options defaults = {.json = NULL};
 
 static const struct cs_arg rows[] = {
-    {"fail-fast", 0, NULL, "end a card at its first failed claim",
+    {"fail-fast", 0, NULL, "stop a card at its first failed claim",
      CS_ARG_INTO(struct options, fail_fast)},
     {"isolate", 0, "SECONDS",
      "run in a separate process, and end it if one call of the method takes longer (default: "

@@ -32,8 +32,8 @@ static const struct cs_arg rows[] = {
     {"overwrite", 'y', NULL, "replace the results of an earlier merge",
      CS_ARG_INTO(struct options, overwrite)},
     {"unchecked", 0, NULL,
-     "take in tables without the column check too, such as those of earlier versions: nobody "
-     "vouches for their rows",
+     "accept tables without the column check, such as those of earlier versions; their rows "
+     "are not verified",
      CS_ARG_INTO(struct options, unchecked)},
     CS_ARG_QUIET(struct options, quiet),
 };

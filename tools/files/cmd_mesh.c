@@ -22,10 +22,9 @@ static const struct options defaults = {.weld = true};
 
 static const struct cs_arg rows[] = {
     {"out", 'o', "FILE", "write the mended mesh as OBJ", CS_ARG_INTO(struct options, out)},
-    {"overwrite", 'y', NULL, "replace a file that is there",
+    {"overwrite", 'y', NULL, "replace an existing file",
      CS_ARG_INTO(struct options, overwrite)},
-    {"no-weld", 0, NULL, "leave doubled vertices as they are",
-     CS_ARG_INTO(struct options, weld)},
+    {"no-weld", 0, NULL, "keep duplicate vertices", CS_ARG_INTO(struct options, weld)},
 };
 
 /* Sets the sides of the box of all positions; returns the longest. */

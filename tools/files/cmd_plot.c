@@ -30,13 +30,11 @@ static const struct options defaults = {
 
 static const struct cs_arg rows[] = {
     {"x", 0, "COLUMN",
-     "column of the x axis (default: of a comparison work, and cpu beside it; of other tables "
-     "t)",
+     "column of the x axis (default: work and cpu of a comparison, t of other tables)",
      CS_ARG_INTO(struct options, x)},
     {"y", 0, "COLUMN,...",
-     "column of the y axis (default: error); several of a table that is no comparison "
-     "(default: "
-     "all, a panel per unit)",
+     "column of the y axis (default: error); other tables than comparisons take several "
+     "(default: all, a panel per unit)",
      CS_ARG_INTO(struct options, y)},
     {"family", 0, "FAMILY",
      "all series of one family, such as \"adaptive implicit\" (default: the twelve nearest to "
@@ -44,7 +42,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, family)},
     {"methods", 0, "NAME,...", "only these methods or series",
      CS_ARG_INTO(struct options, methods)},
-    {"log", 0, "AXES", "x, y or xy: logarithmic axes of a table that is no comparison",
+    {"log", 0, "AXES", "x, y or xy: logarithmic axes, of tables other than comparisons",
      CS_ARG_INTO(struct options, log_axes)},
     {"spectrum", 0, NULL,
      "draw amplitudes over the frequency instead, and name the lowest frequencies",
@@ -52,10 +50,9 @@ static const struct cs_arg rows[] = {
     {"particle", 0, "N", "motion of particle N of a run.npz, of run --export npz",
      CS_ARG_INTO(struct options, particle), .max = UINT32_MAX - 1},
     {"stretch", 0, "LOW..HIGH",
-     "force of the first body of a scene against its length along x, over that at the start",
+     "force of the first body of a scene against its length along x, relative to the start",
      CS_ARG_INTO(struct options, stretch)},
-    {"width", 0, "MM",
-     "width in print: 180, two columns of a journal, or 88, one (default: 180)",
+    {"width", 0, "MM", "width in print (default: 180, two columns of a journal; 88 is one)",
      CS_ARG_INTO(struct options, width)},
     {"format", 0, "NAME,...", "any of png, svg and pdf (default: all)",
      CS_ARG_INTO(struct options, format)},

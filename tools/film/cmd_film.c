@@ -38,7 +38,7 @@ static const struct cs_arg rows[] = {
     {"fps", 0, "RATE", "pictures per second (default: the speed of the scene)",
      CS_ARG_INTO(struct options, rate)},
     {"sheet", 0, "COLUMNSxROWS",
-     "make one picture with at most so many columns and rows instead of a film, such as 5x4",
+     "write one picture of at most so many columns and rows, such as 5x4, instead of a film",
      CS_ARG_INTO(struct options, grid)},
     {"tile", 0, "PIXELS", "maximum width of a picture on a sheet (default: 320)",
      CS_ARG_INTO(struct options, tile), .min = 16, .max = 4096},

@@ -27,7 +27,8 @@ struct options {
 static const struct options defaults = {.golden = {.threads = 1}};
 
 static const struct cs_arg rows[] = {
-    {"add", 0, "SCENE", "add a run of that scene to the golden tables, made if there are none",
+    {"add", 0, "SCENE",
+     "add a run of that scene to the golden tables, which are made if missing",
      CS_ARG_INTO(struct options, golden.add.scene)},
     {"frames", 'n', "N", "frames of the run that is added",
      CS_ARG_INTO(struct options, golden.add.frames), .min = 1, .max = UINT32_MAX},
@@ -41,7 +42,8 @@ static const struct cs_arg rows[] = {
     {"image", 0, NULL, "add a picture of its last frame too",
      CS_ARG_INTO(struct options, image)},
     {"keep", 0, "N",
-     "keep positions of N of its frames too (default: 4); with --accept of rows that have none",
+     "store positions of N of its frames too (default: 4); with --accept of rows that have "
+     "none",
      CS_ARG_INTO(struct options, golden.states), .max = CS_GOLDEN_STATES_MAX},
     {"tolerance", 0, "METRES",
      "judge it by these positions, instead of by bits (bits: by bits again)",

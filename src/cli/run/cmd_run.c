@@ -62,8 +62,8 @@ static const struct cs_arg rows[] = {
      "write DIR/run.checkpoint every so many frames, or seconds as in 30s",
      CS_ARG_INTO(struct options, checkpoint)},
     {"resume", 0, "DIR",
-     "continue from the checkpoint in DIR; without SCENE its run is repeated with "
-     "its own options, but for those of length and report",
+     "continue from the checkpoint in DIR; without SCENE, with the options of its run, except "
+     "those of length and report",
      CS_ARG_INTO(struct options, resume)},
     {"isolate", 0, "SECONDS",
      "run in a separate process, and end it if one call of the method or the renderer takes "
