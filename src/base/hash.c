@@ -66,18 +66,20 @@ enum cs_status cs_hash_file(const char *path, uint64_t *size, char digits[CS_HAS
     struct stat info;
     XXH3_state_t state;
     XXH3_128bits_reset(&state);
-    *size = 0;
+    uint64_t bytes = 0;
     *digits = 0;
     // without O_NONBLOCK a fifo would wait here for its writer
     const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file >= 0 && !fstat(file, &info) && !S_ISREG(info.st_mode))
         cs_fail(error, CS_ERR_FILE, "cannot read \"%s\": it is not a regular file", path);
-    else if (file < 0 || !add_all(file, &state, size))
+    else if (file < 0 || !add_all(file, &state, &bytes))
         cs_fail(error, cs_file_status(errno), "cannot read \"%s\": %s", path, strerror(errno));
     else
         print_digits(XXH3_128bits_digest(&state), digits);
     if (file >= 0)
         close(file);
+    if (size)
+        *size = bytes;
     return error->status;
 }
 

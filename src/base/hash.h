@@ -14,8 +14,8 @@ enum { CS_HASH_DIGITS = 33 };
 void cs_hash_doubles(const double *values, size_t n, char digits[CS_HASH_DIGITS]);
 void cs_hash_bytes(const void *bytes, size_t length, char digits[CS_HASH_DIGITS]);
 
-/* Hash and size of a regular file, read block by block: the digits that `xxh128sum` prints. On
- * CS_ERR_FILE digits is empty. */
+/* Hash and size (may be NULL) of a regular file, read block by block: the digits that
+ * `xxh128sum` prints. On CS_ERR_FILE digits is empty. */
 enum cs_status cs_hash_file(const char *path, uint64_t *size, char digits[CS_HASH_DIGITS],
                             struct cs_error *error);
 

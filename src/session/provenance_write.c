@@ -88,7 +88,7 @@ enum cs_status cs_provenance_out_find_module(struct cs_session *session,
     if (CS_HAS(integrator, library) && integrator->library)
         module->library = integrator->library;
     if (cs_registry_find(&session->registry, integrator->name, &found, error) ||
-        cs_module_hash(found->file, module->hash, error))
+        cs_hash_file(found->file, NULL, module->hash, error))
         return error->status;
     snprintf(module->file, sizeof module->file, "%s",
              is_own(found->file) ? strrchr(found->file, '/') + 1 : found->file);

@@ -167,6 +167,12 @@ bool cs_system_untangles(const struct cs_system *system);
 bool cs_system_bends(const struct cs_system *system);
 /* m, rest length of the longest spring; 0 without any. */
 double cs_system_longest_spring(const struct cs_system *system);
+/* Sets f (3,n) in N to the forces of springs and elastic bodies at (x, v), without damping. */
+void cs_system_elastic_force(const struct cs_system *system, const double *x, const double *v,
+                             double *f);
+/* Adds how stiff elastic bodies are for a step of one frame, and the length over which they
+ * bend by their own weight: a line per body. */
+void cs_system_print_elastic(const struct cs_system *system, struct cs_text *out);
 /* Adds the particle, then its neighbours by stretch and shear springs, as numbers within its
  * body: a value of render.marks. */
 void cs_system_print_marks(const struct cs_system *system, uint32_t particle,

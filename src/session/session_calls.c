@@ -2,7 +2,12 @@
 #include "session/session.h"
 
 #include "base/clock.h"
+#include "model/elastic/membranes.h"
+#include "model/force/terms.h"
 #include "scene/contact_keys.h"
+#include "scene/elastic_keys.h"
+#include "scene/force_keys.h"
+#include "scene/shape.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -89,4 +94,43 @@ void cs_system_print_marks(const struct cs_system *system, uint32_t particle,
         }
     }
     cs_text_add(out, "]}");
+}
+
+void cs_system_elastic_force(const struct cs_system *system, const double *x, const double *v,
+                             double *f) {
+    const struct cs_eval at = {.x = x, .v = v, .parts = CS_PART_SPRINGS | CS_PART_ELASTIC};
+    cs_terms_force(system, &at, f);
+}
+
+/* Mass of a body over its area, in kg/m2. */
+static double density_of(const struct cs_system *system, uint32_t body) {
+    const struct cs_body_range *range = system->bodies + body;
+    double mass = 0, area = 0;
+    for (uint32_t i = 0; i < range->count; i++) {
+        mass += system->mass[range->first + i];
+        area += cs_shape_area(cs_scene_body(system->scene, body), i);
+    }
+    return mass / area;
+}
+
+void cs_system_print_elastic(const struct cs_system *system, struct cs_text *out) {
+    const double *g = system->scene->forces->gravity, dt = 1 / system->scene->time.fps;
+    const double weight = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    for (uint32_t k = 0; system->membranes && k < system->membranes->n; k++) {
+        const struct cs_membrane *membrane = system->membranes->bodies + k;
+        const struct cs_elastic *elastic = cs_scene_elastic(system->scene, membrane->body);
+        const struct cs_moduli Y = cs_membrane_moduli(elastic), D = cs_bending_moduli(elastic);
+        const double density = density_of(system, membrane->body), h = membrane->shortest;
+        const double bends = fmax(D.warp, D.weft);
+        cs_text_add(out,
+                    "bodies[%u]: Y dt^2/(rho h^2) = %.3g for a frame and the shortest edge",
+                    membrane->body, fmax(Y.warp, Y.weft) * dt * dt / (density * h * h));
+        if (bends > 0)
+            cs_text_add(out, ", D dt^2/(rho h^4) = %.3g",
+                        bends * dt * dt / (density * h * h * h * h));
+        if (bends > 0 && weight > 0)
+            cs_text_add(out, "; bending length (D/(rho g))^(1/3) = %.3g m",
+                        cbrt(bends / (density * weight)));
+        cs_text_add(out, "\n");
+    }
 }

@@ -20,18 +20,18 @@ const int64_t *cs_scene_grid(const struct cs_scene *scene, uint32_t body) {
     return cloth->present ? cloth->grid : NULL;
 }
 
-/* Young's modulus, or that of the warp; 0 without elastic. */
-static double young_of(const struct cs_elastic *elastic) {
-    const double young = elastic->membrane.young;
-    return isnan(young) ? cs_membrane_moduli(elastic).warp : young;
+bool cs_scene_has_limbs(const struct cs_scene *scene, uint32_t body) {
+    const struct cs_body *of = cs_scene_bodies(scene) + body;
+    return of->mesh.present && of->mesh.shape == CS_MESH_LIMBS && of->network.present;
 }
 
 /* The stiffest of the three kinds of springs stands for all: they are scaled together. */
 double cs_axis_scene_value(const struct cs_system *system, enum cs_axis axis) {
     const struct cs_body *body = cs_scene_bodies(system->scene);
+    const double young = body->elastic.membrane.young;
     switch (axis) {
-    case CS_AXIS_YOUNG:
-        return young_of(&body->elastic);
+    case CS_AXIS_YOUNG: // or that of the warp; 0 without elastic
+        return isnan(young) ? cs_membrane_moduli(&body->elastic).warp : young;
     case CS_AXIS_STIFFNESS:
         if (body->elastic.present)
             return 0;

@@ -5,7 +5,6 @@
 
 #include "base/hash.h"
 #include "base/status.h"
-#include "base/text.h"
 
 #include <clothsim/integrator.h>
 #include <clothsim/program.h>
@@ -53,16 +52,5 @@ enum cs_status cs_tableau_read(const char *path, struct cs_program_description *
  * CS_ERR_MEMORY, CS_ERR_INTERRUPT. */
 enum cs_status cs_program_method_open(const char *text, const struct cs_integrator **integrator,
                                       const char **file, struct cs_error *error);
-
-/* The hash of the file's bytes, to recognise another build, which may give other results.
- * CS_ERR_FILE; digits is then "". */
-enum cs_status cs_module_hash(const char *file, char digits[CS_HASH_DIGITS],
-                              struct cs_error *error);
-
-/* Looks for the first symbol that the module around an address takes from elsewhere and that is
- * in the list (closed by NULL; a name that ends in * is the begin of names). Returns its name,
- * the module's own, in *symbol, or NULL if there is none. Returns false if the address is in no
- * module, but in the program itself. The module's libraries are not looked at. */
-bool cs_module_find_import(const void *address, const char *const *names, const char **symbol);
 
 #endif

@@ -58,6 +58,8 @@ FAULTS = (
      "src/io/a.c:2: writes, renames or removes a file: see base/file.h"),
     ("floors.sh", {"src/study/a.c": '#include "sim/a.h"\n', "src/sim/a.h": "", **PUBLIC},
      "src/study/a.c includes sim/a.h: behind the wall, see src/session"),
+    ("floors.sh", {"tools/advise/a.c": '#include "model/a.h"\n', "src/model/a.h": "", **PUBLIC},
+     "tools/advise/a.c includes model/a.h: behind the wall, see src/session"),
     ("floors.sh", {"src/cli/a.c": "int a(const struct cs_run *run) {\n    return run->system->mass[0] > run->system->bodies[0].n;\n}\n", **PUBLIC},
      "src/cli/a.c:2: reads system->bodies: see src/session"),
     ("retired.py", {"src/base/a.c": "int cs_lot_size;\n", **PARTS},

@@ -11,11 +11,6 @@
 #include "cli/line/print.h"
 #include "cli/manifest.h"
 #include "cli/run_output.h"
-#include "model/elastic/membranes.h"
-#include "scene/body_pairs.h"
-#include "scene/elastic_keys.h"
-#include "scene/force_keys.h"
-#include "scene/shape.h"
 #include "session/process_pool.h"
 #include "session/session.h"
 #include "study/compare/cell_list_parse.h"
@@ -151,41 +146,6 @@ static void add_contact(const struct cs_advise *advise, struct cs_text *out) {
     cs_contact_note_add_crossing(system, speed, out);
 }
 
-/* Mass of a body over its area, in kg/m2. */
-static double density_of(const struct cs_system *system, uint32_t body) {
-    const struct cs_body_range *range = system->bodies + body;
-    double mass = 0, area = 0;
-    for (uint32_t i = 0; i < range->count; i++) {
-        mass += system->mass[range->first + i];
-        area += cs_shape_area(cs_scene_body(system->scene, body), i);
-    }
-    return mass / area;
-}
-
-/* How stiff elastic bodies are for a step of one frame, and the length over which they bend by
- * their own weight. */
-static void add_elastic(const struct cs_system *system, struct cs_text *out) {
-    const double *g = system->scene->forces->gravity, dt = 1 / system->scene->time.fps;
-    const double weight = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-    for (uint32_t k = 0; system->membranes && k < system->membranes->n; k++) {
-        const struct cs_membrane *membrane = system->membranes->bodies + k;
-        const struct cs_elastic *elastic = cs_scene_elastic(system->scene, membrane->body);
-        const struct cs_moduli Y = cs_membrane_moduli(elastic), D = cs_bending_moduli(elastic);
-        const double density = density_of(system, membrane->body), h = membrane->shortest;
-        const double bends = fmax(D.warp, D.weft);
-        cs_text_add(out,
-                    "bodies[%u]: Y dt^2/(rho h^2) = %.3g for a frame and the shortest edge",
-                    membrane->body, fmax(Y.warp, Y.weft) * dt * dt / (density * h * h));
-        if (bends > 0)
-            cs_text_add(out, ", D dt^2/(rho h^4) = %.3g",
-                        bends * dt * dt / (density * h * h * h * h));
-        if (bends > 0 && weight > 0)
-            cs_text_add(out, "; bending length (D/(rho g))^(1/3) = %.3g m",
-                        cbrt(bends / (density * weight)));
-        cs_text_add(out, "\n");
-    }
-}
-
 /* Names the method for dampers that limit explicit steps more than springs do: at delta = 6.3
  * omega it takes a tenth of the evaluations of dopri5 (reef_knot, rtol 1e-4). */
 static void add_damping(const struct cs_view *view, struct cs_text *out) {
@@ -200,7 +160,7 @@ static void add_damping(const struct cs_view *view, struct cs_text *out) {
  * first. */
 static void advise_print(const struct cs_advise *advise, struct cs_text *out) {
     add_contact(advise, out);
-    add_elastic(&advise->was_opened.system, out);
+    cs_system_print_elastic(&advise->was_opened.system, out);
     add_damping(&advise->was_opened.system.view, out);
     cs_text_add(out, "advice for runs of %.4g s; each step was tested for that long\n",
                 advise->seconds);

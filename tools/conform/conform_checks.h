@@ -311,6 +311,12 @@ void cs_conform_cache_finish(struct cs_conform_cache *cache);
 
 /* The method whose solution orders and errors are measured against. */
 
+/* Looks for the first symbol that the module around an address takes from elsewhere and that is
+ * in the list (closed by NULL; a name that ends in * is the begin of names). Returns its name,
+ * the module's own, in *symbol, or NULL if there is none. Returns false if the address is in no
+ * module, but in the program itself. The module's libraries are not looked at. */
+bool cs_module_find_import(const void *address, const char *const *names, const char **symbol);
+
 /* The classical Runge-Kutta method of order 4 with option dt, for tiny steps. Independent of
  * the modules, so no module is compared with itself. */
 extern const struct cs_integrator cs_conform_reference;

@@ -1,8 +1,6 @@
 /* Measures the elastic force of a body at given lengths. */
 #include "files/force_length.h"
 
-#include "model/force/terms.h"
-#include "scene/body_keys.h"
 #include "session/session.h"
 
 #include <math.h>
@@ -17,12 +15,10 @@ static double pull(const struct cs_system *system, const double *start, double m
     const struct cs_body_range *body = system->bodies;
     const size_t n = 3 * (size_t)system->view.n;
     double *x = arrays, *f = arrays + 2 * n;
-    const struct cs_eval at = {
-        .x = x, .v = arrays + n, .parts = CS_PART_SPRINGS | CS_PART_ELASTIC};
     double sum = 0;
     for (uint32_t i = body->first; i < body->first + body->count; i++)
         x[i] = middle + stretch * (start[i] - middle);
-    cs_terms_force(system, &at, f);
+    cs_system_elastic_force(system, x, arrays + n, f);
     for (uint32_t i = body->first; i < body->first + body->count; i++)
         sum += start[i] < middle ? f[i] : 0;
     return sum;
@@ -59,17 +55,13 @@ static enum cs_status measure_force(const struct cs_system *system, double low, 
     return CS_OK;
 }
 
-/* The forces of pinned particles count too. */
-static void free_particles(struct cs_scene *scene, void *ctx) {
-    struct cs_body *bodies = cs_scene_bodies(scene);
-    (void)ctx;
-    bodies->pins.n = 0;
-}
-
 enum cs_status cs_force_length_measure(const char *scene, double low, double high,
                                        struct cs_arena *arena, struct cs_number_table *table,
                                        struct cs_error *error) {
-    const struct cs_session_settings settings = {.scene = scene, .edit_scene = free_particles};
+    /* the forces of pinned particles count too */
+    const struct cs_override free = {.path = "bodies[0].pins", .value = "[]"};
+    const struct cs_session_settings settings = {
+        .scene = scene, .overrides = &free, .n_overrides = 1};
     struct cs_session session;
     *table = (struct cs_number_table){
         .columns = 2,

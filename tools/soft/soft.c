@@ -3,9 +3,9 @@
 
 #include "base/clock.h"
 #include "base/install_paths.h"
-#include "scene/body_keys.h"
 #include "session/frame_picture.h"
 #include "session/session.h"
+#include "session/study_scenes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -173,8 +173,7 @@ enum cs_status cs_soft_check(const struct cs_soft *soft, struct cs_error *error)
     if (cs_scene_read(&scene, cs_scene_find(soft->session.scene, installed, sizeof installed),
                       soft->session.overrides, soft->session.n_overrides, error))
         return error->status;
-    const struct cs_body *body = cs_scene_bodies(&scene);
-    if (!body->mesh.present || body->mesh.shape != CS_MESH_LIMBS || !body->network.present)
+    if (!cs_scene_has_limbs(&scene, 0))
         cs_fail(error, CS_ERR_SCENE,
                 "%s: bodies[0]: expected a mesh of the shape \"limbs\" with a network",
                 soft->session.scene);

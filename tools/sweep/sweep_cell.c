@@ -215,7 +215,7 @@ static void add_meaning(struct cs_sweep_cell *cell, struct cs_text *all,
     if (cs_scene_hash(&session->scene, &session->method.table, session->method.options, scene,
                       error) ||
         cs_registry_find(&session->registry, session->method.integrator->name, &found, error) ||
-        cs_module_hash(found->file, module, error))
+        cs_hash_file(found->file, NULL, module, error))
         return;
     cs_text_add(all, "|%s|%s", scene, module);
 }

@@ -45,7 +45,7 @@ static enum cs_status hash_module(struct cs_checkpointer *checkpointer,
     struct cs_session *session = checkpointer->session;
     return cs_registry_find(&session->registry, session->method.integrator->name, &found, error)
                ? error->status
-               : cs_module_hash(found->file, checkpointer->module, error);
+               : cs_hash_file(found->file, NULL, checkpointer->module, error);
 }
 
 /* Facts that must agree before a run resumes, each with its name for the message. */

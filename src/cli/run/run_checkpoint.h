@@ -8,7 +8,6 @@
 #define CS_RUN_CHECKPOINT_H
 
 #include "base/hash.h"
-#include "base/text.h"
 #include "io/checkpoint.h"
 #include "session/session.h"
 

@@ -267,7 +267,7 @@ static enum cs_status begin_entry(struct cs_cell_list_entry *entry,
     *entry = (struct cs_cell_list_entry){
         .method = *method, .low = (double)NAN, .high = (double)NAN, .control = ""};
     if (cs_registry_find(registry, integrator->name, &registered, error) ||
-        cs_module_hash(registered->file, entry->module, error))
+        cs_hash_file(registered->file, NULL, entry->module, error))
         return error->status;
     const char *control = integrator->traits & CS_ADAPTIVE ? "rtol" : "dt";
     if (cs_option_find(&method->table, control))
