@@ -226,37 +226,18 @@ void cs_option_print_expected(const struct cs_option *row, struct cs_text *out) 
 
 /* --- components as doubles --- */
 
-static double get_real(const void *field, uint32_t i) {
-    return ((const double *)field)[i];
-}
-
-static void set_real(void *field, uint32_t i, double value) {
-    ((double *)field)[i] = value;
-}
-
-static double get_int(const void *field, uint32_t i) {
-    return (double)((const int64_t *)field)[i];
-}
-
-static void set_int(void *field, uint32_t i, double value) {
-    ((int64_t *)field)[i] = (int64_t)value;
-}
-
-static double get_bool(const void *field, uint32_t i) {
-    return ((const bool *)field)[i];
-}
-
-static void kind_set_bool(void *field, uint32_t i, double value) {
-    ((bool *)field)[i] = value != 0;
-}
-
-static double get_choice(const void *field, uint32_t i) {
-    return ((const int32_t *)field)[i];
-}
-
-static void set_choice(void *field, uint32_t i, double value) {
-    ((int32_t *)field)[i] = (int32_t)value;
-}
+#define COMPONENT(name, type, converted)                                                       \
+    static double get_##name(const void *field, uint32_t i) {                                  \
+        return (double)((const type *)field)[i];                                               \
+    }                                                                                          \
+    static void put_##name(void *field, uint32_t i, double value) {                            \
+        ((type *)field)[i] = converted;                                                        \
+    }
+COMPONENT(real, double, value)
+COMPONENT(int, int64_t, (int64_t)value)
+COMPONENT(bool, bool, value != 0)
+COMPONENT(choice, int32_t, (int32_t)value)
+#undef COMPONENT
 
 /* --- a component as JSON --- */
 
@@ -355,17 +336,17 @@ static void print_text_schema(const struct cs_option *row, struct cs_text *out) 
 /* form, several, whole, expected, schema, size, get, set, print, is_given, range, schema */
 static const struct cs_value_kind kinds[] = {
     [CS_REAL] = {CS_FORM_NUMBER, false, false, "a number", "number", sizeof(double), get_real,
-                 set_real, print_real, NULL, print_number_range, print_number_schema},
+                 put_real, print_real, NULL, print_number_range, print_number_schema},
     [CS_INT] = {CS_FORM_NUMBER, false, true, "an integer", "integer", sizeof(int64_t), get_int,
-                set_int, print_int, NULL, print_number_range, print_number_schema},
-    [CS_BOOL] = {CS_FORM_BOOL, false, false, "", NULL, sizeof(bool), get_bool, kind_set_bool,
+                put_int, print_int, NULL, print_number_range, print_number_schema},
+    [CS_BOOL] = {CS_FORM_BOOL, false, false, "", NULL, sizeof(bool), get_bool, put_bool,
                  print_bool, NULL, print_bool_range, print_bool_schema},
     [CS_CHOICE] = {CS_FORM_CHOICE, false, true, "one of ", NULL, sizeof(int32_t), get_choice,
-                   set_choice, print_choice, NULL, print_choice_range, print_choice_schema},
+                   put_choice, print_choice, NULL, print_choice_range, print_choice_schema},
     [CS_VECTOR] = {CS_FORM_NUMBER, true, false, "numbers", "number", sizeof(double), get_real,
-                   set_real, print_real, NULL, print_number_range, print_numbers_schema},
+                   put_real, print_real, NULL, print_number_range, print_numbers_schema},
     [CS_COUNTS] = {CS_FORM_NUMBER, true, true, "integers", "integer", sizeof(int64_t), get_int,
-                   set_int, print_real, NULL, print_number_range, print_numbers_schema},
+                   put_int, print_real, NULL, print_number_range, print_numbers_schema},
     [CS_TEXT] = {.form = CS_FORM_TEXT,
                  .expected = "a string",
                  .size = CS_TEXT_MAX,

@@ -16,11 +16,6 @@ enum {
     WAITING = 512 /* block sums on the stack; longer arrays take several rounds */
 };
 
-/* End of the block of a sum that starts at begin. */
-static size_t end_of(size_t begin, size_t n) {
-    return n - begin < BLOCK ? n : begin + BLOCK;
-}
-
 /* Arguments of a shared loop. */
 struct shared {
     void (*part)(void *arg, size_t begin, size_t end);
@@ -50,8 +45,9 @@ struct summed {
 
 static void sum_part(void *arg, uint32_t block) {
     struct summed *summed = arg;
-    const size_t begin = summed->first + (size_t)block * BLOCK;
-    summed->sums[block] = summed->part(summed->arg, begin, end_of(begin, summed->n));
+    const size_t begin = summed->first + (size_t)block * BLOCK, left = summed->n - begin;
+    summed->sums[block] =
+        summed->part(summed->arg, begin, begin + (left < BLOCK ? left : BLOCK));
 }
 
 double cs_vector_sum(size_t n, double (*part)(const void *arg, size_t begin, size_t end),

@@ -35,11 +35,6 @@ static double reach_of(const struct cs_system *system, const struct cs_body_rang
     return 0.1 * sqrt(square);
 }
 
-/* Only boxes have creases: other shapes are smooth. */
-static bool is_box(const struct cs_body *body) {
-    return body->mesh.present && body->mesh.shape == CS_MESH_BOX;
-}
-
 // side 0..5 of a box that a triangle lies on: the axis of its normal, and its sign
 static uint8_t side_of(const struct cs_trimesh *box, uint32_t triangle) {
     double normal[3];
@@ -72,7 +67,9 @@ enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system
                       ? &material->faces
                       : NULL;
     mesh->flat_shading = material->shading == CS_SHADING_FLAT;
-    mesh->has_creases = !mesh->flat_shading && is_box(cs_scene_bodies(system->scene) + body);
+    // only boxes have creases: other shapes are smooth
+    const struct cs_mesh_source *source = &cs_scene_bodies(system->scene)[body].mesh;
+    mesh->has_creases = !mesh->flat_shading && source->present && source->shape == CS_MESH_BOX;
     mesh->split_vertices = mesh->flat_shading || mesh->has_creases || marked ||
                            (textured && range->mesh && (range->mesh->uv || mesh->faces));
     mesh->has_curvature =

@@ -73,16 +73,6 @@ static bool is_candidate(const struct work *work, uint32_t i, uint32_t j) {
            m[0] * o[0] + m[1] * o[1] + m[2] * o[2] <= -0.5;
 }
 
-/* Squared distance of two vertices, in m2. */
-static double squared_distance(const struct cs_trimesh *mesh, uint32_t a, uint32_t b) {
-    double sum = 0;
-    for (size_t c = 0; c < 3; c++) {
-        const double d = mesh->positions[c * mesh->n + b] - mesh->positions[c * mesh->n + a];
-        sum += d * d;
-    }
-    return sum;
-}
-
 /* A partner for vertex i, or i itself if no draw finds a candidate. */
 static uint32_t draw_partner(struct work *work, uint32_t i) {
     const struct cs_spring_network *network = work->network;
@@ -97,7 +87,7 @@ static uint32_t draw_partner(struct work *work, uint32_t i) {
         if (!is_candidate(work, i, j))
             continue;
         found++;
-        const double squared = squared_distance(work->mesh, i, j);
+        const double squared = cs_trimesh_squared_distance(work->mesh, i, j);
         if (squared < nearest) {
             nearest = squared;
             best = j;

@@ -238,13 +238,8 @@ static enum cs_status fill_vertices(struct work *work) {
 /* Mean length of the edges, in the order of the list. */
 static void measure_edges(struct cs_trimesh *mesh) {
     for (uint32_t e = 0; e < mesh->n_edges; e++) {
-        double squared = 0;
-        for (size_t c = 0; c < 3; c++) {
-            const double d = mesh->positions[c * mesh->n + mesh->edges[2 * (size_t)e + 1]] -
-                             mesh->positions[c * mesh->n + mesh->edges[2 * (size_t)e]];
-            squared += d * d;
-        }
-        mesh->edge += sqrt(squared) / mesh->n_edges;
+        const uint32_t *ends = mesh->edges + 2 * (size_t)e;
+        mesh->edge += sqrt(cs_trimesh_squared_distance(mesh, ends[0], ends[1])) / mesh->n_edges;
     }
 }
 

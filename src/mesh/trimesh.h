@@ -105,6 +105,17 @@ static inline void cs_trimesh_normal(const struct cs_trimesh *mesh, uint32_t t, 
     normal[2] = ax * by - ay * bx;
 }
 
+/* Squared distance of two vertices, in m2. */
+static inline double cs_trimesh_squared_distance(const struct cs_trimesh *mesh, uint32_t a,
+                                                 uint32_t b) {
+    double sum = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double d = mesh->positions[c * mesh->n + b] - mesh->positions[c * mesh->n + a];
+        sum += d * d;
+    }
+    return sum;
+}
+
 /* Index in vertex_triangles of the first triangle of vertex i. */
 static inline uint32_t cs_trimesh_around_begin(const struct cs_trimesh *mesh, uint32_t i) {
     return i ? mesh->vertex_triangles_end[i - 1] : 0;

@@ -175,16 +175,6 @@ static void walk_cells(struct lattice *lattice, double *places) {
             }
 }
 
-/* Squared distance of two vertices. */
-static double squared_distance(const struct cs_trimesh *mesh, uint32_t a, uint32_t b) {
-    double sum = 0;
-    for (size_t c = 0; c < 3; c++) {
-        const double d = mesh->positions[c * mesh->n + b] - mesh->positions[c * mesh->n + a];
-        sum += d * d;
-    }
-    return sum;
-}
-
 /* Writes the two triangles of the quad around the edge from p along an axis, cut along the
  * shorter diagonal. The four cells are taken counter-clockwise about the axis if p is inside,
  * so that normals point from inside to outside; else the other way round. */
@@ -200,8 +190,8 @@ static void add_quad(const struct lattice *lattice, struct cs_trimesh *mesh, uin
         cell[(axis + 2) % 3] -= step[1];
         quad[c] = lattice->vertex[at(lattice, cell[0], cell[1], cell[2])];
     }
-    const int k =
-        squared_distance(mesh, quad[1], quad[3]) < squared_distance(mesh, quad[0], quad[2]);
+    const int k = cs_trimesh_squared_distance(mesh, quad[1], quad[3]) <
+                  cs_trimesh_squared_distance(mesh, quad[0], quad[2]);
     const uint32_t corners[6] = {quad[k], quad[1 + k], quad[2 + k],
                                  quad[k], quad[2 + k], quad[(3 + k) % 4]};
     for (int c = 0; c < 6; c++)

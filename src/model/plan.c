@@ -50,27 +50,18 @@ static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene) {
     }
 }
 
-/* Bytes of meshes. They belong to the scene, and exist before anything is built. */
-static size_t mesh_bytes(const struct cs_scene *scene) {
+/* Counts bytes of meshes and key frames. They belong to the scene, and exist before anything is
+ * built. */
+static void count_bytes(struct cs_plan *plan, const struct cs_scene *scene) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
-    size_t bytes = 0;
+    size_t *meshes = &plan->rows[CS_FEATURE_MESHES].bytes;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        bytes += bodies[b].mesh.present ? bodies[b].mesh.geometry->bytes : 0;
+        *meshes += bodies[b].mesh.present ? bodies[b].mesh.geometry->bytes : 0;
     for (uint32_t c = 0; c < scene->colliders.n; c++) {
         const struct cs_mesh_source *mesh = &cs_scene_colliders(scene)[c].mesh;
-        bytes += mesh->present ? mesh->geometry->bytes : 0;
+        *meshes += mesh->present ? mesh->geometry->bytes : 0;
+        plan->rows[CS_FEATURE_KEY_FRAMES].bytes += mesh->paths ? mesh->paths->bytes : 0;
     }
-    return bytes;
-}
-
-/* Bytes of key frames, which belong to the scene too. */
-static size_t key_frame_bytes(const struct cs_scene *scene) {
-    size_t bytes = 0;
-    for (uint32_t c = 0; c < scene->colliders.n; c++) {
-        const struct cs_vertex_paths *paths = cs_scene_colliders(scene)[c].mesh.paths;
-        bytes += paths ? paths->bytes : 0;
-    }
-    return bytes;
 }
 
 /* Tells whether a body has a property. */
@@ -203,10 +194,9 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     const bool bodies_are = any_body(scene, is_mesh);
     decide(plan, CS_FEATURE_MESHES, bodies_are || cs_scene_surfaces(scene) > scene->bodies.n,
            bodies_are ? "bodies are meshes" : "colliders are meshes", "every body is a grid");
-    plan->rows[CS_FEATURE_MESHES].bytes = mesh_bytes(scene);
     decide(plan, CS_FEATURE_KEY_FRAMES, cs_scene_has_key_frames(scene),
            "a collider has key_frames", "no collider has key_frames");
-    plan->rows[CS_FEATURE_KEY_FRAMES].bytes = key_frame_bytes(scene);
+    count_bytes(plan, scene);
     plan_forces(plan, scene);
     plan_contact(plan, scene, render);
     plan_needs(plan, scene, needs);

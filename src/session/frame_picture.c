@@ -65,20 +65,17 @@ static enum cs_status read_textures(struct cs_picture *picture, struct cs_error 
     return CS_OK;
 }
 
-static double begin_of(const struct cs_event *event) {
-    return isnan(event->at) ? event->from : event->at;
-}
-
 /* Adds a ramp behind those that begin no later. */
 static void add_ramp(struct cs_picture *picture, const struct cs_event *event,
                      struct cs_error *error) {
     struct cs_event_key key;
+    const bool at_once = !isnan(event->at);
     uint32_t k = picture->n_ramps;
     if (cs_event_key_find(&picture->drawn, event->ramp.key, &key, error))
         return;
     const struct cs_picture_ramp ramp = {.value = key.value,
-                                         .from = begin_of(event),
-                                         .to = isnan(event->at) ? event->to : event->at,
+                                         .from = at_once ? event->at : event->from,
+                                         .to = at_once ? event->at : event->to,
                                          .start = *key.value,
                                          .last = event->ramp.value};
     for (; k > 0 && picture->ramps[k - 1].from > ramp.from; k--)

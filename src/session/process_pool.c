@@ -94,11 +94,6 @@ struct worker {
     bool is_late;    /* a call in a task with a limit of time hung: it was killed */
 };
 
-/* True if a worker died by the limit of time of its task. */
-static bool is_overdue(const struct worker *worker, int end) {
-    return WIFSIGNALED(end) && (worker->is_late || WTERMSIG(end) == SIGPROF);
-}
-
 /* Takes over the error of a worker that ended. A limit of time is none; any other death is
  * reported as a crash. */
 static void collect(struct shared *shared, uint32_t worker, bool overdue, int end,
@@ -165,7 +160,9 @@ static void wait_for(struct cs_process_pool *pool, struct shared *shared,
                 hold_to_limits(pool, shared, k, child);
                 continue;
             }
-            const bool overdue = is_overdue(child, end);
+            // it died by the limit of time of its task
+            const bool overdue =
+                WIFSIGNALED(end) && (child->is_late || WTERMSIG(end) == SIGPROF);
             collect(shared, k, overdue, end, error);
             // one that was ended by its limit of time leaves the other tasks
             child->process = 0;

@@ -32,10 +32,6 @@ static double length_of(const double a[3]) {
     return sqrt(cs_vec3_dot(a, a));
 }
 
-static double gravity_of(const struct cs_system *system) {
-    return length_of(system->scene->forces->gravity);
-}
-
 /* --- stored energy --- */
 
 /* m, diagonal of the box of all particles and bounded colliders at the start. */
@@ -82,7 +78,7 @@ static double energy_to_come(const struct cs_system *system, const struct cs_ene
     double mass = 0;
     for (uint32_t i = 0; i < system->view.n; i++)
         mass += system->inv_mass[i] > 0 ? system->mass[i] : 0;
-    return start->kinetic + mass * gravity_of(system) * size_of(system) +
+    return start->kinetic + mass * length_of(system->scene->forces->gravity) * size_of(system) +
            event_energy(system, mass);
 }
 

@@ -32,9 +32,43 @@ static const struct cs_body *body_at(const struct cs_scene *scene, uint32_t k) {
     return cs_scene_bodies(scene) + k;
 }
 
-static bool springs_act(const struct cs_scene *scene, uint32_t k) {
-    return !cs_scene_springs_left_out(body_at(scene, k));
-}
+/* Conditions of one value each: of the scene, or of its body k. */
+#define OF_SCENE(name, condition)                                                              \
+    static bool name(const struct cs_scene *scene, uint32_t k) {                               \
+        return (void)k, condition;                                                             \
+    }
+#define OF_BODY(name, condition)                                                               \
+    static bool name(const struct cs_scene *scene, uint32_t k) {                               \
+        const struct cs_body *body = body_at(scene, k);                                        \
+        return condition;                                                                      \
+    }
+OF_SCENE(is_projected, !is_force(scene))
+OF_SCENE(has_contact, scene->colliders.n || cs_scene_has_body_contact(scene))
+OF_SCENE(sticks, cs_scene_friction_sticks(scene))
+OF_SCENE(has_pairs, scene->bodies.n > 1)
+OF_SCENE(are_all_pairs, scene->bodies.n > 1 && scene->pairs->among == CS_PAIRS_ALL)
+OF_SCENE(is_drawn, cs_scene_colliders(scene)[k].visible)
+OF_SCENE(has_range, scene->render->look == CS_LOOK_FORCE ||
+                        scene->render->look == CS_LOOK_STRAIN ||
+                        scene->render->look == CS_LOOK_STRESS)
+OF_SCENE(has_drag, cs_event_key_acts(scene, scene->forces->drag, "forces.drag"))
+OF_SCENE(flows, scene->forces->wind.present && !isnan(scene->forces->wind.velocity[0]))
+OF_BODY(springs_act, !cs_scene_springs_left_out(body))
+OF_BODY(damps, springs_act(scene, k) &&
+                   cs_event_key_acts(scene, body->springs.damping, "springs.damping"))
+OF_BODY(limits_strain, !isnan(body->strain_limit))
+OF_BODY(meets_itself, body->self_contact)
+OF_BODY(draws_nearest, body->network.placement == CS_PLACEMENT_NEAREST)
+OF_BODY(has_clusters, body->shape_matching.clusters > 1)
+OF_BODY(has_texture, *body->material.texture)
+OF_BODY(shines, body->material.specular > 0)
+OF_BODY(has_young, !isnan(body->elastic.membrane.young))
+OF_BODY(has_warp, !isnan(body->elastic.membrane.warp))
+OF_BODY(bends_alike, !isnan(body->elastic.bending.stiffness))
+OF_BODY(bends_by_warp, !isnan(body->elastic.bending.warp))
+#undef OF_SCENE
+#undef OF_BODY
+
 static bool shear_acts(const struct cs_scene *scene, uint32_t k) {
     const struct cs_cloth *cloth = &body_at(scene, k)->cloth;
     return springs_act(scene, k) && cloth->present && cloth->grid[0] > 1 && cloth->grid[1] > 1;
@@ -43,16 +77,6 @@ static bool bend_acts(const struct cs_scene *scene, uint32_t k) {
     const struct cs_cloth *cloth = &body_at(scene, k)->cloth;
     return springs_act(scene, k) &&
            (!cloth->present || cloth->grid[0] > 2 || cloth->grid[1] > 2);
-}
-static bool damps(const struct cs_scene *scene, uint32_t k) {
-    return springs_act(scene, k) &&
-           cs_event_key_acts(scene, body_at(scene, k)->springs.damping, "springs.damping");
-}
-static bool limits_strain(const struct cs_scene *scene, uint32_t k) {
-    return !isnan(body_at(scene, k)->strain_limit);
-}
-static bool meets_itself(const struct cs_scene *scene, uint32_t k) {
-    return body_at(scene, k)->self_contact;
 }
 /* A body meets itself, another one or a mesh: then its surface has a thickness. */
 static bool has_surface(const struct cs_scene *scene, uint32_t k) {
@@ -63,54 +87,12 @@ static bool has_surface(const struct cs_scene *scene, uint32_t k) {
                       cs_scene_bodies_collide(scene, k, b, &friction));
     return is_force(scene) && any;
 }
-static bool draws_nearest(const struct cs_scene *scene, uint32_t k) {
-    return body_at(scene, k)->network.placement == CS_PLACEMENT_NEAREST;
-}
-static bool has_clusters(const struct cs_scene *scene, uint32_t k) {
-    return body_at(scene, k)->shape_matching.clusters > 1;
-}
-static bool has_texture(const struct cs_scene *scene, uint32_t k) {
-    return *body_at(scene, k)->material.texture;
-}
-static bool shines(const struct cs_scene *scene, uint32_t k) {
-    return body_at(scene, k)->material.specular > 0;
-}
-static bool is_projected(const struct cs_scene *scene, uint32_t k) {
-    (void)k;
-    return !is_force(scene);
-}
-static bool is_drawn(const struct cs_scene *scene, uint32_t k) {
-    return cs_scene_colliders(scene)[k].visible;
-}
-static bool has_contact(const struct cs_scene *scene, uint32_t k) {
-    (void)k;
-    return scene->colliders.n || cs_scene_has_body_contact(scene);
-}
 static bool is_contact_force(const struct cs_scene *scene, uint32_t k) {
     return is_force(scene) && has_contact(scene, k);
 }
 static bool is_smooth_friction(const struct cs_scene *scene, uint32_t k) {
     return is_contact_force(scene, k) && scene->contact->friction_law == CS_FRICTION_SMOOTH &&
            (cs_scene_has_friction(scene) || cs_event_key_changes(scene, "friction"));
-}
-static bool sticks(const struct cs_scene *scene, uint32_t k) {
-    (void)k;
-    return cs_scene_friction_sticks(scene);
-}
-static bool has_pairs(const struct cs_scene *scene, uint32_t k) {
-    (void)k;
-    return scene->bodies.n > 1;
-}
-static bool are_all_pairs(const struct cs_scene *scene, uint32_t k) {
-    return has_pairs(scene, k) && scene->pairs->among == CS_PAIRS_ALL;
-}
-static bool has_drag(const struct cs_scene *scene, uint32_t k) {
-    (void)k;
-    return cs_event_key_acts(scene, scene->forces->drag, "forces.drag");
-}
-static bool flows(const struct cs_scene *scene, uint32_t k) {
-    (void)k;
-    return scene->forces->wind.present && !isnan(scene->forces->wind.velocity[0]);
 }
 static bool blows(const struct cs_scene *scene, uint32_t k) {
     (void)k;
@@ -119,24 +101,6 @@ static bool blows(const struct cs_scene *scene, uint32_t k) {
     for (uint32_t e = 0; e < scene->events.n; e++)
         any = any || cs_scene_events(scene)[e].wind.present;
     return any;
-}
-static bool has_range(const struct cs_scene *scene, uint32_t k) {
-    (void)k;
-    return scene->render->look == CS_LOOK_FORCE || scene->render->look == CS_LOOK_STRAIN ||
-           scene->render->look == CS_LOOK_STRESS;
-}
-
-static bool has_young(const struct cs_scene *scene, uint32_t k) {
-    return !isnan(body_at(scene, k)->elastic.membrane.young);
-}
-static bool has_warp(const struct cs_scene *scene, uint32_t k) {
-    return !isnan(body_at(scene, k)->elastic.membrane.warp);
-}
-static bool bends_alike(const struct cs_scene *scene, uint32_t k) {
-    return !isnan(body_at(scene, k)->elastic.bending.stiffness);
-}
-static bool bends_by_warp(const struct cs_scene *scene, uint32_t k) {
-    return !isnan(body_at(scene, k)->elastic.bending.warp);
 }
 
 /* acts NULL: always. In the order of the tables, single keys before the tables they are in. */

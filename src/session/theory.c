@@ -59,13 +59,6 @@ static bool run_once(struct cs_session *session, const double start[2], const ui
     return !refused.status && session->run.outcome == CS_RUNNING;
 }
 
-/* Spectral radius of a 2x2 matrix from its trace t and determinant d. The eigenvalues solve l^2
- * - t l + d = 0. A complex pair has |l|^2 = d; real ones have |l| = |t|/2 + sqrt(t^2/4 - d). */
-static double radius_of(double trace, double determinant) {
-    const double root = trace * trace / 4 - determinant;
-    return root < 0 ? sqrt(determinant) : fabs(trace) / 2 + sqrt(root);
-}
-
 /* Solves m E = L for the matrix m between two looks with the columns E (earlier) and L (later),
  * by Cramer's rule. Returns false if E is singular, as after complete decay. All matrices are
  * stored by columns. */
@@ -80,8 +73,12 @@ static bool matrix_between(double earlier[2][2], double later[2][2], double m[2]
     return true;
 }
 
+/* Spectral radius of a 2x2 matrix from its trace t and determinant d. The eigenvalues solve l^2
+ * - t l + d = 0. A complex pair has |l|^2 = d; real ones have |l| = |t|/2 + sqrt(t^2/4 - d). */
 static double radius_of_matrix(double m[2][2]) {
-    return radius_of(m[0][0] + m[1][1], m[0][0] * m[1][1] - m[0][1] * m[1][0]);
+    const double trace = m[0][0] + m[1][1], det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    const double root = trace * trace / 4 - det;
+    return root < 0 ? sqrt(det) : fabs(trace) / 2 + sqrt(root);
 }
 
 /* True if the second look is the square of the first matrix, to `same` of its squared size. */

@@ -102,11 +102,6 @@ static uint64_t bit_of(const struct cs_method *method, const struct cs_option *r
     return k < 64 ? UINT64_C(1) << k : 0;
 }
 
-/* True if an option was set, to its default or not. */
-static bool is_given(const struct cs_method *method, const struct cs_option *row) {
-    return method->given & bit_of(method, row);
-}
-
 /* Adds the place of an option for a message: place and key, or the integrator and key. */
 static void add_place(const struct cs_method *method, const char *place, const char *key,
                       struct cs_text *out) {
@@ -179,7 +174,8 @@ enum cs_status cs_method_check(const struct cs_method *method, const char *place
         const struct cs_option *row = cs_option_find(&method->table, use->option),
                                *choice = cs_option_find(&method->table, use->choice);
         // defaults pass: printed options list every value, also those without effect
-        if (is_given(method, row) && !cs_option_is_default(row, method->options) &&
+        if ((method->given & bit_of(method, row)) &&
+            !cs_option_is_default(row, method->options) &&
             !(use->values >> choice_of(method, choice) & 1))
             return refuse_idle(method, use, choice, place, status, error);
     }
@@ -194,14 +190,11 @@ static const char *after_series(const char *token) {
     return token[name] == '=' && method[strcspn(method, ",:=")] == ':' ? method : NULL;
 }
 
-/* True for key=value, as against NAME, NAME:... and SERIES=NAME:... . */
-static bool is_option(const char *token) {
-    return token[strcspn(token, ",:=")] == '=' && !after_series(token);
-}
-
 char *cs_method_split(char **list) {
     char *method = *list, *comma = method;
-    while (comma && (comma = strchr(comma, ',')) && is_option(comma + 1))
+    // key=value, as against NAME, NAME:... and SERIES=NAME:...
+    while (comma && (comma = strchr(comma, ',')) &&
+           comma[1 + strcspn(comma + 1, ",:=")] == '=' && !after_series(comma + 1))
         comma++;
     if (comma)
         *comma++ = 0;

@@ -86,11 +86,6 @@ enum cs_status cs_run_save(struct cs_run *run, struct cs_serialiser *serialiser,
     return remembers ? CS_OK : restart_silent(run, error);
 }
 
-/* Keeps the counts of before: a method that does not save its own counts from 0 again. */
-static void store_counts(struct cs_run *run) {
-    run->host->stats_before = run->counts.method;
-}
-
 enum cs_status cs_run_load(struct cs_run *run, struct cs_serialiser *serialiser,
                            struct cs_error *error) {
     const struct cs_archive archive = archive_of(serialiser);
@@ -111,6 +106,7 @@ enum cs_status cs_run_load(struct cs_run *run, struct cs_serialiser *serialiser,
     run->n_notes = counted.n_notes;
     if (remembers)
         return CS_OK;
-    store_counts(run);
+    // a method that does not save its own counts from 0 again
+    run->host->stats_before = run->counts.method;
     return restart_silent(run, error);
 }

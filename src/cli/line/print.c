@@ -23,11 +23,6 @@ static size_t terminal_columns(void) {
     return size.ws_col < LEAST_COLUMNS ? LEAST_COLUMNS : size.ws_col;
 }
 
-/* Adds n blanks. */
-static void add_blanks(struct cs_text *out, size_t n) {
-    cs_text_add(out, "%*s", (int)n, "");
-}
-
 /* Length of the next word; of one longer than a line, up to the last comma or slash. A path
  * from the root stays whole, so that it can be copied. */
 static size_t next_word(const char *text, size_t room) {
@@ -57,8 +52,7 @@ void cs_print_wrapped(const char *left, const char *right, size_t column, size_t
             first = true;
         }
         const size_t blanks = first ? column - at : 1;
-        add_blanks(out, blanks);
-        cs_text_add(out, "%.*s", (int)word, right);
+        cs_text_add(out, "%*s%.*s", (int)blanks, "", (int)word, right);
         at += blanks + word;
         first = false;
         right += word + strspn(right + word, " ");

@@ -114,10 +114,16 @@ static enum cs_status open_rows(const struct cs_job *job, struct cs_row_log *log
                                  : cs_row_log_create(log, path, error);
 }
 
-/* A checkpoint on disk has the rows before it there as well. */
-static enum cs_status settle_rows(const struct cs_job *job, const struct cs_row_log *log,
-                                  struct cs_error *error) {
-    return cs_job_makes_checkpoints(job->settings) ? cs_row_log_sync(log, error) : CS_OK;
+/* A checkpoint on disk has the rows of both files before it there as well. */
+static enum cs_status settle_rows(struct cs_job *job, struct cs_error *error) {
+    if (!cs_job_makes_checkpoints(job->settings) || cs_row_log_sync(&job->watch_log, error))
+        return error->status;
+    return cs_row_log_sync(&job->ledger_log, error);
+}
+
+static enum cs_status end_rows(struct cs_job *job, struct cs_error *error) {
+    cs_row_log_finish(&job->watch_log, error);
+    return cs_row_log_finish(&job->ledger_log, error);
 }
 
 static enum cs_status watch_frame(struct cs_job *job, struct cs_error *error) {
@@ -143,21 +149,10 @@ static void watch_record(struct cs_job *job, struct cs_serialiser *serialiser) {
     cs_row_log_record(&job->watch_log, serialiser);
 }
 
-static enum cs_status watch_settle(struct cs_job *job, struct cs_error *error) {
-    return settle_rows(job, &job->watch_log, error);
-}
-
-static enum cs_status watch_end(struct cs_job *job, struct cs_error *error) {
-    return cs_row_log_finish(&job->watch_log, error);
-}
-
 const struct cs_run_output cs_run_output_watch = {
     .option = "--monitor",
     .path = offsetof(struct cs_job_settings, monitor_file),
-    .at = {[CS_RUN_BEGIN] = watch_begin,
-           [CS_RUN_FRAME] = watch_frame,
-           [CS_RUN_SETTLE] = watch_settle,
-           [CS_RUN_END] = watch_end},
+    .at = {[CS_RUN_BEGIN] = watch_begin, [CS_RUN_FRAME] = watch_frame},
     .record = watch_record};
 
 static enum cs_status ledger_frame(struct cs_job *job, struct cs_error *error) {
@@ -189,21 +184,14 @@ static void ledger_record(struct cs_job *job, struct cs_serialiser *serialiser) 
     CS_SERIALISER(serialiser, job->ledger.couple);
 }
 
-static enum cs_status ledger_settle(struct cs_job *job, struct cs_error *error) {
-    return settle_rows(job, &job->ledger_log, error);
-}
-
-static enum cs_status ledger_end(struct cs_job *job, struct cs_error *error) {
-    return cs_row_log_finish(&job->ledger_log, error);
-}
-
+/* Settles and ends the rows of --monitor too. */
 const struct cs_run_output cs_run_output_ledger = {.option = "--ledger",
                                                    .path =
                                                        offsetof(struct cs_job_settings, ledger),
                                                    .at = {[CS_RUN_BEGIN] = ledger_begin,
                                                           [CS_RUN_FRAME] = ledger_frame,
-                                                          [CS_RUN_SETTLE] = ledger_settle,
-                                                          [CS_RUN_END] = ledger_end},
+                                                          [CS_RUN_SETTLE] = settle_rows,
+                                                          [CS_RUN_END] = end_rows},
                                                    .record = ledger_record};
 
 /* Writes x_NUMBER.npy and v_NUMBER.npy of the frame. */

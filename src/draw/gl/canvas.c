@@ -262,12 +262,6 @@ static enum cs_status create(const struct cs_canvas_settings *settings,
     return error->status;
 }
 
-static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
-                        const struct cs_bounding_sphere *sphere) {
-    cs_view_move(&canvas->view, canvas->scene, sphere, canvas->system->view.n, frame);
-    cs_overlay_aim(&canvas->overlay, canvas->view.pixels_per_m);
-}
-
 /* Places lights for the frame, uploads the view, and draws the shadow maps. */
 static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_sphere *sphere) {
     cs_light_frusta_fit(sphere, &canvas->view);
@@ -335,8 +329,10 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
     const bool varies = canvas->scene_varies || cs_view_varies(canvas->scene);
     if (canvas->scene_varies)
         restyle(canvas);
-    if (varies)
-        move_camera(canvas, frame, &sphere);
+    if (varies) {
+        cs_view_move(&canvas->view, canvas->scene, &sphere, canvas->system->view.n, frame);
+        cs_overlay_aim(&canvas->overlay, canvas->view.pixels_per_m);
+    }
     cs_ground_aim(&canvas->ground, &sphere);
     gl_colliders_move(&canvas->colliders, frame->colliders, varies);
     draw_shadow(canvas, &sphere);

@@ -54,10 +54,6 @@ static uint32_t count_lines(const struct cs_body_range *body) {
     return body->mesh || cs_faces_count(body) ? 0 : body->count - 1;
 }
 
-static bool has_uv(const struct cs_body_range *body) {
-    return body->mesh ? body->mesh->uv != NULL : cs_faces_count(body) > 0;
-}
-
 /* Texture coordinates of a triangle, v upwards: of a grid 0..1 across and up; of a mesh those
  * of its file, whose v points down here; NaN if it has none. */
 static void set_uv(const struct cs_body_range *body, uint32_t t, const uint32_t corners[3],
@@ -114,9 +110,10 @@ enum cs_status cs_export_mesh_of_bodies(struct cs_export_mesh *mesh,
                                     .n_items = n_bodies,
                                     .is_moving = true};
     for (uint32_t b = 0; b < n_bodies; b++) {
-        mesh->n_triangles += cs_faces_count(system->bodies + b);
-        mesh->n_lines += count_lines(system->bodies + b);
-        uv = uv || has_uv(system->bodies + b);
+        const struct cs_body_range *body = system->bodies + b;
+        mesh->n_triangles += cs_faces_count(body);
+        mesh->n_lines += count_lines(body);
+        uv |= body->mesh ? body->mesh->uv != NULL : cs_faces_count(body) > 0;
     }
     if (allocate_mesh(mesh, uv, arena, error))
         return error->status;

@@ -33,11 +33,6 @@ static size_t word_size(const struct cs_export_mesh *mesh, uint32_t f) {
     return (size_t)mesh->n * mesh->fields[f].components;
 }
 
-/* Colliders at rest are not sampled: the archive has their one position. */
-static bool is_sampled(const struct cs_export_mesh *mesh) {
-    return mesh->is_moving && mesh->n > 0;
-}
-
 /* Calls `use` for each field of a sample in the order of the part. Size, writer and reader
  * share this order by sharing the function. */
 static enum cs_status each_field(const struct cs_export_mesh *const meshes[2],
@@ -46,8 +41,9 @@ static enum cs_status each_field(const struct cs_export_mesh *const meshes[2],
                                                        uint32_t f, struct cs_error *error),
                                  void *ctx, struct cs_error *error) {
     for (int k = 0; k < 2; k++)
-        for (uint32_t f = 0; is_sampled(meshes[k]) && f < meshes[k]->n_fields; f++)
-            if (use(ctx, meshes[k], f, error))
+        for (uint32_t f = 0; f < meshes[k]->n_fields; f++)
+            // colliders at rest are not sampled: the archive has their one position
+            if (meshes[k]->is_moving && meshes[k]->n > 0 && use(ctx, meshes[k], f, error))
                 return error->status;
     return CS_OK;
 }

@@ -291,8 +291,9 @@ void cs_bendings_prepare_matrix(const struct cs_system *system, const struct cs_
         cs_normal_curvature_prepare_matrix(system, matrix, kept);
 }
 
-void cs_bendings_add_blocks(const struct cs_system *system, size_t begin, size_t end,
-                            double *blocks) {
+void cs_bendings_add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
+                            size_t begin, size_t end, double *blocks) {
+    (void)matrix;
     const struct cs_bendings *bendings = system->bendings;
     const size_t n = system->view.n;
     for (size_t c = 0; c < 6; c += c ? 2 : 3)

@@ -229,7 +229,7 @@ void cs_membrane_job_add(const struct membrane_job *job, const struct cs_block *
  */
 
 /* Elastic energy in J; that of all triangles at twice their rest lengths. */
-double cs_membranes_energy(const struct cs_system *system, const double *x);
+double cs_membranes_energy(const struct cs_system *system, const struct cs_eval *state);
 double cs_membranes_energy_at_twice(const struct cs_system *system);
 
 /* Adds a membrane's row sums (struct cs_gershgorin of term.h) to stiffness and damping (n), at

@@ -75,7 +75,7 @@ static double energy_of(const struct cs_moduli *moduli, const struct triangle *a
     return 0.25 * (t[0] * q[0] + t[1] * q[1] + t[2] * q[2]);
 }
 
-double cs_membranes_energy(const struct cs_system *system, const double *x) {
+double cs_membranes_energy(const struct cs_system *system, const struct cs_eval *state) {
     const struct cs_membranes *membranes = system->membranes;
     double sum = 0;
     for (uint32_t b = 0; b < membranes->n; b++) {
@@ -83,7 +83,7 @@ double cs_membranes_energy(const struct cs_system *system, const double *x) {
         const struct cs_moduli moduli = moduli_of(system, membrane);
         for (uint32_t t = 0; t < membrane->n; t++) {
             struct triangle at;
-            find_triangle(membrane, t, system->view.n, x, NULL, &at);
+            find_triangle(membrane, t, system->view.n, state->x, NULL, &at);
             sum += energy_of(&moduli, &at, at.q);
         }
     }

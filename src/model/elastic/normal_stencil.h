@@ -117,8 +117,8 @@ void cs_bendings_add(const struct cs_system *system, const struct cs_eval *at, d
 /* The part of the solver's matrix, cd df/dv + ck df/dx: as in membrane_forces.h. */
 void cs_bendings_prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
                                 bool kept);
-void cs_bendings_add_blocks(const struct cs_system *system, size_t begin, size_t end,
-                            double *blocks);
+void cs_bendings_add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
+                            size_t begin, size_t end, double *blocks);
 void cs_bendings_add_product(const struct cs_system *system, const double *p, double *y);
 void cs_bendings_add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
                               double *y);

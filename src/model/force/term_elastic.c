@@ -15,10 +15,6 @@ static enum cs_status membrane_build(struct cs_system *system, struct cs_error *
                                              : cs_membrane_surrogate_build(system, error);
 }
 
-static double membrane_energy(const struct cs_system *system, const struct cs_eval *at) {
-    return cs_membranes_energy(system, at->x);
-}
-
 static void membrane_add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
                                 size_t begin, size_t end, double *blocks) {
     const size_t n = system->view.n;
@@ -52,7 +48,7 @@ const struct cs_term cs_term_membrane = {
     .prepare = cs_membranes_prepare,
     .add_force = cs_membranes_add,
     .add_jvp = cs_membranes_add,
-    .energy = membrane_energy,
+    .energy = cs_membranes_energy,
     .energy_kind = CS_ENERGY_ELASTIC,
     .prepare_matrix = cs_membranes_prepare_matrix,
     .add_blocks = membrane_add_blocks,
@@ -78,12 +74,6 @@ static enum cs_status bending_build(struct cs_system *system, struct cs_error *e
 
 static double bending_energy(const struct cs_system *system, const struct cs_eval *at) {
     return cs_bendings_energy(system, at->x);
-}
-
-static void bending_add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
-                               size_t begin, size_t end, double *blocks) {
-    (void)matrix;
-    cs_bendings_add_blocks(system, begin, end, blocks);
 }
 
 static void bending_add_bound(const struct cs_system *system,
@@ -113,7 +103,7 @@ const struct cs_term cs_term_bending = {
     .energy = bending_energy,
     .energy_kind = CS_ENERGY_ELASTIC,
     .prepare_matrix = cs_bendings_prepare_matrix,
-    .add_blocks = bending_add_blocks,
+    .add_blocks = cs_bendings_add_blocks,
     .add_matrix_product = cs_bendings_add_product,
     .add_approach = cs_bendings_add_approach,
     .add_bound = bending_add_bound,

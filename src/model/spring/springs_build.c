@@ -107,13 +107,8 @@ static uint32_t add_listed(const struct cs_spring_run *like, const struct cs_bod
     run->stiffnesses = lists + like->count;
     /* rest lengths of the mesh before its placement, whose rounding would change them */
     for (uint32_t i = 0; i < like->count; i++) {
-        double squared = 0;
-        for (size_t c = 0; c < 3; c++) {
-            const double d = mesh->positions[c * mesh->n + like->ends[2 * (size_t)i + 1]] -
-                             mesh->positions[c * mesh->n + like->ends[2 * (size_t)i]];
-            squared += d * d;
-        }
-        lengths[i] = sqrt(squared);
+        const uint32_t *ends = like->ends + 2 * (size_t)i;
+        lengths[i] = sqrt(cs_trimesh_squared_distance(mesh, ends[0], ends[1]));
     }
     cs_springs_stiffen(run, body);
     return 1;

@@ -352,7 +352,6 @@ static enum cs_status make_mesh(struct reader *in) {
     check_corners(in);
     if (in->error->status || fail_faults(in))
         return in->error->status;
-    obj->n_faces = (uint32_t)in->faces.n;
     obj->mesh.n_vertices = (uint32_t)in->positions.n;
     obj->mesh.n_uv = (uint32_t)in->uv.n;
     return cut_faces(in) ? in->error->status : list_faces(in);

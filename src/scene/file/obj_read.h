@@ -14,7 +14,7 @@ struct cs_obj {
     struct cs_raw_mesh mesh;
     struct cs_mesh_mends mends;   /* polygons that cross themselves */
     struct cs_mesh_label *labels; /* (n_labels), malloc'd; their names are the arena's */
-    uint32_t n_labels, n_faces;
+    uint32_t n_labels;
     bool is_textured; /* a corner has a texture coordinate */
     uint32_t n_skipped;
     struct cs_text skipped; /* first words of lines passed over, each once */

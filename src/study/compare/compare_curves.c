@@ -26,12 +26,6 @@ static bool is_probe(const struct cs_cell *cell) {
     return isfinite(cell->target);
 }
 
-/* True for a probe that was timed once: over time it stands where the load of that moment put
- * it, and is not drawn. */
-static bool is_untimed(const struct cs_cell *cell, const struct cs_column *x) {
-    return is_probe(cell) && cell->runs < 2 && strstr("cpu wall", x->name);
-}
-
 /* The cheapest spot with a smaller error than y, and of those the most accurate; NULL: none. */
 static struct cs_spot *next_of_front(struct cs_spot *spots, uint32_t n, double y) {
     struct cs_spot *next = NULL;
@@ -51,7 +45,9 @@ void cs_spots_find(const struct cs_plot_settings *settings, const struct cs_colu
         struct cs_spot *s = spots + k;
         const double own = cs_cell_number(cell, y);
         *s = (struct cs_spot){.y = own, .own = own, .low = own, .high = own};
-        s->x = is_untimed(cell, x) ? (double)NAN : cs_cell_number(cell, x);
+        // a probe that was timed once stands where the load of that moment put it: not drawn
+        const bool untimed = is_probe(cell) && cell->runs < 2 && strstr("cpu wall", x->name);
+        s->x = untimed ? (double)NAN : cs_cell_number(cell, x);
         if (strstr(y->name, "error"))
             s->y = cs_cell_typical(settings->cells, n, cell, y, &s->low, &s->high);
         s->is_drawn = cs_cell_is_finished(cell) && isfinite(s->x) && isfinite(s->y) &&

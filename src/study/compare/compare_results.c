@@ -72,17 +72,13 @@ static enum cs_status read_old(struct cs_compare_results *results,
     return CS_OK;
 }
 
-static bool is_over_budget(const struct cs_cell *cell) {
-    return !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
-}
-
 /* True if an earlier row need not be run again. A run over budget is repeated if it may do more
  * work now; a run without a ledger if one is requested. */
 static bool is_valid(const struct cs_cell *old, const struct cs_compare *compare) {
     if (compare->settings->ledger && cs_cell_is_finished(old) && !cs_cell_has_ledger(old))
         return false;
     return *old->outcome &&
-           (!is_over_budget(old) ||
+           (strcmp(old->outcome, cs_outcome_text(CS_OVER_BUDGET)) != 0 ||
             fmax(old->work, old->steps) * compare->pass_seconds > compare->budget);
 }
 
@@ -105,13 +101,8 @@ static enum cs_status reuse_row(struct cs_compare_results *results, struct cs_co
         struct cs_cell *found = find_cell(list, old);
         if (!found)
             cs_cell_list_add(list, old, error);
-        else if (*found->outcome)
-            continue;
-        else if (!strcmp(found->key, old->key) && is_valid(old, compare))
+        else if (!*found->outcome && !strcmp(found->key, old->key) && is_valid(old, compare))
             copy_row(found, old);
-        else
-            continue;
-        compare->n_reused++;
     }
     return error->status;
 }

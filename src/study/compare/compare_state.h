@@ -113,7 +113,7 @@ struct cs_compare {
     double fps, omega, time, budget;
     double pass_seconds;                  /* nominal s of one pass over the forces */
     double equal_seconds, rounds_seconds; /* nominal s of the search and of the rounds */
-    uint32_t n_done, n_reused;            /* cells; those of an earlier run */
+    uint32_t n_done;                      /* cells */
 };
 
 /* The settings of the reference, from those of the comparison. */
