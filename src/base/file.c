@@ -14,7 +14,7 @@
 
 /* A path; 10 s for the reader of a FIFO to open it; at most so many processes remove a new
  * file before it is locked. */
-enum { PATH_BYTES = 4096, READER_PAUSES = 500, TEMPORARY_TRIES = 100 };
+enum { PATH_BYTES = 4096, READER_PAUSES = 500, TEMPORARY_TRIES = 100, PICTURE_MAX = 1 << 26 };
 
 enum cs_status cs_file_status(int reason) {
     return reason == ENOMEM ? CS_ERR_MEMORY : reason == EINTR ? CS_ERR_INTERRUPT : CS_ERR_FILE;
@@ -95,6 +95,19 @@ done:
         *bytes = NULL;
     }
     return status;
+}
+
+bool cs_file_add_figure(const char *path, const char *alt, struct cs_text *out) {
+    char *bytes;
+    size_t length;
+    struct cs_error unread = {0};
+    if (cs_file_read(path, PICTURE_MAX, &bytes, &length, &unread))
+        return false;
+    cs_text_add(out, "<figure><img alt=\"%s\" src=\"data:image/png;base64,", alt);
+    cs_text_add_base64(out, bytes, length);
+    cs_text_add(out, "\"><figcaption>");
+    free(bytes);
+    return true;
 }
 
 enum cs_status cs_file_target(const char *path, bool *streams, struct cs_error *error) {

@@ -22,6 +22,11 @@ enum { CS_FILE_NAME_BYTES = 256 };
 enum cs_status cs_file_read(const char *path, size_t max, char **bytes, size_t *length,
                             struct cs_error *error);
 
+/* Begins a figure of a page with a picture of at most 64 MiB in the page itself, which needs no
+ * other file; its caption and its end follow. Returns false, and adds nothing, where the file
+ * cannot be read. alt: of the picture. */
+bool cs_file_add_figure(const char *path, const char *alt, struct cs_text *out);
+
 /* A file being written: `path.tmp.PID`, which is locked and which cs_file_finish renames. */
 struct cs_file_out {
     FILE *file;   /* NULL: not open */

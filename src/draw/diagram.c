@@ -154,12 +154,11 @@ void cs_panel_fit(struct cs_panel *panel) {
         const struct cs_series *s = panel->series + k;
         for (uint32_t i = 0; i < s->n && s->kind == CS_SERIES_LINE; i++) {
             const struct cs_point *p = s->points + i;
-            const bool bar = p->low < p->high;
             if (p->mark == CS_MARK_CROSS)
                 continue;
+            for (int end = 0; end < 2 && p->low < p->high; end++)
+                cs_plot_axis_include(&panel->x, end ? p->high : p->low);
             cs_plot_axis_include(&panel->x, p->x);
-            cs_plot_axis_include(&panel->x, bar ? p->low : p->x);
-            cs_plot_axis_include(&panel->x, bar ? p->high : p->x);
             cs_plot_axis_include(&panel->y, p->y);
         }
     }

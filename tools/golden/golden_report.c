@@ -4,10 +4,9 @@
 #include "base/file.h"
 #include "base/json_writer.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { PICTURE_MAX = 1 << 26 }; /* bytes of a PNG file */
 
 static bool is_different(const struct cs_golden_row *row) {
     return row->message.length > 0 && (row->added || !row->finding.skipped);
@@ -79,16 +78,10 @@ static void add_junit(const struct cs_golden_row *row, const char *name, const c
 /* Adds a picture as part of the page. */
 static void add_picture(const struct cs_golden *golden, const struct cs_golden_row *row,
                         const char *ending, const char *caption, struct cs_text *out) {
-    char path[1024], *bytes;
-    size_t length;
-    struct cs_error unread = {0};
+    char path[1024];
     cs_golden_image_path(golden->folder, row, ending, path);
-    if (cs_file_read(path, PICTURE_MAX, &bytes, &length, &unread))
-        return;
-    cs_text_add(out, "<figure><img alt=\"%s\" src=\"data:image/png;base64,", caption);
-    cs_text_add_base64(out, bytes, length);
-    cs_text_add(out, "\"><figcaption>%s</figcaption></figure>\n", caption);
-    free(bytes);
+    if (cs_file_add_figure(path, caption, out))
+        cs_text_add(out, "%s</figcaption></figure>\n", caption);
 }
 
 /* A line of the table of a row that differs. */

@@ -77,11 +77,10 @@ void cs_compare_plot_settings(const struct cs_compare *compare, double width,
 enum cs_status cs_compare_contact_sheet_write(struct cs_compare *compare,
                                               enum cs_renderer_kind kind,
                                               struct cs_error *error);
-/* Add the pictures that it has written to a report, if settings->pictures: as strips with one
- * colour bar, the pictures in the page; as a table of pictures. */
-void cs_compare_contact_sheet_add_html(const struct cs_compare *compare, struct cs_text *out);
-void cs_compare_contact_sheet_add_markdown(const struct cs_compare *compare,
-                                           struct cs_text *out);
+/* Adds the pictures that it has written to a report, if settings->pictures: html: as strips
+ * with one colour bar, the pictures in the page; else as Markdown tables of their files. */
+void cs_compare_contact_sheet_add(const struct cs_compare *compare, bool html,
+                                  struct cs_text *out);
 
 /* The error of meshes beside the error of steps.
  *

@@ -75,7 +75,7 @@ static int family_of(const struct cs_cell *cell) {
 static struct cs_curve *best_curve(struct cs_curves *curves) {
     struct cs_curve *best = NULL;
     for (struct cs_curve *c = curves->list; c < curves->list + curves->n; c++)
-        if (!c->is_chosen && c->n_drawn > 0 &&
+        if (!c->is_chosen && isfinite(c->least) &&
             (!best || (c->on_front != best->on_front ? c->on_front > best->on_front
                                                      : c->least < best->least)))
             best = c;
@@ -97,7 +97,6 @@ void cs_curves_make(struct cs_curves *curves, const struct cs_plot_settings *set
         }
         curve->n++;
         curve->on_front += spots[k].on_front;
-        curve->n_drawn += spots[k].is_drawn;
         if (spots[k].is_drawn)
             curve->least = fmin(curve->least, spots[k].x * spots[k].y);
     }
@@ -110,7 +109,7 @@ void cs_curves_make(struct cs_curves *curves, const struct cs_plot_settings *set
             if (curve->is_chosen && family_of(settings->cells + curve->first) == family)
                 curve->style = style++;
     for (curve = curves->list; curve < curves->list + curves->n; curve++)
-        curves->n_left_out += !curve->is_chosen && curve->n_drawn > 0;
+        curves->n_left_out += !curve->is_chosen && isfinite(curve->least);
 }
 
 /* --- the diagram --- */

@@ -40,8 +40,8 @@ void cs_spots_find(const struct cs_plot_settings *settings, const struct cs_colu
 
 /* The cells of one series, which are adjacent. */
 struct cs_curve {
-    uint32_t first, n, n_drawn, on_front;
-    double least;   /* product of cost and error of its cells */
+    uint32_t first, n, on_front;
+    double least;   /* product of cost and error of its cells; HUGE_VAL: none is drawn */
     bool is_chosen; /* to be drawn */
     uint32_t style; /* number of its style, in the order of families */
 };

@@ -170,7 +170,7 @@ void cs_compare_print_html(const struct cs_compare *compare, const struct cs_ran
     add_preformatted("Reference", &reference, out);
     add_preformatted("Verdict", &verdict, out);
     add_preformatted("Notes", &warnings, out);
-    cs_compare_contact_sheet_add_html(compare, out);
+    cs_compare_contact_sheet_add(compare, true, out);
     /* two families that disagree leave nothing to draw errors against */
     cs_text_add(out, "<h2>Diagram</h2>\n");
     if (compare->reference.families_agree)

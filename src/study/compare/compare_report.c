@@ -171,7 +171,7 @@ static void print_markdown(const struct cs_compare *compare, const struct cs_ran
         add_list("Warnings", &warnings, out);
     if (drawn)
         cs_text_add(out, "## Diagram\n\n![error against work and time](compare.png)\n\n");
-    cs_compare_contact_sheet_add_markdown(compare, out);
+    cs_compare_contact_sheet_add(compare, false, out);
     cs_table_add_series(compare, true, &methods);
     cs_text_add(out, "## Methods\n\n");
     add_code(&methods, out);
@@ -206,8 +206,8 @@ static enum cs_status draw(struct cs_compare *compare, struct cs_error *error) {
         settings.title = title;
         snprintf(path, sizeof path, "%s/%s", compare->settings->folder, figures[k].name);
         if (!cs_plot_make(&plot, &settings, error) &&
-            cs_diagram_write(cs_renderer_folder(), &plot, path, CS_FORMATS_ALL,
-                             &unseen) == CS_ERR_MODULE)
+            cs_diagram_write(cs_renderer_folder(), &plot, path, CS_FORMATS_ALL, &unseen) ==
+                CS_ERR_MODULE)
             snprintf(compare->undrawn, sizeof compare->undrawn, "%.299s", unseen.message);
         else if (unseen.status)
             *error = unseen;

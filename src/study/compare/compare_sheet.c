@@ -10,8 +10,7 @@
 #include <string.h>
 
 enum { TILE_WIDTH = 400, TILE_HEIGHT = 300, TILES_MAX = 64, SHEETS = 2 };
-/* colours of a map; bytes of a tile's file, at most */
-enum { STOPS = 6, TILE_BYTES_MAX = 1 << 22, PATH_BYTES = 4400 };
+enum { STOPS = 6 /* colours of a map */, PATH_BYTES = 4400 };
 
 /* The cells of one sheet, one per series at most. */
 struct sheet {
@@ -180,21 +179,6 @@ enum cs_status cs_compare_contact_sheet_write(struct cs_compare *compare,
 
 /* --- in reports --- */
 
-/* Begins a figure with the picture of a file, in the page itself, which needs no other file.
- * Returns false, and adds nothing, where it cannot be read. */
-static bool begin_figure(const char *path, struct cs_text *out) {
-    char *bytes;
-    size_t length;
-    struct cs_error unread = {0};
-    if (cs_file_read(path, TILE_BYTES_MAX, &bytes, &length, &unread))
-        return false;
-    cs_text_add(out, "<figure><img alt=\"\" src=\"data:image/png;base64,");
-    cs_text_add_base64(out, bytes, length);
-    cs_text_add(out, "\"><figcaption>");
-    free(bytes);
-    return true;
-}
-
 /* Adds the reference and the tiles of a sheet with their captions: figures of a page, or rows
  * of a table. */
 static void add_tiles(const struct sheet *sheet, const struct cs_compare *compare, bool html,
@@ -206,7 +190,7 @@ static void add_tiles(const struct sheet *sheet, const struct cs_compare *compar
         tile_path(sheet, cell, compare, path);
         if (!html)
             cs_text_add(out, "| ![](pictures%s) | ", strrchr(path, '/'));
-        else if (!begin_figure(path, out))
+        else if (!cs_file_add_figure(path, "", out))
             continue;
         if (!cell)
             cs_text_add(out, "reference%sknown to %.1e m", apart, compare->reference.error_bar);
@@ -219,42 +203,36 @@ static void add_tiles(const struct sheet *sheet, const struct cs_compare *compar
     }
 }
 
-void cs_compare_contact_sheet_add_html(const struct cs_compare *compare, struct cs_text *out) {
+/* One bar of colours for all pictures, which have one range. */
+static void add_bar(const struct sheet *sheet, struct cs_text *out) {
     const uint32_t *stops = cs_look_of(CS_LOOK_FORCE)->stops;
+    cs_text_add(out,
+                "<div class=\"bar\"><span>1e%.0f m</span>"
+                "<i style=\"background:linear-gradient(90deg",
+                sheet->range[0]);
+    for (int k = 0; k < STOPS; k++)
+        cs_text_add(out, ",#%06x", stops[k]);
+    cs_text_add(out, ")\"></i><span>1e%.0f m</span></div>\n", sheet->range[1]);
+}
+
+void cs_compare_contact_sheet_add(const struct cs_compare *compare, bool html,
+                                  struct cs_text *out) {
     struct sheet sheets[SHEETS];
     choose_sheets(sheets, compare);
     if (!sheets[1].n)
         return;
-    /* one bar for both strips, which have one range */
     cs_text_add(out,
-                "<h2>Pictures</h2>\n<div class=\"bar\"><span>1e%.0f m</span>"
-                "<i style=\"background:linear-gradient(90deg",
-                sheets->range[0]);
-    for (int k = 0; k < STOPS; k++)
-        cs_text_add(out, ",#%06x", stops[k]);
-    cs_text_add(out,
-                ")\"></i><span>1e%.0f m: distance to the reference after %.4g s</span></div>\n",
-                sheets->range[1], compare->time);
+                "%sPictures%sColours: distance to the reference after %.4g s, from 1e%.0f m to "
+                "1e%.0f m.%s\n",
+                html ? "<h2>" : "## ", html ? "</h2>\n<p>" : "\n\n", compare->time,
+                sheets->range[0], sheets->range[1], html ? "</p>" : "\n");
+    if (html)
+        add_bar(sheets, out);
     for (const struct sheet *s = sheets; s < sheets + SHEETS; s++) {
-        cs_text_add(out, "<h3>%s</h3>\n<div class=\"strip\">\n", s->title);
-        add_tiles(s, compare, true, out);
-        cs_text_add(out, "</div>\n");
-    }
-}
-
-void cs_compare_contact_sheet_add_markdown(const struct cs_compare *compare,
-                                           struct cs_text *out) {
-    struct sheet sheets[SHEETS];
-    choose_sheets(sheets, compare);
-    for (const struct sheet *s = sheets; s < sheets + SHEETS; s++) {
-        if (!s->n)
-            continue;
         cs_text_add(
-            out,
-            "## %s\n\nColours: distance to the reference after %.4g s, from 1e%.0f m to "
-            "1e%.0f m.\n\n| | |\n|---|---|\n",
-            s->title, compare->time, s->range[0], s->range[1]);
-        add_tiles(s, compare, false, out);
-        cs_text_add(out, "\n");
+            out, html ? "<h3>%s</h3>\n<div class=\"strip\">\n" : "### %s\n\n| | |\n|---|---|\n",
+            s->title);
+        add_tiles(s, compare, html, out);
+        cs_text_add(out, html ? "</div>\n" : "\n");
     }
 }
