@@ -152,7 +152,7 @@ struct cs_series *cs_plot_add_series(struct cs_diagram *plot, struct cs_panel *p
 void cs_panel_fit(struct cs_panel *panel) {
     for (uint32_t k = 0; k < panel->n_series; k++) {
         const struct cs_series *s = panel->series + k;
-        for (uint32_t i = 0; i < s->n && s->kind == CS_SERIES_LINE; i++) {
+        for (uint32_t i = 0; i < s->n && s->name; i++) {
             const struct cs_point *p = s->points + i;
             if (p->mark == CS_MARK_CROSS)
                 continue;

@@ -78,11 +78,9 @@ struct cs_point {
     const char *note;  /* borrowed; what an SVG tells of its mark with the values; NULL: none */
 };
 
-enum cs_series_kind { CS_SERIES_LINE, CS_SERIES_STAIRS };
-
+/* One without a name is a border: below all lines, and filled in a terminal. */
 struct cs_series {
     const char *name; /* borrowed; stands where its line ends; NULL: none */
-    enum cs_series_kind kind;
     struct cs_style style;
     bool has_band;
     uint32_t n;
@@ -144,7 +142,8 @@ struct cs_series *cs_plot_add_series(struct cs_diagram *plot, struct cs_panel *p
                                      struct cs_series series, uint32_t n_points,
                                      struct cs_error *error);
 
-/* Extends the ranges of both axes to all points and bars of its lines, but for crosses. */
+/* Extends the ranges of both axes to all points and bars of its series with names, but for
+ * crosses. */
 void cs_panel_fit(struct cs_panel *panel);
 
 enum cs_format { CS_FORMAT_PNG, CS_FORMAT_SVG, CS_FORMAT_PDF, CS_FORMATS };

@@ -42,8 +42,6 @@ void cs_lines_add(struct cs_lines *lines, const double from[3], const double to[
 /* Draws the added lines and removes them. */
 void cs_lines_draw(struct cs_lines *lines, const struct cs_line_style *style);
 
-enum { CS_GLYPH_LINES = 16 }; /* no glyph has more strokes' lines */
-
 /* Adds the lines of a text of figures, small letters, N and .-+%:=_, right-aligned: x, y are
  * the pixels of the right end of the base line, height that of a figure. Other letters leave a
  * gap.

@@ -89,15 +89,12 @@ static void draw_boxes(struct box *box) {
     }
 }
 
-/* Marks from one point of a staircase to the next: along the row of the first, then down. */
-static void draw_stairs(struct box *box, const struct cs_series *series) {
+/* Fills a border from one point to the next, which stand in one row or column. */
+static void draw_border(struct box *box, const struct cs_series *series) {
     const struct cs_screen_cell step = {.plain = '.', .paper = series->style.colour};
     for (uint32_t k = 1; k < series->n; k++) {
         const struct cs_point *p = series->points + k;
-        const struct place from = place_of(box, p[-1].x, p[-1].y),
-                           to = place_of(box, p->x, p->y), corner = {from.row, to.column};
-        fill(box, from, corner, step);
-        fill(box, corner, to, step);
+        fill(box, place_of(box, p[-1].x, p[-1].y), place_of(box, p->x, p->y), step);
     }
 }
 
@@ -128,11 +125,11 @@ static void draw(struct box *box) {
          (struct cs_screen_cell){.ink = CS_SCREEN_DEFAULT, .paper = CS_SCREEN_DEFAULT});
     draw_boxes(box);
     for (const struct cs_series *s = panel->series; s < end; s++)
-        if (s->kind == CS_SERIES_STAIRS)
-            draw_stairs(box, s);
+        if (!s->name)
+            draw_border(box, s);
     for (int front = 0; front < 2; front++)
         for (const struct cs_series *s = panel->series; s < end; s++)
-            if (s->kind == CS_SERIES_LINE && s->name)
+            if (s->name)
                 draw_points(box, s, front);
 }
 

@@ -126,19 +126,16 @@ static void draw_band(const struct view *view, const struct cs_series *series) {
 /* The line through the joined points; a gap where an axis has no such value. */
 static void draw_line(const struct view *view, const struct cs_series *series) {
     bool begun = false;
-    double at[2], last = 0;
+    double at[2];
     for (const struct cs_point *p = series->points; p < series->points + series->n; p++) {
         if (!p->joined)
             continue;
         const bool there = place(view, p->x, p->y, at);
-        if (there && begun && series->kind == CS_SERIES_STAIRS)
-            cairo_line_to(view->cairo, at[0], last);
         if (there && begun)
             cairo_line_to(view->cairo, at[0], at[1]);
         else if (there)
             cairo_move_to(view->cairo, at[0], at[1]);
         begun = there;
-        last = at[1];
     }
     cs_cairo_dash(view->cairo, &series->style);
 }
@@ -168,14 +165,14 @@ static void draw_marks(const struct view *view, const struct cs_series *series,
 static void draw_series(const struct view *view) {
     const struct cs_series *begin = view->panel->series, *end = begin + view->panel->n_series;
     clip(view);
-    /* lines over bands, and these over stairs */
+    /* lines over bands and borders */
     for (const struct cs_series *s = begin; s < end; s++)
-        if (s->kind == CS_SERIES_STAIRS)
+        if (!s->name)
             draw_line(view, s);
         else if (s->has_band)
             draw_band(view, s);
     for (const struct cs_series *s = begin; s < end; s++)
-        if (s->kind == CS_SERIES_LINE)
+        if (s->name)
             draw_line(view, s);
     cairo_restore(view->cairo);
     /* full marks last: the sweep is what the eye must follow */

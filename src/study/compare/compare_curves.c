@@ -130,12 +130,14 @@ struct filling {
 
 static void add_front(struct filling *at, struct cs_error *error) {
     const uint32_t n = at->settings->n;
-    const struct cs_spot *s = NULL;
+    const struct cs_spot *s;
+    double y = HUGE_VAL;
     struct cs_series *front = cs_plot_add_series(
-        at->plot, at->panel,
-        (struct cs_series){.kind = CS_SERIES_STAIRS, .style = {CS_FRONT_COLOUR, .width = 3.5}},
-        n, error);
-    while (front && is_cost(at->x) && (s = next_of_front(at->spots, n, s ? s->y : HUGE_VAL))) {
+        at->plot, at->panel, (struct cs_series){.style = {CS_FRONT_COLOUR, .width = 3.5}},
+        2 * n, error);
+    for (; front && is_cost(at->x) && (s = next_of_front(at->spots, n, y)); y = s->y) {
+        if (front->n) /* the corner of a step */
+            front->points[front->n++] = (struct cs_point){.x = s->x, .y = y, .joined = true};
         front->points[front->n++] = (struct cs_point){.x = s->x, .y = s->y, .joined = true};
         at->there[FRONT] = true;
     }
