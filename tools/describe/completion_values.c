@@ -16,7 +16,6 @@ static const char *const *words_of(const struct cs_arg *row) {
     const char *value = row->value;
     return row->names                       ? row->names
            : !strcmp(value, "COLUMN")       ? cs_column_axes()
-           : !strcmp(value, "FAMILY")       ? cs_family_names
            : !strcmp(value, "FORMAT[,...]") ? cs_export_format_names
            : !strcmp(value, "VALUE[,...]")  ? cs_export_value_names
                                             : NULL;

@@ -20,9 +20,9 @@
 #include <string.h>
 
 struct options {
-    const char *x, *y, *family, *methods, *format, *log_axes, *out, *title, *stretch;
+    const char *x, *y, *family, *methods, *log_axes, *out, *title, *stretch;
     double width;
-    uint32_t particle;
+    uint32_t particle, formats; /* 1 << cs_format; 0: all */
     bool spectrum, show, quiet;
 };
 static const struct options defaults = {
@@ -39,7 +39,7 @@ static const struct cs_arg rows[] = {
     {"family", 0, "FAMILY",
      "all series of one family, such as \"adaptive implicit\" (default: the twelve nearest to "
      "the front)",
-     CS_ARG_INTO(struct options, family)},
+     CS_ARG_INTO(struct options, family), .names = cs_family_names},
     {"methods", 0, "NAME,...", "only these methods or series",
      CS_ARG_INTO(struct options, methods)},
     {"log", 0, "AXES", "x, y or xy: logarithmic axes, of tables other than comparisons",
@@ -55,7 +55,7 @@ static const struct cs_arg rows[] = {
     {"width", 0, "MM", "width in print (default: 180, two columns of a journal; 88 is one)",
      CS_ARG_INTO(struct options, width)},
     {"format", 0, "NAME,...", "any of png, svg and pdf (default: all)",
-     CS_ARG_INTO(struct options, format)},
+     CS_ARG_INTO(struct options, formats), .names = cs_format_names, .repeatable = true},
     {"out", 'o', "NAME",
      "write NAME.png, NAME.svg and NAME.pdf (default: FILE without its ending; of a comparison "
      "Y_X[_FAMILY] in its folder where these are given)",
@@ -73,27 +73,6 @@ static enum cs_status read_axis(const char *option, const char *name,
     return *column && (*column)->drawn
                ? CS_OK
                : cs_arg_refuse_name(option, cs_column_axes(), name, error);
-}
-
-static enum cs_status check_family(const char *family, struct cs_error *error) {
-    for (uint32_t k = 0; family && cs_family_names[k]; k++)
-        if (!strcmp(family, cs_family_names[k]))
-            return CS_OK;
-    return family ? cs_arg_refuse_name("family", cs_family_names, family, error) : CS_OK;
-}
-
-static enum cs_status read_formats(const char *list, unsigned *formats,
-                                   struct cs_error *error) {
-    *formats = list ? 0 : CS_FORMATS_ALL;
-    for (char name[CS_LIST_BYTES]; cs_list_next(&list, name);) {
-        int k = 0;
-        while (cs_format_names[k] && strcmp(cs_format_names[k], name) != 0)
-            k++;
-        if (!cs_format_names[k])
-            return cs_arg_refuse_name("format", cs_format_names, name, error);
-        *formats |= 1u << k;
-    }
-    return CS_OK;
 }
 
 static bool is_of_particle(const struct options *options) {
@@ -176,7 +155,7 @@ static enum cs_status finish(struct cs_args *args, const struct cs_diagram *diag
                              const struct cs_number_table *computed, struct cs_error *error) {
     const struct options *options = args->options;
     char name[4096];
-    unsigned formats;
+    const unsigned formats = options->formats ? options->formats : CS_FORMATS_ALL;
     struct cs_text text = {0};
     if (options->show)
         return show(diagram, error);
@@ -185,8 +164,7 @@ static enum cs_status finish(struct cs_args *args, const struct cs_diagram *diag
     if (!*name || (slash && !slash[1]))
         return cs_fail(error, CS_ERR_USAGE, "--out: expected a file name without extension");
     /* nothing is written over the table */
-    if (read_formats(options->format, &formats, error) ||
-        check_names(args->operands[0], name, formats, error) ||
+    if (check_names(args->operands[0], name, formats, error) ||
         (computed && write_table(computed, args->operands[0], name, error)) ||
         cs_diagram_write(cs_renderer_folder(), diagram, name, formats, error) || options->quiet)
         return error->status;
@@ -248,7 +226,6 @@ static enum cs_status plot_comparison(struct cs_args *args, struct cs_error *err
     struct cs_cell *cells;
     if (read_axis("x", options->x ? options->x : "work", &settings.x, error) ||
         read_axis("y", options->y ? options->y : "error", &settings.y, error) ||
-        check_family(options->family, error) ||
         cs_csv_read(args->operands[0], true, &cells, &settings.n, error))
         return error->status;
     settings.cells = cells;
@@ -320,8 +297,7 @@ static enum cs_status plot_table(struct cs_args *args, struct cs_error *error) {
         if (!error->status && is_of_particle(options) && !options->spectrum)
             snprintf(plot.panels->y.label, CS_LABEL_BYTES, "position in m");
         if (!error->status)
-            finish(args, &plot, &(struct cs_plot_settings){0}, computed ? &table : NULL,
-                   error);
+            finish(args, &plot, &(struct cs_plot_settings){0}, computed ? &table : NULL, error);
     }
     cs_plot_finish(&plot);
     return error->status;

@@ -22,7 +22,7 @@ static const struct options initial = {.json = NULL};
 
 static const struct cs_arg rows[] = {
     {"family", 0, "FAMILY", "only this family, such as \"adaptive implicit\"",
-     CS_ARG_INTO(struct options, family)},
+     CS_ARG_INTO(struct options, family), .names = cs_family_names},
     {"order", 0, "N", "only this order", CS_ARG_INTO(struct options, order), .min = 1,
      .max = 100},
     {"json", 0, "FILE", "write the list as JSON too, with all options; -: instead of the text",
@@ -281,20 +281,11 @@ static enum cs_status print_file(const struct options *options, struct cs_regist
     return print_entries(options, registry->entries + before, registry->n - before, error);
 }
 
-static bool is_family(const char *name) {
-    for (const char *const *known = cs_family_names; *known; known++)
-        if (!strcmp(*known, name))
-            return true;
-    return false;
-}
-
 static enum cs_status list(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
     const char *operand = args->n_operands ? args->operands[0] : NULL;
     const struct cs_registry_entry *found;
     struct cs_registry registry = {0};
-    if (options->family && !is_family(options->family))
-        return cs_arg_refuse_name("family", cs_family_names, options->family, error);
     if (operand && (options->family || options->order))
         return cs_fail(error, CS_ERR_USAGE,
                        "--family and --order choose from the list, found \"%.60s\" too",

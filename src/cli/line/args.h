@@ -24,7 +24,7 @@ enum cs_arg_kind {
     CS_ARG_SWITCH, /* bool: without a value; turns the default round */
     CS_ARG_TEXT,   /* const char *: as it was typed, of argv */
     /* uint32_t or an enum: a whole number in min..max; with names, the number of the name;
-     * where it may be repeated as well, the set of 1 << number */
+     * where it may be repeated as well, a list of names, as the set of 1 << number */
     CS_ARG_WHOLE,
     CS_ARG_REAL,      /* double: above 0, up to 1e9 */
     CS_ARG_SHARD,     /* struct cs_shard: "k/n" */
@@ -44,7 +44,7 @@ struct cs_arg {
     bool repeatable;          /* may be given more than once */
     bool methods;             /* each value is a list of methods NAME:key=value,...,NAME,... */
     uint32_t min, max;        /* of a whole number */
-    const char *const *names; /* closed by NULL; of a text: what completions offer */
+    const char *const *names; /* closed by NULL; of a text: those it may be */
     const char *prefix;       /* put before each item of a list; or NULL */
     const char *old_name;     /* long name of the release before, still taken; or NULL */
 };
