@@ -1,4 +1,4 @@
-/* Bump allocation in blocks of at least 64 KiB; everything is freed at once.
+/* Bump allocation in blocks of at least 16 KiB; everything is freed at once.
  *
  * Allocations are aligned to 64 bytes: a cache line, and the widest vector. One that does not
  * fit the newest block opens a new block; the rest of the old one is lost. */
@@ -12,7 +12,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-enum { ALIGNMENT = 64, BLOCK_BYTES = 64 * 1024 };
+enum { ALIGNMENT = 64, BLOCK_BYTES = 16 * 1024 };
 
 /* Header of a block. Its bytes begin at the next multiple of 64 after it. */
 struct cs_arena_block {

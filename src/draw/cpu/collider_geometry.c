@@ -22,6 +22,7 @@ static void add_obstacle(const struct cs_collider_geometry *geometries, uint32_t
     struct cs_clip_vertex corners[3];
     const struct cs_clip_vertex *const three[3] = {corners, corners + 1, corners + 2};
     cs_solids_fill(geometries, i, projection->eye);
+    cs_triangles_reserve(projection->triangles, geometries->of[i].n / 3);
     for (uint32_t v = 0; v < geometries->of[i].n; v++) {
         const struct cs_vertex *vertex = geometries->vertices + v;
         struct cs_clip_vertex *corner = corners + v % 3;
@@ -128,6 +129,7 @@ static void set_attributes(const struct cs_body_geometry *body, uint32_t i,
 void cs_body_geometry_add(struct cs_body_geometry *body, const struct cs_clip_transform *clip,
                           const struct cs_triangle_kind *kind, struct cs_triangles *triangles) {
     const struct cs_mesh *mesh = &body->mesh;
+    cs_triangles_reserve(triangles, mesh->n_indices / 3);
     for (uint32_t i = 0; i < mesh->n_vertices; i++) {
         cs_clip_transform_corner(clip, mesh->vertices[i].position, body->clip_vertices + i);
         if (kind->attributes)

@@ -302,6 +302,10 @@ static bool set_box(struct cs_triangle *t, int width, int height) {
     return t->left <= t->right && t->top <= t->bottom;
 }
 
+void cs_triangles_reserve(struct cs_triangles *triangles, size_t n) {
+    CS_ARENA_REALLOC(triangles->items, triangles->capacity, triangles->n + n);
+}
+
 // an unused item behind the last one, or NULL if out of memory
 static struct cs_triangle *next(struct cs_triangles *triangles) {
     if (!CS_ARENA_REALLOC(triangles->items, triangles->capacity, triangles->n + 1)) {

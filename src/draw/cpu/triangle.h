@@ -141,6 +141,10 @@ struct cs_triangles {
     bool failed; /* out of memory: some are missing */
 };
 
+/* Makes room for n more triangles at once, before most of them are added; whoever adds one
+ * finds a lack of memory. */
+void cs_triangles_reserve(struct cs_triangles *triangles, size_t n);
+
 /* How triangles are added: their surface and the attributes that shading needs. */
 struct cs_triangle_kind {
     uint16_t surface;
