@@ -55,9 +55,9 @@ map() {
         # cells that did not come in yet have no verdict: a place, and no colour
         awk -F, -v OFS=, -v n="$n" 'NR > n + 1 { $3 = $4 = "" } 1' $table >"$work/map/part.csv"
         "$program" plot "$work/map/part.csv" --title "symplectic-euler: stable time steps, hang.json" \
-            --width 68 --format png -o "$work/map/$(printf %03d $picture)" -q
+            --width 130 --format png -o "$work/map/$(printf %03d $picture)" -q
     done
-    ffmpeg -loglevel error -y -framerate 8 -i "$work/map/%03d.png" -pix_fmt yuv420p -c:v libvpx-vp9 -crf 30 -b:v 0 \
+    ffmpeg -loglevel error -y -framerate 8 -i "$work/map/%03d.png" -vf scale=800:-2 -pix_fmt yuv420p -c:v libvpx-vp9 -crf 30 -b:v 0 \
         docs/films/map.webm
     stills docs/films/map.webm
 }
