@@ -7,6 +7,7 @@
 #include "scene/table_rows.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static const struct cs_option membrane_rows[] = {
     REAL(struct cs_membrane_keys, young, "N/m", ABSENT, 1e-6, BIG,
@@ -269,6 +270,11 @@ enum cs_status cs_particles_check(const struct cs_check *check, const char *path
         if (pins[p].to.present)
             return cs_check_refuse(check, place,
                                    "found to, which only pins of a body and a grab have");
+        // in a seam each counts once: no order would be left
+        for (uint32_t q = 0; q < p && !strncmp(path, "seams", 5); q++)
+            if (pins[p].index >= 0 && pins[q].index == pins[p].index)
+                return cs_check_refuse(check, place, "%s: found particle %lld twice", name,
+                                       (long long)pins[p].index);
     }
     return CS_OK;
 }

@@ -307,11 +307,16 @@ static enum cs_status check_opening(struct cs_system *system, struct cs_error *e
     const struct cs_events *events = system->events;
     for (uint32_t e = 0; e < system->scene->events.n; e++) {
         const struct cs_event *event = cs_scene_events(system->scene) + e;
-        if (event->release.present)
-            cs_event_mark(system, &event->release.target);
+        const bool ends = isfinite(event->to),
+                   lets_go = event->release.present ||
+                             (ends && (event->pin.present || event->grab.present));
+        if (lets_go)
+            cs_event_mark(system, event->release.present ? &event->release.target
+                                  : event->pin.present   ? &event->pin.target
+                                                         : &event->grab.target);
         for (uint32_t i = 0; i < system->view.n; i++) {
             const uint32_t seam = events->seam_of[i];
-            if (seam && ((event->release.present && events->work[i]) ||
+            if (seam && ((lets_go && events->work[i]) ||
                          (event->unsew.present && event->unsew.seam == seam - 1)))
                 return cs_fail(error, CS_ERR_SCENE,
                                "events[%u] opens seams[%u] on a surface that contact by force "
