@@ -370,7 +370,7 @@ enum cs_status cs_scene_doctor_check(const struct cs_session *session, double se
     check_load(system, &out->hints);
     check_symmetry(system, &out->hints);
     cs_path_findings_print(system, &out->hints);
-    cs_trajectory_findings_print(system, out);
+    cs_trajectory_findings_print(session, seconds, out);
     cs_idle_keys_print(system->scene, &out->hints);
     return out->warnings.failed || out->hints.failed
                ? cs_fail(error, CS_ERR_MEMORY, "out of memory for the checks of the scene")

@@ -330,29 +330,6 @@ static void check_move(const struct cs_system *system, uint32_t e, const void *a
             move->relative ? ", or \"relative\": false if its points are positions" : "");
 }
 
-/* True if the scene pins a particle that a grab takes. */
-static bool takes_pinned(const struct cs_system *system, const struct cs_grab *grab) {
-    bool any = false;
-    cs_event_mark(system, &grab->target);
-    for (uint32_t p = 0; p < system->n_pinned; p++)
-        any = any || system->events->work[system->pinned[p]];
-    return any;
-}
-
-/* A grab that lets go what pins hold. */
-static void check_let_go(const struct cs_system *system, uint32_t e, const void *arg,
-                         struct cs_text *out) {
-    const struct cs_event *event = cs_scene_events(system->scene) + e;
-    (void)arg;
-    if (event->grab.present && isfinite(event->to) && takes_pinned(system, &event->grab))
-        cs_text_add(out,
-                    "events[%u].grab takes particles that pins hold, and lets them go at %.3g "
-                    "s: no \"to\", with \"at\" instead of \"from\", holds them for good",
-                    e, event->to);
-}
-
 void cs_path_findings_print(const struct cs_system *system, struct cs_text *out) {
-    const uint32_t n = system->scene->events.n;
-    cs_findings_print(system, n, check_let_go, NULL, out);
-    cs_findings_print(system, n, check_move, NULL, out);
+    cs_findings_print(system, system->scene->events.n, check_move, NULL, out);
 }

@@ -28,17 +28,24 @@ typedef void cs_finding(const struct cs_system *system, uint32_t k, const void *
 void cs_findings_print(const struct cs_system *system, uint32_t n, cs_finding *check,
                        const void *arg, struct cs_text *out);
 
-/* Adds pins that hold nothing, seams over gaps, paths of colliders through held particles,
- * releases of what nothing holds, and grabs that begin with a jump. The particles are at their
- * start. Uses events->work. */
-void cs_trajectory_findings_print(const struct cs_system *system,
+/* m, diagonal of the box of a body at the start; low and high: its corners. */
+double cs_findings_box(const struct cs_system *system, uint32_t b, double low[3],
+                       double high[3]);
+
+/* Adds colliders that go through held particles until the last event or that many seconds. */
+void cs_motion_findings_print(const struct cs_session *session, double seconds,
+                              struct cs_text *out);
+
+/* Adds these, pins that hold nothing, seams over gaps, releases of what nothing holds, and
+ * grabs that begin with a jump. The particles are at their start. Uses events->work. */
+void cs_trajectory_findings_print(const struct cs_session *session, double seconds,
                                   struct cs_scene_findings *out);
 
 /* m/s, mean speed of the first leg of a path. */
 double cs_findings_first_speed(const struct cs_event *event, const struct cs_path_point *to,
                                const double from[3]);
 
-/* Adds moves that jump, and grabs that let go what pins hold. */
+/* Adds moves that jump. */
 void cs_path_findings_print(const struct cs_system *system, struct cs_text *out);
 
 /* --- bodies that overlap, or could collide during the run, while no contact is defined between

@@ -1,6 +1,6 @@
 /* Finds mistakes in what is prescribed, which is known before a run: particles that pins hold,
- * grabs and moves. Only what is certain is reported. Passed over are colliders that
- * turn, carry particles or have no distance, and particles that an event may let go. */
+ * grabs and moves. Only what is certain is reported. Passed over are colliders that are
+ * meshes, and particles that have been free. */
 #include "session/scene_findings.h"
 
 #include "base/vec3.h"
@@ -15,11 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Poses along a leg of a path at which held particles are sought. */
-enum { POSES = 256 };
-/* Depth over the size of a collider, or of the first body in a plane, that a held particle may
- * have. */
-#define SWEPT 0.1
 /* Length of a stitch at the start over the size of its body that is reported. */
 #define GAP_MAX 1.0
 /* Way to a collider over the size of a body that a seam may close at once. */
@@ -32,9 +27,8 @@ enum { POSES = 256 };
 #define JUMP_RATIO 3.0
 #define JUMP_SIZE  0.25
 
-/* m, diagonal of the box of a body at the start; low and high: its corners. */
-static double box_of(const struct cs_system *system, uint32_t b, double low[3],
-                     double high[3]) {
+double cs_findings_box(const struct cs_system *system, uint32_t b, double low[3],
+                       double high[3]) {
     const struct cs_body_range *range = system->bodies + b;
     double squared = 0;
     for (size_t c = 0; c < 3; c++) {
@@ -64,7 +58,7 @@ static void check_pins(const struct cs_system *system, uint32_t b, const void *a
             i++;
         if (i < range->count)
             continue;
-        box_of(system, b, low, high);
+        cs_findings_box(system, b, low, high);
         cs_text_add(out,
                     "bodies[%u].pins[%u] holds no particle: the body lies between (%.4g, %.4g, "
                     "%.4g) and (%.4g, %.4g, %.4g)",
@@ -73,26 +67,19 @@ static void check_pins(const struct cs_system *system, uint32_t b, const void *a
     }
 }
 
-/* The body of a particle. */
-static uint32_t body_of(const struct cs_system *system, uint32_t particle) {
-    uint32_t b = 0;
-    while (particle - system->bodies[b].first >= system->bodies[b].count)
-        b++;
-    return b;
-}
-
 /* A stitch that is longer at the start than each of the bodies that it joins. */
 static void check_seams(const struct cs_system *system, struct cs_text *out) {
     const struct cs_seams *seams = system->seams;
     for (uint32_t s = 0; seams && s < seams->n; s++) {
         const struct cs_stitch *stitch = seams->stitches + s;
-        const uint32_t a = body_of(system, stitch->at[0]), b = body_of(system, stitch->at[1]);
+        const uint32_t a = cs_system_body_of(system, stitch->at[0]),
+                       b = cs_system_body_of(system, stitch->at[1]);
         double low[3], high[3], d[3];
         cs_stitch_difference(stitch, system->view.n, system->state, d);
         /* one that breaks is meant to be too long */
         const double longer = sqrt(cs_vec3_dot(d, d)) - stitch->length;
-        if (longer >
-                GAP_MAX * fmax(box_of(system, a, low, high), box_of(system, b, low, high)) &&
+        if (longer > GAP_MAX * fmax(cs_findings_box(system, a, low, high),
+                                    cs_findings_box(system, b, low, high)) &&
             isnan(stitch->breaking_length)) {
             cs_text_add(
                 out,
@@ -104,11 +91,6 @@ static void check_seams(const struct cs_system *system, struct cs_text *out) {
         }
     }
 }
-
-/* Particles that pins hold all the time, in ascending order; owned. */
-struct held {
-    uint32_t *particles, n;
-};
 
 /* Marks in held (n) the particles that pins hold from the start to the end: those that no
  * collider carries and no event grabs or lets go. */
@@ -125,93 +107,6 @@ static void mark_held(const struct cs_system *system, bool *held) {
                       event->grab.present ? &event->grab.target : &event->release.target);
         for (uint32_t i = 0; i < system->view.n; i++)
             held[i] = held[i] && !system->events->work[i];
-    }
-}
-
-/* Lists the particles that are held. Returns false if out of memory. */
-static bool list_held(const struct cs_system *system, struct held *held) {
-    bool *marks = calloc((size_t)system->view.n + 1, sizeof *marks);
-    held->particles = calloc((size_t)system->n_pinned + 1, sizeof *held->particles);
-    if (marks && held->particles) {
-        mark_held(system, marks);
-        for (uint32_t p = 0; p < system->n_pinned; p++)
-            if (marks[system->pinned[p]])
-                held->particles[held->n++] = system->pinned[p];
-    }
-    free(marks);
-    return marks && held->particles;
-}
-
-/* The deepest of the held particles in a collider that is shifted; view.n: none is inside. */
-static uint32_t find_inside(const struct cs_system *system, const struct held *held,
-                            const struct cs_posed_collider *collider, const double shift[3]) {
-    const size_t n = system->view.n;
-    const double *core = collider->half_sizes;
-    double low[3], high[3], normal[3];
-    const double reach = cs_shape_is_endless(collider->shape) ? box_of(system, 0, low, high)
-                         : collider->radius > 0               ? collider->radius
-                                                : fmin(core[0], fmin(core[1], core[2]));
-    double least = -SWEPT * reach;
-    uint32_t found = (uint32_t)n;
-    for (uint32_t k = 0; k < held->n; k++) {
-        const uint32_t i = held->particles[k];
-        /* shifting the particle back is the same as shifting the collider */
-        const double p[3] = {system->state[i] - shift[0], system->state[n + i] - shift[1],
-                             system->state[2 * n + i] - shift[2]};
-        const double distance = collider->shape->distance(collider, 0, p, normal);
-        found = distance < least ? i : found;
-        least = fmin(least, distance);
-    }
-    return found;
-}
-
-/* True if a collider keeps its frame, and moves by this event alone. */
-static bool moves_once(const struct cs_scene *scene, uint32_t event) {
-    const struct cs_move *move = &cs_scene_events(scene)[event].move;
-    uint32_t n = 0;
-    for (uint32_t e = 0; e < scene->events.n; e++) {
-        const struct cs_event *other = cs_scene_events(scene) + e;
-        n += (other->move.present && other->move.collider == move->collider) ||
-             other->ramp.present;
-    }
-    return n == 1 && cs_vec3_is_zero(move->spin);
-}
-
-/* A collider whose path goes through particles that pins hold. */
-static void check_sweep(const struct cs_system *system, uint32_t e, const void *arg,
-                        struct cs_text *out) {
-    const struct held *held = arg;
-    const struct cs_event *event = cs_scene_events(system->scene) + e;
-    const struct cs_event_path path = cs_event_path_of(event);
-    struct cs_posed_collider collider;
-    double from[3] = {0};
-    if (!event->move.present || !moves_once(system->scene, e))
-        return;
-    cs_posed_collider_at(system, (uint32_t)event->move.collider, 0, &collider);
-    if (collider.shape->bounds == CS_BOUNDS_MESH ||
-        find_inside(system, held, &collider, from) < system->view.n)
-        return;
-    for (uint32_t leg = 0; leg < path.n; leg++) {
-        const struct cs_path_point *to = path.points + leg;
-        double shift[3], end[3];
-        /* a smooth leg goes through the same places */
-        for (int c = 0; c < 3; c++)
-            end[c] = to->point[c] - (event->move.relative ? 0 : collider.centre[c]);
-        for (int k = 1; k <= POSES; k++) {
-            for (int c = 0; c < 3; c++)
-                shift[c] = from[c] + (end[c] - from[c]) * k / POSES;
-            const uint32_t i = find_inside(system, held, &collider, shift);
-            if (i == system->view.n)
-                continue;
-            const uint32_t b = body_of(system, i);
-            cs_text_add(out,
-                        "events[%u].move leads colliders[%u] through particle %u of bodies[%u] "
-                        "before %.4g s, which pins hold: contact cannot keep them apart",
-                        e, (uint32_t)event->move.collider, i - system->bodies[b].first, b,
-                        to->at);
-            return;
-        }
-        memcpy(from, end, sizeof from);
     }
 }
 
@@ -234,6 +129,35 @@ static void check_release(const struct cs_system *system, uint32_t e, const void
     if (!holds)
         cs_text_add(out, "events[%u].release lets go what nothing holds at %.4g s", e,
                     cs_findings_begin(event));
+}
+
+/* A grab or a pin that lets go what pins hold, or that undoes a seam to a collider. */
+static void check_let_go(const struct cs_system *system, uint32_t e, const void *arg,
+                         struct cs_text *out) {
+    const struct cs_event *event = cs_scene_events(system->scene) + e;
+    const struct cs_events *events = system->events;
+    const bool grabs = event->grab.present;
+    uint32_t taken = 0, seam = 0;
+    (void)arg;
+    if (!grabs && !event->pin.present)
+        return;
+    cs_event_mark(system, grabs ? &event->grab.target : &event->pin.target);
+    for (uint32_t p = 0; p < system->n_pinned; p++) {
+        const uint32_t i = system->pinned[p];
+        taken += events->work[i];
+        seam = events->work[i] && events->seam_of ? events->seam_of[i] : seam;
+    }
+    const char *what = grabs ? "grab" : "pin";
+    if (seam)
+        cs_text_add(out,
+                    "events[%u].%s takes particles that seams[%u] sews to a collider: it "
+                    "undoes the seam",
+                    e, what, seam - 1);
+    else if (taken && isfinite(event->to))
+        cs_text_add(out,
+                    "events[%u].%s takes particles that pins hold, and lets them go at %.3g "
+                    "s: no \"to\", with \"at\" instead of \"from\", holds them for good",
+                    e, what, event->to);
 }
 
 /* First particle that a grab takes, or view.n. */
@@ -262,7 +186,8 @@ static void check_jump(const struct cs_system *system, uint32_t e, const void *a
     for (size_t c = 0; c < 3; c++)
         way[c] = to[c] - system->state[c * n + i];
     const double jump = sqrt(cs_vec3_dot(way, way)), shift = sqrt(cs_vec3_dot(to, to));
-    const double size = box_of(system, body_of(system, (uint32_t)i), low, high);
+    const double size =
+        cs_findings_box(system, cs_system_body_of(system, (uint32_t)i), low, high);
     /* faster than a fall over the body, and not as shifts */
     const double fastest =
         sqrt(2 * size *
@@ -278,7 +203,7 @@ static void check_jump(const struct cs_system *system, uint32_t e, const void *a
  * goes. In a flat sheet that is their distance at rest. */
 static void check_apart(const struct cs_system *system, uint32_t e, const void *arg,
                         struct cs_text *out) {
-    const struct held *held = arg;
+    const bool *held = arg;
     const struct cs_grab *grab = &cs_scene_events(system->scene)[e].grab;
     const struct cs_event_path path = cs_event_path_of(cs_scene_events(system->scene) + e);
     const size_t n = system->view.n;
@@ -287,14 +212,14 @@ static void check_apart(const struct cs_system *system, uint32_t e, const void *
     const uint32_t i = (uint32_t)first_target(system, grab);
     if (i == n)
         return;
-    const uint32_t b = body_of(system, i);
+    const uint32_t b = cs_system_body_of(system, i);
     const struct cs_body_range *range = system->bodies + b;
     const struct cs_cloth *cloth = &cs_scene_bodies(system->scene)[b].cloth;
-    for (uint32_t k = 0; k < path.n * held->n; k++) {
-        const struct cs_path_point *to = path.points + k / held->n;
-        const uint32_t h = held->particles[k % held->n], p = i - range->first,
+    for (uint32_t k = 0; k < path.n * system->n_pinned; k++) {
+        const struct cs_path_point *to = path.points + k / system->n_pinned;
+        const uint32_t h = system->pinned[k % system->n_pinned], p = i - range->first,
                        q = h - range->first;
-        if (range->mesh || q >= range->count)
+        if (range->mesh || q >= range->count || !held[h])
             continue;
         // where the point leads, and the same way in the sheet
         double way[3];
@@ -357,12 +282,30 @@ static void check_waves(const struct cs_system *system, uint32_t e, const void *
                     grab->relative ? "" : ", or \"relative\": true if its points are shifts");
 }
 
+/* Two seams that join the same two particles. */
+static void check_twice(const struct cs_system *system, struct cs_text *out) {
+    const struct cs_seams *seams = system->seams;
+    for (uint32_t e = 1; seams && e < seams->n_ends; e++) {
+        const struct cs_stitch *one = seams->stitches + seams->ends[e - 1].stitch,
+                               *other = seams->stitches + seams->ends[e].stitch;
+        if (one == other || one->n != other->n || one->n > 2 ||
+            one->at[0] + one->at[1] != other->at[0] + other->at[1] ||
+            seams->ends[e].particle != seams->ends[e - 1].particle)
+            continue;
+        cs_text_add(out,
+                    "seams[%u] joins particles that seams[%u] joins: their stitches add up, "
+                    "to %.3g N/m\n",
+                    other->seam, one->seam, one->stiffness + other->stiffness);
+        return;
+    }
+}
+
 /* A seam to a collider that closes faster than waves run through the springs. */
 static void check_closing(const struct cs_system *system, struct cs_text *out) {
     const struct cs_events *events = system->events;
-    const uint32_t i = events ? events->gap_of : 0, b = body_of(system, i);
+    const uint32_t i = events ? events->gap_of : 0, b = cs_system_body_of(system, i);
     double low[3], high[3];
-    if (!events || !(events->gap > CLOSED * box_of(system, b, low, high)))
+    if (!events || !(events->gap > CLOSED * cs_findings_box(system, b, low, high)))
         return;
     const struct cs_seam *seam =
         (const struct cs_seam *)system->scene->seams.items + events->seam_of[i] - 1;
@@ -378,20 +321,24 @@ static void check_closing(const struct cs_system *system, struct cs_text *out) {
                     3 * events->gap / waves);
 }
 
-void cs_trajectory_findings_print(const struct cs_system *system,
+void cs_trajectory_findings_print(const struct cs_session *session, double seconds,
                                   struct cs_scene_findings *out) {
+    const struct cs_system *system = &session->system;
     const struct cs_scene *scene = system->scene;
-    struct held held = {0};
+    bool *held = calloc((size_t)system->view.n + 1, sizeof *held);
     cs_findings_print(system, scene->bodies.n, check_pins, NULL, &out->warnings);
     check_seams(system, &out->warnings);
     check_closing(system, &out->warnings);
-    if (scene->events.n)
-        out->warnings.failed |= !list_held(system, &held);
+    check_twice(system, &out->hints);
+    out->warnings.failed |= !held;
+    if (scene->events.n && held)
+        mark_held(system, held);
     const uint32_t n = out->warnings.failed ? 0 : scene->events.n;
-    cs_findings_print(system, n, check_sweep, &held, &out->warnings);
-    cs_findings_print(system, n, check_apart, &held, &out->warnings);
+    cs_motion_findings_print(session, seconds, &out->warnings);
+    cs_findings_print(system, n, check_apart, held, &out->warnings);
+    cs_findings_print(system, n, check_let_go, NULL, &out->hints);
     cs_findings_print(system, n, check_waves, NULL, &out->hints);
     cs_findings_print(system, n, check_release, NULL, &out->hints);
     cs_findings_print(system, n, check_jump, NULL, &out->hints);
-    free(held.particles);
+    free(held);
 }
