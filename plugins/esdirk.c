@@ -192,7 +192,7 @@ static bool accept(struct adaptive_step *base) {
     struct esdirk *self = (struct esdirk *)base;
     const int last = self->pair->stages - 1;
     for (int j = self->first_past; j < last; j++)
-        swap(self->past + j - self->first_past, self->k + j);
+        swap(self->past + (j - self->first_past), self->k + j);
     swap(self->k, self->k + last);
     base->slope = self->k[0];
     self->past_h = self->tried_h;
