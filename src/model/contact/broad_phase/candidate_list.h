@@ -20,14 +20,9 @@
 #include "model/contact/broad_phase/primitive_search.h"
 #include "model/contact/pair_distance.h"
 
-/* Points or edges per chunk, the unit of work of threads. The order of sums depends on the
- * chunk size, never on threads. */
-enum { CS_CANDIDATE_CHUNK = 128 };
-
-/* Candidates of the points or edges [begin, end). */
+/* Candidates of the points or edges of a chunk of the search. */
 struct cs_candidate_chunk {
     enum cs_pair_kind kind;
-    uint32_t begin, end;
     uint32_t *pairs;    /* (n, 2): point and triangle, or edge and a later edge; ascending */
     size_t n, capacity; /* room in pairs */
     bool failed;        /* there was no memory */
@@ -40,18 +35,6 @@ struct cs_candidate_chunk {
     size_t n_nearby, nearby_capacity;
     /* answer of one chunk to a query over all candidates; the query defines it */
     double result;
-};
-
-/* Candidates of a batch of the search. */
-struct cs_candidate_batch {
-    uint32_t *pairs;   /* (n, 2) as they were found */
-    uint32_t *seconds; /* (n) their second items, by first items */
-    size_t n, capacity, seconds_capacity;
-};
-
-/* Candidates of one item: seconds begin to begin + n - 1 of a batch. */
-struct cs_candidate_range {
-    uint32_t batch, begin, n;
 };
 
 /* Ranges beyond the own one up to which candidates are nearby: explicit steps move less. */
@@ -70,9 +53,7 @@ struct cs_candidates {
     /* (3,n_points) m, state of the current list */
     double *x_at_build;
     struct cs_primitive_search search;
-    struct cs_candidate_batch *batches; /* (search.n_batches) */
-    struct cs_candidate_range *rows[2]; /* of points, and of edges */
-    struct cs_candidate_chunk *chunks;  /* points first */
+    struct cs_candidate_chunk *chunks; /* (n_chunks), as in the search: points first */
     uint32_t n_chunks;
     size_t n_listed; /* pairs in all chunks */
     /* (n_points) positions of the last state that was scaled */
@@ -126,16 +107,9 @@ static inline void cs_candidate_vertices(const struct cs_surfaces *surfaces,
         at[1 + k] = surfaces->triangles[3 * (size_t)pair[1] + k];
 }
 
-/* Allocates clusters, batches and rows. body_pairs and body must be set. CS_ERR_MEMORY. */
-enum cs_status cs_candidates_find_init(struct cs_candidates *candidates, struct cs_arena *arena,
-                                       struct cs_error *error);
-
 /* Fills all chunks for the state x_at_build, which scaled_points must hold too, and the margin
  * margin_now, with all threads. Returns false if out of memory. */
 bool cs_candidates_find(struct cs_candidates *candidates);
-
-/* Frees the memory that does not belong to the arena. */
-void cs_candidates_find_finish(struct cs_candidates *candidates);
 
 /* Margin in units of the smallest range. A larger one makes longer lists that are rebuilt less
  * often. Chosen by trial. */

@@ -18,48 +18,35 @@ static void finish_candidates(void *object) {
         free(candidates->chunks[l].in_range);
         free(candidates->chunks[l].nearby);
     }
-    cs_candidates_find_finish(candidates);
 }
 
-/* Splits n points or edges into chunks. */
-static void cut(struct cs_candidate_chunk *chunks, enum cs_pair_kind kind, uint32_t n) {
-    for (uint32_t begin = 0; begin < n; begin += CS_CANDIDATE_CHUNK)
-        chunks[begin / CS_CANDIDATE_CHUNK] = (struct cs_candidate_chunk){
-            .kind = kind,
-            .begin = begin,
-            .end = n - begin > CS_CANDIDATE_CHUNK ? begin + CS_CANDIDATE_CHUNK : n};
-}
-
-/* Positions are scaled by the largest range, which is near the size of the primitives. Chunks
- * of points come before those of edges. */
+/* Positions are scaled by the largest range, which is near the size of the primitives. */
 enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_system *system,
                                   const struct cs_body_pair_table *table,
                                   struct cs_error *error) {
     struct cs_arena *arena = &system->arena;
     const struct cs_surfaces *surfaces = system->surfaces;
     const uint32_t n = surfaces->n_points;
-    const uint32_t point_chunks = (n + CS_CANDIDATE_CHUNK - 1) / CS_CANDIDATE_CHUNK;
-    const uint32_t edge_chunks =
-        (surfaces->n_edges + CS_CANDIDATE_CHUNK - 1) / CS_CANDIDATE_CHUNK;
     *candidates = (struct cs_candidates){.system = system,
                                          .body_pairs = table,
                                          .margin = CS_CANDIDATES_MARGIN * table->range_min,
-                                         .inverse_unit = 1 / table->range_max,
-                                         .n_chunks = point_chunks + edge_chunks};
+                                         .inverse_unit = 1 / table->range_max};
     candidates->body = cs_arena_alloc_array(arena, n, sizeof *candidates->body, error);
     CS_ARENA_ARRAY(arena, candidates->x_at_build, 3 * (size_t)n, error);
     CS_ARENA_ARRAY(arena, candidates->x_at_close, 3 * (size_t)n, error);
     CS_ARENA_ARRAY(arena, candidates->x_at_nearby, 3 * (size_t)n, error);
     CS_ARENA_ARRAY(arena, candidates->scaled_points, n, error);
-    CS_ARENA_ARRAY(arena, candidates->chunks, candidates->n_chunks, error);
     CS_ARENA_ARRAY(arena, candidates->body_motion, 4 * (size_t)table->n_bodies, error);
-    if (error->status || cs_candidates_find_init(candidates, arena, error))
+    if (error->status ||
+        cs_primitive_search_init(&candidates->search, surfaces, arena, error) ||
+        !CS_ARENA_ARRAY(arena, candidates->chunks, candidates->search.n_chunks, error))
         return error->status;
+    candidates->n_chunks = candidates->search.n_chunks;
     for (uint32_t b = 0; b < table->n_bodies; b++)
         for (uint32_t i = surfaces->first_point[b]; i < surfaces->first_point[b + 1]; i++)
             candidates->body[i] = b;
-    cut(candidates->chunks, CS_PAIR_POINT_TRIANGLE, n);
-    cut(candidates->chunks + point_chunks, CS_PAIR_EDGE_EDGE, surfaces->n_edges);
+    for (uint32_t l = candidates->search.n_point_chunks; l < candidates->n_chunks; l++)
+        candidates->chunks[l].kind = CS_PAIR_EDGE_EDGE;
     cs_arena_adopt(arena, finish_candidates, candidates, error);
     return error->status;
 }
@@ -171,30 +158,31 @@ bool cs_candidates_update(struct cs_candidates *candidates, const double *x) {
 
 /* --- for a whole move --- */
 
-/* Box of a body at both ends of a move, grown. */
-static struct cs_aabb body_box(const struct cs_candidates *candidates, uint32_t body,
-                               const double *x0, const double *x1, double grow) {
+/* Bounds of a body along an axis at both ends of a move. */
+static void find_bounds(const struct cs_candidates *candidates, uint32_t body, size_t axis,
+                        const double *x0, const double *x1, double bounds[2]) {
     const struct cs_surfaces *surfaces = candidates->system->surfaces;
-    const size_t n = surfaces->n_points;
-    struct cs_aabb box;
-    for (size_t c = 0; c < 3; c++) {
-        box.low[c] = HUGE_VAL;
-        box.high[c] = -HUGE_VAL;
-        for (size_t i = surfaces->first_point[body]; i < surfaces->first_point[body + 1]; i++) {
-            box.low[c] = fmin(box.low[c], fmin(x0[c * n + i], x1[c * n + i]) - grow);
-            box.high[c] = fmax(box.high[c], fmax(x0[c * n + i], x1[c * n + i]) + grow);
-        }
+    const size_t first = axis * surfaces->n_points;
+    bounds[0] = HUGE_VAL, bounds[1] = -HUGE_VAL;
+    for (size_t i = first + surfaces->first_point[body];
+         i < first + surfaces->first_point[body + 1]; i++) {
+        bounds[0] = fmin(bounds[0], fmin(x0[i], x1[i]));
+        bounds[1] = fmax(bounds[1], fmax(x0[i], x1[i]));
     }
-    return box;
 }
 
 /* Returns whether the boxes of two bodies come within their range during a move. */
 static bool may_come_near(const struct cs_candidates *candidates, uint32_t a, uint32_t b,
                           const double *x0, const double *x1) {
     const double range = cs_body_pair_params_of(candidates->body_pairs, a, b)->range;
-    const struct cs_aabb first = body_box(candidates, a, x0, x1, range);
-    const struct cs_aabb second = body_box(candidates, b, x0, x1, 0);
-    return cs_aabbs_overlap(&first, &second);
+    bool near = true;
+    for (size_t c = 0; c < 3; c++) {
+        double first[2], second[2];
+        find_bounds(candidates, a, c, x0, x1, first);
+        find_bounds(candidates, b, c, x0, x1, second);
+        near = near && !(first[0] - range > second[1] || second[0] > first[1] + range);
+    }
+    return near;
 }
 
 /* m, largest relative motion from x0 to x1 of particles that may meet; bodies that stay away

@@ -1,13 +1,13 @@
 /* primitive_search.h - the search for pairs of points, edges and triangles whose boxes overlap,
  * at a state or swept along straight lines.
  *
- * All primitives of a system are in clusters (aabb_clusters.h), and the clusters of points and
- * of edges in batches, which threads share. The candidate list of a state (candidates_find.c),
+ * Edges and triangles are in trees (aabb_tree.h). Points and edges ask them in chunks, which
+ * threads share. The candidate list of a state (candidates_find.c),
  * crossings and first collisions (ccd/crossings.h) ask it. */
 #ifndef CS_BROAD_PHASE_PRIMITIVE_SEARCH_H
 #define CS_BROAD_PHASE_PRIMITIVE_SEARCH_H
 
-#include "model/contact/broad_phase/aabb_clusters.h"
+#include "model/contact/broad_phase/aabb_tree.h"
 #include "model/system/surfaces.h"
 
 #include <float.h>
@@ -80,32 +80,24 @@ static inline bool cs_swept_aabbs_overlap(const struct cs_swept_aabb *a,
     return true;
 }
 
-/* The points or edges in the clusters [begin, end), and the work of the thread that has them.
- */
-struct cs_primitive_batch {
-    bool edges;
-    uint32_t begin, end;
-    struct cs_nearby_clusters nearby; /* clusters near the one at hand */
-    bool failed;                      /* there was no memory */
-};
+/* Points or edges per chunk, the unit of work of threads. The order of sums depends on the
+ * chunk size, never on threads. */
+enum { CS_SEARCH_CHUNK = 128 };
 
 /* All primitives of a system. */
 struct cs_primitive_search {
     const struct cs_surfaces *surfaces; /* borrowed */
-    /* points have no boxes of their own */
-    struct cs_aabb_clusters points, edges, triangles;
-    /* (n_batches) those of points first */
-    struct cs_primitive_batch *batches;
-    uint32_t n_batches, n_point_batches;
+    struct cs_aabb_tree edges, triangles;
+    uint32_t n_point_chunks, n_chunks; /* chunks of points come before those of edges */
     /* (n_bodies) of the last move */
     struct cs_swept_aabb *body_sweeps;
+    bool failed; /* there was no memory */
 };
 
-/* Assigns all primitives of a system with surfaces to clusters and batches. The arena owns all
- * memory. CS_ERR_MEMORY. */
+/* Makes the trees of all primitives. The arena owns all memory. CS_ERR_MEMORY. */
 enum cs_status cs_primitive_search_init(struct cs_primitive_search *search,
-                                        const struct cs_system *system, struct cs_arena *arena,
-                                        struct cs_error *error);
+                                        const struct cs_surfaces *surfaces,
+                                        struct cs_arena *arena, struct cs_error *error);
 
 /* most pairs that are handed over at once */
 enum { CS_SEARCH_PAIRS = 256 };
@@ -118,15 +110,15 @@ struct cs_move_query {
     bool pierce;
     /* whether primitives of bodies a and b count */
     bool (*may_meet)(const void *arg, uint32_t a, uint32_t b);
-    /* receives pairs of a batch (n, 2), up to CS_SEARCH_PAIRS; of edges the smaller first */
-    void (*take)(void *arg, uint32_t batch, const uint32_t (*pairs)[2], size_t n);
+    /* receives pairs of a chunk (n, 2), up to CS_SEARCH_PAIRS, in ascending order of the first
+     * and then of the second item; of edges the smaller first */
+    void (*take)(void *arg, uint32_t chunk, const uint32_t (*pairs)[2], size_t n);
     void *arg;
 };
 
 /* Hands over all pairs whose swept boxes come within reach (cs_swept_aabbs_overlap), each once,
  * and some more; those with a common vertex are not left out. Points that are not finite are in
- * no pair. Batches run in parallel, each in an order that depends on the positions alone.
- * Returns false if out of memory; pairs are then missing. */
+ * no pair. Chunks run in parallel. Returns false if out of memory; pairs are then missing. */
 bool cs_primitive_search_move(struct cs_primitive_search *search,
                               const struct cs_move_query *query);
 

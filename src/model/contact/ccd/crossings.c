@@ -4,9 +4,9 @@
  * degenerate contact. During a move two surfaces first meet in a point-triangle or an edge-edge
  * pair; these two kinds therefore suffice.
  *
- * Batches of pairs run in parallel, each with its own result. Counts are integers and the
+ * Chunks of pairs run in parallel, each with its own result. Counts are integers and the
  * fraction is a minimum: both are independent of the order of pairs. The fraction found so far
- * in a batch bounds the following pairs, which ends most of them early; a minimum does not
+ * in a chunk bounds the following pairs, which ends most of them early; a minimum does not
  * change by that. Every pair is tested by its own swept boxes first, so that a search that
  * finds more of them changes nothing. */
 #include "model/contact/ccd/crossings.h"
@@ -22,7 +22,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Result of one batch; results are combined in the order of batches. */
+/* Result of one chunk; results are combined in the order of chunks. */
 struct found {
     struct cs_crossing_count count;
     struct cs_first_collision collision;
@@ -32,7 +32,7 @@ struct cs_crossings {
     /* that of contact between bodies, if there is one */
     struct cs_primitive_search *search;
     bool *apart;         /* (bodies, bodies) pairs whose moves are limited; NULL: all of them */
-    struct found *found; /* (n_batches) */
+    struct found *found; /* (n_chunks) */
     struct cs_point_motion *motion; /* (n_points) of the last move */
     bool failed;
 };
@@ -58,8 +58,9 @@ static enum cs_status find_search(struct cs_system *system, struct cs_crossings 
     }
     CS_ARENA_ARRAY(arena, crossings->motion, system->surfaces->n_points, error);
     crossings->search = cs_arena_alloc(arena, sizeof *crossings->search, error);
-    return error->status ? error->status
-                         : cs_primitive_search_init(crossings->search, system, arena, error);
+    return error->status
+               ? error->status
+               : cs_primitive_search_init(crossings->search, system->surfaces, arena, error);
 }
 
 enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *error) {
@@ -70,7 +71,7 @@ enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *err
     if (!crossings || find_search(system, crossings, error))
         return error->status;
     const size_t n = cs_scene_surfaces(system->scene);
-    CS_ARENA_ARRAY(arena, crossings->found, crossings->search->n_batches, error);
+    CS_ARENA_ARRAY(arena, crossings->found, crossings->search->n_chunks, error);
     if (cs_scene_crossings_by_pairs(system->scene) &&
         CS_ARENA_ARRAY(arena, crossings->apart, n * n, error))
         list_apart(system->scene, crossings->apart);
@@ -83,7 +84,7 @@ bool cs_crossings_failed(const struct cs_system *system) {
     return system->crossings && system->crossings->failed;
 }
 
-/* One question over all pairs. The result of each batch goes to crossings->found. */
+/* One question over all pairs. The result of each chunk goes to crossings->found. */
 struct question {
     const struct cs_system *system;
     const struct cs_crossings *crossings;
@@ -95,7 +96,7 @@ struct question {
 };
 
 static void clear_found(struct cs_crossings *crossings) {
-    for (uint32_t k = 0; k < crossings->search->n_batches; k++)
+    for (uint32_t k = 0; k < crossings->search->n_chunks; k++)
         crossings->found[k] = (struct found){.collision.fraction = 1};
 }
 
@@ -160,11 +161,11 @@ static void count_pair(const struct question *question, uint32_t e, uint32_t t,
     mark_triangle(question->marks, surfaces->edge_triangles[2 * (size_t)e + 1]);
 }
 
-static void count_pairs(void *arg, uint32_t batch, const uint32_t (*pairs)[2], size_t n) {
+static void count_pairs(void *arg, uint32_t chunk, const uint32_t (*pairs)[2], size_t n) {
     const struct question *question = arg;
     for (size_t k = 0; k < n; k++)
         count_pair(question, pairs[k][0], pairs[k][1],
-                   &question->crossings->found[batch].count);
+                   &question->crossings->found[chunk].count);
 }
 
 static bool may_pierce(const void *arg, uint32_t a, uint32_t b) {
@@ -175,7 +176,7 @@ static bool may_pierce(const void *arg, uint32_t a, uint32_t b) {
 }
 
 /* Counts at one state; scene and marks may be NULL. The first pair is the least by (edge,
- * triangle) of all batches. */
+ * triangle) of all chunks. */
 static struct cs_crossing_count count(const struct cs_system *system, double t, const double *x,
                                       const struct cs_scene *scene, uint8_t *marks) {
     struct cs_crossings *crossings = system->crossings;
@@ -190,7 +191,7 @@ static struct cs_crossing_count count(const struct cs_system *system, double t, 
                                         .arg = &question};
     clear_found(crossings);
     crossings->failed |= !cs_primitive_search_move(crossings->search, &query);
-    for (uint32_t k = 0; k < crossings->search->n_batches; k++) {
+    for (uint32_t k = 0; k < crossings->search->n_chunks; k++) {
         const struct cs_crossing_count *one = &crossings->found[k].count;
         const bool first = one->n && (!all.n || one->edge < all.edge ||
                                       (one->edge == all.edge && one->triangle < all.triangle));
@@ -289,13 +290,13 @@ static void try_pairs(const struct question *question, enum cs_pair_kind kind,
         try_pair(question, kind, some[k], first);
 }
 
-static void try_found(void *arg, uint32_t batch, const uint32_t (*pairs)[2], size_t n) {
+static void try_found(void *arg, uint32_t chunk, const uint32_t (*pairs)[2], size_t n) {
     const struct question *question = arg;
     const struct cs_crossings *crossings = question->crossings;
     try_pairs(question,
-              crossings->search->batches[batch].edges ? CS_PAIR_EDGE_EDGE
-                                                      : CS_PAIR_POINT_TRIANGLE,
-              pairs, n, &crossings->found[batch].collision);
+              chunk < crossings->search->n_point_chunks ? CS_PAIR_POINT_TRIANGLE
+                                                        : CS_PAIR_EDGE_EDGE,
+              pairs, n, &crossings->found[chunk].collision);
 }
 
 static bool may_meet(const void *arg, uint32_t a, uint32_t b) {
@@ -319,7 +320,7 @@ static struct cs_first_collision search_first(const struct cs_system *system, co
                                         .arg = &question};
     clear_found(crossings);
     crossings->failed |= !cs_primitive_search_move(crossings->search, &query);
-    for (uint32_t k = 0; k < crossings->search->n_batches; k++)
+    for (uint32_t k = 0; k < crossings->search->n_chunks; k++)
         if (crossings->found[k].collision.fraction < first.fraction)
             first = crossings->found[k].collision;
     return first;
