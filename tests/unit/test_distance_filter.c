@@ -1,12 +1,14 @@
 /* The distance filter of single precision: it holds nothing back that is near, however bad the
  * shapes are, and lets little through that is far. */
+#include "base/vec3.h"
 #include "model/contact/broad_phase/distance_filter.h"
-#include "model/contact/narrow_phase/active_contacts.h"
+#include "model/contact/ccd/accd.h"
 #include "unit.h"
 
 #include <math.h>
+#include <string.h>
 
-enum { ROUNDS = 1500, POINTS = 4 * CS_EXACT_DISTANCE_LANES };
+enum { ROUNDS = 1500, LANES = 8, POINTS = 4 * LANES };
 
 /* a number in -1..1, always the same ones */
 static double draw(uint64_t *state) {
@@ -42,13 +44,36 @@ static void approach(uint64_t *state, uint64_t choice, bool edges, double p[4][3
     }
 }
 
+/* eight pairs, and their squared distances in m2 */
+struct eight {
+    double p[LANES][4][3], squared[LANES];
+};
+
+/* Triangles within sin^2 = 1e-10 are their edges: a foot in their plane is rounding alone. */
+static double squared_of(enum cs_pair_kind kind, double p[4][3]) {
+    double u[3], v[3], least = HUGE_VAL;
+    for (int c = 0; c < 3; c++)
+        u[c] = p[2][c] - p[1][c], v[c] = p[3][c] - p[1][c];
+    const double a = cs_vec3_dot(u, u), b = cs_vec3_dot(u, v), c = cs_vec3_dot(v, v);
+    if (kind == CS_PAIR_EDGE_EDGE || a * c - b * b > 1e-10 * a * c)
+        return cs_exact_distance_squared(kind, (const double(*)[3])p);
+    for (int k = 0; k < 3; k++) {
+        double q[4][3];
+        memcpy(q[0], p[0], sizeof q[0]);
+        for (int j = 0; j < 3; j++)
+            memcpy(q[1 + j], p[1 + (k + (j > 0)) % 3], sizeof q[0]);
+        least = fmin(least, cs_exact_distance_squared(kind, (const double(*)[3])q));
+    }
+    return least;
+}
+
 /* eight pairs `away` from the origin, which is what all places are against; scaled */
 static void fill(uint64_t *state, bool edges, double away, double scale, double *x,
-                 struct cs_exact_distance_lanes *lanes) {
+                 struct eight *lanes) {
     const size_t n = 1 + POINTS;
     for (size_t c = 0; c < 3; c++)
         x[c * n] = 0;
-    for (int l = 0; l < CS_EXACT_DISTANCE_LANES; l++) {
+    for (int l = 0; l < LANES; l++) {
         double p[4][3];
         const uint64_t choice = *state >> 40;
         shape(state, choice, p);
@@ -57,19 +82,19 @@ static void fill(uint64_t *state, bool edges, double away, double scale, double 
             for (size_t c = 0; c < 3; c++) {
                 double *at = x + c * n + 1 + 4 * (size_t)l + k;
                 *at = scale * (p[k][c] + (c == 1 ? away : 0));
-                lanes->p[k][c][l] = *at;
+                lanes->p[l][k][c] = *at;
             }
     }
 }
 
 /* Which of eight pairs it lets through, as bits, with a reach of `share` of their distances. */
 static uint32_t sift(const double *x, double scale, bool edges, double share,
-                     const struct cs_exact_distance_lanes *lanes) {
+                     const struct eight *lanes) {
     static struct cs_distance_filter filter;
     struct cs_scaled_point points[1 + POINTS];
     uint32_t bits = 0;
     cs_distance_filter_scale_points(x, 1 + POINTS, 1 / scale, 0, 1 + POINTS, points);
-    for (uint32_t l = 0; l < CS_EXACT_DISTANCE_LANES; l++) {
+    for (uint32_t l = 0; l < LANES; l++) {
         const uint32_t at[4] = {1 + 4 * l, 2 + 4 * l, 3 + 4 * l, 4 + 4 * l};
         cs_distance_filter_add(&filter, points, at, share * sqrt(lanes->squared[l]) / scale,
                                (const uint32_t[2]){l, l + 1});
@@ -83,21 +108,20 @@ static uint32_t sift(const double *x, double scale, bool edges, double share,
 }
 
 /* the squares of all six lengths between a pair's points */
-static double size(const struct cs_exact_distance_lanes *lanes, int l) {
+static double size(const struct eight *lanes, int l) {
     double squared = 0;
     for (int k = 0; k < 4; k++)
         for (int j = 0; j < k; j++)
             for (int c = 0; c < 3; c++)
-                squared += (lanes->p[k][c][l] - lanes->p[j][c][l]) *
-                           (lanes->p[k][c][l] - lanes->p[j][c][l]);
+                squared += (lanes->p[l][k][c] - lanes->p[l][j][c]) *
+                           (lanes->p[l][k][c] - lanes->p[l][j][c]);
     return squared;
 }
 
 /* those further away than the reach and what is allowed for rounding, as bits */
-static uint32_t far_ones(const struct cs_exact_distance_lanes *lanes, double share,
-                         double away) {
+static uint32_t far_ones(const struct eight *lanes, double share, double away) {
     uint32_t bits = 0;
-    for (int l = 0; l < CS_EXACT_DISTANCE_LANES; l++)
+    for (int l = 0; l < LANES; l++)
         if (lanes->squared[l] > 1.03 * share * share * lanes->squared[l] +
                                     5e-4 * size(lanes, l) + 2e-10 * away * away)
             bits |= 1u << l;
@@ -109,12 +133,13 @@ static void check(bool edges, double away, double scale) {
     uint64_t state = 1;
     int far = 0;
     for (int round = 0; round < ROUNDS; round++) {
-        struct cs_exact_distance_lanes lanes;
+        struct eight lanes;
         double x[3 * (1 + POINTS)];
         fill(&state, edges, away, scale, x, &lanes);
-        cs_exact_distance_measure(edges ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE, &lanes);
-        UNIT_ASSERT_OFTEN(sift(x, scale, edges, 1, &lanes) ==
-                          (1u << CS_EXACT_DISTANCE_LANES) - 1);
+        for (int l = 0; l < LANES; l++)
+            lanes.squared[l] =
+                squared_of(edges ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE, lanes.p[l]);
+        UNIT_ASSERT_OFTEN(sift(x, scale, edges, 1, &lanes) == (1u << LANES) - 1);
         const uint32_t bits = far_ones(&lanes, 0.8, scale * away);
         UNIT_ASSERT_OFTEN(!(sift(x, scale, edges, 0.8, &lanes) & bits));
         far += __builtin_popcount(bits);

@@ -26,9 +26,8 @@ struct cs_candidate_chunk {
     uint32_t *pairs;    /* (n, 2): point and triangle, or edge and a later edge; ascending */
     size_t n, capacity; /* room in pairs */
     bool failed;        /* there was no memory */
-    uint32_t
-        /* (n_in_range, 2) pairs in range, of cs_candidates_find_in_range */
-        *in_range;
+    /* (n_in_range, 2) pairs in range, of cs_candidates_find_in_range */
+    uint32_t *in_range;
     size_t n_in_range, close_capacity;
     /* (n_nearby, 2) those within CS_CANDIDATES_NEARBY ranges more, and perhaps some beyond */
     uint32_t *nearby;

@@ -85,30 +85,13 @@ struct cs_point_energy cs_point_energy_find(const struct cs_feature_weights *fea
                                             uint32_t point,
                                             const struct cs_feature_positions *x);
 
-/* True squared distances of points, triangles and edges, in lanes. Candidates are selected by
- * them, because the smooth distance of pair_distance.h may jump where the true one, which is
- * 1-Lipschitz, moves little. */
-
-/* Pairs of one kind; lanes without a pair hold unspecified numbers. */
-enum { CS_EXACT_DISTANCE_LANES = 8 };
-
-struct cs_exact_distance_lanes {
-    double p[4][3][CS_EXACT_DISTANCE_LANES];
-    double squared[CS_EXACT_DISTANCE_LANES];
-};
-
-/* Sets squared in m2: of point p[0] from triangle p[1] p[2] p[3], or of edges p[0] p[1] and
- * p[2] p[3]. Exact but for rounding; a triangle without area counts as its edges, an edge
- * without length as its points. Not finite, or 0, if p is not finite. */
-void cs_exact_distance_measure(enum cs_pair_kind kind, struct cs_exact_distance_lanes *lanes);
-
 /* Candidates in range at a state, found once for all evaluations at it.
  */
 
 /* Sets the pairs in range of all chunks at x (3,n_points): edges by the smooth distance, points
- * and triangles by the true one. Updates the candidate list first if it does not cover x. Does
- * nothing if x equals the last one to the bit. Returns false if out of memory. With all
- * threads. */
+ * and triangles by the distance filter, with some beyond. Updates the candidate list first if
+ * it does not cover x. Does nothing if x equals the last one to the bit. Returns false if out
+ * of memory. With all threads. */
 bool cs_candidates_find_in_range(struct cs_candidates *candidates, const double *x);
 
 #endif

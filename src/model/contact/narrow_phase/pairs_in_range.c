@@ -1,83 +1,13 @@
-/* True distances by cases (Ericson 2005, sec. 5.1): the common perpendicular if it meets the
- * inside of both primitives, else the least distance between an end or edge of one and the
- * other. */
+/* Selects the candidates in range by the single-precision filter, edges then by the distance of
+ * their force, in lanes. Points and triangles need no more: their features are asked for the
+ * range of each (feature_weights.h). */
 #include "model/contact/narrow_phase/active_contacts.h"
 
 #include "base/arena.h"
 #include "base/pool.h"
-#include "base/vector.h"
 #include "model/contact/narrow_phase/pair_lanes.h"
 
 #include <string.h>
-
-/* Squared distance of p from segment a b; selected without branches, so that loops over lanes
- * vectorise. An edge without length has t = 0. */
-CS_INLINE double from_segment(const double p[3], const double a[3], const double b[3]) {
-    const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    const double w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-    const double along = cs_vec3_dot(u, w), length = cs_vec3_dot(u, u);
-    const double inner = along / length, end = along < length ? inner : 1;
-    const double t = along > 0 ? end : 0;
-    const double r[3] = {w[0] - t * u[0], w[1] - t * u[1], w[2] - t * u[2]};
-    return cs_vec3_dot(r, r);
-}
-
-/* Feet of the common perpendicular: l and m are the parameters along u and v times `whole` = a
- * c - b^2, and squared its squared length. whole is -1 for primitives that are parallel within
- * sin^2 = 1e-10, whose division would amplify rounding; their edges then decide. */
-struct crossing {
-    double l, m, whole, squared;
-};
-
-CS_INLINE struct crossing cross_at(enum cs_pair_kind kind, double p[4][3]) {
-    double u[3], v[3], w[3];
-    cs_pair_distance_differences(kind, p, u, v, w);
-    const double a = cs_vec3_dot(u, u), b = cs_vec3_dot(u, v), c = cs_vec3_dot(v, v);
-    const double d = cs_vec3_dot(u, w), e = cs_vec3_dot(v, w);
-    const double whole = a * c - b * b;
-    // nearly parallel: the edges decide
-    struct crossing at = {c * d - b * e, a * e - b * d, whole > 1e-10 * a * c ? whole : -1, 0};
-    const double l = at.l / at.whole, m = at.m / at.whole;
-    const double r[3] = {w[0] - l * u[0] - m * v[0], w[1] - l * u[1] - m * v[1],
-                         w[2] - l * u[2] - m * v[2]};
-    at.squared = cs_vec3_dot(r, r);
-    return at;
-}
-
-/* Least of the barycentric coordinates times whole: negative if the perpendicular misses the
- * inside of a primitive. */
-CS_INLINE double room_of(enum cs_pair_kind kind, struct crossing at) {
-    const double left = kind == CS_PAIR_EDGE_EDGE ? cs_fmin(at.whole - at.l, at.whole - at.m)
-                                                  : at.whole - (at.l + at.m);
-    return cs_fmin(cs_fmin(at.l, at.m), cs_fmin(left, at.whole));
-}
-
-/* Least squared distance that involves an end of an edge, or an edge of the triangle. */
-CS_INLINE double from_rims(enum cs_pair_kind kind, double p[4][3]) {
-    if (kind == CS_PAIR_EDGE_EDGE)
-        return cs_fmin(cs_fmin(from_segment(p[0], p[2], p[3]), from_segment(p[1], p[2], p[3])),
-                       cs_fmin(from_segment(p[2], p[0], p[1]), from_segment(p[3], p[0], p[1])));
-    return cs_fmin(cs_fmin(from_segment(p[0], p[1], p[2]), from_segment(p[0], p[2], p[3])),
-                   from_segment(p[0], p[3], p[1]));
-}
-
-CS_INLINE void measure(enum cs_pair_kind kind, struct cs_exact_distance_lanes *restrict lanes) {
-    for (int l = 0; l < CS_EXACT_DISTANCE_LANES; l++) {
-        double p[4][3];
-        CS_UNROLLED
-        for (int k = 0; k < 12; k++)
-            p[k / 3][k % 3] = lanes->p[k / 3][k % 3][l];
-        const struct crossing at = cross_at(kind, p);
-        const double rims = from_rims(kind, p);
-        lanes->squared[l] = room_of(kind, at) >= 0 ? at.squared : rims;
-    }
-}
-
-CS_PAIR_KERNEL(extern, cs_exact_distance_measure, measure,
-               (struct cs_exact_distance_lanes *restrict lanes), (lanes))
-
-/* Selects the candidates in range: by the single-precision filter, then by exact distances in
- * lanes. */
 
 /* Blocks of eight that are measured together: a vector load directly after scalar stores to the
  * same addresses would stall. */
@@ -97,25 +27,11 @@ struct work {
     uint32_t pairs[WAITING][2], waiting;
 };
 
-/* Distances of a block. Edges have the smooth one, that of their force. Triangles have the true
- * one: a feature in range implies a true distance in range (mesh_feature.h). */
-static void measure_lanes(enum cs_pair_kind kind, struct cs_pair_lanes *lanes) {
-    struct cs_exact_distance_lanes near;
-    if (kind == CS_PAIR_EDGE_EDGE) {
-        cs_pair_lanes_measure_edges(lanes);
-        return;
-    }
-    memcpy(near.p, lanes->p, sizeof near.p);
-    cs_exact_distance_measure(kind, &near);
-    for (int l = 0; l < CS_PAIR_LANES; l++)
-        lanes->d[l] = sqrt(near.squared[l]);
-}
-
-/* Appends those of the waiting pairs that are in range, without a branch. */
+/* Appends those of the waiting edges that are in range, without a branch. */
 static void range_measure(struct work *work) {
     struct cs_candidate_chunk *chunk = work->chunk;
     for (uint32_t k = 0; k < work->waiting; k += CS_PAIR_LANES)
-        measure_lanes(chunk->kind, work->lanes + k / CS_PAIR_LANES);
+        cs_pair_lanes_measure_edges(work->lanes + k / CS_PAIR_LANES);
     for (uint32_t k = 0; k < work->waiting; k++) {
         const struct cs_pair_lanes *lanes = work->lanes + k / CS_PAIR_LANES;
         const uint32_t l = k % CS_PAIR_LANES;
@@ -126,16 +42,21 @@ static void range_measure(struct work *work) {
     work->waiting = 0;
 }
 
-/* Adds a pair that passed the filter to the waiting ones. */
+/* Takes a pair that passed the filter: edges wait to be measured. */
 static void visit_pair(struct work *work, const uint32_t pair[2]) {
     const struct cs_candidates *candidates = work->search;
+    struct cs_candidate_chunk *chunk = work->chunk;
     const size_t n = candidates->system->surfaces->n_points;
+    if (chunk->kind == CS_PAIR_POINT_TRIANGLE) {
+        memcpy(chunk->in_range + 2 * chunk->n_in_range++, pair, sizeof work->pairs[0]);
+        return;
+    }
     const uint32_t k = work->waiting++, l = k % CS_PAIR_LANES;
     struct cs_pair_lanes *lanes = work->lanes + k / CS_PAIR_LANES;
     uint32_t at[4];
-    cs_candidate_vertices(candidates->system->surfaces, work->chunk->kind, pair, at);
+    cs_candidate_vertices(candidates->system->surfaces, chunk->kind, pair, at);
     memcpy(work->pairs[k], pair, sizeof work->pairs[k]);
-    lanes->range[l] = cs_candidate_range_of(candidates, work->chunk->kind, at);
+    lanes->range[l] = cs_candidate_range_of(candidates, chunk->kind, at);
     for (size_t j = 0; j < 4; j++)
         for (size_t c = 0; c < 3; c++)
             lanes->p[j][c][l] = candidates->x_at_close[c * n + at[j]];
