@@ -83,7 +83,7 @@ TEST(it_is_true_friction_at_its_own_positions) {
             stored += set->chunks[chunk].n;
         ck_assert_msg(stored > 0, "%s stores nothing", system->terms[k]->name);
     }
-    ck_assert_uint_eq(chunk, set->n_chunks);
+    ck_assert_uint_eq(chunk, set->gather.n_chunks);
     for (size_t i = 0; i < VALUES; i++)
         moved[i] = kinds.x[i] * 1.01;
     force(&kinds, moved, now);

@@ -31,23 +31,22 @@ static void project(const double normal[3], double v[3]) {
         v[c] -= normal[c] * along;
 }
 
-/* sum of w_k v_k over the particles of a contact; points of colliders do not count */
-static void interpolate(const struct cs_contact_set *set, const struct cs_contact_entry *entry,
-                        const double *weights, const double *v, double out[3]) {
-    const size_t n = set->n_particles;
-    for (uint32_t k = 0; k < entry->n; k++)
-        for (size_t c = 0; c < 3 && cs_contact_set_has(set, entry->particles[k]); c++)
-            out[c] += weights[k] * v[c * n + entry->particles[k]];
+/* out += sum of w_k v_k over the particles of a contact; points of colliders do not count */
+static void interpolate(const struct pass *pass, uint32_t chunk,
+                        const struct cs_contact *contact, const double *v, double out[3]) {
+    const size_t n = pass->lagged->set.gather.n_particles;
+    const uint32_t *points = cs_contact_points(&pass->lagged->set, chunk, contact);
+    for (uint32_t k = 0; k < contact->n; k++)
+        for (size_t c = 0; c < 3 && points[k] < n; c++)
+            out[c] += contact->weights[k] * v[c * n + points[k]];
 }
 
 static struct sliding slide(const struct pass *pass, uint32_t chunk, size_t number) {
-    const struct cs_contact_set *set = &pass->lagged->set;
     const struct cs_lagged_contact *contact = pass->lagged->chunks[chunk].contacts + number;
     const double ev = pass->lagged->system->scene->contact->friction_speed;
     struct sliding to;
     memcpy(to.t, contact->obstacle, sizeof to.t);
-    interpolate(set, set->chunks[chunk].pairs + number,
-                set->chunks[chunk].parts[number].weights, pass->v, to.t);
+    interpolate(pass, chunk, pass->lagged->set.chunks[chunk].contacts + number, pass->v, to.t);
     project(contact->normal, to.t);
     to.speed = sqrt(cs_vec3_dot(to.t, to.t) + ev * ev);
     return to;
@@ -58,12 +57,13 @@ static void find_force(const struct pass *pass, uint32_t chunk, size_t number) {
     struct cs_contact_chunk *of = pass->lagged->set.chunks + chunk;
     const struct cs_lagged_contact *contact = pass->lagged->chunks[chunk].contacts + number;
     const struct sliding to = slide(pass, chunk, number);
-    const double *weights = of->parts[number].weights, rub = contact->load / to.speed;
+    const struct cs_contact *points = of->contacts + number;
+    const double rub = contact->load / to.speed;
     const double ev = pass->lagged->system->scene->contact->friction_speed;
     double along[3] = {to.t[0], to.t[1], to.t[2]};
     if (pass->dv) {
         double dt[3] = {0};
-        interpolate(&pass->lagged->set, of->pairs + number, weights, pass->dv, dt);
+        interpolate(pass, chunk, points, pass->dv, dt);
         project(contact->normal, dt);
         const double share = cs_vec3_dot(to.t, dt) / (to.speed * to.speed);
         for (int c = 0; c < 3; c++)
@@ -71,15 +71,15 @@ static void find_force(const struct pass *pass, uint32_t chunk, size_t number) {
     }
     // s - ev without cancellation
     of->energy += contact->load * cs_vec3_dot(to.t, to.t) / (to.speed + ev);
-    for (uint32_t k = 0; k < of->pairs[number].n; k++)
-        for (int c = 0; c < 3; c++)
-            of->pairs[number].vectors[k][c] = -weights[k] * rub * along[c];
+    double *vectors = cs_contact_vectors(&pass->lagged->set, chunk, points);
+    for (size_t k = 0; k < 3 * (size_t)points->n; k++)
+        vectors[k] = -points->weights[k / 3] * rub * along[k % 3];
 }
 
 /* B = -cd mu N / s (I - n n^T - T T^T / s^2), as in point_contact.h. matrix.bound leaves the
  * last part out, and matrix.psd what is subtracted. */
 static void find_block(const struct pass *pass, uint32_t chunk, size_t number) {
-    struct cs_contact_matrix_part *part = pass->lagged->set.chunks[chunk].parts + number;
+    struct cs_contact *part = pass->lagged->set.chunks[chunk].contacts + number;
     const struct cs_lagged_contact *contact = pass->lagged->chunks[chunk].contacts + number;
     const double *n = contact->normal;
     const struct sliding to = slide(pass, chunk, number);
@@ -103,8 +103,13 @@ static void do_chunk(void *arg, uint32_t chunk) {
 }
 
 static void run(struct pass *pass) {
-    if (pass->lagged->set.n)
-        cs_pool_run(pass->lagged->set.n_chunks, do_chunk, pass);
+    struct cs_contact_set *set = &pass->lagged->set;
+    if (set->n)
+        cs_pool_run(set->gather.n_chunks, do_chunk, pass);
+    if (pass->matrix)
+        cs_contact_set_place_blocks(set);
+    else
+        cs_contact_set_place_vectors(set);
 }
 
 /* --- storing --- */
@@ -119,10 +124,10 @@ void cs_lagged_friction_store(struct cs_lagged_friction *lagged, uint32_t chunk,
                         cs_barrier_at(contact->d, contact->range, contact->k).force;
     if (load == 0)
         return;
-    struct cs_contact_entry *entry = cs_contact_chunk_next(to);
-    struct cs_contact_matrix_part *part = entry ? cs_contact_chunk_part(to) : NULL;
-    if (!part || !CS_ARENA_REALLOC(own->contacts, own->capacity, to->n)) {
-        to->failed = true;
+    if (!cs_contact_set_append(&lagged->set, chunk, n, particles, weights))
+        return;
+    if (!CS_ARENA_REALLOC(own->contacts, own->capacity, to->n)) {
+        lagged->set.gather.chunks[chunk].failed = true;
         return;
     }
     struct cs_lagged_contact *last = own->contacts + to->n - 1;
@@ -131,24 +136,19 @@ void cs_lagged_friction_store(struct cs_lagged_friction *lagged, uint32_t chunk,
         last->normal[c] = contact->g[c] / length;
         last->obstacle[c] = contact->v[c];
     }
-    *entry = (struct cs_contact_entry){.n = n};
-    *part = (struct cs_contact_matrix_part){0};
-    memcpy(entry->particles, particles, n * sizeof *particles);
-    memcpy(part->weights, weights, n * sizeof *weights);
 }
 
 void cs_lagged_friction_begin(struct cs_lagged_friction *lagged, double t, const double *x) {
     const struct cs_system *system = lagged->system;
     uint32_t first = 0;
     lagged->is_active = false; // contacts give their friction only then
-    for (uint32_t k = 0; k < lagged->set.n_chunks; k++)
-        cs_contact_chunk_clear(lagged->set.chunks + k);
+    for (uint32_t k = 0; k < lagged->set.gather.n_chunks; k++)
+        cs_contact_set_clear(&lagged->set, k);
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (system->terms[k]->store_friction) {
             system->terms[k]->store_friction(system, t, x, first);
             first += system->terms[k]->friction_chunks(system);
         }
-    cs_contact_set_count(&lagged->set);
     cs_contact_set_gather(&lagged->set);
     lagged->is_active = true;
 }
@@ -223,18 +223,18 @@ static void add_bound_at(const struct cs_system *system, const struct cs_eval *a
                          const struct cs_gershgorin *sums) {
     struct pass pass = {.lagged = system->lagged_friction, .v = at->v};
     const struct cs_contact_set *set = &pass.lagged->set;
-    for (uint32_t l = 0; l < set->n_chunks && cs_lagged_friction_acts(system); l++)
+    for (uint32_t l = 0; l < set->gather.n_chunks && cs_lagged_friction_acts(system); l++)
         for (size_t p = 0; p < set->chunks[l].n && set->n; p++) {
-            const struct cs_contact_entry *entry = set->chunks[l].pairs + p;
-            const double *weights = set->chunks[l].parts[p].weights;
+            const struct cs_contact *contact = set->chunks[l].contacts + p;
+            const uint32_t *points = cs_contact_points(set, l, contact);
             const double rub =
                 fabs(pass.lagged->chunks[l].contacts[p].load) / slide(&pass, l, p).speed;
             double sum = 0;
-            for (uint32_t k = 0; k < entry->n; k++)
-                sum += fabs(weights[k]);
-            for (uint32_t k = 0; k < entry->n; k++)
-                if (cs_contact_set_has(set, entry->particles[k]))
-                    sums->damping[entry->particles[k]] += fabs(weights[k]) * sum * rub;
+            for (uint32_t k = 0; k < contact->n; k++)
+                sum += fabs(contact->weights[k]);
+            for (uint32_t k = 0; k < contact->n; k++)
+                if (points[k] < system->view.n)
+                    sums->damping[points[k]] += fabs(contact->weights[k]) * sum * rub;
         }
 }
 
@@ -253,7 +253,7 @@ static const struct cs_term term = {
 /* Frees the arrays that grow; the arena calls it. */
 static void finish_friction(void *object) {
     struct cs_lagged_friction *lagged = object;
-    for (uint32_t l = 0; l < lagged->set.n_chunks; l++)
+    for (uint32_t l = 0; l < lagged->set.gather.n_chunks; l++)
         free(lagged->chunks[l].contacts);
 }
 

@@ -24,7 +24,7 @@ struct cs_lagged_contact {
     double obstacle[3]; /* m/s, part of V that belongs to colliders */
 };
 
-/* Contacts of one chunk, in the order of the entries of the set. */
+/* Contacts of one chunk, in the order of those of the set. */
 struct cs_lagged_chunk {
     struct cs_lagged_contact *contacts;
     size_t capacity;
@@ -34,7 +34,7 @@ struct cs_lagged_chunk {
 struct cs_lagged_friction {
     const struct cs_system *system; /* borrowed */
     struct cs_contact_set set;      /* particles, weights, forces and blocks */
-    struct cs_lagged_chunk *chunks; /* (set.n_chunks) */
+    struct cs_lagged_chunk *chunks; /* (set.gather.n_chunks) */
     bool is_active;                 /* it acts, instead of the friction of the contact forces */
     struct cs_matrix matrix;        /* of the last set-up of the solver */
     bool is_overwritten;            /* the set's blocks are those of another matrix */

@@ -19,21 +19,6 @@ struct job {
     uint32_t first; /* chunk of lagged friction that the first chunk goes to */
 };
 
-/* Appends a matrix block or bounds. Row i of the matrix has w_i w_j times one block, and the
- * weights sum to 1, so that the row sum is w_i times the bound of the point. */
-static void store_part(const struct job *job, const struct cs_contact_sample_point *point,
-                       const struct cs_point_answer *answer, struct cs_contact_chunk *chunk) {
-    struct cs_contact_matrix_part *part = cs_contact_chunk_part(chunk);
-    if (!part)
-        return;
-    memcpy(part->block, answer->block, sizeof part->block);
-    memcpy(part->weights, point->w, sizeof point->w);
-    for (uint32_t k = 0; k < point->n && job->query.quantity == CS_POINT_BOUND; k++) {
-        part->block[k] = answer->stiffness * point->w[k];
-        part->weights[k] = point->w[k] * answer->damping;
-    }
-}
-
 /* Evaluates one sample if it is in range and can move. */
 static void meet(const struct job *job, const struct cs_posed_collider_law *law,
                  const struct cs_contact_sample_point *point, uint32_t number) {
@@ -53,17 +38,22 @@ static void meet(const struct job *job, const struct cs_posed_collider_law *law,
                                  point->n, point->particles, point->w);
     if (quantity == CS_POINT_ENERGY || quantity == CS_POINT_LAGGED)
         return;
-    struct cs_contact_entry *place = cs_contact_chunk_next(chunk);
-    if (!place)
+    struct cs_contact *to =
+        cs_contact_set_append(job->set, number, point->n, point->particles, point->w);
+    if (!to)
         return;
-    place->n = point->n;
-    memcpy(place->particles, point->particles, sizeof point->particles);
-    if (quantity == CS_POINT_MATRIX || quantity == CS_POINT_BOUND)
-        store_part(job, point, &answer, chunk);
-    else
-        for (uint32_t k = 0; k < place->n; k++)
-            for (int c = 0; c < 3; c++)
-                place->vectors[k][c] = point->w[k] * answer.vector[c];
+    if (quantity == CS_POINT_MATRIX) {
+        memcpy(to->block, answer.block, sizeof to->block);
+        return;
+    }
+    double *vectors = cs_contact_vectors(job->set, number, to);
+    // row i of the matrix has w_i w_j times one block, and the weights sum to 1
+    for (uint32_t k = 0; k < point->n && quantity == CS_POINT_BOUND; k++) {
+        to->block[k] = answer.stiffness * point->w[k];
+        to->weights[k] = point->w[k] * answer.damping;
+    }
+    for (size_t k = 0; k < 3 * (size_t)point->n && quantity != CS_POINT_BOUND; k++)
+        vectors[k] = point->w[k / 3] * answer.vector[k % 3];
 }
 
 /* Middle of the box of `count` particles from `first` on, or of those listed; returns half its
@@ -92,7 +82,7 @@ static void do_chunk(void *arg, uint32_t number) {
     const struct cs_posed_collider_law *law = job->samples->colliders + chunk->collider;
     const size_t n = job->query.system->view.n;
     double middle[3];
-    cs_contact_chunk_clear(job->set->chunks + number);
+    cs_contact_set_clear(job->set, number);
     const double *x = job->query.eval.x;
     const double all =
         box_of(x, n, NULL, chunk->first, (size_t)chunk->last - chunk->first + 1, middle);
@@ -113,13 +103,13 @@ static void do_chunk(void *arg, uint32_t number) {
     }
 }
 
-/* Poses all colliders, evaluates all chunks and counts their contacts. */
+/* Poses all colliders, evaluates all chunks and gathers their contacts. */
 static void do_chunks(struct job *job) {
     const struct cs_system *system = job->query.system;
     for (uint32_t c = 0; c < system->scene->colliders.n; c++)
         cs_posed_collider_law_at(system, c, job->query.eval.t, job->samples->colliders + c);
     cs_pool_run(job->samples->n_chunks, do_chunk, job);
-    cs_contact_set_count(job->set);
+    cs_contact_set_gather(job->set);
 }
 
 /* Runs a query over all samples, into current_set. */
@@ -171,7 +161,7 @@ static const char *idle_why(const struct cs_system *system) {
 
 /* Forces at a state, or their change if a direction is set. */
 static void prepare(const struct cs_system *system, const struct cs_eval *at) {
-    cs_contact_set_gather(
+    cs_contact_set_place_vectors(
         run(system, at->dx || at->dv ? CS_POINT_JVP : CS_POINT_FORCE, at, NULL));
 }
 
@@ -202,7 +192,7 @@ static void prepare_matrix(const struct cs_system *system, const struct cs_matri
                       0};
     set->diagonal_bound = !kept && matrix->bound;
     do_chunks(&job);
-    cs_contact_set_gather(set);
+    cs_contact_set_place_blocks(set);
     samples->blocks = set;
 }
 
@@ -222,7 +212,7 @@ static void add_approach(const struct cs_system *system, const struct cs_matrix 
     const struct cs_eval at = {
         .t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_POTENTIAL};
     struct cs_contact_set *set = run(system, CS_POINT_APPROACH, &at, matrix);
-    cs_contact_set_gather(set);
+    cs_contact_set_place_vectors(set);
     cs_contact_set_add(set, 0, system->view.n, y);
 }
 

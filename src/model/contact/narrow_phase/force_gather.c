@@ -64,6 +64,13 @@ static bool make_room(struct cs_gather_chunk *chunk) {
     return 2 * chunk->n < 1u << chunk->bits || grow_table(chunk, chunk->bits + 1);
 }
 
+void cs_gather_append(struct cs_gather_chunk *chunk, uint32_t point) {
+    chunk->failed = chunk->failed || !CS_ARENA_REALLOC(chunk->points, chunk->points_capacity,
+                                                       (size_t)chunk->n + 1);
+    if (!chunk->failed)
+        chunk->points[chunk->n++] = point;
+}
+
 static uint32_t append_row(struct cs_gather_chunk *chunk, uint32_t point) {
     if (!make_room(chunk)) {
         chunk->failed = true;

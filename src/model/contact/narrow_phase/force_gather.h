@@ -54,6 +54,10 @@ void cs_gather_clear(struct cs_gather_chunk *chunk);
  * `failed` and returns 0. Threads may call it for different chunks. */
 uint32_t cs_gather_row(struct cs_gather_chunk *chunk, uint32_t point);
 
+/* Adds a row for a point, whether it has one or not: all rows of a chunk are added so, or none.
+ */
+void cs_gather_append(struct cs_gather_chunk *chunk, uint32_t point);
+
 /* Lists the rows of each particle, after all rows were assigned. Points from n_particles on are
  * of colliders and gather nothing. Returns false if out of memory. */
 bool cs_gather_set(struct cs_gather *gather);
