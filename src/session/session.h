@@ -165,6 +165,14 @@ double cs_follow_frames(const struct cs_scene *scene, double seconds);
 bool cs_system_untangles(const struct cs_system *system);
 /* True if a body bends by its mesh (elastic.bending). */
 bool cs_system_bends(const struct cs_system *system);
+/* The body of a particle of the system. */
+static inline uint32_t cs_system_body_of(const struct cs_system *system, uint32_t particle) {
+    uint32_t b = 0;
+    while (particle - system->bodies[b].first >= system->bodies[b].count)
+        b++;
+    return b;
+}
+
 /* m, rest length of the longest spring; 0 without any. */
 double cs_system_longest_spring(const struct cs_system *system);
 /* Sets f (3,n) in N to the forces of springs and elastic bodies at (x, v), without damping. */

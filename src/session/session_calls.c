@@ -80,10 +80,7 @@ double cs_system_longest_spring(const struct cs_system *system) {
 
 void cs_system_print_marks(const struct cs_system *system, uint32_t particle,
                            struct cs_text *out) {
-    uint32_t b = 0;
-    while (particle >= system->bodies[b].first + system->bodies[b].count)
-        b++;
-    const uint32_t first = system->bodies[b].first;
+    const uint32_t b = cs_system_body_of(system, particle), first = system->bodies[b].first;
     cs_text_add(out, "{\"body\": %u, \"particles\": [%u", b, particle - first);
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_run *run = system->springs.runs + r;
