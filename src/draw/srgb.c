@@ -3,7 +3,6 @@
 
 #include "draw/look.h"
 
-
 /* y^2.4 = y^2 (y^2)^(1/5) for y in 0..1. Newton's iteration for r^5 = y^2 is
  *   r' = (4 r + y^2 / r^4) / 5.
  * From r = 1, above the root, it falls by at most a fifth per step until it is near. */

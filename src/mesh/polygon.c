@@ -4,7 +4,6 @@
 #include "base/vec3.h"
 #include "mesh/mesh_mend.h"
 
-
 /* Twice the area of a triangle seen along the normal: above 0 if it turns the polygon's way. */
 static double turn_of(const double a[3], const double b[3], const double c[3],
                       const double normal[3]) {

@@ -1,7 +1,6 @@
 /* Files that grow in place, by pwrite at known offsets; interrupted calls go on. */
 #include "io/export/writer.h"
 
-
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>

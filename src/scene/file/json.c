@@ -1,7 +1,6 @@
 /* Parses strict JSON with cJSON, and records the position of each value in the text. */
 #include "scene/file/json.h"
 
-
 #include <cJSON.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,7 +5,6 @@
  */
 #include "scene/file/json_check.h"
 
-
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
