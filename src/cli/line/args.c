@@ -270,18 +270,15 @@ enum cs_status cs_arg_refuse_name(const char *option, const char *const *names,
 /* Reads a name as its number, or a list of names as their bits in the set of those given. */
 static enum cs_status read_name(const struct cs_arg *row, const char *text, uint32_t *value,
                                 struct cs_error *error) {
-    for (size_t length;; text += length + 1) {
-        uint32_t i = 0;
-        length = row->repeatable ? strcspn(text, ",") : strlen(text);
-        while (row->names[i] &&
-               (strncmp(row->names[i], text, length) != 0 || row->names[i][length]))
-            i++;
-        if (!row->names[i])
-            return cs_arg_refuse_name(row->name, row->names, text, error);
-        *value = row->repeatable ? *value | 1u << i : i;
-        if (!text[length])
-            return CS_OK;
-    }
+    const size_t length = row->repeatable ? strcspn(text, ",") : strlen(text);
+    uint32_t i = 0;
+    while (row->names[i] &&
+           (strncmp(row->names[i], text, length) != 0 || row->names[i][length]))
+        i++;
+    if (!row->names[i])
+        return cs_arg_refuse_name(row->name, row->names, text, error);
+    *value = row->repeatable ? *value | 1u << i : i;
+    return text[length] ? read_name(row, text + length + 1, value, error) : CS_OK;
 }
 
 static enum cs_status read_real(const struct cs_arg *row, const char *text, double *value,
@@ -377,14 +374,13 @@ enum cs_status cs_arg_read(const struct cs_arg *row, const char *text, void *opt
                            struct cs_arena *arena, struct cs_error *error) {
     void *field = (char *)options + row->offset;
     const struct list list = {row, options, arena};
-    uint32_t unused = 0;
     switch (row->kind) {
     case CS_ARG_SWITCH:
         *(bool *)field = !*(bool *)field;
         break;
     case CS_ARG_TEXT:
         *(const char **)field = text;
-        return row->names ? read_name(row, text, &unused, error) : CS_OK;
+        return row->names ? read_name(row, text, &(uint32_t){0}, error) : CS_OK;
     case CS_ARG_WHOLE:
         return row->names ? read_name(row, text, field, error)
                           : read_whole(row, text, field, error);
