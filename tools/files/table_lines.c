@@ -22,15 +22,6 @@ bool cs_list_has(const char *list, const char *word) {
     return false;
 }
 
-bool cs_list_next(const char **list, char word[CS_LIST_BYTES]) {
-    if (!*list || !**list)
-        return false;
-    const size_t length = strcspn(*list, ",");
-    snprintf(word, CS_LIST_BYTES, "%.*s", (int)length, *list);
-    *list += length + ((*list)[length] == ',');
-    return true;
-}
-
 /* True for a column that was asked for; else for one that is not zero throughout, but for
  * indices, and bounds that are far above what they bound. */
 static bool is_drawn(const struct cs_number_table *table, uint32_t c, const char *y) {
@@ -101,13 +92,18 @@ static enum cs_status add_lines(struct cs_diagram *plot, const struct cs_number_
     return error->status;
 }
 
-/* Refuses names that no column has. */
+/* Refuses names of "a,b,c" that no column has. */
 static enum cs_status check_names(const struct cs_number_table *table, const char *option,
                                   const char *names, struct cs_error *error) {
-    for (char name[CS_LIST_BYTES]; cs_list_next(&names, name) && !error->status;)
+    for (size_t length; names && *names && !error->status;
+         names += length + (names[length] == ',')) {
+        char name[64];
+        length = strcspn(names, ",");
+        snprintf(name, sizeof name, "%.*s", (int)length, names);
         if (cs_number_table_find(table, name) == table->columns)
             cs_fail(error, CS_ERR_USAGE,
                     "--%s: found no column \"%s\" in the first line of the file", option, name);
+    }
     return error->status;
 }
 
@@ -117,8 +113,7 @@ enum cs_status cs_table_lines_add(struct cs_diagram *plot, const struct cs_numbe
     if (check_names(table, "x", settings->x, error) ||
         check_names(table, "y", settings->y, error) || add_lines(plot, table, settings, error))
         return error->status;
-    return plot->n_panels
-               ? CS_OK
-               : cs_fail(error, CS_ERR_FILE, "%s: found no column with numbers to draw",
-                         settings->path);
+    return plot->n_panels ? CS_OK
+                          : cs_fail(error, CS_ERR_FILE,
+                                    "%s: found no column with numbers to draw", settings->path);
 }

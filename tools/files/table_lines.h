@@ -4,13 +4,8 @@
 
 #include "shared/table_plot.h"
 
-enum { CS_LIST_BYTES = 64 };
-
 /* True for a word of "a,b,c". */
 bool cs_list_has(const char *list, const char *word);
-/* Cuts the first word, at most CS_LIST_BYTES - 1 characters of it, off "a,b,c"; false at the
- * end of the list, or where there is none (NULL). */
-bool cs_list_next(const char **list, char word[CS_LIST_BYTES]);
 
 /* Texts are borrowed. */
 struct cs_line_settings {
