@@ -111,19 +111,16 @@ struct cs_friction_anchors {
 enum cs_status cs_friction_anchors_build(struct cs_system *system, struct cs_error *error);
 
 /* Moves the anchors of points that slip or are out of range, after an accepted step that ended
- * in (x, v) at t. v NULL: puts all anchors where their points are, at the start of a run. With
- * all threads. Nothing without anchors. */
+ * in (x, v) at t. v NULL: puts all anchors where their points are, at the start of a run.
+ * Nothing without anchors. */
 void cs_friction_anchors_commit(const struct cs_system *system, double t, const double *x,
                                 const double *v);
 
-/* Sets the bristle of a particle at x (3,n), or of a contact sample at p, on a collider.
- * Returns false if there is no friction or the collider is a mesh. */
-bool cs_bristle_of_particle(const struct cs_system *system, uint32_t collider,
-                            const struct cs_posed_collider_law *law, const double *x,
-                            size_t particle, struct cs_bristle *bristle);
-bool cs_bristle_of_sample(const struct cs_system *system,
-                          const struct cs_posed_collider_law *law,
-                          const struct cs_contact_sample_point *point, const double p[3],
-                          struct cs_bristle *bristle);
+/* Sets the bristle of a point at p, a particle or a contact sample, on a collider. Returns
+ * false if there is no friction or the collider is a mesh. */
+bool cs_bristle_of_point(const struct cs_system *system, uint32_t collider,
+                         const struct cs_posed_collider_law *law,
+                         const struct cs_contact_sample_point *point, const double p[3],
+                         struct cs_bristle *bristle);
 
 #endif

@@ -282,6 +282,24 @@ bool cs_contact_sample_next(struct cs_contact_sample_point *point) {
     return true;
 }
 
+void cs_contact_points_visit(const struct cs_system *system, uint32_t collider,
+                             void (*visit)(void *arg,
+                                           const struct cs_contact_sample_point *point),
+                             void *arg) {
+    const struct cs_contact_samples *samples = system->contact_samples;
+    struct cs_contact_sample_point point = {.n = 1, .w = {1}};
+    for (uint32_t i = 0; i < system->view.n; i++) {
+        point.particles[0] = i;
+        visit(arg, &point);
+    }
+    for (uint32_t l = 0; samples && l < samples->n_chunks; l++)
+        for (uint32_t i = samples->chunks[l].begin;
+             samples->chunks[l].collider == collider && i < samples->chunks[l].end; i++)
+            for (cs_contact_sample_first(samples->chunks + l, i, &point);
+                 cs_contact_sample_next(&point);)
+                visit(arg, &point);
+}
+
 double cs_contact_sample_mass(const struct cs_system *system,
                               const struct cs_contact_sample_point *point) {
     double inverse = 0;

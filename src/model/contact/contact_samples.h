@@ -89,6 +89,13 @@ void cs_contact_sample_first(const struct cs_contact_sample_chunk *chunk, uint32
                              struct cs_contact_sample_point *point);
 bool cs_contact_sample_next(struct cs_contact_sample_point *point);
 
+/* Calls visit(arg, point) for each point at a collider that is no mesh: all particles, each a
+ * sample of one vertex with the weight 1, then all samples. */
+void cs_contact_points_visit(const struct cs_system *system, uint32_t collider,
+                             void (*visit)(void *arg,
+                                           const struct cs_contact_sample_point *point),
+                             void *arg);
+
 /* out = sum w_i x_i for x (3,n); 0 if x is NULL. Inlined: each particle is a sample of one. */
 static inline void cs_contact_sample_interpolate(const struct cs_contact_sample_point *point,
                                                  size_t n, const double *x, double out[3]) {

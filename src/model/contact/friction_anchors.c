@@ -2,9 +2,7 @@
  * after each step. */
 #include "model/contact/bristle_law.h"
 
-#include "base/pool.h"
 #include "base/vec3.h"
-#include "base/vector.h"
 #include "model/contact/contact_samples.h"
 #include "scene/body_pairs.h"
 
@@ -18,17 +16,22 @@ struct anchor {
     size_t stride;
 };
 
-/* The anchor of a particle; at is NULL if it has none on this collider. */
-static struct anchor anchor_of_particle(const struct cs_system *system, uint32_t collider,
-                                        size_t particle) {
-    double *all =
-        system->friction_anchors ? system->friction_anchors->particles[collider] : NULL;
-    return (struct anchor){all ? all + particle : NULL, system->view.n};
+/* The anchor of a point; at is NULL if it has none on this collider. */
+static struct anchor anchor_of(const struct cs_system *system, uint32_t collider,
+                               const struct cs_contact_sample_point *point) {
+    const struct cs_friction_anchors *all = system->friction_anchors;
+    double *values = !all ? NULL : point->n > 1 ? all->samples : all->particles[collider];
+    if (point->n > 1)
+        return (struct anchor){values ? values + point->number : NULL,
+                               system->contact_samples->n_points};
+    return (struct anchor){values ? values + point->particles[0] : NULL, system->view.n};
 }
 
-static struct anchor anchor_of_sample(const struct cs_system *system, uint32_t number) {
-    double *all = system->friction_anchors ? system->friction_anchors->samples : NULL;
-    return (struct anchor){all ? all + number : NULL, system->contact_samples->n_points};
+/* kg, of a particle or of a sample, which has HUGE_VAL where it cannot move */
+static double mass_of(const struct cs_system *system,
+                      const struct cs_contact_sample_point *point) {
+    return point->n > 1 ? cs_contact_sample_mass(system, point)
+                        : system->mass[point->particles[0]];
 }
 
 /* Stores a point in the frame of the collider, which moves and turns with it. */
@@ -59,112 +62,56 @@ static bool set(const struct cs_posed_collider_law *law, struct anchor anchor,
     return true;
 }
 
-bool cs_bristle_of_particle(const struct cs_system *system, uint32_t collider,
-                            const struct cs_posed_collider_law *law, const double *x,
-                            size_t particle, struct cs_bristle *bristle) {
-    const size_t n = system->view.n;
-    const double p[3] = {x[particle], x[n + particle], x[2 * n + particle]};
+bool cs_bristle_of_point(const struct cs_system *system, uint32_t collider,
+                         const struct cs_posed_collider_law *law,
+                         const struct cs_contact_sample_point *point, const double p[3],
+                         struct cs_bristle *bristle) {
     return law->sticking_friction > 0 &&
-           set(law, anchor_of_particle(system, collider, particle), p, system->mass[particle],
-               bristle);
-}
-
-bool cs_bristle_of_sample(const struct cs_system *system,
-                          const struct cs_posed_collider_law *law,
-                          const struct cs_contact_sample_point *point, const double p[3],
-                          struct cs_bristle *bristle) {
-    return law->sticking_friction > 0 && set(law, anchor_of_sample(system, point->number), p,
-                                             cs_contact_sample_mass(system, point), bristle);
+           set(law, anchor_of(system, collider, point), p, mass_of(system, point), bristle);
 }
 
 /* --- what a step leaves --- */
 
-/* All points after one step, or at the start, where v is NULL. */
+/* All points at one collider after a step, or at the start, where v is NULL. */
 struct job {
     const struct cs_system *system;
-    double t;
     const double *x, *v;
     uint32_t collider;
-    struct cs_posed_collider_law law; /* of that collider */
+    struct cs_posed_collider_law law;
 };
 
-/* A point and its bristle; anchor.at is NULL if it has none. */
-struct point {
-    struct anchor anchor;
-    double p[3], v[3], mass;
-};
-
-/* Moves the anchor of one point, unless it holds. */
-static void follow(const struct job *job, const struct point *point) {
+/* Moves the anchor of one point, unless it holds. At the start, out of range and tangled, the
+ * anchor is the point. */
+static void follow(void *arg, const struct cs_contact_sample_point *point) {
+    const struct job *job = arg;
+    const size_t n = job->system->view.n;
+    const struct anchor anchor = anchor_of(job->system, job->collider, point);
+    const double mass = mass_of(job->system, point);
     struct cs_point_contact contact;
     struct cs_bristle bristle;
-    double to[3];
-    memcpy(to, point->p, sizeof to);
-    if (!set(&job->law, point->anchor, point->p, point->mass, &bristle))
+    double p[3], v[3], back[3];
+    cs_contact_sample_interpolate(point, n, job->x, p);
+    cs_contact_sample_interpolate(point, n, job->v, v);
+    if (mass == HUGE_VAL || !set(&job->law, anchor, p, mass, &bristle))
         return;
-    // at the start, out of range and tangled, the anchor is the point
-    if (job->v && point->mass < HUGE_VAL &&
-        cs_posed_collider_law_in_range(&job->law, point->p, point->v, &contact)) {
-        double back[3];
+    if (job->v && !cs_contact_sample_is_tangled(job->system, point) &&
+        cs_posed_collider_law_in_range(&job->law, p, v, &contact)) {
         if (!cs_bristle_slips(&contact, &bristle, back))
             return;
         for (int c = 0; c < 3; c++)
-            to[c] -= back[c];
+            p[c] -= back[c];
     }
-    store(point->anchor, &job->law.collider, to);
-}
-
-/* Particles [begin, end) on one collider. */
-static void follow_particles(void *arg, size_t begin, size_t end) {
-    const struct job *job = arg;
-    const size_t n = job->system->view.n;
-    for (size_t i = begin; i < end; i++) {
-        struct point point = {.anchor = anchor_of_particle(job->system, job->collider, i),
-                              .mass = cs_system_is_tangled(job->system, (uint32_t)i)
-                                          ? HUGE_VAL
-                                          : job->system->mass[i]};
-        for (size_t c = 0; c < 3; c++) {
-            point.p[c] = job->x[c * n + i];
-            point.v[c] = job->v ? job->v[c * n + i] : 0;
-        }
-        follow(job, &point);
-    }
-}
-
-/* Contact samples of one chunk. */
-static void follow_samples(void *arg, uint32_t number) {
-    struct job job = *(const struct job *)arg;
-    const struct cs_contact_sample_chunk *chunk = job.system->contact_samples->chunks + number;
-    const size_t n = job.system->view.n;
-    cs_posed_collider_law_at(job.system, chunk->collider, job.t, &job.law);
-    for (uint32_t i = chunk->begin; i < chunk->end; i++) {
-        struct cs_contact_sample_point sample;
-        for (cs_contact_sample_first(chunk, i, &sample); cs_contact_sample_next(&sample);) {
-            struct point point = {.anchor = anchor_of_sample(job.system, sample.number),
-                                  .mass = cs_contact_sample_mass(job.system, &sample)};
-            cs_contact_sample_interpolate(&sample, n, job.x, point.p);
-            cs_contact_sample_interpolate(&sample, n, job.v, point.v);
-            if (point.mass < HUGE_VAL)
-                follow(&job, &point);
-        }
-    }
+    store(anchor, &job->law.collider, p);
 }
 
 void cs_friction_anchors_commit(const struct cs_system *system, double t, const double *x,
                                 const double *v) {
-    struct job job = {.system = system, .t = t, .x = x, .v = v};
-    if (!system->friction_anchors)
-        return;
-    // each anchor is written once, so that threads do not count
-    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        if (!system->friction_anchors->particles[c])
-            continue;
+    struct job job = {.system = system, .x = x, .v = v};
+    for (uint32_t c = 0; c < system->scene->colliders.n && system->friction_anchors; c++) {
         job.collider = c;
         cs_posed_collider_law_at(system, c, t, &job.law);
-        cs_vector_parallel_for(system->view.n, follow_particles, &job);
+        cs_contact_points_visit(system, c, follow, &job);
     }
-    if (system->friction_anchors->samples)
-        cs_pool_run(system->contact_samples->n_chunks, follow_samples, &job);
 }
 
 /* --- making --- */

@@ -81,10 +81,7 @@ bool cs_point_evaluate(const struct cs_point_query *query,
         answer->energy = cs_barrier_energy(contact->d, contact->range, contact->k);
         return cs_contact_sample_mass(system, point) < HUGE_VAL;
     }
-    const bool sticks = point->n == 1
-                            ? cs_bristle_of_particle(system, number, law, query->eval.x,
-                                                     point->particles[0], &found)
-                            : cs_bristle_of_sample(system, law, point, p, &found);
+    const bool sticks = cs_bristle_of_point(system, number, law, point, p, &found);
     const struct cs_bristle *bristle = sticks ? &found : NULL;
     if (query->quantity == CS_POINT_MATRIX)
         find_matrix(query, point, bristle, answer);

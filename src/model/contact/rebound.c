@@ -5,6 +5,7 @@
 #include "base/vector.h"
 #include "model/contact/bristle_law.h"
 #include "model/contact/collider_params.h"
+#include "model/contact/contact_samples.h"
 #include "scene/body_pairs.h"
 #include "scene/collider_keys.h"
 
@@ -192,10 +193,11 @@ static bool approach(const struct search *search, size_t i, struct start *start,
     struct cs_point_contact contact;
     if (cs_posed_collider_law_in_range(law, p, v, &contact)) {
         const struct cs_contact_force_parts parts = {1, 1};
+        const struct cs_contact_sample_point point = {
+            .n = 1, .particles = {(uint32_t)i}, .w = {1}};
         struct cs_bristle bristle;
         cs_point_contact_force(&contact, parts, start->own);
-        if (cs_bristle_of_particle(search->system, search->collider, law, search->x, i,
-                                   &bristle))
+        if (cs_bristle_of_point(search->system, search->collider, law, &point, p, &bristle))
             cs_bristle_add_force(&contact, &bristle, start->own);
     } else if (!cs_posed_collider_is_near(&law->collider, law->params.range + way, p))
         return false;

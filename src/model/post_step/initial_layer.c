@@ -69,45 +69,35 @@ static void add_contact(struct interface *at, const struct cs_point_contact *con
         at->force[c] += force * contact->g[c];
 }
 
-/* Adds the samples of body a that are in range of a collider. */
-static void add_samples(const struct cs_system *system, const struct cs_posed_collider_law *law,
-                        uint32_t collider, struct interface *at) {
-    const struct cs_contact_samples *samples = system->contact_samples;
-    const uint32_t first = system->bodies[at->a].first, count = system->bodies[at->a].count;
+/* Two surfaces, one of them a collider. */
+struct layer {
+    const struct cs_system *system;
+    struct cs_posed_collider_law law;
+    struct interface *at;
+};
+
+/* Adds a point of the body that is free and in range of the collider. */
+static void add_point(void *arg, const struct cs_contact_sample_point *point) {
+    const struct layer *layer = arg;
+    const struct cs_body_range *body = layer->system->bodies + layer->at->a;
     const double rest[3] = {0};
-    for (uint32_t l = 0; samples && l < samples->n_chunks; l++)
-        for (uint32_t i = samples->chunks[l].begin;
-             samples->chunks[l].collider == collider && i < samples->chunks[l].end; i++) {
-            struct cs_contact_sample_point point;
-            struct cs_point_contact contact;
-            double p[3];
-            cs_contact_sample_first(samples->chunks + l, i, &point);
-            while (point.particles[0] - first < count && cs_contact_sample_next(&point)) {
-                cs_contact_sample_interpolate(&point, system->view.n, system->state, p);
-                if (cs_contact_sample_mass(system, &point) < HUGE_VAL &&
-                    cs_posed_collider_law_in_range(law, p, rest, &contact))
-                    add_contact(at, &contact);
-            }
-        }
+    struct cs_point_contact contact;
+    double p[3];
+    cs_contact_sample_interpolate(point, layer->system->view.n, layer->system->state, p);
+    if (point->particles[0] - body->first < body->count &&
+        cs_contact_sample_mass(layer->system, point) < HUGE_VAL &&
+        cs_posed_collider_law_in_range(&layer->law, p, rest, &contact))
+        add_contact(layer->at, &contact);
 }
 
 /* Contact of body a with a collider that is no mesh. */
 static void measure_collider(const struct search *search, struct interface *at) {
-    const struct cs_system *system = search->system;
-    const uint32_t collider = at->b - system->scene->bodies.n;
-    const size_t n = system->view.n, first = system->bodies[at->a].first;
-    const double *x = system->state, rest[3] = {0};
-    struct cs_posed_collider_law law;
-    struct cs_point_contact contact;
-    cs_posed_collider_law_at(system, collider, 0, &law);
-    at->range = law.params.range;
-    at->k = law.params.k;
-    for (size_t i = first; i < first + system->bodies[at->a].count; i++) {
-        const double p[3] = {x[i], x[n + i], x[2 * n + i]};
-        if (system->inv_mass[i] > 0 && cs_posed_collider_law_in_range(&law, p, rest, &contact))
-            add_contact(at, &contact);
-    }
-    add_samples(system, &law, collider, at);
+    const uint32_t collider = at->b - search->system->scene->bodies.n;
+    struct layer layer = {.system = search->system, .at = at};
+    cs_posed_collider_law_at(search->system, collider, 0, &layer.law);
+    at->range = layer.law.params.range;
+    at->k = layer.law.params.k;
+    cs_contact_points_visit(search->system, collider, add_point, &layer);
 }
 
 /* Contact in pairs: the energy and the forces with the stiffness of all other pairs at 0. */

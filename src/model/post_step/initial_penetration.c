@@ -170,43 +170,45 @@ static enum cs_status clear(struct cs_system *system, const struct leaving *leav
     return CS_OK;
 }
 
-/* Refuses samples of an edge or triangle that are inside the collider of their chunk. */
-static enum cs_status check_between_particles(const struct cs_system *system,
-                                              const struct cs_contact_sample_chunk *chunk,
-                                              uint32_t item, struct cs_error *error) {
-    struct cs_posed_collider collider;
-    struct cs_contact_sample_point point;
-    cs_posed_collider_at(system, chunk->collider, 0, &collider);
-    for (cs_contact_sample_first(chunk, item, &point); cs_contact_sample_next(&point);) {
-        double p[3], n[3];
-        cs_contact_sample_interpolate(&point, system->view.n, system->state, p);
-        const double depth = -cs_posed_collider_distance(&collider, p, n);
-        if (!(depth > CS_PENETRATION_MIN) || cs_contact_sample_mass(system, &point) == HUGE_VAL)
-            continue;
-        struct cs_text first = {0}, second = {0};
-        cs_system_print_particle(system, point.particles[0], &first);
-        cs_system_print_particle(system, point.particles[1], &second);
-        cs_fail(error, CS_ERR_SCENE,
-                "%s: between %s and %s the surface starts %.3g m inside colliders[%u]: move it "
-                "outside",
-                system->scene->path, cs_text_get(&first), cs_text_get(&second), depth,
-                chunk->collider);
-        cs_text_finish(&first);
-        cs_text_finish(&second);
-        return error->status;
-    }
-    return CS_OK;
+/* Samples of one collider. */
+struct between {
+    const struct cs_system *system;
+    struct cs_posed_collider posed;
+    uint32_t collider;
+    struct cs_error *error;
+};
+
+/* Refuses a sample of an edge or triangle that is inside the collider. */
+static void check_sample(void *arg, const struct cs_contact_sample_point *point) {
+    const struct between *between = arg;
+    const struct cs_system *system = between->system;
+    double p[3], n[3];
+    cs_contact_sample_interpolate(point, system->view.n, system->state, p);
+    const double depth = -cs_posed_collider_distance(&between->posed, p, n);
+    if (point->n == 1 || between->error->status || !(depth > CS_PENETRATION_MIN) ||
+        cs_contact_sample_mass(system, point) == HUGE_VAL)
+        return;
+    struct cs_text first = {0}, second = {0};
+    cs_system_print_particle(system, point->particles[0], &first);
+    cs_system_print_particle(system, point->particles[1], &second);
+    cs_fail(between->error, CS_ERR_SCENE,
+            "%s: between %s and %s the surface starts %.3g m inside colliders[%u]: move it "
+            "outside",
+            system->scene->path, cs_text_get(&first), cs_text_get(&second), depth,
+            between->collider);
+    cs_text_finish(&first);
+    cs_text_finish(&second);
 }
 
-/* Checks the samples of all chunks. */
+/* Checks the samples of all colliders. */
 static enum cs_status check_between(const struct cs_system *system, struct cs_error *error) {
-    for (uint32_t l = 0; l < system->contact_samples->n_chunks; l++) {
-        const struct cs_contact_sample_chunk *chunk = system->contact_samples->chunks + l;
-        for (uint32_t i = chunk->begin; i < chunk->end; i++)
-            if (check_between_particles(system, chunk, i, error))
-                return error->status;
+    struct between between = {.system = system, .error = error};
+    for (uint32_t k = 0; k < system->scene->colliders.n && !error->status; k++) {
+        between.collider = k;
+        cs_posed_collider_at(system, k, 0, &between.posed);
+        cs_contact_points_visit(system, k, check_sample, &between);
     }
-    return CS_OK;
+    return error->status;
 }
 
 /* Refuses surfaces with contact that cross at the start. */

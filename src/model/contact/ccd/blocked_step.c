@@ -76,21 +76,29 @@ static double kinetic(double mass, const double way[3], double h) {
 
 /* The point of a body that the step takes deepest into the range of a collider. */
 struct point_search {
-    const struct cs_collider_step *step;
+    struct cs_collider_step steps[2]; /* of particles, of samples */
     uint32_t collider;
     bool samples, resolved; /* of samples; those too that do not miss contact */
     double y;               /* distance at the end over the range; of the best one */
-    uint32_t particle;
+    uint32_t particle;      /* a sample is named by its first vertex */
     struct place place;
 };
 
-/* Takes a point over that goes deepest. */
-static void try_point(struct point_search *search, uint32_t particle, double mass,
-                      const double from[3], const double to[3]) {
-    const struct cs_collider_step *step = search->step;
+/* Takes a free point over that goes deepest. */
+static void try_point(void *arg, const struct cs_contact_sample_point *point) {
+    struct point_search *search = arg;
+    const struct cs_collider_step *step = search->steps + (point->n > 1);
+    const struct cs_system *system = step->system;
     const double range = step->params.range, k = step->params.k;
-    double start[3], way[3], g[3], h[6];
-    if (!search->resolved && !(cs_collider_step_excess(step, mass, from, to) > 0))
+    const double mass = point->n > 1 ? cs_contact_sample_mass(system, point)
+                        : system->inv_mass[point->particles[0]] > 0
+                            ? system->mass[point->particles[0]]
+                            : HUGE_VAL;
+    double from[3], to[3], start[3], way[3], g[3], h[6];
+    cs_contact_sample_interpolate(point, system->view.n, step->x0, from);
+    cs_contact_sample_interpolate(point, system->view.n, step->x1, to);
+    if (mass == HUGE_VAL ||
+        (!search->resolved && !(cs_collider_step_excess(step, mass, from, to) > 0)))
         return;
     for (int c = 0; c < 3; c++) {
         start[c] = from[c] + step->at_t1.centre[c] - step->at_t0.centre[c];
@@ -101,59 +109,10 @@ static void try_point(struct point_search *search, uint32_t particle, double mas
         return;
     const double d = cs_posed_collider_smooth_distance(&step->at_t1, start, g, h);
     search->y = y;
-    search->particle = particle;
+    search->particle = point->particles[0];
+    search->samples = point->n > 1;
     search->place = (struct place){
         d, range, k, k, kinetic(mass, way, step->h) + cs_barrier_energy(d, range, k), false};
-}
-
-/* Tests all free particles. */
-static void try_particles(const struct cs_system *system, struct point_search *search) {
-    const size_t n = system->view.n;
-    const double *x0 = search->step->x0, *x1 = search->step->x1;
-    for (uint32_t i = 0; i < n; i++)
-        if (system->inv_mass[i] > 0)
-            try_point(search, i, system->mass[i],
-                      (const double[3]){x0[i], x0[n + i], x0[2 * n + i]},
-                      (const double[3]){x1[i], x1[n + i], x1[2 * n + i]});
-}
-
-/* Tests all samples; a sample is named by its first vertex. */
-static void try_samples(const struct cs_system *system, struct point_search *search) {
-    const struct cs_contact_samples *samples = system->contact_samples;
-    for (uint32_t l = 0; samples && l < samples->n_chunks; l++)
-        for (uint32_t i = samples->chunks[l].begin;
-             samples->chunks[l].collider == search->collider && i < samples->chunks[l].end;
-             i++) {
-            struct cs_contact_sample_point point;
-            for (cs_contact_sample_first(samples->chunks + l, i, &point);
-                 cs_contact_sample_next(&point);) {
-                double from[3], to[3];
-                cs_contact_sample_interpolate(&point, system->view.n, search->step->x0, from);
-                cs_contact_sample_interpolate(&point, system->view.n, search->step->x1, to);
-                const double mass = cs_contact_sample_mass(system, &point);
-                if (mass < HUGE_VAL)
-                    try_point(search, point.particles[0], mass, from, to);
-            }
-        }
-}
-
-/* Searches the particles or samples near search->collider; returns false if none goes deeper
- * than search->y. */
-static bool find_point(const struct cs_blocked_step *blocked, const struct cs_system *system,
-                       struct point_search *search) {
-    const double before = search->y;
-    struct cs_collider_step step = {.x0 = blocked->x,
-                                    .x1 = blocked->x + 3 * (size_t)system->view.n};
-    cs_collider_step_set(&step, system, search->collider, blocked->t[0], blocked->t[1]);
-    if (!search->samples)
-        cs_collider_step_set_beside_rebounds(&step);
-    search->step = &step;
-    if (search->samples)
-        try_samples(system, search);
-    else
-        try_particles(system, search);
-    search->step = NULL;
-    return search->y < before;
 }
 
 static void print_point(const struct point_search *found, const struct cs_system *system,
@@ -165,21 +124,28 @@ static void print_point(const struct point_search *found, const struct cs_system
 }
 
 /* Finds a point of a body at a collider: the deepest one in range, if resolved ones count, else
- * the first that misses contact, which rejected the step. Returns false if there is none. */
+ * the deepest at the first collider whose contact is missed, which rejected the step. Returns
+ * false if there is none. */
 static bool find_first_point(const struct cs_blocked_step *blocked,
                              const struct cs_system *system, bool resolved,
                              struct point_search *found) {
-    *found = (struct point_search){.y = resolved ? 1 : HUGE_VAL};
-    for (uint32_t c = 0; c < system->scene->colliders.n && system->collider_params; c++)
-        for (int samples = 0; samples < 2; samples++) {
-            struct point_search search = {
-                .collider = c, .samples = samples > 0, .resolved = resolved, .y = found->y};
-            if (!find_point(blocked, system, &search))
-                continue;
-            *found = search;
-            if (!resolved)
-                return true;
+    *found = (struct point_search){.resolved = resolved, .y = resolved ? 1 : HUGE_VAL};
+    for (uint32_t c = 0; c < system->scene->colliders.n && system->collider_params; c++) {
+        struct point_search search = *found;
+        search.collider = c;
+        for (int k = 0; k < 2; k++) {
+            search.steps[k].x0 = blocked->x;
+            search.steps[k].x1 = blocked->x + 3 * (size_t)system->view.n;
+            cs_collider_step_set(search.steps + k, system, c, blocked->t[0], blocked->t[1]);
         }
+        cs_collider_step_set_beside_rebounds(search.steps);
+        cs_contact_points_visit(system, c, try_point, &search);
+        if (!(search.y < found->y))
+            continue;
+        *found = search;
+        if (!resolved)
+            return true;
+    }
     return resolved && found->y < 1;
 }
 
