@@ -99,7 +99,8 @@ static uint32_t sift(const double *x, double scale, bool edges, double share,
         cs_distance_filter_add(&filter, points, at, share * sqrt(lanes->squared[l]) / scale,
                                (const uint32_t[2]){l, l + 1});
     }
-    const uint32_t kept = cs_distance_filter_run(&filter, edges);
+    const uint32_t kept =
+        cs_distance_filter_run(edges ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE, &filter);
     for (uint32_t k = 0; k < kept; k++) {
         UNIT_ASSERT_OFTEN(filter.pairs[k][1] == filter.pairs[k][0] + 1);
         bits |= 1u << filter.pairs[k][0];
@@ -171,6 +172,8 @@ TEST(not_finite_is_let_through) {
             cs_distance_filter_scale_points(x, 5, 1, 0, 5, points);
             cs_distance_filter_add(&filter, points, (const uint32_t[4]){1, 2, 3, 4}, 0.1,
                                    (const uint32_t[2]){0, 1});
-            ck_assert_uint_eq(cs_distance_filter_run(&filter, edges), 1);
+            ck_assert_uint_eq(cs_distance_filter_run(
+                                  edges ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE, &filter),
+                              1);
         }
 }

@@ -9,16 +9,10 @@
 /* arrays: positions at both ends of a step, then velocities */
 enum { VELOCITIES = 2, ARRAYS };
 
-/* Pose and motion of a collider, as one array has it. */
-struct pose {
-    double centre[3], axes[3][3], velocity[3], spin[3], pivot[3];
-    double t; /* s, of the key frames; 0 without them */
-};
-
 struct cs_points {
     double *of[ARRAYS]; /* (3, n_points) */
     /* (ARRAYS, colliders) poses in the arrays; a collider at rest is not set again */
-    struct pose *posed;
+    struct cs_posed_collider *posed;
 };
 
 enum cs_status cs_surface_points_build(struct cs_system *system, struct cs_error *error) {
@@ -47,20 +41,6 @@ static void copy_particles(const struct cs_system *system, const double *from, d
     }
 }
 
-/* Returns whether an array has this pose already, and records it. */
-static bool is_posed(const struct cs_posed_collider *collider, struct pose *posed) {
-    struct pose pose;
-    memcpy(pose.centre, collider->centre, sizeof pose.centre);
-    memcpy(pose.axes, collider->axes, sizeof pose.axes);
-    memcpy(pose.velocity, collider->velocity, sizeof pose.velocity);
-    memcpy(pose.spin, collider->spin, sizeof pose.spin);
-    memcpy(pose.pivot, collider->rotation_centre, sizeof pose.pivot);
-    pose.t = collider->path.t;
-    const bool same = !memcmp(posed, &pose, sizeof pose);
-    *posed = pose;
-    return same;
-}
-
 /* Sets positions or velocities of the vertices of a collider. */
 static void set_vertices(const struct cs_surfaces *surfaces, uint32_t surface,
                          const struct cs_posed_collider *collider, bool velocities,
@@ -81,11 +61,13 @@ static void set_obstacles(const struct cs_system *system, double t, int array) {
     const uint32_t n_bodies = system->scene->bodies.n;
     const uint32_t n = system->surfaces->n_bodies - n_bodies;
     for (uint32_t k = 0; k < n; k++) {
-        struct cs_posed_collider collider;
+        struct cs_posed_collider collider, *posed = points->posed + (size_t)array * n + k;
         cs_posed_collider_at(system, k, t, &collider);
-        if (!is_posed(&collider, points->posed + (size_t)array * n + k))
+        // all numbers, and no gaps between them
+        if (memcmp(posed, &collider, sizeof collider))
             set_vertices(system->surfaces, n_bodies + k, &collider, array == VELOCITIES,
                          points->of[array]);
+        *posed = collider;
     }
 }
 

@@ -196,42 +196,34 @@ static void add_at(double *f, size_t n, size_t i, const double a[3]) {
         f[c * n + i] += a[c];
 }
 
-/* Adds forces or their changes of the particles of a block near one collider. */
+/* Adds forces or their changes of the particles of a block near one collider, unless f is NULL,
+ * and the power that the collider gives. */
 static void add_vectors(const struct cs_point_query *query,
                         const struct cs_posed_collider_law *law, uint32_t collider, double *f) {
     const struct cs_block *block = query->eval.block;
     struct cs_point_answer answer;
-    for (size_t i = block->begin; i < block->end; i++)
-        if (evaluate(query, law, collider, i, &answer))
+    for (size_t i = block->begin; i < block->end; i++) {
+        if (!evaluate(query, law, collider, i, &answer))
+            continue;
+        if (f)
             add_at(f, query->system->view.n, i, answer.vector);
-}
-
-/* Adds the powers that a collider gives if it moves. */
-static void add_powers(const struct cs_point_query *query,
-                       const struct cs_posed_collider_law *law, uint32_t collider) {
-    const struct cs_posed_collider *pose = &law->collider;
-    const double *u = pose->velocity, *w = pose->spin;
-    const struct cs_block *block = query->eval.block;
-    struct cs_point_answer answer;
-    if (!query->eval.power || (u[0] == 0 && u[1] == 0 && u[2] == 0 && w[0] == 0 && w[1] == 0 &&
-                               w[2] == 0 && pose->growth == 0))
-        return;
-    for (size_t i = block->begin; i < block->end; i++)
-        if (evaluate(query, law, collider, i, &answer))
+        if (query->eval.power && query->quantity == CS_POINT_FORCE)
             query->eval.power[i] += answer.energy;
+    }
 }
 
-/* Spheres and planes have a vectorised path with the same formulas. */
+/* Spheres and planes have a vectorised path with the same formulas, and give power if they
+ * move. */
 static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const struct cs_contact_force_parts parts = cs_force_parts_of(at->parts);
     const struct cs_point_query query = {system, CS_POINT_FORCE, *at, NULL};
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_posed_collider_law law = near_of(system, c, at->t);
-        if (cs_posed_collider_law_is_plain(&law))
+        const bool plain = cs_posed_collider_law_is_plain(&law);
+        if (plain)
             contact_rows_add(&law, system, at, parts, f);
-        else
-            add_vectors(&query, &law, c, f);
-        add_powers(&query, &law, c);
+        if (!plain || (at->power && !cs_vec3_is_zero(law.collider.velocity)))
+            add_vectors(&query, &law, c, plain ? NULL : f);
     }
 }
 

@@ -32,8 +32,6 @@ struct cs_candidate_chunk {
     /* (n_nearby, 2) those within CS_CANDIDATES_NEARBY ranges more, and perhaps some beyond */
     uint32_t *nearby;
     size_t n_nearby, nearby_capacity;
-    /* answer of one chunk to a query over all candidates; the query defines it */
-    double result;
 };
 
 /* Ranges beyond the own one up to which candidates are nearby: explicit steps move less. */

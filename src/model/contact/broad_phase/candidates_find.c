@@ -19,7 +19,7 @@ static bool may_meet(const void *arg, uint32_t a, uint32_t b) {
 
 /* Empties the distance filter, and appends the pairs that pass to a chunk. */
 static void store_pairs(struct cs_candidate_chunk *chunk, struct cs_distance_filter *filter) {
-    const uint32_t n = cs_distance_filter_run(filter, chunk->kind == CS_PAIR_EDGE_EDGE);
+    const uint32_t n = cs_distance_filter_run(chunk->kind, filter);
     chunk->failed =
         chunk->failed || !CS_ARENA_REALLOC(chunk->pairs, chunk->capacity, 2 * (chunk->n + n));
     if (!n || chunk->failed)

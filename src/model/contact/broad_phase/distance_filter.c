@@ -97,7 +97,8 @@ CS_INLINE float from_edge(struct shape s) {
 }
 
 /* Sets `ratio` of all lanes. */
-CS_INLINE void measure(struct cs_distance_filter *restrict filter, bool edges) {
+CS_INLINE void measure(enum cs_pair_kind kind, struct cs_distance_filter *restrict filter) {
+    const bool edges = kind == CS_PAIR_EDGE_EDGE;
     for (int l = 0; l < CS_DISTANCE_FILTER; l++) {
         float p[4][3], u[3], v[3], w[3];
         CS_UNROLLED
@@ -118,28 +119,16 @@ CS_INLINE void measure(struct cs_distance_filter *restrict filter, bool edges) {
     }
 }
 
-CS_CLONES static void measure_triangles(struct cs_distance_filter *restrict filter) {
-    measure(filter, false);
-}
+CS_PAIR_KERNEL(extern, cs_distance_filter_measure, measure,
+               (struct cs_distance_filter *restrict filter), (filter))
 
-CS_CLONES static void measure_edges(struct cs_distance_filter *restrict filter) {
-    measure(filter, true);
-}
-
-void cs_distance_filter_measure(struct cs_distance_filter *filter, bool edges) {
-    if (edges)
-        measure_edges(filter);
-    else
-        measure_triangles(filter);
-}
-
-uint32_t cs_distance_filter_run(struct cs_distance_filter *filter, bool edges) {
+uint32_t cs_distance_filter_run(enum cs_pair_kind kind, struct cs_distance_filter *filter) {
     const uint32_t n = filter->n;
     uint32_t kept = 0;
     filter->n = 0;
     if (!n)
         return 0;
-    cs_distance_filter_measure(filter, edges);
+    cs_distance_filter_measure(kind, filter);
     for (uint32_t l = 0; l < n; l++) {
         // Compaction without a branch: a removed pair is overwritten by the next.
         memcpy(filter->pairs[kept], filter->pairs[l], sizeof filter->pairs[l]);

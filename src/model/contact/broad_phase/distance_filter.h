@@ -32,6 +32,8 @@
 #ifndef CS_BROAD_PHASE_DISTANCE_FILTER_H
 #define CS_BROAD_PHASE_DISTANCE_FILTER_H
 
+#include "model/contact/pair_distance.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -78,7 +80,7 @@ static inline bool cs_distance_filter_add(struct cs_distance_filter *filter,
 }
 
 /* Sets `ratio` of all lanes. */
-void cs_distance_filter_measure(struct cs_distance_filter *filter, bool edges);
+void cs_distance_filter_measure(enum cs_pair_kind kind, struct cs_distance_filter *filter);
 
 /* R^2 of the inequality above with its factor, to change the reach after measuring. */
 static inline float cs_distance_filter_bound(float reach) {
@@ -87,6 +89,6 @@ static inline float cs_distance_filter_bound(float reach) {
 
 /* Empties the filter and returns how many pairs pass. These come first in filter->pairs, in the
  * order in which they were added. Pairs with positions that are not finite pass. */
-uint32_t cs_distance_filter_run(struct cs_distance_filter *filter, bool edges);
+uint32_t cs_distance_filter_run(enum cs_pair_kind kind, struct cs_distance_filter *filter);
 
 #endif

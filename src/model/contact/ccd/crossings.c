@@ -306,35 +306,6 @@ static bool may_meet(const void *arg, uint32_t a, uint32_t b) {
            (!apart || apart[(size_t)a * question->system->surfaces->n_bodies + b]);
 }
 
-/* Sought among all pairs of the move from x0 to x1 (3,n_points), whose motion is set. */
-static struct cs_first_collision search_first(const struct cs_system *system, const double *x0,
-                                              const double *x1) {
-    struct cs_crossings *crossings = system->crossings;
-    struct question question = {.system = system, .crossings = crossings, .x = x0};
-    struct cs_first_collision first = {.fraction = 1};
-    const struct cs_move_query query = {.x0 = x0,
-                                        .x1 = x1,
-                                        .reach = {CS_ACCD_DISTANCE_MIN, CS_ACCD_DISTANCE_MIN},
-                                        .may_meet = may_meet,
-                                        .take = try_found,
-                                        .arg = &question};
-    clear_found(crossings);
-    crossings->failed |= !cs_primitive_search_move(crossings->search, &query);
-    for (uint32_t k = 0; k < crossings->search->n_chunks; k++)
-        if (crossings->found[k].collision.fraction < first.fraction)
-            first = crossings->found[k].collision;
-    return first;
-}
-
-struct cs_first_collision cs_crossings_first_collision(const struct cs_system *system,
-                                                       double t0, const double *x0, double t1,
-                                                       const double *x1) {
-    const double *from = cs_surface_points_positions(system, CS_POINTS_BEGIN, t0, x0);
-    const double *to = cs_surface_points_positions(system, CS_POINTS_END, t1, x1);
-    cs_point_motion_set(system, from, to, system->crossings->motion);
-    return search_first(system, from, to);
-}
-
 /* --- in the list of candidates --- */
 
 /* Returns whether contact is defined between all pairs, colliders with each other excepted.
@@ -361,29 +332,39 @@ bool cs_crossings_list_suffices(const struct cs_system *system, const double *x0
            cs_candidates_cover_step(&pairs->candidates, x0, x1);
 }
 
-/* Fraction of one chunk of the list. */
+/* Tries one chunk of the list, which has the number of a chunk of the search. */
 static void try_chunk(void *arg, uint32_t number) {
     const struct question *question = arg;
-    struct cs_candidate_chunk *chunk = question->system->pairs->candidates.chunks + number;
-    struct cs_first_collision first = {.fraction = 1};
+    const struct cs_candidate_chunk *chunk =
+        question->system->pairs->candidates.chunks + number;
     for (size_t p = 0; p < chunk->n; p += CS_SEARCH_PAIRS)
         try_pairs(question, chunk->kind, (const uint32_t(*)[2])(chunk->pairs + 2 * p),
-                  chunk->n - p < CS_SEARCH_PAIRS ? chunk->n - p : CS_SEARCH_PAIRS, &first);
-    chunk->result = first.fraction;
+                  chunk->n - p < CS_SEARCH_PAIRS ? chunk->n - p : CS_SEARCH_PAIRS,
+                  &question->crossings->found[number].collision);
 }
 
-double cs_crossings_safe_fraction(const struct cs_system *system, double t0, const double *x0,
-                                  double t1, const double *x1) {
+struct cs_first_collision cs_crossings_first_collision(const struct cs_system *system,
+                                                       double t0, const double *x0, double t1,
+                                                       const double *x1) {
+    struct cs_crossings *crossings = system->crossings;
     const double *from = cs_surface_points_positions(system, CS_POINTS_BEGIN, t0, x0);
     const double *to = cs_surface_points_positions(system, CS_POINTS_END, t1, x1);
-    cs_point_motion_set(system, from, to, system->crossings->motion);
-    if (!cs_crossings_list_suffices(system, from, to))
-        return search_first(system, from, to).fraction;
-    const struct cs_candidates *list = &system->pairs->candidates;
-    struct question question = {.system = system, .crossings = system->crossings, .x = from};
-    double share = 1;
-    cs_pool_run(list->n_chunks, try_chunk, &question);
-    for (uint32_t l = 0; l < list->n_chunks; l++)
-        share = fmin(share, list->chunks[l].result);
-    return share;
+    struct question question = {.system = system, .crossings = crossings, .x = from};
+    struct cs_first_collision first = {.fraction = 1};
+    const struct cs_move_query query = {.x0 = from,
+                                        .x1 = to,
+                                        .reach = {CS_ACCD_DISTANCE_MIN, CS_ACCD_DISTANCE_MIN},
+                                        .may_meet = may_meet,
+                                        .take = try_found,
+                                        .arg = &question};
+    cs_point_motion_set(system, from, to, crossings->motion);
+    clear_found(crossings);
+    if (cs_crossings_list_suffices(system, from, to))
+        cs_pool_run(crossings->search->n_chunks, try_chunk, &question);
+    else
+        crossings->failed |= !cs_primitive_search_move(crossings->search, &query);
+    for (uint32_t k = 0; k < crossings->search->n_chunks; k++)
+        if (crossings->found[k].collision.fraction < first.fraction)
+            first = crossings->found[k].collision;
+    return first;
 }

@@ -47,30 +47,13 @@ static void read_lane(const double *rows, size_t width, const uint32_t to[4], ui
 
 /* --- one by one --- */
 
-/* Sets the contact of one lane from its points and parameters. */
-static void contact_of(const struct work *work, const struct cs_pair_lanes *lanes, uint32_t l,
-                       struct cs_pair_contact *contact) {
-    const struct cs_system *system = work->narrow->contacts->candidates->system;
-    const struct cs_body_pair_params params = {
-        .range = lanes->range[l], .k = lanes->k[l], .friction = lanes->friction[l]};
-    const struct cs_feature_kind kind = {lanes->is_edge[l], lanes->is_off_plane[l],
-                                         lanes->blend_radius[l]};
-    double p[4][3], v[4][3];
-    for (int k = 0; k < 12; k++) {
-        p[k / 3][k % 3] = lanes->p[k / 3][k % 3][l];
-        v[k / 3][k % 3] = lanes->v[k / 3][k % 3][l];
-    }
-    cs_pair_contact_measure(contact, work->chunk->kind, kind, params.range, p);
-    cs_pair_contact_set(contact, &params, system->scene->contact, v);
-}
-
 /* Stores the friction of a block of pairs. The velocities are those of colliders alone. */
-static void store_lagged(const struct work *work, const struct cs_pair_lanes *lanes,
-                         size_t first) {
+static void store_lagged(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     const struct cs_narrow_phase *narrow = work->narrow;
     struct cs_pair_contact contact;
     for (uint32_t l = 0; l < lanes->n; l++) {
-        contact_of(work, lanes, l, &contact);
+        cs_pair_lanes_contact(work->chunk->kind, lanes, l,
+                              narrow->contacts->candidates->system->scene->contact, &contact);
         cs_lagged_friction_store(narrow->contacts->candidates->system->lagged_friction,
                                  narrow->first_lagged + work->number, &contact.contact, 4,
                                  work->chunk->points[first + l], contact.weight);
@@ -152,7 +135,7 @@ static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t f
         cs_pair_lanes_matrix(work->chunk->kind, lanes, keys, narrow->matrix, factors);
     for (uint32_t l = 0; l < lanes->n && narrow->result->exact; l++) {
         struct cs_pair_contact contact;
-        contact_of(work, lanes, l, &contact);
+        cs_pair_lanes_contact(work->chunk->kind, lanes, l, keys, &contact);
         cs_pair_matrix_set_hessian(&contact, narrow->matrix, terms->hessians + first + l);
     }
 }

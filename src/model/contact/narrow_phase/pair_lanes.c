@@ -63,6 +63,13 @@ CS_INLINE void lane_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, i
     contact->contact.rate = lanes->rate[lane];
 }
 
+void cs_pair_lanes_contact(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, uint32_t lane,
+                           const struct cs_contact_keys *keys,
+                           struct cs_pair_contact *contact) {
+    lane_force(kind, lanes, (int)lane, &(struct cs_pair_lane_constants){.keys = *keys},
+               contact);
+}
+
 /* out = f_k of every lane: cs_pair_contact_force */
 CS_INLINE void force(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
                      const struct cs_pair_lane_constants *constants) {

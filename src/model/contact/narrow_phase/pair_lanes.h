@@ -50,6 +50,10 @@ struct cs_pair_lane_constants {
     struct cs_contact_force_parts parts;
 };
 
+/* Sets *contact to the pair of one lane. */
+void cs_pair_lanes_contact(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, uint32_t lane,
+                           const struct cs_contact_keys *keys, struct cs_pair_contact *contact);
+
 /* Sets `out` to the forces, or to their exact change along (dp, dv), for edges or for features
  * of triangles. Formulas: contact_pairs.h. */
 void cs_pair_lanes_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,

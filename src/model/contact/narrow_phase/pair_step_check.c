@@ -24,75 +24,8 @@
  * with psi, F, K at the start, dx the whole displacement and s the fraction of it. The step
  * resolves the contact if e is at most CS_UNRESOLVED_ENERGY_MAX of the energy of the pair. */
 
-/* Positions at the start and displacements of the whole step, in m. */
-struct cs_pair_motion {
-    enum cs_pair_kind kind;
-    double x0[4][3], displacement[4][3]; /* m */
-    double inverse_mass[4];              /* 1/kg */
-};
-
-/* m2, squared relative displacement of points i and j */
-CS_INLINE double pair_motion_relative_squared(struct cs_pair_motion *motion, int i, int j) {
-    const double *a = motion->displacement[i], *b = motion->displacement[j];
-    const double r[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return cs_vec3_dot(r, r);
-}
-
-/* m, largest relative displacement of a point of one side and a point of the other. Contact
- * points are convex combinations of the points, so none moves further relative to the other
- * side. */
-CS_INLINE double pair_motion_longest(struct cs_pair_motion *motion) {
-    const bool edges = motion->kind == CS_PAIR_EDGE_EDGE;
-    double most = edges ? 0 : cs_fmax(pair_motion_relative_squared(motion, 0, 1), 0);
-    most = cs_fmax(pair_motion_relative_squared(motion, 0, 2), most);
-    most = cs_fmax(pair_motion_relative_squared(motion, 0, 3), most);
-    most = edges ? cs_fmax(pair_motion_relative_squared(motion, 1, 2), most) : most;
-    most = edges ? cs_fmax(pair_motion_relative_squared(motion, 1, 3), most) : most;
-    return sqrt(most);
-}
-
-/* The second-order model, at the start of a step. */
-struct cs_pair_motion_start {
-    struct cs_barrier barrier;
-    /* J: psi(d); and the energy of the pair, psi(d) + kinetic energy of the relative motion of
-     * its contact points + psi(D/2) */
-    double contact_energy, total_energy;
-    /* m, first-order decrease -g.dx of the distance over the whole step */
-    double approach;
-};
-
-/* Sets the model from the pair at the start, and returns its distance in m; h: seconds of the
- * whole step. The effective mass of the contact points is 1 / sum (w_k^2 / m_k), infinite if
- * all are pinned. psi(D/2) keeps pairs that barely touch from being judged. */
-CS_INLINE double pair_motion_begin(struct cs_pair_motion *motion, double h, double range,
-                                   double k, struct cs_pair_motion_start *start) {
-    struct cs_pair_contact at;
-    const double d = cs_pair_contact_measure_whole(&at, motion->kind, range, motion->x0);
-    double v[3] = {0}, inverse = 0;
-    start->approach = 0;
-    for (int j = 0; j < 4; j++) {
-        inverse += at.weight[j] * at.weight[j] * motion->inverse_mass[j];
-        start->approach -= cs_vec3_dot(at.g[j], motion->displacement[j]);
-        for (int c = 0; c < 3; c++)
-            v[c] += at.weight[j] * motion->displacement[j][c] / h;
-    }
-    const double kinetic = 0.5 * cs_vec3_dot(v, v) / inverse;
-    start->barrier = cs_barrier_at(d, range, k);
-    start->contact_energy = cs_barrier_energy(d, range, k);
-    start->total_energy = (inverse > 0 ? kinetic : HUGE_VAL) + start->contact_energy +
-                          cs_barrier_energy(0.5 * range, range, k);
-    return d;
-}
-
 /* largest number of samples of one step; longer steps have coarser samples */
 enum { SAMPLES_MAX = 64 };
-
-/* Number of equal parts of a step, at whose ends it is sampled: they are at most half a range
- * of relative motion, so that no contact is passed over. */
-CS_INLINE double pair_motion_parts(double longest, double range) {
-    const double along = longest / (0.5 * range);
-    return 1 + (int)(along < SAMPLES_MAX - 1 ? along : SAMPLES_MAX - 1);
-}
 
 /* Eight pairs in lanes; lanes without a pair hold unspecified numbers. */
 enum { LANES = 8 };
@@ -100,36 +33,50 @@ enum { LANES = 8 };
 struct lanes {
     double x0[4][3][LANES], displacement[4][3][LANES], inverse_mass[4][LANES];
     double range[LANES], k[LANES];
-    /* struct cs_pair_motion_start */
-    double contact_energy[LANES], total_energy[LANES], approach[LANES], force[LANES],
-        stiffness[LANES];
-    double parts[LANES]; /* pair_motion_parts */
+    /* at the start, in J: psi(d); and the energy of the pair, psi(d) + kinetic energy of the
+     * relative motion of its contact points + psi(D/2) */
+    double contact_energy[LANES], total_energy[LANES];
+    /* N, N/m; m, first-order decrease -g.dx of the distance over the whole step */
+    double force[LANES], stiffness[LANES], approach[LANES];
+    /* equal parts of the step, at whose ends it is sampled: they are at most half a range of
+     * relative motion, so that no contact is passed over */
+    double parts[LANES];
     /* of the samples so far: least distance in m, largest e in J */
     double nearest[LANES], missed[LANES];
 };
 
-/* Copies one lane to a pair in point order. */
-CS_INLINE void read_motion(struct lanes *lanes, int lane, struct cs_pair_motion *motion) {
+/* m2, squared relative displacement of points i and j */
+CS_INLINE double relative_squared(const struct lanes *lanes, int l, int i, int j) {
+    double r[3];
     CS_UNROLLED
-    for (int k = 0; k < 12; k++) {
-        motion->x0[k / 3][k % 3] = lanes->x0[k / 3][k % 3][lane];
-        motion->displacement[k / 3][k % 3] = lanes->displacement[k / 3][k % 3][lane];
-    }
-    CS_UNROLLED
-    for (int k = 0; k < 4; k++)
-        motion->inverse_mass[k] = lanes->inverse_mass[k][lane];
+    for (int c = 0; c < 3; c++)
+        r[c] = lanes->displacement[i][c][l] - lanes->displacement[j][c][l];
+    return cs_vec3_dot(r, r);
+}
+
+/* m, largest relative displacement of a point of one side and a point of the other. Contact
+ * points are convex combinations of the points, so none moves further relative to the other
+ * side. */
+CS_INLINE double longest_of(enum cs_pair_kind kind, const struct lanes *lanes, int l) {
+    const bool edges = kind == CS_PAIR_EDGE_EDGE;
+    double most = edges ? 0 : cs_fmax(relative_squared(lanes, l, 0, 1), 0);
+    most = cs_fmax(relative_squared(lanes, l, 0, 2), most);
+    most = cs_fmax(relative_squared(lanes, l, 0, 3), most);
+    most = edges ? cs_fmax(relative_squared(lanes, l, 1, 2), most) : most;
+    most = edges ? cs_fmax(relative_squared(lanes, l, 1, 3), most) : most;
+    return sqrt(most);
 }
 
 /* Samples one lane after the fraction `share` of the step. */
-CS_INLINE void sample_lane(struct lanes *lanes, int l, struct cs_pair_motion *motion,
-                           double share) {
+CS_INLINE void sample_lane(enum cs_pair_kind kind, struct lanes *lanes, int l, double share) {
     struct cs_pair_contact at;
     double p[4][3];
     CS_UNROLLED
     for (int j = 0; j < 12; j++)
-        p[j / 3][j % 3] = motion->x0[j / 3][j % 3] + share * motion->displacement[j / 3][j % 3];
+        p[j / 3][j % 3] =
+            lanes->x0[j / 3][j % 3][l] + share * lanes->displacement[j / 3][j % 3][l];
     const double range = lanes->range[l], k = lanes->k[l], come = share * lanes->approach[l];
-    const double d = cs_pair_contact_measure_whole(&at, motion->kind, range, p);
+    const double d = cs_pair_contact_measure_whole(&at, kind, range, p);
     const double seen = lanes->contact_energy[l] + lanes->force[l] * come +
                         0.5 * lanes->stiffness[l] * come * come;
     const double missed = fabs(cs_barrier_energy(d, range, k) - seen);
@@ -137,30 +84,51 @@ CS_INLINE void sample_lane(struct lanes *lanes, int l, struct cs_pair_motion *mo
     lanes->missed[l] = missed > lanes->missed[l] ? missed : lanes->missed[l];
 }
 
-/* Sets the model of all lanes. */
-CS_INLINE void begin_all(enum cs_pair_kind kind, struct lanes *restrict lanes, double h) {
-    for (int l = 0; l < LANES; l++) {
-        struct cs_pair_motion motion = {.kind = kind};
-        struct cs_pair_motion_start start;
-        read_motion(lanes, l, &motion);
-        lanes->nearest[l] = pair_motion_begin(&motion, h, lanes->range[l], lanes->k[l], &start);
-        lanes->missed[l] = 0;
-        lanes->contact_energy[l] = start.contact_energy;
-        lanes->total_energy[l] = start.total_energy;
-        lanes->approach[l] = start.approach;
-        lanes->force[l] = start.barrier.force;
-        lanes->stiffness[l] = start.barrier.stiffness;
-        lanes->parts[l] = pair_motion_parts(pair_motion_longest(&motion), lanes->range[l]);
+/* Sets the model of one lane; h: seconds of the whole step. The effective mass of the contact
+ * points is 1 / sum (w_k^2 / m_k), infinite if all are pinned. psi(D/2) keeps pairs that barely
+ * touch from being judged. */
+CS_INLINE void begin_lane(enum cs_pair_kind kind, struct lanes *lanes, int l, double h) {
+    struct cs_pair_contact at;
+    const double range = lanes->range[l], k = lanes->k[l];
+    double p[4][3], v[3] = {0}, inverse = 0, approach = 0;
+    CS_UNROLLED
+    for (int j = 0; j < 12; j++)
+        p[j / 3][j % 3] = lanes->x0[j / 3][j % 3][l];
+    const double d = cs_pair_contact_measure_whole(&at, kind, range, p);
+    for (int j = 0; j < 4; j++) {
+        double by[3];
+        CS_UNROLLED
+        for (int c = 0; c < 3; c++) {
+            by[c] = lanes->displacement[j][c][l];
+            v[c] += at.weight[j] * by[c] / h;
+        }
+        inverse += at.weight[j] * at.weight[j] * lanes->inverse_mass[j][l];
+        approach -= cs_vec3_dot(at.g[j], by);
     }
+    const double kinetic = 0.5 * cs_vec3_dot(v, v) / inverse;
+    const struct cs_barrier barrier = cs_barrier_at(d, range, k);
+    const double along = longest_of(kind, lanes, l) / (0.5 * range);
+    lanes->nearest[l] = d;
+    lanes->missed[l] = 0;
+    lanes->approach[l] = approach;
+    lanes->force[l] = barrier.force;
+    lanes->stiffness[l] = barrier.stiffness;
+    lanes->contact_energy[l] = cs_barrier_energy(d, range, k);
+    lanes->total_energy[l] = (inverse > 0 ? kinetic : HUGE_VAL) + lanes->contact_energy[l] +
+                             cs_barrier_energy(0.5 * range, range, k);
+    lanes->parts[l] = 1 + (int)(along < SAMPLES_MAX - 1 ? along : SAMPLES_MAX - 1);
+}
+
+CS_INLINE void begin_all(enum cs_pair_kind kind, struct lanes *restrict lanes, double h) {
+    for (int l = 0; l < LANES; l++)
+        begin_lane(kind, lanes, l, h);
 }
 
 /* Samples all lanes after part j of their steps; those of fewer parts at their end again. */
 CS_INLINE void sample_all(enum cs_pair_kind kind, struct lanes *restrict lanes, double j) {
     for (int l = 0; l < LANES; l++) {
-        struct cs_pair_motion motion = {.kind = kind};
         const double share = j / lanes->parts[l];
-        read_motion(lanes, l, &motion);
-        sample_lane(lanes, l, &motion, share < 1 ? share : 1);
+        sample_lane(kind, lanes, l, share < 1 ? share : 1);
     }
 }
 

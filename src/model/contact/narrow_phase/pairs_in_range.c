@@ -71,7 +71,7 @@ static void filter_chunk(struct work *work) {
     struct cs_candidate_chunk *chunk = work->chunk;
     uint32_t taken[CS_DISTANCE_FILTER], n_taken = 0;
     if (filter->n)
-        cs_distance_filter_measure(filter, chunk->kind == CS_PAIR_EDGE_EDGE);
+        cs_distance_filter_measure(chunk->kind, filter);
     for (uint32_t l = 0; l < filter->n; l++) {
         taken[n_taken] = l;
         n_taken += !(filter->ratio[l] + work->excess[l] > 0);
