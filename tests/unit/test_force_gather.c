@@ -1,5 +1,5 @@
 /* Rows of points, chunk by chunk: each point once, and sums that are those of all ends. */
-#include "model/contact/narrow_phase/force_gather.h"
+#include "model/contact/force_gather.h"
 #include "unit.h"
 
 #include <math.h>

@@ -292,6 +292,7 @@ void cs_contact_points_visit(const struct cs_system *system, uint32_t collider,
         point.particles[0] = i;
         visit(arg, &point);
     }
+    // chunks come by colliders
     for (uint32_t l = 0; samples && l < samples->n_chunks; l++)
         for (uint32_t i = samples->chunks[l].begin;
              samples->chunks[l].collider == collider && i < samples->chunks[l].end; i++)

@@ -41,6 +41,7 @@ struct cs_contact *cs_contact_set_append(struct cs_contact_set *set, uint32_t ch
     struct cs_contact_chunk *to = set->chunks + chunk;
     struct cs_gather_chunk *rows = set->gather.chunks + chunk;
     const uint32_t row = rows->n;
+    // a point of two contacts has two rows
     for (uint32_t k = 0; k < n; k++)
         cs_gather_append(rows, points[k]);
     if (rows->failed || !CS_ARENA_REALLOC(to->contacts, to->capacity, to->n + 1) ||
@@ -72,7 +73,7 @@ double cs_contact_set_energy(const struct cs_contact_set *set) {
     return sum;
 }
 
-void cs_contact_set_place_vectors(struct cs_contact_set *set) {
+void cs_contact_set_write_vectors(struct cs_contact_set *set) {
     for (uint32_t l = 0; l < set->gather.n_chunks && set->n; l++)
         memcpy(cs_gather_of(set->gather.chunks + l, set->gather.row_sums, 3),
                set->chunks[l].vectors, 3 * sizeof(double) * set->gather.chunks[l].n);
@@ -88,12 +89,13 @@ static double growth_of(const struct cs_contact *contact, uint32_t k) {
 }
 
 /* Into the six columns of what the gather has read, which no product uses. */
-void cs_contact_set_place_blocks(struct cs_contact_set *set) {
+void cs_contact_set_write_blocks(struct cs_contact_set *set) {
     if (!cs_gather_reserve(&set->gather, 6)) {
         set->failed = true;
         set->n = set->gather.n_rows = 0;
     }
     for (uint32_t l = 0; l < set->gather.n_chunks && set->n; l++) {
+        // rows follow each other as the contacts and their points do
         double *row = cs_gather_of(set->gather.chunks + l, set->gather.gathered, 6);
         for (size_t p = 0; p < set->chunks[l].n; p++) {
             const struct cs_contact *contact = set->chunks[l].contacts + p;
@@ -140,6 +142,7 @@ static void multiply_chunk(void *arg, uint32_t number) {
                 p[k][c] = points[k] < n ? product->p[c * n + points[k]] : 0;
                 all[c] += contact->weights[k] * p[k][c];
             }
+        // the solver applies what a point does to itself
         for (uint32_t k = 0; k < contact->n; k++, row += 3) {
             double others[3];
             for (int c = 0; c < 3; c++)
@@ -164,6 +167,7 @@ void cs_contact_set_multiply(const struct cs_contact_set *set, const double *p, 
 
 void cs_contact_set_add_bound(const struct cs_contact_set *set, double *stiffness,
                               double *damping) {
+    // in one thread: chunks share particles
     for (uint32_t l = 0; l < set->gather.n_chunks; l++)
         for (size_t p = 0; p < set->chunks[l].n; p++) {
             const struct cs_contact *contact = set->chunks[l].contacts + p;

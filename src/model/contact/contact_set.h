@@ -4,7 +4,7 @@
 #ifndef CS_CONTACT_SET_H
 #define CS_CONTACT_SET_H
 
-#include "model/contact/narrow_phase/force_gather.h"
+#include "model/contact/force_gather.h"
 
 /* One contact in range, with its terms in a matrix, (w w^T) x B, or its bounds. */
 struct cs_contact {
@@ -71,8 +71,8 @@ double cs_contact_set_energy(const struct cs_contact_set *set);
 /* Brings the vectors of all chunks into order, and the diagonal blocks of the matrix, for the
  * sums below. With set->diagonal_bound the blocks bound the whole matrix, by (sum a_i)^2 <= sum
  * |a_i| sum a_i^2/|a_i| of the weights (proof: find_growth of pair_lanes.c). */
-void cs_contact_set_place_vectors(struct cs_contact_set *set);
-void cs_contact_set_place_blocks(struct cs_contact_set *set);
+void cs_contact_set_write_vectors(struct cs_contact_set *set);
+void cs_contact_set_write_blocks(struct cs_contact_set *set);
 
 /* f (3,n) += the vectors, blocks (6,n) += the diagonal blocks of particles [begin, end). */
 void cs_contact_set_add(const struct cs_contact_set *set, size_t begin, size_t end, double *f);

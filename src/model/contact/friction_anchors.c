@@ -92,6 +92,7 @@ static void follow(void *arg, const struct cs_contact_sample_point *point) {
     double p[3], v[3], back[3];
     cs_contact_sample_interpolate(point, n, job->x, p);
     cs_contact_sample_interpolate(point, n, job->v, v);
+    // a sample that cannot move keeps its anchor
     if (mass == HUGE_VAL || !set(&job->law, anchor, p, mass, &bristle))
         return;
     if (job->v && !cs_contact_sample_is_tangled(job->system, point) &&

@@ -107,9 +107,9 @@ static void run(struct pass *pass) {
     if (set->n)
         cs_pool_run(set->gather.n_chunks, do_chunk, pass);
     if (pass->matrix)
-        cs_contact_set_place_blocks(set);
+        cs_contact_set_write_blocks(set);
     else
-        cs_contact_set_place_vectors(set);
+        cs_contact_set_write_vectors(set);
 }
 
 /* --- storing --- */

@@ -220,6 +220,7 @@ static void add_force(const struct cs_system *system, const struct cs_eval *at, 
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_posed_collider_law law = near_of(system, c, at->t);
         const bool plain = cs_posed_collider_law_is_plain(&law);
+        // rows give no power
         if (plain)
             contact_rows_add(&law, system, at, parts, f);
         if (!plain || (at->power && !cs_vec3_is_zero(law.collider.velocity)))

@@ -161,7 +161,7 @@ static const char *idle_why(const struct cs_system *system) {
 
 /* Forces at a state, or their change if a direction is set. */
 static void prepare(const struct cs_system *system, const struct cs_eval *at) {
-    cs_contact_set_place_vectors(
+    cs_contact_set_write_vectors(
         run(system, at->dx || at->dv ? CS_POINT_JVP : CS_POINT_FORCE, at, NULL));
 }
 
@@ -192,7 +192,7 @@ static void prepare_matrix(const struct cs_system *system, const struct cs_matri
                       0};
     set->diagonal_bound = !kept && matrix->bound;
     do_chunks(&job);
-    cs_contact_set_place_blocks(set);
+    cs_contact_set_write_blocks(set);
     samples->blocks = set;
 }
 
@@ -212,7 +212,7 @@ static void add_approach(const struct cs_system *system, const struct cs_matrix 
     const struct cs_eval at = {
         .t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_POTENTIAL};
     struct cs_contact_set *set = run(system, CS_POINT_APPROACH, &at, matrix);
-    cs_contact_set_place_vectors(set);
+    cs_contact_set_write_vectors(set);
     cs_contact_set_add(set, 0, system->view.n, y);
 }
 

@@ -185,6 +185,7 @@ static void check_sample(void *arg, const struct cs_contact_sample_point *point)
     double p[3], n[3];
     cs_contact_sample_interpolate(point, system->view.n, system->state, p);
     const double depth = -cs_posed_collider_distance(&between->posed, p, n);
+    // particles themselves are moved out or refused before
     if (point->n == 1 || between->error->status || !(depth > CS_PENETRATION_MIN) ||
         cs_contact_sample_mass(system, point) == HUGE_VAL)
         return;

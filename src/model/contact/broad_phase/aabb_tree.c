@@ -87,6 +87,7 @@ static void append(const struct cs_aabb_tree *tree, uint32_t body, uint32_t leaf
             near->failed = true;
             return;
         }
+        // bytes of ones are NaN
         last = near->items + near->n++;
         last->body = body, last->n = 0;
         memset(&last->boxes, 0xff, sizeof last->boxes);
@@ -115,6 +116,7 @@ static void visit(const struct search *search, uint32_t level, uint32_t node) {
         const uint32_t branch = CS_AABB_NODE * node + (uint32_t)__builtin_ctz(bits);
         if (branch * span >= search->end || (branch + 1) * span <= search->begin)
             continue;
+        // a node above leaves has these as its branches
         if (level > 1)
             visit(search, level - 1, branch);
         else

@@ -2,8 +2,8 @@
  * tests all boxes of a node.
  *
  * Items stay in their order, in which neighbours follow each other: a leaf has the boxes of
- * sixteen items of one body, a node of the next level the common boxes of sixteen leaves, and
- * so on. Nothing is sorted, and what is found is in the order of the items.
+ * sixteen items of one body, a node of a level above the common boxes of sixteen nodes below,
+ * up to one root. Nothing is sorted, and what is found is in the order of the items.
  *
  * Single precision suffices: rounding is monotone, so that boxes that overlap still do after
  * all their bounds were rounded alike. */

@@ -45,6 +45,7 @@ enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_sy
     for (uint32_t b = 0; b < table->n_bodies; b++)
         for (uint32_t i = surfaces->first_point[b]; i < surfaces->first_point[b + 1]; i++)
             candidates->body[i] = b;
+    // chunks of points come first
     for (uint32_t l = candidates->search.n_point_chunks; l < candidates->n_chunks; l++)
         candidates->chunks[l].kind = CS_PAIR_EDGE_EDGE;
     cs_arena_adopt(arena, finish_candidates, candidates, error);

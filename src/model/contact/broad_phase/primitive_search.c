@@ -197,6 +197,7 @@ static void find_items(struct work *work, uint32_t own, uint32_t first, uint32_t
         cs_swept_aabb_merge(&all, sweeps + k);
     }
     work->near.n = 0;
+    // leaves once for all items, in the order of bodies
     for (uint32_t body = once ? own : 0; body < move->search->surfaces->n_bodies; body++) {
         const struct cs_aabb box = box_in_frame(move, &all, body, move->grow[once]);
         if (move->query->may_meet(move->query->arg, own, body) &&
@@ -221,6 +222,7 @@ static void find_chunk(void *arg, uint32_t job) {
         CS_SEARCH_CHUNK * (work.edges ? work.chunk - search->n_point_chunks : work.chunk);
     const uint32_t all = first[s->n_bodies];
     const uint32_t end = all - item > CS_SEARCH_CHUNK ? item + CS_SEARCH_CHUNK : all;
+    // a chunk may have items of several bodies
     for (uint32_t n; item < end; item += n) {
         const uint32_t body = cs_surfaces_body(first, s->n_bodies, item);
         const uint32_t left = (first[body + 1] < end ? first[body + 1] : end) - item;

@@ -97,6 +97,7 @@ static void try_point(void *arg, const struct cs_contact_sample_point *point) {
     double from[3], to[3], start[3], way[3], g[3], h[6];
     cs_contact_sample_interpolate(point, system->view.n, step->x0, from);
     cs_contact_sample_interpolate(point, system->view.n, step->x1, to);
+    // those that the check of the step refused, or all
     if (mass == HUGE_VAL ||
         (!search->resolved && !(cs_collider_step_excess(step, mass, from, to) > 0)))
         return;
@@ -138,6 +139,7 @@ static bool find_first_point(const struct cs_blocked_step *blocked,
             search.steps[k].x1 = blocked->x + 3 * (size_t)system->view.n;
             cs_collider_step_set(search.steps + k, system, c, blocked->t[0], blocked->t[1]);
         }
+        // samples have no flights
         cs_collider_step_set_beside_rebounds(search.steps);
         cs_contact_points_visit(system, c, try_point, &search);
         if (!(search.y < found->y))

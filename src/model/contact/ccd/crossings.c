@@ -359,6 +359,7 @@ struct cs_first_collision cs_crossings_first_collision(const struct cs_system *s
                                         .arg = &question};
     cs_point_motion_set(system, from, to, crossings->motion);
     clear_found(crossings);
+    // chunks of the list have the numbers of those of the search
     if (cs_crossings_list_suffices(system, from, to))
         cs_pool_run(crossings->search->n_chunks, try_chunk, &question);
     else

@@ -5,8 +5,8 @@
 #define CS_NARROW_PHASE_ACTIVE_CONTACTS_H
 
 #include "model/contact/broad_phase/candidate_list.h"
+#include "model/contact/force_gather.h"
 #include "model/contact/narrow_phase/feature_weights.h"
-#include "model/contact/narrow_phase/force_gather.h"
 #include "model/contact/narrow_phase/pair_lanes.h"
 #include "model/contact/pair_distance.h"
 

@@ -176,7 +176,6 @@ CS_INLINE void share_bound(enum cs_pair_kind kind, struct cs_pair_lanes *restric
     }
 }
 
-/* Both flags are constants. */
 CS_INLINE void share_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
                             const struct cs_contact_keys *keys, const struct cs_matrix *matrix,
                             struct cs_pair_factors *restrict factors) {

@@ -105,6 +105,7 @@ CS_INLINE void begin_lane(enum cs_pair_kind kind, struct lanes *lanes, int l, do
         inverse += at.weight[j] * at.weight[j] * lanes->inverse_mass[j][l];
         approach -= cs_vec3_dot(at.g[j], by);
     }
+    // not used where all points are pinned
     const double kinetic = 0.5 * cs_vec3_dot(v, v) / inverse;
     const struct cs_barrier barrier = cs_barrier_at(d, range, k);
     const double along = longest_of(kind, lanes, l) / (0.5 * range);

@@ -1,5 +1,5 @@
 /* Hash tables of the points of chunks, and lists of their rows by particles. */
-#include "model/contact/narrow_phase/force_gather.h"
+#include "model/contact/force_gather.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,8 +3,8 @@
  *
  * A chunk also reads each of its points once, into the row. Sums are the same for any number of
  * threads, and memory traffic grows with points and not with pairs. */
-#ifndef CS_NARROW_PHASE_FORCE_GATHER_H
-#define CS_NARROW_PHASE_FORCE_GATHER_H
+#ifndef CS_CONTACT_FORCE_GATHER_H
+#define CS_CONTACT_FORCE_GATHER_H
 
 #include "base/arena.h"
 
