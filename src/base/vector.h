@@ -31,7 +31,4 @@ double cs_vector_sum(size_t n, double (*part)(const void *arg, size_t begin, siz
 #pragma GCC optimize("no-trapping-math")
 #endif
 
-/* Unrolls a short loop inside the loop over lanes, so that its array stays in registers. */
-#define CS_UNROLLED _Pragma("GCC unroll 12")
-
 #endif
