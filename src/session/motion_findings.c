@@ -14,7 +14,10 @@
 
 /* Times in a segment, and particles and times in all, at which held particles are sought in
  * colliders. */
-enum { POSES = 256, POSES_MAX = 1000000, TRIES = 4 };
+enum { POSES = 256, POSES_MAX = 300000, TRIES = 4 };
+/* Way between two such times over that depth: a path that is this deep in a round collider is
+ * in it for eight times as long. */
+#define STEP 4.0
 /* Depth over the size of a collider, or in a plane of the first body, that a held particle may
  * have. */
 #define SWEPT 0.1
@@ -111,8 +114,9 @@ static void go_through(struct rehearsal *rehearsal, double from, double to) {
             least = fmin(least, depth_of(rehearsal->start, rehearsal->before + k));
     const double most =
         POSES_MAX / (1.0 + (double)n * system->n_pinned * system->events->n_times);
-    const double poses = fmin(fmax(fmin(most, POSES), 4),
-                              ceil(2 * cs_events_speed(system) * (to - from) / least) + 1);
+    const double poses =
+        fmax(1, fmin(fmax(fmin(most, POSES), 4),
+                     ceil(cs_events_speed(system) * (to - from) / (STEP * least))));
     for (double p = 1; p <= poses; p++) {
         const double t = from + (to - from) * (p / poses);
         cs_events_apply_paths(system, t, system->state,
