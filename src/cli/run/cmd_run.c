@@ -13,7 +13,6 @@
 #include "session/session.h"
 #include "study/stability_verdict.h"
 
-#include <malloc.h>
 #include <string.h>
 #include <strings.h>
 
@@ -285,9 +284,6 @@ static enum cs_status run_here(void *ctx, struct cs_error *error) {
         (options->range && cs_run_range_set(&range, options->range, &options->job, error)) ||
         (options->mark_instability && cs_run_marks_set(&range, &options->job, error)))
         return error->status;
-#ifdef __GLIBC__
-    mallopt(M_MMAP_THRESHOLD, 1 << 16); // arrays are pages of their own, which nothing clears
-#endif
     cs_job_run(&job, &options->job, error);
     find_cause(&job);
     /* a failed step leaves the report of the frames before; its own message stands */
