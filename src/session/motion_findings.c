@@ -31,13 +31,13 @@ struct entry {
     uint32_t leg;
 };
 
-/* What keeps a collider and a particle apart: another point of a leg, or an earlier end. */
+/* Keeps a collider and a particle apart: another point of a leg, or an earlier end. */
 struct cure {
     uint32_t event, leg; /* number + 1; 0: none is known */
     double point[3], to; /* m; s, NaN: the point is meant */
 };
 
-/* What is prescribed, gone through without forces. */
+/* All events of a scene, without forces. */
 struct rehearsal {
     struct cs_system system;          /* a second one, whose events happen */
     const struct cs_system *start;    /* the first */
@@ -89,6 +89,7 @@ static void look_into(struct rehearsal *rehearsal, uint32_t k, double t) {
         clear &= distance > depth;
         if (distance > -depth)
             continue;
+        // what leads it there
         entry->at = t;
         entry->particle = (uint32_t)i;
         entry->holder = events->held_by[i];
@@ -108,6 +109,7 @@ static void look_into(struct rehearsal *rehearsal, uint32_t k, double t) {
 static void go_through(struct rehearsal *rehearsal, double from, double to) {
     struct cs_system *system = &rehearsal->system;
     const uint32_t n = system->scene->colliders.n;
+    // by the thinnest of the colliders
     double least = HUGE_VAL;
     for (uint32_t k = 0; k < n; k++)
         if (rehearsal->before[k].shape->bounds != CS_BOUNDS_MESH)
@@ -136,6 +138,7 @@ static void go(struct rehearsal *rehearsal, double seconds) {
     for (uint32_t k = 0; k < system->scene->colliders.n; k++)
         rehearsal->entries[k] = (struct entry){.at = HUGE_VAL, .clear = (double)NAN};
     memset(rehearsal->held, true, system->view.n * sizeof *rehearsal->held);
+    // segment by segment
     for (double t = 0, next; t < end; t = next) {
         while (events->end <= t)
             cs_events_apply(system, t);
@@ -191,6 +194,7 @@ static bool propose(const struct cs_scene *scene, const struct entry *entry,
     const double begin = leg ? path.points[leg - 1].at : cs_findings_begin(event);
     if (path.n ? leg >= path.n || !cs_vec3_is_zero(spin) : !(entry->clear > begin))
         return false;
+    // a second try cuts the leg of the first
     if (!cure->event && path.n)
         memcpy(cure->point, path.points[leg].point, sizeof cure->point);
     cure->event = entry->event;
@@ -265,6 +269,7 @@ void cs_motion_findings_print(const struct cs_session *session, double seconds,
     CS_ARENA_ARRAY(&arena, rehearsal.held, system->view.n, &error);
     if (!error.status)
         cs_posed_colliders_at_start(system, rehearsal.before);
+    // the first collider is told, and how many more there are
     uint32_t k = 0, more = 0;
     if (!error.status && !rehearse(session, seconds, &cure, &rehearsal, &error)) {
         for (uint32_t later = n; later-- > 0;)

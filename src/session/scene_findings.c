@@ -285,6 +285,22 @@ double cs_findings_first_speed(const struct cs_event *event, const struct cs_pat
     return sqrt(cs_vec3_dot(way, way)) / (to->at - cs_findings_begin(event));
 }
 
+double cs_findings_box(const struct cs_system *system, uint32_t b, double low[3],
+                       double high[3]) {
+    const struct cs_body_range *range = system->bodies + b;
+    double squared = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double *x = system->state + c * system->view.n + range->first;
+        low[c] = high[c] = x[0];
+        for (uint32_t i = 1; i < range->count; i++) {
+            low[c] = fmin(low[c], x[i]);
+            high[c] = fmax(high[c], x[i]);
+        }
+        squared += (high[c] - low[c]) * (high[c] - low[c]);
+    }
+    return sqrt(squared);
+}
+
 /* m, of a collider without a plane: the diagonal of its box. */
 static double size_of(const struct cs_posed_collider *collider) {
     const struct cs_trimesh *mesh =

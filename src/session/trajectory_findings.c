@@ -4,7 +4,6 @@
 #include "session/scene_findings.h"
 
 #include "base/vec3.h"
-#include "model/contact/posed_collider.h"
 #include "model/event/event_state.h"
 #include "model/system/seams.h"
 #include "scene/body_keys.h"
@@ -26,22 +25,6 @@
  * the part of a body's size that such a leg has at least. */
 #define JUMP_RATIO 3.0
 #define JUMP_SIZE  0.25
-
-double cs_findings_box(const struct cs_system *system, uint32_t b, double low[3],
-                       double high[3]) {
-    const struct cs_body_range *range = system->bodies + b;
-    double squared = 0;
-    for (size_t c = 0; c < 3; c++) {
-        const double *x = system->state + c * system->view.n + range->first;
-        low[c] = high[c] = x[0];
-        for (uint32_t i = 1; i < range->count; i++) {
-            low[c] = fmin(low[c], x[i]);
-            high[c] = fmax(high[c], x[i]);
-        }
-        squared += (high[c] - low[c]) * (high[c] - low[c]);
-    }
-    return sqrt(squared);
-}
 
 /* Pins that hold no particle. */
 static void check_pins(const struct cs_system *system, uint32_t b, const void *arg,
@@ -147,6 +130,7 @@ static void check_let_go(const struct cs_system *system, uint32_t e, const void 
         taken += events->work[i];
         seam = events->work[i] && events->seam_of ? events->seam_of[i] : seam;
     }
+    // a seam comes to its end whenever the event does
     const char *what = grabs ? "grab" : "pin";
     if (seam)
         cs_text_add(out,
@@ -212,6 +196,7 @@ static void check_apart(const struct cs_system *system, uint32_t e, const void *
     const uint32_t i = (uint32_t)first_target(system, grab);
     if (i == n)
         return;
+    // both are of one body
     const uint32_t b = cs_system_body_of(system, i);
     const struct cs_body_range *range = system->bodies + b;
     const struct cs_cloth *cloth = &cs_scene_bodies(system->scene)[b].cloth;
@@ -288,6 +273,7 @@ static void check_twice(const struct cs_system *system, struct cs_text *out) {
     for (uint32_t e = 1; seams && e < seams->n_ends; e++) {
         const struct cs_stitch *one = seams->stitches + seams->ends[e - 1].stitch,
                                *other = seams->stitches + seams->ends[e].stitch;
+        // ends are in the order of particles
         if (one == other || one->n != other->n || one->n > 2 ||
             one->at[0] + one->at[1] != other->at[0] + other->at[1] ||
             seams->ends[e].particle != seams->ends[e - 1].particle)

@@ -13,12 +13,12 @@ from pathlib import Path
 import sources
 
 # the figure, its limit, what it is
-# lowered with each thing that is made smaller, towards 62,000 lines
+# lowered with each thing that is made smaller
 LIMITS = (
-    ("units", "most", 298, "units in src (NAME.c, NAME.h or both)"),
-    ("headers", "most", 177, "headers in src"),
+    ("units", "most", 293, "units in src (NAME.c, NAME.h or both)"),
+    ("headers", "most", 176, "headers in src"),
     ("arrows", "most", 38, "arrows between rooms"),
-    ("code", "most", 63443, "lines of code in src"),
+    ("code", "most", 61477, "lines of code in src"),
     ("comments", "least", 15.0, "% of the lines of code and comment in src are comment"),
 )
 # a type that one header declares, and that alternatives define: no program sees two of them

@@ -4,8 +4,6 @@
 #include "base/file.h"
 #include "base/json_writer.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static bool is_different(const struct cs_golden_row *row) {
