@@ -16,7 +16,7 @@ import pathlib
 import re
 import sys
 
-SECTIONS = ["limits", "kernels", "steps", "thesis", "pairs", "contact", "pictures", "pipeline",
+SECTIONS = ["limits", "kernels", "steps", "plain", "thesis", "pairs", "contact", "pictures", "pipeline",
             "bdf"]
 # of figures that belong to the measured one
 RANGE = re.compile(r"(min|median|max)_(ns|ms|s)$")
