@@ -20,7 +20,7 @@
  *
  * S is at least m c^2/20 with the mass m that can move and the scale of speed c, of half a
  * swing under gravity, c^2 = g L/pi^2 over the size L: what lifts all by L/200. What rests has
- * no energy to compare with, but errors of steps that are allowed: dopri5 at its tolerance of
+ * no energy to compare with, but errors of steps that are allowed: dopri5 at a tolerance of
  * 1e-3 makes 0.0002 of m c^2/2 in a second on a sheet that rests on a floor, and a step of h
  * that meets the floor at its end m (g h)^2/2. An unstable step passes any such bound within
  * frames. Without gravity c is the largest speed at the start; where that is 0 too, there is no

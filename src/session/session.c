@@ -79,7 +79,7 @@ static enum cs_status set_options_of_scene(struct cs_session *session, const cha
 /* The methods of "automatic", by error control of a hundredth of the scene's size or less, and
  * the rates in 1/s from which the implicit one is cheaper: with contact its steps are as short
  * as those of the explicit one. From table "default method" of docs/guide.md. */
-#define EXPLICIT_METHOD "dopri5:rtol=0.001"
+#define EXPLICIT_METHOD "dopri5:rtol=1e-4"
 #define IMPLICIT_METHOD "esdirk:rtol=0.01"
 #define RATE_FREE       6e3
 #define RATE_IN_CONTACT 1e5
