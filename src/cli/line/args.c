@@ -380,10 +380,12 @@ enum cs_status cs_arg_read(const struct cs_arg *row, const char *text, void *opt
         break;
     case CS_ARG_TEXT:
         *(const char **)field = text;
-        return row->names ? read_name(row, text, &(uint32_t){0}, error) : CS_OK;
+        // a command checks a list itself, such as CHECK[,...]
+        if (row->names && !strchr(row->value, ','))
+            return read_name(row, text, &(uint32_t){0}, error);
+        break;
     case CS_ARG_WHOLE:
-        return row->names ? read_name(row, text, field, error)
-                          : read_whole(row, text, field, error);
+        return (row->names ? read_name : read_whole)(row, text, field, error);
     case CS_ARG_REAL:
         return read_real(row, text, field, error);
     case CS_ARG_SHARD:

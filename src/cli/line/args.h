@@ -44,7 +44,7 @@ struct cs_arg {
     bool repeatable;          /* may be given more than once */
     bool methods;             /* each value is a list of methods NAME:key=value,...,NAME,... */
     uint32_t min, max;        /* of a whole number */
-    const char *const *names; /* closed by NULL; of a text: those it may be */
+    const char *const *names; /* closed by NULL; of a text: those it may be, or list */
     const char *prefix;       /* put before each item of a list; or NULL */
     const char *old_name;     /* long name of the release before, still taken; or NULL */
 };
