@@ -7,7 +7,6 @@
 #include "session/provenance_write.h"
 #include "session/session.h"
 
-#include <malloc.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -243,9 +242,6 @@ static enum cs_status open_session(struct cs_job *job, struct cs_error *error) {
 enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *settings,
                           struct cs_error *error) {
     const double start = cs_clock_wall();
-#ifdef __GLIBC__
-    mallopt(M_MMAP_THRESHOLD, 1 << 16); // arrays are pages of their own, which nothing clears
-#endif
     job->settings = settings;
     if (open_session(job, error) || describe(job, error) ||
         cs_checkpointer_check_interval(&job->session, &settings->checkpoint, error) ||

@@ -75,8 +75,9 @@ double cs_contact_set_energy(const struct cs_contact_set *set) {
 
 void cs_contact_set_write_vectors(struct cs_contact_set *set) {
     for (uint32_t l = 0; l < set->gather.n_chunks && set->n; l++)
-        memcpy(cs_gather_of(set->gather.chunks + l, set->gather.row_sums, 3),
-               set->chunks[l].vectors, 3 * sizeof(double) * set->gather.chunks[l].n);
+        if (set->gather.chunks[l].n)
+            memcpy(cs_gather_of(set->gather.chunks + l, set->gather.row_sums, 3),
+                   set->chunks[l].vectors, 3 * sizeof(double) * set->gather.chunks[l].n);
 }
 
 /* Factor by which the block of point k grows, so that the blocks bound the matrix of the
