@@ -35,7 +35,7 @@ void cs_text_add(struct cs_text *text, const char *format, ...) {
 void cs_text_add_bytes(struct cs_text *text, const void *bytes, size_t length) {
     if (!reserve(text, length))
         return;
-    memcpy(text->bytes + text->length, bytes, length);
+    memcpy(text->bytes + text->length, length ? bytes : "", length);
     text->length += length;
     text->bytes[text->length] = 0;
 }

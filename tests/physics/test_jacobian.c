@@ -64,7 +64,7 @@ static void check_part(const struct fixture *cloth, uint32_t part, const char *n
     double dx[VALUES] = {0}, dv[VALUES] = {0}, slope[VALUES], df[VALUES], off[VALUES];
     double size = 0, error = 0;
     for (size_t column = 0; column < 2 * VALUES; column++) {
-        double *moved = column < VALUES ? dx + column : dv + column - VALUES;
+        double *moved = column < VALUES ? dx + column : dv + (column - VALUES);
         // a pinned particle does not move
         if (cloth->system->inv_mass[column % N] <= 0)
             continue;

@@ -114,7 +114,8 @@ static void change_all(struct walk *walk, const struct cs_table *table, void *ob
 static void change_row(struct walk *walk, const struct cs_option *row, void *object) {
     void *field = cs_option_field(row, object);
     struct cs_list *list = field;
-    const int32_t choice = *(const int32_t *)field;
+    int32_t choice;
+    memcpy(&choice, field, sizeof choice); // a row of another type may be at any address
     switch (row->type) {
     case CS_BOOL:
         *(bool *)field ^= true;
