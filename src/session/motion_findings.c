@@ -247,7 +247,7 @@ static void print_end(const struct cure *cure, uint32_t more, struct cs_text *ou
         cs_text_add(out, "; they stay apart with path[%u].point [%.4g, %.4g, %.4g]", cure->leg,
                     p[0], p[1], p[2]);
     else if (cure->event)
-        cs_text_add(out, "; they stay apart with to %.4g", cure->to);
+        cs_text_add(out, "; they stay apart with \"to\": %.4g", cure->to);
     if (more)
         cs_text_add(out, "; the same holds for %u more", more);
     cs_text_add(out, "\n");

@@ -72,8 +72,8 @@ static const struct trap trajectories[] = {
     // one that is led into the ground; what a seam holds, and a grab
     {CARRIED(HIP, BALL, TURN ", " LEG), "events[1]: colliders[1] goes at ",
      "events[1].move.path[0].point", "[0, 0, -0.2]", true},
-    {CARRIED(HIP, PEG, TURN), "of bodies[0], which colliders[0] holds",
-     "events[0].to", "0.5", true},
+    {CARRIED(HIP, PEG, TURN), "of bodies[0], which colliders[0] holds", "events[0].to", "0.5",
+     true},
     {CARRIED(HIP, GROUND, DOWN), "events[0]: colliders[1] goes at ",
      "events[0].move.path[0].point", "[0, -1, 0]", true},
     {SEWN DOWN "]", "events[0]: colliders[1] goes at ", "events[0].move.path[0].point",
@@ -212,8 +212,8 @@ static const struct {
      GOES, APART, 1, "events[0].move.path[0].point", NULL},
     {CARRIED(HIP, BALL, TURN ", " LEG), "events[1]: colliders[1] goes at ", APART, 1,
      "events[1].move.path[0].point", NULL},
-    {CARRIED(HIP, PEG, TURN), "events[0]: colliders[1] goes at ", "they stay apart with to ", 1,
-     "events[0].to", "%g"},
+    {CARRIED(HIP, PEG, TURN), "events[0]: colliders[1] goes at ",
+     "they stay apart with \"to\": ", 1, "events[0].to", "%g"},
     {CARRIED(HIP, GROUND, DOWN), "events[0]: colliders[1] goes at ", APART, 1,
      "events[0].move.path[0].point", NULL},
 };
