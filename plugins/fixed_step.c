@@ -179,10 +179,9 @@ enum cs_step fixed_step_count(struct fixed_step *self, double span, double *n) {
     const double h = span / *n;
     if (!self->noted && !self->dt_automatic && self->dt < HUGE_VAL &&
         h < self->dt * (1 - 1e-9)) {
-        self->host->note(
-            self->host->ctx,
-            "dt reduced from %.6g to %.6g s to end steps on frames, or as contact cuts them",
-            self->dt, h);
+        self->host->note(self->host->ctx,
+                         "dt reduced from %.6g to %.6g s to end steps on frames%s", self->dt, h,
+                         self->is_guarded ? ", or as contact cuts them" : "");
         self->noted = true;
     }
     return CS_STEP_OK;
