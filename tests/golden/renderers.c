@@ -8,7 +8,6 @@
  * cannot be drawn with look goals is passed over. Prints a row a picture, and fails if any is
  * beyond the gate. */
 #include "base/pool.h"
-#include "scene/picture_keys.h"
 #include "session/frame_picture.h"
 #include "session/session.h"
 #include "shared/image_diff.h"
