@@ -2,8 +2,7 @@
 #include "timing.h"
 
 #include "base/clock.h"
-
-#include <stdlib.h>
+#include "study/compare/timing_rounds.h"
 
 enum { TASKS_MAX = 32 };
 
@@ -11,15 +10,9 @@ static double now(const struct bench_settings *settings) {
     return settings->threads > 1 ? cs_clock_wall() : cs_clock_cpu();
 }
 
-static int compare(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 struct bench_spread bench_spread_of(double *values, uint32_t n) {
-    qsort(values, n, sizeof *values, compare);
-    const double median = (values[(n - 1) / 2] + values[n / 2]) / 2;
-    return (struct bench_spread){median, values[0], values[n - 1]};
+    cs_sort(values, n);
+    return (struct bench_spread){cs_quantile(values, n, 0.5), values[0], values[n - 1]};
 }
 
 uint32_t bench_samples(const struct bench_settings *settings, double seconds) {

@@ -6,6 +6,7 @@
 #include "session/frame_picture.h"
 #include "session/session.h"
 #include "session/study_scenes.h"
+#include "study/compare/timing_rounds.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -48,15 +49,10 @@ double cs_soft_rate(const struct cs_soft_row *row) {
     return 1 / (row->steps * row->step_seconds + row->draw_seconds);
 }
 
-static int ascending(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Median of n samples, which are sorted in place. */
-static double median(double *values, uint32_t n) {
-    qsort(values, n, sizeof *values, ascending);
-    return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+static double median(double *samples, uint32_t n) {
+    cs_sort(samples, n);
+    return cs_quantile(samples, n, 0.5);
 }
 
 /* Times frames until the time is used up; the first frame warms up and does not count. The cost

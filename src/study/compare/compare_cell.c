@@ -1,6 +1,8 @@
 /* Describes the columns of a comparison in one table, which every reader and writer uses. */
 #include "study/compare/compare_cell.h"
 
+#include "study/compare/timing_rounds.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -177,11 +179,6 @@ bool cs_cell_is_rounding(const struct cs_cell *cell, uint32_t n, double motion) 
     return stands;
 }
 
-static int compare_numbers(const void *a, const void *b) {
-    const double one = *(const double *)a, other = *(const double *)b;
-    return (one > other) - (one < other);
-}
-
 double cs_cell_typical(const struct cs_cell *cells, uint32_t n, const struct cs_cell *cell,
                        const struct cs_column *column, double *low, double *high) {
     const double own = cs_cell_number(cell, column);
@@ -200,7 +197,7 @@ double cs_cell_typical(const struct cs_cell *cells, uint32_t n, const struct cs_
     }
     if (!(own > 0) || count < 2)
         return own;
-    qsort(near, count, sizeof *near, compare_numbers);
+    cs_sort(near, count);
     *low = near[0];
     *high = near[count - 1];
     return sqrt(near[(count - 1) / 2] * near[count / 2]);
