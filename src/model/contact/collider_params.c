@@ -195,13 +195,7 @@ bool cs_posed_collider_law_in_range(const struct cs_posed_collider_law *law, con
     cs_posed_collider_velocity(&law->collider, p, surface);
     for (int c = 0; c < 3; c++)
         contact->v[c] = v[c] - surface[c];
-    contact->range = law->params.range;
-    contact->k = law->params.k;
-    contact->friction = law->friction;
-    contact->friction_speed = law->friction_speed;
-    contact->damping = law->damping;
-    contact->loss = law->loss;
-    contact->rate = law->rate;
+    cs_posed_collider_law_set(law, contact);
     return true;
 }
 

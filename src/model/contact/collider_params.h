@@ -64,6 +64,18 @@ void cs_posed_collider_law_at(const struct cs_system *system, uint32_t collider,
  * velocity, and friction on it is smooth. */
 bool cs_posed_collider_law_is_plain(const struct cs_posed_collider_law *law);
 
+/* Sets the parameters of *contact, not its state. */
+CS_INLINE void cs_posed_collider_law_set(const struct cs_posed_collider_law *law,
+                                         struct cs_point_contact *contact) {
+    contact->range = law->params.range;
+    contact->k = law->params.k;
+    contact->friction = law->friction;
+    contact->friction_speed = law->friction_speed;
+    contact->damping = law->damping;
+    contact->loss = law->loss;
+    contact->rate = law->rate;
+}
+
 /* Sets *contact for a point at p (m) with velocity v (m/s); returns false if it is out of
  * range, and *contact is then unspecified. */
 bool cs_posed_collider_law_in_range(const struct cs_posed_collider_law *law, const double p[3],

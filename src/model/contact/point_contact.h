@@ -69,25 +69,46 @@ struct cs_contact_force_parts {
     double elastic, friction;
 };
 
-/* f = force on the point in N. The law is evaluated once for all three parts. */
-CS_INLINE void cs_point_contact_force(const struct cs_point_contact *contact,
-                                      struct cs_contact_force_parts parts, double f[3]) {
+/* Sets t to the sliding velocity T = V - g (g.V)/g.g with square = g.g, which is 1 of a normal;
+ * returns sqrt(T.T + ev^2). Of any other vector in place of V, t is its part along the surface.
+ */
+CS_INLINE double cs_sliding_velocity(const double g[3], double square, const double v[3],
+                                     double ev, double t[3]) {
+    const double a = cs_vec3_dot(g, v) / square;
+    for (int c = 0; c < 3; c++)
+        t[c] = v[c] - g[c] * a;
+    return sqrt(cs_vec3_dot(t, t) + ev * ev);
+}
+
+/* f = the elastic force on the point in N. */
+CS_INLINE void cs_point_contact_push(const struct cs_point_contact *contact,
+                                     struct cs_contact_force_parts parts, double f[3]) {
     const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
-    const double square = cs_point_contact_square(contact->g);
+    for (int c = 0; c < 3; c++)
+        f[c] = parts.elastic * barrier.force * contact->g[c];
+}
+
+/* f = force on the point in N, with square = g.g. The law is evaluated once for all parts. */
+CS_INLINE void cs_point_contact_force_by(const struct cs_point_contact *contact, double square,
+                                         struct cs_contact_force_parts parts, double f[3]) {
+    const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
     const double approach = cs_vec3_dot(contact->g, contact->v);
     const double along =
         parts.elastic * barrier.force -
         parts.friction * contact->damping * barrier.stiffness * approach -
         parts.friction * cs_point_contact_loss(contact, &barrier, approach) * approach;
     double t[3];
-    for (int c = 0; c < 3; c++)
-        t[c] = contact->v[c] - contact->g[c] * (approach / square);
     const double speed =
-        sqrt(cs_vec3_dot(t, t) + contact->friction_speed * contact->friction_speed);
+        cs_sliding_velocity(contact->g, square, contact->v, contact->friction_speed, t);
     const double rub =
         parts.friction * contact->friction * barrier.force * sqrt(square) / speed;
     for (int c = 0; c < 3; c++)
         f[c] = along * contact->g[c] - rub * t[c];
+}
+
+CS_INLINE void cs_point_contact_force(const struct cs_point_contact *contact,
+                                      struct cs_contact_force_parts parts, double f[3]) {
+    cs_point_contact_force_by(contact, cs_point_contact_square(contact->g), parts, f);
 }
 
 /* Displacement dp in m of the point, and dv in m/s of its relative velocity. */
@@ -141,12 +162,9 @@ CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
     // T = V - g a with a = (g.V)/g.g, and the slope of friction
     const double a = approach / square, da = (dapproach - a * dsquare) / square;
     double t[3], dt[3];
-    for (int c = 0; c < 3; c++) {
-        t[c] = v[c] - g[c] * a;
+    const double speed = cs_sliding_velocity(g, square, v, contact->friction_speed, t);
+    for (int c = 0; c < 3; c++)
         dt[c] = motion->dv[c] - dg[c] * a - g[c] * da;
-    }
-    const double speed =
-        sqrt(cs_vec3_dot(t, t) + contact->friction_speed * contact->friction_speed);
     const double dspeed = cs_vec3_dot(t, dt) / speed;
     const double length = sqrt(square), dlength = 0.5 * dsquare / length;
     const double load = parts.friction * contact->friction * barrier.force * length;
@@ -171,12 +189,8 @@ CS_INLINE void cs_point_contact_add_block(const struct cs_point_contact *contact
     const double *g = contact->g;
     const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
     const double square = cs_point_contact_square(g);
-    const double a = cs_vec3_dot(g, contact->v) / square;
     double t[3];
-    for (int c = 0; c < 3; c++)
-        t[c] = contact->v[c] - g[c] * a;
-    const double speed =
-        sqrt(cs_vec3_dot(t, t) + contact->friction_speed * contact->friction_speed);
+    const double speed = cs_sliding_velocity(g, square, contact->v, contact->friction_speed, t);
     const double rub = -matrix->cd * contact->friction * barrier.force * sqrt(square) / speed;
     const double loss = cs_point_contact_loss(contact, &barrier, cs_vec3_dot(g, contact->v));
     const double along =
@@ -206,11 +220,10 @@ CS_INLINE void cs_point_contact_approach(const struct cs_point_contact *contact,
 }
 
 /* Largest stiffness in N/m and damping in N s/m that the point adds in any direction: K |g|^2,
- * and tau K |g|^2 + mu N / s. */
-CS_INLINE void cs_point_contact_bound(const struct cs_point_contact *contact, double *stiffness,
-                                      double *damping) {
+ * and tau K |g|^2 + mu N / s. square: g.g */
+CS_INLINE void cs_point_contact_bound_by(const struct cs_point_contact *contact, double square,
+                                         double *stiffness, double *damping) {
     const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
-    const double square = cs_point_contact_square(contact->g);
     const double approach = cs_vec3_dot(contact->g, contact->v);
     const double sliding = cs_vec3_dot(contact->v, contact->v) - approach * approach / square;
     const double speed =
@@ -219,6 +232,11 @@ CS_INLINE void cs_point_contact_bound(const struct cs_point_contact *contact, do
     *damping = contact->damping * barrier.stiffness * square +
                cs_point_contact_loss(contact, &barrier, approach) * square +
                contact->friction * barrier.force * sqrt(square) / speed;
+}
+
+CS_INLINE void cs_point_contact_bound(const struct cs_point_contact *contact, double *stiffness,
+                                      double *damping) {
+    cs_point_contact_bound_by(contact, cs_point_contact_square(contact->g), stiffness, damping);
 }
 
 #endif

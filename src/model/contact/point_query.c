@@ -4,8 +4,10 @@
 
 #include "model/contact/bristle_law.h"
 #include "model/contact/friction_chord.h"
+#include "model/contact/rebound.h"
 
 #include <math.h>
+#include <string.h>
 
 static void find_vector(const struct cs_point_query *query,
                         const struct cs_posed_collider_law *law,
@@ -62,6 +64,24 @@ static void find_bound(const struct cs_bristle *bristle, struct cs_point_answer 
         cs_bristle_raise_bound(bristle, &answer->stiffness, &answer->damping);
 }
 
+/* Answers for a particle in impact: b loses its vector, as an impact puts into b what it gives.
+ * Returns false if the point is none. */
+static bool is_rebound(const struct cs_point_query *query, uint32_t collider,
+                       const struct cs_contact_sample_point *point,
+                       struct cs_point_answer *answer) {
+    const struct cs_rebound *rebound =
+        query->matrix && point->n == 1
+            ? cs_rebound_of(query->system, query->matrix, collider, point->particles[0])
+            : NULL;
+    if (!rebound)
+        return false;
+    memset(answer->block, 0, sizeof answer->block);
+    cs_rebound_add_block(rebound, query->matrix, answer->block);
+    for (int c = 0; c < 3; c++)
+        answer->vector[c] = -rebound->impulse[c];
+    return true;
+}
+
 bool cs_point_evaluate(const struct cs_point_query *query,
                        const struct cs_posed_collider_law *law, uint32_t number,
                        const struct cs_contact_sample_point *point,
@@ -71,10 +91,15 @@ bool cs_point_evaluate(const struct cs_point_query *query,
         query->quantity == CS_POINT_ENERGY || query->quantity == CS_POINT_LAGGED;
     struct cs_bristle found;
     double p[3], v[3];
+    if (is_rebound(query, number, point, answer))
+        return true;
     cs_contact_sample_interpolate(point, system->view.n, query->eval.x, p);
+    // most points are told by the bounding test alone
+    if (!cs_posed_collider_is_near(&law->collider, law->params.range, p) ||
+        cs_contact_sample_is_tangled(system, point))
+        return false;
     cs_contact_sample_interpolate(point, system->view.n, stored ? NULL : query->eval.v, v);
-    if (cs_contact_sample_is_tangled(system, point) ||
-        !cs_posed_collider_law_in_range(law, p, v, &answer->contact))
+    if (!cs_posed_collider_law_in_range(law, p, v, &answer->contact))
         return false;
     if (stored) {
         const struct cs_point_contact *contact = &answer->contact;

@@ -25,6 +25,15 @@ struct cs_point_query {
     const struct cs_matrix *matrix; /* of CS_POINT_MATRIX and CS_POINT_APPROACH */
 };
 
+/* A query for the matrix or the approach of a step. */
+static inline struct cs_point_query cs_point_matrix_query(const struct cs_system *system,
+                                                          enum cs_point_quantity quantity,
+                                                          const struct cs_matrix *matrix) {
+    const struct cs_eval at = {
+        .t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_ALL};
+    return (struct cs_point_query){system, quantity, at, matrix};
+}
+
 /* Answer at one point; what was not asked for is unspecified. */
 struct cs_point_answer {
     double vector[3];          /* N: force, its change, or the approach */
@@ -35,8 +44,8 @@ struct cs_point_answer {
 };
 
 /* Answers for a point, a sample or a particle, which is a sample of one vertex with the weight
- * 1, against collider `number`. Returns false if it is out of range, and for energies and
- * friction if it cannot move. */
+ * 1, against collider `number`. A particle in impact answers for its flight (rebound.h).
+ * Returns false if it is out of range, and for energies and friction if it cannot move. */
 bool cs_point_evaluate(const struct cs_point_query *query,
                        const struct cs_posed_collider_law *law, uint32_t number,
                        const struct cs_contact_sample_point *point,

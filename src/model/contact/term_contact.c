@@ -15,20 +15,31 @@
 /* particles per row, and per chunk of stored friction */
 enum { ROW = 64, STORED = 1024 };
 
+/* A query to many particles, and what it adds to. */
+struct pass {
+    struct cs_point_query query;
+    double *to; /* (3,n) vectors in N, or (6,n) blocks */
+    const struct cs_gershgorin *bounds;
+    double energy;  /* J, of a query in one thread */
+    uint32_t first; /* chunk of lagged friction that the first chunk goes to */
+};
+
+/* --- planes and spheres, in rows --- */
+
 /* Distances and gradients of one row; a plane's gradient is its normal and is not stored. */
 struct row {
     double d[ROW], x[ROW], y[ROW], z[ROW];
-    size_t start, count; /* of a row of bounds */
+    size_t start, count;
 };
 
-/* Sets distances in m and gradients of `count` particles; returns how many are in range. */
+/* Sets distances in m and gradients of the particles; returns how many are in range. */
 CS_INLINE uint32_t measure(const struct cs_posed_collider_law *law, size_t n, const double *x,
-                           size_t count, const bool sphere, struct row *row) {
+                           const bool sphere, struct row *row) {
     const struct cs_posed_collider *collider = &law->collider;
     const double *c = collider->centre, *g = collider->axes[1];
     const double radius = collider->radius, range = law->params.range;
     uint32_t inside = 0;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < row->count; i++) {
         const double rx = x[i] - c[0], ry = x[n + i] - c[1], rz = x[2 * n + i] - c[2];
         if (sphere) {
             const double length = sqrt(rx * rx + ry * ry + rz * rz), inverse = 1 / length;
@@ -43,120 +54,150 @@ CS_INLINE uint32_t measure(const struct cs_posed_collider_law *law, size_t n, co
     return inside;
 }
 
-/* Adds the forces of one row. rubs: friction or damping act; a constant, so that the loop has
- * no branch. */
-CS_INLINE void push(const struct cs_posed_collider_law *law, size_t n, const double *v,
-                    size_t count, struct cs_contact_force_parts parts, const bool sphere,
-                    const bool rubs, const struct row *row, double *restrict f) {
+/* Particle i of a row as a contact; v at the first particle of the row. */
+CS_INLINE struct cs_point_contact contact_of(const struct cs_posed_collider_law *law, size_t n,
+                                             const double *v, size_t i, const bool sphere,
+                                             const struct row *row) {
     const double *normal = law->collider.axes[1], *u = law->collider.velocity;
-    const double k = law->params.k, range = law->params.range;
-    const double mu = parts.friction * law->friction, tau = parts.friction * law->damping;
-    const double loss = parts.friction * law->loss;
-    const double least = law->friction_speed * law->friction_speed;
-    for (size_t i = 0; i < count; i++) {
-        const double gx = sphere ? row->x[i] : normal[0];
-        const double gy = sphere ? row->y[i] : normal[1];
-        const double gz = sphere ? row->z[i] : normal[2];
-        const struct cs_barrier barrier = cs_barrier_at(row->d[i], range, k);
-        double along = parts.elastic * barrier.force;
-        double fx = 0, fy = 0, fz = 0;
-        if (rubs) {
-            const double vx = v[i] - u[0], vy = v[n + i] - u[1], vz = v[2 * n + i] - u[2];
-            const double approach = gx * vx + gy * vy + gz * vz;
-            const double tx = vx - gx * approach, ty = vy - gy * approach;
-            const double tz = vz - gz * approach;
-            const double rub = mu * barrier.force / sqrt(tx * tx + ty * ty + tz * tz + least);
-            along -= tau * barrier.stiffness * approach;
-            if (loss > 0)
-                along -= loss * barrier.force * approach /
-                         sqrt(cs_restitution_square(row->d[i], range, law->rate, approach));
-            fx = rub * tx, fy = rub * ty, fz = rub * tz;
-        }
-        f[i] += along * gx - fx;
-        f[n + i] += along * gy - fy;
-        f[2 * n + i] += along * gz - fz;
-    }
+    struct cs_point_contact contact;
+    cs_posed_collider_law_set(law, &contact);
+    contact.d = row->d[i];
+    contact.g[0] = sphere ? row->x[i] : normal[0];
+    contact.g[1] = sphere ? row->y[i] : normal[1];
+    contact.g[2] = sphere ? row->z[i] : normal[2];
+    contact.v[0] = v[i] - u[0];
+    contact.v[1] = v[n + i] - u[1];
+    contact.v[2] = v[2 * n + i] - u[2];
+    return contact;
 }
 
-/* Adds the forces of all rows of a block, but on tangled particles. */
-CS_INLINE void add(const struct cs_posed_collider_law *law, const struct cs_system *system,
-                   const struct cs_eval *at, struct cs_contact_force_parts parts,
-                   const bool sphere, double *f) {
-    const uint8_t *tangled = system->tangled;
-    const size_t n = system->view.n;
-    const bool rubs = parts.friction * (law->friction + law->damping + law->loss) > 0;
-    for (size_t start = at->block->begin; start < at->block->end; start += ROW) {
-        const size_t left = at->block->end - start, count = left < ROW ? left : ROW;
-        struct row row;
-        if (measure(law, n, at->x + start, count, sphere, &row) == 0)
-            continue;
-        for (size_t i = 0; tangled && i < count; i++)
-            row.d[i] = tangled[start + i] ? law->params.range : row.d[i];
-        if (rubs)
-            push(law, n, at->v + start, count, parts, sphere, true, &row, f + start);
-        else
-            push(law, n, at->v + start, count, parts, sphere, false, &row, f + start);
-    }
-}
-
-/* f (3,n) += the force of point_contact.h at the particles of at->block; equal to it but for
- * rounding. */
-static CS_CLONES void contact_rows_add(const struct cs_posed_collider_law *law,
-                                       const struct cs_system *system, const struct cs_eval *at,
-                                       struct cs_contact_force_parts parts, double *f) {
-    if (law->collider.shape->bounds == CS_BOUNDS_SPHERE)
-        add(law, system, at, parts, true, f);
-    else
-        add(law, system, at, parts, false, f);
-}
-
-/* Adds the bounds of one row, those of cs_point_contact_bound for |g| = 1. */
-CS_INLINE void bound(const struct cs_posed_collider_law *law, const struct cs_eval *at,
-                     size_t n, const struct row *row, const bool sphere,
-                     const struct cs_gershgorin *sums) {
-    const double *normal = law->collider.axes[1], *u = law->collider.velocity;
-    const double *v = at->v + row->start;
-    double *restrict stiffness = sums->stiffness + row->start;
-    double *restrict damping = sums->damping + row->start;
-    const double k = law->params.k, range = law->params.range;
-    const double least = law->friction_speed * law->friction_speed;
+/* Adds the forces of one row to f at its first particle. rubs: friction or damping act; a
+ * constant, so that the loop has no branch. */
+CS_INLINE void push(const struct cs_posed_collider_law *law, const struct pass *pass,
+                    const bool sphere, const bool rubs, const struct row *row,
+                    double *restrict f) {
+    const struct cs_contact_force_parts parts = cs_force_parts_of(pass->query.eval.parts);
+    const size_t n = pass->query.system->view.n;
+    const double *v = pass->query.eval.v + row->start;
     for (size_t i = 0; i < row->count; i++) {
-        const double gx = sphere ? row->x[i] : normal[0];
-        const double gy = sphere ? row->y[i] : normal[1];
-        const double gz = sphere ? row->z[i] : normal[2];
-        const struct cs_barrier barrier = cs_barrier_at(row->d[i], range, k);
-        const double vx = v[i] - u[0], vy = v[n + i] - u[1], vz = v[2 * n + i] - u[2];
-        const double approach = gx * vx + gy * vy + gz * vz;
-        const double tx = vx - gx * approach, ty = vy - gy * approach, tz = vz - gz * approach;
-        stiffness[i] += barrier.stiffness;
-        if (law->loss > 0)
-            damping[i] += law->loss * barrier.force /
-                          sqrt(cs_restitution_square(row->d[i], range, law->rate, approach));
-        damping[i] += law->damping * barrier.stiffness +
-                      law->friction * barrier.force / sqrt(tx * tx + ty * ty + tz * tz + least);
+        const struct cs_point_contact contact = contact_of(law, n, v, i, sphere, row);
+        double by[3];
+        if (rubs)
+            cs_point_contact_force_by(&contact, 1, parts, by);
+        else
+            cs_point_contact_push(&contact, parts, by);
+        f[i] += by[0];
+        f[n + i] += by[1];
+        f[2 * n + i] += by[2];
     }
 }
 
-CS_INLINE void add_bounds(const struct cs_posed_collider_law *law, size_t n,
-                          const struct cs_eval *at, const bool sphere,
-                          const struct cs_gershgorin *sums) {
-    for (size_t start = 0; start < n; start += ROW) {
-        const size_t left = n - start;
-        struct row row;
-        row.start = start, row.count = left < ROW ? left : ROW;
-        if (measure(law, n, at->x + start, row.count, sphere, &row) > 0)
-            bound(law, at, n, &row, sphere, sums);
+/* Adds the bounds of one row. */
+CS_INLINE void bound(const struct cs_posed_collider_law *law, const struct pass *pass,
+                     const bool sphere, const struct row *row) {
+    const size_t n = pass->query.system->view.n;
+    const double *v = pass->query.eval.v + row->start;
+    double *restrict stiffness = pass->bounds->stiffness + row->start;
+    double *restrict damping = pass->bounds->damping + row->start;
+    for (size_t i = 0; i < row->count; i++) {
+        const struct cs_point_contact contact = contact_of(law, n, v, i, sphere, row);
+        double stiff, damped;
+        cs_point_contact_bound_by(&contact, 1, &stiff, &damped);
+        stiffness[i] += stiff;
+        damping[i] += damped;
     }
 }
 
-/* sums += the bounds of point_contact.h at all particles, likewise. */
-static CS_CLONES void contact_rows_add_bounds(const struct cs_posed_collider_law *law, size_t n,
-                                              const struct cs_eval *at,
-                                              const struct cs_gershgorin *sums) {
+/* Answers for all rows of particles, but tangled ones: cs_point_evaluate for |g| = 1. */
+CS_INLINE void answer_rows(const struct cs_posed_collider_law *law, const struct pass *pass,
+                           size_t begin, size_t end, const bool sphere) {
+    const struct cs_eval *at = &pass->query.eval;
+    const uint8_t *tangled = pass->query.system->tangled;
+    const bool rubs =
+        cs_force_parts_of(at->parts).friction * (law->friction + law->damping + law->loss) > 0;
+    struct row row;
+    for (row.start = begin; row.start < end; row.start += ROW) {
+        row.count = end - row.start < ROW ? end - row.start : ROW;
+        if (measure(law, pass->query.system->view.n, at->x + row.start, sphere, &row) == 0)
+            continue;
+        for (size_t i = 0; tangled && i < row.count; i++)
+            row.d[i] = tangled[row.start + i] ? law->params.range : row.d[i];
+        if (pass->query.quantity == CS_POINT_BOUND)
+            bound(law, pass, sphere, &row);
+        else if (rubs)
+            push(law, pass, sphere, true, &row, pass->to + row.start);
+        else
+            push(law, pass, sphere, false, &row, pass->to + row.start);
+    }
+}
+
+static CS_CLONES void answer_in_rows(const struct cs_posed_collider_law *law,
+                                     const struct pass *pass, size_t begin, size_t end) {
     if (law->collider.shape->bounds == CS_BOUNDS_SPHERE)
-        add_bounds(law, n, at, true, sums);
+        answer_rows(law, pass, begin, end, true);
     else
-        add_bounds(law, n, at, false, sums);
+        answer_rows(law, pass, begin, end, false);
+}
+
+/* --- one by one --- */
+
+/* Adds the answer of particle i. in_rows: its vector was added already. */
+static void take(struct pass *pass, uint32_t i, const struct cs_point_answer *answer,
+                 bool in_rows) {
+    const struct cs_point_query *query = &pass->query;
+    const size_t n = query->system->view.n;
+    switch (query->quantity) {
+    case CS_POINT_ENERGY:
+        pass->energy += answer->energy;
+        return;
+    case CS_POINT_LAGGED:
+        cs_lagged_friction_store(query->system->lagged_friction, pass->first + i / STORED,
+                                 &answer->contact, 1, &i, &(double){1});
+        return;
+    case CS_POINT_BOUND:
+        pass->bounds->stiffness[i] += answer->stiffness;
+        pass->bounds->damping[i] += answer->damping;
+        return;
+    case CS_POINT_MATRIX:
+        for (size_t e = 0; e < 6; e++)
+            pass->to[e * n + i] += answer->block[e];
+        return;
+    case CS_POINT_FORCE:
+        if (query->eval.power)
+            query->eval.power[i] += answer->energy;
+        break;
+    case CS_POINT_JVP:
+    case CS_POINT_APPROACH:
+        break;
+    }
+    for (size_t c = 0; c < 3 && !in_rows; c++)
+        pass->to[c * n + i] += answer->vector[c];
+}
+
+/* Answers for particles [begin, end) at all colliders. Spheres and planes have a vectorised
+ * path with the same formulas, which gives no power. */
+static void run(void *arg, size_t begin, size_t end) {
+    struct pass *pass = arg;
+    const struct cs_point_query *query = &pass->query;
+    const bool power = query->quantity == CS_POINT_FORCE && query->eval.power;
+    for (uint32_t k = 0; k < query->system->scene->colliders.n; k++) {
+        struct cs_contact_sample_point point = {.n = 1, .w = {1}};
+        struct cs_posed_collider_law law;
+        struct cs_point_answer answer;
+        cs_posed_collider_law_at(query->system, k, query->eval.t, &law);
+        const bool in_rows =
+            (query->quantity == CS_POINT_FORCE || query->quantity == CS_POINT_BOUND) &&
+            cs_posed_collider_law_is_plain(&law);
+        if (in_rows)
+            answer_in_rows(&law, pass, begin, end);
+        if (in_rows && !(power && !cs_vec3_is_zero(law.collider.velocity)))
+            continue;
+        for (uint32_t i = (uint32_t)begin; i < end; i++) {
+            point.particles[0] = i;
+            if (cs_point_evaluate(query, &law, k, &point, &answer))
+                take(pass, i, &answer, in_rows);
+        }
+    }
 }
 
 /* A scene with contact by projection has no row in the plan; meshes have contact by pairs. */
@@ -171,194 +212,51 @@ static struct cs_plan_row plan_contact(const struct cs_scene *scene) {
 
 static const char *const ramps[] = {"colliders.friction", NULL};
 
-static struct cs_posed_collider_law near_of(const struct cs_system *system, uint32_t collider,
-                                            double t) {
-    struct cs_posed_collider_law law;
-    cs_posed_collider_law_at(system, collider, t, &law);
-    return law;
-}
-
-/* Answers for particle i, as a sample of one vertex; false if it is out of range. Most are:
- * they are told by the bounding test alone. */
-static bool evaluate(const struct cs_point_query *query,
-                     const struct cs_posed_collider_law *law, uint32_t collider, size_t i,
-                     struct cs_point_answer *answer) {
-    const size_t n = query->system->view.n;
-    const double *x = query->eval.x, p[3] = {x[i], x[n + i], x[2 * n + i]};
-    if (!cs_posed_collider_is_near(&law->collider, law->params.range, p))
-        return false;
-    const struct cs_contact_sample_point point = {.n = 1, .particles = {(uint32_t)i}, .w = {1}};
-    return cs_point_evaluate(query, law, collider, &point, answer);
-}
-
-static void add_at(double *f, size_t n, size_t i, const double a[3]) {
-    for (size_t c = 0; c < 3; c++)
-        f[c * n + i] += a[c];
-}
-
-/* Adds forces or their changes of the particles of a block near one collider, unless f is NULL,
- * and the power that the collider gives. */
-static void add_vectors(const struct cs_point_query *query,
-                        const struct cs_posed_collider_law *law, uint32_t collider, double *f) {
-    const struct cs_block *block = query->eval.block;
-    struct cs_point_answer answer;
-    for (size_t i = block->begin; i < block->end; i++) {
-        if (!evaluate(query, law, collider, i, &answer))
-            continue;
-        if (f)
-            add_at(f, query->system->view.n, i, answer.vector);
-        if (query->eval.power && query->quantity == CS_POINT_FORCE)
-            query->eval.power[i] += answer.energy;
-    }
-}
-
-/* Spheres and planes have a vectorised path with the same formulas, and give power if they
- * move. */
 static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
-    const struct cs_contact_force_parts parts = cs_force_parts_of(at->parts);
-    const struct cs_point_query query = {system, CS_POINT_FORCE, *at, NULL};
-    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        const struct cs_posed_collider_law law = near_of(system, c, at->t);
-        const bool plain = cs_posed_collider_law_is_plain(&law);
-        // rows give no power
-        if (plain)
-            contact_rows_add(&law, system, at, parts, f);
-        if (!plain || (at->power && !cs_vec3_is_zero(law.collider.velocity)))
-            add_vectors(&query, &law, c, plain ? NULL : f);
-    }
-}
-
-static void add_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
-    const struct cs_point_query query = {system, CS_POINT_JVP, *at, NULL};
-    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        const struct cs_posed_collider_law law = near_of(system, c, at->t);
-        add_vectors(&query, &law, c, df);
-    }
+    const bool changes = at->dx || at->dv;
+    struct pass pass = {{system, changes ? CS_POINT_JVP : CS_POINT_FORCE, *at, NULL}, .to = f};
+    run(&pass, at->block->begin, at->block->end);
 }
 
 /* Energy of the barrier law over the free particles. */
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
-    const struct cs_point_query query = {system, CS_POINT_ENERGY, *at, NULL};
-    struct cs_point_answer answer;
-    double sum = 0;
-    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        const struct cs_posed_collider_law law = near_of(system, c, at->t);
-        for (size_t i = 0; i < system->view.n; i++)
-            if (evaluate(&query, &law, c, i, &answer))
-                sum += answer.energy;
-    }
-    return sum;
-}
-
-/* A query for the matrix or the approach of a step. */
-static struct cs_point_query matrix_job(const struct cs_system *system,
-                                        enum cs_point_quantity quantity,
-                                        const struct cs_matrix *matrix) {
-    return (struct cs_point_query){
-        system,
-        quantity,
-        {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_ALL},
-        matrix};
+    struct pass pass = {{system, CS_POINT_ENERGY, *at, NULL}, .energy = 0};
+    run(&pass, 0, system->view.n);
+    return pass.energy;
 }
 
 static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
                        size_t begin, size_t end, double *blocks) {
-    const size_t n = system->view.n;
-    const struct cs_point_query query = matrix_job(system, CS_POINT_MATRIX, matrix);
-    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        const struct cs_posed_collider_law law = near_of(system, c, matrix->t);
-        for (size_t i = begin; i < end; i++) {
-            const struct cs_rebound *rebound = cs_rebound_of(system, matrix, c, i);
-            struct cs_point_answer answer = {.block = {0}};
-            if (rebound)
-                cs_rebound_add_block(rebound, matrix, answer.block);
-            else if (!evaluate(&query, &law, c, i, &answer))
-                continue;
-            for (size_t e = 0; e < 6; e++)
-                blocks[e * n + i] += answer.block[e];
-        }
-    }
-}
-
-/* One collider of add_approach. */
-struct approach {
-    struct cs_point_query query;
-    uint32_t collider;
-    struct cs_posed_collider_law law;
-    double *y;
-};
-
-/* b loses y: an impact puts into b what it gives. */
-static void add_approaches(void *arg, size_t begin, size_t end) {
-    const struct approach *to = arg;
-    const struct cs_system *system = to->query.system;
-    for (size_t i = begin; i < end; i++) {
-        const struct cs_rebound *rebound =
-            cs_rebound_of(system, to->query.matrix, to->collider, i);
-        struct cs_point_answer answer;
-        if (!rebound && !evaluate(&to->query, &to->law, to->collider, i, &answer))
-            continue;
-        for (int c = 0; c < 3 && rebound; c++)
-            answer.vector[c] = -rebound->impulse[c];
-        add_at(to->y, system->view.n, i, answer.vector);
-    }
+    struct pass pass = {cs_point_matrix_query(system, CS_POINT_MATRIX, matrix), .to = blocks};
+    run(&pass, begin, end);
 }
 
 static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
                          double *y) {
-    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        struct approach to = {matrix_job(system, CS_POINT_APPROACH, matrix), c,
-                              near_of(system, c, matrix->t), y};
-        cs_vector_parallel_for(system->view.n, add_approaches, &to);
-    }
+    struct pass pass = {cs_point_matrix_query(system, CS_POINT_APPROACH, matrix), .to = y};
+    cs_vector_parallel_for(system->view.n, run, &pass);
 }
 
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
                          const struct cs_gershgorin *sums) {
-    const struct cs_point_query query = {system, CS_POINT_BOUND, *at, NULL};
-    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        const struct cs_posed_collider_law law = near_of(system, c, at->t);
-        struct cs_point_answer answer;
-        if (cs_posed_collider_law_is_plain(&law)) {
-            contact_rows_add_bounds(&law, system->view.n, at, sums);
-            continue;
-        }
-        for (size_t i = 0; i < system->view.n; i++)
-            if (evaluate(&query, &law, c, i, &answer)) {
-                sums->stiffness[i] += answer.stiffness;
-                sums->damping[i] += answer.damping;
-            }
-    }
+    struct pass pass = {{system, CS_POINT_BOUND, *at, NULL}, .bounds = sums};
+    run(&pass, 0, system->view.n);
 }
-
-/* One call of store_friction. */
-struct storing {
-    struct cs_point_query query;
-    uint32_t first;
-};
 
 static uint32_t friction_chunks(const struct cs_system *system) {
     return (system->view.n + STORED - 1) / STORED;
 }
 
 static void store_chunk(void *arg, uint32_t chunk) {
-    const struct storing *storing = arg;
-    const struct cs_system *system = storing->query.system;
-    const uint32_t n = system->view.n, first = chunk * STORED;
-    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        const struct cs_posed_collider_law law = near_of(system, c, storing->query.eval.t);
-        struct cs_point_answer answer;
-        for (uint32_t i = first; i < n && i < first + STORED; i++)
-            if (evaluate(&storing->query, &law, c, i, &answer))
-                cs_lagged_friction_store(system->lagged_friction, storing->first + chunk,
-                                         &answer.contact, 1, &i, &(double){1});
-    }
+    struct pass *pass = arg;
+    const size_t begin = (size_t)chunk * STORED, left = pass->query.system->view.n - begin;
+    run(pass, begin, begin + (left < STORED ? left : STORED));
 }
 
 static void store_friction(const struct cs_system *system, double t, const double *x,
                            uint32_t first) {
-    struct storing storing = {{system, CS_POINT_LAGGED, {.t = t, .x = x}, NULL}, first};
-    cs_pool_run(friction_chunks(system), store_chunk, &storing);
+    struct pass pass = {{system, CS_POINT_LAGGED, {.t = t, .x = x}, NULL}, .first = first};
+    cs_pool_run(friction_chunks(system), store_chunk, &pass);
 }
 
 const struct cs_term cs_term_contact = {
@@ -368,7 +266,7 @@ const struct cs_term cs_term_contact = {
     .rampable_keys = ramps,
     .build = cs_collider_params_table_build,
     .add_force = add_force,
-    .add_jvp = add_jvp,
+    .add_jvp = add_force,
     .energy = energy,
     .energy_kind = CS_ENERGY_OTHER,
     .energy_column = "other",
