@@ -11,13 +11,6 @@
  * rounding of an anchor that followed. */
 #define AT_LIMIT 1e-9
 
-/* out = P u = u - g (g.u)/g.g. */
-static void project(const double g[3], double square, const double u[3], double out[3]) {
-    const double along = cs_vec3_dot(g, u) / square;
-    for (int c = 0; c < 3; c++)
-        out[c] = u[c] - g[c] * along;
-}
-
 /* State of a bristle: its trial force and what is left of it. */
 struct trial {
     double square;                 /* g.g, never 0 */
@@ -31,8 +24,8 @@ static struct trial trial_of(const struct cs_point_contact *contact,
                              const struct cs_bristle *bristle) {
     const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
     struct trial trial = {.square = cs_point_contact_square(contact->g)};
-    project(contact->g, trial.square, bristle->stretch, trial.stretch);
-    project(contact->g, trial.square, contact->v, trial.sliding);
+    cs_sliding_velocity(contact->g, trial.square, bristle->stretch, 0, trial.stretch);
+    cs_sliding_velocity(contact->g, trial.square, contact->v, 0, trial.sliding);
     for (int c = 0; c < 3; c++)
         trial.force[c] =
             bristle->stiffness * trial.stretch[c] + bristle->damping * trial.sliding[c];
@@ -151,7 +144,7 @@ static bool find_chord(const struct cs_bristle *bristle, const struct trial *tri
                        struct chord *chord) {
     const double h = pull->h, stiff = h * bristle->stiffness + bristle->damping;
     double free[3], z[3], then[3], change[3], speed = 0;
-    project(g, trial->square, pull->motion, free);
+    cs_sliding_velocity(g, trial->square, pull->motion, 0, free);
     for (int c = 0; c < 3; c++) {
         free[c] = trial->sliding[c] +
                   h * (free[c] + trial->fraction * trial->force[c] * pull->inverse);

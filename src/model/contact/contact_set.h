@@ -6,13 +6,17 @@
 
 #include "model/contact/force_gather.h"
 
-/* One contact in range, with its terms in a matrix, (w w^T) x B, or its bounds. */
+/* One contact in range, with its terms in a matrix, (w w^T) x B, or its bounds, or what
+ * friction remembers of it. */
 struct cs_contact {
     uint32_t n, row; /* points, and the row of the first in its chunk; the others follow */
     /* weights w of the points; of bounds: N s/m of each point */
     double weights[4];
     /* B: xx, xy, xz, yy, yz, zz; of bounds: N/m of each point */
     double block[6];
+    /* of lagged friction: mu N in N, negative for a feature that is subtracted; n; and the part
+     * of the contact's velocity in m/s that belongs to colliders */
+    double load, normal[3], obstacle[3];
 };
 
 /* Contacts of one chunk; one thread at a time writes it. */

@@ -84,19 +84,15 @@ CS_INLINE void cs_friction_chord_add(const struct cs_contact_pull *pull,
                                      const struct cs_sliding_contact *contacts, double b[6]) {
     const double *n = contacts->n, *v = contacts->v, ev = contacts->friction_speed;
     const double force = contacts->force, mu = contacts->friction;
-    const double approach = cs_vec3_dot(n, v);
-    const double off = cs_vec3_dot(n, pull->motion);
-    const double t[3] = {v[0] - n[0] * approach, v[1] - n[1] * approach,
-                         v[2] - n[2] * approach};
-    const double speed = sqrt(cs_vec3_dot(t, t) + ev * ev);
+    double free[3], e[3], t[3];
+    const double speed = cs_sliding_velocity(n, 1, v, ev, t);
+    cs_sliding_velocity(n, 1, pull->motion, 0, free);
     const double load =
         mu * (force < 0 ? -force : force) / cs_friction_chord_fraction(pull, contacts);
     const double a = pull->h * load * pull->inverse;
-    double free[3], e[3];
     CS_UNROLLED
     for (int c = 0; c < 3; c++)
-        free[c] = t[c] + pull->h * (pull->motion[c] - n[c] * off) +
-                  (pull->is_end_known ? 0 : a * t[c] / speed);
+        free[c] = t[c] + pull->h * free[c] + (pull->is_end_known ? 0 : a * t[c] / speed);
     const double length = sqrt(cs_vec3_dot(free, free));
     CS_UNROLLED
     for (int c = 0; c < 3; c++)

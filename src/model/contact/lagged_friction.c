@@ -10,7 +10,6 @@
 #include "scene/contact_keys.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* One pass over all stored contacts. */
@@ -25,12 +24,6 @@ struct sliding {
     double t[3], speed;
 };
 
-static void project(const double normal[3], double v[3]) {
-    const double along = cs_vec3_dot(normal, v);
-    for (int c = 0; c < 3; c++)
-        v[c] -= normal[c] * along;
-}
-
 /* out += sum of w_k v_k over the particles of a contact; points of colliders do not count */
 static void interpolate(const struct pass *pass, uint32_t chunk,
                         const struct cs_contact *contact, const double *v, double out[3]) {
@@ -41,65 +34,63 @@ static void interpolate(const struct pass *pass, uint32_t chunk,
             out[c] += contact->weights[k] * v[c * n + points[k]];
 }
 
-static struct sliding slide(const struct pass *pass, uint32_t chunk, size_t number) {
-    const struct cs_lagged_contact *contact = pass->lagged->chunks[chunk].contacts + number;
+static struct sliding slide(const struct pass *pass, uint32_t chunk,
+                            const struct cs_contact *contact) {
     const double ev = pass->lagged->system->scene->contact->friction_speed;
     struct sliding to;
-    memcpy(to.t, contact->obstacle, sizeof to.t);
-    interpolate(pass, chunk, pass->lagged->set.chunks[chunk].contacts + number, pass->v, to.t);
-    project(contact->normal, to.t);
-    to.speed = sqrt(cs_vec3_dot(to.t, to.t) + ev * ev);
+    double v[3];
+    memcpy(v, contact->obstacle, sizeof v);
+    interpolate(pass, chunk, contact, pass->v, v);
+    to.speed = cs_sliding_velocity(contact->normal, 1, v, ev, to.t);
     return to;
 }
 
 /* Stores the force of a contact, or its change along dv, and adds its potential. */
-static void find_force(const struct pass *pass, uint32_t chunk, size_t number) {
-    struct cs_contact_chunk *of = pass->lagged->set.chunks + chunk;
-    const struct cs_lagged_contact *contact = pass->lagged->chunks[chunk].contacts + number;
-    const struct sliding to = slide(pass, chunk, number);
-    const struct cs_contact *points = of->contacts + number;
+static void find_force(const struct pass *pass, uint32_t chunk,
+                       const struct cs_contact *contact) {
+    const struct sliding to = slide(pass, chunk, contact);
     const double rub = contact->load / to.speed;
     const double ev = pass->lagged->system->scene->contact->friction_speed;
     double along[3] = {to.t[0], to.t[1], to.t[2]};
     if (pass->dv) {
-        double dt[3] = {0};
-        interpolate(pass, chunk, points, pass->dv, dt);
-        project(contact->normal, dt);
+        double dv[3] = {0}, dt[3];
+        interpolate(pass, chunk, contact, pass->dv, dv);
+        cs_sliding_velocity(contact->normal, 1, dv, 0, dt);
         const double share = cs_vec3_dot(to.t, dt) / (to.speed * to.speed);
         for (int c = 0; c < 3; c++)
             along[c] = dt[c] - share * to.t[c];
     }
     // s - ev without cancellation
-    of->energy += contact->load * cs_vec3_dot(to.t, to.t) / (to.speed + ev);
-    double *vectors = cs_contact_vectors(&pass->lagged->set, chunk, points);
-    for (size_t k = 0; k < 3 * (size_t)points->n; k++)
-        vectors[k] = -points->weights[k / 3] * rub * along[k % 3];
+    pass->lagged->set.chunks[chunk].energy +=
+        contact->load * cs_vec3_dot(to.t, to.t) / (to.speed + ev);
+    double *vectors = cs_contact_vectors(&pass->lagged->set, chunk, contact);
+    for (size_t k = 0; k < 3 * (size_t)contact->n; k++)
+        vectors[k] = -contact->weights[k / 3] * rub * along[k % 3];
 }
 
 /* B = -cd mu N / s (I - n n^T - T T^T / s^2), as in point_contact.h. matrix.bound leaves the
  * last part out, and matrix.psd what is subtracted. */
-static void find_block(const struct pass *pass, uint32_t chunk, size_t number) {
-    struct cs_contact *part = pass->lagged->set.chunks[chunk].contacts + number;
-    const struct cs_lagged_contact *contact = pass->lagged->chunks[chunk].contacts + number;
+static void find_block(const struct pass *pass, uint32_t chunk, struct cs_contact *contact) {
     const double *n = contact->normal;
-    const struct sliding to = slide(pass, chunk, number);
+    const struct sliding to = slide(pass, chunk, contact);
     const double load = pass->matrix->psd && contact->load < 0 ? 0 : contact->load;
     const double rub = -pass->matrix->cd * load / to.speed;
     const double turn = pass->matrix->bound ? 0 : 1 / (to.speed * to.speed);
     for (int e = 0; e < 6; e++) {
         const int r = cs_sym3_row[e], s = cs_sym3_column[e];
-        part->block[e] = rub * ((r == s) - n[r] * n[s] - turn * to.t[r] * to.t[s]);
+        contact->block[e] = rub * ((r == s) - n[r] * n[s] - turn * to.t[r] * to.t[s]);
     }
 }
 
 static void do_chunk(void *arg, uint32_t chunk) {
     const struct pass *pass = arg;
-    pass->lagged->set.chunks[chunk].energy = 0;
-    for (size_t k = 0; k < pass->lagged->set.chunks[chunk].n; k++)
+    struct cs_contact_chunk *of = pass->lagged->set.chunks + chunk;
+    of->energy = 0;
+    for (size_t k = 0; k < of->n; k++)
         if (pass->matrix)
-            find_block(pass, chunk, k);
+            find_block(pass, chunk, of->contacts + k);
         else
-            find_force(pass, chunk, k);
+            find_force(pass, chunk, of->contacts + k);
 }
 
 static void run(struct pass *pass) {
@@ -117,24 +108,17 @@ static void run(struct pass *pass) {
 void cs_lagged_friction_store(struct cs_lagged_friction *lagged, uint32_t chunk,
                               const struct cs_point_contact *contact, uint32_t n,
                               const uint32_t *particles, const double *weights) {
-    struct cs_contact_chunk *to = lagged->set.chunks + chunk;
-    struct cs_lagged_chunk *own = lagged->chunks + chunk;
     const double length = sqrt(cs_vec3_dot(contact->g, contact->g));
     const double load = contact->friction * length *
                         cs_barrier_at(contact->d, contact->range, contact->k).force;
-    if (load == 0)
+    struct cs_contact *to =
+        load == 0 ? NULL : cs_contact_set_append(&lagged->set, chunk, n, particles, weights);
+    if (!to)
         return;
-    if (!cs_contact_set_append(&lagged->set, chunk, n, particles, weights))
-        return;
-    if (!CS_ARENA_REALLOC(own->contacts, own->capacity, to->n)) {
-        lagged->set.gather.chunks[chunk].failed = true;
-        return;
-    }
-    struct cs_lagged_contact *last = own->contacts + to->n - 1;
-    last->load = load;
+    to->load = load;
     for (int c = 0; c < 3; c++) {
-        last->normal[c] = contact->g[c] / length;
-        last->obstacle[c] = contact->v[c];
+        to->normal[c] = contact->g[c] / length;
+        to->obstacle[c] = contact->v[c];
     }
 }
 
@@ -227,8 +211,7 @@ static void add_bound_at(const struct cs_system *system, const struct cs_eval *a
         for (size_t p = 0; p < set->chunks[l].n && set->n; p++) {
             const struct cs_contact *contact = set->chunks[l].contacts + p;
             const uint32_t *points = cs_contact_points(set, l, contact);
-            const double rub =
-                fabs(pass.lagged->chunks[l].contacts[p].load) / slide(&pass, l, p).speed;
+            const double rub = fabs(contact->load) / slide(&pass, l, contact).speed;
             double sum = 0;
             for (uint32_t k = 0; k < contact->n; k++)
                 sum += fabs(contact->weights[k]);
@@ -250,13 +233,6 @@ static const struct cs_term term = {
     .add_state_bound = add_bound_at,
 };
 
-/* Frees the arrays that grow; the arena calls it. */
-static void finish_friction(void *object) {
-    struct cs_lagged_friction *lagged = object;
-    for (uint32_t l = 0; l < lagged->set.gather.n_chunks; l++)
-        free(lagged->chunks[l].contacts);
-}
-
 enum cs_status cs_lagged_friction_build(struct cs_system *system, struct cs_arena *arena,
                                         struct cs_error *error) {
     struct cs_lagged_friction *lagged = cs_arena_alloc(arena, sizeof *lagged, error);
@@ -267,11 +243,6 @@ enum cs_status cs_lagged_friction_build(struct cs_system *system, struct cs_aren
     if (!lagged || cs_contact_set_init(&lagged->set, system->view.n, n_chunks, arena, error))
         return error->status;
     lagged->system = system;
-    lagged->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *lagged->chunks, error);
-    if (!error->status)
-        cs_arena_adopt(arena, finish_friction, lagged, error);
-    if (error->status)
-        return error->status;
     system->lagged_friction = lagged;
     system->terms[system->n_terms++] = &term;
     return CS_OK;

@@ -17,24 +17,10 @@
 #include "model/contact/point_contact.h"
 #include "model/system/particle_system.h"
 
-/* Terms of a stored contact that are of the lagged positions. */
-struct cs_lagged_contact {
-    double load;        /* mu N in N; negative for a feature that is subtracted */
-    double normal[3];   /* n */
-    double obstacle[3]; /* m/s, part of V that belongs to colliders */
-};
-
-/* Contacts of one chunk, in the order of those of the set. */
-struct cs_lagged_chunk {
-    struct cs_lagged_contact *contacts;
-    size_t capacity;
-};
-
 /* All stored contacts of a system; the arena that it was built in owns them. */
 struct cs_lagged_friction {
     const struct cs_system *system; /* borrowed */
     struct cs_contact_set set;      /* particles, weights, forces and blocks */
-    struct cs_lagged_chunk *chunks; /* (set.gather.n_chunks) */
     bool is_active;                 /* it acts, instead of the friction of the contact forces */
     struct cs_matrix matrix;        /* of the last set-up of the solver */
     bool is_overwritten;            /* the set's blocks are those of another matrix */
