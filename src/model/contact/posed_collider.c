@@ -5,6 +5,7 @@
 #include "base/vec3.h"
 #include "scene/collider_keys.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
 #include <string.h>
 
@@ -178,4 +179,52 @@ double cs_posed_colliders_depth(const struct cs_system *system, double t, const 
 double cs_posed_collider_signed_distance(const struct cs_posed_collider *collider,
                                          const double p[3], double n[3]) {
     return collider->shape->distance(collider, collider->collider->thickness, p, n);
+}
+
+/* Sets over[i] to a positive number if point i is out of reach; returns how many are not.
+ * bounds: a constant, so that the loop has no branch. */
+CS_INLINE uint32_t measure(const struct cs_posed_collider *collider,
+                           const enum cs_shape_bounds bounds, const double *reach, size_t n,
+                           const double *x, size_t count, double *over) {
+    const double *c = collider->centre, *half = collider->half_sizes;
+    const double(*axes)[3] = collider->axes, radius = collider->radius;
+    uint32_t near = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double d[3] = {x[i] - c[0], x[n + i] - c[1], x[2 * n + i] - c[2]};
+        const double all = (radius + reach[i]) * (1 + 1e-9);
+        double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        if (bounds == CS_BOUNDS_BOX) {
+            squared = 0;
+            for (int k = 0; k < 3; k++) {
+                const double out = fabs(cs_vec3_dot(axes[k], d)) - half[k];
+                squared += out > 0 ? out * out : 0;
+            }
+        }
+        over[i] = bounds == CS_BOUNDS_HALF_SPACE ? cs_vec3_dot(axes[1], d) - (all + 1e-9)
+                                                 : squared - all * all;
+        near += !(over[i] > 0);
+    }
+    return near;
+}
+
+CS_CLONES uint32_t cs_posed_collider_list_near(const struct cs_posed_collider *collider,
+                                               const double *reach, size_t n, const double *x,
+                                               size_t count, uint8_t list[CS_COLLIDER_ROW]) {
+    const enum cs_shape_bounds bounds = collider->shape->bounds;
+    double over[CS_COLLIDER_ROW];
+    uint32_t near = 0;
+    if (bounds == CS_BOUNDS_SPHERE)
+        near = measure(collider, CS_BOUNDS_SPHERE, reach, n, x, count, over);
+    else if (bounds == CS_BOUNDS_HALF_SPACE)
+        near = measure(collider, CS_BOUNDS_HALF_SPACE, reach, n, x, count, over);
+    else if (bounds == CS_BOUNDS_BOX)
+        near = measure(collider, CS_BOUNDS_BOX, reach, n, x, count, over);
+    if (!near)
+        return 0;
+    near = 0;
+    for (size_t i = 0; i < count; i++) {
+        list[near] = (uint8_t)i;
+        near += !(over[i] > 0);
+    }
+    return near;
 }

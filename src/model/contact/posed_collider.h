@@ -85,6 +85,13 @@ static inline bool cs_posed_collider_is_near(const struct cs_posed_collider *col
     return squared <= all * all;
 }
 
+/* Lists those of `count` points, in their order, that the same test passes with `reach` (count)
+ * of each; x: of the first point, in rows of n. Returns their number. */
+enum { CS_COLLIDER_ROW = 64 }; /* points at most */
+uint32_t cs_posed_collider_list_near(const struct cs_posed_collider *collider,
+                                     const double *reach, size_t n, const double *x,
+                                     size_t count, uint8_t list[CS_COLLIDER_ROW]);
+
 /* Smooth distance in m, on which the contact force depends: never smaller than the distance
  * outside, with three continuous derivatives there. It is exact for spheres, planes and the
  * flat faces of boxes. At the ends of a capsule's axis and at the edges of a box the nearest

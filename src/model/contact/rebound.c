@@ -37,6 +37,8 @@ enum cs_status cs_rebounds_init(struct cs_system *system, struct cs_arena *arena
     rebounds->list = cs_arena_alloc_array(arena, system->view.n, sizeof *rebounds->list, error);
     rebounds->change =
         cs_arena_alloc_array(arena, 3 * (size_t)system->view.n, sizeof(double), error);
+    rebounds->rows =
+        cs_arena_alloc_array(arena, system->view.n / CS_COLLIDER_ROW + (size_t)1, 1, error);
     system->rebounds = rebounds;
     return error->status;
 }
@@ -174,22 +176,18 @@ static double squared_gradient(const double g[3]) {
     return fabs(square - 1) < 1e-12 ? 1 : square;
 }
 
-/* Sets *start and *flight of particle i. Returns false if it cannot come into range. */
+/* Sets *start and *flight of particle i. Returns false if the distance has no direction. */
 static bool approach(const struct search *search, size_t i, struct start *start,
                      struct flight *flight) {
     const size_t n = search->system->view.n;
-    const double h = search->h, m = search->system->mass[i];
     const struct cs_posed_collider_law *law = &search->law;
-    double p[3], v[3], w[3], f[3], hessian[6];
+    double p[3], v[3], w[3], f[3];
     for (size_t c = 0; c < 3; c++) {
         p[c] = search->x[c * n + i];
         v[c] = search->v[c * n + i];
         f[c] = search->f[c * n + i];
         start->own[c] = 0;
     }
-    // the longest way of a particle out of range, by the forces of the step's begin
-    const double way =
-        h * (sqrt(cs_vec3_dot(v, v)) + search->fastest) + h * h / m * sqrt(cs_vec3_dot(f, f));
     struct cs_point_contact contact;
     if (cs_posed_collider_law_in_range(law, p, v, &contact)) {
         const struct cs_contact_force_parts parts = {1, 1};
@@ -199,25 +197,28 @@ static bool approach(const struct search *search, size_t i, struct start *start,
         cs_point_contact_force(&contact, parts, start->own);
         if (cs_bristle_of_point(search->system, search->collider, law, &point, p, &bristle))
             cs_bristle_add_force(&contact, &bristle, start->own);
-    } else if (!cs_posed_collider_is_near(&law->collider, law->params.range + way, p))
-        return false;
-    cs_posed_collider_velocity(&law->collider, p, w);
-    for (int c = 0; c < 3; c++)
-        start->v[c] = v[c] - w[c];
-    *flight = (struct flight){.h = h,
-                              .range = law->params.range,
-                              .k = law->params.k,
-                              .damping = law->damping,
-                              .loss = law->loss,
-                              .rate = law->rate};
-    flight->d = cs_posed_collider_smooth_distance(&law->collider, p, start->g, hessian);
+    } else {
+        contact.d = cs_posed_collider_smooth_distance(&law->collider, p, contact.g, contact.h);
+        cs_posed_collider_velocity(&law->collider, p, w);
+        for (int c = 0; c < 3; c++)
+            contact.v[c] = v[c] - w[c];
+    }
+    memcpy(start->v, contact.v, sizeof start->v);
+    memcpy(start->g, contact.g, sizeof start->g);
     start->square = squared_gradient(start->g);
     if (!(start->square > 0))
         return false;
-    flight->mass = m / start->square;
-    flight->u = cs_vec3_dot(start->g, start->v);
-    flight->other =
-        (cs_vec3_dot(start->g, f) - cs_vec3_dot(start->g, start->own)) / start->square;
+    *flight = (struct flight){
+        .mass = search->system->mass[i] / start->square,
+        .h = search->h,
+        .range = law->params.range,
+        .k = law->params.k,
+        .damping = law->damping,
+        .loss = law->loss,
+        .rate = law->rate,
+        .other = (cs_vec3_dot(start->g, f) - cs_vec3_dot(start->g, start->own)) / start->square,
+        .d = contact.d,
+        .u = cs_vec3_dot(start->g, start->v)};
     return true;
 }
 
@@ -257,21 +258,70 @@ static void find_rebound(const struct search *search, size_t i) {
     }
 }
 
+/* The range, and the longest way of each particle of a row by the forces of the step's begin:
+ * no other can come into range. */
+CS_CLONES static void find_reaches(const struct search *search, size_t row, size_t count,
+                                   double *restrict reach) {
+    const size_t n = search->system->view.n;
+    const double *v = search->v + row, *f = search->f + row;
+    const double *mass = search->system->mass + row;
+    const double h = search->h, range = search->law.params.range;
+    for (size_t i = 0; i < count; i++) {
+        const double speed =
+            sqrt(v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+        const double force =
+            sqrt(f[i] * f[i] + f[n + i] * f[n + i] + f[2 * n + i] * f[2 * n + i]);
+        reach[i] = range + (h * (speed + search->fastest) + h * h / mass[i] * force);
+    }
+}
+
+/* Rows are of one thread: its first particle is the first of a row. */
 static void find_all(void *arg, size_t begin, size_t end) {
     const struct search *search = arg;
-    const struct cs_rebound *rebounds = search->system->rebounds->list;
-    for (size_t i = begin; i < end; i++)
-        if (search->system->inv_mass[i] > 0 && rebounds[i].collider == 0)
-            find_rebound(search, i);
+    const struct cs_rebounds *rebounds = search->system->rebounds;
+    const size_t n = search->system->view.n;
+    for (size_t row = begin; row < end; row += CS_COLLIDER_ROW) {
+        const size_t count = end - row < CS_COLLIDER_ROW ? end - row : CS_COLLIDER_ROW;
+        double reach[CS_COLLIDER_ROW];
+        uint8_t near[CS_COLLIDER_ROW];
+        find_reaches(search, row, count, reach);
+        const uint32_t listed = cs_posed_collider_list_near(&search->law.collider, reach, n,
+                                                            search->x + row, count, near);
+        for (uint32_t k = 0; k < listed; k++) {
+            const struct cs_rebound *rebound = rebounds->list + row + near[k];
+            if (search->system->inv_mass[row + near[k]] > 0 && rebound->collider == 0)
+                find_rebound(search, row + near[k]);
+            rebounds->rows[row / CS_COLLIDER_ROW] |= rebound->collider > 0;
+        }
+    }
+}
+
+bool cs_rebound_next(const struct cs_system *system, uint32_t collider, size_t end, size_t *i) {
+    const struct cs_rebounds *rebounds = system->rebounds;
+    while (*i < end) {
+        const uint32_t number = rebounds->list[*i].collider;
+        if (!rebounds->rows[*i / CS_COLLIDER_ROW])
+            *i += CS_COLLIDER_ROW - *i % CS_COLLIDER_ROW;
+        else if (collider == CS_ANY_COLLIDER ? number > 0 : number == collider + 1)
+            return true;
+        else
+            ++*i;
+    }
+    return false;
 }
 
 void cs_rebounds_find(const struct cs_system *system, double t, double h, const double *x,
                       const double *v, const double *f) {
     struct cs_rebounds *rebounds = system->rebounds;
+    const size_t n = system->view.n;
+    size_t i = 0;
     rebounds->judged = false;
-    for (size_t i = 0; i < system->view.n; i++)
+    for (; cs_rebound_next(system, CS_ANY_COLLIDER, n, &i); i++) {
         rebounds->list[i].collider = 0;
-    memset(rebounds->change, 0, 3 * sizeof *rebounds->change * system->view.n);
+        for (size_t c = 0; c < 3; c++)
+            rebounds->change[c * n + i] = 0;
+    }
+    memset(rebounds->rows, 0, n / CS_COLLIDER_ROW + 1);
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         if (cs_scene_colliders(system->scene)[c].mesh.present)
             continue;
@@ -282,20 +332,19 @@ void cs_rebounds_find(const struct cs_system *system, double t, double h, const 
         search.fastest = cs_vec3_dot(collider->spin, collider->spin) > 0
                              ? HUGE_VAL
                              : sqrt(cs_vec3_dot(collider->velocity, collider->velocity));
-        cs_vector_parallel_for(system->view.n, find_all, &search);
+        cs_vector_parallel_for(n, find_all, &search);
     }
-    rebounds->any = false;
-    for (size_t i = 0; i < system->view.n; i++)
-        rebounds->any |= rebounds->list[i].collider > 0;
+    i = 0;
+    rebounds->any = cs_rebound_next(system, CS_ANY_COLLIDER, n, &i);
 }
 
 void cs_rebounds_move(const struct cs_system *system, double h, double *x, double *v) {
     const size_t n = system->view.n;
     const double *change = system->rebounds->change;
     system->rebounds->judged = true;
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; cs_rebound_next(system, CS_ANY_COLLIDER, n, &i); i++) {
         const struct cs_rebound *rebound = system->rebounds->list + i;
-        for (size_t k = i, c = 0; c < 3 && rebound->collider; k += n, c++) {
+        for (size_t k = i, c = 0; c < 3; k += n, c++) {
             v[k] += change[k];
             x[k] += h * change[k] + rebound->displacement * rebound->g[c];
         }
@@ -308,11 +357,9 @@ double cs_rebounds_work(const struct cs_system *system, double t, const double *
     for (uint32_t k = 0; system->rebounds->any && k < system->scene->colliders.n; k++) {
         struct cs_posed_collider collider;
         cs_posed_collider_at(system, k, t, &collider);
-        for (size_t i = 0; i < n; i++) {
+        for (size_t i = 0; cs_rebound_next(system, k, n, &i); i++) {
             const double p[3] = {x[i], x[n + i], x[2 * n + i]};
             double u[3];
-            if (system->rebounds->list[i].collider != k + 1)
-                continue;
             cs_posed_collider_velocity(&collider, p, u);
             for (size_t c = 0; c < 3; c++)
                 work += system->mass[i] * system->rebounds->change[c * n + i] * u[c];

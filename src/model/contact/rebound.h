@@ -70,6 +70,11 @@ static inline const struct cs_rebound *cs_rebound_of(const struct cs_system *sys
     return system->rebounds->list + i;
 }
 
+/* Moves *i on to the first particle from *i on and before `end` that is in impact with this
+ * collider, or CS_ANY_COLLIDER; returns false if there is none. */
+#define CS_ANY_COLLIDER UINT32_MAX
+bool cs_rebound_next(const struct cs_system *system, uint32_t collider, size_t end, size_t *i);
+
 /* Adds the block of an impact to b: xx, xy, xz, yy, yz, zz. */
 void cs_rebound_add_block(const struct cs_rebound *rebound, const struct cs_matrix *matrix,
                           double b[6]);

@@ -39,6 +39,7 @@ struct cs_rebound {
 struct cs_rebounds {
     struct cs_rebound *list; /* (n) by particle */
     double *change; /* (3,n) m/s, of the velocity in the flight; 0 where there is none */
+    uint8_t *rows;  /* of CS_COLLIDER_ROW particles each: 1 if one is in impact */
     bool any;       /* a particle is in impact */
     bool judged;    /* the last step was finished: the next test of a step is its own */
 };

@@ -13,7 +13,7 @@
 #include <math.h>
 
 /* particles per row, and per chunk of stored friction */
-enum { ROW = 64, STORED = 1024 };
+enum { ROW = CS_COLLIDER_ROW, STORED = 1024 };
 
 /* A query to many particles, and what it adds to. */
 struct pass {
@@ -174,6 +174,37 @@ static void take(struct pass *pass, uint32_t i, const struct cs_point_answer *an
         pass->to[c * n + i] += answer->vector[c];
 }
 
+/* Answers for particles [begin, end) at a collider, one by one: those in range of it, which the
+ * bounding tests of a row tell, and those in impact with it. */
+static void answer_near(const struct cs_posed_collider_law *law, uint32_t collider,
+                        struct pass *pass, size_t begin, size_t end, bool in_rows) {
+    const struct cs_point_query *query = &pass->query;
+    const struct cs_system *system = query->system;
+    struct cs_contact_sample_point point = {.n = 1, .w = {1}};
+    struct cs_point_answer answer;
+    double reach[ROW];
+    for (int i = 0; i < ROW; i++)
+        reach[i] = law->params.range;
+    for (size_t row = begin; row < end; row += ROW) {
+        const size_t count = end - row < ROW ? end - row : ROW;
+        uint8_t near[ROW];
+        const uint32_t n_near = cs_posed_collider_list_near(
+            &law->collider, reach, system->view.n, query->eval.x + row, count, near);
+        for (uint32_t k = 0; k < n_near; k++) {
+            const uint32_t i = point.particles[0] = (uint32_t)row + near[k];
+            if (!(query->matrix && cs_rebound_of(system, query->matrix, collider, i)) &&
+                cs_point_evaluate(query, law, collider, &point, &answer))
+                take(pass, i, &answer, in_rows);
+        }
+    }
+    const bool rebounds = query->matrix && query->matrix->rebounds;
+    for (size_t i = rebounds ? begin : end; cs_rebound_next(system, collider, end, &i); i++) {
+        point.particles[0] = (uint32_t)i;
+        if (cs_point_evaluate(query, law, collider, &point, &answer))
+            take(pass, (uint32_t)i, &answer, in_rows);
+    }
+}
+
 /* Answers for particles [begin, end) at all colliders. Spheres and planes have a vectorised
  * path with the same formulas, which gives no power. */
 static void run(void *arg, size_t begin, size_t end) {
@@ -181,22 +212,15 @@ static void run(void *arg, size_t begin, size_t end) {
     const struct cs_point_query *query = &pass->query;
     const bool power = query->quantity == CS_POINT_FORCE && query->eval.power;
     for (uint32_t k = 0; k < query->system->scene->colliders.n; k++) {
-        struct cs_contact_sample_point point = {.n = 1, .w = {1}};
         struct cs_posed_collider_law law;
-        struct cs_point_answer answer;
         cs_posed_collider_law_at(query->system, k, query->eval.t, &law);
         const bool in_rows =
             (query->quantity == CS_POINT_FORCE || query->quantity == CS_POINT_BOUND) &&
             cs_posed_collider_law_is_plain(&law);
         if (in_rows)
             answer_in_rows(&law, pass, begin, end);
-        if (in_rows && !(power && !cs_vec3_is_zero(law.collider.velocity)))
-            continue;
-        for (uint32_t i = (uint32_t)begin; i < end; i++) {
-            point.particles[0] = i;
-            if (cs_point_evaluate(query, &law, k, &point, &answer))
-                take(pass, i, &answer, in_rows);
-        }
+        if (!in_rows || (power && !cs_vec3_is_zero(law.collider.velocity)))
+            answer_near(&law, k, pass, begin, end, in_rows);
     }
 }
 
