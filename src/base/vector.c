@@ -69,6 +69,45 @@ double cs_vector_sum(size_t n, double (*part)(const void *arg, size_t begin, siz
     return sum;
 }
 
+/* Lanes of the reduction to a span, several vectors: with fewer the compiler uses scalars. */
+enum { SPAN_LANES = 32 };
+
+/* Smallest and largest difference of each lane. */
+struct span {
+    double low[SPAN_LANES], high[SPAN_LANES];
+};
+
+CS_INLINE void widen(struct span *span, const double *now, const double *then) {
+    for (int l = 0; l < SPAN_LANES; l++) {
+        const double move = now[l] - then[l];
+        span->low[l] = move < span->low[l] ? move : span->low[l];
+        span->high[l] = move > span->high[l] ? move : span->high[l];
+    }
+}
+
+/* Lanes are independent, because each comparison would otherwise wait for the one before. */
+CS_CLONES void cs_vector_span(size_t n, const double *now, const double *then, double *low,
+                              double *high) {
+    struct span span;
+    for (int l = 0; l < SPAN_LANES; l++)
+        span.low[l] = span.high[l] = now[0] - then[0];
+    for (size_t i = 0; i + SPAN_LANES <= n; i += SPAN_LANES)
+        widen(&span, now + i, then + i);
+    for (size_t i = n - n % SPAN_LANES; i < n; i++) {
+        const double move = now[i] - then[i];
+        span.low[0] = move < span.low[0] ? move : span.low[0];
+        span.high[0] = move > span.high[0] ? move : span.high[0];
+    }
+    for (int half = SPAN_LANES / 2; half; half /= 2)
+        for (int l = 0; l < half; l++) {
+            const double least = span.low[half + l], most = span.high[half + l];
+            span.low[l] = least < span.low[l] ? least : span.low[l];
+            span.high[l] = most > span.high[l] ? most : span.high[l];
+        }
+    *low = span.low[0];
+    *high = span.high[0];
+}
+
 /* Four of the eight lanes of a sum, and the same at any address in an array. A vector of all
  * eight would live in memory where the processor's own are shorter: with AVX2 each addition
  * then waited for stores of another width. */

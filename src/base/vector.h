@@ -17,6 +17,10 @@ double cs_vector_dot(size_t n, const double *x, const double *y);
 void cs_vector_parallel_for(size_t n, void (*part)(void *arg, size_t begin, size_t end),
                             void *arg);
 
+/* Sets *low and *high to the smallest and largest of now - then, for n > 0; a NaN in the first
+ * number stays. */
+void cs_vector_span(size_t n, const double *now, const double *then, double *low, double *high);
+
 /* Returns the sum of part(arg, begin, end) over blocks of 4096, added in their order. Parts run
  * concurrently and must not write. 0 if n is 0. */
 double cs_vector_sum(size_t n, double (*part)(const void *arg, size_t begin, size_t end),

@@ -7,6 +7,23 @@
 #include "model/contact/step_check.h"
 
 #include <math.h>
+#include <string.h>
+
+double cs_contact_samples_approach(size_t n, const struct cs_posed_collider *from,
+                                   const double *x0, const struct cs_posed_collider *to,
+                                   const double *x1) {
+    double squared = 0;
+    if (to->radius != from->radius || memcmp(to->axes, from->axes, sizeof to->axes) != 0)
+        return HUGE_VAL;
+    for (size_t c = 0; c < 3; c++) {
+        const double shift = to->centre[c] - from->centre[c];
+        double low, high;
+        cs_vector_span(n, x1 + c * n, x0 + c * n, &low, &high);
+        const double back = shift - low, on = high - shift;
+        squared += back > on ? back * back : on * on;
+    }
+    return sqrt(squared);
+}
 
 /* One step. */
 struct job {
@@ -50,19 +67,37 @@ static bool item_is_far(const struct cs_collider_step *step, const uint32_t *ver
                                       middle);
 }
 
+/* Returns whether every item that was not listed stays out of range in a step, as above: the
+ * end of each of its samples is further from it than they move. */
+static bool is_listed(const struct job *job, const struct cs_collider_step *step) {
+    const struct cs_contact_samples *samples = job->covers;
+    const struct cs_posed_collider_law *listed = samples->listed + step->collider;
+    const size_t n = samples->system->view.n;
+    const double move =
+        cs_contact_samples_approach(n, &step->at_t0, job->x0, &step->at_t1, job->x1);
+    const double since = cs_contact_samples_approach(n, &listed->collider, samples->x_listed,
+                                                     &step->at_t1, job->x1);
+    return since + move < (1 - 1e-6) * (listed->params.range - step->params.range);
+}
+
 /* J, the excess of the samples in the chunks [begin, end), which are sorted by colliders. */
 static double sum_excess(const void *arg, size_t begin, size_t end) {
     const struct job *job = arg;
     struct cs_collider_step step = {.x0 = job->x0, .x1 = job->x1};
+    bool listed = false;
     double sum = 0;
     for (size_t l = begin; l < end; l++) {
         const struct cs_contact_sample_chunk *chunk = job->covers->chunks + l;
-        if (l == begin || chunk->collider != step.collider)
+        if (l == begin || chunk->collider != step.collider) {
             cs_collider_step_set(&step, job->covers->system, chunk->collider, job->t0, job->t1);
-        if (cs_collider_step_is_far(&step, chunk->first,
-                                    (size_t)chunk->last - chunk->first + 1))
+            listed = is_listed(job, &step);
+        }
+        if (!listed && cs_collider_step_is_far(&step, chunk->first,
+                                               (size_t)chunk->last - chunk->first + 1))
             continue;
-        for (uint32_t i = chunk->begin; i < chunk->end; i++) {
+        const uint32_t n = listed ? chunk->n_near : chunk->end - chunk->begin;
+        for (uint32_t k = 0; k < n; k++) {
+            const uint32_t i = chunk->begin + (listed ? chunk->near[k] : k);
             struct cs_contact_sample_point point;
             if (!chunk->subdivisions[i - chunk->begin] ||
                 item_is_far(&step, chunk->vertices + (size_t)chunk->vertices_per_item * i,
@@ -198,6 +233,7 @@ static void list_chunks(struct cs_system *system, struct cs_contact_samples *sam
             if (points && samples->chunks) {
                 chunk.subdivisions =
                     cs_arena_alloc_array(&system->arena, chunk.end - begin, 1, error);
+                chunk.near = cs_arena_alloc_array(&system->arena, chunk.end - begin, 1, error);
                 if (chunk.subdivisions)
                     fill_chunk(system, spacing, &chunk);
                 samples->chunks[samples->n_chunks] = chunk;
@@ -241,6 +277,8 @@ enum cs_status cs_contact_samples_build(struct cs_system *system, struct cs_erro
     list_all(system, samples, error);
     samples->colliders = cs_arena_alloc_array(arena, system->scene->colliders.n,
                                               sizeof *samples->colliders, error);
+    CS_ARENA_ARRAY(arena, samples->listed, system->scene->colliders.n, error);
+    CS_ARENA_ARRAY(arena, samples->x_listed, 3 * (size_t)system->view.n, error);
     samples->chunks =
         cs_arena_alloc_array(arena, samples->n_chunks, sizeof *samples->chunks, error);
     if (!error->status)

@@ -36,6 +36,10 @@ struct cs_contact_sample_chunk {
     uint32_t first, last;
     /* (end - begin) number m of parts per edge; 0: no sample */
     uint8_t *subdivisions;
+    /* (n_near) items from `begin` on whose samples were near the collider where they were
+     * listed */
+    uint8_t *near;
+    uint32_t n_near;
     /* (end - begin) number of each item's first sample among all; NULL without anchors of
      * friction */
     uint32_t *first_numbers;
@@ -46,6 +50,10 @@ struct cs_contact_samples {
     const struct cs_system *system; /* borrowed */
     /* (colliders) at the time of the last query */
     struct cs_posed_collider_law *colliders;
+    /* where near items were listed: (3,n) m, and (colliders) with the reach of the list as
+     * their range, 0 before the first */
+    double *x_listed;
+    struct cs_posed_collider_law *listed;
     struct cs_contact_sample_chunk
         *chunks; /* (n_chunks) those with points; by colliders, edges first */
     uint32_t n_chunks;
@@ -58,6 +66,16 @@ struct cs_contact_samples {
     /* set whose diagonal blocks are wanted */
     const struct cs_contact_set *blocks;
 };
+
+/* Reach of a list of near items in ranges: until samples and collider have moved towards each
+ * other by the rest, all samples in range are of these items. Chosen by trial on squeeze. */
+#define CS_CONTACT_SAMPLE_REACH 4
+
+/* m, by how much a sample may have moved towards a collider from a pose of it with particles at
+ * x0 (3,n) to a pose and x1; HUGE_VAL if the collider has turned or grown. */
+double cs_contact_samples_approach(size_t n, const struct cs_posed_collider *from,
+                                   const double *x0, const struct cs_posed_collider *to,
+                                   const double *x1);
 
 /* Longest part in m of an edge that a collider cannot pass, sqrt(D (2 R + 3/4 D)); HUGE_VAL for
  * planes and meshes, which need no samples. */

@@ -17,6 +17,7 @@ struct job {
     struct cs_contact_samples *samples;
     struct cs_contact_set *set;
     uint32_t first; /* chunk of lagged friction that the first chunk goes to */
+    bool lists;     /* items near colliders are listed again */
 };
 
 /* Evaluates one sample if it is in range and can move. */
@@ -75,29 +76,48 @@ CS_INLINE double box_of(const double *x, size_t n, const uint32_t *listed, size_
     return sqrt(squared);
 }
 
-/* Evaluates one chunk. Boxes of the chunk and of each item come before single samples. */
-static void do_chunk(void *arg, uint32_t number) {
-    const struct job *job = arg;
-    const struct cs_contact_sample_chunk *chunk = job->samples->chunks + number;
-    const struct cs_posed_collider_law *law = job->samples->colliders + chunk->collider;
+/* Returns whether samples of an item may be within the range of a law, by its box. */
+static bool item_is_near(const struct job *job, const struct cs_contact_sample_chunk *chunk,
+                         const struct cs_posed_collider_law *law, uint32_t i) {
+    const uint32_t *vertices = chunk->vertices + (size_t)chunk->vertices_per_item * i;
     const size_t n = job->query.system->view.n;
     double middle[3];
-    cs_contact_set_clear(job->set, number);
-    const double *x = job->query.eval.x;
+    // constant numbers, so that there are no loops
+    const double half = chunk->vertices_per_item == 2
+                            ? box_of(job->query.eval.x, n, vertices, 0, 2, middle)
+                            : box_of(job->query.eval.x, n, vertices, 0, 3, middle);
+    return cs_posed_collider_is_near(&law->collider, law->params.range + half, middle);
+}
+
+/* Lists the items of a chunk near its collider. The box of all comes before theirs. */
+static void list_items(const struct job *job, struct cs_contact_sample_chunk *chunk) {
+    const struct cs_posed_collider_law *law = job->samples->listed + chunk->collider;
+    const size_t count = (size_t)chunk->last - chunk->first + 1;
+    double middle[3];
     const double all =
-        box_of(x, n, NULL, chunk->first, (size_t)chunk->last - chunk->first + 1, middle);
+        box_of(job->query.eval.x, job->query.system->view.n, NULL, chunk->first, count, middle);
+    chunk->n_near = 0;
     if (!cs_posed_collider_is_near(&law->collider, law->params.range + all, middle))
         return;
     for (uint32_t i = chunk->begin; i < chunk->end; i++) {
+        chunk->near[chunk->n_near] = (uint8_t)(i - chunk->begin);
+        chunk->n_near +=
+            chunk->subdivisions[i - chunk->begin] && item_is_near(job, chunk, law, i);
+    }
+}
+
+/* Evaluates one chunk. Lists and boxes of items come before single samples. */
+static void do_chunk(void *arg, uint32_t number) {
+    const struct job *job = arg;
+    struct cs_contact_sample_chunk *chunk = job->samples->chunks + number;
+    const struct cs_posed_collider_law *law = job->samples->colliders + chunk->collider;
+    cs_contact_set_clear(job->set, number);
+    if (job->lists)
+        list_items(job, chunk);
+    for (uint32_t k = 0; k < chunk->n_near; k++) {
+        const uint32_t i = chunk->begin + chunk->near[k];
         struct cs_contact_sample_point point;
-        if (!chunk->subdivisions[i - chunk->begin])
-            continue;
-        const uint32_t *vertices = chunk->vertices + (size_t)chunk->vertices_per_item * i;
-        // constant numbers, so that there are no loops
-        const double half = chunk->vertices_per_item == 2
-                                ? box_of(x, n, vertices, 0, 2, middle)
-                                : box_of(x, n, vertices, 0, 3, middle);
-        if (cs_posed_collider_is_near(&law->collider, law->params.range + half, middle))
+        if (item_is_near(job, chunk, law, i))
             for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
                 meet(job, law, &point, number);
     }
@@ -106,9 +126,25 @@ static void do_chunk(void *arg, uint32_t number) {
 /* Poses all colliders, evaluates all chunks and gathers their contacts. */
 static void do_chunks(struct job *job) {
     const struct cs_system *system = job->query.system;
-    for (uint32_t c = 0; c < system->scene->colliders.n; c++)
-        cs_posed_collider_law_at(system, c, job->query.eval.t, job->samples->colliders + c);
-    cs_pool_run(job->samples->n_chunks, do_chunk, job);
+    struct cs_contact_samples *samples = job->samples;
+    const double *x = job->query.eval.x;
+    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
+        struct cs_posed_collider_law *law = samples->colliders + c;
+        cs_posed_collider_law_at(system, c, job->query.eval.t, law);
+        const struct cs_posed_collider_law *listed = samples->listed + c;
+        // planes need no samples
+        job->lists |= cs_shape_needs_points(law->collider.shape) &&
+                      !(cs_contact_samples_approach(system->view.n, &listed->collider,
+                                                    samples->x_listed, &law->collider, x) <
+                        (1 - 1e-6) * (listed->params.range - law->params.range));
+    }
+    for (uint32_t c = 0; c < system->scene->colliders.n && job->lists; c++) {
+        samples->listed[c] = samples->colliders[c];
+        samples->listed[c].params.range *= CS_CONTACT_SAMPLE_REACH;
+    }
+    if (job->lists)
+        memcpy(samples->x_listed, x, 3 * sizeof *x * system->view.n);
+    cs_pool_run(samples->n_chunks, do_chunk, job);
     cs_contact_set_gather(job->set);
 }
 
@@ -117,7 +153,8 @@ static struct cs_contact_set *run(const struct cs_system *system,
                                   enum cs_point_quantity quantity, const struct cs_eval *at,
                                   const struct cs_matrix *matrix) {
     struct cs_contact_samples *samples = system->contact_samples;
-    struct job job = {{system, quantity, *at, matrix}, samples, &samples->current_set, 0};
+    struct job job = {
+        {system, quantity, *at, matrix}, samples, &samples->current_set, 0, false};
     do_chunks(&job);
     return job.set;
 }
@@ -132,7 +169,8 @@ static void store_friction(const struct cs_system *system, double t, const doubl
     struct job job = {{system, CS_POINT_LAGGED, {.t = t, .x = x}, NULL},
                       samples,
                       &samples->current_set,
-                      first};
+                      first,
+                      false};
     do_chunks(&job);
 }
 
@@ -189,7 +227,8 @@ static void prepare_matrix(const struct cs_system *system, const struct cs_matri
                        matrix},
                       samples,
                       set,
-                      0};
+                      0,
+                      false};
     set->diagonal_bound = !kept && matrix->bound;
     do_chunks(&job);
     cs_contact_set_write_blocks(set);

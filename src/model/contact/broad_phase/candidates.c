@@ -6,7 +6,8 @@
  * of bodies with contact, a = b included. */
 #include "model/contact/broad_phase/candidate_list.h"
 
-#include <clothsim/clones.h>
+#include "base/vector.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,45 +55,6 @@ enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_sy
 
 /* --- how long the list is good --- */
 
-/* Lanes of the reduction, several vectors: with fewer the compiler uses scalars. */
-enum { LANES = 32 };
-
-/* Smallest and largest displacement of each lane. */
-struct span {
-    double low[LANES], high[LANES];
-};
-
-CS_INLINE void widen(struct span *span, const double *now, const double *then) {
-    for (int l = 0; l < LANES; l++) {
-        const double move = now[l] - then[l];
-        span->low[l] = move < span->low[l] ? move : span->low[l];
-        span->high[l] = move > span->high[l] ? move : span->high[l];
-    }
-}
-
-/* Sets lane 0 to the smallest and largest of now - then; NaN in the first number stays. Lanes
- * are independent, because each comparison would otherwise wait for the one before. */
-CS_CLONES static void find_span(const double *now, const double *then, size_t count,
-                                struct span *out) {
-    struct span span;
-    for (int l = 0; l < LANES; l++)
-        span.low[l] = span.high[l] = now[0] - then[0];
-    for (size_t i = 0; i + LANES <= count; i += LANES)
-        widen(&span, now + i, then + i);
-    for (size_t i = count - count % LANES; i < count; i++) {
-        const double move = now[i] - then[i];
-        span.low[0] = move < span.low[0] ? move : span.low[0];
-        span.high[0] = move > span.high[0] ? move : span.high[0];
-    }
-    for (int half = LANES / 2; half; half /= 2)
-        for (int l = 0; l < half; l++) {
-            const double low = span.low[half + l], high = span.high[half + l];
-            span.low[l] = low < span.low[l] ? low : span.low[l];
-            span.high[l] = high > span.high[l] ? high : span.high[l];
-        }
-    *out = span;
-}
-
 /* Middle of the box of a body's displacements since `from`, and half its diagonal. */
 static void measure_drift(const struct cs_candidates *candidates, uint32_t body,
                           const double *from, const double *x) {
@@ -101,9 +63,8 @@ static void measure_drift(const struct cs_candidates *candidates, uint32_t body,
     const size_t n = surfaces->n_points, count = surfaces->first_point[body + 1] - first;
     double *drift = candidates->body_motion + 4 * (size_t)body, squared = 0;
     for (size_t c = 0; c < 3; c++) {
-        struct span span;
-        find_span(x + c * n + first, from + c * n + first, count, &span);
-        const double low = span.low[0], high = span.high[0];
+        double low, high;
+        cs_vector_span(count, x + c * n + first, from + c * n + first, &low, &high);
         drift[c] = 0.5 * (low + high);
         squared += 0.25 * (high - low) * (high - low);
     }
