@@ -43,16 +43,6 @@ enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *
                          : cs_multigrid_init(&linear->multigrid, system, arena, error);
 }
 
-/* Inverts the block of particle i in place. Returns false if it is not positive definite. */
-static bool invert(double *blocks, size_t n, size_t i) {
-    double block[6];
-    cs_sym3_read(n, blocks, i, block);
-    if (!cs_sym3_invert_definite(block, block))
-        return false;
-    cs_sym3_write(n, blocks, i, block);
-    return true;
-}
-
 /* Fills mass and blocks for particles [begin, end): cm m_i, and the forces' diagonal parts. */
 static void set_mass(void *arg, size_t begin, size_t end) {
     struct cs_linear *linear = arg;
@@ -64,12 +54,23 @@ static void set_mass(void *arg, size_t begin, size_t end) {
     cs_terms_add_matrix(system, &linear->matrix, begin, end, linear->mass, linear->blocks);
 }
 
-/* Counts the blocks of a range that are not positive definite, and inverts the others. */
-static double invert_part(const void *arg, size_t begin, size_t end) {
+/* Counts the blocks of a range that are not positive definite, and inverts the others, without
+ * a branch. */
+CS_CLONES static double invert_part(const void *arg, size_t begin, size_t end) {
     const struct cs_linear *linear = arg;
-    double indefinite = 0;
-    for (size_t i = begin; i < end; i++)
-        indefinite += !invert(linear->inverse, linear->system->view.n, i);
+    const size_t n = linear->system->view.n;
+    double *restrict blocks = linear->inverse, indefinite = 0;
+    CS_INDEPENDENT
+    for (size_t i = begin; i < end; i++) {
+        double block[6], cofactors[6];
+        cs_sym3_read(n, blocks, i, block);
+        const double determinant = cs_sym3_cofactors(block, cofactors);
+        const double factor = 1 / determinant;
+        const bool definite = cs_sym3_is_definite(block, cofactors, determinant);
+        for (size_t c = 0; c < 6; c++)
+            blocks[c * n + i] = definite ? cofactors[c] * factor : block[c];
+        indefinite += definite ? 0 : 1;
+    }
     return indefinite;
 }
 
