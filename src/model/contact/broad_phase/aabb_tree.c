@@ -30,15 +30,6 @@ enum cs_status cs_aabb_tree_init(struct cs_aabb_tree *tree, const uint32_t *firs
     return error->status;
 }
 
-void cs_aabb_node_set(struct cs_aabb_node *node, uint32_t lane, const struct cs_aabb *box) {
-    for (int c = 0; c < 3; c++) {
-        // of an empty one no number is true of anything, even of a box without end
-        const bool some = box->high[c] >= box->low[c];
-        node->low[c][lane] = some ? box->low[c] : NAN;
-        node->high[c][lane] = some ? box->high[c] : NAN;
-    }
-}
-
 /* Common box of a node; NaN extends nothing. */
 static struct cs_aabb bound(const struct cs_aabb_node *node) {
     struct cs_aabb box;

@@ -12,6 +12,7 @@
 
 #include "base/arena.h"
 
+#include <math.h>
 #include <stdint.h>
 
 /* Boxes per node; levels, with which all numbers of items have a tree. */
@@ -61,7 +62,15 @@ static inline uint32_t cs_aabb_tree_item(const struct cs_aabb_tree *tree, uint32
 }
 
 /* Sets one box of a node. */
-void cs_aabb_node_set(struct cs_aabb_node *node, uint32_t lane, const struct cs_aabb *box);
+static inline void cs_aabb_node_set(struct cs_aabb_node *node, uint32_t lane,
+                                    const struct cs_aabb *box) {
+    for (int c = 0; c < 3; c++) {
+        // of an empty one no number is true of anything, even of a box without end
+        const bool some = box->high[c] >= box->low[c];
+        node->low[c][lane] = some ? box->low[c] : NAN;
+        node->high[c][lane] = some ? box->high[c] : NAN;
+    }
+}
 
 /* Sets the boxes of all levels above the leaves. */
 void cs_aabb_tree_fit(struct cs_aabb_tree *tree);

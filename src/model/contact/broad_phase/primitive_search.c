@@ -50,6 +50,7 @@ struct move {
     struct cs_primitive_search *search;
     const struct cs_move_query *query;
     double grow[2]; /* m, of one box of a pair with a triangle, and of two edges */
+    bool finite;    /* all coordinates are */
     uint32_t first_chunk;
 };
 struct work {
@@ -61,23 +62,46 @@ struct work {
     size_t n;
 };
 
-/* Swept box of an item by its one to three vertices; empty if one is not finite. */
-CS_INLINE struct cs_swept_aabb sweep_item(const struct move *move, uint32_t each,
-                                          uint32_t item) {
+/* Returns whether all of some coordinates are below FAR. */
+CS_CLONES static bool all_finite(const double *x, size_t n) {
+    uint32_t far = 0;
+    for (size_t i = 0; i < n; i++)
+        far += fabs(x[i]) < FAR ? 0 : 1;
+    return far == 0;
+}
+
+/* The same of those of a point, at both ends. */
+static bool point_is_finite(const struct move *move, size_t i) {
+    const size_t n = move->search->surfaces->n_points;
+    bool finite = true;
+    for (; i < 3 * n; i += n)
+        finite &= all_finite(move->query->x0 + i, 1) &&
+                  (!move->query->x1 || all_finite(move->query->x1 + i, 1));
+    return finite;
+}
+
+/* Swept box of an item by its one to three vertices; empty if one is not finite. each, rests:
+ * constants, so that there are no loops. */
+CS_INLINE struct cs_swept_aabb sweep_vertices(const struct move *move, const uint32_t each,
+                                              const bool rests, uint32_t item) {
     const struct cs_surfaces *surfaces = move->search->surfaces;
-    const size_t n = surfaces->n_points;
-    const double *x0 = move->query->x0, *x1 = move->query->x1;
+    const double *x0 = move->query->x0, *x1 = rests ? NULL : move->query->x1;
     const uint32_t *points = each == 1   ? &item
                              : each == 2 ? surfaces->edges + 2 * (size_t)item
                                          : surfaces->triangles + 3 * (size_t)item;
     struct cs_swept_aabb swept = cs_swept_aabb_empty();
     bool finite = true;
     for (uint32_t k = 0; k < each; k++) {
-        for (size_t i = points[k]; i < 3 * n; i += n)
-            finite &= fabs(x0[i]) < FAR && (!x1 || fabs(x1[i]) < FAR);
-        cs_swept_aabb_add_point(&swept, n, points[k], x0, x1);
+        finite = finite && (move->finite || point_is_finite(move, points[k]));
+        cs_swept_aabb_add_point(&swept, surfaces->n_points, points[k], x0, x1);
     }
     return finite ? swept : cs_swept_aabb_empty();
+}
+
+CS_INLINE struct cs_swept_aabb sweep_item(const struct move *move, const uint32_t each,
+                                          uint32_t item) {
+    return move->query->x1 ? sweep_vertices(move, each, false, item)
+                           : sweep_vertices(move, each, true, item);
 }
 
 static void sweep_body(void *arg, uint32_t body) {
@@ -254,6 +278,8 @@ bool cs_primitive_search_move(struct cs_primitive_search *search,
     struct move move = {.search = search,
                         .query = query,
                         .first_chunk = query->pierce ? search->n_point_chunks : 0};
+    const size_t n = 3 * (size_t)search->surfaces->n_points;
+    move.finite = all_finite(query->x0, n) && (!query->x1 || all_finite(query->x1, n));
     search->failed = false;
     cs_pool_run(search->surfaces->n_bodies, sweep_body, &move);
     for (int k = 0; k < 2; k++)
