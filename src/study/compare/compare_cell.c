@@ -179,6 +179,9 @@ bool cs_cell_is_rounding(const struct cs_cell *cell, uint32_t n, double motion) 
     return stands;
 }
 
+/* with room for rounding */
+#define HALF_DECADE 3.1630059
+
 double cs_cell_typical(const struct cs_cell *cells, uint32_t n, const struct cs_cell *cell,
                        const struct cs_column *column, double *low, double *high) {
     const double own = cs_cell_number(cell, column);
@@ -192,7 +195,7 @@ double cs_cell_typical(const struct cs_cell *cells, uint32_t n, const struct cs_
         /* error control holds the error to a multiple of the tolerance */
         const double value = cs_cell_number(at, column) * cell->value / at->value;
         if (cs_cell_is_finished(at) && value > 0 && isfinite(value) &&
-            fabs(log10(at->value / cell->value)) <= 0.5001)
+            at->value <= HALF_DECADE * cell->value && cell->value <= HALF_DECADE * at->value)
             near[count++] = value;
     }
     if (!(own > 0) || count < 2)

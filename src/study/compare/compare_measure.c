@@ -178,14 +178,15 @@ const char *const cs_norm_names[] = {"error", "path", "largest", "velocity", "en
 
 /* One row per norm: text, unit, column, and whether it is a pointwise error. */
 static const struct norm {
-    const char *words, *unit, *column;
+    const char *words, *unit;
+    size_t offset; /* of the column */
     bool of_particles;
 } norms[CS_NORMS] = {
-    [CS_NORM_END] = {"error", "m", "error", true},
-    [CS_NORM_PATH] = {"path error", "m", "path_error", true},
-    [CS_NORM_LARGEST] = {"largest error", "m", "max_error", true},
-    [CS_NORM_VELOCITY] = {"velocity error", "m/s", "velocity_error", true},
-    [CS_NORM_ENERGY] = {"energy error", "", "energy_error", false},
+    [CS_NORM_END] = {"error", "m", offsetof(struct cs_cell, error), true},
+    [CS_NORM_PATH] = {"path error", "m", offsetof(struct cs_cell, path_error), true},
+    [CS_NORM_LARGEST] = {"largest error", "m", offsetof(struct cs_cell, max_error), true},
+    [CS_NORM_VELOCITY] = {"velocity error", "m/s", offsetof(struct cs_cell, velocity_error), true},
+    [CS_NORM_ENERGY] = {"energy error", "", offsetof(struct cs_cell, energy_error), false},
 };
 
 const char *cs_norm_words(enum cs_norm norm) {
@@ -197,7 +198,10 @@ const char *cs_norm_unit(enum cs_norm norm) {
 }
 
 const struct cs_column *cs_norm_column(enum cs_norm norm) {
-    return cs_column_find(norms[norm].column);
+    const struct cs_column *column = cs_columns;
+    while (column->offset != norms[norm].offset)
+        column++;
+    return column;
 }
 
 bool cs_norm_is_known(enum cs_norm norm, const struct cs_compare_reference *reference) {
@@ -206,7 +210,11 @@ bool cs_norm_is_known(enum cs_norm norm, const struct cs_compare_reference *refe
 
 double cs_norm_of(enum cs_norm norm, const struct cs_cell *cell,
                   const struct cs_compare_reference *reference) {
-    const double error = cs_cell_number(cell, cs_norm_column(norm));
+    return cs_norm_bounded(norm, cs_cell_number(cell, cs_norm_column(norm)), reference);
+}
+
+double cs_norm_bounded(enum cs_norm norm, double error,
+                       const struct cs_compare_reference *reference) {
     // the reference's own error is known for positions
     if (norm > CS_NORM_LARGEST || isnan(error))
         return error;

@@ -36,6 +36,10 @@ bool cs_norm_is_known(enum cs_norm norm, const struct cs_compare_reference *refe
 double cs_norm_of(enum cs_norm norm, const struct cs_cell *cell,
                   const struct cs_compare_reference *reference);
 
+/* Such an error, not below the reference's own. */
+double cs_norm_bounded(enum cs_norm norm, double error,
+                       const struct cs_compare_reference *reference);
+
 /* Error of a run without any information on the motion, in the unit of the norm; HUGE_VAL if
  * not known. */
 double cs_norm_scale(enum cs_norm norm, const struct cs_compare_reference *reference);

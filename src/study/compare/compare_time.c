@@ -13,10 +13,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* s of processor time. Short runs are repeated within a round until they fill it; a run
- * expected to be shorter than WARM_SECONDS is first run once untimed, to warm the caches. */
+/* s of processor time. Short runs are repeated within a round until they fill it; before a run
+ * expected to be shorter than SHORT_SECONDS its first frames are run untimed, for
+ * WARM_SECONDS, to warm the caches. */
 #define LEAST_SECONDS 0.01
-#define WARM_SECONDS  0.05
+#define SHORT_SECONDS 0.05
+#define WARM_SECONDS  0.003
 
 /* Rounds at least, if so many are allowed. */
 enum { LEAST_ROUNDS = 7 };
@@ -36,13 +38,26 @@ enum { LEAST_ROUNDS = 7 };
  * one method throughout. */
 enum { SHIFT_BYTES = 1 << 16 };
 
+/* Runs as many frames as take WARM_SECONDS, untimed. expected: s of a whole run. */
+static enum cs_status warm(struct cs_recorded_run *recording, double expected,
+                           struct cs_error *error) {
+    struct cs_recorded_run_result result;
+    const uint32_t frames = recording->frames;
+    if (expected < SHORT_SECONDS) {
+        recording->frames = (uint32_t)ceil(frames * fmin(WARM_SECONDS / expected, 1));
+        cs_recorded_run_execute(recording, 0, NULL, &result, error);
+        recording->frames = frames;
+    }
+    return error->status;
+}
+
 /* Mean time in s of one run, over at least LEAST_SECONDS. expected: s, of earlier runs. */
 static enum cs_status run_warm(struct cs_recorded_run *recording, double expected,
                                double *seconds, struct cs_error *error) {
     struct cs_recorded_run_result result;
     double total = 0;
     uint32_t n = 0;
-    if (expected < WARM_SECONDS && cs_recorded_run_execute(recording, 0, NULL, &result, error))
+    if (warm(recording, expected, error))
         return error->status;
     do {
         if (cs_recorded_run_execute(recording, 0, NULL, &result, error))

@@ -38,12 +38,10 @@ bool cs_choice_is_ranked(const struct cs_cell *cell, const struct cs_choice *cho
 
 double cs_choice_error(const struct cs_cell *cell, const struct cs_choice *choice) {
     const struct cs_cell_list *list = &choice->compare->cells;
-    const struct cs_column *column = cs_norm_column(choice->norm);
-    struct cs_cell typical = *cell;
     double low, high;
-    const double error = cs_cell_typical(list->cells, list->n, cell, column, &low, &high);
-    memcpy((char *)&typical + column->offset, &error, sizeof error);
-    return cs_norm_of(choice->norm, &typical, &choice->compare->reference);
+    const double error = cs_cell_typical(list->cells, list->n, cell,
+                                         cs_norm_column(choice->norm), &low, &high);
+    return cs_norm_bounded(choice->norm, error, &choice->compare->reference);
 }
 
 /* A cell with an error of at most the bound; rounding may exceed it by 1e-9. */
@@ -85,19 +83,20 @@ uint32_t cs_choice_series_end(const struct cs_choice *choice, uint32_t first) {
 static double find_slope(const struct cs_choice *choice, const struct cs_cell *cell,
                          const struct cs_cell *first, const struct cs_cell *end) {
     const double wide = cell->adaptive ? WIDE_NOISY : WIDE;
+    const double error = cs_choice_error(cell, choice);
+    double nearest = 0, of_nearest = error;
     const struct cs_cell *other = NULL;
     for (const struct cs_cell *at = first; at < end; at++) {
-        const double apart =
-            fabs(log(cs_choice_error(at, choice) / cs_choice_error(cell, choice)));
-        if (cs_choice_is_ranked(at, choice) && apart >= log(wide) &&
-            (!other ||
-             apart < fabs(log(cs_choice_error(other, choice) / cs_choice_error(cell, choice)))))
+        if (!cs_choice_is_ranked(at, choice))
+            continue;
+        const double of_at = cs_choice_error(at, choice), apart = fabs(log(of_at / error));
+        if (apart >= log(wide) && (!other || apart < nearest)) {
             other = at;
+            nearest = apart;
+            of_nearest = of_at;
+        }
     }
-    const double slope =
-        other ? log(other->work / cell->work) /
-                    log(cs_choice_error(cell, choice) / cs_choice_error(other, choice))
-              : 1;
+    const double slope = other ? log(other->work / cell->work) / log(error / of_nearest) : 1;
     return isfinite(slope) ? fmin(fmax(slope, SLOPE_MIN), SLOPE_MAX) : 1;
 }
 

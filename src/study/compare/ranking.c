@@ -24,18 +24,20 @@ static bool keeps_energy(const struct cs_cell *cell, const struct cs_choice *cho
     return takes_frames(cell, choice) && !(cell->energy_error > CS_FRAME_ENERGY);
 }
 
-/* Marks the cells that no other one dominates, in O(n^2) for a few hundred cells. */
-static void mark_front(struct cs_ranking *ranking, const struct cs_choice *choice) {
+/* Marks the cells that no other one dominates, in O(n^2) for a few hundred cells. errors (n):
+ * scratch, NAN for a cell without a rank. */
+static void mark_front(struct cs_ranking *ranking, const struct cs_choice *choice,
+                       double *errors) {
     const struct cs_compare *compare = choice->compare;
     const struct cs_cell *cells = compare->cells.cells;
+    for (uint32_t k = 0; k < compare->cells.n; k++)
+        errors[k] = cs_choice_is_ranked(cells + k, choice) ? cs_choice_error(cells + k, choice)
+                                                           : (double)NAN;
     for (uint32_t k = 0; k < compare->cells.n; k++) {
-        const double error = cs_choice_error(cells + k, choice),
-                     cost = cs_choice_cost(cells + k, choice);
-        ranking->on_pareto_front[k] = cs_choice_is_ranked(cells + k, choice);
+        const double cost = cs_choice_cost(cells + k, choice);
+        ranking->on_pareto_front[k] = !isnan(errors[k]);
         for (uint32_t i = 0; i < compare->cells.n && ranking->on_pareto_front[k]; i++)
-            if (cs_choice_is_ranked(cells + i, choice) &&
-                cs_choice_cost(cells + i, choice) < cost &&
-                cs_choice_error(cells + i, choice) <= error)
+            if (errors[i] <= errors[k] && cs_choice_cost(cells + i, choice) < cost)
                 ranking->on_pareto_front[k] = false;
     }
 }
@@ -188,15 +190,18 @@ enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compa
     *ranking = (struct cs_ranking){.norm = choice.norm};
     ranking->on_pareto_front = calloc(compare->cells.n + 1, sizeof *ranking->on_pareto_front);
     ranking->is_contender = calloc(compare->cells.n + 1, sizeof *ranking->is_contender);
-    if (!ranking->on_pareto_front || !ranking->is_contender) {
+    double *errors = calloc(compare->cells.n + 1, sizeof *errors);
+    if (!ranking->on_pareto_front || !ranking->is_contender || !errors) {
         cs_ranking_finish(ranking);
+        free(errors);
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the ranking");
     }
     make_frame(ranking, &choice);
     if (cs_norm_is_known(choice.norm, &compare->reference)) {
-        mark_front(ranking, &choice);
+        mark_front(ranking, &choice, errors);
         make_ranks(ranking, &choice);
     }
+    free(errors);
     return CS_OK;
 }
 
