@@ -12,20 +12,17 @@
 enum { SIZE = 64, PIXELS = SIZE * SIZE };
 
 struct field {
+    int32_t whole[PIXELS];
     cs_f8 depth[PIXELS];
     cs_i8 shown[PIXELS];
 };
 
 static struct field field;
-static const struct cs_samples samples = {
-    .depth = field.depth, .triangle_ids = field.shown, .width = SIZE, .top = 0, .rows = SIZE};
-
-static void clear(void) {
-    for (size_t i = 0; i < PIXELS; i++) {
-        field.depth[i] = (cs_f8){0};
-        field.shown[i] = (cs_i8){0} + CS_NOTHING;
-    }
-}
+static struct cs_samples samples = {.whole = field.whole,
+                                    .depth = field.depth,
+                                    .triangle_ids = field.shown,
+                                    .width = SIZE,
+                                    .rows = SIZE};
 
 /* looks down -z: x and y of -1..1 at z = 0 are the picture */
 static struct cs_clip_transform parallel(void) {
@@ -71,9 +68,12 @@ static void add(struct cs_triangles *triangles, const struct cs_clip_transform *
 
 static uint32_t covered(const struct cs_triangles *triangles, size_t from, size_t to) {
     uint32_t n = 0;
-    clear();
+    memset(field.whole, CS_NOTHING, sizeof field.whole);
+    samples.triangles = triangles->items;
     for (size_t i = from; i < to; i++)
-        cs_raster_fill(triangles->items + i, (int32_t)i, cs_sample_pattern_of(8), &samples);
+        cs_raster_fill(&samples, (int32_t)i, cs_sample_pattern_of(8));
+    for (int i = 0; i < PIXELS; i++)
+        cs_samples_split(&samples, (size_t)i, i % SIZE, i / SIZE, cs_sample_pattern_of(8));
     for (size_t i = 0; i < PIXELS; i++)
         for (int s = 0; s < CS_SAMPLES; s++)
             n += field.shown[i][s] != CS_NOTHING;

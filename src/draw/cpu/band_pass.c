@@ -4,6 +4,8 @@
  * once per visible triangle; a slot collects fragments of one surface for the vector loops. */
 #include "draw/cpu/band_pass.h"
 
+#include <string.h>
+
 void cs_band_pass_bin(struct cs_band_pass *pass) {
     const struct cs_triangles *all = &pass->triangles;
     cs_bins_clear(&pass->bins);
@@ -50,8 +52,9 @@ static struct cs_texel_footprint footprint_of(const struct cs_band_pass *pass,
 }
 
 // the slot of one side of a surface; its fragments are shaded first if it is full or another's
-static struct cs_fragments *slot_of(const struct cs_band_pass *pass,
-                                    const struct cs_triangle *t, struct cs_tile_buffer *tiles) {
+CS_INLINE struct cs_fragments *slot_of(const struct cs_band_pass *pass,
+                                       const struct cs_triangle *t,
+                                       struct cs_tile_buffer *tiles) {
     const uint32_t key = 2u * t->surface + t->is_back_facing;
     struct cs_fragments *slot = tiles->slots + key % CS_FRAGMENT_SLOTS;
     if (slot->n == CS_FRAGMENTS || (slot->n && slot->key != key))
@@ -81,8 +84,9 @@ struct spot {
 
 /* Adds the fragments of a triangle at a spot; shading writes their colours to colours[out] and
  * those after it later. */
-static void add_fragments(const struct cs_band_pass *pass, const struct cs_triangle *t,
-                          const struct spot *spot, uint32_t out, struct cs_tile_buffer *tiles) {
+CS_INLINE void add_fragments(const struct cs_band_pass *pass, const struct cs_triangle *t,
+                             const struct spot *spot, uint32_t out,
+                             struct cs_tile_buffer *tiles) {
     for (int x = spot->x, end = x + spot->n, y = spot->y, count; x < end; x += count) {
         struct cs_fragments *f = slot_of(pass, t, tiles);
         const int first = f->n;
@@ -92,13 +96,13 @@ static void add_fragments(const struct cs_band_pass *pass, const struct cs_trian
         // in fours: what is written beyond the last one, the next ones overwrite
         for (int i = 0; i < count; i += 4) {
             const cs_f4 columns = (cs_f4){0, 1, 2, 3} + (float)(x + i);
-            const cs_f4 across = columns - (float)t->left, least = (cs_f4){0} + 1e-6f;
+            const cs_f4 across = columns - (float)t->left;
             const cs_f4 inverse = values_at(&t->inverse, across, down);
             put_four(columns, f->x + first + i);
             put_four((cs_f4){0} + (float)y, f->y + first + i);
             // the middle of a pixel may lie beyond the edge, and there beyond the horizon
-            put_four((cs_f4)cs_select(inverse > least, (cs_i4)inverse, (cs_i4)least),
-                     f->inverse + first + i);
+            CS_LANES for (int k = 0; k < 4; k++) f->inverse[first + i + k] =
+                inverse[k] > 1e-6f ? inverse[k] : 1e-6f;
             for (int k = 0; k < f->material->attributes; k++)
                 put_four(values_at(t->attributes + k, across, down),
                          f->attributes[k] + first + i);
@@ -116,8 +120,8 @@ static void add_fragments(const struct cs_band_pass *pass, const struct cs_trian
 }
 
 // a pixel whose samples show several triangles: one fragment of each, colours in a row
-static void add_mixed(const struct cs_band_pass *pass, const int32_t *shown,
-                      const struct spot *spot, struct cs_tile_buffer *tiles) {
+CS_INLINE void add_mixed(const struct cs_band_pass *pass, const int32_t *shown,
+                         const struct spot *spot, struct cs_tile_buffer *tiles) {
     int32_t things[CS_SAMPLES];
     uint32_t n = 0, code = 0;
     for (int s = 0; s < CS_SAMPLES; s++) {
@@ -139,26 +143,33 @@ static void add_mixed(const struct cs_band_pass *pass, const int32_t *shown,
             add_fragments(pass, pass->triangles.items + things[k], spot, first + k, tiles);
 }
 
-static bool shows_only(const cs_i8 *shown, int32_t id) {
-    const cs_i4 *half = (const cs_i4 *)shown, other = (half[0] ^ id) | (half[1] ^ id);
-    return (other[0] | other[1] | other[2] | other[3]) == 0;
+// what all samples of a pixel show, or CS_SPLIT
+CS_INLINE int32_t shown_by_all(const struct cs_samples *samples, size_t pixel) {
+    if (samples->whole[pixel] != CS_SPLIT)
+        return samples->whole[pixel];
+    const cs_i4 *half = (const cs_i4 *)(samples->triangle_ids + pixel);
+    const int32_t id = half[0][0];
+    const cs_i4 other = (half[0] ^ id) | (half[1] ^ id);
+    return (other[0] | other[1] | other[2] | other[3]) == 0 ? id : CS_SPLIT;
 }
 
 /* Adds the pixel where the spot begins and all after it that show the same triangle or sky in
  * all samples, which is the usual case, with one colour each. Sets spot->n. */
-static void add_pixels(const struct cs_band_pass *pass, struct spot *spot,
-                       struct cs_tile_buffer *tiles) {
-    const cs_i8 *shown = tiles->samples.triangle_ids + spot->pixel;
-    const int32_t id = (*shown)[0];
+CS_INLINE void add_pixels(const struct cs_band_pass *pass, struct spot *spot,
+                          struct cs_tile_buffer *tiles) {
+    const struct cs_samples *samples = &tiles->samples;
+    const int32_t id = shown_by_all(samples, spot->pixel);
     const bool is_sky = id == CS_NOTHING;
     uint32_t *first = tiles->first_colour + spot->pixel;
     spot->n = 1;
-    if (!shows_only(shown, id)) {
-        add_mixed(pass, (const int32_t *)shown, spot, tiles);
+    if (id == CS_SPLIT) {
+        add_mixed(pass, (const int32_t *)(samples->triangle_ids + spot->pixel), spot, tiles);
         return;
     }
-    while (spot->n < tiles->samples.width - spot->x && shows_only(shown + spot->n, id))
+    while (spot->n < samples->width - spot->x &&
+           shown_by_all(samples, spot->pixel + (size_t)spot->n) == id)
         spot->n++;
+    memset(tiles->sample_codes + spot->pixel, 0, (size_t)spot->n * sizeof(uint32_t));
     for (int i = 0; i < spot->n; i++)
         first[i] = is_sky ? spot->sky : tiles->n_colours + (uint32_t)i;
     if (is_sky)
@@ -179,13 +190,13 @@ static uint32_t sky_colour(const struct cs_band_pass *pass, int y) {
 }
 
 // visibility, fragments and shading of a band
-static void show(const struct cs_band_pass *pass, uint32_t band, struct cs_tile_buffer *tiles) {
+CS_CLONES static void show(const struct cs_band_pass *pass, uint32_t band,
+                           struct cs_tile_buffer *tiles) {
     const struct cs_samples *on = &tiles->samples;
     size_t n;
     const uint32_t *list = cs_bins_of(&pass->bins, band, &n);
     for (size_t i = 0; i < n; i++)
-        cs_raster_fill(pass->triangles.items + list[i], (int32_t)list[i], pass->sample_pattern,
-                       on);
+        cs_raster_fill(on, (int32_t)list[i], pass->sample_pattern);
     for (int row = 0; row < on->rows; row++) {
         const uint32_t sky = tiles->n_colours++;
         tiles->colours[sky] = sky_colour(pass, on->top + row);
@@ -200,6 +211,7 @@ static void show(const struct cs_band_pass *pass, uint32_t band, struct cs_tile_
 void cs_band_pass_draw(const struct cs_band_pass *pass, uint32_t band,
                        struct cs_tile_buffer *tiles) {
     const int top = (int)band * CS_ROWS;
+    tiles->samples.triangles = pass->triangles.items;
     cs_tile_buffer_clear(tiles, top, cs_min(CS_ROWS, pass->shading.height - top));
     show(pass, band, tiles);
     cs_thick_lines_draw(&pass->thick_lines, band, pass->sample_pattern, tiles);

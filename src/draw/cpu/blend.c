@@ -50,6 +50,7 @@ static void blend_line(const struct cs_thick_line *s, int y, int height,
             continue;
         const size_t at = row + (size_t)x;
         cs_f8 z;
+        cs_samples_split(&tiles->samples, at, x, y, pattern);
         cs_row_depth_at(&depth, x, height - 1 - y, &z);
         const cs_i8 mask = (z >= tiles->samples.depth[at]) | -(int32_t)s->on_top;
         cs_tile_buffer_blend(tiles, at, &mask, s->colour, share);
@@ -106,6 +107,7 @@ enum cs_status cs_tile_buffer_init(struct cs_tile_buffer *tiles, int width,
     const size_t n = (size_t)width * CS_ROWS;
     tiles->samples.width = width;
     tiles->colours_capacity = (uint32_t)(CS_COLOURS_PER_PIXEL * n + CS_ROWS);
+    CS_ARENA_ARRAY(arena, tiles->samples.whole, n, error);
     CS_ARENA_ARRAY(arena, tiles->samples.depth, n, error);
     CS_ARENA_ARRAY(arena, tiles->samples.triangle_ids, n, error);
     CS_ARENA_ARRAY(arena, tiles->first_colour, n, error);
@@ -115,15 +117,13 @@ enum cs_status cs_tile_buffer_init(struct cs_tile_buffer *tiles, int width,
     return error->status;
 }
 
-// no triangle in rows top..top + rows - 1, with the depth of the far plane
+// no triangle in rows top..top + rows - 1
 void cs_tile_buffer_clear(struct cs_tile_buffer *tiles, int top, int rows) {
     struct cs_samples *samples = &tiles->samples;
     const size_t n = (size_t)samples->width * (size_t)rows;
     samples->top = top;
     samples->rows = rows;
-    memset(samples->depth, 0, n * sizeof *samples->depth);
-    memset(samples->triangle_ids, CS_NOTHING, n * sizeof *samples->triangle_ids);
-    memset(tiles->sample_codes, 0, n * sizeof *tiles->sample_codes);
+    memset(samples->whole, CS_NOTHING, n * sizeof *samples->whole);
     tiles->n_colours = 0;
 }
 

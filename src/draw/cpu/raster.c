@@ -47,7 +47,8 @@ struct fill {
     struct edges edges;
     struct cs_row_depth depth;
     const struct cs_sample_pattern *pattern;
-    int32_t id;
+    float least, most; // depth_min and depth_max of the triangle
+    int32_t id, bottom_row;
 };
 
 // pixels of a row, both ends included; empty if left > right
@@ -69,23 +70,65 @@ CS_INLINE struct edges edges_of(const struct cs_triangle *t) {
     return e;
 }
 
-CS_INLINE cs_f4 to_float(cs_i4 v) {
-    return __builtin_convertvector(v, cs_f4);
+// depth test of the samples of a pixel inside a mask: nearness, not beyond that of the corners
+CS_INLINE void compare(const struct fill *fill, int x, int y, const cs_i8 *inside,
+                       float *restrict depth, int32_t *restrict shown) {
+    const float least = fill->least, most = fill->most;
+    cs_f8 z;
+    cs_row_depth_at(&fill->depth, x, fill->bottom_row - y, &z);
+    CS_LANES for (int s = 0; s < CS_SAMPLES; s++) {
+        const float raised = z[s] < least ? least : z[s], near = raised > most ? most : raised;
+        // a later triangle at equal depth replaces an earlier one
+        const bool shows = ((*inside)[s] != 0) & (near >= depth[s]);
+        depth[s] = shows ? near : depth[s];
+        shown[s] = shows ? fill->id : shown[s];
+    }
 }
 
-/* Depth test of the samples of a pixel inside a mask: nearness, not beyond that of the corners.
- * A later triangle at equal depth replaces an earlier one. */
-CS_INLINE void put(const struct fill *fill, int x, int y, const cs_i8 *inside, cs_f8 *depth,
-                   cs_i8 *shown) {
-    const struct cs_triangle *t = fill->triangle;
-    const cs_f8 least = (cs_f8){0} + t->depth_min, most = (cs_f8){0} + t->depth_max;
-    cs_f8 z;
-    cs_row_depth_at(&fill->depth, x, t->bottom_row - y, &z);
-    const cs_i8 below = z<least, above = z> most;
-    z = (cs_f8)((below & (cs_i8)least) | (above & (cs_i8)most) | (~(below | above) & (cs_i8)z));
-    const cs_i8 mask = *inside & (z >= *depth);
-    *depth = (cs_f8)((mask & (cs_i8)z) | (~mask & (cs_i8)*depth));
-    *shown = (mask & fill->id) | (~mask & *shown);
+CS_INLINE void fill_make(struct fill *fill, const struct cs_samples *samples, int32_t id,
+                         const struct cs_sample_pattern *pattern) {
+    const struct cs_triangle *t = samples->triangles + id;
+    fill->triangle = t;
+    fill->pattern = pattern;
+    fill->id = id;
+    fill->least = t->depth_min;
+    fill->most = t->depth_max;
+    fill->bottom_row = t->bottom_row;
+    cs_row_depth_make(&fill->depth, t->depth, pattern);
+}
+
+CS_INLINE void split(const struct cs_samples *samples, size_t at, int x, int y,
+                     const struct cs_sample_pattern *pattern) {
+    const int32_t id = samples->whole[at];
+    const cs_i8 all = (cs_i8){0} - 1;
+    struct fill fill;
+    samples->whole[at] = CS_SPLIT;
+    samples->depth[at] = (cs_f8){0};
+    samples->triangle_ids[at] = (cs_i8){0} + id;
+    if (id == CS_NOTHING)
+        return;
+    fill_make(&fill, samples, id, pattern);
+    compare(&fill, x, y, &all, (float *)(samples->depth + at),
+            (int32_t *)(samples->triangle_ids + at));
+}
+
+void cs_samples_split(const struct cs_samples *samples, size_t at, int x, int y,
+                      const struct cs_sample_pattern *pattern) {
+    if (samples->whole[at] != CS_SPLIT)
+        split(samples, at, x, y, pattern);
+}
+
+// puts the samples of pixel (x, y), number `at`, inside a mask
+CS_INLINE void put(const struct fill *fill, int x, int y, const cs_i8 *inside,
+                   const struct cs_samples *samples, size_t at) {
+    if (samples->whole[at] != CS_SPLIT) {
+        const cs_i4 *half = (const cs_i4 *)inside, any = half[0] | half[1];
+        if (!(any[0] | any[1] | any[2] | any[3]))
+            return;
+        split(samples, at, x, y, fill->pattern);
+    }
+    compare(fill, x, y, inside, (float *)(samples->depth + at),
+            (int32_t *)(samples->triangle_ids + at));
 }
 
 /* Fills rows from `top` on of a small triangle: E of the first pixel, then steps of -256 dy to
@@ -104,7 +147,7 @@ CS_INLINE void fill_small(const struct fill *fill, int top, int bottom,
         cs_i8 inside[3] = {row[0], row[1], row[2]};
         for (int x = t->left; x <= t->right; x++) {
             const cs_i8 mask = (inside[0] | inside[1] | inside[2]) >= 0;
-            put(fill, x, y, &mask, samples->depth + at + x, samples->triangle_ids + at + x);
+            put(fill, x, y, &mask, samples, at + (size_t)x);
             for (int k = 0; k < 3; k++)
                 inside[k] -= 256 * e->dy[k];
         }
@@ -144,11 +187,15 @@ CS_INLINE struct run span(const struct cs_triangle *t, const struct edges *e, in
 }
 
 // fills a row of a large triangle between the outermost bounds of the samples
-CS_INLINE void fill_large_row(const struct fill *fill, int y, cs_f8 *depth, cs_i8 *shown) {
+CS_INLINE void fill_large_row(const struct fill *fill, int y,
+                              const struct cs_samples *samples) {
     const struct cs_triangle *t = fill->triangle;
     const struct cs_sample_pattern *pattern = fill->pattern;
+    const size_t row = (size_t)(y - samples->top) * (size_t)samples->width;
     cs_i8 left, right;
     int from = t->right + 1, to = t->left - 1;
+    int first = t->left, last = t->right;
+    cs_f8 ends[2];
     // each sample has a row of its own; 1..0 where none of it lies inside
     for (int s = 0; s < CS_SAMPLES; s++) {
         const struct run run = span(t, &fill->edges, pattern->x[s], pattern->y[s], y);
@@ -157,59 +204,80 @@ CS_INLINE void fill_large_row(const struct fill *fill, int y, cs_f8 *depth, cs_i
         right[s] = some ? (int)run.right : 0;
         from = some ? cs_min(from, (int)run.left) : from;
         to = some ? cs_max(to, (int)run.right) : to;
+        first = cs_max(first, some ? (int)run.left : t->right + 1);
+        last = cs_min(last, (int)run.right);
     }
+    // pixels first..last, of which all samples are inside, show it unless it is too far
+    cs_row_depth_at(&fill->depth, first, t->bottom_row - y, ends);
+    cs_row_depth_at(&fill->depth, last, t->bottom_row - y, ends + 1);
+    for (int s = 0; s < CS_SAMPLES; s++)
+        if (!(fill->most >= 0 && ends[0][s] >= 0 && ends[1][s] >= 0))
+            first = to + 1;
     for (int x = from; x <= to; x++) {
+        int32_t *whole = samples->whole + row + x;
+        if (x >= first && x <= last && *whole == CS_NOTHING) {
+            *whole = fill->id;
+            continue;
+        }
         const cs_i8 mask = (x >= left) & (x <= right);
-        put(fill, x, y, &mask, depth + (x - t->left), shown + (x - t->left));
+        put(fill, x, y, &mask, samples, row + (size_t)x);
     }
 }
 
-CS_CLONES void cs_raster_fill(const struct cs_triangle *t, int32_t id,
-                              const struct cs_sample_pattern *pattern,
-                              const struct cs_samples *samples) {
-    struct fill fill = {.triangle = t, .edges = edges_of(t), .pattern = pattern, .id = id};
-    cs_row_depth_make(&fill.depth, t->depth, pattern);
+CS_CLONES void cs_raster_fill(const struct cs_samples *samples, int32_t id,
+                              const struct cs_sample_pattern *pattern) {
+    const struct cs_triangle *t = samples->triangles + id;
+    struct fill fill = {.edges = edges_of(t)};
+    fill_make(&fill, samples, id, pattern);
     const int top = cs_max(t->top, samples->top);
     const int bottom = cs_min(t->bottom, samples->top + samples->rows - 1);
     if (t->fits_32_bits)
         fill_small(&fill, top, bottom, samples);
-    for (int y = top; y <= bottom && !t->fits_32_bits; y++) {
-        const size_t at = (size_t)(y - samples->top) * (size_t)samples->width + (size_t)t->left;
-        fill_large_row(&fill, y, samples->depth + at, samples->triangle_ids + at);
-    }
+    for (int y = top; y <= bottom && !t->fits_32_bits; y++)
+        fill_large_row(&fill, y, samples);
 }
 
-// maximum of four neighbours of a map and z, in the lanes of the mask
-CS_INLINE void raise_four(float *map, cs_i4 mask, cs_f4 z) {
-    cs_f4_unaligned *at = (cs_f4_unaligned *)map;
-    const cs_f4 old = *at;
-    mask &= z > old;
-    *at = (cs_f4)cs_select(mask, (cs_i4)z, (cs_i4)old);
+// raises four neighbours of a map to z, limited to least..most, in the lanes of the mask
+CS_INLINE void raise_four(float *map, cs_i4 mask, cs_f4 z, float least, float most) {
+    CS_LANES for (int k = 0; k < 4; k++) {
+        const float raised = z[k] < least ? least : z[k], near = raised > most ? most : raised;
+        map[k] = (mask[k] != 0) & (near > map[k]) ? near : map[k];
+    }
 }
 
 CS_CLONES void cs_raster_raise(const struct cs_triangle *t, float *map, size_t stride, int top,
                                int rows) {
     const cs_i4 ramp = {0, 1, 2, 3};
     const struct edges e = edges_of(t);
-    const int last = cs_min(t->bottom, top + rows - 1);
-    for (int y = cs_max(t->top, top); y <= last; y++) {
-        const float rise = t->depth[0].d_dy * ((float)(t->bottom_row - y) + 0.5f);
+    const struct cs_plane_equation depth = t->depth[0];
+    const float least = t->depth_min, most = t->depth_max;
+    const int first = cs_max(t->top, top), last = cs_min(t->bottom, top + rows - 1);
+    cs_i4 row[3] = {{0}};
+    int right[3] = {0}, below[3] = {0};
+    for (int k = 0; t->fits_32_bits && k < 3; k++) {
+        row[k] = e.dx[k] * (128 + first * 256 - t->y[k]) + e.bias[k] -
+                 e.dy[k] * ((ramp + t->left) * 256 + (128 - t->x[k]));
+        right[k] = -1024 * e.dy[k];
+        below[k] = 256 * e.dx[k];
+    }
+    for (int y = first; y <= last; y++) {
+        const float rise = depth.d_dy * ((float)(t->bottom_row - y) + 0.5f);
         float *at = map + (size_t)y * stride;
         // edges of a large triangle do not fit into the mask's 32 bits: its row is cut before
         const struct run run =
             t->fits_32_bits ? (struct run){t->left, t->right} : span(t, &e, 128, 128, y);
+        cs_i4 inside[3] = {row[0], row[1], row[2]};
         for (int x = (int)run.left; x <= run.right; x += 4) {
             const cs_i4 column = ramp + x;
-            cs_i4 mask = column <= (int)run.right;
-            for (int k = 0; t->fits_32_bits && k < 3; k++)
-                mask &= e.dx[k] * (128 + y * 256 - t->y[k]) + e.bias[k] -
-                            e.dy[k] * (column * 256 + (128 - t->x[k])) >=
-                        0;
-            const cs_f4 z =
-                (t->depth[0].value + t->depth[0].d_dx * (to_float(column) + 0.5f)) + rise;
-            raise_four(
-                at + x, mask,
-                cs_clamp4(CS_DEPTH_STEPS - z * CS_DEPTH_STEPS, t->depth_min, t->depth_max));
+            const cs_i4 mask =
+                (column <= (int)run.right) & ((inside[0] | inside[1] | inside[2]) >= 0);
+            const cs_f4 middle = __builtin_convertvector(column, cs_f4) + 0.5f;
+            const cs_f4 z = (depth.value + depth.d_dx * middle) + rise;
+            raise_four(at + x, mask, CS_DEPTH_STEPS - z * CS_DEPTH_STEPS, least, most);
+            for (int k = 0; k < 3; k++)
+                inside[k] += right[k];
         }
+        for (int k = 0; k < 3; k++)
+            row[k] += below[k];
     }
 }

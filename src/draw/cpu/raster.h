@@ -9,14 +9,18 @@
 #include "draw/cpu/triangle.h"
 #include "draw/srgb.h"
 
-enum { CS_ROWS = 8, CS_NOTHING = -1 };
+enum { CS_ROWS = 8, CS_NOTHING = -1, CS_SPLIT = -2 };
 
-/* Depth and triangle of the samples of some rows of the picture; memory of the tile buffer. */
+/* Depth and triangle of the samples of some rows of the picture; memory of the tile buffer.
+ * Most pixels show one triangle, whose plane tells their depth: they store no more than its
+ * index. */
 struct cs_samples {
+    int32_t *whole;      /* (rows, width) triangle of all samples, CS_NOTHING, or CS_SPLIT: */
     cs_f8 *depth;        /* (rows, width) reversed depth, 0 at the far plane; lanes: samples */
     cs_i8 *triangle_ids; /* (rows, width) index of the visible triangle, or CS_NOTHING */
-    int width, top;      /* pixels per row; row of the picture that is row 0 here */
-    int rows;            /* at most CS_ROWS */
+    const struct cs_triangle *triangles; /* borrowed */
+    int width, top; /* pixels per row; row of the picture that is row 0 here */
+    int rows;       /* at most CS_ROWS */
 };
 
 /* Positions of the samples of a pixel, in 1/256 from its top left corner. Fewer than eight are
@@ -60,9 +64,13 @@ CS_INLINE void cs_row_depth_at(const struct cs_row_depth *row, int x, int below,
     *nearness = CS_DEPTH_STEPS - z * CS_DEPTH_STEPS;
 }
 
-/* Fills a triangle into the rows, as index `id`. */
-void cs_raster_fill(const struct cs_triangle *triangle, int32_t id,
-                    const struct cs_sample_pattern *pattern, const struct cs_samples *samples);
+/* Fills triangle number `id` into the rows. */
+void cs_raster_fill(const struct cs_samples *samples, int32_t id,
+                    const struct cs_sample_pattern *pattern);
+
+/* Stores depth and triangle of each sample of pixel (x, y), number `at`, unless it is split. */
+void cs_samples_split(const struct cs_samples *samples, size_t at, int x, int y,
+                      const struct cs_sample_pattern *pattern);
 
 /* Raises a map of one sample per pixel, in the middle, to the reversed depth of a triangle: the
  * map becomes the maximum of both. Touches rows top to top + rows - 1; `stride` floats per row;

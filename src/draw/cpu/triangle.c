@@ -168,9 +168,11 @@ struct frame {
     double dx[2], dy[2], across, down;
 };
 
-// nearest point of the grid; floor instead of a cast keeps ties alike on both sides of 0
+// nearest point of the grid; rounded down, so that ties are alike on both sides of 0
 static int32_t snap(double pixel) {
-    return (int32_t)floor(pixel * 256 + 0.5);
+    const double at = pixel * 256 + 0.5;
+    const int32_t whole = (int32_t)at;
+    return whole - (at < whole);
 }
 
 /* The plane through the values a, b, c of the three corners. Cramer's rule for
@@ -218,7 +220,8 @@ void cs_depth_of(const struct cs_clip_transform *clip,
                  const struct cs_clip_vertex *const corners[3],
                  struct cs_plane_equation depth[2]) {
     const float half[2] = {0.5f * (float)clip->width, 0.5f * (float)clip->height};
-    for (int pass = 0; pass < 2; pass++) {
+    const bool same = !memcmp(clip->jitter[0], clip->jitter[1], sizeof clip->jitter[0]);
+    for (int pass = 0; pass < (same ? 1 : 2); pass++) {
         const float *jitter = clip->jitter[pass];
         float p[3][3];
         for (int i = 0; i < 3; i++) {
@@ -230,6 +233,7 @@ void cs_depth_of(const struct cs_clip_transform *clip,
         }
         depth[pass] = depth_plane(p[0], p[1], p[2]);
     }
+    depth[1] = depth[same ? 0 : 1];
 }
 
 /* Depth plane from the corners in the caller's order, and the range of reversed depth that
@@ -328,7 +332,8 @@ static void add_triangle(struct cs_triangles *triangles, const struct cs_clip_tr
     t->surface = kind->surface;
     t->bottom_row = clip->height - 1;
     set_depth(t, clip, corners);
-    set_planes(t, p, kind->attributes);
+    if (kind->attributes)
+        set_planes(t, p, kind->attributes);
     triangles->n++;
 }
 

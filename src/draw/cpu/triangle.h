@@ -22,17 +22,8 @@ typedef float cs_f4_unaligned __attribute__((vector_size(16), aligned(4)));
 typedef float cs_f8 __attribute__((vector_size(32)));
 typedef int32_t cs_i8 __attribute__((vector_size(32)));
 
-/* Selects per lane: a if mask is all ones, b if it is 0. */
-CS_INLINE cs_i4 cs_select(cs_i4 mask, cs_i4 a, cs_i4 b) {
-    return (mask & a) | (~mask & b);
-}
-
-/* Limits each lane to least..most. */
-CS_INLINE cs_f4 cs_clamp4(cs_f4 v, float least, float most) {
-    const cs_f4 low = {least, least, least, least}, high = {most, most, most, most};
-    v = (cs_f4)cs_select(v < low, (cs_i4)low, (cs_i4)v);
-    return (cs_f4)cs_select(v > high, (cs_i4)high, (cs_i4)v);
-}
+/* Before a loop over lanes that chooses: kept whole, it becomes minima, maxima and blends. */
+#define CS_LANES _Pragma("GCC unroll 1")
 
 CS_INLINE int cs_min(int a, int b) {
     return a < b ? a : b;
