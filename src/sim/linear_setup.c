@@ -130,9 +130,9 @@ static void set_up(struct cs_run_host *host, const struct cs_matrix *matrix, boo
         cs_rebounds_find(system, step->t, step->h, step->x, step->v, f);
     while (!cs_linear_setup(&host->linear, &clamped) && clamp(&clamped))
         host->run->counts.clamped_setups++;
-    host->linear.matrix.chord = NULL;
     if (rhs)
         build_rhs(host, f);
+    host->linear.matrix.chord = NULL;
     cs_stage_end(host, CS_STAGE_SETUP, begin);
 }
 

@@ -15,6 +15,15 @@
  *
  *   c = L (u/s(u) - along/s(T)) / (u - along),   p = max(c, L/max(s(T), s(u)))
  *
+ * L is the load of the step's end. At colliders it is mu times the F1 that the linear step has
+ * there, by the contact alone along its normal: with the approach w = g.v, the force f0 along
+ * it without the damper's and the drag r = tau K + alpha F/s of the normal,
+ *
+ *   F1 = max(F - h K w1, 0),   w1 = (w + (h/m) f0) / (1 + (h/m) (r + h K))
+ *
+ * so that friction takes mu times the impulse of the normal, also in a landing, and b loses h
+ * (L1 - L) T/s(T). By the F of the begin a sheet that landed stopped 2 cm early. Pairs keep F.
+ *
  * c is L ev^2/s^3 where u and `along` agree. Several contacts of a point are taken as one with
  * the sum of their loads, of whose slope each has its fraction.
  *
@@ -64,10 +73,10 @@ CS_INLINE double cs_friction_chord_speed(double a, double ev, double length) {
     return u;
 }
 
-/* A contact that slides: unit normal, relative velocity in m/s, force of the barrier in N,
- * which is negative for a feature that is subtracted; mu and ev. */
+/* A contact that slides: unit normal, relative velocity in m/s, force of the barrier in N at
+ * the begin and at the end, negative for a feature that is subtracted; mu and ev. */
 struct cs_sliding_contact {
-    double n[3], v[3], force, friction, friction_speed;
+    double n[3], v[3], force, end_force, friction, friction_speed;
 };
 
 /* The fraction that a contact has of all contact at its point, 0..1, by what both push along n.
@@ -79,20 +88,43 @@ CS_INLINE double cs_friction_chord_fraction(const struct cs_contact_pull *pull,
     return own / cs_fmax(own, cs_vec3_dot(contacts->n, pull->push));
 }
 
+/* F1 in N along g, of a contact at a collider. */
+CS_INLINE double cs_friction_chord_end_force(const struct cs_point_contact *contact,
+                                             const struct cs_contact_pull *pull) {
+    const double h = pull->h, square = cs_point_contact_square(contact->g);
+    const double length = sqrt(square), approach = cs_vec3_dot(contact->g, contact->v);
+    const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
+    const struct cs_sliding_contact alone = {
+        .n = {contact->g[0] / length, contact->g[1] / length, contact->g[2] / length},
+        .force = barrier.force * length};
+    const double drag = contact->damping * barrier.stiffness +
+                        cs_point_contact_loss(contact, &barrier, approach);
+    const double inverse = square * pull->inverse;
+    const double change = h * (cs_vec3_dot(contact->g, pull->motion) +
+                               (pull->is_end_known ? 0 : inverse * drag * approach));
+    const double held =
+        h * (drag + h * barrier.stiffness) * inverse / cs_friction_chord_fraction(pull, &alone);
+    const double end = (approach + change) / (1 + (pull->is_end_known ? 0 : held));
+    return cs_fmax(0, barrier.force - h * barrier.stiffness * end);
+}
+
 /* b (6) += h times the block p (P - e e^T) + c e e^T of a contact. */
 CS_INLINE void cs_friction_chord_add(const struct cs_contact_pull *pull,
                                      const struct cs_sliding_contact *contacts, double b[6]) {
     const double *n = contacts->n, *v = contacts->v, ev = contacts->friction_speed;
     const double force = contacts->force, mu = contacts->friction;
+    const double end = contacts->end_force;
     double free[3], e[3], t[3];
     const double speed = cs_sliding_velocity(n, 1, v, ev, t);
     cs_sliding_velocity(n, 1, pull->motion, 0, free);
     const double load =
         mu * (force < 0 ? -force : force) / cs_friction_chord_fraction(pull, contacts);
-    const double a = pull->h * load * pull->inverse;
+    const double more = mu * ((end < 0 ? -end : end) - (force < 0 ? -force : force));
+    const double a = pull->h * (load + more) * pull->inverse;
+    const double begin = pull->h * load * pull->inverse;
     CS_UNROLLED
     for (int c = 0; c < 3; c++)
-        free[c] = t[c] + pull->h * free[c] + (pull->is_end_known ? 0 : a * t[c] / speed);
+        free[c] = t[c] + pull->h * free[c] + (pull->is_end_known ? 0 : begin * t[c] / speed);
     const double length = sqrt(cs_vec3_dot(free, free));
     CS_UNROLLED
     for (int c = 0; c < 3; c++)
@@ -110,7 +142,7 @@ CS_INLINE void cs_friction_chord_add(const struct cs_contact_pull *pull,
     CS_UNROLLED
     for (int k = 0; k < 6; k++) {
         const int r = cs_sym3_row[k], q = cs_sym3_column[k];
-        b[k] += pull->h * mu * force * (p * ((r == q) - n[r] * n[q]) - (p - c) * e[r] * e[q]);
+        b[k] += pull->h * mu * end * (p * ((r == q) - n[r] * n[q]) - (p - c) * e[r] * e[q]);
     }
 }
 
@@ -123,12 +155,26 @@ CS_INLINE void cs_friction_chord_add_block(const struct cs_point_contact *contac
         .n = {contact->g[0] / length, contact->g[1] / length, contact->g[2] / length},
         .v = {contact->v[0], contact->v[1], contact->v[2]},
         .force = cs_barrier_at(contact->d, contact->range, contact->k).force * length,
+        .end_force = cs_friction_chord_end_force(contact, pull) * length,
         .friction = contact->friction,
         .friction_speed = contact->friction_speed};
     struct cs_point_contact frictionless = *contact;
     frictionless.friction = 0;
     cs_point_contact_add_block(&frictionless, matrix, b);
     cs_friction_chord_add(pull, &contacts, b);
+}
+
+/* y += h (L1 - L) T/s(T), which b loses. */
+CS_INLINE void cs_friction_chord_add_approach(const struct cs_point_contact *contact,
+                                              const struct cs_contact_pull *pull, double y[3]) {
+    const double square = cs_point_contact_square(contact->g);
+    const double more = cs_friction_chord_end_force(contact, pull) -
+                        cs_barrier_at(contact->d, contact->range, contact->k).force;
+    double t[3];
+    const double speed =
+        cs_sliding_velocity(contact->g, square, contact->v, contact->friction_speed, t);
+    for (int c = 0; c < 3; c++)
+        y[c] += pull->h * contact->friction * more * sqrt(square) / speed * t[c];
 }
 
 /* The pull of a point without particles yet; cd = -h. */

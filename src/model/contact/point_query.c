@@ -9,6 +9,17 @@
 #include <math.h>
 #include <string.h>
 
+/* Accelerations of a point in the step of a matrix with matrix->chord. */
+static struct cs_contact_pull pull_on(const struct cs_point_query *query,
+                                      const struct cs_contact_sample_point *point) {
+    const struct cs_system *system = query->system;
+    struct cs_contact_pull pull = cs_contact_pull_begin(query->matrix);
+    for (uint32_t k = 0; k < point->n && query->matrix->chord; k++)
+        cs_contact_pull_add(&pull, query->matrix, system->view.n, point->particles[k],
+                            system->inv_mass[point->particles[k]], point->w[k]);
+    return pull;
+}
+
 static void find_vector(const struct cs_point_query *query,
                         const struct cs_posed_collider_law *law,
                         const struct cs_contact_sample_point *point, const double v[3],
@@ -27,6 +38,10 @@ static void find_vector(const struct cs_point_query *query,
             cs_bristle_add_jvp(contact, bristle, &motion, f);
     } else if (query->quantity == CS_POINT_APPROACH) {
         cs_point_contact_approach(contact, query->matrix, f);
+        if (query->matrix->chord && contact->friction > 0) {
+            const struct cs_contact_pull pull = pull_on(query, point);
+            cs_friction_chord_add_approach(contact, &pull, f);
+        }
         if (bristle)
             cs_bristle_add_approach(contact, bristle, query->matrix, f);
     } else {
@@ -43,13 +58,9 @@ static void find_vector(const struct cs_point_query *query,
 static void find_matrix(const struct cs_point_query *query,
                         const struct cs_contact_sample_point *point,
                         const struct cs_bristle *bristle, struct cs_point_answer *answer) {
-    const struct cs_system *system = query->system;
-    struct cs_contact_pull pull = cs_contact_pull_begin(query->matrix);
+    const struct cs_contact_pull pull = pull_on(query, point);
     for (int e = 0; e < 6; e++)
         answer->block[e] = 0;
-    for (uint32_t k = 0; k < point->n && query->matrix->chord; k++)
-        cs_contact_pull_add(&pull, query->matrix, system->view.n, point->particles[k],
-                            system->inv_mass[point->particles[k]], point->w[k]);
     if (query->matrix->chord)
         cs_friction_chord_add_block(&answer->contact, query->matrix, &pull, answer->block);
     else

@@ -142,16 +142,6 @@ static bool rebounds(struct flight *flight, double energy) {
                 fabs(by_step - by_flight)) > MISSED_MAX * energy;
 }
 
-/* T1/T: the fraction that friction of the impulse J leaves of a speed T along the surface. One
- * of friction that sticks is as small as that of smooth friction, not 0, for r to be finite. */
-static double speed_left(const struct cs_posed_collider_law *law, double mass, double impulse,
-                         double speed) {
-    const double friction = law->friction + law->sticking_friction;
-    const double lost = friction * fmax(impulse, 0) / mass;
-    const double soft = 1 / (1 + lost / law->friction_speed);
-    return lost > 0 ? fmax(soft, speed > 0 ? 1 - lost / speed : 0) : 1;
-}
-
 /* One collider and the step, for all particles. */
 struct search {
     const struct cs_system *system;
@@ -244,17 +234,24 @@ static void find_rebound(const struct search *search, size_t i) {
     memcpy(rebound->g, g, sizeof rebound->g);
     rebound->collider = search->collider + 1;
     rebound->stiffness = cs_barrier_at(flight.d1, flight.range, flight.k).stiffness;
-    const double left = speed_left(&search->law, m, sqrt(square) * impulse,
-                                   sqrt(cs_vec3_dot(tangent, tangent)));
-    rebound->drag = m / h * (1 / left - 1);
+    // friction that sticks is as smooth as smooth friction, for r to be finite
+    const double mu = search->law.friction + search->law.sticking_friction;
+    const double speed = sqrt(cs_vec3_dot(tangent, tangent)), ev = search->law.friction_speed;
+    const double taken = mu * fmax(sqrt(square) * impulse, 0) / m;
+    const double slid = fmin(taken, fmax(speed - ev, 0));
+    const double drag = (taken - slid) / sqrt(speed * speed + ev * ev);
+    // T1 is (1 - part)/(1 + drag) of T
+    const double part = speed > 0 ? slid / speed : 0;
+    rebound->drag = m / h * drag;
     rebound->displacement = (flight.d1 - flight.d - h * flight.w1) / square;
     rebound->distance = flight.d1;
     rebound->energy = energy;
     // the force of the step's begin is among all forces, and is taken out
     const double along = impulse + h * h * rebound->stiffness * (flight.w1 - flight.u);
     for (size_t c = 0; c < 3; c++) {
-        rebound->impulse[c] = along * g[c] - h * rebound->drag * tangent[c] - h * start.own[c];
-        change[c * n] = (flight.w1 - flight.u) * g[c] / square - (1 - left) * tangent[c];
+        rebound->impulse[c] = along * g[c] - m * (part + drag) * tangent[c] - h * start.own[c];
+        change[c * n] =
+            (flight.w1 - flight.u) * g[c] / square - (part + drag) / (1 + drag) * tangent[c];
     }
 }
 

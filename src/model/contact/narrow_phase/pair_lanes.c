@@ -374,6 +374,7 @@ CS_INLINE void add_chord(enum cs_pair_kind kind, const struct cs_pair_lanes *res
         for (int c = 0; c < 3; c++)
             at.contacts.n[c] = at.r[c] / length;
         at.contacts.force = cs_barrier_at(d, lanes->range[l], lanes->k[l]).force;
+        at.contacts.end_force = at.contacts.force;
         cs_friction_chord_add(&at.pull, &at.contacts, block);
         CS_UNROLLED
         for (int e = 0; e < 6; e++)
