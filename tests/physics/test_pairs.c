@@ -244,7 +244,7 @@ TEST(list_limits_as_the_search_does) {
 
 static void ask_elsewhere(struct cs_pairs *pairs, const struct cs_matrix *matrix,
                           const double *x) {
-    static double stiffness[600], damping[600];
+    static double sums[1200];
     const struct cs_eval at = {.x = x, .v = matrix->v, .parts = CS_PART_ALL};
     struct cs_matrix other = *matrix;
     other.x = x;
@@ -252,7 +252,7 @@ static void ask_elsewhere(struct cs_pairs *pairs, const struct cs_matrix *matrix
     cs_term_pairs.energy(pairs->system, &at);
     cs_term_pairs.prepare_matrix(pairs->system, &other, false);
     cs_term_pairs.add_state_bound(pairs->system, &at,
-                                  &(struct cs_gershgorin){stiffness, damping});
+                                  &(struct cs_gershgorin){sums, sums + pairs->system->view.n});
     other.psd = false;
     cs_term_pairs.prepare_matrix(pairs->system, &other, false);
 }

@@ -202,12 +202,6 @@ void cs_bristle_add_approach(const struct cs_point_contact *contact,
         y[c] += change[c];
 }
 
-void cs_bristle_raise_bound(const struct cs_bristle *bristle, double *stiffness,
-                            double *damping) {
-    *stiffness = fmax(*stiffness, bristle->stiffness);
-    *damping = fmax(*damping, bristle->damping);
-}
-
 bool cs_bristle_slips(const struct cs_point_contact *contact, const struct cs_bristle *bristle,
                       double stretch[3]) {
     const struct trial trial = trial_of(contact, bristle);

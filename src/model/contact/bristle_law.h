@@ -74,11 +74,6 @@ void cs_bristle_add_approach(const struct cs_point_contact *contact,
                              const struct cs_bristle *bristle, const struct cs_matrix *matrix,
                              double y[3]);
 
-/* Raises the bounds of cs_point_contact_bound to those of contact and bristle together. They
- * act at right angles to each other, so the larger one counts. */
-void cs_bristle_raise_bound(const struct cs_bristle *bristle, double *stiffness,
-                            double *damping);
-
 /* Returns true if the point slips and the spring alone is above the limit; *stretch is then
  * the P (x - a) that an anchor must leave. */
 bool cs_bristle_slips(const struct cs_point_contact *contact, const struct cs_bristle *bristle,

@@ -17,7 +17,7 @@
 static void finish_contacts(void *object) {
     struct cs_contact_set *set = object;
     for (uint32_t l = 0; l < set->gather.n_chunks; l++)
-        free(set->chunks[l].contacts), free(set->chunks[l].vectors);
+        free(set->chunks[l].contacts);
 }
 
 enum cs_status cs_contact_set_init(struct cs_contact_set *set, uint32_t n_particles,
@@ -44,13 +44,12 @@ struct cs_contact *cs_contact_set_append(struct cs_contact_set *set, uint32_t ch
     // a point of two contacts has two rows
     for (uint32_t k = 0; k < n; k++)
         cs_gather_append(rows, points[k]);
-    if (rows->failed || !CS_ARENA_REALLOC(to->contacts, to->capacity, to->n + 1) ||
-        !CS_ARENA_REALLOC(to->vectors, to->vectors_capacity, 3 * (size_t)rows->n)) {
+    if (rows->failed || !CS_ARENA_REALLOC(to->contacts, to->capacity, to->n + 1)) {
         rows->failed = true;
         return NULL;
     }
     struct cs_contact *contact = to->contacts + to->n++;
-    *contact = (struct cs_contact){.n = n, .row = row};
+    *contact = (struct cs_contact){.n = n, .row = row, .factor = 1};
     memcpy(contact->weights, weights, n * sizeof *weights);
     return contact;
 }
@@ -74,10 +73,15 @@ double cs_contact_set_energy(const struct cs_contact_set *set) {
 }
 
 void cs_contact_set_write_vectors(struct cs_contact_set *set) {
-    for (uint32_t l = 0; l < set->gather.n_chunks && set->n; l++)
-        if (set->gather.chunks[l].n)
-            memcpy(cs_gather_of(set->gather.chunks + l, set->gather.row_sums, 3),
-                   set->chunks[l].vectors, 3 * sizeof(double) * set->gather.chunks[l].n);
+    for (uint32_t l = 0; l < set->gather.n_chunks && set->n; l++) {
+        double *row = cs_gather_of(set->gather.chunks + l, set->gather.row_sums, 3);
+        for (size_t p = 0; p < set->chunks[l].n; p++) {
+            const struct cs_contact *contact = set->chunks[l].contacts + p;
+            for (uint32_t k = 0; k < contact->n; k++, row += 3)
+                for (int c = 0; c < 3; c++)
+                    row[c] = contact->weights[k] * contact->factor * contact->vector[c];
+        }
+    }
 }
 
 /* Factor by which the block of point k grows, so that the blocks bound the matrix of the
@@ -174,8 +178,8 @@ void cs_contact_set_add_bound(const struct cs_contact_set *set, double *stiffnes
             const struct cs_contact *contact = set->chunks[l].contacts + p;
             const uint32_t *points = cs_contact_points(set, l, contact);
             for (uint32_t k = 0; k < contact->n; k++) {
-                stiffness[points[k]] += contact->block[k];
-                damping[points[k]] += contact->weights[k];
+                stiffness[points[k]] += contact->weights[k] * contact->vector[0];
+                damping[points[k]] += contact->weights[k] * contact->vector[1];
             }
         }
 }

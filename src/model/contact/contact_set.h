@@ -6,14 +6,14 @@
 
 #include "model/contact/force_gather.h"
 
-/* One contact in range, with its terms in a matrix, (w w^T) x B, or its bounds, or what
- * friction remembers of it. */
+/* One contact in range, with what it adds to its points, or what friction remembers of it. */
 struct cs_contact {
     uint32_t n, row; /* points, and the row of the first in its chunk; the others follow */
-    /* weights w of the points; of bounds: N s/m of each point */
     double weights[4];
-    /* B: xx, xy, xz, yy, yz, zz; of bounds: N/m of each point */
-    double block[6];
+    double block[6]; /* of a matrix (w w^T) x B: xx, xy, xz, yy, yz, zz of B */
+    /* force or its change in N, of which a point has w times factor; of bounds: N/m and N s/m,
+     * of which it has w */
+    double vector[3], factor;
     /* of lagged friction: mu N in N, negative for a feature that is subtracted; n; and the part
      * of the contact's velocity in m/s that belongs to colliders */
     double load, normal[3], obstacle[3];
@@ -23,8 +23,6 @@ struct cs_contact {
 struct cs_contact_chunk {
     struct cs_contact *contacts;
     size_t n, capacity;
-    double *vectors; /* (rows, 3) forces or their changes in N */
-    size_t vectors_capacity;
     /* energy in J */
     double energy;
 };
@@ -48,21 +46,17 @@ enum cs_status cs_contact_set_init(struct cs_contact_set *set, uint32_t n_partic
 
 /* Empties a chunk before it is filled; its memory stays. */
 void cs_contact_set_clear(struct cs_contact_set *set, uint32_t chunk);
-/* Appends a contact of n points with their weights, whose block is 0 and whose vectors are
- * unspecified; NULL if out of memory. The address is valid until the next call for the same
+/* Appends a contact of n points with their weights, whose factor is 1 and all else 0; NULL
+ * if out of memory. The address is valid until the next call for the same
  * chunk. */
 struct cs_contact *cs_contact_set_append(struct cs_contact_set *set, uint32_t chunk, uint32_t n,
                                          const uint32_t *points, const double *weights);
 
-/* The points and the vectors (n,3) of a contact. */
+/* The points of a contact. */
 static inline const uint32_t *cs_contact_points(const struct cs_contact_set *set,
                                                 uint32_t chunk,
                                                 const struct cs_contact *contact) {
     return set->gather.chunks[chunk].points + contact->row;
-}
-static inline double *cs_contact_vectors(const struct cs_contact_set *set, uint32_t chunk,
-                                         const struct cs_contact *contact) {
-    return set->chunks[chunk].vectors + 3 * (size_t)contact->row;
 }
 
 /* Counts the contacts of all chunks after they were filled, and lists the rows of each

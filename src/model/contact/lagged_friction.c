@@ -46,8 +46,7 @@ static struct sliding slide(const struct pass *pass, uint32_t chunk,
 }
 
 /* Stores the force of a contact, or its change along dv, and adds its potential. */
-static void find_force(const struct pass *pass, uint32_t chunk,
-                       const struct cs_contact *contact) {
+static void find_force(const struct pass *pass, uint32_t chunk, struct cs_contact *contact) {
     const struct sliding to = slide(pass, chunk, contact);
     const double rub = contact->load / to.speed;
     const double ev = pass->lagged->system->scene->contact->friction_speed;
@@ -63,9 +62,8 @@ static void find_force(const struct pass *pass, uint32_t chunk,
     // s - ev without cancellation
     pass->lagged->set.chunks[chunk].energy +=
         contact->load * cs_vec3_dot(to.t, to.t) / (to.speed + ev);
-    double *vectors = cs_contact_vectors(&pass->lagged->set, chunk, contact);
-    for (size_t k = 0; k < 3 * (size_t)contact->n; k++)
-        vectors[k] = -contact->weights[k / 3] * rub * along[k % 3];
+    contact->factor = -rub;
+    memcpy(contact->vector, along, sizeof along);
 }
 
 /* B = -cd mu N / s (I - n n^T - T T^T / s^2), as in point_contact.h. matrix.bound leaves the

@@ -4,10 +4,8 @@
 
 #include "model/contact/bristle_law.h"
 #include "model/contact/friction_chord.h"
-#include "model/contact/rebound.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Accelerations of a point in the step of a matrix with matrix->chord. */
 static struct cs_contact_pull pull_on(const struct cs_point_query *query,
@@ -28,7 +26,7 @@ static void find_vector(const struct cs_point_query *query,
     const struct cs_point_contact *contact = &answer->contact;
     const bool rubs = bristle && parts.friction > 0;
     double *f = answer->vector;
-    if (query->quantity == CS_POINT_JVP) {
+    if (query->asked == CS_QUERY_JVP) {
         double dp[3], dv[3];
         cs_contact_sample_interpolate(point, query->system->view.n, query->eval.dx, dp);
         cs_contact_sample_interpolate(point, query->system->view.n, query->eval.dv, dv);
@@ -36,7 +34,7 @@ static void find_vector(const struct cs_point_query *query,
         cs_point_contact_jvp(contact, parts, &motion, f);
         if (rubs)
             cs_bristle_add_jvp(contact, bristle, &motion, f);
-    } else if (query->quantity == CS_POINT_APPROACH) {
+    } else if (query->asked == CS_QUERY_APPROACH) {
         cs_point_contact_approach(contact, query->matrix, f);
         if (query->matrix->chord && contact->friction > 0) {
             const struct cs_contact_pull pull = pull_on(query, point);
@@ -71,26 +69,11 @@ static void find_matrix(const struct cs_point_query *query,
 
 static void find_bound(const struct cs_bristle *bristle, struct cs_point_answer *answer) {
     cs_point_contact_bound(&answer->contact, &answer->stiffness, &answer->damping);
-    if (bristle)
-        cs_bristle_raise_bound(bristle, &answer->stiffness, &answer->damping);
-}
-
-/* Answers for a particle in impact: b loses its vector, as an impact puts into b what it gives.
- * Returns false if the point is none. */
-static bool is_rebound(const struct cs_point_query *query, uint32_t collider,
-                       const struct cs_contact_sample_point *point,
-                       struct cs_point_answer *answer) {
-    const struct cs_rebound *rebound =
-        query->matrix && point->n == 1
-            ? cs_rebound_of(query->system, query->matrix, collider, point->particles[0])
-            : NULL;
-    if (!rebound)
-        return false;
-    memset(answer->block, 0, sizeof answer->block);
-    cs_rebound_add_block(rebound, query->matrix, answer->block);
-    for (int c = 0; c < 3; c++)
-        answer->vector[c] = -rebound->impulse[c];
-    return true;
+    if (!bristle)
+        return;
+    // they act at right angles to each other, so the larger one counts
+    answer->stiffness = fmax(answer->stiffness, bristle->stiffness);
+    answer->damping = fmax(answer->damping, bristle->damping);
 }
 
 bool cs_point_evaluate(const struct cs_point_query *query,
@@ -98,19 +81,13 @@ bool cs_point_evaluate(const struct cs_point_query *query,
                        const struct cs_contact_sample_point *point,
                        struct cs_point_answer *answer) {
     const struct cs_system *system = query->system;
-    const bool stored =
-        query->quantity == CS_POINT_ENERGY || query->quantity == CS_POINT_LAGGED;
+    const bool stored = query->asked == CS_QUERY_ENERGY || query->asked == CS_QUERY_LAGGED;
     struct cs_bristle found;
     double p[3], v[3];
-    if (is_rebound(query, number, point, answer))
-        return true;
     cs_contact_sample_interpolate(point, system->view.n, query->eval.x, p);
-    // most points are told by the bounding test alone
-    if (!cs_posed_collider_is_near(&law->collider, law->params.range, p) ||
-        cs_contact_sample_is_tangled(system, point))
-        return false;
     cs_contact_sample_interpolate(point, system->view.n, stored ? NULL : query->eval.v, v);
-    if (!cs_posed_collider_law_in_range(law, p, v, &answer->contact))
+    if (cs_contact_sample_is_tangled(system, point) ||
+        !cs_posed_collider_law_in_range(law, p, v, &answer->contact))
         return false;
     if (stored) {
         const struct cs_point_contact *contact = &answer->contact;
@@ -119,9 +96,9 @@ bool cs_point_evaluate(const struct cs_point_query *query,
     }
     const bool sticks = cs_bristle_of_point(system, number, law, point, p, &found);
     const struct cs_bristle *bristle = sticks ? &found : NULL;
-    if (query->quantity == CS_POINT_MATRIX)
+    if (query->asked == CS_QUERY_MATRIX)
         find_matrix(query, point, bristle, answer);
-    else if (query->quantity == CS_POINT_BOUND)
+    else if (query->asked == CS_QUERY_BOUND)
         find_bound(bristle, answer);
     else
         find_vector(query, law, point, v, bristle, answer);

@@ -6,32 +6,32 @@
 #include "model/contact/contact_samples.h"
 #include "model/force/term.h"
 
-/* Quantity that is asked for. */
-enum cs_point_quantity {
-    CS_POINT_FORCE,
-    CS_POINT_JVP, /* of the force */
-    CS_POINT_APPROACH,
-    CS_POINT_ENERGY,
-    CS_POINT_MATRIX,
-    CS_POINT_BOUND,
-    CS_POINT_LAGGED /* friction, stored by lagged_friction.h */
+/* Quantity that is asked for, of points or of pairs. */
+enum cs_contact_query {
+    CS_QUERY_FORCE,
+    CS_QUERY_JVP, /* of the force */
+    CS_QUERY_APPROACH,
+    CS_QUERY_ENERGY,
+    CS_QUERY_MATRIX,
+    CS_QUERY_BOUND,
+    CS_QUERY_LAGGED /* friction, stored by lagged_friction.h */
 };
 
 /* A query over many points; all pointers are borrowed. */
 struct cs_point_query {
     const struct cs_system *system;
-    enum cs_point_quantity quantity;
+    enum cs_contact_query asked;
     struct cs_eval eval;
-    const struct cs_matrix *matrix; /* of CS_POINT_MATRIX and CS_POINT_APPROACH */
+    const struct cs_matrix *matrix; /* of CS_QUERY_MATRIX and CS_QUERY_APPROACH */
 };
 
 /* A query for the matrix or the approach of a step. */
 static inline struct cs_point_query cs_point_matrix_query(const struct cs_system *system,
-                                                          enum cs_point_quantity quantity,
+                                                          enum cs_contact_query asked,
                                                           const struct cs_matrix *matrix) {
     const struct cs_eval at = {
         .t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_ALL};
-    return (struct cs_point_query){system, quantity, at, matrix};
+    return (struct cs_point_query){system, asked, at, matrix};
 }
 
 /* Answer at one point; what was not asked for is unspecified. */
@@ -44,11 +44,17 @@ struct cs_point_answer {
 };
 
 /* Answers for a point, a sample or a particle, which is a sample of one vertex with the weight
- * 1, against collider `number`. A particle in impact answers for its flight (rebound.h).
+ * 1, against collider `number`.
  * Returns false if it is out of range, and for energies and friction if it cannot move. */
 bool cs_point_evaluate(const struct cs_point_query *query,
                        const struct cs_posed_collider_law *law, uint32_t number,
                        const struct cs_contact_sample_point *point,
                        struct cs_point_answer *answer);
+
+/* Members that all terms of contact have in common. */
+#define CS_CONTACT_TERM                                                                        \
+    .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE, .rampable_keys = cs_contact_ramps,   \
+    .energy_kind = CS_ENERGY_OTHER, .energy_column = "other", .work_column = "friction"
+extern const char *const cs_contact_ramps[];
 
 #endif

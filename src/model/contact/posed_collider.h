@@ -114,6 +114,12 @@ static inline bool cs_posed_collider_hits_segment(const struct cs_posed_collider
     return collider->shape->meets_line(collider, from, way, share);
 }
 
+/* out = vector i of x (3,n), which colliders are asked about. */
+static inline void cs_point_read(const double *x, size_t n, size_t i, double out[3]) {
+    for (size_t c = 0; c < 3; c++)
+        out[c] = x[c * n + i];
+}
+
 /* v = velocity in m/s of the collider's matter at p: velocity + spin x (p - rotation_centre),
  * and growth along the normal. */
 void cs_posed_collider_velocity(const struct cs_posed_collider *collider, const double p[3],

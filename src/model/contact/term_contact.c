@@ -11,6 +11,7 @@
 
 #include <clothsim/clones.h>
 #include <math.h>
+#include <string.h>
 
 /* particles per row, and per chunk of stored friction */
 enum { ROW = CS_COLLIDER_ROW, STORED = 1024 };
@@ -122,7 +123,7 @@ CS_INLINE void answer_rows(const struct cs_posed_collider_law *law, const struct
             continue;
         for (size_t i = 0; tangled && i < row.count; i++)
             row.d[i] = tangled[row.start + i] ? law->params.range : row.d[i];
-        if (pass->query.quantity == CS_POINT_BOUND)
+        if (pass->query.asked == CS_QUERY_BOUND)
             bound(law, pass, sphere, &row);
         else if (rubs)
             push(law, pass, sphere, true, &row, pass->to + row.start);
@@ -146,32 +147,42 @@ static void take(struct pass *pass, uint32_t i, const struct cs_point_answer *an
                  bool in_rows) {
     const struct cs_point_query *query = &pass->query;
     const size_t n = query->system->view.n;
-    switch (query->quantity) {
-    case CS_POINT_ENERGY:
+    switch (query->asked) {
+    case CS_QUERY_ENERGY:
         pass->energy += answer->energy;
         return;
-    case CS_POINT_LAGGED:
+    case CS_QUERY_LAGGED:
         cs_lagged_friction_store(query->system->lagged_friction, pass->first + i / STORED,
                                  &answer->contact, 1, &i, &(double){1});
         return;
-    case CS_POINT_BOUND:
+    case CS_QUERY_BOUND:
         pass->bounds->stiffness[i] += answer->stiffness;
         pass->bounds->damping[i] += answer->damping;
         return;
-    case CS_POINT_MATRIX:
+    case CS_QUERY_MATRIX:
         for (size_t e = 0; e < 6; e++)
             pass->to[e * n + i] += answer->block[e];
         return;
-    case CS_POINT_FORCE:
+    case CS_QUERY_FORCE:
         if (query->eval.power)
             query->eval.power[i] += answer->energy;
         break;
-    case CS_POINT_JVP:
-    case CS_POINT_APPROACH:
+    case CS_QUERY_JVP:
+    case CS_QUERY_APPROACH:
         break;
     }
     for (size_t c = 0; c < 3 && !in_rows; c++)
         pass->to[c * n + i] += answer->vector[c];
+}
+
+/* Answers for a particle in impact: b loses its vector, as an impact puts into b what it gives.
+ */
+static void answer_rebound(const struct cs_rebound *rebound, const struct cs_matrix *matrix,
+                           struct cs_point_answer *answer) {
+    memset(answer->block, 0, sizeof answer->block);
+    cs_rebound_add_block(rebound, matrix, answer->block);
+    for (int c = 0; c < 3; c++)
+        answer->vector[c] = -rebound->impulse[c];
 }
 
 /* Answers for particles [begin, end) at a collider, one by one: those in range of it, which the
@@ -199,9 +210,8 @@ static void answer_near(const struct cs_posed_collider_law *law, uint32_t collid
     }
     const bool rebounds = query->matrix && query->matrix->rebounds;
     for (size_t i = rebounds ? begin : end; cs_rebound_next(system, collider, end, &i); i++) {
-        point.particles[0] = (uint32_t)i;
-        if (cs_point_evaluate(query, law, collider, &point, &answer))
-            take(pass, (uint32_t)i, &answer, in_rows);
+        answer_rebound(system->rebounds->list + i, query->matrix, &answer);
+        take(pass, (uint32_t)i, &answer, in_rows);
     }
 }
 
@@ -210,12 +220,12 @@ static void answer_near(const struct cs_posed_collider_law *law, uint32_t collid
 static void run(void *arg, size_t begin, size_t end) {
     struct pass *pass = arg;
     const struct cs_point_query *query = &pass->query;
-    const bool power = query->quantity == CS_POINT_FORCE && query->eval.power;
+    const bool power = query->asked == CS_QUERY_FORCE && query->eval.power;
     for (uint32_t k = 0; k < query->system->scene->colliders.n; k++) {
         struct cs_posed_collider_law law;
         cs_posed_collider_law_at(query->system, k, query->eval.t, &law);
         const bool in_rows =
-            (query->quantity == CS_POINT_FORCE || query->quantity == CS_POINT_BOUND) &&
+            (query->asked == CS_QUERY_FORCE || query->asked == CS_QUERY_BOUND) &&
             cs_posed_collider_law_is_plain(&law);
         if (in_rows)
             answer_in_rows(&law, pass, begin, end);
@@ -234,36 +244,36 @@ static struct cs_plan_row plan_contact(const struct cs_scene *scene) {
                                                   : "every collider is a mesh"};
 }
 
-static const char *const ramps[] = {"colliders.friction", NULL};
+const char *const cs_contact_ramps[] = {"colliders.friction", NULL};
 
 static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const bool changes = at->dx || at->dv;
-    struct pass pass = {{system, changes ? CS_POINT_JVP : CS_POINT_FORCE, *at, NULL}, .to = f};
+    struct pass pass = {{system, changes ? CS_QUERY_JVP : CS_QUERY_FORCE, *at, NULL}, .to = f};
     run(&pass, at->block->begin, at->block->end);
 }
 
 /* Energy of the barrier law over the free particles. */
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
-    struct pass pass = {{system, CS_POINT_ENERGY, *at, NULL}, .energy = 0};
+    struct pass pass = {{system, CS_QUERY_ENERGY, *at, NULL}, .energy = 0};
     run(&pass, 0, system->view.n);
     return pass.energy;
 }
 
 static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
                        size_t begin, size_t end, double *blocks) {
-    struct pass pass = {cs_point_matrix_query(system, CS_POINT_MATRIX, matrix), .to = blocks};
+    struct pass pass = {cs_point_matrix_query(system, CS_QUERY_MATRIX, matrix), .to = blocks};
     run(&pass, begin, end);
 }
 
 static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
                          double *y) {
-    struct pass pass = {cs_point_matrix_query(system, CS_POINT_APPROACH, matrix), .to = y};
+    struct pass pass = {cs_point_matrix_query(system, CS_QUERY_APPROACH, matrix), .to = y};
     cs_vector_parallel_for(system->view.n, run, &pass);
 }
 
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
                          const struct cs_gershgorin *sums) {
-    struct pass pass = {{system, CS_POINT_BOUND, *at, NULL}, .bounds = sums};
+    struct pass pass = {{system, CS_QUERY_BOUND, *at, NULL}, .bounds = sums};
     run(&pass, 0, system->view.n);
 }
 
@@ -279,22 +289,18 @@ static void store_chunk(void *arg, uint32_t chunk) {
 
 static void store_friction(const struct cs_system *system, double t, const double *x,
                            uint32_t first) {
-    struct pass pass = {{system, CS_POINT_LAGGED, {.t = t, .x = x}, NULL}, .first = first};
+    struct pass pass = {{system, CS_QUERY_LAGGED, {.t = t, .x = x}, NULL}, .first = first};
     cs_pool_run(friction_chunks(system), store_chunk, &pass);
 }
 
 const struct cs_term cs_term_contact = {
     .name = "contact force",
-    .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
+    CS_CONTACT_TERM,
     .plan = plan_contact,
-    .rampable_keys = ramps,
     .build = cs_collider_params_table_build,
     .add_force = add_force,
     .add_jvp = add_force,
     .energy = energy,
-    .energy_kind = CS_ENERGY_OTHER,
-    .energy_column = "other",
-    .work_column = "friction",
     .add_blocks = add_blocks,
     .add_approach = add_approach,
     .friction_chunks = friction_chunks,

@@ -25,36 +25,31 @@ static void meet(const struct job *job, const struct cs_posed_collider_law *law,
                  const struct cs_contact_sample_point *point, uint32_t number) {
     struct cs_contact_chunk *chunk = job->set->chunks + number;
     const struct cs_system *system = job->query.system;
-    const enum cs_point_quantity quantity = job->query.quantity;
+    const enum cs_contact_query asked = job->query.asked;
     struct cs_point_answer answer;
     if (!cs_point_evaluate(&job->query, law, job->samples->chunks[number].collider, point,
                            &answer) ||
         cs_contact_sample_mass(system, point) == HUGE_VAL)
         return;
     // of a force: the power that the collider gives
-    if (quantity == CS_POINT_ENERGY || quantity == CS_POINT_FORCE)
+    if (asked == CS_QUERY_ENERGY || asked == CS_QUERY_FORCE)
         chunk->energy += answer.energy;
-    else if (quantity == CS_POINT_LAGGED)
+    else if (asked == CS_QUERY_LAGGED)
         cs_lagged_friction_store(system->lagged_friction, job->first + number, &answer.contact,
                                  point->n, point->particles, point->w);
-    if (quantity == CS_POINT_ENERGY || quantity == CS_POINT_LAGGED)
+    if (asked == CS_QUERY_ENERGY || asked == CS_QUERY_LAGGED)
         return;
     struct cs_contact *to =
         cs_contact_set_append(job->set, number, point->n, point->particles, point->w);
     if (!to)
         return;
-    if (quantity == CS_POINT_MATRIX) {
-        memcpy(to->block, answer.block, sizeof to->block);
-        return;
-    }
-    double *vectors = cs_contact_vectors(job->set, number, to);
     // row i of the matrix has w_i w_j times one block, and the weights sum to 1
-    for (uint32_t k = 0; k < point->n && quantity == CS_POINT_BOUND; k++) {
-        to->block[k] = answer.stiffness * point->w[k];
-        to->weights[k] = point->w[k] * answer.damping;
-    }
-    for (size_t k = 0; k < 3 * (size_t)point->n && quantity != CS_POINT_BOUND; k++)
-        vectors[k] = point->w[k / 3] * answer.vector[k % 3];
+    if (asked == CS_QUERY_MATRIX)
+        memcpy(to->block, answer.block, sizeof to->block);
+    else if (asked == CS_QUERY_BOUND)
+        to->vector[0] = answer.stiffness, to->vector[1] = answer.damping;
+    else
+        memcpy(to->vector, answer.vector, sizeof to->vector);
 }
 
 /* Middle of the box of `count` particles from `first` on, or of those listed; returns half its
@@ -123,40 +118,47 @@ static void do_chunk(void *arg, uint32_t number) {
     }
 }
 
-/* Poses all colliders, evaluates all chunks and gathers their contacts. */
-static void do_chunks(struct job *job) {
-    const struct cs_system *system = job->query.system;
-    struct cs_contact_samples *samples = job->samples;
-    const double *x = job->query.eval.x;
-    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
+/* Poses all colliders; returns whether lists of items need to be made anew. */
+static bool pose_colliders(const struct cs_point_query *query,
+                           struct cs_contact_samples *samples) {
+    const uint32_t n_colliders = query->system->scene->colliders.n;
+    const size_t n = query->system->view.n;
+    const double *x = query->eval.x;
+    bool lists = false;
+    for (uint32_t c = 0; c < n_colliders; c++) {
         struct cs_posed_collider_law *law = samples->colliders + c;
-        cs_posed_collider_law_at(system, c, job->query.eval.t, law);
+        cs_posed_collider_law_at(query->system, c, query->eval.t, law);
         const struct cs_posed_collider_law *listed = samples->listed + c;
         // planes need no samples
-        job->lists |= cs_shape_needs_points(law->collider.shape) &&
-                      !(cs_contact_samples_approach(system->view.n, &listed->collider,
-                                                    samples->x_listed, &law->collider, x) <
-                        (1 - 1e-6) * (listed->params.range - law->params.range));
+        lists |= cs_shape_needs_points(law->collider.shape) &&
+                 !(cs_contact_samples_approach(n, &listed->collider, samples->x_listed,
+                                               &law->collider, x) <
+                   (1 - 1e-6) * (listed->params.range - law->params.range));
     }
-    for (uint32_t c = 0; c < system->scene->colliders.n && job->lists; c++) {
+    for (uint32_t c = 0; c < n_colliders && lists; c++) {
         samples->listed[c] = samples->colliders[c];
         samples->listed[c].params.range *= CS_CONTACT_SAMPLE_REACH;
     }
-    if (job->lists)
-        memcpy(samples->x_listed, x, 3 * sizeof *x * system->view.n);
-    cs_pool_run(samples->n_chunks, do_chunk, job);
-    cs_contact_set_gather(job->set);
+    if (lists)
+        memcpy(samples->x_listed, x, 3 * sizeof *x * n);
+    return lists;
 }
 
-/* Runs a query over all samples, into current_set. */
-static struct cs_contact_set *run(const struct cs_system *system,
-                                  enum cs_point_quantity quantity, const struct cs_eval *at,
-                                  const struct cs_matrix *matrix) {
-    struct cs_contact_samples *samples = system->contact_samples;
-    struct job job = {
-        {system, quantity, *at, matrix}, samples, &samples->current_set, 0, false};
-    do_chunks(&job);
-    return job.set;
+/* Runs a query over all samples into a set, and gathers its contacts. */
+static struct cs_contact_set *run(struct cs_point_query query, struct cs_contact_set *set,
+                                  uint32_t first) {
+    struct cs_contact_samples *samples = query.system->contact_samples;
+    struct job job = {query, samples, set, first, pose_colliders(&query, samples)};
+    cs_pool_run(samples->n_chunks, do_chunk, &job);
+    cs_contact_set_gather(set);
+    return set;
+}
+
+/* The same of a state, into current_set. */
+static struct cs_contact_set *run_at(const struct cs_system *system,
+                                     enum cs_contact_query asked, const struct cs_eval *at) {
+    return run((struct cs_point_query){system, asked, *at, NULL},
+               &system->contact_samples->current_set, 0);
 }
 
 static uint32_t friction_chunks(const struct cs_system *system) {
@@ -165,13 +167,8 @@ static uint32_t friction_chunks(const struct cs_system *system) {
 
 static void store_friction(const struct cs_system *system, double t, const double *x,
                            uint32_t first) {
-    struct cs_contact_samples *samples = system->contact_samples;
-    struct job job = {{system, CS_POINT_LAGGED, {.t = t, .x = x}, NULL},
-                      samples,
-                      &samples->current_set,
-                      first,
-                      false};
-    do_chunks(&job);
+    run((struct cs_point_query){system, CS_QUERY_LAGGED, {.t = t, .x = x}, NULL},
+        &system->contact_samples->current_set, first);
 }
 
 /* Returns whether a collider is round, so that it may need samples. */
@@ -200,7 +197,7 @@ static const char *idle_why(const struct cs_system *system) {
 /* Forces at a state, or their change if a direction is set. */
 static void prepare(const struct cs_system *system, const struct cs_eval *at) {
     cs_contact_set_write_vectors(
-        run(system, at->dx || at->dv ? CS_POINT_JVP : CS_POINT_FORCE, at, NULL));
+        run_at(system, at->dx || at->dv ? CS_QUERY_JVP : CS_QUERY_FORCE, at));
 }
 
 static void add_sample_forces(const struct cs_system *system, const struct cs_eval *at,
@@ -212,7 +209,7 @@ static void add_sample_forces(const struct cs_system *system, const struct cs_ev
 }
 
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
-    return cs_contact_set_energy(run(system, CS_POINT_ENERGY, at, NULL));
+    return cs_contact_set_energy(run_at(system, CS_QUERY_ENERGY, at));
 }
 
 /* Into samples->matrix for products, else into current_set, for blocks alone, which bound the
@@ -221,16 +218,8 @@ static void prepare_matrix(const struct cs_system *system, const struct cs_matri
                            bool kept) {
     struct cs_contact_samples *samples = system->contact_samples;
     struct cs_contact_set *set = kept ? &samples->matrix : &samples->current_set;
-    struct job job = {{system,
-                       CS_POINT_MATRIX,
-                       {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_ALL},
-                       matrix},
-                      samples,
-                      set,
-                      0,
-                      false};
     set->diagonal_bound = !kept && matrix->bound;
-    do_chunks(&job);
+    run(cs_point_matrix_query(system, CS_QUERY_MATRIX, matrix), set, 0);
     cs_contact_set_write_blocks(set);
     samples->blocks = set;
 }
@@ -248,35 +237,28 @@ static void add_product(const struct cs_system *system, const double *p, double 
 /* into the set that the matrix does not use */
 static void add_approach(const struct cs_system *system, const struct cs_matrix *matrix,
                          double *y) {
-    const struct cs_eval at = {
-        .t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_POTENTIAL};
-    struct cs_contact_set *set = run(system, CS_POINT_APPROACH, &at, matrix);
+    struct cs_contact_set *set = run(cs_point_matrix_query(system, CS_QUERY_APPROACH, matrix),
+                                     &system->contact_samples->current_set, 0);
     cs_contact_set_write_vectors(set);
     cs_contact_set_add(set, 0, system->view.n, y);
 }
 
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
                          const struct cs_gershgorin *sums) {
-    cs_contact_set_add_bound(run(system, CS_POINT_BOUND, at, NULL), sums->stiffness,
+    cs_contact_set_add_bound(run_at(system, CS_QUERY_BOUND, at), sums->stiffness,
                              sums->damping);
 }
 
-static const char *const ramps[] = {"colliders.friction", NULL};
-
 const struct cs_term cs_term_cover = {
     .name = "contact samples",
-    .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
+    CS_CONTACT_TERM,
     .plan = plan_samples,
     .build = cs_contact_samples_build,
     .reason_idle = idle_why,
-    .rampable_keys = ramps,
     .prepare = prepare,
     .add_force = add_sample_forces,
     .add_jvp = add_sample_forces,
     .energy = energy,
-    .energy_kind = CS_ENERGY_OTHER,
-    .energy_column = "other",
-    .work_column = "friction",
     .prepare_matrix = prepare_matrix,
     .add_blocks = add_blocks,
     .add_matrix_product = add_product,

@@ -19,7 +19,8 @@ enum cs_term_use {
  * 3x3 blocks in its row of a force's derivative, the diagonal block and those of its
  * neighbours. */
 struct cs_gershgorin {
-    double *stiffness, *damping; /* (n) of df/dx in N/m and of df/dv in N s/m */
+    double *stiffness; /* (n) of df/dx in N/m */
+    double *damping;   /* (n) of df/dv in N s/m, behind them in memory */
 };
 
 /* Member of struct cs_energy to which a force's energy is added. */

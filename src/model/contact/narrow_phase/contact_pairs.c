@@ -31,8 +31,7 @@ static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error 
             if (body != search->body[at[2]])
                 continue;
             for (size_t k = 0; k < 4; k++)
-                for (size_t c = 0; c < 3; c++)
-                    places[k][c] = pairs->system->start[c * n + at[k]];
+                cs_point_read(pairs->system->start, n, at[k], places[k]);
             const double range =
                 cs_pair_contact_range(cs_body_pair_params_of(&pairs->body_pairs, body, body),
                                       search->chunks[l].kind == CS_PAIR_EDGE_EDGE);
@@ -102,6 +101,7 @@ static struct cs_active_contacts *find_active(struct cs_pairs *pairs, const doub
 /* Runs one query; returns false if out of memory. */
 static bool answer(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
     const struct cs_eval *at = &narrow->eval;
+    narrow->system = pairs->system;
     narrow->x = cs_surface_points_positions(pairs->system, CS_POINTS_BEGIN, at->t, at->x);
     narrow->v = cs_surface_points_velocities(pairs->system, at->t, at->v);
     cs_body_pair_table_update_friction(pairs->system, &pairs->body_pairs);
@@ -109,8 +109,7 @@ static bool answer(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
     if (!narrow->contacts)
         return false;
     pairs->current_contacts = narrow->contacts;
-    if (narrow->query != CS_CONTACT_QUERY_ENERGY &&
-        !cs_active_contacts_gather(pairs->current_contacts))
+    if (!cs_active_contacts_gather(pairs->current_contacts))
         return false;
     if (narrow->result &&
         !cs_pair_matrix_begin(narrow->result, pairs->current_contacts, !narrow->matrix->psd,
@@ -129,8 +128,8 @@ static void run(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
 
 /* The query is a Jacobian product as soon as one direction is given. */
 static void prepare(const struct cs_system *system, const struct cs_eval *at) {
-    struct cs_narrow_phase narrow = {
-        .query = at->dx || at->dv ? CS_CONTACT_QUERY_JVP : CS_CONTACT_QUERY_FORCE, .eval = *at};
+    struct cs_narrow_phase narrow = {.query = at->dx || at->dv ? CS_QUERY_JVP : CS_QUERY_FORCE,
+                                     .eval = *at};
     run(system->pairs, &narrow);
 }
 
@@ -166,7 +165,7 @@ static void add_pair_forces(const struct cs_system *system, const struct cs_eval
 
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
     struct cs_pairs *pairs = system->pairs;
-    struct cs_narrow_phase narrow = {.query = CS_CONTACT_QUERY_ENERGY, .eval = *at};
+    struct cs_narrow_phase narrow = {.query = CS_QUERY_ENERGY, .eval = *at};
     double sum = 0;
     run(pairs, &narrow);
     for (uint32_t l = 0; l < pairs->candidates.n_chunks && pairs->current_contacts->n; l++)
@@ -180,9 +179,8 @@ static uint32_t friction_chunks(const struct cs_system *system) {
 
 static void store_friction(const struct cs_system *system, double t, const double *x,
                            uint32_t first) {
-    struct cs_narrow_phase narrow = {.query = CS_CONTACT_QUERY_LAGGED_FRICTION,
-                                     .eval = {.t = t, .x = x},
-                                     .first_lagged = first};
+    struct cs_narrow_phase narrow = {
+        .query = CS_QUERY_LAGGED, .eval = {.t = t, .x = x}, .first_lagged = first};
     run(system->pairs, &narrow);
 }
 
@@ -194,7 +192,7 @@ static void prepare_matrix(const struct cs_system *system, const struct cs_matri
     struct cs_pairs *pairs = system->pairs;
     struct cs_pair_matrix *result = kept ? &pairs->solver_matrix : &pairs->other_matrix;
     struct cs_narrow_phase narrow = {
-        .query = CS_CONTACT_QUERY_MATRIX,
+        .query = CS_QUERY_MATRIX,
         .eval = {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_ALL},
         .matrix = matrix,
         .result = result};
@@ -223,18 +221,14 @@ static void add_approach(const struct cs_system *system, const struct cs_matrix 
                                 cs_surface_points_velocities(system, matrix->t, matrix->v), y);
 }
 
-/* Damping follows stiffness in the same array, n_rows numbers later. */
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
                          const struct cs_gershgorin *sums) {
     struct cs_pairs *pairs = system->pairs;
-    struct cs_narrow_phase narrow = {.query = CS_CONTACT_QUERY_BOUND, .eval = *at};
+    struct cs_narrow_phase narrow = {.query = CS_QUERY_BOUND, .eval = *at};
     run(pairs, &narrow);
     const struct cs_gather *gather = &pairs->current_contacts->force_gather;
-    const size_t n = system->view.n;
-    if (!pairs->current_contacts->n)
-        return;
-    cs_gather_add(gather, gather->row_sums, 1, 0, n, sums->stiffness);
-    cs_gather_add(gather, gather->row_sums + gather->n_rows, 1, 0, n, sums->damping);
+    if (pairs->current_contacts->n)
+        cs_gather_add(gather, gather->row_sums, 2, 0, system->view.n, sums->stiffness);
 }
 
 static struct cs_plan_row plan_pairs(const struct cs_scene *scene) {
@@ -244,21 +238,15 @@ static struct cs_plan_row plan_pairs(const struct cs_scene *scene) {
         .reason = built ? "self_contact, pairs of bodies, or a mesh collider" : NULL};
 }
 
-static const char *const ramps[] = {"colliders.friction", NULL};
-
 const struct cs_term cs_term_pairs = {
     .name = "contact pairs",
-    .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
+    CS_CONTACT_TERM,
     .plan = plan_pairs,
-    .rampable_keys = ramps,
     .build = build,
     .prepare = prepare,
     .add_force = add_pair_forces,
     .add_jvp = add_pair_forces,
     .energy = energy,
-    .energy_kind = CS_ENERGY_OTHER,
-    .energy_column = "other",
-    .work_column = "friction",
     .prepare_matrix = prepare_matrix,
     .add_blocks = add_blocks,
     .add_matrix_product = add_product,

@@ -33,17 +33,9 @@ struct work {
     const struct cs_narrow_phase *narrow;
     struct cs_active_chunk *chunk;
     uint32_t number;
-    /* gathered data of its points; NULL: they are read one by one */
+    /* gathered data of its points */
     const double *rows;
 };
-
-/* Copies three columns of the rows of a pair into its lane. */
-static void read_lane(const double *rows, size_t width, const uint32_t to[4], uint32_t lane,
-                      double out[4][3][CS_PAIR_LANES]) {
-    for (size_t k = 0; k < 4; k++)
-        for (size_t c = 0; c < 3; c++)
-            out[k][c][lane] = rows[to[k] * width + c];
-}
 
 /* --- one by one --- */
 
@@ -52,9 +44,9 @@ static void store_lagged(const struct work *work, struct cs_pair_lanes *lanes, s
     const struct cs_narrow_phase *narrow = work->narrow;
     struct cs_pair_contact contact;
     for (uint32_t l = 0; l < lanes->n; l++) {
-        cs_pair_lanes_contact(work->chunk->kind, lanes, l,
-                              narrow->contacts->candidates->system->scene->contact, &contact);
-        cs_lagged_friction_store(narrow->contacts->candidates->system->lagged_friction,
+        cs_pair_lanes_contact(work->chunk->kind, lanes, l, narrow->system->scene->contact,
+                              &contact);
+        cs_lagged_friction_store(narrow->system->lagged_friction,
                                  narrow->first_lagged + work->number, &contact.contact, 4,
                                  work->chunk->points[first + l], contact.weight);
     }
@@ -62,68 +54,57 @@ static void store_lagged(const struct work *work, struct cs_pair_lanes *lanes, s
 
 /* --- in lanes --- */
 
-static void read_positions(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
-    const struct cs_narrow_phase *narrow = work->narrow;
-    const size_t n = narrow->contacts->candidates->system->surfaces->n_points;
-    for (uint32_t l = 0; l < lanes->n; l++)
-        for (size_t k = 0; k < 4; k++)
-            for (size_t c = 0; c < 3; c++)
-                lanes->p[k][c][l] = narrow->x[c * n + work->chunk->points[first + l][k]];
-}
-
 /* Adds the energies of a block to its chunk. The distances of features are known already. */
-static void add_energy(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
-    if (work->chunk->kind == CS_PAIR_EDGE_EDGE) {
-        read_positions(work, lanes, first);
+static void add_energy(const struct work *work, struct cs_pair_lanes *lanes) {
+    if (work->chunk->kind == CS_PAIR_EDGE_EDGE)
         cs_pair_lanes_measure_edges(lanes);
-    }
     for (uint32_t l = 0; l < lanes->n; l++)
         work->chunk->energy += cs_barrier_energy(lanes->d[l], lanes->range[l], lanes->k[l]);
 }
 
-/* Sets out of a block to forces or their change. */
+/* Sets out of a block to forces, their change, or bounds. */
 static void push(const struct work *work, struct cs_pair_lanes *lanes) {
     const struct cs_narrow_phase *narrow = work->narrow;
-    const struct cs_pair_lane_constants constants = {
-        *narrow->contacts->candidates->system->scene->contact,
-        cs_force_parts_of(narrow->eval.parts)};
-    if (narrow->query == CS_CONTACT_QUERY_JVP)
+    const struct cs_pair_lane_constants constants = {*narrow->system->scene->contact,
+                                                     cs_force_parts_of(narrow->eval.parts)};
+    if (narrow->query == CS_QUERY_JVP)
         cs_pair_lanes_jvp(work->chunk->kind, lanes, &constants);
+    else if (narrow->query == CS_QUERY_BOUND)
+        cs_pair_lanes_bound(work->chunk->kind, lanes, &constants);
     else
         cs_pair_lanes_force(work->chunk->kind, lanes, &constants);
 }
 
+/* numbers that a row sums */
+static size_t width_of(const struct cs_narrow_phase *narrow) {
+    return narrow->query == CS_QUERY_BOUND ? 2 : 3;
+}
+
 /* Adds the results of a block to the rows of its points, pair by pair. */
-static void add_pushes(const struct work *work, const struct cs_pair_lanes *lanes,
-                       size_t first) {
+static void add_pushes(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     const struct cs_gather *gather = &work->narrow->contacts->force_gather;
-    uint32_t(*to)[4] = work->chunk->rows + first;
-    double *sums = cs_gather_of(gather->chunks + work->number, gather->row_sums, 3);
-    for (uint32_t l = 0; l < lanes->n; l++)
-        for (int k = 0; k < 4; k++)
-            for (int c = 0; c < 3; c++)
-                sums[3 * (size_t)to[l][k] + (size_t)c] += lanes->out[k][c][l];
+    const size_t width = width_of(work->narrow);
+    cs_pair_lanes_add(lanes->out, width, work->chunk->rows + first, lanes->n,
+                      cs_gather_of(gather->chunks + work->number, gather->row_sums, width));
 }
 
 /* Reads what friction by its chord depends on: columns 6 to 11 of the rows, and masses. */
 static void read_pulls(const struct work *work, size_t first, uint32_t n,
                        struct cs_pair_pulls *pulls) {
-    const struct cs_system *system = work->narrow->contacts->candidates->system;
+    const struct cs_system *system = work->narrow->system;
     const size_t width = work->narrow->contacts->force_gather.width;
-    for (uint32_t l = 0; l < n; l++) {
-        const uint32_t *to = work->chunk->rows[first + l];
-        read_lane(work->rows + 6, width, to, l, pulls->all);
-        read_lane(work->rows + 9, width, to, l, pulls->contact);
+    cs_pair_lanes_read(work->rows + 6, width, work->chunk->rows + first, n, pulls->all);
+    cs_pair_lanes_read(work->rows + 9, width, work->chunk->rows + first, n, pulls->contact);
+    for (uint32_t l = 0; l < n; l++)
         for (size_t k = 0; k < 4; k++)
             pulls->inverse_mass[k][l] =
                 cs_surface_points_inverse_mass(system, work->chunk->points[first + l][k]);
-    }
 }
 
 /* Stores the matrix terms of a block, which the operator multiplies with later. */
 static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     const struct cs_narrow_phase *narrow = work->narrow;
-    const struct cs_contact_keys *keys = narrow->contacts->candidates->system->scene->contact;
+    const struct cs_contact_keys *keys = narrow->system->scene->contact;
     const struct cs_pair_matrix_chunk *terms = narrow->result->chunks + work->number;
     struct cs_pair_factors *factors = terms->factors + first / CS_PAIR_LANES;
     if (narrow->matrix->chord) {
@@ -140,40 +121,24 @@ static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t f
     }
 }
 
-/* Adds bounds to rows: stiffness in row_sums[row], damping in row_sums[n_rows + row]. */
-static void add_bounds(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
-    const struct cs_active_contacts *active = work->narrow->contacts;
-    const struct cs_gather *gather = &active->force_gather;
-    uint32_t(*to)[4] = work->chunk->rows + first;
-    double *sums = cs_gather_of(gather->chunks + work->number, gather->row_sums, 1);
-    struct cs_pair_bounds bounds;
-    cs_pair_lanes_bound(work->chunk->kind, lanes, active->candidates->system->scene->contact,
-                        &bounds);
-    for (uint32_t l = 0; l < lanes->n; l++)
-        for (int k = 0; k < 4; k++) {
-            sums[to[l][k]] += bounds.stiffness[k][l];
-            sums[gather->n_rows + to[l][k]] += bounds.damping[k][l];
-        }
-}
-
-static bool is_force(const struct cs_narrow_phase *narrow) {
-    return narrow->query == CS_CONTACT_QUERY_FORCE || narrow->query == CS_CONTACT_QUERY_JVP;
+/* Returns whether rows sum the results. */
+static bool is_summed(const struct cs_narrow_phase *narrow) {
+    return narrow->query == CS_QUERY_FORCE || narrow->query == CS_QUERY_JVP ||
+           narrow->query == CS_QUERY_BOUND;
 }
 
 /* a matrix with friction by its chord */
 static bool has_chord(const struct cs_narrow_phase *narrow) {
-    return narrow->query == CS_CONTACT_QUERY_MATRIX && narrow->matrix->chord;
+    return narrow->query == CS_QUERY_MATRIX && narrow->matrix->chord;
 }
 
 /* Evaluates a block whose pairs begin at `first`. */
 static void evaluate_block(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
-    if (work->narrow->query == CS_CONTACT_QUERY_ENERGY)
-        add_energy(work, lanes, first);
-    else if (is_force(work->narrow))
+    if (work->narrow->query == CS_QUERY_ENERGY)
+        add_energy(work, lanes);
+    else if (is_summed(work->narrow))
         push(work, lanes);
-    else if (work->narrow->query == CS_CONTACT_QUERY_BOUND)
-        add_bounds(work, lanes, first);
-    else if (work->narrow->query == CS_CONTACT_QUERY_LAGGED_FRICTION)
+    else if (work->narrow->query == CS_QUERY_LAGGED)
         store_lagged(work, lanes, first);
     else
         share(work, lanes, first);
@@ -188,8 +153,8 @@ static void evaluate_block(const struct work *work, struct cs_pair_lanes *lanes,
 static void psd_stiffness(const struct cs_narrow_phase *narrow,
                           const struct cs_active_lanes *from, uint32_t l,
                           struct cs_pair_lanes *lanes) {
-    const struct cs_contact_keys *keys = narrow->contacts->candidates->system->scene->contact;
-    const bool positive = narrow->query == CS_CONTACT_QUERY_MATRIX && narrow->matrix->psd;
+    const struct cs_contact_keys *keys = narrow->system->scene->contact;
+    const bool positive = narrow->query == CS_QUERY_MATRIX && narrow->matrix->psd;
     const bool rubs = lanes->friction[l] + keys->damping + keys->loss > 0 &&
                       !(positive && narrow->matrix->bound);
     const double count = positive && !rubs ? from->psd_weight[l] : from->weight[l];
@@ -201,7 +166,7 @@ static void psd_stiffness(const struct cs_narrow_phase *narrow,
 static void fill(const struct cs_narrow_phase *narrow, const struct cs_active_lanes *from,
                  struct cs_pair_lanes *lanes) {
     memcpy(lanes->range, from->range, sizeof lanes->range);
-    if (cs_lagged_friction_acts(narrow->contacts->candidates->system))
+    if (cs_lagged_friction_acts(narrow->system))
         memset(lanes->friction, 0, sizeof lanes->friction);
     else
         memcpy(lanes->friction, from->friction, sizeof lanes->friction);
@@ -218,14 +183,12 @@ static void fill(const struct cs_narrow_phase *narrow, const struct cs_active_la
 static void fill_points(const struct work *work, size_t first, struct cs_pair_lanes *lanes) {
     const size_t width = work->narrow->contacts->force_gather.width;
     uint32_t(*to)[4] = work->chunk->rows + first;
-    for (uint32_t l = 0; l < lanes->n; l++) {
-        read_lane(work->rows, width, to[l], l, lanes->p);
-        read_lane(work->rows + 3, width, to[l], l, lanes->v);
-        if (work->narrow->query == CS_CONTACT_QUERY_JVP) {
-            read_lane(work->rows + 6, width, to[l], l, lanes->dp);
-            read_lane(work->rows + 9, width, to[l], l, lanes->dv);
-        }
-    }
+    cs_pair_lanes_read(work->rows, width, to, lanes->n, lanes->p);
+    cs_pair_lanes_read(work->rows + 3, width, to, lanes->n, lanes->v);
+    if (work->narrow->query != CS_QUERY_JVP)
+        return;
+    cs_pair_lanes_read(work->rows + 6, width, to, lanes->n, lanes->dp);
+    cs_pair_lanes_read(work->rows + 9, width, to, lanes->n, lanes->dv);
 }
 
 /* Handles up to TOGETHER blocks from pair `first` on, in three passes: fill, evaluate, add.
@@ -238,26 +201,12 @@ static void do_some(const struct work *work, size_t first) {
         struct cs_pair_lanes *at = lanes + p / CS_PAIR_LANES;
         at->n = end - p < CS_PAIR_LANES ? (uint32_t)(end - p) : CS_PAIR_LANES;
         fill(work->narrow, work->chunk->blocks + (first + p) / CS_PAIR_LANES, at);
-        if (work->rows)
-            fill_points(work, first + p, at);
+        fill_points(work, first + p, at);
     }
     for (size_t p = 0; p < end; p += CS_PAIR_LANES)
         evaluate_block(work, lanes + p / CS_PAIR_LANES, first + p);
-    for (size_t p = 0; p < end && is_force(work->narrow); p += CS_PAIR_LANES)
+    for (size_t p = 0; p < end && is_summed(work->narrow); p += CS_PAIR_LANES)
         add_pushes(work, lanes + p / CS_PAIR_LANES, first + p);
-}
-
-/* Clears the rows of one chunk. */
-static void clear_sums(const struct cs_narrow_phase *narrow,
-                       const struct cs_gather_chunk *chunk) {
-    const struct cs_gather *gather = &narrow->contacts->force_gather;
-    if (is_force(narrow)) {
-        memset(cs_gather_of(chunk, gather->row_sums, 3), 0, 3 * sizeof(double) * chunk->n);
-    } else if (narrow->query == CS_CONTACT_QUERY_BOUND) {
-        double *stiffness = cs_gather_of(chunk, gather->row_sums, 1);
-        memset(stiffness, 0, sizeof *stiffness * chunk->n);
-        memset(stiffness + gather->n_rows, 0, sizeof *stiffness * chunk->n);
-    }
 }
 
 /* Prepares a chunk; returns false if it has no pairs or no memory. */
@@ -268,19 +217,21 @@ static bool begin(const struct work *work) {
     work->chunk->energy = 0;
     if (!work->chunk->n)
         return false;
-    clear_sums(narrow, chunk);
-    return narrow->query != CS_CONTACT_QUERY_MATRIX ||
+    if (is_summed(narrow))
+        memset(cs_gather_of(chunk, gather->row_sums, width_of(narrow)), 0,
+               width_of(narrow) * sizeof(double) * chunk->n);
+    return narrow->query != CS_QUERY_MATRIX ||
            cs_pair_matrix_chunk_begin(narrow->result, work->number);
 }
 
 /* Gathers x, v, and for a Jacobian product dx and dv, of the points of a chunk. Directions
  * exist for particles only: points of colliders have 0. */
 static const double *read_rows(const struct cs_narrow_phase *narrow, uint32_t number) {
-    const struct cs_system *system = narrow->contacts->candidates->system;
+    const struct cs_system *system = narrow->system;
     const struct cs_gather *gather = &narrow->contacts->force_gather;
     const size_t n = system->view.n, n_points = system->surfaces->n_points;
     cs_gather_read(gather, number, 3, narrow->v, n_points);
-    if (narrow->query == CS_CONTACT_QUERY_JVP) {
+    if (narrow->query == CS_QUERY_JVP) {
         cs_gather_read(gather, number, 6, narrow->eval.dx, n);
         cs_gather_read(gather, number, 9, narrow->eval.dv, n);
     }
@@ -296,20 +247,18 @@ static void do_chunk(void *arg, uint32_t number) {
     struct work work = {narrow, narrow->contacts->chunks + number, number, NULL};
     if (!begin(&work))
         return;
-    if (narrow->query != CS_CONTACT_QUERY_ENERGY)
-        work.rows = read_rows(narrow, number);
+    work.rows = read_rows(narrow, number);
     for (size_t p = 0; p < work.chunk->n; p += TOGETHER * CS_PAIR_LANES)
         do_some(&work, p);
-    if (narrow->query == CS_CONTACT_QUERY_MATRIX)
+    if (narrow->query == CS_QUERY_MATRIX)
         cs_pair_matrix_chunk_end(narrow->result, number);
 }
 
 /* A row has 6 columns, or 12 for a Jacobian product and friction by its chord. */
 bool cs_narrow_phase_run(struct cs_narrow_phase *narrow) {
-    const size_t width = narrow->query == CS_CONTACT_QUERY_JVP || has_chord(narrow) ? 12 : 6;
-    if (narrow->query != CS_CONTACT_QUERY_ENERGY &&
-        !cs_gather_reserve(&narrow->contacts->force_gather, width))
+    const size_t width = narrow->query == CS_QUERY_JVP || has_chord(narrow) ? 12 : 6;
+    if (!cs_gather_reserve(&narrow->contacts->force_gather, width))
         return false;
     cs_pool_run(narrow->contacts->candidates->n_chunks, do_chunk, narrow);
-    return narrow->query != CS_CONTACT_QUERY_MATRIX || cs_pair_matrix_end(narrow->result);
+    return narrow->query != CS_QUERY_MATRIX || cs_pair_matrix_end(narrow->result);
 }

@@ -5,35 +5,27 @@
 
 #include "model/contact/narrow_phase/active_contacts.h"
 #include "model/contact/narrow_phase/pair_matrix.h"
-
-/* Quantity that is evaluated. */
-enum cs_contact_query {
-    CS_CONTACT_QUERY_FORCE,
-    CS_CONTACT_QUERY_JVP, /* of the force */
-    CS_CONTACT_QUERY_ENERGY,
-    CS_CONTACT_QUERY_MATRIX,
-    CS_CONTACT_QUERY_BOUND,
-    CS_CONTACT_QUERY_LAGGED_FRICTION /* stored by lagged_friction.h */
-};
+#include "model/contact/point_query.h"
 
 /* One evaluation; the caller fills it. All pointers are borrowed. */
 struct cs_narrow_phase {
+    const struct cs_system *system;
     /* active contacts of the positions x */
     struct cs_active_contacts *contacts;
     /* (3, n_points) positions in m and velocities in m/s; v NULL: at rest */
     const double *x, *v;
     enum cs_contact_query query;
     struct cs_eval eval;
-    const struct cs_matrix *matrix; /* of CS_CONTACT_QUERY_MATRIX */
+    const struct cs_matrix *matrix; /* of CS_QUERY_MATRIX */
     struct cs_pair_matrix *result;  /* receives it */
     /* chunk of lagged friction that the first chunk goes to */
     uint32_t first_lagged;
 };
 
-/* Evaluates all active contacts with all threads. The result goes to
+/* Evaluates all active contacts, whose rows must exist, with all threads. The result goes to
  *
- * - contacts->force_gather.row_sums: forces (n_rows, 3), or bounds (2, n_rows), stiffness
- *   before damping; rows must exist, except for energies;
+ * - contacts->force_gather.row_sums: forces (n_rows, 3), or bounds (n_rows, 2), stiffness and
+ *   damping;
  * - contacts->chunks[].energy for energies;
  * - result for a matrix;
  * - the store of the system for lagged friction.

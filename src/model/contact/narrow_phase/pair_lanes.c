@@ -101,39 +101,33 @@ CS_INLINE void jvp(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
     }
 }
 
-CS_PAIR_KERNEL(extern, cs_pair_lanes_force, force,
-               (struct cs_pair_lanes *restrict lanes,
-                const struct cs_pair_lane_constants *constants),
-               (lanes, constants))
-CS_PAIR_KERNEL(extern, cs_pair_lanes_jvp, jvp,
-               (struct cs_pair_lanes *restrict lanes,
-                const struct cs_pair_lane_constants *constants),
-               (lanes, constants))
-
-/* Row sums of block norms: stiffness K |g_k| sum |g_j| and damping |w_k| sum |w_j| times the
- * largest damping of the contact point. */
+/* out = row sums of block norms: stiffness K |g_k| sum |g_j| and damping |w_k| sum |w_j| times
+ * the largest damping of the contact point. */
 CS_INLINE void find_bounds(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
-                           const struct cs_contact_keys *keys,
-                           struct cs_pair_bounds *restrict to) {
-    const struct cs_pair_lane_constants constants = {.keys = *keys};
+                           const struct cs_pair_lane_constants *constants) {
+    const struct cs_pair_lane_constants law = *constants;
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         struct cs_pair_contact contact;
         double stiffness[4], damping[4];
-        lane_force(kind, lanes, l, &constants, &contact);
+        lane_force(kind, lanes, l, &law, &contact);
         cs_pair_contact_bound(&contact, stiffness, damping);
         CS_UNROLLED
         for (int k = 0; k < 4; k++)
-            to->stiffness[k][l] = stiffness[k];
+            lanes->out[k][0][l] = stiffness[k];
         CS_UNROLLED
         for (int k = 0; k < 4; k++)
-            to->damping[k][l] = damping[k];
+            lanes->out[k][1][l] = damping[k];
     }
 }
 
-CS_PAIR_KERNEL(extern, cs_pair_lanes_bound, find_bounds,
-               (struct cs_pair_lanes *restrict lanes, const struct cs_contact_keys *keys,
-                struct cs_pair_bounds *restrict bounds),
-               (lanes, keys, bounds))
+/* the parameters of all three */
+#define LAW                                                                                    \
+    (struct cs_pair_lanes *restrict lanes, const struct cs_pair_lane_constants *constants),    \
+        (lanes, constants)
+#define KERNEL(...) CS_PAIR_KERNEL(__VA_ARGS__)
+KERNEL(extern, cs_pair_lanes_force, force, LAW)
+KERNEL(extern, cs_pair_lanes_jvp, jvp, LAW)
+KERNEL(extern, cs_pair_lanes_bound, find_bounds, LAW)
 
 /* Stores the terms of one pair by the differences u, v, w; see struct cs_pair_factors. */
 CS_INLINE void write_factors(enum cs_pair_kind kind, double g[4][3],

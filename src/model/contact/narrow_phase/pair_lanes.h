@@ -29,7 +29,7 @@ struct cs_pair_lanes {
     double dp[4][3][CS_PAIR_LANES], dv[4][3][CS_PAIR_LANES];
     /* distance in m; cs_pair_lanes_measure_edges sets it */
     double d[CS_PAIR_LANES];
-    /* result in N: forces on the four points, or their changes */
+    /* result: forces on the four points in N, or their changes; or bounds in N/m and N s/m */
     double out[4][3][CS_PAIR_LANES];
     /* struct cs_feature_kind of each lane; ignored for edge-edge pairs */
     double is_edge[CS_PAIR_LANES], is_off_plane[CS_PAIR_LANES], blend_radius[CS_PAIR_LANES];
@@ -38,6 +38,25 @@ struct cs_pair_lanes {
     double psd_stiffness[CS_PAIR_LANES];
     uint32_t n;
 };
+
+/* Copies three columns of the rows of n pairs, whose four points have the rows `to`, into
+ * lanes. rows is (rows, width) from the first of the columns on. */
+static inline void cs_pair_lanes_read(const double *rows, size_t width, uint32_t (*to)[4],
+                                      uint32_t n, double out[4][3][CS_PAIR_LANES]) {
+    for (uint32_t l = 0; l < n; l++)
+        for (size_t k = 0; k < 4; k++)
+            for (size_t c = 0; c < 3; c++)
+                out[k][c][l] = rows[to[l][k] * width + c];
+}
+
+/* sums (rows, width) += the first `width` components of n pairs, pair by pair. */
+static inline void cs_pair_lanes_add(double by[4][3][CS_PAIR_LANES], size_t width,
+                                     uint32_t (*to)[4], uint32_t n, double *sums) {
+    for (uint32_t l = 0; l < n; l++)
+        for (size_t k = 0; k < 4; k++)
+            for (size_t c = 0; c < width; c++)
+                sums[to[l][k] * width + c] += by[k][c][l];
+}
 
 /* Sets d of edges from p and range; for features of triangles d comes from feature_weights.h.
  */
@@ -54,19 +73,15 @@ struct cs_pair_lane_constants {
 void cs_pair_lanes_contact(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, uint32_t lane,
                            const struct cs_contact_keys *keys, struct cs_pair_contact *contact);
 
-/* Sets `out` to the forces, or to their exact change along (dp, dv), for edges or for features
- * of triangles. Formulas: contact_pairs.h. */
+/* Sets `out` to the forces, to their exact change along (dp, dv), or to the bounds of
+ * cs_pair_contact_bound in its first two components, for edges or for features of triangles.
+ * Formulas: contact_pairs.h. */
 void cs_pair_lanes_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
                          const struct cs_pair_lane_constants *constants);
 void cs_pair_lanes_jvp(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
                        const struct cs_pair_lane_constants *constants);
-
-/* Gershgorin bounds of each pair's particles, as cs_pair_contact_bound. */
-struct cs_pair_bounds {
-    double stiffness[4][CS_PAIR_LANES], damping[4][CS_PAIR_LANES]; /* N/m, N s/m */
-};
 void cs_pair_lanes_bound(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
-                         const struct cs_contact_keys *keys, struct cs_pair_bounds *bounds);
+                         const struct cs_pair_lane_constants *constants);
 
 /* Factors of the matrix of eight pairs, P = c g g^T + (w w^T) x B with a 3 x 3 block B.
  *

@@ -141,20 +141,6 @@ enum { TOGETHER = 8 };
 /* vectors of four points, by lanes */
 typedef double vectors[4][3][CS_PAIR_LANES];
 
-static void read_lanes(const double *rows, uint32_t (*to)[4], uint32_t count, vectors p) {
-    for (size_t l = 0; l < count; l++)
-        for (size_t k = 0; k < 4; k++)
-            for (size_t c = 0; c < 3; c++)
-                p[k][c][l] = rows[3 * (size_t)to[l][k] + c];
-}
-
-static void add_lanes(vectors by, uint32_t (*to)[4], uint32_t count, double *sums) {
-    for (size_t l = 0; l < count; l++)
-        for (size_t k = 0; k < 4; k++)
-            for (size_t c = 0; c < 3; c++)
-                sums[3 * (size_t)to[l][k] + c] += by[k][c][l];
-}
-
 /* out += H p for each pair of a block */
 static void add_hessians(const struct cs_pair_hessian *hessian, uint32_t n, vectors p,
                          vectors out) {
@@ -193,11 +179,11 @@ static void multiply_some(const struct job *job, uint32_t number, size_t first, 
     const size_t left = blocks_of(chunk) - first, n = left < TOGETHER ? left : TOGETHER;
     vectors by[TOGETHER];
     for (size_t b = 0; b < n; b++)
-        read_lanes(p, to + b * CS_PAIR_LANES, count_at(chunk, first + b), by[b]);
+        cs_pair_lanes_read(p, 3, to + b * CS_PAIR_LANES, count_at(chunk, first + b), by[b]);
     for (size_t b = 0; b < n; b++)
         multiply_block(job, number, first + b, by[b]);
     for (size_t b = 0; b < n; b++)
-        add_lanes(by[b], to + b * CS_PAIR_LANES, count_at(chunk, first + b), sums);
+        cs_pair_lanes_add(by[b], 3, to + b * CS_PAIR_LANES, count_at(chunk, first + b), sums);
 }
 
 /* sums = -(diagonal block) p per row: the solver applies the diagonal itself. Once per row is
