@@ -6,23 +6,49 @@
 #include "mesh/trimesh.h"
 #include "model/contact/step_check.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
-#include <string.h>
 
-double cs_contact_samples_approach(size_t n, const struct cs_posed_collider *from,
-                                   const double *x0, const struct cs_posed_collider *to,
-                                   const double *x1) {
+double cs_contact_samples_motion(size_t n, const double c0[3], const double *x0,
+                                 const double c1[3], const double *x1) {
     double squared = 0;
-    if (to->radius != from->radius || memcmp(to->axes, from->axes, sizeof to->axes) != 0)
-        return HUGE_VAL;
     for (size_t c = 0; c < 3; c++) {
-        const double shift = to->centre[c] - from->centre[c];
+        const double shift = c1[c] - c0[c];
         double low, high;
         cs_vector_span(n, x1 + c * n, x0 + c * n, &low, &high);
         const double back = shift - low, on = high - shift;
         squared += back > on ? back * back : on * on;
     }
     return sqrt(squared);
+}
+
+/* Middle of the box of some particles; returns half its diagonal in m. No sample of these
+ * vertices is further from the middle. */
+CS_INLINE double box_of(const double *x, size_t n, const uint32_t *listed, uint32_t count,
+                        double middle[3]) {
+    double squared = 0;
+    for (size_t c = 0; c < 3; c++) {
+        double low = x[c * n + listed[0]], high = low;
+        for (uint32_t k = 1; k < count; k++) {
+            const double p = x[c * n + listed[k]];
+            low = p < low ? p : low;
+            high = p > high ? p : high;
+        }
+        middle[c] = 0.5 * (low + high);
+        squared += 0.25 * (high - low) * (high - low);
+    }
+    return sqrt(squared);
+}
+
+bool cs_contact_sample_item_is_near(const struct cs_contact_sample_chunk *chunk, uint32_t item,
+                                    const struct cs_posed_collider *collider, double reach,
+                                    size_t n, const double *x) {
+    const uint32_t *vertices = chunk->vertices + (size_t)chunk->vertices_per_item * item;
+    double middle[3];
+    // constant numbers, so that there are no loops
+    const double half = chunk->vertices_per_item == 2 ? box_of(x, n, vertices, 2, middle)
+                                                      : box_of(x, n, vertices, 3, middle);
+    return cs_posed_collider_is_near(collider, reach + half, middle);
 }
 
 /* One step. */
@@ -43,54 +69,33 @@ static double excess_of(const struct cs_collider_step *step,
     return mass < HUGE_VAL ? cs_collider_step_excess(step, mass, from, to) : 0;
 }
 
-/* Returns whether every sample of an item stays out of range: its end lies in the box of the
- * vertices' ends, and it moves no further than one of them. Its excess is then exactly 0. */
-static bool item_is_far(const struct cs_collider_step *step, const uint32_t *vertices,
-                        uint32_t n_vertices) {
-    const size_t n = step->system->view.n;
-    double moves[3] = {0}, middle[3], squared = 0;
-    for (size_t c = 0; c < 3; c++) {
-        const double *from = step->x0 + c * n, *to = step->x1 + c * n;
-        const double shift = step->at_t1.centre[c] - step->at_t0.centre[c];
-        double low = to[vertices[0]], high = low;
-        for (uint32_t k = 0; k < n_vertices; k++) {
-            const double end = to[vertices[k]], move = end - from[vertices[k]] - shift;
-            low = end < low ? end : low;
-            high = end > high ? end : high;
-            moves[k] += move * move;
-        }
-        middle[c] = 0.5 * (low + high);
-        squared += 0.25 * (high - low) * (high - low);
-    }
-    const double move = sqrt(fmax(moves[0], fmax(moves[1], moves[2])));
-    return !cs_posed_collider_is_near(&step->at_t1, step->params.range + move + sqrt(squared),
-                                      middle);
-}
-
-/* Returns whether every item that was not listed stays out of range in a step, as above: the
- * end of each of its samples is further from it than they move. */
-static bool is_listed(const struct job *job, const struct cs_collider_step *step) {
+/* Returns whether items that were not listed, and move by `move` m at most in a step, all stay
+ * out of range in it: the ends of their samples are further away than that. */
+static bool is_listed(const struct job *job, const struct cs_collider_step *step, double move) {
     const struct cs_contact_samples *samples = job->covers;
     const struct cs_posed_collider_law *listed = samples->listed + step->collider;
-    const size_t n = samples->system->view.n;
-    const double move =
-        cs_contact_samples_approach(n, &step->at_t0, job->x0, &step->at_t1, job->x1);
-    const double since = cs_contact_samples_approach(n, &listed->collider, samples->x_listed,
-                                                     &step->at_t1, job->x1);
-    return since + move < (1 - 1e-6) * (listed->params.range - step->params.range);
+    const double since =
+        cs_contact_samples_motion(samples->system->view.n, listed->collider.centre,
+                                  samples->x_listed, step->at_t1.centre, job->x1);
+    return cs_posed_collider_is_shifted(&listed->collider, &step->at_t1) &&
+           since + move < (1 - 1e-6) * (listed->params.range - step->params.range);
 }
 
-/* J, the excess of the samples in the chunks [begin, end), which are sorted by colliders. */
+/* J, the excess of the samples in the chunks [begin, end), which are sorted by colliders. That
+ * of a sample whose end is further away than it moves is exactly 0. */
 static double sum_excess(const void *arg, size_t begin, size_t end) {
     const struct job *job = arg;
+    const struct cs_system *system = job->covers->system;
     struct cs_collider_step step = {.x0 = job->x0, .x1 = job->x1};
     bool listed = false;
-    double sum = 0;
+    double sum = 0, move = 0;
     for (size_t l = begin; l < end; l++) {
         const struct cs_contact_sample_chunk *chunk = job->covers->chunks + l;
         if (l == begin || chunk->collider != step.collider) {
-            cs_collider_step_set(&step, job->covers->system, chunk->collider, job->t0, job->t1);
-            listed = is_listed(job, &step);
+            cs_collider_step_set(&step, system, chunk->collider, job->t0, job->t1);
+            move = cs_contact_samples_motion(system->view.n, step.at_t0.centre, job->x0,
+                                             step.at_t1.centre, job->x1);
+            listed = is_listed(job, &step, move);
         }
         if (!listed && cs_collider_step_is_far(&step, chunk->first,
                                                (size_t)chunk->last - chunk->first + 1))
@@ -99,12 +104,11 @@ static double sum_excess(const void *arg, size_t begin, size_t end) {
         for (uint32_t k = 0; k < n; k++) {
             const uint32_t i = chunk->begin + (listed ? chunk->near[k] : k);
             struct cs_contact_sample_point point;
-            if (!chunk->subdivisions[i - chunk->begin] ||
-                item_is_far(&step, chunk->vertices + (size_t)chunk->vertices_per_item * i,
-                            chunk->vertices_per_item))
-                continue;
-            for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
-                sum += excess_of(&step, &point);
+            if (chunk->subdivisions[i - chunk->begin] &&
+                cs_contact_sample_item_is_near(chunk, i, &step.at_t1, step.params.range + move,
+                                               system->view.n, job->x1))
+                for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
+                    sum += excess_of(&step, &point);
         }
     }
     return sum;

@@ -71,11 +71,16 @@ struct cs_contact_samples {
  * other by the rest, all samples in range are of these items. Chosen by trial on squeeze. */
 #define CS_CONTACT_SAMPLE_REACH 4
 
-/* m, by how much a sample may have moved towards a collider from a pose of it with particles at
- * x0 (3,n) to a pose and x1; HUGE_VAL if the collider has turned or grown. */
-double cs_contact_samples_approach(size_t n, const struct cs_posed_collider *from,
-                                   const double *x0, const struct cs_posed_collider *to,
-                                   const double *x1);
+/* m, the most that a sample moves relative to a collider, of which the centre moves from c0 to
+ * c1, and the particles from x0 to x1 (3,n). */
+double cs_contact_samples_motion(size_t n, const double c0[3], const double *x0,
+                                 const double c1[3], const double *x1);
+
+/* Returns whether samples of an item may be within `reach` m of a collider, by its box, with
+ * the particles at x (3,n). */
+bool cs_contact_sample_item_is_near(const struct cs_contact_sample_chunk *chunk, uint32_t item,
+                                    const struct cs_posed_collider *collider, double reach,
+                                    size_t n, const double *x);
 
 /* Longest part in m of an edge that a collider cannot pass, sqrt(D (2 R + 3/4 D)); HUGE_VAL for
  * planes and meshes, which need no samples. */

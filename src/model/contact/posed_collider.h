@@ -7,6 +7,8 @@
 #include "model/system/particle_system.h"
 #include "scene/collider.h"
 
+#include <string.h>
+
 /* Motion of one collider by an event, until the next change of its path. Its shift is
  * s = shift_begin + rate (t - t_begin), and it rotates with `spin` on from `rotation` to R(t):
  * its centre is at c + s + pivot + R arm, c in the scene. Both continue beyond t_end, so that a
@@ -91,6 +93,12 @@ enum { CS_COLLIDER_ROW = 64 }; /* points at most */
 uint32_t cs_posed_collider_list_near(const struct cs_posed_collider *collider,
                                      const double *reach, size_t n, const double *x,
                                      size_t count, uint8_t list[CS_COLLIDER_ROW]);
+
+/* Returns whether two poses of a collider differ by a shift alone. */
+static inline bool cs_posed_collider_is_shifted(const struct cs_posed_collider *a,
+                                                const struct cs_posed_collider *b) {
+    return a->radius == b->radius && !memcmp(a->axes, b->axes, sizeof a->axes);
+}
 
 /* Smooth distance in m, on which the contact force depends: never smaller than the distance
  * outside, with three continuous derivatives there. It is exact for spheres, planes and the

@@ -52,48 +52,17 @@ static void meet(const struct job *job, const struct cs_posed_collider_law *law,
         memcpy(to->vector, answer.vector, sizeof to->vector);
 }
 
-/* Middle of the box of `count` particles from `first` on, or of those listed; returns half its
- * diagonal in m. No sample of these vertices is further from the middle. */
-CS_INLINE double box_of(const double *x, size_t n, const uint32_t *listed, size_t first,
-                        size_t count, double middle[3]) {
-    double squared = 0;
-    for (size_t c = 0; c < 3; c++) {
-        const double *at = x + c * n + first;
-        double low = at[listed ? listed[0] : 0], high = low;
-        for (size_t k = 1; k < count; k++) {
-            const double p = at[listed ? listed[k] : k];
-            low = p < low ? p : low;
-            high = p > high ? p : high;
-        }
-        middle[c] = 0.5 * (low + high);
-        squared += 0.25 * (high - low) * (high - low);
-    }
-    return sqrt(squared);
-}
-
-/* Returns whether samples of an item may be within the range of a law, by its box. */
+/* Returns whether samples of an item may be within the range of a law. */
 static bool item_is_near(const struct job *job, const struct cs_contact_sample_chunk *chunk,
                          const struct cs_posed_collider_law *law, uint32_t i) {
-    const uint32_t *vertices = chunk->vertices + (size_t)chunk->vertices_per_item * i;
-    const size_t n = job->query.system->view.n;
-    double middle[3];
-    // constant numbers, so that there are no loops
-    const double half = chunk->vertices_per_item == 2
-                            ? box_of(job->query.eval.x, n, vertices, 0, 2, middle)
-                            : box_of(job->query.eval.x, n, vertices, 0, 3, middle);
-    return cs_posed_collider_is_near(&law->collider, law->params.range + half, middle);
+    return cs_contact_sample_item_is_near(chunk, i, &law->collider, law->params.range,
+                                          job->query.system->view.n, job->query.eval.x);
 }
 
-/* Lists the items of a chunk near its collider. The box of all comes before theirs. */
+/* Lists the items of a chunk near its collider. */
 static void list_items(const struct job *job, struct cs_contact_sample_chunk *chunk) {
     const struct cs_posed_collider_law *law = job->samples->listed + chunk->collider;
-    const size_t count = (size_t)chunk->last - chunk->first + 1;
-    double middle[3];
-    const double all =
-        box_of(job->query.eval.x, job->query.system->view.n, NULL, chunk->first, count, middle);
     chunk->n_near = 0;
-    if (!cs_posed_collider_is_near(&law->collider, law->params.range + all, middle))
-        return;
     for (uint32_t i = chunk->begin; i < chunk->end; i++) {
         chunk->near[chunk->n_near] = (uint8_t)(i - chunk->begin);
         chunk->n_near +=
@@ -131,9 +100,10 @@ static bool pose_colliders(const struct cs_point_query *query,
         const struct cs_posed_collider_law *listed = samples->listed + c;
         // planes need no samples
         lists |= cs_shape_needs_points(law->collider.shape) &&
-                 !(cs_contact_samples_approach(n, &listed->collider, samples->x_listed,
-                                               &law->collider, x) <
-                   (1 - 1e-6) * (listed->params.range - law->params.range));
+                 !(cs_posed_collider_is_shifted(&listed->collider, &law->collider) &&
+                   cs_contact_samples_motion(n, listed->collider.centre, samples->x_listed,
+                                             law->collider.centre, x) <
+                       (1 - 1e-6) * (listed->params.range - law->params.range));
     }
     for (uint32_t c = 0; c < n_colliders && lists; c++) {
         samples->listed[c] = samples->colliders[c];
