@@ -69,7 +69,7 @@ struct cs_contact_samples {
 
 /* Reach of a list of near items in ranges: until samples and collider have moved towards each
  * other by the rest, all samples in range are of these items. Chosen by trial on squeeze. */
-#define CS_CONTACT_SAMPLE_REACH 4
+#define CS_CONTACT_SAMPLE_MARGIN 4
 
 /* m, the most that a sample moves relative to a collider, of which the centre moves from c0 to
  * c1, and the particles from x0 to x1 (3,n). */

@@ -107,7 +107,7 @@ static bool pose_colliders(const struct cs_point_query *query,
     }
     for (uint32_t c = 0; c < n_colliders && lists; c++) {
         samples->listed[c] = samples->colliders[c];
-        samples->listed[c].params.range *= CS_CONTACT_SAMPLE_REACH;
+        samples->listed[c].params.range *= CS_CONTACT_SAMPLE_MARGIN;
     }
     if (lists)
         memcpy(samples->x_listed, x, 3 * sizeof *x * n);
