@@ -44,6 +44,7 @@ struct cs_contact_keys {
     double loss, mass;
     double friction_speed; /* m/s at which friction is 0.7 of its limit */
     int32_t friction_law;  /* enum cs_friction_law */
+    double sample_stretch; /* (1) of edges, up to which contact samples leave no gap */
 };
 
 #endif

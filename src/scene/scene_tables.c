@@ -298,6 +298,10 @@ static const struct cs_option contact_rows[] = {
     CHOICE(struct cs_contact_keys, friction_law, friction_names, CS_FRICTION_SMOOTH,
            "for force: smooth: friction depends on the velocity alone, and what rests creeps; "
            "stick: particles hang on anchors in colliders and rest below the limit"),
+    REAL(struct cs_contact_keys, sample_stretch, "", 1, 1, 16,
+         "for force: length of an edge over that at the start, up to which contact samples "
+         "leave "
+         "no gap"),
 };
 static const struct cs_table contact_table = {ROWS(contact_rows),
                                               .size = sizeof(struct cs_contact_keys),

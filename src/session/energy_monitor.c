@@ -277,7 +277,11 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
     *row = (struct cs_energy_monitor_row){.t = run->t};
     row->energy = cs_diagnostics_energy(system, run->t, run->x, run->v);
     row->strain = cs_diagnostics_strain(system, run->x);
-    row->depth = cs_posed_colliders_depth(system, run->t, run->x);
+    const struct cs_sample_gap gap = cs_contact_samples_find_gap(system, run->t, run->x);
+    row->depth = fmax(cs_posed_colliders_depth(system, run->t, run->x), gap.depth);
+    if (gap.depth > monitor->gap.depth)
+        monitor->gap.depth = gap.depth, monitor->gap.collider = gap.collider;
+    monitor->gap.stretch = fmax(monitor->gap.stretch, gap.stretch);
     balance(monitor, run, row);
     /* no bound of speed holds after an event has added energy */
     if (with_event)
@@ -339,7 +343,10 @@ const struct cs_column cs_energy_monitor_columns[] = {
     CS_TEXT_COLUMN("verdict", "verdict of this time, as of clothsim-stability(1)"),
     CS_NUMBER_COLUMN("made", "J", "energy made by the integrator"),
     CS_NUMBER_COLUMN("bound", "J", "energy above which it is a global instability"),
-    CS_NUMBER_COLUMN("largest_depth", "m", "largest depth of a particle in a collider"),
+    CS_NUMBER_COLUMN(
+        "largest_depth", "m",
+        "largest depth in a collider: of particles, and of triangles that outgrew their "
+        "contact samples"),
 };
 const uint32_t cs_energy_monitor_n_columns =
     sizeof cs_energy_monitor_columns / sizeof *cs_energy_monitor_columns;

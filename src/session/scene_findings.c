@@ -94,6 +94,12 @@ static bool is_smooth_friction(const struct cs_scene *scene, uint32_t k) {
     return is_contact_force(scene, k) && scene->contact->friction_law == CS_FRICTION_SMOOTH &&
            (cs_scene_has_friction(scene) || cs_event_key_changes(scene, "friction"));
 }
+static bool has_samples(const struct cs_scene *scene, uint32_t k) {
+    bool any = false;
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        any = any || cs_shape_needs_points(cs_collider_shape(cs_scene_colliders(scene) + c));
+    return any && is_contact_force(scene, k);
+}
 static bool blows(const struct cs_scene *scene, uint32_t k) {
     (void)k;
     bool any = flows(scene, k) ||
@@ -153,6 +159,7 @@ static const struct {
     {"contact.friction_speed", is_smooth_friction,
      "expected contact.law force, friction_law smooth and a coefficient of friction"},
     {"contact.friction_law", sticks, "expected friction on a collider that is no mesh"},
+    {"contact.sample_stretch", has_samples, "expected a sphere, capsule or box, by force"},
     {"contact", is_contact_force, "it belongs to contact.law force"},
     {"crossings", NULL, NULL},
     {"pairs.friction", are_all_pairs, "it belongs to pairs \"all\" of several bodies"},

@@ -5,6 +5,7 @@
 #include "base/vector.h"
 #include "mesh/trimesh.h"
 #include "model/contact/step_check.h"
+#include "scene/contact_keys.h"
 
 #include <clothsim/clones.h>
 #include <math.h>
@@ -131,14 +132,19 @@ double cs_contact_sample_spacing(const struct cs_posed_collider *collider, doubl
 
 /* --- lengths --- */
 
-/* m, distance of two particles at the start */
-static double length_of(const struct cs_system *system, uint32_t a, uint32_t b) {
-    const double *x = system->start;
-    const size_t n = system->view.n;
+/* m, distance of two particles at x (3,n) */
+static double distance_at(const double *x, size_t n, uint32_t a, uint32_t b) {
     double squared = 0;
     for (size_t c = 0; c < 3; c++)
         squared += (x[c * n + b] - x[c * n + a]) * (x[c * n + b] - x[c * n + a]);
     return sqrt(squared);
+}
+
+/* m, up to which samples cover an edge: its length at the start, times contact.sample_stretch
+ */
+static double length_of(const struct cs_system *system, uint32_t a, uint32_t b) {
+    return system->scene->contact->sample_stretch *
+           distance_at(system->start, system->view.n, a, b);
 }
 
 /* m, longest edge or cell diagonal of a grid at the start */
@@ -292,6 +298,84 @@ enum cs_status cs_contact_samples_build(struct cs_system *system, struct cs_erro
     if (!error->status)
         system->contact_samples = samples;
     return error->status;
+}
+
+/* --- gaps --- */
+
+/* A triangle at x (3,n) by a collider. */
+struct face {
+    const struct cs_system *system;
+    const struct cs_posed_collider *collider;
+    double spacing;
+    const double *x;
+    struct cs_contact_sample_point corners;
+    double longest, stretch; /* m, of its edges, and of one over that at the start */
+};
+
+/* Sets lengths; returns whether an edge is longer than its samples cover, and may move. */
+static bool is_outgrown(struct face *face) {
+    const struct cs_system *system = face->system;
+    bool any = false;
+    face->longest = face->stretch = 0;
+    for (int k = 0; k < 3; k++) {
+        const uint32_t a = face->corners.particles[k], b = face->corners.particles[(k + 1) % 3];
+        const double now = distance_at(face->x, system->view.n, a, b);
+        const double planned = length_of(system, a, b);
+        const double parts = fmin(ceil(planned / face->spacing), CS_CONTACT_SAMPLE_PARTS_MAX);
+        any = any || (now > planned && now > parts * face->spacing &&
+                      system->inv_mass[a] + system->inv_mass[b] > 0);
+        face->longest = fmax(face->longest, now);
+        face->stretch = fmax(face->stretch, now / planned);
+    }
+    face->stretch *= system->scene->contact->sample_stretch;
+    return any && !cs_contact_sample_is_tangled(system, &face->corners);
+}
+
+/* m, largest depth of points of a triangle in the collider; negative outside. */
+static double depth_of(struct face *face) {
+    const double parts = fmin(4 * ceil(face->longest / face->spacing), 64);
+    double deepest = -HUGE_VAL, normal[3], p[3];
+    for (int a = 0; a <= parts; a++)
+        for (int b = 0; a + b <= parts; b++) {
+            face->corners.w[0] = 1 - (a + b) / parts;
+            face->corners.w[1] = a / parts, face->corners.w[2] = b / parts;
+            cs_contact_sample_interpolate(&face->corners, face->system->view.n, face->x, p);
+            deepest = fmax(deepest, -cs_posed_collider_distance(face->collider, p, normal));
+        }
+    return deepest;
+}
+
+/* Adds the triangles of a body. */
+static void add_gaps(struct face *face, const struct cs_body_range *body, uint32_t collider,
+                     struct cs_sample_gap *gap) {
+    const size_t n = face->system->view.n;
+    for (uint32_t k = 0; k < cs_faces_count(body); k++) {
+        cs_face_corners(body, k, face->corners.particles);
+        for (int v = 0; v < 3; v++)
+            face->corners.particles[v] += body->first;
+        const double *x = face->x + face->corners.particles[0], p[3] = {x[0], x[n], x[2 * n]};
+        if (!is_outgrown(face) || !cs_posed_collider_is_near(face->collider, face->longest, p))
+            continue;
+        const double depth = depth_of(face);
+        if (depth > CS_PENETRATION_MIN)
+            gap->stretch = fmax(gap->stretch, face->stretch);
+        if (depth > fmax(gap->depth, CS_PENETRATION_MIN))
+            gap->depth = depth, gap->collider = collider;
+    }
+}
+
+struct cs_sample_gap cs_contact_samples_find_gap(const struct cs_system *system, double t,
+                                                 const double *x) {
+    struct cs_sample_gap gap = {0};
+    for (uint32_t c = 0; c < system->scene->colliders.n && system->collider_params; c++) {
+        struct cs_posed_collider at;
+        cs_posed_collider_at(system, c, t, &at);
+        struct face face = {.system = system, .collider = &at, .x = x, .corners = {.n = 3}};
+        face.spacing = cs_contact_sample_spacing(&at, system->collider_params[c].range);
+        for (uint32_t b = 0; b < system->scene->bodies.n && face.spacing < HUGE_VAL; b++)
+            add_gaps(&face, system->bodies + b, c, &gap);
+    }
+    return gap;
 }
 
 /* --- points --- */

@@ -86,8 +86,21 @@ bool cs_contact_sample_item_is_near(const struct cs_contact_sample_chunk *chunk,
  * planes and meshes, which need no samples. */
 double cs_contact_sample_spacing(const struct cs_posed_collider *collider, double range);
 
-/* Longest edge in m of a system at its start; needs no surfaces. */
+/* Longest edge in m that samples must cover: at the start, times contact.sample_stretch; needs
+ * no surfaces. */
 double cs_contact_sample_longest(const struct cs_system *system);
+
+/* A triangle between the samples of its edges, which are longer than what these cover. */
+struct cs_sample_gap {
+    double depth;      /* m in the collider; 0: none is */
+    double stretch;    /* its edges' largest length over that at the start */
+    uint32_t collider; /* its number */
+};
+
+/* Returns the deepest of these at (t, x) with the largest stretch of all. Triangles are taken
+ * at points a quarter of the spacing of samples apart, colliders only if they need samples. */
+struct cs_sample_gap cs_contact_samples_find_gap(const struct cs_system *system, double t,
+                                                 const double *x);
 
 /* Builds system->contact_samples, and the surfaces if they are missing; leaves it NULL if no
  * sample is needed. After cs_collider_params_table_build. CS_ERR_MEMORY. */
