@@ -277,7 +277,8 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
     *row = (struct cs_energy_monitor_row){.t = run->t};
     row->energy = cs_diagnostics_energy(system, run->t, run->x, run->v);
     row->strain = cs_diagnostics_strain(system, run->x);
-    const struct cs_sample_gap gap = cs_contact_samples_find_gap(system, run->t, run->x);
+    const struct cs_outgrown_samples gap =
+        cs_contact_samples_find_outgrown(system, run->t, run->x);
     row->depth = fmax(cs_posed_colliders_depth(system, run->t, run->x), gap.depth);
     if (gap.depth > monitor->gap.depth)
         monitor->gap.depth = gap.depth, monitor->gap.collider = gap.collider;

@@ -134,7 +134,7 @@ struct cs_energy_monitor {
     double acceleration; /* m/s2, the largest by gravity, wind and viewpoint forces */
     double mass, wind_mass; /* kg that can move; sum of m a^2 in kg m2/s4, of outer forces */
     struct cs_cloth_peak cloth[CS_CLOTH_BOUNDS];
-    struct cs_sample_gap gap;           /* the deepest, with the largest stretch */
+    struct cs_outgrown_samples gap;     /* the deepest, with the largest stretch */
     struct cs_energy_monitor_row first; /* when an instability began; verdict BOUNDED: none */
     enum cs_stability_verdict worst_verdict;
 };

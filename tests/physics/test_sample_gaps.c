@@ -78,8 +78,8 @@ TEST(stretched_edges_have_samples) {
         for (int frame = 1; frame <= 24; frame++) {
             fixture_frames(&sheet, 1);
             const double depth = depth_in_ball(&sheet, frame / 60.0);
-            const struct cs_sample_gap gap =
-                cs_contact_samples_find_gap(sheet.system, frame / 60.0, sheet.x);
+            const struct cs_outgrown_samples gap =
+                cs_contact_samples_find_outgrown(sheet.system, frame / 60.0, sheet.x);
             deepest = fmax(deepest, depth);
             ck_assert_msg(fabs(gap.depth - fmax(depth, 0)) < 0.5e-3 + 0.05 * fmax(depth, 0),
                           "%s: found %g of %g m", method, gap.depth, depth);

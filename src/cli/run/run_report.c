@@ -223,7 +223,7 @@ static void add_stages(const struct cs_job *job, struct cs_text *out) {
 
 /* A triangle that outgrew its contact samples, and the key that gives it more: cloth that is
  * held off stretches further, by a tenth in a trial. */
-static void add_gap(const struct cs_sample_gap *gap, struct cs_text *out) {
+static void add_gap(const struct cs_outgrown_samples *gap, struct cs_text *out) {
     struct cs_text line = {0};
     if (!(gap->depth > 0))
         return;

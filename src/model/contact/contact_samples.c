@@ -347,7 +347,7 @@ static double depth_of(struct face *face) {
 
 /* Adds the triangles of a body. */
 static void add_gaps(struct face *face, const struct cs_body_range *body, uint32_t collider,
-                     struct cs_sample_gap *gap) {
+                     struct cs_outgrown_samples *gap) {
     const size_t n = face->system->view.n;
     for (uint32_t k = 0; k < cs_faces_count(body); k++) {
         cs_face_corners(body, k, face->corners.particles);
@@ -364,9 +364,9 @@ static void add_gaps(struct face *face, const struct cs_body_range *body, uint32
     }
 }
 
-struct cs_sample_gap cs_contact_samples_find_gap(const struct cs_system *system, double t,
-                                                 const double *x) {
-    struct cs_sample_gap gap = {0};
+struct cs_outgrown_samples cs_contact_samples_find_outgrown(const struct cs_system *system,
+                                                            double t, const double *x) {
+    struct cs_outgrown_samples gap = {0};
     for (uint32_t c = 0; c < system->scene->colliders.n && system->collider_params; c++) {
         struct cs_posed_collider at;
         cs_posed_collider_at(system, c, t, &at);

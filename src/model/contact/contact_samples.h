@@ -91,7 +91,7 @@ double cs_contact_sample_spacing(const struct cs_posed_collider *collider, doubl
 double cs_contact_sample_longest(const struct cs_system *system);
 
 /* A triangle between the samples of its edges, which are longer than what these cover. */
-struct cs_sample_gap {
+struct cs_outgrown_samples {
     double depth;      /* m in the collider; 0: none is */
     double stretch;    /* its edges' largest length over that at the start */
     uint32_t collider; /* its number */
@@ -99,8 +99,8 @@ struct cs_sample_gap {
 
 /* Returns the deepest of these at (t, x) with the largest stretch of all. Triangles are taken
  * at points a quarter of the spacing of samples apart, colliders only if they need samples. */
-struct cs_sample_gap cs_contact_samples_find_gap(const struct cs_system *system, double t,
-                                                 const double *x);
+struct cs_outgrown_samples cs_contact_samples_find_outgrown(const struct cs_system *system,
+                                                            double t, const double *x);
 
 /* Builds system->contact_samples, and the surfaces if they are missing; leaves it NULL if no
  * sample is needed. After cs_collider_params_table_build. CS_ERR_MEMORY. */

@@ -321,7 +321,6 @@ CS_PAIR_KERNEL(extern, cs_pair_lanes_diagonal, diagonal,
                (factors, alone, own))
 
 /* Adds friction by its chord to the factors of pairs, eight at a time, as one loop over lanes.
- *
  * The factors have the weights of the contact points already: with them come the vector
  * between these points, its direction n, and their relative velocity and acceleration. */
 
