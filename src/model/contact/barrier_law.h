@@ -20,6 +20,7 @@
 #define CS_CONTACT_BARRIER_LAW_H
 
 #include <clothsim/clones.h>
+#include <math.h>
 
 /* y below which the stiffness is constant, which keeps the forces of trial states finite. The
  * energy at the core must be far above 50 times that of what comes: a step may miss
@@ -89,6 +90,28 @@ CS_INLINE double cs_barrier_slope(double d, double range, double k) {
         return 0;
 
     return k / (6 * range) * (3 - 3 / (y * y * y * y));
+}
+
+/* psi about a distance d to the second order, which is what a step knows at its start: psi, F
+ * and K there in J, N and N/m. */
+struct cs_barrier_model {
+    double range, k, held, force, stiffness;
+};
+
+/* slopes: F and K are known, not psi alone. */
+CS_INLINE struct cs_barrier_model cs_barrier_model_at(double d, double range, double k,
+                                                      bool slopes) {
+    const struct cs_barrier barrier = cs_barrier_at(d, range, k);
+    return (struct cs_barrier_model){range, k, cs_barrier_energy(d, range, k),
+                                     slopes ? barrier.force : 0,
+                                     slopes ? barrier.stiffness : 0};
+}
+
+/* J, |psi(d) - (psi + F s + K s^2/2)| at a distance d, which the model holds to be nearer by s.
+ */
+CS_INLINE double cs_barrier_missed(const struct cs_barrier_model *model, double d, double s) {
+    return fabs(cs_barrier_energy(d, model->range, model->k) - model->held - model->force * s -
+                0.5 * model->stiffness * s * s);
 }
 
 #endif

@@ -4,7 +4,6 @@
 
 #include "base/vector.h"
 #include "mesh/trimesh.h"
-#include "model/contact/step_check.h"
 #include "scene/contact_keys.h"
 
 #include <clothsim/clones.h>
@@ -50,75 +49,6 @@ bool cs_contact_sample_item_is_near(const struct cs_contact_sample_chunk *chunk,
     const double half = chunk->vertices_per_item == 2 ? box_of(x, n, vertices, 2, middle)
                                                       : box_of(x, n, vertices, 3, middle);
     return cs_posed_collider_is_near(collider, reach + half, middle);
-}
-
-/* One step. */
-struct job {
-    const struct cs_contact_samples *covers;
-    double t0, t1;
-    const double *x0, *x1;
-};
-
-/* J, the excess of one sample, with its effective mass; 0 of a pinned one. */
-static double excess_of(const struct cs_collider_step *step,
-                        const struct cs_contact_sample_point *point) {
-    const size_t n = step->system->view.n;
-    const double mass = cs_contact_sample_mass(step->system, point);
-    double from[3], to[3];
-    cs_contact_sample_interpolate(point, n, step->x0, from);
-    cs_contact_sample_interpolate(point, n, step->x1, to);
-    return mass < HUGE_VAL ? cs_collider_step_excess(step, mass, from, to) : 0;
-}
-
-/* Returns whether items that were not listed, and move by `move` m at most in a step, all stay
- * out of range in it: the ends of their samples are further away than that. */
-static bool is_listed(const struct job *job, const struct cs_collider_step *step, double move) {
-    const struct cs_contact_samples *samples = job->covers;
-    const struct cs_posed_collider_law *listed = samples->listed + step->collider;
-    const double since =
-        cs_contact_samples_motion(samples->system->view.n, listed->collider.centre,
-                                  samples->x_listed, step->at_t1.centre, job->x1);
-    return cs_posed_collider_is_shifted(&listed->collider, &step->at_t1) &&
-           since + move < (1 - 1e-6) * (listed->params.range - step->params.range);
-}
-
-/* J, the excess of the samples in the chunks [begin, end), which are sorted by colliders. That
- * of a sample whose end is further away than it moves is exactly 0. */
-static double sum_excess(const void *arg, size_t begin, size_t end) {
-    const struct job *job = arg;
-    const struct cs_system *system = job->covers->system;
-    struct cs_collider_step step = {.x0 = job->x0, .x1 = job->x1};
-    bool listed = false;
-    double sum = 0, move = 0;
-    for (size_t l = begin; l < end; l++) {
-        const struct cs_contact_sample_chunk *chunk = job->covers->chunks + l;
-        if (l == begin || chunk->collider != step.collider) {
-            cs_collider_step_set(&step, system, chunk->collider, job->t0, job->t1);
-            move = cs_contact_samples_motion(system->view.n, step.at_t0.centre, job->x0,
-                                             step.at_t1.centre, job->x1);
-            listed = is_listed(job, &step, move);
-        }
-        if (!listed && cs_collider_step_is_far(&step, chunk->first,
-                                               (size_t)chunk->last - chunk->first + 1))
-            continue;
-        const uint32_t n = listed ? chunk->n_near : chunk->end - chunk->begin;
-        for (uint32_t k = 0; k < n; k++) {
-            const uint32_t i = chunk->begin + (listed ? chunk->near[k] : k);
-            struct cs_contact_sample_point point;
-            if (chunk->subdivisions[i - chunk->begin] &&
-                cs_contact_sample_item_is_near(chunk, i, &step.at_t1, step.params.range + move,
-                                               system->view.n, job->x1))
-                for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
-                    sum += excess_of(&step, &point);
-        }
-    }
-    return sum;
-}
-
-bool cs_contact_samples_resolve_step(const struct cs_contact_samples *samples, double t0,
-                                     const double *x0, double t1, const double *x1) {
-    const struct job job = {samples, t0, t1, x0, x1};
-    return !(cs_vector_sum(samples->n_chunks, sum_excess, &job) > 0);
 }
 
 /* items per chunk */
@@ -201,16 +131,19 @@ static size_t points_of(uint32_t each, size_t parts) {
     return parts == 0 ? 0 : each == 2 ? parts - 1 : (parts - 1) * (parts - 2) / 2;
 }
 
-/* Sets the other members of a chunk whose items are set; returns the number of its samples. */
-static size_t fill_chunk(const struct cs_system *system, double spacing,
+/* Sets the other members of a chunk whose items are set; returns the number of its samples,
+ * before which there are `before` in other chunks. */
+static size_t fill_chunk(const struct cs_system *system, double spacing, size_t before,
                          struct cs_contact_sample_chunk *chunk) {
     size_t points = 0;
     chunk->first = UINT32_MAX, chunk->last = 0;
     for (uint32_t i = chunk->begin; i < chunk->end; i++) {
         const uint8_t parts = parts_of(system, chunk, i, spacing);
-        points += points_of(chunk->vertices_per_item, parts);
-        if (chunk->subdivisions)
+        if (chunk->subdivisions) {
             chunk->subdivisions[i - chunk->begin] = parts;
+            chunk->first_numbers[i - chunk->begin] = (uint32_t)(before + points);
+        }
+        points += points_of(chunk->vertices_per_item, parts);
         for (uint32_t k = 0; k < chunk->vertices_per_item; k++) {
             const uint32_t at = chunk->vertices[(size_t)chunk->vertices_per_item * i + k];
             chunk->first = at < chunk->first ? at : chunk->first;
@@ -239,13 +172,13 @@ static void list_chunks(struct cs_system *system, struct cs_contact_samples *sam
                                                     .begin = begin,
                                                     .end = n - begin > LOT ? begin + LOT : n,
                                                     .collider = collider};
-            const size_t points = fill_chunk(system, spacing, &chunk);
+            const size_t points = fill_chunk(system, spacing, 0, &chunk);
             if (points && samples->chunks) {
-                chunk.subdivisions =
-                    cs_arena_alloc_array(&system->arena, chunk.end - begin, 1, error);
-                chunk.near = cs_arena_alloc_array(&system->arena, chunk.end - begin, 1, error);
-                if (chunk.subdivisions)
-                    fill_chunk(system, spacing, &chunk);
+                CS_ARENA_ARRAY(&system->arena, chunk.subdivisions, chunk.end - begin, error);
+                CS_ARENA_ARRAY(&system->arena, chunk.near, chunk.end - begin, error);
+                CS_ARENA_ARRAY(&system->arena, chunk.first_numbers, chunk.end - begin, error);
+                if (!error->status)
+                    fill_chunk(system, spacing, samples->n_points, &chunk);
                 samples->chunks[samples->n_chunks] = chunk;
                 samples->n_points += points;
             }
@@ -387,8 +320,7 @@ void cs_contact_sample_first(const struct cs_contact_sample_chunk *chunk, uint32
                                                   chunk->subdivisions[item - chunk->begin],
                                               .a = chunk->vertices_per_item == 3};
     // the first step of the iteration counts too
-    if (chunk->first_numbers)
-        point->number = chunk->first_numbers[item - chunk->begin] - 1;
+    point->number = chunk->first_numbers[item - chunk->begin] - 1;
     for (uint32_t k = 0; k < chunk->vertices_per_item; k++)
         point->particles[k] = chunk->vertices[(size_t)chunk->vertices_per_item * item + k];
 }

@@ -40,8 +40,7 @@ struct cs_contact_sample_chunk {
      * listed */
     uint8_t *near;
     uint32_t n_near;
-    /* (end - begin) number of each item's first sample among all; NULL without anchors of
-     * friction */
+    /* (end - begin) number of each item's first sample among all */
     uint32_t *first_numbers;
 };
 
@@ -114,7 +113,7 @@ struct cs_contact_sample_point {
     double w[3];
     /* w = (m - a - b, a, b) / m with m = subdivisions */
     uint32_t subdivisions, a, b;
-    /* of the sample among all; with anchors of friction only */
+    /* of the sample among all */
     uint32_t number;
 };
 
@@ -155,11 +154,6 @@ static inline bool cs_contact_sample_is_tangled(const struct cs_system *system,
  * vertices are pinned, or one is tangled. */
 double cs_contact_sample_mass(const struct cs_system *system,
                               const struct cs_contact_sample_point *point);
-
-/* As cs_collider_contact_resolves_step (contact/step_check.h), for samples. With all threads.
- */
-bool cs_contact_samples_resolve_step(const struct cs_contact_samples *samples, double t0,
-                                     const double *x0, double t1, const double *x1);
 
 /* Positions and velocities of the points of all surfaces: the particles,
  * followed by the vertices of mesh colliders, which are not part of the state.

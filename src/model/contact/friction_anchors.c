@@ -117,24 +117,6 @@ void cs_friction_anchors_commit(const struct cs_system *system, double t, const 
 
 /* --- making --- */
 
-/* Numbers the samples of all chunks through. */
-static void number_samples(struct cs_system *system, struct cs_error *error) {
-    struct cs_contact_samples *samples = system->contact_samples;
-    uint32_t count = 0;
-    for (uint32_t l = 0; l < samples->n_chunks && !error->status; l++) {
-        struct cs_contact_sample_chunk *chunk = samples->chunks + l;
-        uint32_t *numbers = cs_arena_alloc_array(&system->arena, chunk->end - chunk->begin,
-                                                 sizeof *numbers, error);
-        for (uint32_t i = chunk->begin; i < chunk->end && numbers; i++) {
-            struct cs_contact_sample_point point;
-            numbers[i - chunk->begin] = count;
-            for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
-                count++;
-        }
-        chunk->first_numbers = numbers;
-    }
-}
-
 enum cs_status cs_friction_anchors_build(struct cs_system *system, struct cs_error *error) {
     struct cs_arena *arena = &system->arena;
     const uint32_t n_colliders = system->scene->colliders.n;
@@ -147,8 +129,6 @@ enum cs_status cs_friction_anchors_build(struct cs_system *system, struct cs_err
     struct cs_friction_anchors *anchors = cs_arena_alloc(arena, sizeof *anchors, error);
     double **particles = cs_arena_alloc_array(arena, n_colliders, sizeof *particles, error);
     double *values = cs_arena_alloc_array(arena, used + of_samples, sizeof *values, error);
-    if (of_samples && !error->status)
-        number_samples(system, error);
     if (error->status)
         return error->status;
     // one array: particles by collider, then samples

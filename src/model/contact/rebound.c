@@ -5,7 +5,7 @@
 #include "base/vector.h"
 #include "model/contact/bristle_law.h"
 #include "model/contact/collider_params.h"
-#include "model/contact/contact_samples.h"
+#include "model/contact/point_query.h"
 #include "scene/body_pairs.h"
 #include "scene/collider_keys.h"
 
@@ -109,22 +109,14 @@ static bool fly(struct flight *flight) {
     return true;
 }
 
-/* Energy in J of contact that the second-order model at d misses after an approach by s. */
-static double missed(const struct flight *flight, const struct cs_barrier *barrier, double s) {
-    const double range = flight->range, k = flight->k;
-    return fabs(cs_barrier_energy(flight->d - s, range, k) -
-                cs_barrier_energy(flight->d, range, k) - barrier->force * s -
-                0.5 * barrier->stiffness * s * s);
-}
-
 /* Tells whether the particle is in impact, and flies it. energy: E. */
 static bool rebounds(struct flight *flight, double energy) {
     const double m = flight->mass, h = flight->h, range = flight->range, k = flight->k;
-    const struct cs_barrier barrier = cs_barrier_at(flight->d, range, k);
+    const struct cs_barrier_model model = cs_barrier_model_at(flight->d, range, k, true);
     const double load = fabs(flight->other) * h;
     // approach without contact, and by the linear step
     const double free = -h * (flight->u + h * flight->other / m);
-    const double linear = (m * free - h * h * barrier.force) / (m + h * h * barrier.stiffness);
+    const double linear = (m * free - h * h * model.force) / (m + h * h * model.stiffness);
     if ((flight->d >= range && flight->d - free >= range) ||
         !(load < 0.5 * m * (fabs(flight->u) + sqrt(2 * energy / m))) || !fly(flight))
         return false;
@@ -138,8 +130,9 @@ static bool rebounds(struct flight *flight, double energy) {
     const double by_flight = 0.5 * m * flight->w1 * flight->w1 +
                              cs_barrier_energy(flight->d1, range, k) +
                              flight->other * (flight->d - flight->d1);
-    return fmax(fmax(missed(flight, &barrier, free), missed(flight, &barrier, linear)),
-                fabs(by_step - by_flight)) > MISSED_MAX * energy;
+    const double missed = fmax(cs_barrier_missed(&model, flight->d - free, free),
+                               cs_barrier_missed(&model, flight->d - linear, linear));
+    return fmax(missed, fabs(by_step - by_flight)) > MISSED_MAX * energy;
 }
 
 /* One collider and the step, for all particles. */
@@ -172,12 +165,10 @@ static bool approach(const struct search *search, size_t i, struct start *start,
     const size_t n = search->system->view.n;
     const struct cs_posed_collider_law *law = &search->law;
     double p[3], v[3], w[3], f[3];
-    for (size_t c = 0; c < 3; c++) {
-        p[c] = search->x[c * n + i];
-        v[c] = search->v[c * n + i];
-        f[c] = search->f[c * n + i];
-        start->own[c] = 0;
-    }
+    cs_point_read(search->x, n, i, p);
+    cs_point_read(search->v, n, i, v);
+    cs_point_read(search->f, n, i, f);
+    memset(start->own, 0, sizeof start->own);
     struct cs_point_contact contact;
     if (cs_posed_collider_law_in_range(law, p, v, &contact)) {
         const struct cs_contact_force_parts parts = {1, 1};

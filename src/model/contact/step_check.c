@@ -1,9 +1,10 @@
-/* Contact energy with colliders that a step does not predict, particle by particle. */
+/* Contact energy with colliders that a step does not predict, point by point. */
 #include "model/contact/step_check.h"
 
 #include "base/vector.h"
 #include "model/contact/barrier_law.h"
 #include "model/contact/collider_params.h"
+#include "model/contact/contact_samples.h"
 #include "model/contact/posed_collider.h"
 #include "scene/contact_keys.h"
 #include "scene/force_keys.h"
@@ -11,8 +12,13 @@
 #include <clothsim/clones.h>
 #include <math.h>
 
-/* largest number of samples of one move; particles of a row */
-enum { POINTS_MAX = 64, ROW = 64 };
+/* largest number of samples of one move, longer ones have coarser samples; particles of a row
+ */
+enum { PARTS_MAX = 64, ROW = 64 };
+
+int cs_step_parts(double move, double range) {
+    return move < 0.5 * range * PARTS_MAX ? 1 + (int)(move / (0.5 * range)) : PARTS_MAX;
+}
 
 /* m, distance at a fraction of the way; the rotation of the collider within the step is left
  * out */
@@ -47,19 +53,15 @@ double cs_collider_step_excess(const struct cs_collider_step *step, double mass,
     const double d = distance_at(step, from, to, 0);
     if (!(d - move < range))
         return 0;
-    const struct cs_barrier barrier =
-        step->impacts ? (struct cs_barrier){0} : cs_barrier_at(d, range, k);
-    const double held = cs_barrier_energy(d, range, k);
-    const int points =
-        move < 0.5 * range * POINTS_MAX ? 1 + (int)(move / (0.5 * range)) : POINTS_MAX;
+    const struct cs_barrier_model model = cs_barrier_model_at(d, range, k, !step->impacts);
+    const int parts = cs_step_parts(move, range);
     double unseen = 0;
-    for (int j = 1; j <= points; j++) {
-        const double s = d - distance_at(step, from, to, j / (double)points);
-        unseen = fmax(unseen, fabs(cs_barrier_energy(d - s, range, k) - held -
-                                   barrier.force * s - 0.5 * barrier.stiffness * s * s));
+    for (int j = 1; j <= parts; j++) {
+        const double at = distance_at(step, from, to, j / (double)parts);
+        unseen = fmax(unseen, cs_barrier_missed(&model, at, d - at));
     }
     const double kinetic = 0.5 * mass * squared / (step->h * step->h);
-    return excess(step, unseen, step->unresolved_max, kinetic + held);
+    return excess(step, unseen, step->unresolved_max, kinetic + model.held);
 }
 
 /* J, by how much psi at p, the end of a particle in impact, departs from its second-order model
@@ -67,12 +69,11 @@ double cs_collider_step_excess(const struct cs_collider_step *step, double mass,
 static double departure_of(const struct cs_rebound *rebound,
                            const struct cs_collider_step *step, const double p[3]) {
     const double range = step->params.range, k = step->params.k, d1 = rebound->distance;
-    const double d = distance_at(step, p, p, 0), s = d1 - d;
-    const struct cs_barrier barrier = cs_barrier_at(d1, range, k);
+    const double d = distance_at(step, p, p, 0);
+    const struct cs_barrier_model model = cs_barrier_model_at(d1, range, k, true);
     return d1 > 0 && d < 0.5 * fmin(CS_BARRIER_CORE * range, d1)
                ? HUGE_VAL
-               : fabs(cs_barrier_energy(d, range, k) - cs_barrier_energy(d1, range, k) -
-                      barrier.force * s - 0.5 * barrier.stiffness * s * s);
+               : cs_barrier_missed(&model, d, d1 - d);
 }
 
 /* Number of particles of a row that may be unresolved at a plane or sphere: a conservative test
@@ -111,24 +112,31 @@ CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *step, siz
     return risky;
 }
 
-/* Box of both ends of all particles, relative to the collider, as a sphere around its middle.
- */
-bool cs_collider_step_is_far(const struct cs_collider_step *step, size_t begin, size_t count) {
+/* Returns whether `count` particles from `first` on, and all points between them, stay out of
+ * range: their ends lie in the box of the particles' ends, and none moves further than one of
+ * these. Their excess is then exactly 0. */
+static bool is_far(const struct cs_collider_step *step, size_t first, size_t count) {
     const size_t n = step->system->view.n;
-    double middle[3], reach = step->params.range, squared = 0;
-    for (size_t c = 0; c < 3; c++) {
-        const double shift = step->at_t1.centre[c] - step->at_t0.centre[c];
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        for (size_t i = c * n + begin; i < c * n + begin + count; i++) {
-            const double from = step->x0[i] + shift, to = step->x1[i];
-            low = from < low ? from : low, high = from > high ? from : high;
-            low = to < low ? to : low, high = to > high ? to : high;
+    const double *a = step->at_t0.centre, *b = step->at_t1.centre;
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    double middle[3], squared = 0, longest = 0;
+    for (size_t i = first; i < first + count; i++) {
+        double move = 0;
+        for (size_t c = 0; c < 3; c++) {
+            const double end = step->x1[c * n + i];
+            const double way = end - step->x0[c * n + i] - (b[c] - a[c]);
+            low[c] = end < low[c] ? end : low[c];
+            high[c] = end > high[c] ? end : high[c];
+            move += way * way;
         }
-        middle[c] = 0.5 * (low + high);
-        squared += 0.25 * (high - low) * (high - low);
+        longest = move > longest ? move : longest;
     }
-    reach += sqrt(squared);
-    return !cs_posed_collider_is_near(&step->at_t1, reach, middle);
+    for (int c = 0; c < 3; c++) {
+        middle[c] = 0.5 * (low[c] + high[c]);
+        squared += 0.25 * (high[c] - low[c]) * (high[c] - low[c]);
+    }
+    return !cs_posed_collider_is_near(
+        &step->at_t1, step->params.range + sqrt(longest) + sqrt(squared), middle);
 }
 
 /* The impacts of the step that was finished last, if that is this one; NULL: none. */
@@ -143,7 +151,7 @@ static bool row_is_resolved(const struct cs_collider_step *step, size_t begin, s
     return !step->impacts && !impacts_of(step) &&
                    (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE)
                ? count_suspect(step, begin, count) == 0
-               : cs_collider_step_is_far(step, begin, count);
+               : is_far(step, begin, count);
 }
 
 /* J, the excess of particle i. */
@@ -151,10 +159,8 @@ static double excess_of(const struct cs_collider_step *step, size_t i) {
     const size_t n = step->system->view.n;
     const struct cs_rebound *rebound = impacts_of(step);
     double from[3], to[3];
-    for (size_t c = 0; c < 3; c++) {
-        from[c] = step->x0[c * n + i];
-        to[c] = step->x1[c * n + i];
-    }
+    cs_point_read(step->x0, n, i, from);
+    cs_point_read(step->x1, n, i, to);
     return rebound && rebound[i].collider == step->collider + 1
                ? excess(step, departure_of(rebound + i, step, to),
                         CS_UNRESOLVED_BESIDE_REBOUNDS, rebound[i].energy)
@@ -180,7 +186,7 @@ void cs_collider_step_set(struct cs_collider_step *step, const struct cs_system 
     step->system = system;
     step->collider = collider;
     step->impacts = cs_impacts_are_resolved(system);
-    step->unresolved_max = step->impacts ? CS_IMPACT_CHANGE_MAX : CS_UNRESOLVED_ENERGY_MAX;
+    step->unresolved_max = cs_step_missed_max(system);
     step->alone =
         system->rebounds && !step->impacts ? CS_UNRESOLVED_ALONE : step->unresolved_max;
     step->spare_energy = 0;
@@ -222,7 +228,75 @@ void cs_collider_step_set_beside_rebounds(struct cs_collider_step *step) {
                               most_energy(step));
 }
 
-/* Ends at the first collider whose contact the step misses. The next step's impacts are others.
+/* --- contact samples --- */
+
+/* One step of all samples. */
+struct sampled {
+    const struct cs_contact_samples *samples;
+    double t0, t1;
+    const double *x0, *x1;
+};
+
+/* J, the excess of one sample, with its effective mass; 0 of a pinned one. */
+static double excess_of_sample(const struct cs_collider_step *step,
+                               const struct cs_contact_sample_point *point) {
+    const size_t n = step->system->view.n;
+    const double mass = cs_contact_sample_mass(step->system, point);
+    double from[3], to[3];
+    cs_contact_sample_interpolate(point, n, step->x0, from);
+    cs_contact_sample_interpolate(point, n, step->x1, to);
+    return mass < HUGE_VAL ? cs_collider_step_excess(step, mass, from, to) : 0;
+}
+
+/* Returns whether items that were not listed, and move by `move` m at most in a step, all stay
+ * out of range in it: the ends of their samples are further away than that. */
+static bool is_listed(const struct sampled *sampled, const struct cs_collider_step *step,
+                      double move) {
+    const struct cs_contact_samples *samples = sampled->samples;
+    const struct cs_posed_collider_law *listed = samples->listed + step->collider;
+    const double since =
+        cs_contact_samples_motion(step->system->view.n, listed->collider.centre,
+                                  samples->x_listed, step->at_t1.centre, sampled->x1);
+    return cs_posed_collider_is_shifted(&listed->collider, &step->at_t1) &&
+           since + move < (1 - 1e-6) * (listed->params.range - step->params.range);
+}
+
+/* J, the excess of the samples in the chunks [begin, end), which are sorted by colliders. That
+ * of a sample whose end is further away than it moves is exactly 0. */
+static double sum_excess_of_samples(const void *arg, size_t begin, size_t end) {
+    const struct sampled *sampled = arg;
+    const struct cs_contact_samples *samples = sampled->samples;
+    const size_t n = samples->system->view.n;
+    struct cs_collider_step step = {.x0 = sampled->x0, .x1 = sampled->x1};
+    bool listed = false;
+    double sum = 0, move = 0;
+    for (size_t l = begin; l < end; l++) {
+        const struct cs_contact_sample_chunk *chunk = samples->chunks + l;
+        if (l == begin || chunk->collider != step.collider) {
+            cs_collider_step_set(&step, samples->system, chunk->collider, sampled->t0,
+                                 sampled->t1);
+            move = cs_contact_samples_motion(n, step.at_t0.centre, step.x0, step.at_t1.centre,
+                                             step.x1);
+            listed = is_listed(sampled, &step, move);
+        }
+        if (!listed && is_far(&step, chunk->first, (size_t)chunk->last - chunk->first + 1))
+            continue;
+        const uint32_t n_items = listed ? chunk->n_near : chunk->end - chunk->begin;
+        for (uint32_t k = 0; k < n_items; k++) {
+            const uint32_t i = chunk->begin + (listed ? chunk->near[k] : k);
+            struct cs_contact_sample_point point;
+            if (chunk->subdivisions[i - chunk->begin] &&
+                cs_contact_sample_item_is_near(chunk, i, &step.at_t1, step.params.range + move,
+                                               n, step.x1))
+                for (cs_contact_sample_first(chunk, i, &point); cs_contact_sample_next(&point);)
+                    sum += excess_of_sample(&step, &point);
+        }
+    }
+    return sum;
+}
+
+/* Ends at the first collider whose contact the step misses; samples follow particles. The next
+ * step's impacts are others.
  */
 bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0,
                                        const double *x0, double t1, const double *x1) {
@@ -235,7 +309,13 @@ bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0
     }
     if (system->rebounds)
         system->rebounds->judged = false;
-    return resolved;
+    const struct sampled sampled = {system->contact_samples, t0, t1, x0, x1};
+    return resolved && !(sampled.samples && cs_vector_sum(sampled.samples->n_chunks,
+                                                          sum_excess_of_samples, &sampled) > 0);
+}
+
+double cs_step_missed_max(const struct cs_system *system) {
+    return cs_impacts_are_resolved(system) ? CS_IMPACT_CHANGE_MAX : CS_UNRESOLVED_ENERGY_MAX;
 }
 
 bool cs_impacts_are_resolved(const struct cs_system *system) {

@@ -66,6 +66,13 @@ struct cs_rebounds {
 /* Returns whether the scene gives contact.restitution. */
 bool cs_impacts_are_resolved(const struct cs_system *system);
 
+/* Fraction of the energy of a point or a pair that a step may miss: one of the two above. */
+double cs_step_missed_max(const struct cs_system *system);
+
+/* Number of equal parts of a move in m, at whose ends it is sampled: at most half a range long,
+ * so that no contact is passed over. */
+int cs_step_parts(double move, double range);
+
 bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0,
                                        const double *x0, double t1, const double *x1);
 
@@ -89,10 +96,6 @@ void cs_collider_step_set(struct cs_collider_step *step, const struct cs_system 
 /* Sets unresolved_max and spare_energy for the particles of a step with impacts that are not in
  * impact (struct cs_rebounds). Does nothing in scenes without impacts. */
 void cs_collider_step_set_beside_rebounds(struct cs_collider_step *step);
-
-/* Returns whether `count` particles from `begin` on, and all points between them, stay out of
- * range. */
-bool cs_collider_step_is_far(const struct cs_collider_step *step, size_t begin, size_t count);
 
 /* J, by how much a point of `mass` kg that moves from `from` to `to` in m exceeds the limit of
  * e: negative below it; HUGE_VAL beyond what one point may miss. A step misses contact if the

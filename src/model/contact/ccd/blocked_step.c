@@ -90,10 +90,7 @@ static void try_point(void *arg, const struct cs_contact_sample_point *point) {
     const struct cs_collider_step *step = search->steps + (point->n > 1);
     const struct cs_system *system = step->system;
     const double range = step->params.range, k = step->params.k;
-    const double mass = point->n > 1 ? cs_contact_sample_mass(system, point)
-                        : system->inv_mass[point->particles[0]] > 0
-                            ? system->mass[point->particles[0]]
-                            : HUGE_VAL;
+    const double mass = cs_contact_sample_mass(system, point);
     double from[3], to[3], start[3], way[3], g[3], h[6];
     cs_contact_sample_interpolate(point, system->view.n, step->x0, from);
     cs_contact_sample_interpolate(point, system->view.n, step->x1, to);

@@ -21,9 +21,6 @@ double cs_step_limit_fraction(const struct cs_system *system, double t0, const d
     if (system->collider_params && t1 > t0 &&
         !cs_collider_contact_resolves_step(system, t0, x0, t1, x1))
         return 0.5;
-    if (system->contact_samples && t1 > t0 &&
-        !cs_contact_samples_resolve_step(system->contact_samples, t0, x0, t1, x1))
-        return 0.5;
     if (system->pairs && t1 > t0 &&
         !cs_contact_pairs_resolve_step(system->pairs, t0, x0, t1, x1))
         return 0.5;
