@@ -75,14 +75,17 @@ static bool absorb(const struct cs_collider *collider, const double n[3], double
  * with T_v, T_x the tangential parts of v and of the displacement since `last`. A negative
  * absorption reflects the normal velocity, times |ka|. Position and velocity are corrected
  * alike, so that a particle that friction holds stays in its place. If it passes the collider,
- * n and d are those of the half-space at its entry. */
+ * n and d are those of the half-space at its entry. before: NULL if it moves too little to. */
 static enum cs_project_result project_particle(const struct cs_posed_collider *before,
                                                const struct cs_posed_collider *posed, double dt,
                                                const double last[3], double p[3], double v[3]) {
     const struct cs_collider *collider = posed->collider;
     double n[3], surface_v[3], from[3], move[3], gap;
-    if (!cs_tunnelling_find(before, posed, last, p, &gap, n))
-        gap = cs_posed_collider_signed_distance(posed, p, n);
+    // most particles are told by the bounding test alone
+    if (!before || !cs_tunnelling_find(before, posed, last, p, &gap, n))
+        gap = cs_posed_collider_is_near(posed, collider->thickness, p)
+                  ? cs_posed_collider_signed_distance(posed, p, n)
+                  : 0;
     if (!(gap < 0))
         return CS_PROJECT_NONE;
 
@@ -123,12 +126,7 @@ static size_t count_of(const struct cs_contact_projection *contact) {
     return contact->system->view.n;
 }
 
-/* Reads, and below writes, one particle of (3,n). */
-static void copy_point(const double *from, size_t n, size_t i, double out[3]) {
-    for (size_t c = 0; c < 3; c++)
-        out[c] = from[c * n + i];
-}
-
+/* Writes one particle of (3,n). */
 static void put(const double value[3], size_t n, size_t i, double *to) {
     for (size_t c = 0; c < 3; c++)
         to[c * n + i] = value[c];
@@ -143,47 +141,20 @@ static bool may_pass(const struct cs_contact_projection *contact, const double f
            cs_vec3_dot(way, way) > contact->shortest_tunnel * contact->shortest_tunnel;
 }
 
-/* Returns whether a particle passes a collider on its way. */
-static bool passes_any(const struct cs_contact_projection *contact, const double from[3],
-                       const double to[3]) {
-    double gap, normal[3];
-    for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++)
-        if (cs_tunnelling_find(contact->colliders_before + k, contact->colliders + k, from, to,
-                               &gap, normal))
-            return true;
-    return false;
-}
-
-/* Returns whether particle i is behind a collider, or passes one. Most do neither. */
-static bool is_behind_any(const struct step *step, size_t i) {
-    const struct cs_contact_projection *contact = step->contact;
-    double p[3], last[3], normal[3];
-    copy_point(step->x, count_of(contact), i, p);
-    for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
-        const struct cs_posed_collider *collider = contact->colliders + k;
-        if (cs_posed_collider_is_near(collider, collider->collider->thickness, p) &&
-            cs_posed_collider_signed_distance(collider, p, normal) < 0)
-            return true;
-    }
-    if (contact->shortest_tunnel == HUGE_VAL)
-        return false;
-    copy_point(contact->state_before, count_of(contact), i, last);
-    return may_pass(contact, last, p) && passes_any(contact, last, p);
-}
-
-/* Projects particle i against all colliders, each after the one before, into state_after.
- * Returns how many pushed it. */
-static unsigned project_against_all(const struct step *step, size_t i) {
+/* Projects particle i, if it is free, against all colliders, each after the one before, into
+ * state_after. Returns how many pushed it. */
+static unsigned project_against_all(const struct step *step, size_t i, bool free) {
     struct cs_contact_projection *contact = step->contact;
     const size_t n = count_of(contact);
     double p[3], v[3], last[3];
     unsigned pushed = 0;
-    copy_point(step->x, n, i, p);
-    copy_point(step->v, n, i, v);
-    copy_point(contact->state_before, n, i, last);
-    for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
-        const enum cs_project_result touch = project_particle(
-            contact->colliders_before + k, contact->colliders + k, step->dt, last, p, v);
+    cs_point_read(step->x, n, i, p);
+    cs_point_read(step->v, n, i, v);
+    cs_point_read(contact->state_before, n, i, last);
+    for (uint32_t k = 0; free && k < contact->system->scene->colliders.n; k++) {
+        const enum cs_project_result touch =
+            project_particle(may_pass(contact, last, p) ? contact->colliders_before + k : NULL,
+                             contact->colliders + k, step->dt, last, p, v);
         if (touch == CS_PROJECT_NONE)
             continue;
         pushed++;
@@ -202,31 +173,15 @@ static void project_block(void *arg, size_t begin, size_t end) {
     uint64_t tested = 0, pushed = 0;
     for (size_t i = begin; i < end; i++) {
         const bool free = system->inv_mass[i] > 0 && !contact->static_friction.is_sticking[i];
+        const unsigned pushes = project_against_all(step, i, free);
         tested += free;
-        contact->is_pushed[i] = free && is_behind_any(step, i);
-        if (contact->is_pushed[i])
-            pushed += project_against_all(step, i);
-        else if (free)
+        pushed += pushes;
+        contact->is_pushed[i] = pushes > 0;
+        if (free && pushes == 0)
             contact->static_friction.resting_on[i] = 0;
     }
     step->tests += tested * system->scene->colliders.n;
     step->pushed += pushed;
-}
-
-/* Copies the particles that were not pushed into state_after. Sticking ones then count as
- * pushed: to the elastic response their positions are imposed like those of pushed ones. */
-static void complete(const struct step *step) {
-    struct cs_contact_projection *contact = step->contact;
-    const size_t n = count_of(contact);
-    for (size_t i = 0; i < n; i++) {
-        if (contact->is_pushed[i])
-            continue;
-        for (size_t c = 0; c < 3; c++) {
-            contact->state_after[c * n + i] = step->x[c * n + i];
-            contact->state_after[(3 + c) * n + i] = step->v[c * n + i];
-        }
-        contact->is_pushed[i] = contact->static_friction.is_sticking[i];
-    }
 }
 
 /* Limits the energy of state_after and makes it the state. */
@@ -242,7 +197,9 @@ static void push(const struct step *step) {
                                               .v = step->v,
                                               .corrected = contact->state_after,
                                               .is_pushed = contact->is_pushed};
-    complete(step);
+    // sticking ones count as pushed: to the elastic response their positions are imposed too
+    for (size_t i = 0; i < count_of(contact); i++)
+        contact->is_pushed[i] |= contact->static_friction.is_sticking[i];
     // If the push was cut short, a particle may still be behind a surface and is not at rest.
     if (!cs_projection_energy_limit(&contact->energy_limit, &pushed))
         cs_static_friction_reject(&contact->static_friction);
@@ -329,8 +286,8 @@ double cs_contact_projection_fraction(struct cs_contact_projection *contact, dou
     for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++)
         for (size_t i = 0; i < n; i++) {
             double from[3], to[3];
-            copy_point(x0, n, i, from);
-            copy_point(x1, n, i, to);
+            cs_point_read(x0, n, i, from);
+            cs_point_read(x1, n, i, to);
             if (contact->system->inv_mass[i] > 0 &&
                 cs_tunnelling_is_deep(contact->colliders_before + k, contact->colliders + k,
                                       from, to))

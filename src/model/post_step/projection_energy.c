@@ -2,6 +2,7 @@
  * too much; see projection_energy.h. */
 #include "model/post_step/projection_energy.h"
 
+#include "base/vec3.h"
 #include "base/vector.h"
 #include "model/force/diagnostics.h"
 #include "model/post_step/tunnelling.h"
@@ -11,79 +12,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Solves A u = 0 at the particles that were not pushed, by conjugate
- * gradients restricted to them: residuals and directions are 0 elsewhere (Baraff, Witkin 1998,
- * sec. 5.3). */
-
-/* Relative residual, and the largest number of iterations. The response shapes a correction
- * whose energy is checked afterwards, so that few digits suffice. Chosen by trial. */
+/* Relative residual of the elastic response. It shapes a correction whose energy is checked
+ * afterwards, so that few digits suffice. Chosen by trial. */
 #define RTOL 1e-2
-
-enum { ITERATIONS_MAX = 300 };
-
-/* Prepares the solver; nothing for a system without springs. The arena owns its memory.
- * CS_ERR_MEMORY. */
-static enum cs_status response_init(struct cs_elastic_response *response,
-                                    struct cs_system *system, struct cs_arena *arena,
-                                    struct cs_error *error) {
-    *response = (struct cs_elastic_response){0};
-    if (system->springs.n == 0 || cs_temporary_pins_init(&response->pins, system, arena, error))
-        return error->status;
-    return cs_linear_init(&response->linear, system, arena, error);
-}
-
-/* Returns whether springs are so stiff for a step of dt s that pushing a particle without its
- * neighbours may store more energy than the step brought: dt omega > 1. */
-static bool response_is_needed(const struct cs_elastic_response *response, double dt) {
-    const struct cs_system *system = response->linear.system;
-    return system && dt * system->view.omega > 1;
-}
-
-/* Sets a vector to 0 at pinned particles; pushed ones are pinned at that time. */
-static void clear_pinned(const struct cs_system *system, double *p) {
-    const size_t n = system->view.n;
-    for (uint32_t k = 0; k < system->n_pinned; k++)
-        for (size_t c = 0; c < 3; c++)
-            p[c * n + system->pinned[k]] = 0;
-}
-
-/* Sets u to 0 at particles that were not pushed: the start of the iteration. */
-static void clear_free(const struct cs_system *system, const bool *pushed, double *u) {
-    const size_t n = system->view.n;
-    for (size_t i = 0; i < n; i++)
-        if (!pushed[i])
-            u[i] = u[n + i] = u[2 * n + i] = 0;
-}
-
-/* Preconditioned conjugate gradients (Saad 2003) from the pushes in u. The first residual -A u
- * is not 0 at pushed particles either. The preconditioned one is, because clear_pinned follows
- * the preconditioner; all directions are therefore 0 there too. */
-static void solve(struct cs_elastic_response *response, double *u) {
-    struct cs_linear *linear = &response->linear;
-    const struct cs_system *system = linear->system;
-    const size_t n3 = 3 * (size_t)system->view.n;
-    double *r = linear->r, *z = linear->z, *p = linear->p, *q = linear->q;
-    cs_linear_mul(linear, u, q);
-    cs_vector_kernels.linear_sum(n3, -1, q, 0, q, r);
-    double norm = sqrt(cs_vector_dot(n3, r, r)), before = 0;
-    const double goal = RTOL * norm;
-    for (int k = 0; k < ITERATIONS_MAX && norm > goal; k++) {
-        cs_linear_precondition(linear, r, norm, z);
-        clear_pinned(system, z);
-        const double now = cs_vector_dot(n3, r, z);
-        if (!(now > 0))
-            break;
-        cs_vector_kernels.linear_sum(n3, 1, z, k > 0 ? now / before : 0, k > 0 ? p : z, p);
-        before = now;
-        cs_linear_mul(linear, p, q);
-        const double curvature = cs_vector_dot(n3, p, q);
-        if (!(curvature > 0))
-            break;
-        cs_vector_kernels.linear_sum(n3, 1, u, now / curvature, p, u);
-        cs_vector_kernels.linear_sum(n3, 1, r, -now / curvature, q, r);
-        norm = sqrt(cs_vector_dot(n3, r, r));
-    }
-}
 
 /* u (3,n) in m holds the pushes of the particles marked in pushed (n), and anything elsewhere.
  * Sets the other free particles to where they would be, had the pushes been forces in an
@@ -91,14 +22,21 @@ static void solve(struct cs_elastic_response *response, double *u) {
  *
  *   A = M + dt D + dt^2 K   at the state (x, v) of *matrix
  *
- * by conjugate gradients. A direction without stiffness, or 300 iterations, end it early; u is
- * then between start and solution. Pinned particles do not move. */
+ * with pushed particles pinned (Baraff, Witkin 1998, sec. 5.3). A direction without stiffness
+ * ends it early; u is then between start and solution. At pinned particles u is 0. */
 static void response_solve(struct cs_elastic_response *response, const struct cs_matrix *matrix,
                            const bool *pushed, double *u) {
+    const size_t n3 = 3 * (size_t)response->linear.system->view.n;
+    uint64_t iterations;
+    double residual;
     cs_temporary_pins_set(&response->pins, pushed);
     cs_linear_setup(&response->linear, matrix);
-    clear_free(response->linear.system, pushed, u);
-    solve(response, u);
+    for (size_t k = 0; k < n3; k++)
+        u[k] = pushed[k % (n3 / 3)] ? u[k] : 0;
+    cs_linear_mul(&response->linear, u, response->load);
+    cs_vector_kernels.linear_sum(n3, -1, response->load, 0, u, response->load);
+    memset(u, 0, n3 * sizeof *u);
+    cs_linear_solve(&response->linear, response->load, RTOL, u, &iterations, &residual);
     cs_temporary_pins_clear(&response->pins, pushed);
 }
 
@@ -141,7 +79,7 @@ static double find_rubbed(const struct cs_projection_energy *energy,
                           const double u[3]) {
     const size_t count = energy->system->view.n;
     const double *before = step->v, *after = step->corrected + 3 * count;
-    const double along = u[0] * n[0] + u[1] * n[1] + u[2] * n[2];
+    const double along = cs_vec3_dot(u, n);
     double sum = 0;
     for (size_t c = 0; c < 3; c++)
         sum += (after[c * count + i] - before[c * count + i]) * (u[c] - along * n[c]);
@@ -159,18 +97,14 @@ static double energy_with_collider_work(struct cs_projection_energy *energy,
             double p[3], from[3], normal[3], provenance[3], gap;
             if (!step->is_pushed[i])
                 continue;
-            for (size_t c = 0; c < 3; c++) {
-                p[c] = energy->work[c * n + i];
-                from[c] = step->before_step[c * n + i];
-            }
+            cs_point_read(energy->work, n, i, p);
+            cs_point_read(step->before_step, n, i, from);
             if (!cs_tunnelling_find(step->colliders_before + k, step->colliders + k, from, p,
                                     &gap, normal))
                 gap = cs_posed_collider_signed_distance(step->colliders + k, p, normal);
             cs_posed_collider_velocity(step->colliders + k, p, provenance);
             *rubbed += gap < 0 ? find_rubbed(energy, step, i, normal, provenance) : 0;
-            const double along =
-                step->dt * (provenance[0] * normal[0] + provenance[1] * normal[1] +
-                            provenance[2] * normal[2]);
+            const double along = step->dt * cs_vec3_dot(provenance, normal);
             for (size_t c = 0; c < 3 && gap < 0 && along > 0; c++)
                 energy->work[c * n + i] += fmin(along, -gap) * normal[c];
         }
@@ -351,7 +285,9 @@ bool cs_projection_energy_limit(struct cs_projection_energy *energy,
     struct cs_energy_with_scale found = energy_after(energy, step);
     if (found.total > energy_allowed(energy)) {
         const double allowed = find_allowed(energy, step);
-        if (found.total > allowed && response_is_needed(&energy->elastic_response, step->dt)) {
+        // a push without the neighbours may store more than the step brought if dt omega > 1
+        if (found.total > allowed && energy->elastic_response.linear.system &&
+            step->dt * energy->system->view.omega > 1) {
             apply_elastic_response(energy, step);
             found = energy_after(energy, step);
         }
@@ -380,6 +316,12 @@ enum cs_status cs_projection_energy_init(struct cs_projection_energy *energy,
     *energy =
         (struct cs_projection_energy){.system = system, .energy_scale = gravity_scale(system)};
     CS_ARENA_ARRAY(arena, energy->work, 3 * (size_t)system->view.n, error);
-    return error->status ? error->status
-                         : response_init(&energy->elastic_response, system, arena, error);
+    // nothing responds without springs
+    struct cs_elastic_response *response = &energy->elastic_response;
+    if (error->status || system->springs.n == 0)
+        return error->status;
+    CS_ARENA_ARRAY(arena, response->load, 3 * (size_t)system->view.n, error);
+    return cs_temporary_pins_init(&response->pins, system, arena, error)
+               ? error->status
+               : cs_linear_init(&response->linear, system, arena, error);
 }

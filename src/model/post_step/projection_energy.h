@@ -30,6 +30,7 @@ struct cs_elastic_response {
     struct cs_linear linear;
     /* pushed particles, so that the preconditioner knows them as pinned */
     struct cs_temporary_pins pins;
+    double *load; /* (3,n) N, what the pushes exert */
 };
 
 /* J: total energy, and the sum of the sizes of its parts, which scales rounding errors. */

@@ -19,8 +19,7 @@ static void check_candidate(const struct cs_system *system, const double *x,
     double p[4][3], inverse_mass = 0;
     for (size_t k = 0; k < 4; k++) {
         inverse_mass += cs_surface_points_inverse_mass(system, at[k]);
-        for (size_t c = 0; c < 3; c++)
-            p[k][c] = x[c * n + at[k]];
+        cs_point_read(x, n, at[k], p[k]);
     }
     if (cs_exact_distance_squared(kind, (const double(*)[3])p) > TOUCHING * TOUCHING ||
         inverse_mass == 0)
