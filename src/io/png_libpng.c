@@ -184,7 +184,8 @@ static void set_compression(png_structp png, int level) {
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_set_compression_level(png, level);
     png_set_compression_strategy(png, level <= 2 ? Z_RLE : Z_DEFAULT_STRATEGY);
-    png_set_compression_buffer_size(png, 1 << 18); // bytes of an IDAT chunk
+    png_set_compression_mem_level(png, level <= 2 ? 7 : 8); // runs need no table of matches
+    png_set_compression_buffer_size(png, 1 << 18);          // bytes of an IDAT chunk
 }
 
 static void add_texts(const struct job *job, const struct cs_png_text *texts,

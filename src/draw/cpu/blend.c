@@ -57,24 +57,14 @@ static void blend_line(const struct cs_thick_line *s, int y, int height,
     }
 }
 
-// packed colour of a value 0..1: linear between the six stops of the colour map
-static uint32_t ramp_colour(const struct cs_shading_context *context, float value) {
-    const float at = cs_clamp(value, 0, 1) * 5;
-    const int low = cs_min((int)at, 4);
-    const float *a = context->view->colour_stops[low],
-                *b = context->view->colour_stops[low + 1];
-    float c[3];
-    for (int k = 0; k < 3; k++)
-        c[k] = cs_clamp(a[k] + (b[k] - a[k]) * (at - (float)low), 0, 1);
-    return cs_srgb_pack(context->srgb, c[0], c[1], c[2]);
-}
-
 // blends a row of the colour bar: one colour, over the samples inside the rectangle
 static void blend_ramp(const struct cs_thick_lines *lines, const struct cs_thick_line *s, int y,
                        const struct cs_sample_pattern *pattern, struct cs_tile_buffer *tiles) {
     const size_t row = (size_t)(y - tiles->samples.top) * (size_t)tiles->samples.width;
-    const uint32_t colour =
-        ramp_colour(lines->shading, 1 - ((float)y + 0.5f - s->y) / s->direction[1]);
+    float c[3];
+    cs_ramp_colour(lines->shading, 1 - ((float)y + 0.5f - s->y) / s->direction[1], c);
+    const uint32_t colour = cs_srgb_pack(lines->shading->srgb, cs_clamp(c[0], 0, 1),
+                                         cs_clamp(c[1], 0, 1), cs_clamp(c[2], 0, 1));
     for (int x = s->left; x <= s->right; x++) {
         const cs_f8 dx = (float)x + __builtin_convertvector(pattern->x, cs_f8) / 256 - s->x;
         const cs_f8 dy = (float)y + __builtin_convertvector(pattern->y, cs_f8) / 256 - s->y;

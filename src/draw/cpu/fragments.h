@@ -79,6 +79,17 @@ CS_INLINE void cs_sky_colour(const struct cs_shading_context *shading, float y, 
     }
 }
 
+/* The linear colour of a value, limited to 0..1, between the six stops of the colour map. */
+CS_INLINE void cs_ramp_colour(const struct cs_shading_context *shading, float value,
+                              float c[3]) {
+    const float at = cs_clamp(value, 0, 1) * 5;
+    const int low = cs_min((int)at, 4);
+    const float *a = shading->view->colour_stops[low],
+                *b = shading->view->colour_stops[low + 1];
+    for (int k = 0; k < 3; k++)
+        c[k] = a[k] + (b[k] - a[k]) * (at - (float)low);
+}
+
 /* Direction of the ray through the middle of pixel (x, y): 1 m along it is 1 m along the view.
  * For parallel rays this is the offset of the origin from the eye. */
 CS_INLINE void cs_ray_direction(const struct cs_shading_context *shading, float x, float y,
@@ -88,16 +99,6 @@ CS_INLINE void cs_ray_direction(const struct cs_shading_context *shading, float 
     const float up = (1 - (y + 0.5f) * (2 / (float)shading->height)) * r->slope_y;
     for (int i = 0; i < 3; i++)
         d[i] = right * r->right[i] + up * r->up[i] - (r->parallel ? 0 : r->back[i]);
-}
-
-/* The point t m along the view on the ray through the middle of a pixel. */
-CS_INLINE void cs_ray_point(const struct cs_shading_context *shading, float x, float y, float t,
-                            float place[3]) {
-    const struct cs_rays *r = &shading->rays;
-    float d[3];
-    cs_ray_direction(shading, x, y, d);
-    for (int i = 0; i < 3; i++)
-        place[i] = r->parallel ? r->eye[i] + d[i] - t * r->back[i] : r->eye[i] + t * d[i];
 }
 
 #endif

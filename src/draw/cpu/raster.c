@@ -48,7 +48,7 @@ struct fill {
     struct cs_row_depth depth;
     const struct cs_sample_pattern *pattern;
     float least, most; // depth_min and depth_max of the triangle
-    int32_t id, bottom_row;
+    int32_t id;
 };
 
 // pixels of a row, both ends included; empty if left > right
@@ -70,14 +70,26 @@ CS_INLINE struct edges edges_of(const struct cs_triangle *t) {
     return e;
 }
 
+CS_INLINE struct fill fill_of(const struct cs_samples *samples, int32_t id,
+                              const struct cs_sample_pattern *pattern) {
+    const struct cs_triangle *t = samples->triangles + id;
+    struct fill fill = {.triangle = t,
+                        .edges = edges_of(t),
+                        .pattern = pattern,
+                        .least = t->depth_min,
+                        .most = t->depth_max,
+                        .id = id};
+    cs_row_depth_make(&fill.depth, t->depth, pattern);
+    return fill;
+}
+
 // depth test of the samples of a pixel inside a mask: nearness, not beyond that of the corners
 CS_INLINE void compare(const struct fill *fill, int x, int y, const cs_i8 *inside,
                        float *restrict depth, int32_t *restrict shown) {
-    const float least = fill->least, most = fill->most;
     cs_f8 z;
-    cs_row_depth_at(&fill->depth, x, fill->bottom_row - y, &z);
+    cs_row_depth_at(&fill->depth, x, fill->triangle->bottom_row - y, &z);
     CS_LANES for (int s = 0; s < CS_SAMPLES; s++) {
-        const float raised = z[s] < least ? least : z[s], near = raised > most ? most : raised;
+        const float near = cs_clamp(z[s], fill->least, fill->most);
         // a later triangle at equal depth replaces an earlier one
         const bool shows = ((*inside)[s] != 0) & (near >= depth[s]);
         depth[s] = shows ? near : depth[s];
@@ -85,48 +97,29 @@ CS_INLINE void compare(const struct fill *fill, int x, int y, const cs_i8 *insid
     }
 }
 
-CS_INLINE void fill_make(struct fill *fill, const struct cs_samples *samples, int32_t id,
-                         const struct cs_sample_pattern *pattern) {
-    const struct cs_triangle *t = samples->triangles + id;
-    fill->triangle = t;
-    fill->pattern = pattern;
-    fill->id = id;
-    fill->least = t->depth_min;
-    fill->most = t->depth_max;
-    fill->bottom_row = t->bottom_row;
-    cs_row_depth_make(&fill->depth, t->depth, pattern);
-}
-
-CS_INLINE void split(const struct cs_samples *samples, size_t at, int x, int y,
-                     const struct cs_sample_pattern *pattern) {
+CS_CLONES void cs_samples_split(const struct cs_samples *samples, size_t at, int x, int y,
+                                const struct cs_sample_pattern *pattern) {
     const int32_t id = samples->whole[at];
-    const cs_i8 all = (cs_i8){0} - 1;
-    struct fill fill;
+    if (id == CS_SPLIT)
+        return;
     samples->whole[at] = CS_SPLIT;
     samples->depth[at] = (cs_f8){0};
     samples->triangle_ids[at] = (cs_i8){0} + id;
     if (id == CS_NOTHING)
         return;
-    fill_make(&fill, samples, id, pattern);
+    const struct fill fill = fill_of(samples, id, pattern);
+    const cs_i8 all = (cs_i8){0} - 1;
     compare(&fill, x, y, &all, (float *)(samples->depth + at),
             (int32_t *)(samples->triangle_ids + at));
-}
-
-void cs_samples_split(const struct cs_samples *samples, size_t at, int x, int y,
-                      const struct cs_sample_pattern *pattern) {
-    if (samples->whole[at] != CS_SPLIT)
-        split(samples, at, x, y, pattern);
 }
 
 // puts the samples of pixel (x, y), number `at`, inside a mask
 CS_INLINE void put(const struct fill *fill, int x, int y, const cs_i8 *inside,
                    const struct cs_samples *samples, size_t at) {
-    if (samples->whole[at] != CS_SPLIT) {
-        const cs_i4 *half = (const cs_i4 *)inside, any = half[0] | half[1];
-        if (!(any[0] | any[1] | any[2] | any[3]))
-            return;
-        split(samples, at, x, y, fill->pattern);
-    }
+    const cs_i4 *half = (const cs_i4 *)inside, any = half[0] | half[1];
+    if (samples->whole[at] != CS_SPLIT && !(any[0] | any[1] | any[2] | any[3]))
+        return;
+    cs_samples_split(samples, at, x, y, fill->pattern);
     compare(fill, x, y, inside, (float *)(samples->depth + at),
             (int32_t *)(samples->triangle_ids + at));
 }
@@ -227,8 +220,7 @@ CS_INLINE void fill_large_row(const struct fill *fill, int y,
 CS_CLONES void cs_raster_fill(const struct cs_samples *samples, int32_t id,
                               const struct cs_sample_pattern *pattern) {
     const struct cs_triangle *t = samples->triangles + id;
-    struct fill fill = {.edges = edges_of(t)};
-    fill_make(&fill, samples, id, pattern);
+    const struct fill fill = fill_of(samples, id, pattern);
     const int top = cs_max(t->top, samples->top);
     const int bottom = cs_min(t->bottom, samples->top + samples->rows - 1);
     if (t->fits_32_bits)
@@ -237,47 +229,39 @@ CS_CLONES void cs_raster_fill(const struct cs_samples *samples, int32_t id,
         fill_large_row(&fill, y, samples);
 }
 
-// raises four neighbours of a map to z, limited to least..most, in the lanes of the mask
-CS_INLINE void raise_four(float *map, cs_i4 mask, cs_f4 z, float least, float most) {
-    CS_LANES for (int k = 0; k < 4; k++) {
-        const float raised = z[k] < least ? least : z[k], near = raised > most ? most : raised;
-        map[k] = (mask[k] != 0) & (near > map[k]) ? near : map[k];
-    }
-}
-
 CS_CLONES void cs_raster_raise(const struct cs_triangle *t, float *map, size_t stride, int top,
                                int rows) {
     const cs_i4 ramp = {0, 1, 2, 3};
-    const struct edges e = edges_of(t);
+    const struct edges e = edges_of(t), none = {0}, steps = t->fits_32_bits ? e : none;
     const struct cs_plane_equation depth = t->depth[0];
     const float least = t->depth_min, most = t->depth_max;
     const int first = cs_max(t->top, top), last = cs_min(t->bottom, top + rows - 1);
-    cs_i4 row[3] = {{0}};
-    int right[3] = {0}, below[3] = {0};
-    for (int k = 0; t->fits_32_bits && k < 3; k++) {
-        row[k] = e.dx[k] * (128 + first * 256 - t->y[k]) + e.bias[k] -
-                 e.dy[k] * ((ramp + t->left) * 256 + (128 - t->x[k]));
-        right[k] = -1024 * e.dy[k];
-        below[k] = 256 * e.dx[k];
-    }
+    cs_i4 row[3];
+    for (int k = 0; k < 3; k++)
+        row[k] = steps.dx[k] * (128 + first * 256 - t->y[k]) + steps.bias[k] -
+                 steps.dy[k] * ((ramp + t->left) * 256 + (128 - t->x[k]));
     for (int y = first; y <= last; y++) {
         const float rise = depth.d_dy * ((float)(t->bottom_row - y) + 0.5f);
-        float *at = map + (size_t)y * stride;
         // edges of a large triangle do not fit into the mask's 32 bits: its row is cut before
         const struct run run =
             t->fits_32_bits ? (struct run){t->left, t->right} : span(t, &e, 128, 128, y);
         cs_i4 inside[3] = {row[0], row[1], row[2]};
         for (int x = (int)run.left; x <= run.right; x += 4) {
+            float *at = map + (size_t)y * stride + x;
             const cs_i4 column = ramp + x;
             const cs_i4 mask =
                 (column <= (int)run.right) & ((inside[0] | inside[1] | inside[2]) >= 0);
             const cs_f4 middle = __builtin_convertvector(column, cs_f4) + 0.5f;
             const cs_f4 z = (depth.value + depth.d_dx * middle) + rise;
-            raise_four(at + x, mask, CS_DEPTH_STEPS - z * CS_DEPTH_STEPS, least, most);
+            CS_LANES for (int k = 0; k < 4; k++) {
+                const float near =
+                    cs_clamp(CS_DEPTH_STEPS - z[k] * CS_DEPTH_STEPS, least, most);
+                at[k] = (mask[k] != 0) & (near > at[k]) ? near : at[k];
+            }
             for (int k = 0; k < 3; k++)
-                inside[k] += right[k];
+                inside[k] -= 1024 * steps.dy[k];
         }
         for (int k = 0; k < 3; k++)
-            row[k] += below[k];
+            row[k] += 256 * steps.dx[k];
     }
 }

@@ -52,12 +52,13 @@ void cs_shading_material_make(struct cs_shading_material *material,
 // positions and view directions of parallel rays, whose view depth is stored
 static void find_parallel_places(const struct cs_shading_context *shading,
                                  const struct cs_fragments *f, struct cs_shading_work *w) {
+    const struct cs_rays *r = &shading->rays;
     for (int i = 0; i < N; i++) {
-        float place[3];
-        cs_ray_point(shading, f->x[i], f->y[i], f->view_depth[i], place);
+        float d[3];
+        cs_ray_direction(shading, f->x[i], f->y[i], d);
         for (int k = 0; k < 3; k++) {
-            w->place[k][i] = place[k];
-            w->view[k][i] = shading->rays.back[k];
+            w->view[k][i] = r->back[k];
+            w->place[k][i] = r->eye[k] + d[k] - f->view_depth[i] * r->back[k];
         }
     }
 }
@@ -265,13 +266,10 @@ static void shade_value(const struct cs_shading_context *shading, const struct c
                         struct cs_shading_work *w) {
     n_dot_view(w);
     for (int i = 0; i < N; i++) {
-        const float at = cs_clamp(f->attributes[3][i] / f->inverse[i], 0, 1) * 5;
-        const int low = cs_min((int)at, 4);
-        const float *a = shading->view->colour_stops[low],
-                    *b = shading->view->colour_stops[low + 1];
-        const float bright = 0.5f + 0.5f * w->share[i];
+        float c[3];
+        cs_ramp_colour(shading, f->attributes[3][i] / f->inverse[i], c);
         for (int k = 0; k < 3; k++)
-            w->colour[k][i] = (a[k] + (b[k] - a[k]) * (at - (float)low)) * bright;
+            w->colour[k][i] = c[k] * (0.5f + 0.5f * w->share[i]);
     }
 }
 

@@ -115,16 +115,17 @@ CS_INLINE cs_f4 weights(cs_f4 k, float at) {
     return (cs_f4)((near > 0) & (cs_i4)near);
 }
 
-/* The weighted fraction of lit texels. x, y: texels from the middle of the map's first; (bx,
- * by): first texel of the window. Four columns and two more are lanes; two lanes weigh 0. */
+/* The weighted fraction of lit texels. x, y: texels from the middle of the map's first;
+ * (column, line): first texel of the window. Four columns and two more are lanes; two lanes
+ * weigh 0. */
 CS_INLINE float window(const struct cs_shadow_map *map, float x, float y, float nearness,
-                       int bx, int by) {
+                       int column, int line) {
+    const int bx = column - CS_SHADOW_MAP_BORDER, by = line - CS_SHADOW_MAP_BORDER;
     const cs_f4 first = {0, 1, 2, 3}, then = {4, 5, 6, 7};
     const cs_f4 across = weights(first, x - (float)bx), down = weights(first, y - (float)by);
     const cs_f4 across_last = weights(then, x - (float)bx);
     const cs_f4 down_last = weights(then, y - (float)by);
-    const float *row = map->depth + (size_t)(by + CS_SHADOW_MAP_BORDER) * CS_SHADOW_MAP_STRIDE +
-                       (size_t)(bx + CS_SHADOW_MAP_BORDER);
+    const float *row = map->depth + (size_t)line * CS_SHADOW_MAP_STRIDE + (size_t)column;
     cs_f4 sum = {0};
     for (int r = 0; r < 6; r++, row += CS_SHADOW_MAP_STRIDE) {
         const float weight = r < 4 ? down[r] : down_last[r - 4];
@@ -134,23 +135,6 @@ CS_INLINE float window(const struct cs_shadow_map *map, float x, float y, float 
         sum += (cs_f4)((last <= nearness) & (cs_i4)across_last) * weight;
     }
     return ((sum[0] + sum[1]) + (sum[2] + sum[3])) / 81;
-}
-
-/* The lit fraction at a texel position; beyond the map all is lit. */
-CS_INLINE float sample_block(const struct cs_shadow_map *map, float x, float y,
-                             float nearness) {
-    const float side = CS_SHADOW_SIDE;
-    if (!(x >= -0.5f && y >= -0.5f && x <= side - 0.5f && y <= side - 0.5f))
-        return 1;
-    // rounded down: 4 texels are added so that the number is positive
-    const int bx = (int)(x - 2 + 4) - 4, by = (int)(y - 2 + 4) - 4;
-    const size_t block = (size_t)((by + CS_SHADOW_MAP_BORDER) >> 1) * HALF +
-                         (size_t)((bx + CS_SHADOW_MAP_BORDER) >> 1);
-    if (map->max_8x8[block] <= nearness)
-        return 1;
-    if (map->min_8x8[block] > nearness)
-        return 0;
-    return window(map, x, y, nearness, bx, by);
 }
 
 /* Moves the positions from..from + n off their surfaces and projects them: out[0], out[1] in
@@ -182,10 +166,17 @@ CS_INLINE void project(const struct cs_shadow_map *map, const struct cs_shadow_q
         slant[i] = w;
     }
     for (int i = 0; i < n; i++) {
-        // behind the lamp there is no shadow: beyond the map
-        out[0][i] = slant[i] > 0 ? out[0][i] : -2;
+        // beyond the map and behind the lamp there is no shadow: the first, empty block
+        const float x = out[0][i], y = out[1][i], last = side - 0.5f;
+        const bool inside =
+            (slant[i] > 0) & (x >= -0.5f) & (y >= -0.5f) & (x <= last) & (y <= last);
+        out[0][i] = inside ? x : 2 - CS_SHADOW_MAP_BORDER;
+        out[1][i] = inside ? y : 2 - CS_SHADOW_MAP_BORDER;
+    }
+    for (int i = 0; i < n; i++) {
         // what lies farther away than all that casts shadow still catches it
-        out[2][i] = out[2][i] > 0 ? out[2][i] : 0;
+        const float near = out[2][i] > 0 ? out[2][i] : 0;
+        out[2][i] = query->n_dot_l[from + i] > 0 ? near : -1;
     }
 }
 
@@ -194,11 +185,21 @@ CS_CLONES static void sample_block_bounds(const struct cs_shadow_map *map,
                                           const struct cs_shadow_query *query, int from,
                                           int n) {
     float at[3][BLOCK];
+    int32_t texel[2][BLOCK], block[BLOCK];
     project(map, query, from, n, at);
+    // rounded down: 4 texels are added so that the number is positive
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < n; i++)
+            texel[k][i] = (int32_t)(at[k][i] - 2 + 4) + CS_SHADOW_MAP_BORDER - 4;
+    for (int i = 0; i < n; i++)
+        block[i] = (texel[1][i] >> 1) * HALF + (texel[0][i] >> 1);
     for (int i = 0; i < n; i++) {
-        const bool lit_side = query->n_dot_l[from + i] > 0;
+        const float near = at[2][i];
         query->visibility[from + i] =
-            lit_side ? sample_block(map, at[0][i], at[1][i], at[2][i]) : 0;
+            map->max_8x8[block[i]] <= near ? 1
+            : map->min_8x8[block[i]] > near
+                ? 0
+                : window(map, at[0][i], at[1][i], near, texel[0][i], texel[1][i]);
     }
 }
 
