@@ -93,10 +93,10 @@ enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system
                                                : init_creases(mesh, arena, error);
 }
 
-/* Normal of a triangle of particles, as long as twice its area. */
+/* Corners and normal of a triangle of particles, as long as twice its area. */
 static void triangle_normal(const struct cs_mesh *mesh, uint32_t n, const double *x,
-                            const uint32_t *corner, double normal[3]) {
-    double p[3][3], along[3], across[3];
+                            const uint32_t *corner, double p[3][3], double normal[3]) {
+    double along[3], across[3];
     for (int i = 0; i < 3; i++)
         cs_mesh_position(n, x, mesh->range.first + corner[i], p[i]);
     cs_subtract(p[1], p[0], along);
@@ -119,25 +119,19 @@ static void set_vertex(struct cs_vertex *vertex, const double place[3], const do
     vertex->value = (float)value;
 }
 
-/* Sums the vectors from each particle to its neighbours, and their squares, over triangles: an
- * inner edge counts twice, which cancels in groove_slope. */
-static void sum_neighbour_offsets(const struct cs_mesh *mesh, uint32_t n, const double *x) {
-    memset(mesh->neighbour_sums, 0, 4 * sizeof *mesh->neighbour_sums * mesh->range.count);
-    for (uint32_t k = 0; k < mesh->n_indices; k += 3) {
-        double p[3][3];
-        for (uint32_t c = 0; c < 3; c++)
-            cs_mesh_position(n, x, mesh->range.first + mesh->indices[k + c], p[c]);
-        // each side of the triangle is a way for both of its ends
-        for (uint32_t c = 0; c < 3; c++) {
-            double *from = mesh->neighbour_sums + 4 * (size_t)mesh->indices[k + c];
-            double *to = mesh->neighbour_sums + 4 * (size_t)mesh->indices[k + (c + 1) % 3];
-            for (int i = 0; i < 3; i++) {
-                const double way = p[(c + 1) % 3][i] - p[c][i];
-                from[i] += way;
-                to[i] -= way;
-                from[3] += way * way;
-                to[3] += way * way;
-            }
+/* Sums the vectors from each particle to its neighbours, and their squares, over the sides of a
+ * triangle: an inner edge counts twice, which cancels in groove_slope. */
+static void add_sides(const struct cs_mesh *mesh, const uint32_t *corner, double p[3][3]) {
+    // each side of the triangle is a way for both of its ends
+    for (uint32_t c = 0; c < 3; c++) {
+        double *from = mesh->neighbour_sums + 4 * (size_t)corner[c];
+        double *to = mesh->neighbour_sums + 4 * (size_t)corner[(c + 1) % 3];
+        for (int i = 0; i < 3; i++) {
+            const double way = p[(c + 1) % 3][i] - p[c][i];
+            from[i] += way;
+            to[i] -= way;
+            from[3] += way * way;
+            to[3] += way * way;
         }
     }
 }
@@ -161,12 +155,16 @@ static double scaled(const double *values, uint32_t i, const double range[2]) {
     return t > 1 ? 1 : t > 0 ? t : 0;
 }
 
-/* Sums the normals of the triangles at each particle. */
+/* Sums the normals of the triangles at each particle, and the sides for its curvature. */
 static void sum_normals(struct cs_mesh *mesh, uint32_t n, const double *x) {
     memset(mesh->normals, 0, 3 * sizeof *mesh->normals * mesh->range.count);
+    if (mesh->has_curvature)
+        memset(mesh->neighbour_sums, 0, 4 * sizeof *mesh->neighbour_sums * mesh->range.count);
     for (uint32_t k = 0; k < mesh->n_indices; k += 3) {
-        double normal[3];
-        triangle_normal(mesh, n, x, mesh->indices + k, normal);
+        double p[3][3], normal[3];
+        triangle_normal(mesh, n, x, mesh->indices + k, p, normal);
+        if (mesh->has_curvature)
+            add_sides(mesh, mesh->indices + k, p);
         for (uint32_t corner = 0; corner < 3; corner++)
             for (uint32_t i = 0; i < 3; i++)
                 mesh->normals[3 * mesh->indices[k + corner] + i] += normal[i];
@@ -177,9 +175,10 @@ static void sum_normals(struct cs_mesh *mesh, uint32_t n, const double *x) {
  */
 static void sum_creased(struct cs_mesh *mesh, uint32_t n, const double *x) {
     const struct cs_trimesh *box = mesh->range.mesh;
+    double p[3][3];
     memset(mesh->normals, 0, 3 * sizeof *mesh->normals * mesh->n_indices);
     for (uint32_t k = 0; k < mesh->n_indices; k += 3)
-        triangle_normal(mesh, n, x, mesh->indices + k, mesh->face_normals + k);
+        triangle_normal(mesh, n, x, mesh->indices + k, p, mesh->face_normals + k);
     for (uint32_t k = 0; k < mesh->n_indices; k++) {
         const uint32_t vertex = mesh->indices[k];
         for (uint32_t a = vertex ? box->vertex_triangles_end[vertex - 1] : 0;
@@ -193,20 +192,18 @@ static void sum_creased(struct cs_mesh *mesh, uint32_t n, const double *x) {
 
 void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const struct cs_frame *frame) {
     const double *x = frame->x;
-    double normal[3];
+    double p[3][3], normal[3];
     if (mesh->has_creases)
         sum_creased(mesh, n, x);
     else if (!mesh->flat_shading)
         sum_normals(mesh, n, x);
-    if (mesh->has_curvature)
-        sum_neighbour_offsets(mesh, n, x);
     for (uint32_t k = 0; k < mesh->n_vertices; k++) {
         const uint32_t i = mesh->split_vertices ? mesh->indices[k] : k,
                        particle = mesh->range.first + i;
         double place[3];
         cs_mesh_position(n, x, particle, place);
         if (mesh->flat_shading && k % 3 == 0)
-            triangle_normal(mesh, n, x, mesh->indices + k, normal);
+            triangle_normal(mesh, n, x, mesh->indices + k, p, normal);
         set_vertex(mesh->vertices + k, place,
                    mesh->flat_shading ? normal
                                       : mesh->normals + 3 * (size_t)(mesh->has_creases ? k : i),

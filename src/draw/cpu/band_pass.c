@@ -7,13 +7,8 @@
 #include <string.h>
 
 void cs_band_pass_bin(struct cs_band_pass *pass) {
-    const struct cs_triangles *all = &pass->triangles;
-    cs_bins_clear(&pass->bins);
-    for (size_t i = 0; i < all->n; i++)
-        cs_bins_count(&pass->bins, all->items[i].top, all->items[i].bottom);
-    cs_bins_begin_put(&pass->bins);
-    for (size_t i = 0; i < all->n; i++)
-        cs_bins_put(&pass->bins, (uint32_t)i, all->items[i].top, all->items[i].bottom);
+    cs_bins_sort(&pass->bins, pass->triangles.items, sizeof *pass->triangles.items,
+                 offsetof(struct cs_triangle, top), pass->triangles.n);
 }
 
 static float value_at(const struct cs_plane_equation *slope, float x, float y) {

@@ -117,17 +117,16 @@ CS_CLONES void cs_shade_pattern(const struct cs_shading_context *shading,
     }
 }
 
-/* Fills lit->visibility with the fraction of the diffuse light of all lights. */
-static void find_lit_fraction(const struct cs_shading_context *shading,
-                              const struct cs_shadow_query *lit) {
+/* Fills `share` with the fraction of the diffuse light of all lights. */
+static void find_lit_fraction(const struct cs_shading_context *shading, int n,
+                              struct cs_shading_work *w) {
     float one[N];
-    struct cs_shadow_query query = *lit;
-    query.visibility = one;
+    const struct cs_shadow_query query = cs_shading_query(w, one, n);
     for (int l = 0; l < (int)shading->view->size[3]; l++) {
         const float fraction = shading->view->lights[l].shadow_params[3];
         cs_shadow_map_sample(shading->shadow_maps + l, &query);
-        for (int i = 0; i < lit->n; i++)
-            lit->visibility[i] = (l ? lit->visibility[i] : 0) + fraction * one[i];
+        for (int i = 0; i < n; i++)
+            w->share[i] = (l ? w->share[i] : 0) + fraction * one[i];
     }
 }
 
@@ -136,12 +135,7 @@ void cs_shade_shadows(const struct cs_shading_context *shading, const struct cs_
     const struct cs_ground_style *ground = &f->material->ground;
     for (int i = 0; i < N; i++)
         w->facing[i] = 1;
-    const struct cs_shadow_query query = {.positions = {w->place[0], w->place[1], w->place[2]},
-                                          .normals = {w->normal[0], w->normal[1], w->normal[2]},
-                                          .n_dot_l = w->facing,
-                                          .visibility = w->share,
-                                          .n = f->n};
-    find_lit_fraction(shading, &query);
+    find_lit_fraction(shading, f->n, w);
     for (int i = 0; i < f->n; i++) {
         const float dark = ground->shadow * (1 - w->share[i]);
         w->cover[i] = dark + (1 - dark) * w->cover[i];

@@ -56,6 +56,16 @@ struct cs_shading_work {
         colour[3][CS_FRAGMENTS], cover[CS_FRAGMENTS];
 };
 
+/* The shadow at the first n fragments. */
+CS_INLINE struct cs_shadow_query cs_shading_query(const struct cs_shading_work *w,
+                                                  float *visibility, int n) {
+    return (struct cs_shadow_query){.positions = {w->place[0], w->place[1], w->place[2]},
+                                    .normals = {w->normal[0], w->normal[1], w->normal[2]},
+                                    .n_dot_l = w->facing,
+                                    .visibility = visibility,
+                                    .n = n};
+}
+
 /* Changes the base colours of the ground by its pattern, which is left in `cover`. */
 void cs_shade_pattern(const struct cs_shading_context *shading,
                       const struct cs_fragments *fragments, struct cs_shading_work *work);

@@ -116,10 +116,12 @@ CS_CLONES void cs_samples_split(const struct cs_samples *samples, size_t at, int
 // puts the samples of pixel (x, y), number `at`, inside a mask
 CS_INLINE void put(const struct fill *fill, int x, int y, const cs_i8 *inside,
                    const struct cs_samples *samples, size_t at) {
-    const cs_i4 *half = (const cs_i4 *)inside, any = half[0] | half[1];
-    if (samples->whole[at] != CS_SPLIT && !(any[0] | any[1] | any[2] | any[3]))
-        return;
-    cs_samples_split(samples, at, x, y, fill->pattern);
+    if (samples->whole[at] != CS_SPLIT) {
+        const cs_i4 *half = (const cs_i4 *)inside, any = half[0] | half[1];
+        if (!(any[0] | any[1] | any[2] | any[3]))
+            return;
+        cs_samples_split(samples, at, x, y, fill->pattern);
+    }
     compare(fill, x, y, inside, (float *)(samples->depth + at),
             (int32_t *)(samples->triangle_ids + at));
 }
@@ -176,7 +178,8 @@ CS_INLINE struct run span(const struct cs_triangle *t, const struct edges *e, in
             run.left = first > run.left ? first : run.left;
         }
     }
-    return run;
+    // none: beyond both bounds of the triangle
+    return run.left > run.right ? (struct run){t->right + 1, t->left - 1} : run;
 }
 
 // fills a row of a large triangle between the outermost bounds of the samples
@@ -189,16 +192,15 @@ CS_INLINE void fill_large_row(const struct fill *fill, int y,
     int from = t->right + 1, to = t->left - 1;
     int first = t->left, last = t->right;
     cs_f8 ends[2];
-    // each sample has a row of its own; 1..0 where none of it lies inside
+    // each sample has a row of its own
     for (int s = 0; s < CS_SAMPLES; s++) {
         const struct run run = span(t, &fill->edges, pattern->x[s], pattern->y[s], y);
-        const bool some = run.left <= run.right;
-        left[s] = some ? (int)run.left : 1;
-        right[s] = some ? (int)run.right : 0;
-        from = some ? cs_min(from, (int)run.left) : from;
-        to = some ? cs_max(to, (int)run.right) : to;
-        first = cs_max(first, some ? (int)run.left : t->right + 1);
-        last = cs_min(last, (int)run.right);
+        left[s] = (int)run.left;
+        right[s] = (int)run.right;
+        from = cs_min(from, left[s]);
+        to = cs_max(to, right[s]);
+        first = cs_max(first, left[s]);
+        last = cs_min(last, right[s]);
     }
     // pixels first..last, of which all samples are inside, show it unless it is too far
     cs_row_depth_at(&fill->depth, first, t->bottom_row - y, ends);

@@ -191,11 +191,7 @@ CS_INLINE void add_light(const struct cs_shading_context *shading, int l,
     const struct cs_shading_material *material = f->material;
     const struct cs_view_light *light = shading->view->lights + l;
     find_light(light->place, w);
-    const struct cs_shadow_query query = {.positions = {w->place[0], w->place[1], w->place[2]},
-                                          .normals = {w->normal[0], w->normal[1], w->normal[2]},
-                                          .n_dot_l = w->facing,
-                                          .visibility = w->share,
-                                          .n = f->n};
+    const struct cs_shadow_query query = cs_shading_query(w, w->share, f->n);
     cs_shadow_map_sample(shading->shadow_maps + l, &query);
     for (int i = f->n; i < N; i++)
         w->share[i] = 0;

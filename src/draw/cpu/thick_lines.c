@@ -195,12 +195,8 @@ enum cs_status cs_thick_lines_init(struct cs_thick_lines *lines,
 }
 
 void cs_thick_lines_bin(struct cs_thick_lines *lines) {
-    cs_bins_clear(&lines->bins);
-    for (size_t i = 0; i < lines->n; i++)
-        cs_bins_count(&lines->bins, lines->items[i].top, lines->items[i].bottom);
-    cs_bins_begin_put(&lines->bins);
-    for (size_t i = 0; i < lines->n; i++)
-        cs_bins_put(&lines->bins, (uint32_t)i, lines->items[i].top, lines->items[i].bottom);
+    cs_bins_sort(&lines->bins, lines->items, sizeof *lines->items,
+                 offsetof(struct cs_thick_line, top), lines->n);
 }
 
 void cs_thick_lines_finish(struct cs_thick_lines *lines) {
@@ -218,17 +214,12 @@ enum cs_status cs_bins_init(struct cs_bins *bins, int height, struct cs_error *e
                            : cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
 }
 
-void cs_bins_clear(struct cs_bins *bins) {
-    memset(bins->band_ends, 0, (bins->bands + 1) * sizeof *bins->band_ends);
-}
-
 /* band_ends[b + 1] holds the count of band b. A running sum makes band_ends[b] the start of its
  * list; putting moves it to the end. */
-void cs_bins_begin_put(struct cs_bins *bins) {
+static void begin_put(struct cs_bins *bins) {
     for (uint32_t band = 0; band < bins->bands; band++)
         bins->band_ends[band + 1] += bins->band_ends[band];
     const size_t n = bins->band_ends[bins->bands];
-    bins->failed = false;
     if (n <= bins->capacity)
         return;
     free(bins->list);
@@ -237,6 +228,23 @@ void cs_bins_begin_put(struct cs_bins *bins) {
     bins->failed = !bins->list;
     if (bins->failed)
         bins->capacity = 0;
+}
+
+void cs_bins_sort(struct cs_bins *bins, const void *items, size_t size, size_t rows, size_t n) {
+    memset(bins->band_ends, 0, (bins->bands + 1) * sizeof *bins->band_ends);
+    bins->failed = false;
+    for (int pass = 0; pass < 2 && !bins->failed; pass++) {
+        for (size_t i = 0; i < n; i++) {
+            const int *row = (const int *)(const void *)((const char *)items + i * size + rows);
+            for (int band = row[0] / CS_ROWS; band <= row[1] / CS_ROWS; band++)
+                if (pass)
+                    bins->list[bins->band_ends[band]++] = (uint32_t)i;
+                else
+                    bins->band_ends[band + 1]++;
+        }
+        if (!pass)
+            begin_put(bins);
+    }
 }
 
 void cs_bins_finish(struct cs_bins *bins) {

@@ -67,8 +67,8 @@ void cs_tile_buffer_resolve(const struct cs_tile_buffer *tiles, const struct cs_
 
 /* Lists of the items that touch each band of CS_ROWS rows, in their order.
  *
- * A counting sort: all items are counted, cs_bins_begin_put makes room, then all are put in the
- * same order. An item is listed in each band that it touches. */
+ * A counting sort: all items are counted, room is made, then all are put in the same order. An
+ * item is listed in each band that it touches. */
 
 /* Lists of all bands in one block of memory. */
 struct cs_bins {
@@ -83,23 +83,9 @@ struct cs_bins {
  * CS_ERR_MEMORY. */
 enum cs_status cs_bins_init(struct cs_bins *bins, int height, struct cs_error *error);
 
-/* Sets all counts to 0. */
-void cs_bins_clear(struct cs_bins *bins);
-
-/* Counts an item in rows top..bottom of the picture. */
-CS_INLINE void cs_bins_count(struct cs_bins *bins, int top, int bottom) {
-    for (int band = top / CS_ROWS; band <= bottom / CS_ROWS; band++)
-        bins->band_ends[band + 1]++;
-}
-
-/* Turns counts into the starts of the lists; call it after the last count. */
-void cs_bins_begin_put(struct cs_bins *bins);
-
-/* Puts item number `item`, which was counted with the same rows. */
-CS_INLINE void cs_bins_put(struct cs_bins *bins, uint32_t item, int top, int bottom) {
-    for (int band = top / CS_ROWS; band <= bottom / CS_ROWS && !bins->failed; band++)
-        bins->list[bins->band_ends[band]++] = item;
-}
+/* Lists n items of `size` bytes each, at whose byte `rows` their first and their last row in
+ * the picture stand, as two int. */
+void cs_bins_sort(struct cs_bins *bins, const void *items, size_t size, size_t rows, size_t n);
 
 /* Returns the *n items of a band; NULL if there are none. */
 CS_INLINE const uint32_t *cs_bins_of(const struct cs_bins *bins, uint32_t band, size_t *n) {

@@ -168,11 +168,9 @@ struct frame {
     double dx[2], dy[2], across, down;
 };
 
-// nearest point of the grid; rounded down, so that ties are alike on both sides of 0
+// nearest point of the grid; floor instead of a cast keeps ties alike on both sides of 0
 static int32_t snap(double pixel) {
-    const double at = pixel * 256 + 0.5;
-    const int32_t whole = (int32_t)at;
-    return whole - (at < whole);
+    return (int32_t)floor(pixel * 256 + 0.5);
 }
 
 /* The plane through the values a, b, c of the three corners. Cramer's rule for
