@@ -138,7 +138,7 @@ CS_INLINE void add_mixed(const struct cs_band_pass *pass, const int32_t *shown,
             add_fragments(pass, pass->triangles.items + things[k], spot, first + k, tiles);
 }
 
-// what all samples of a pixel show, or CS_SPLIT
+// the triangle that all samples of a pixel show, CS_NOTHING, or CS_SPLIT
 CS_INLINE int32_t shown_by_all(const struct cs_samples *samples, size_t pixel) {
     if (samples->whole[pixel] != CS_SPLIT)
         return samples->whole[pixel];

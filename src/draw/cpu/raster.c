@@ -258,7 +258,7 @@ CS_CLONES void cs_raster_raise(const struct cs_triangle *t, float *map, size_t s
             CS_LANES for (int k = 0; k < 4; k++) {
                 const float near =
                     cs_clamp(CS_DEPTH_STEPS - z[k] * CS_DEPTH_STEPS, least, most);
-                at[k] = (mask[k] != 0) & (near > at[k]) ? near : at[k];
+                at[k] = ((mask[k] != 0) & (near > at[k])) ? near : at[k];
             }
             for (int k = 0; k < 3; k++)
                 inside[k] -= 1024 * steps.dy[k];
