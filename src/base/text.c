@@ -41,7 +41,9 @@ void cs_text_add_bytes(struct cs_text *text, const void *bytes, size_t length) {
 }
 
 void cs_print_real(double value, char digits[CS_REAL_DIGITS]) {
-    int precision = 0, before_point = 1;
+    // fewer digits give the value back only if 15 do: decimals of so many are further apart
+    snprintf(digits, CS_REAL_DIGITS, "%.15g", value);
+    int precision = strtod(digits, NULL) == value ? 0 : 15, before_point = 1;
     do
         snprintf(digits, CS_REAL_DIGITS, "%.*g", ++precision, value);
     while (precision < 17 && strtod(digits, NULL) != value);
