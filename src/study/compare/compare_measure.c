@@ -185,7 +185,8 @@ static const struct norm {
     [CS_NORM_END] = {"error", "m", offsetof(struct cs_cell, error), true},
     [CS_NORM_PATH] = {"path error", "m", offsetof(struct cs_cell, path_error), true},
     [CS_NORM_LARGEST] = {"largest error", "m", offsetof(struct cs_cell, max_error), true},
-    [CS_NORM_VELOCITY] = {"velocity error", "m/s", offsetof(struct cs_cell, velocity_error), true},
+    [CS_NORM_VELOCITY] = {"velocity error", "m/s", offsetof(struct cs_cell, velocity_error),
+                          true},
     [CS_NORM_ENERGY] = {"energy error", "", offsetof(struct cs_cell, energy_error), false},
 };
 

@@ -39,8 +39,8 @@ bool cs_choice_is_ranked(const struct cs_cell *cell, const struct cs_choice *cho
 double cs_choice_error(const struct cs_cell *cell, const struct cs_choice *choice) {
     const struct cs_cell_list *list = &choice->compare->cells;
     double low, high;
-    const double error = cs_cell_typical(list->cells, list->n, cell,
-                                         cs_norm_column(choice->norm), &low, &high);
+    const double error =
+        cs_cell_typical(list->cells, list->n, cell, cs_norm_column(choice->norm), &low, &high);
     return cs_norm_bounded(choice->norm, error, &choice->compare->reference);
 }
 
