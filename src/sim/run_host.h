@@ -208,7 +208,7 @@ static inline void cs_host_state_at(struct cs_run_host *host, double t, const do
 }
 
 /* True if the method takes explicit steps without error control: friction of contact limits
- * them up to CS_FRICTION_RATE_RATIO only. */
+ * them only so far (CS_FRICTION_IMPACT_RATIO). */
 static inline bool cs_host_is_explicit(const struct cs_run_host *host) {
     return !(host->run->integrator->traits & (CS_IMPLICIT | CS_ADAPTIVE));
 }

@@ -269,7 +269,7 @@ static void throw_obliquely(const char *method, double friction, double phase, d
  * 3 - 4 mu along the floor. */
 TEST(impacts_lose_what_friction_takes) {
     static const double frictions[] = {0, 0.1, 0.3, 0.6, 1};
-    // the last ones do not resolve friction (CS_FRICTION_RATE_RATIO)
+    // the last ones do not resolve friction (CS_FRICTION_IMPACT_RATIO)
     enum { RESOLVED = 4 };
     static const char *const methods[] = {"implicit-linearised",
                                           "implicit-linearised:dt=0.004",

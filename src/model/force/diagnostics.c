@@ -5,6 +5,7 @@
 #include "model/force/terms.h"
 #include "scene/body_keys.h"
 #include "scene/contact_keys.h"
+#include "scene/force_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -225,11 +226,15 @@ bool cs_spectral_bounds_can_jump(const struct cs_system *system) {
 /* Takes friction as far as it limits the step of an explicit method. sums: of contact alone,
  * where a damper has contact.damping times the stiffness, and friction the rest. */
 static void limit_friction(const struct cs_system *system, const struct cs_gershgorin *sums) {
-    const double tau = system->scene->contact->damping;
+    const struct cs_contact_keys *contact = system->scene->contact;
+    const double *g = system->scene->forces->gravity;
+    const double weight = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]),
+                 rest = CS_FRICTION_REST_LOADS * weight / contact->friction_speed;
     for (size_t i = 0; i < system->view.n; i++) {
-        const double k = sums->stiffness[i];
-        const double most = tau * k + CS_FRICTION_RATE_RATIO * sqrt(k * system->mass[i]);
-        sums->damping[i] = fmin(sums->damping[i], most);
+        const double k = sums->stiffness[i], root = sqrt(k * system->mass[i]);
+        const double most = fmax(CS_FRICTION_IMPACT_RATIO * root,
+                                 fmin(CS_FRICTION_RATE_RATIO * root, rest * system->mass[i]));
+        sums->damping[i] = fmin(sums->damping[i], contact->damping * k + most);
     }
 }
 

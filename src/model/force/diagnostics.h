@@ -88,17 +88,18 @@ void cs_diagnostics_range(const double *values, uint32_t n, double range[2]);
 void cs_spectral_bounds_at(const struct cs_system *system, const struct cs_eval *at,
                            double *work, double *omega, double *delta);
 
-/* Friction of contact limits the step of an explicit method only up to this ratio of its
- * damping rate r = mu N/(m ev) to the frequency w = sqrt(K/m) of the contact.
+/* Friction of contact limits the step of an explicit method only up to a ratio of its damping
+ * rate r = mu N/(m ev) to the frequency w = sqrt(K/m) of the contact.
  *
  * The force is at most mu N, so a longer step h is stable: a particle chatters by mu N h/(2 m).
- * With r limited to 64 w, h is at most 2/(64 w). The barrier law has N/(m w) = F/sqrt(K m) <=
+ * With r limited to R w, h is at most 2/(R w). The barrier law has N/(m w) = F/sqrt(K m) <=
  * sqrt(4 psi/(3 m)), and psi is at most the energy m u^2/2 of an impact at the speed u. The
- * chatter is thus at most 0.013 mu u, and its energy 2e-4 mu^2 of that of the impact. Two
- * sheets of scenes/hard/clash.json, 12 x 12, at 10 m/s each: velocity-verlet takes 1134 steps
- * for the first two frames, and 3603 with 256; without a limit it finds no step that is long
- * enough. */
-#define CS_FRICTION_RATE_RATIO 64.0
+ * chatter is thus at most 0.82 mu u/R, and its energy (0.82 mu/R)^2 of that of the impact:
+ * 0.034 mu u and 1.2e-3 mu^2 with the ratio of impacts. Rest is followed further, up to 4 g/ev
+ * within the second ratio: under the load of n weights the chatter is mu n ev/8 at most. */
+#define CS_FRICTION_IMPACT_RATIO 24.0
+#define CS_FRICTION_RATE_RATIO   64.0
+#define CS_FRICTION_REST_LOADS   4.0
 
 /* The view's bounds, increased by those of forces that have bounds only at a state
  * (add_state_bound without add_bound in struct cs_term), such as contact. With forces that have
