@@ -5,7 +5,7 @@
 
 #include "session/session.h"
 
-enum { MEETING_OVERRIDES = 6 };
+enum { MEETING_OVERRIDES = 10 };
 
 /* A scene of the folder with some keys changed, and a method; NULL: the scene's own. */
 struct meeting {

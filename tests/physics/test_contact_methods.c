@@ -41,36 +41,43 @@ static const struct meeting scenes[] = {
     {.scene = "reef_knot", .frames = 120},
 };
 
-/* Those in which contact is fast, thin or sharp, by methods at their defaults. */
+/* Those in which contact is fast, thin or sharp, at 40 x 40, by methods at their defaults. */
 static const struct {
     const char *name;
-    double budget; /* s of processor time a scene; 0: the method must end */
-} hard_methods[] = {{"implicit-linearised", 0},
-                    {"backward-euler", 20},
-                    {"newmark", 20},
-                    {"velocity-verlet", 20},
-                    {"cvode-bdf", 20}};
+    double budget; /* s of work a scene; 0: the method must end */
+} hard_methods[] = {{"implicit-linearised:dt=frame", 0},
+                    {"backward-euler:dt=frame", 60},
+                    {"newmark:dt=frame", 60},
+                    {"velocity-verlet", 60},
+                    {"cvode-bdf", 60}};
+#define HARD_GRID MEETING_GRID(40, 40)
 static const struct meeting hard[] = {
     {.scene = "hard/star", .frames = 120},
     {.scene = "hard/needles", .frames = 120},
     {.scene = "hard/ring", .frames = 120},
-    {.scene = "hard/clash", .frames = 60},
-    {.scene = "hard/crash", .frames = 60},
-    {.scene = "hard/bullet", .frames = 60},
+    {.scene = "hard/clash", .frames = 60, .overrides = {HARD_GRID, MEETING_GRID_OF(1, 40, 40)}},
+    {.scene = "hard/crash", .frames = 60, .overrides = {HARD_GRID, MEETING_GRID_OF(1, 40, 40)}},
+    {.scene = "hard/bullet", .frames = 60, .overrides = {HARD_GRID}},
     {.scene = "hard/roller", .frames = 180},
     {.scene = "hard/tube", .frames = 120},
     {.scene = "hard/pull", .frames = 90},
     // no number of the program was chosen by these
-    {.scene = "hard/corner", .frames = 60},
-    {.scene = "hard/wires", .frames = 60},
-    {.scene = "hard/press", .frames = 40},
-    {.scene = "hard/whip", .frames = 40},
-    {.scene = "hard/stack", .frames = 60},
-    {.scene = "hard/hammock", .frames = 60},
-    {.scene = "hard/knife", .frames = 40},
+    {.scene = "hard/corner", .frames = 60, .overrides = {HARD_GRID}},
+    {.scene = "hard/wires", .frames = 60, .overrides = {HARD_GRID}},
+    {.scene = "hard/press", .frames = 40, .overrides = {HARD_GRID}},
+    {.scene = "hard/whip", .frames = 40, .overrides = {HARD_GRID}},
+    {.scene = "hard/stack",
+     .frames = 60,
+     .overrides = {HARD_GRID, MEETING_GRID_OF(1, 40, 40), MEETING_GRID_OF(2, 40, 40),
+                   MEETING_GRID_OF(3, 40, 40), MEETING_GRID_OF(4, 40, 40),
+                   MEETING_GRID_OF(5, 40, 40), MEETING_GRID_OF(6, 40, 40),
+                   MEETING_GRID_OF(7, 40, 40), MEETING_GRID_OF(8, 40, 40),
+                   MEETING_GRID_OF(9, 40, 40)}},
+    {.scene = "hard/hammock", .frames = 60, .overrides = {HARD_GRID}},
+    {.scene = "hard/knife", .frames = 40, .overrides = {HARD_GRID}},
     {.scene = "hard/links", .frames = 60},
-    {.scene = "hard/spin", .frames = 40},
-    {.scene = "hard/net", .frames = 40},
+    {.scene = "hard/spin", .frames = 40, .overrides = {HARD_GRID}},
+    {.scene = "hard/net", .frames = 40, .overrides = {HARD_GRID}},
 };
 static const struct meeting hard_and_coarse[] = {
     {"hard/star", "implicit-linearised", {MEETING_GRID(12, 12)}, 40},
