@@ -38,29 +38,20 @@ enum { LEAST_ROUNDS = 7 };
  * one method throughout. */
 enum { SHIFT_BYTES = 1 << 16 };
 
-/* Runs as many frames as take WARM_SECONDS, untimed. expected: s of a whole run. */
-static enum cs_status warm(struct cs_recorded_run *recording, double expected,
-                           struct cs_error *error) {
-    struct cs_recorded_run_result result;
-    const uint32_t frames = recording->frames;
-    if (expected < SHORT_SECONDS) {
-        recording->frames = (uint32_t)ceil(frames * fmin(WARM_SECONDS / expected, 1));
-        cs_recorded_run_execute(recording, 0, NULL, &result, error);
-        recording->frames = frames;
-    }
-    return error->status;
-}
-
 /* Mean time in s of one run, over at least LEAST_SECONDS. expected: s, of earlier runs. */
 static enum cs_status run_warm(struct cs_recorded_run *recording, double expected,
                                double *seconds, struct cs_error *error) {
     struct cs_recorded_run_result result;
     double total = 0;
     uint32_t n = 0;
-    if (warm(recording, expected, error))
-        return error->status;
+    const uint32_t frames = recording->frames;
+    if (expected < SHORT_SECONDS) {
+        recording->frames = (uint32_t)ceil(frames * fmin(WARM_SECONDS / expected, 1));
+        cs_recorded_run_execute(recording, 0, NULL, &result, error);
+        recording->frames = frames;
+    }
     do {
-        if (cs_recorded_run_execute(recording, 0, NULL, &result, error))
+        if (error->status || cs_recorded_run_execute(recording, 0, NULL, &result, error))
             return error->status;
         total += result.cpu;
         n++;

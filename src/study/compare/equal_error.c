@@ -84,19 +84,18 @@ static double find_slope(const struct cs_choice *choice, const struct cs_cell *c
                          const struct cs_cell *first, const struct cs_cell *end) {
     const double wide = cell->adaptive ? WIDE_NOISY : WIDE;
     const double error = cs_choice_error(cell, choice);
-    double nearest = 0, of_nearest = error;
+    double nearest = 0;
     const struct cs_cell *other = NULL;
     for (const struct cs_cell *at = first; at < end; at++) {
-        if (!cs_choice_is_ranked(at, choice))
-            continue;
-        const double of_at = cs_choice_error(at, choice), apart = fabs(log(of_at / error));
-        if (apart >= log(wide) && (!other || apart < nearest)) {
+        const double apart = fabs(log(cs_choice_error(at, choice) / error));
+        if (cs_choice_is_ranked(at, choice) && apart >= log(wide) &&
+            (!other || apart < nearest)) {
             other = at;
             nearest = apart;
-            of_nearest = of_at;
         }
     }
-    const double slope = other ? log(other->work / cell->work) / log(error / of_nearest) : 1;
+    const double slope =
+        other ? log(other->work / cell->work) / log(error / cs_choice_error(other, choice)) : 1;
     return isfinite(slope) ? fmin(fmax(slope, SLOPE_MIN), SLOPE_MAX) : 1;
 }
 
