@@ -12,7 +12,6 @@ from functools import reduce
 from pathlib import Path
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from surfaces import Surface, read_grid, read_mesh, read_obj
 
@@ -240,15 +239,16 @@ class Model:
             self.add_meeting(f, x, v, *meeting)
         return f
 
-    def run(self, frames, rtol=1e-13):
-        """Positions (n, 3) of all particles after so many frames."""
-        fixed, n, fps = self.x[self.n:], self.n, self.scene.get("time", {}).get("fps", 60)
+    def run(self, seconds, rtol=1e-12):
+        """Positions (n, 3) of all particles after so many seconds, to some 1e-12 m."""
+        from scipy.integrate import solve_ivp  # half a second that forces alone do without
+        fixed, n = self.x[self.n:], self.n
 
         def rate(_, state):
             x, v = state[:3 * n].reshape(n, 3), state[3 * n:].reshape(n, 3)
             f = self.force(np.concatenate([x, fixed]), np.concatenate([v, 0 * fixed]))[:n]
             return np.concatenate([(v * self.free[:, None]).ravel(), (f * self.free[:, None] / self.mass[:, None]).ravel()])
         start = np.concatenate([self.x[:n].ravel(), self.v[:n].ravel()])
-        found = solve_ivp(rate, (0, frames / fps), start, "DOP853", rtol=rtol, atol=1e-14, max_step=2e-3)
+        found = solve_ivp(rate, (0, seconds), start, "DOP853", rtol=rtol, atol=1e-13, max_step=2e-3)
         assert found.success, found.message
         return found.y[:3 * n, -1].reshape(n, 3)
