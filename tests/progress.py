@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """progress.py BUILD [ARGUMENT ...] - meson test with these arguments, and on standard error the progress
 with the time left. A terminal has no lines of tests that pass; a file, as of CI, has all lines.

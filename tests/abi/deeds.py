@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Lets a module do each of its deeds in commands, and holds how they end to what is promised: the
 command fails and names the module, a study has a row that says so, or no bit is another one (as
 TAP).

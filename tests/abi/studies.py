@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Studies of which one cell crashes, one hangs and one eats memory: by processes that share one
 folder, by --jobs, and by GNU parallel where it is installed (as TAP).
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """flips.py CLOTHSIM STRIDE - bytes of the folders of a comparison, a sweep and of parts that are
 merged, changed one at a time (as TAP).
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Memory of a run against its number of frames, and rows that can be followed and outlive a kill
 (as TAP).
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Kills runs at random moments, goes on from their checkpoints, and holds what comes of it to the
 unbroken run: hashes, pictures, states, rows and report (as TAP).
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Runs a command and sends it a signal as soon as a file is there and long enough, whatever the
 load; ends with its code.
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """kills.py PROGRAM FOLDER CELLS KILLS - eight processes share a sweep in one folder; one of them, drawn
 at random, is killed at a random time and started again, KILLS times. The table in the end is that of
 one process that nobody disturbed."""

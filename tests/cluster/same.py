@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """same.py SERIAL OTHER - both sweep.csv have the same rows, but for processor time, machine and the check of both."""
 import csv
 import sys

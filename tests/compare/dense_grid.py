@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Factors of `clothsim compare` against those of a grid ten times denser.
 
     dense_grid.py CLOTHSIM [--scene N] [--repeats R]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """mutants.py CLOTHSIM ROOT [--all] [--write] [--list] - the card on modules with one fault each.
 
 Each mutant is a module: faulty.c with a fault of FAULTS, or the sources of a shipped method with one

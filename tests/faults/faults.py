@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Fails the n-th allocation, write, rename, fsync, thread, opening, seek or removal of a file, or
 reading of a module for its hash, in nineteen command lines, and holds how they end to what is
 promised: an exit code of the kind and one line that says what failed, or the same output and exports

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Records what commands write, call by call, and loses power after each call: what is on the disk
 then must do as docs/reliability.md promises (as TAP; needs strace).
 

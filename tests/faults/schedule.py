@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Two processes in one folder, by interleavings that a scheduler chooses (as TAP).
 
 usage: schedule.py PROGRAM STOPS NUMBER    so many interleavings of each pair

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The kept inputs of a fuzz target: a line each, in hexadecimal digits, few and short.
 
 usage: corpus.py unpack LIST FOLDER

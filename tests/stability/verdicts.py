@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """verdicts.py PROGRAM SCENES [--part TEXT] [--every N] [--frames N] [--cpu SECONDS] [--out FILE]
 One verdict over pairs of scene and method, by four commands.
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """citations.py ROOT - every paper that a source, header, man page or document cites, as "Names YEAR",
 is an entry of docs/bibliography.md, and every entry is cited."""
 import pathlib

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Counts what makes sources hard to read, prints it, and holds the limits below.
 
 Counted: functions with seven or more parameters; .c files without a head comment; functions of

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Counts the branches that tests took, prints them by folder, and holds a floor that only rises.
 
 usage: coverage.py ROOT BUILD    BUILD was compiled with --coverage, and its tests have run

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """english.py ROOT - no pattern of a translated sentence.
 
 Looked at are comments of src, tools, plugins, include (those that begin at the left margin head a file or

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """figures.py ROOT - the figures of docs/reliability.md that the tree itself can count are right:
 fuzz targets and their executions, scenes that go on, command lines that faults are planted in,
 rows and cells of other machines, hostile deeds, and the floor of coverage."""

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """links.py ROOT - every link between documents, with the heading that it names, and every file of the
 tree that a document names in backquotes, is there; tables are those of Markdown; pages have at most
 so many words, outside of blocks of code and of clothsim(1)'s table of shared options; so has a version of

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """planted.py - the tests of this folder that read sources find what they are for.
 
 Each row plants one fault in an empty tree and names the line that the tool must print; beside it

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """progress_lines.py ROOT - what tests/progress.py makes of a meson that prints known lines: in a terminal
 lines of tests that pass are left out, a file has all, the time left follows from the pace, and the status
 is meson's.

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """release.py ROOT - every file that names the version of the program names that of meson.build."""
 import json
 import pathlib

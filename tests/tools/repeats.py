@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """repeats.py ROOT - no paragraph of a manual page stands twice, whole or torn, within ten lines.
 
 A merge that went wrong leaves both versions of a passage, cut off anywhere: looked for are WORDS

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """retired.py ROOT - no name has a word that was retired.
 
 Looked at are cs_* and CS_* identifiers and names of files in src, tools, plugins, include, part by part

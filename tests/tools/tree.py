@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """tree.py ROOT - one definition a tag, one header a name, and the limits of size below.
 
 A unit is NAME.c, NAME.h or both. A room is a first folder of src (its sub-folders belong to it),

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """twins.py ROOT - no two places of src and tools share ten or more equal lines.
 
 Lines are trimmed; lines without a letter or digit (blank, braces), #include lines and rows of a

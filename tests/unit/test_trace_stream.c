@@ -1,5 +1,5 @@
 /* Trails come back bit by bit; one that breaks off or is something else gives no point. */
-#include "base/trace_stream.h"
+#include "bisect/trace_reader.h"
 #include "unit.h"
 
 #include <math.h>
