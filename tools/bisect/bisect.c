@@ -1,6 +1,8 @@
 /* Runs two programs side by side and finds the first number that differs. */
 #include "bisect/bisect.h"
 
+#include "bisect/trace_reader.h"
+
 #include "shared/subprocess.h"
 
 #include <inttypes.h>

@@ -7,11 +7,12 @@
 #ifndef CS_BISECT_H
 #define CS_BISECT_H
 
+#include "base/status.h"
 #include "base/text.h"
-#include "base/trace_stream.h"
 
 #include <signal.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 /* One of the two programs: its command "PROGRAM run SCENE ...", closed by NULL. */
 struct cs_bisect_side {
