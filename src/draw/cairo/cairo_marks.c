@@ -4,7 +4,9 @@
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <math.h>
+#include <png.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* pt, from the middle of a mark to its corners; strokes */
@@ -207,4 +209,31 @@ cairo_surface_t *cs_cairo_make_surface(enum cs_format format, double width, doub
     /* equal diagrams give equal files, whenever they were drawn */
     cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_CREATE_DATE, "");
     return pdf;
+}
+
+cairo_status_t cs_cairo_png(cairo_surface_t *surface, struct cs_text *out) {
+    png_image image = {.version = PNG_IMAGE_VERSION,
+                       .format = PNG_FORMAT_RGB,
+                       .flags = PNG_IMAGE_FLAG_FAST,
+                       .width = (png_uint_32)cairo_image_surface_get_width(surface),
+                       .height = (png_uint_32)cairo_image_surface_get_height(surface)};
+    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+    const int stride = cairo_image_surface_get_stride(surface);
+    uint8_t *rows = cairo_image_surface_get_data(surface);
+    char *bytes = malloc(size);
+    // in place: 4 bytes of a pixel, in the order of the machine, become 3
+    for (size_t y = 0; y < image.height; y++)
+        for (size_t x = 0; x < image.width; x++) {
+            uint8_t *row = rows + y * (size_t)stride;
+            uint32_t pixel;
+            memcpy(&pixel, row + 4 * x, sizeof pixel);
+            for (size_t c = 0; c < 3; c++)
+                row[3 * x + c] = (uint8_t)(pixel >> (16 - 8 * c));
+        }
+    const bool written =
+        bytes && png_image_write_to_memory(&image, bytes, &size, 0, rows, stride, NULL);
+    if (written)
+        cs_text_add_bytes(out, bytes, size);
+    free(bytes);
+    return written ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_NO_MEMORY;
 }

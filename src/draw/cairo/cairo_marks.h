@@ -65,6 +65,11 @@ cairo_status_t cs_cairo_store(void *closure, const unsigned char *bytes, unsigne
 cairo_surface_t *cs_cairo_make_surface(enum cs_format format, double width, double height,
                                        struct cs_text *out);
 
+/* Adds the PNG of a surface of CAIRO_FORMAT_RGB24, whose pixels it spoils. Cairo's own writer
+ * tries every filter on every row, which took more than half of a diagram's time. This one
+ * uses none and packs quickly: files of half as many bytes again. */
+cairo_status_t cs_cairo_png(cairo_surface_t *surface, struct cs_text *out);
+
 /* Mends the bytes of an SVG: drops the surface's number, which counts those of the process, and
  * puts the titles at the end. Frees the titles. */
 void cs_cairo_finish_svg(struct cs_text *out, struct cs_text *titles);

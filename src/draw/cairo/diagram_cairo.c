@@ -373,7 +373,7 @@ static enum cs_status draw(const struct cs_diagram *diagram, enum cs_format form
     draw_on(surface, pixels ? CS_PNG_SCALE : 1, diagram, is_svg ? &titles : NULL);
     cairo_status_t status = cairo_surface_status(surface);
     if (pixels && !status)
-        status = cairo_surface_write_to_png_stream(surface, cs_cairo_store, &out);
+        status = cs_cairo_png(surface, &out);
     cairo_surface_finish(surface);
     status = status ? status : cairo_surface_status(surface);
     cairo_surface_destroy(surface);
