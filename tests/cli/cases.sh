@@ -44,15 +44,15 @@ for file; do
         for command in "$case"/*.command; do
             step=${command%.command}
             code=0
+            read -r expected <"$step.code"
             (cd "$case/folder" && sh "$command") >"$step.output" 2>&1 </dev/null || code=$?
             fits=yes
             awk -f "$here/match.awk" "$step.expected" "$step.output" >"$step.difference" || fits=no
-            if [ "$code" != "$(cat "$step.code")" ] || [ $fits = no ]; then
+            if [ "$code" != "$expected" ] || [ $fits = no ]; then
                 verdict="not ok" failed=1
                 {
                     printf '$ %s\n' "$(cat "$command")"
-                    [ "$code" = "$(cat "$step.code")" ] ||
-                        echo "exit code $code, expected $(cat "$step.code")"
+                    [ "$code" = "$expected" ] || echo "exit code $code, expected $expected"
                     cat "$step.difference"
                 } >>"$case/log"
             fi
