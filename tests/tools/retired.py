@@ -23,16 +23,18 @@ def entries(path):
     return dict((line + " ").split(" ", 1) for line in lines)
 
 
-def names(root):
+def line(text, m):
+    return text.count("\n", 0, m.start()) + 1
+
+
+def names(codes):
     """Each name with the place where it stands first; a guard is its file's name over again."""
     found = {}
-    for path in sources.files(root):
-        place = path.relative_to(root)
-        found.setdefault(path.name, place)
-        text = sources.code_of(path.read_text())
+    for place, text in codes.items():
+        found.setdefault(place.name, place)
         for m in NAME.finditer(text):
-            if not m.group(0).endswith("_H"):
-                found.setdefault(m.group(0), f"{place}:{text.count(chr(10), 0, m.start()) + 1}")
+            if m.group(0) not in found and not m.group(0).endswith("_H"):
+                found[m.group(0)] = f"{place}:{line(text, m)}"
     return found
 
 
@@ -40,26 +42,27 @@ def retired_part(name, words):
     return next((part for part in re.split(r"[_.]", name.lower()) if part in words), None)
 
 
-def declared(root):
+def declared(codes):
     """(type, name) of each thing that a struct or an enum is declared by, with its first place."""
     found = {}
-    for path in sources.files(root):
-        text = sources.code_of(path.read_text())
+    for place, text in codes.items():
         for m in DECLARED.finditer(text):
-            found.setdefault(m.groups(), f"{path.relative_to(root)}:{text.count(chr(10), 0, m.start()) + 1}")
+            if m.groups() not in found:
+                found[m.groups()] = f"{place}:{line(text, m)}"
     return found
 
 
 def main():
     root = Path(sys.argv[1])
     words = entries(root / HERE / "retired_words.txt")
-    found = names(root)
+    codes = {path.relative_to(root): sources.code_of(path.read_text()) for path in sources.files(root)}
+    found = names(codes)
     checks = sources.Checks()
     for name, place in sorted(found.items()):
         word = retired_part(name, words)
         checks.check(not word, f"{place}: {name}: '{word}' is retired, say {words.get(word, '').strip()}")
     retired = dict(line.rsplit(" ", 1) for line in (root / HERE / "retired_names.txt").read_text().splitlines())
-    for (kind, name), place in sorted(declared(root).items()):
+    for (kind, name), place in sorted(declared(codes).items()):
         now = retired.get(f"{kind} {name}")
         checks.check(not now, f"{place}: a {kind} is named '{name}', say {now}")
     return checks.end()
