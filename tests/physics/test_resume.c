@@ -100,7 +100,6 @@ TEST(scenes_go_on) {
         {SCENES "/hang.json", "dopri5:rtol=1e-2", 20, {1, 9, 15}},
         {SCENES "/hang.json", "dop853:rtol=1e-2", 20, {1, 9, 15}},
         {SCENES "/swing.json", "esdirk:rtol=1e-2", 20, {1, 9, 15}},
-        {SCENES "/swing.json", "rock4", 20, {1, 9, 15}},
         {SCENES "/swing.json", "rkc2:rtol=1e-2", 20, {1, 9, 15}},
         {SCENES "/contact_compare.json", "dop853", 40, {12, 21, 33}},
         {SCENES "/contact_compare.json", "dop853:rtol=1e-4", 40, {12, 21, 33}},
