@@ -36,6 +36,14 @@
 static const uint32_t counts[] = {2, 3, 4, 7};
 enum { COUNTS = sizeof counts / sizeof *counts, FRAMES = 2 };
 
+/* Counts by which a method is run. What a sanitizer finds in it shows with any; it goes through
+ * them from method to method, and kernels take all. */
+#ifdef CS_SANITIZED
+enum { METHOD_COUNTS = 1 };
+#else
+enum { METHOD_COUNTS = COUNTS };
+#endif
+
 static void threads(uint32_t n) {
     struct cs_error error = {0};
     cs_pool_start(n, &error);
@@ -61,12 +69,14 @@ static double *run(const char *method, const char *scene, uint32_t n, size_t *le
 }
 
 static void check_bits(const char *method, const char *scene) {
+    static size_t next;
     size_t length;
     double *one = run(method, scene, 1, &length);
-    for (size_t k = 0; k < COUNTS; k++) {
-        double *several = run(method, scene, counts[k], &length);
+    for (size_t k = 0; k < METHOD_COUNTS; k++) {
+        const uint32_t n = counts[next++ % COUNTS];
+        double *several = run(method, scene, n, &length);
         ck_assert_msg(!memcmp(one, several, length * sizeof *one), "%s with %u threads", method,
-                      counts[k]);
+                      n);
         free(several);
     }
     free(one);
