@@ -1,13 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""progress.py BUILD [ARGUMENT ...] - meson test with these arguments, and on standard error the progress
-with the time left. A terminal has no lines of tests that pass; a file, as of CI, has all lines.
+"""progress.py BUILD [--below S] [ARGUMENT ...] - meson test with these arguments, and on standard error the
+progress with the time left. A terminal has no lines of tests that pass; a file, as of CI, has all lines.
+--below: of the tests that they choose those of fewer than S s. In the environment, LATER is the processor time
+in s of what comes after these tests, SLOWER how often theirs a build with a sanitizer takes.
 
 The priority of a test is about its processor time in s (tests/meson.build): the longest start first. Tests
 that have ended tell how much longer a second of it takes here. A terminal has one line, anything else a
 line every half minute. The exit status is meson's.
 """
 import json
+import math
 import os
 import re
 import subprocess
@@ -19,14 +22,16 @@ LINE = re.compile(r"\s*(\d+)/(\d+) (?:.*? / )?(.+?)\s+([A-Z]{2,})\s+([\d.]+)s\b"
 PASSED = {"OK", "EXPECTEDFAIL", "SKIP"}
 
 
-def seconds_of(build, arguments):
-    """The expected seconds of each test that these arguments choose."""
+def seconds_of(build, arguments, below):
+    """The expected seconds of each test that these arguments choose, if they are fewer than so many."""
     priorities = {test["name"]: test["priority"] for test in
                   json.loads(subprocess.check_output(["meson", "introspect", build, "--tests"]))}
     listed = subprocess.run(["meson", "test", "-C", build, "--list", "--no-rebuild", *arguments], stdout=subprocess.PIPE,
                             stderr=subprocess.DEVNULL, text=True).stdout
     names = [line.rsplit(" / ", 1)[-1] for line in listed.splitlines()]
-    return {name: max(priorities[name], LEAST) for name in names if name in priorities}
+    slower = float(os.environ.get("SLOWER", 1))
+    return {name: slower * max(priorities[name], LEAST) for name in names
+            if name in priorities and priorities[name] < below}
 
 
 class Progress:
@@ -34,11 +39,12 @@ class Progress:
         self.seconds, self.jobs, self.start = seconds, jobs, time.monotonic()
         self.expected = self.took = 0.0  # s of tests that have ended
         self.failed, self.terminal, self.told = 0, sys.stderr.isatty(), time.monotonic()
+        self.later = float(os.environ.get("LATER", 0))
 
     def left(self, elapsed):
         """s: the rest of all, at the pace of what has ended, on so many processors."""
         pace = self.took / self.expected if self.expected else 1
-        return max(0, sum(self.seconds.values()) * pace / self.jobs - elapsed)
+        return max(0, sum(self.seconds.values()) * pace / self.jobs - elapsed) + self.later * pace / self.jobs
 
     def show(self, done, whole):
         now = time.monotonic()
@@ -46,7 +52,7 @@ class Progress:
         left = self.left(elapsed)
         about = f"{left / 60:.0f} min" if left > 90 else f"{left:.0f} s"
         line = f"{done} of {whole} tests, {self.failed} failed, " + \
-            (f"after {elapsed:.0f} s" if done == whole else f"about {about} left")
+            (f"after {elapsed:.0f} s" if done == whole and not self.later else f"about {about} left")
         if self.terminal:
             print(f"\r{line}\033[K", end="", file=sys.stderr, flush=True)
         elif now - self.told >= float(os.environ.get("PROGRESS_SECONDS", 30)) or done == whole:
@@ -65,8 +71,13 @@ class Progress:
 
 def main():
     build, *arguments = sys.argv[1:]
+    below = math.inf
+    if arguments[:1] == ["--below"]:
+        below, arguments = float(arguments[1]), arguments[2:]
     jobs = int(os.environ.get("MESON_TESTTHREADS", 0)) or len(os.sched_getaffinity(0))
-    progress = Progress(seconds_of(build, [word for word in arguments if word != "--print-errorlogs"]), jobs)
+    seconds = seconds_of(build, [word for word in arguments if word != "--print-errorlogs"], below)
+    progress = Progress(seconds, jobs)
+    arguments += [] if math.isinf(below) else seconds
     meson = subprocess.Popen(["meson", "test", "-C", build, *arguments], stdout=subprocess.PIPE, text=True,
                              errors="replace")
     for line in meson.stdout:

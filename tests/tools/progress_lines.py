@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """progress_lines.py ROOT - what tests/progress.py makes of a meson that prints known lines: in a terminal
-lines of tests that pass are left out, a file has all, the time left follows from the pace, and the status
-is meson's.
+lines of tests that pass are left out, a file has all, the time left follows from the pace and has what comes
+later in it, only tests below a limit are asked for, and the status is meson's.
 """
 import os
 import pty
@@ -17,7 +17,7 @@ case "$1 $4" in
     introspect*) echo '[{"name": "a", "priority": 300}, {"name": "b", "priority": 100}, {"name": "c d", "priority": 0},
                         {"name": "other", "priority": 1000}]' ;;
     *--list*) printf 'x:cli / a\\nx:cli / b\\nx:unit / c d\\n' ;;
-    *) echo "ninja: no work to do."
+    *) echo "ninja: $*"
        echo " 1/3 x:cli / b      OK               40.00s   2 subtests passed"
        echo " 2/3 x:unit / c d   FAIL              2.50s   exit status 1"
        echo "what it said"
@@ -39,6 +39,8 @@ def main():
         ran = subprocess.run(line, capture_output=True, text=True, env=env)
         reader, terminal = pty.openpty()
         in_terminal = subprocess.run(line, stdout=subprocess.PIPE, stderr=terminal, text=True, env=env)
+        below = subprocess.run([*line[:2], "--below", "100", *line[2:]], capture_output=True, text=True,
+                               env={**env, "LATER": "1000", "SLOWER": "4"})
         shown = [line.split()[0] for line in in_terminal.stdout.splitlines()]
         os.close(terminal), os.close(reader)
     checks.check(ran.returncode == 3, f"exit status {ran.returncode}, expected 3")
@@ -50,6 +52,11 @@ def main():
     checks.check([(words[0], words[4]) for words in told] == [("1", "0"), ("2", "1"), ("3", "1")], f"progress {told}")
     checks.check(all(abs(float(words[7]) - left) < 20 for words, left in zip(told, (80, 85))), f"time left {told}")
     checks.check("after" in told[-1], f"end {told[-1]}")
+    asked = below.stdout.splitlines()[0]
+    checks.check(asked == "ninja: test -C build --suite cli c d", f"below 100 s it asked for {asked}")
+    # expected were 2 s and, of tests that were not asked for, 1 s; 162.5 s it took: two processors for 1002 s at that pace
+    words = below.stderr.splitlines()[-1].split()
+    checks.check(words[7:] == ["452", "min", "left"], f"with what comes later {words}")
     return checks.end()
 
 
