@@ -250,12 +250,12 @@ TEST(own_blocks_of_the_factors_are_those_of_the_product) {
         cs_springs_factor(
             springs, (uint32_t)n,
             &(struct cs_matrix){.x = sheet.x, .cd = -0.02, .ck = -4e-4, .psd = false}, factors);
-        cs_springs_factor_diagonal(springs, (uint32_t)n, factors, blocks);
+        cs_springs_factor_diagonal(springs, (uint32_t)n, factors, sheet.x, blocks);
         for (size_t i = 0; i < n; i++)
             for (size_t e = 0; e < 6; e++) {
                 unit[(size_t)column[e] * n + i] = 1;
                 memset(y, 0, 3 * n * sizeof *y);
-                cs_springs_mul_add(springs, (uint32_t)n, factors, unit, y);
+                cs_springs_mul_add(springs, (uint32_t)n, factors, sheet.x, unit, y);
                 ck_assert_double_eq_tol(blocks[e * n + i], y[(size_t)row[e] * n + i], 1e-14);
                 unit[(size_t)column[e] * n + i] = 0;
             }

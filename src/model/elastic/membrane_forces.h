@@ -265,11 +265,7 @@ void cs_membranes_add_approach(const struct cs_system *system, const struct cs_m
 /* Makes the runs of all membranes. CS_ERR_MEMORY. */
 enum cs_status cs_membrane_surrogate_build(struct cs_system *system, struct cs_error *error);
 
-/* Edges of all membranes; 0 without any, or without a solver. */
-uint32_t cs_membrane_surrogate_count(const struct cs_system *system);
-
-/* Sets the factors of the runs (4 doubles a spring, as cs_springs_factor) for the matrix kept
- * last. All threads. */
+/* Sets the factors of the runs (as cs_springs_factor) for the matrix kept last. All threads. */
 void cs_membrane_surrogate_factor(const struct cs_system *system, double *factors);
 
 /* Strains and stresses of membranes. */

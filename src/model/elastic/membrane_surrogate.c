@@ -107,13 +107,9 @@ enum cs_status cs_membrane_surrogate_build(struct cs_system *system, struct cs_e
             list_grid(membranes, membrane);
     }
     // the factors of springs come first
-    for (uint32_t r = 0; r < membranes->n_runs; r++)
-        membranes->runs[r].first += system->springs.n;
+    system->springs.n_factors =
+        cs_springs_place_factors(membranes->runs, membranes->n_runs, system->springs.n_factors);
     return error->status;
-}
-
-uint32_t cs_membrane_surrogate_count(const struct cs_system *system) {
-    return system->membranes ? system->membranes->n_edges : 0;
 }
 
 /* k_i of edge i of triangle t, from the squares of the lengths at rest. */
@@ -136,25 +132,24 @@ struct factoring {
     double *factors;
 };
 
-/* Sets the factors of one run, s, then the components of w. */
+/* Sets the factors of one run. */
 static void factor_run(void *arg, uint32_t number) {
     const struct factoring *factoring = arg;
     const struct cs_membranes *membranes = factoring->system->membranes;
     const struct cs_spring_run *run = membranes->runs + number;
     const struct cs_membrane *membrane = membranes->bodies;
-    const size_t n = factoring->system->view.n,
-                 first = run->first - factoring->system->springs.n;
+    const size_t n = factoring->system->view.n;
     while (membrane->body != run->body)
         membrane++;
     const struct cs_elastic *elastic = cs_scene_elastic(factoring->system->scene, run->body);
     const struct cs_moduli moduli = cs_membrane_moduli(elastic);
     const double kappa = -membranes->ck - membranes->cd * elastic->damping;
-    double *to = factoring->factors + 4 * (size_t)run->first;
+    double *to = factoring->factors + run->factors;
     for (uint32_t i = 0; i < run->count; i++) {
         double tension = 0, stiffness = 0;
         // one triangle at a rim, else two
         for (size_t k = 0; k < 2; k++) {
-            const uint32_t side = membranes->sides[2 * (first + i) + k];
+            const uint32_t side = membranes->sides[2 * ((size_t)run->first + i) + k];
             if (side == CS_NO_SIDE)
                 continue;
             const size_t t = side / 4, edge = side % 4;
@@ -164,7 +159,8 @@ static void factor_run(void *arg, uint32_t number) {
         }
         const double root = sqrt(2 * kappa * stiffness);
         to[i] = tension;
-        for (size_t c = 0; c < 3; c++)
+        to[run->count + i] = root;
+        for (size_t c = 0; c < 3 && run->ends; c++)
             to[(1 + c) * run->count + i] = root * (membranes->x[c * n + cs_spring_b(run, i)] -
                                                    membranes->x[c * n + cs_spring_a(run, i)]);
     }

@@ -57,7 +57,7 @@ struct cs_membranes {
     double *kept;     /* (6, particles) diagonal blocks */
     double ck, cd;    /* its coefficients */
     /* edges as springs for its preconditioner (membrane_forces.h); likewise */
-    struct cs_spring_run *runs; /* (n_runs) body by body; numbers go on after the springs' */
+    struct cs_spring_run *runs; /* (n_runs) body by body */
     uint32_t n_runs, n_edges;
     uint32_t *sides; /* (n_edges, 2) 4 t + edge of the triangles at an edge; CS_NO_SIDE */
 };

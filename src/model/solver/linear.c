@@ -30,15 +30,15 @@ enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *
                               struct cs_arena *arena, struct cs_error *error) {
     const size_t n = system->view.n;
     *linear = (struct cs_linear){.system = system};
-    const size_t n_springs = (size_t)system->springs.n + cs_membrane_surrogate_count(system);
-    linear->factors = cs_arena_alloc_array(arena, 4 * n_springs, sizeof(double), error);
+    linear->factors =
+        cs_arena_alloc_array(arena, system->springs.n_factors, sizeof(double), error);
     linear->mass = cs_arena_alloc_array(arena, n, sizeof(double), error);
     linear->inverse = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
     if (cs_terms_have_blocks(system))
         linear->blocks = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
-    double **vectors[4] = {&linear->r, &linear->z, &linear->p, &linear->q};
-    for (int k = 0; k < 4; k++)
-        *vectors[k] = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
+    linear->r = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
+    linear->p = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
+    linear->z = linear->q = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
     return error->status ? error->status
                          : cs_multigrid_init(&linear->multigrid, system, arena, error);
 }
@@ -89,7 +89,7 @@ static bool invert_blocks(struct cs_linear *linear) {
         for (size_t i = 0; i < n; i++)
             linear->inverse[c * n + i] += linear->mass[i];
     cs_springs_factor_diagonal(&linear->system->springs, (uint32_t)n, linear->factors,
-                               linear->inverse);
+                               linear->matrix.x, linear->inverse);
     return cs_vector_sum(n, invert_part, linear) == 0;
 }
 
@@ -115,6 +115,7 @@ static void set_multigrid(struct cs_linear *linear) {
     if (membranes)
         cs_membrane_surrogate_factor(linear->system, linear->factors);
     const struct cs_multigrid_matrix matrix = {.factors = linear->factors,
+                                               .x = linear->matrix.x,
                                                .mass = linear->mass,
                                                .blocks = linear->blocks,
                                                .as_springs = membranes ? membranes->kept : NULL,
@@ -222,8 +223,8 @@ static void multiply(struct product *product) {
     const struct cs_linear *linear = product->linear;
     const struct cs_system *system = linear->system;
     cs_vector_parallel_for(system->view.n, mul_mass, product);
-    cs_springs_mul_add(&system->springs, system->view.n, linear->factors, product->from,
-                       product->to);
+    cs_springs_mul_add(&system->springs, system->view.n, linear->factors, linear->matrix.x,
+                       product->from, product->to);
     if (!product->without_blocks)
         cs_terms_add_product(system, product->from, product->to);
     clear_pinned(system, product->to);

@@ -42,11 +42,12 @@ enum { CS_LINEAR_STIFF = 16, CS_LINEAR_STALL_ITERATIONS = 500, CS_LINEAR_SLOW_IT
 struct cs_linear {
     const struct cs_system *system; /* borrowed */
     struct cs_matrix matrix;        /* of the last setup; its arrays are the caller's */
-    double *factors;                /* 4 doubles per spring: s and w of its block s I + w w^T */
+    double *factors; /* of the springs' blocks s I + w w^T, and of the membranes' edges */
     double *mass;    /* (n) cm m and the scalar parts of the forces, times the identity */
     double *blocks;  /* (6,n) the forces' parts that are 3x3 blocks; NULL: there are none */
     double *inverse; /* (6,n) inverses of the diagonal blocks */
-    /* (3,n) each: residual, preconditioned residual, search direction, and A p */
+    /* (3,n) each: residual, preconditioned residual, search direction, and A p. z and q are
+     * one array: what the preconditioner makes is in p before A p is taken. */
     double *r, *z, *p, *q;
     struct cs_multigrid multigrid;
     double stiffness;    /* bound of stiffness over mass, with the unit of cm */

@@ -297,7 +297,8 @@ static bool load_levels(struct loading *loading, struct cs_hierarchy *hierarchy)
     struct cs_level *level = hierarchy->levels;
     bool done = load_links(loading, hierarchy);
     run(&loading->exchange, load_diagonal);
-    hierarchy->kind->load(hierarchy, loading->matrix->factors, loading->matrix->scale);
+    hierarchy->kind->load(hierarchy, loading->matrix->factors, loading->matrix->x,
+                          loading->exchange.multigrid->system->view.n, loading->matrix->scale);
     cs_level_invert(level);
     for (; level < hierarchy->levels + hierarchy->n_levels - 1; level++) {
         hierarchy->kind->coarsen(level, level + 1);

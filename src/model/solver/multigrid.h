@@ -57,8 +57,8 @@ bool cs_multigrid_is_in_reserve(const struct cs_scene *scene);
 
 /* The matrix to approximate: the springs' factors, and a mass and a block per particle. */
 struct cs_multigrid_matrix {
-    const double *factors;        /* 4 doubles per spring, as cs_springs_factor makes them,
-                                     then of the membranes' (membrane_forces.h) */
+    const double *factors, *x;    /* as cs_springs_factor makes them at x (3,n), then of the
+                                     membranes' edges (membrane_forces.h) */
     const double *mass;           /* (n) a number times the identity */
     const double *blocks;         /* (6,n) positive semi-definite; NULL: 0 */
     const double *as_springs;     /* (6,n) parts of `blocks` that springs among the factors

@@ -71,7 +71,8 @@ static uint32_t run_step(struct cs_hierarchy *hierarchy, const struct cs_spring_
 /* Arguments of the loop that copies factors into the first level; one block is RUNS runs. */
 struct loading {
     struct cs_hierarchy *hierarchy;
-    const double *factors;
+    const double *factors, *x;
+    size_t n;
     double root;
 };
 
@@ -80,27 +81,34 @@ struct loading {
 enum { RUNS = 64 };
 
 /* Copies s and w of a run's springs to the rows of its step, cell by cell. */
-static void load_runs(void *arg, uint32_t block) {
+CS_CLONES static void load_runs(void *arg, uint32_t block) {
     const struct loading *loading = arg;
-    struct cs_hierarchy *hierarchy = loading->hierarchy;
-    struct cs_level *level = hierarchy->levels;
+    const struct cs_hierarchy *hierarchy = loading->hierarchy;
+    const struct cs_level *level = hierarchy->levels;
+    const size_t n = loading->n, m = level->n;
+    const double root = loading->root;
     for (uint32_t r = RUNS * block; r < hierarchy->n_runs && r < RUNS * (block + 1); r++) {
         const struct cs_spring_run *run = hierarchy->runs + r;
-        const double *from = loading->factors + 4 * (size_t)run->first;
-        float *to = level->springs + 4 * (size_t)run_step(hierarchy, run) * level->n +
+        const double *s = loading->factors + run->factors, *w = s + run->count;
+        const double *a = loading->x + run->first_a, *b = loading->x + run->first_b;
+        float *to = level->springs + 4 * (size_t)run_step(loading->hierarchy, run) * m +
                     cell_of(hierarchy, run->first_a);
+        CS_INDEPENDENT
         for (size_t i = 0; i < run->count; i++) {
+            const double sw[4] = {s[i], w[i] * (b[i] - a[i]), w[i] * (b[n + i] - a[n + i]),
+                                  w[i] * (b[2 * n + i] - a[2 * n + i])};
             float spring[4];
-            cs_hierarchy_spring(from + i, run->count, loading->root, spring);
+            cs_hierarchy_spring(sw, root, true, spring);
             for (size_t c = 0; c < 4; c++)
-                to[c * level->n + i] = spring[c];
+                to[c * m + i] = spring[c];
         }
     }
 }
 
 /* Springs that no run has stay 0 since allocation. */
-static void load(struct cs_hierarchy *hierarchy, const double *factors, double scale) {
-    struct loading loading = {hierarchy, factors, 1 / sqrt(scale)};
+static void load(struct cs_hierarchy *hierarchy, const double *factors, const double *x,
+                 size_t n, double scale) {
+    struct loading loading = {hierarchy, factors, x, n, 1 / sqrt(scale)};
     cs_pool_run((hierarchy->n_runs + RUNS - 1) / RUNS, load_runs, &loading);
 }
 

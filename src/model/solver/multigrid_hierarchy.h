@@ -30,6 +30,8 @@
 #include "base/arena.h"
 #include "model/spring/springs.h"
 
+#include <clothsim/clones.h>
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -196,9 +198,10 @@ struct cs_hierarchy {
 
 /* Operations that differ between grids and meshes. */
 struct cs_hierarchy_kind {
-    /* sets the first level's springs from the solver's factors (4 doubles per spring), over
+    /* sets the first level's springs from the solver's factors at positions x (3,n), over
      * scale */
-    void (*load)(struct cs_hierarchy *hierarchy, const double *factors, double scale);
+    void (*load)(struct cs_hierarchy *hierarchy, const double *factors, const double *x,
+                 size_t n, double scale);
     /* sets the springs and the diagonal of the next level: P^T A P with halved springs */
     void (*coarsen)(const struct cs_level *fine, struct cs_level *coarse);
     /* residual of the next level: P^T r, sums over the living cells of each aggregate */
@@ -222,25 +225,28 @@ enum cs_status cs_hierarchy_of_mesh(struct cs_hierarchy *hierarchy, struct cs_ar
 void cs_hierarchies_make_equally_deep(struct cs_hierarchy *hierarchies, uint32_t n,
                                       struct cs_arena *arena, struct cs_error *error);
 
-/* Reads s and w of one spring from the solver's factors, whose rows have `count` numbers.
- * Divides its block B = s I + w w^T by the scale; root is 1 / sqrt(scale).
+/* Makes the numbers of a level's spring of s and w, the latter over the root of the scale:
+ * root is 1 / sqrt(scale).
  *
- * s < 0 means a compressed spring in an exact matrix. Its transverse part is dropped, and its
- * axial stiffness s + |w|^2 is preserved if that is positive:
+ * s < 0 means a compressed spring in an exact matrix (`turned`: some springs may have it). Its
+ * transverse part is dropped, and its axial stiffness s + |w|^2 is preserved if that is
+ * positive:
  *
  *   s' = 0,   w' = w sqrt(max(0, 1 + s / |w|^2))
  *
  * The preconditioner is thereby positive definite even if the matrix is not. */
-static inline void cs_hierarchy_spring(const double *factors, size_t count, double root,
-                                       float spring[4]) {
-    const double s = factors[0];
-    if (s < 0) {
-        const double x = factors[count], y = factors[2 * count], z = factors[3 * count];
-        root *= sqrt(fmax(0, 1 + s / (x * x + y * y + z * z)));
+CS_INLINE void cs_hierarchy_spring(const double sw[4], double root, bool turned,
+                                   float spring[4]) {
+    const double s = sw[0] < 0 ? 0 : sw[0];
+    if (turned) {
+        // DBL_MIN changes nothing but 0 / 0, where s >= 0 too
+        const double squared = sw[1] * sw[1] + sw[2] * sw[2] + sw[3] * sw[3] + DBL_MIN;
+        const double left = 1 + (sw[0] < 0 ? sw[0] : 0) / squared;
+        root *= sqrt(left > 0 ? left : 0);
     }
-    spring[0] = (float)(s < 0 ? 0 : s * root * root);
+    spring[0] = (float)(s * root * root);
     for (size_t c = 1; c < 4; c++)
-        spring[c] = (float)(root * factors[c * count]);
+        spring[c] = (float)(root * sw[c]);
 }
 
 /* B = s I + w w^T as xx, xy, xz, yy, yz, zz. */

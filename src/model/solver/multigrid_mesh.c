@@ -238,15 +238,19 @@ static void scatter_blocks(struct cs_level *level) {
 }
 
 /* Sets the blocks of the first level's springs: those of the matrix over scale. */
-static void load(struct cs_hierarchy *hierarchy, const double *factors, double scale) {
+static void load(struct cs_hierarchy *hierarchy, const double *factors, const double *x,
+                 size_t n, double scale) {
+    (void)x, (void)n;
     const double root = 1 / sqrt(scale);
     float *block = hierarchy->levels->blocks;
     for (uint32_t r = 0; r < hierarchy->n_runs; r++) {
         const size_t count = hierarchy->runs[r].count;
-        const double *from = factors + 4 * (size_t)hierarchy->runs[r].first;
+        const double *from = factors + hierarchy->runs[r].factors;
         for (size_t i = 0; i < count; i++, block += 6) {
+            const double sw[4] = {from[i], from[count + i], from[2 * count + i],
+                                  from[3 * count + i]};
             float numbers[4];
-            cs_hierarchy_spring(from + i, count, root, numbers);
+            cs_hierarchy_spring(sw, root, sw[0] < 0, numbers);
             cs_hierarchy_block(numbers, block);
         }
     }

@@ -44,7 +44,7 @@ CS_INLINE struct stencil_direction direction_of(struct tile *tile, unsigned way)
         .k = active_constants_of(run, job->at.parts).k,
         .length = run->length,
         .offset = run->first_b - run->first_a,
-        .factors = job->factors ? job->factors + 4 * (size_t)run->first + before : NULL,
+        .factors = job->factors ? job->factors + run->factors + before : NULL,
         .count = run->count,
         .out = rows_of(tile, way)};
 }

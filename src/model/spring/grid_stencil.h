@@ -38,7 +38,7 @@ enum {
 struct stencil_direction {
     double k, length;      /* N/m and m; the same for the whole run */
     size_t offset;         /* from a particle to the other end of its spring */
-    const double *factors; /* of the matrix, s, wx, wy, wz in rows of `count`; NULL: not used */
+    const double *factors; /* of the matrix, s and |w| / l in rows of `count`; NULL: not used */
     size_t count;
     double *out; /* results, in rows of PADDED_TILE */
 };

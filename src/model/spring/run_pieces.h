@@ -27,7 +27,7 @@ _Static_assert(CS_SPRING_CHUNK_MAX % PIECE == 0, "a chunk contains whole pieces"
 struct spring_job {
     const struct cs_springs *springs;
     size_t n;
-    struct cs_eval at;     /* state; for products with the matrix only x, the vector */
+    struct cs_eval at;     /* state; for products with the matrix dx is the vector */
     const double *factors; /* of the matrix; NULL for other kernels */
     double *to;            /* (3,n) destination; NULL: only blocks, or slots, are written */
 };

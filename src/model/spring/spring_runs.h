@@ -39,6 +39,7 @@ struct cs_spring_run {
     uint32_t kind;                    /* enum cs_spring_kind */
     uint32_t body;
     uint32_t first;   /* number of the run's first spring */
+    size_t factors;   /* first of its numbers in the factors of the solver's matrix */
     double stiffness; /* N/m; with lists: the law's, N/m or N, that they were made of */
     double length;    /* rest length in m */
     double damping;   /* N s/m */
@@ -136,6 +137,7 @@ struct cs_spring_slots {
 struct cs_springs {
     const struct cs_spring_run *runs;
     uint32_t n_runs, n; /* runs; springs */
+    size_t n_factors;   /* numbers of the solver's matrix, of membranes' edges too */
 
     /* Partition among threads (plan.h). With one thread the pointers are NULL, and
      * one block has all particles. */

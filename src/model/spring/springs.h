@@ -11,6 +11,10 @@
 
 struct cs_body;
 
+/* Places the numbers of some runs in the factors of the solver's matrix, from place `begin` on.
+ * Returns the place after the last one. */
+size_t cs_springs_place_factors(struct cs_spring_run *runs, uint32_t n_runs, size_t begin);
+
 /* Appends the runs of one body, whose particles start at `first`, at runs[0..]: those of a
  * cloth's rows, or one per kind of a mesh. lists receives the lengths and stiffnesses of a
  * mesh, 2 doubles per spring. Both may be NULL to count. Kinds of stiffness 0 have no springs,
@@ -83,17 +87,18 @@ void cs_springs_finish_diagonal(const struct cs_springs *springs, uint32_t n,
  *
  *   A p = sum over the springs of (s I + w w^T) (p_a - p_b), added at a and subtracted at b
  *
- * factors has 4 doubles per spring, by run: s, wx, wy, wz, each (count). With psd the
- * transverse part of a compressed spring is dropped (Choi, Ko 2002; Teran et al. 2005); else s
- * may be negative. The position derivative of axial damping, which is not symmetric, is left
- * out. Derivation: springs_matrix.c. */
+ * factors has rows by run, each (count): of a grid s and |w| / l, because w is parallel to the
+ * spring and x gives it again; of a mesh, whose ends lie anywhere, s, wx, wy and wz. With psd
+ * the transverse part of a compressed spring is dropped (Choi, Ko 2002; Teran et al. 2005);
+ * else s may be negative. The position derivative of axial damping, which is not symmetric, is
+ * left out. Derivation: springs_matrix.c. */
 void cs_springs_factor(const struct cs_springs *springs, uint32_t n,
                        const struct cs_matrix *matrix, double *factors);
-/* y += the springs' part of A p, by all threads. */
+/* y += the springs' part of A p, by all threads. x is that of the matrix. */
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
-                        const double *p, double *y);
+                        const double *x, const double *p, double *y);
 /* blocks (6,n) += the diagonal blocks of that matrix. */
 void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
-                                const double *factors, double *blocks);
+                                const double *factors, const double *x, double *blocks);
 
 #endif

@@ -17,8 +17,8 @@
  * L/l <- min(L/l, 1) (Choi, Ko 2002; Teran et al. 2005). That gives s = 0 and |w|^2 = -ck k;
  * the axial eigenvalue -ck k is exact in either case.
  *
- * Four numbers per spring instead of six for a block: the product is bound by memory, and its
- * factors are most of what it reads. */
+ * Two numbers per spring of a grid instead of six for a block: the product is bound by memory,
+ * and its factors are most of what it reads. */
 #include "base/pool.h"
 #include "model/spring/grid_stencil.h"
 #include "model/spring/run_pieces.h"
@@ -131,14 +131,18 @@ CS_CLONES void cs_springs_finish_diagonal(const struct cs_springs *springs, uint
     }
 }
 
+/* w of spring i of a direction of a grid. */
+CS_INLINE struct difference axis_of(const struct stencil_input *in,
+                                    const struct stencil_direction *way, size_t i) {
+    const struct difference d = fan_across(in->x, in->n, i, way->offset);
+    const double w = way->factors[way->count + i];
+    return (struct difference){w * d.x, w * d.y, w * d.z};
+}
+
 /* The block of one spring of a grid in the matrix. */
 CS_INLINE void diagonal_block(const struct stencil_input *in,
                               const struct stencil_direction *way, size_t i, double *out) {
-    const double *s = way->factors;
-    const size_t count = way->count;
-    (void)in;
-    set_block(s[i], 1, (struct difference){s[count + i], s[2 * count + i], s[3 * count + i]},
-              out);
+    set_block(way->factors[i], 1, axis_of(in, way, i), out);
 }
 
 CS_STENCIL_KERNEL(own_blocks, diagonal_block, 0, SYM, 0);
@@ -146,9 +150,10 @@ CS_STENCIL_KERNEL(own_blocks, diagonal_block, 0, SYM, 0);
 /* Row by row for grids, spring by spring for meshes; serial, so the order of the sums is fixed.
  */
 CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
-                                          const double *factors, double *sums) {
+                                          const double *factors, const double *x,
+                                          double *sums) {
     const struct spring_job job = {
-        .springs = springs, .n = n, .at = {.dfdx_blocks = sums}, .factors = factors};
+        .springs = springs, .n = n, .at = {.x = x, .dfdx_blocks = sums}, .factors = factors};
     const struct cs_block all = {0, n, 0, springs->n_runs};
     struct blocks blocks;
     uint32_t n_runs = 1;
@@ -159,7 +164,7 @@ CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint
             n_runs = add_row_stencil(&job, &all, run, has_anything, &own_blocks);
             continue;
         }
-        const double *s = factors + 4 * (size_t)run->first, *w = s + run->count;
+        const double *s = factors + run->factors, *w = s + run->count;
         for (uint32_t start = 0; start < run->count; start += PIECE) {
             const struct piece piece = piece_of(run, start);
             for (size_t i = 0, k = start; i < piece.count; i++, k++) {
@@ -174,8 +179,8 @@ CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint
     }
 }
 
-/* Computes the factors of one piece, in place in the run's rows s, wx, wy, wz. There is no
- * branch in the loop, so it vectorises. */
+/* Computes the factors of one piece, in place in the run's rows. There is no branch in the
+ * loop, so it vectorises. */
 CS_INLINE void factor_of(const struct piece *piece, struct ends e,
                          const struct cs_matrix *matrix, const bool listed, double *base) {
     const struct cs_spring_run *run = piece->run;
@@ -185,8 +190,8 @@ CS_INLINE void factor_of(const struct piece *piece, struct ends e,
     const double gamma = run->axial ? 0 : -cd * run->damping;
     const double eta = run->axial ? -cd * run->damping : 0;
     double *restrict s = base + piece->start;
-    double *restrict wx = s + run->count, *restrict wy = wx + run->count;
-    double *restrict wz = wy + run->count;
+    double *restrict wx = s + run->count;
+    const size_t y = run->count;
     const double L = run->length, k = run->stiffness;
     const size_t count = piece->count;
     CS_INDEPENDENT
@@ -200,9 +205,11 @@ CS_INLINE void factor_of(const struct piece *piece, struct ends e,
         const double clamped = ratio < most ? ratio : most;
         s[i] = gamma + stiffness * (1 - clamped);
         const double w = sqrt(stiffness * clamped + eta) * inverse;
-        wx[i] = w * d.x;
-        wy[i] = w * d.y;
-        wz[i] = w * d.z;
+        wx[i] = listed ? w * d.x : w;
+        if (listed) {
+            wx[y + i] = w * d.y;
+            wx[2 * y + i] = w * d.z;
+        }
     }
 }
 
@@ -218,7 +225,7 @@ struct factoring {
 CS_INLINE void factor_springs(const struct factoring *made, const struct cs_spring_run *run,
                               uint32_t begin, uint32_t end) {
     struct gather_buffer places;
-    double *base = made->factors + 4 * (size_t)run->first;
+    double *base = made->factors + run->factors;
     for (uint32_t start = begin; start < end; start += PIECE) {
         const struct piece piece = piece_of(run, start);
         const struct ends e = ends_of(&piece, made->matrix->x, made->n, false, &places);
@@ -265,11 +272,10 @@ CS_INLINE struct difference mul_of(double s, const struct difference w,
 /* The product of one spring of a grid, for the particle where it begins. */
 CS_INLINE void mul(const struct stencil_input *in, const struct stencil_direction *way,
                    size_t i, double *out) {
-    const double *p = in->x, *s = way->factors;
-    const size_t n = in->n, b = i + way->offset, count = way->count;
-    const struct difference w = {s[count + i], s[2 * count + i], s[3 * count + i]};
+    const double *p = in->dx;
+    const size_t n = in->n, b = i + way->offset;
     const struct difference d = {p[i] - p[b], p[n + i] - p[n + b], p[2 * n + i] - p[2 * n + b]};
-    fan_put(mul_of(s[i], w, d), out);
+    fan_put(mul_of(way->factors[i], axis_of(in, way, i), d), out);
 }
 
 CS_STENCIL_KERNEL(product, mul, 3, 0, 0);
@@ -286,9 +292,9 @@ CS_INLINE void mul_piece(const struct spring_job *job, const struct piece *piece
                          double *restrict fx, double *restrict fy, double *restrict fz) {
     struct gather_buffer places;
     const struct cs_spring_run *run = piece->run;
-    const double *s = job->factors + 4 * (size_t)run->first + piece->start;
+    const double *s = job->factors + run->factors + piece->start;
     const double *wx = s + run->count, *wy = wx + run->count, *wz = wy + run->count;
-    const struct ends e = ends_of(piece, job->at.x, job->n, true, &places);
+    const struct ends e = ends_of(piece, job->at.dx, job->n, true, &places);
     for (size_t i = 0; i < piece->count; i++) {
         const struct difference w = {wx[i], wy[i], wz[i]};
         const struct difference f = mul_of(s[i], w, across(e, i, true));
@@ -313,9 +319,9 @@ CS_CLONES static void mul_add_block(void *arg, uint32_t number) {
 
 /* Meshes first, into slots; then each block sums its own particles. */
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
-                        const double *p, double *y) {
+                        const double *x, const double *p, double *y) {
     struct spring_job job = {
-        .springs = springs, .n = n, .at = {.x = p}, .factors = factors, .to = y};
+        .springs = springs, .n = n, .at = {.x = x, .dx = p}, .factors = factors, .to = y};
     cs_pool_run(springs->n_chunks, wait_mul_chunk, &job);
     cs_pool_run(springs->n_blocks, mul_add_block, &job);
 }
