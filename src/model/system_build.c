@@ -59,7 +59,7 @@ static void build_springs(struct cs_system *system, struct cs_error *error) {
             lists += 2 * (size_t)(n_springs - before);
     }
     system->springs = (struct cs_springs){.runs = runs, .n_runs = n_runs, .n = n_springs};
-    system->springs.n_factors = cs_springs_place_factors(runs, n_runs, 0);
+    system->springs.n_factors = cs_springs_order_factors(runs, n_runs, 0);
 }
 
 /* Writes the runs out spring by spring, for methods that need single springs (CS_NEED_SPRINGS).

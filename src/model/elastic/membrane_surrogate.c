@@ -108,7 +108,7 @@ enum cs_status cs_membrane_surrogate_build(struct cs_system *system, struct cs_e
     }
     // the factors of springs come first
     system->springs.n_factors =
-        cs_springs_place_factors(membranes->runs, membranes->n_runs, system->springs.n_factors);
+        cs_springs_order_factors(membranes->runs, membranes->n_runs, system->springs.n_factors);
     return error->status;
 }
 

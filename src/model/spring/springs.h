@@ -11,9 +11,9 @@
 
 struct cs_body;
 
-/* Places the numbers of some runs in the factors of the solver's matrix, from place `begin` on.
- * Returns the place after the last one. */
-size_t cs_springs_place_factors(struct cs_spring_run *runs, uint32_t n_runs, size_t begin);
+/* Orders the numbers of some runs in the factors of the solver's matrix, from `begin` on.
+ * Returns the end of the last one. */
+size_t cs_springs_order_factors(struct cs_spring_run *runs, uint32_t n_runs, size_t begin);
 
 /* Appends the runs of one body, whose particles start at `first`, at runs[0..]: those of a
  * cloth's rows, or one per kind of a mesh. lists receives the lengths and stiffnesses of a

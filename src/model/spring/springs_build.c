@@ -35,7 +35,7 @@ void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body) {
     run->stiffness = k;
 }
 
-size_t cs_springs_place_factors(struct cs_spring_run *runs, uint32_t n_runs, size_t begin) {
+size_t cs_springs_order_factors(struct cs_spring_run *runs, uint32_t n_runs, size_t begin) {
     for (uint32_t r = 0; r < n_runs; r++) {
         runs[r].factors = begin;
         begin += (runs[r].ends ? 4 : 2) * (size_t)runs[r].count;
