@@ -21,6 +21,7 @@
 
 #include <clothsim/clones.h>
 #include <math.h>
+#include <stdbool.h>
 
 /* y below which the stiffness is constant, which keeps the forces of trial states finite. The
  * energy at the core must be far above 50 times that of what comes: a step may miss

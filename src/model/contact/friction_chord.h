@@ -22,7 +22,8 @@
  *   F1 = max(F - h K w1, 0),   w1 = (w + (h/m) f0) / (1 + (h/m) (r + h K))
  *
  * so that friction takes mu times the impulse of the normal, also in a landing, and b loses h
- * (L1 - L) T/s(T). By the F of the begin a sheet that landed stopped 2 cm early. Pairs keep F.
+ * (L1 - L) T/s(T). By the F of the begin a sheet that landed stopped 2 cm early. Pairs keep F,
+ * and so do round surfaces, around which the clamped matrix already holds what slides.
  *
  * c is L ev^2/s^3 where u and `along` agree. Several contacts of a point are taken as one with
  * the sum of their loads, of whose slope each has its fraction.
@@ -88,7 +89,7 @@ CS_INLINE double cs_friction_chord_fraction(const struct cs_contact_pull *pull,
     return own / cs_fmax(own, cs_vec3_dot(contacts->n, pull->push));
 }
 
-/* F1 in N along g, of a contact at a collider. */
+/* F1 in N along g, of a contact at a collider; F where that is round. */
 CS_INLINE double cs_friction_chord_end_force(const struct cs_point_contact *contact,
                                              const struct cs_contact_pull *pull) {
     const double h = pull->h, square = cs_point_contact_square(contact->g);
@@ -105,7 +106,11 @@ CS_INLINE double cs_friction_chord_end_force(const struct cs_point_contact *cont
     const double held =
         h * (drag + h * barrier.stiffness) * inverse / cs_friction_chord_fraction(pull, &alone);
     const double end = (approach + change) / (1 + (pull->is_end_known ? 0 : held));
-    return cs_fmax(0, barrier.force - h * barrier.stiffness * end);
+    double curvature = 0;
+    for (int e = 0; e < 6; e++)
+        curvature += contact->h[e] * contact->h[e];
+    return curvature > 0 ? barrier.force
+                         : cs_fmax(0, barrier.force - h * barrier.stiffness * end);
 }
 
 /* b (6) += h times the block p (P - e e^T) + c e e^T of a contact. */

@@ -221,8 +221,9 @@ CS_INLINE void cs_point_contact_approach(const struct cs_point_contact *contact,
 
 /* Largest stiffness in N/m and damping in N s/m that the point adds in any direction: K |g|^2,
  * and tau K |g|^2 + mu N / s. square: g.g */
-CS_INLINE void cs_point_contact_bound_by(const struct cs_point_contact *contact, double square,
-                                         double *stiffness, double *damping) {
+CS_INLINE void cs_point_contact_bound(const struct cs_point_contact *contact, double *stiffness,
+                                      double *damping) {
+    const double square = cs_point_contact_square(contact->g);
     const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
     const double approach = cs_vec3_dot(contact->g, contact->v);
     const double sliding = cs_vec3_dot(contact->v, contact->v) - approach * approach / square;
@@ -232,11 +233,6 @@ CS_INLINE void cs_point_contact_bound_by(const struct cs_point_contact *contact,
     *damping = contact->damping * barrier.stiffness * square +
                cs_point_contact_loss(contact, &barrier, approach) * square +
                contact->friction * barrier.force * sqrt(square) / speed;
-}
-
-CS_INLINE void cs_point_contact_bound(const struct cs_point_contact *contact, double *stiffness,
-                                      double *damping) {
-    cs_point_contact_bound_by(contact, cs_point_contact_square(contact->g), stiffness, damping);
 }
 
 #endif

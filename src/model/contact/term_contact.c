@@ -55,23 +55,6 @@ CS_INLINE uint32_t measure(const struct cs_posed_collider_law *law, size_t n, co
     return inside;
 }
 
-/* Particle i of a row as a contact; v at the first particle of the row. */
-CS_INLINE struct cs_point_contact contact_of(const struct cs_posed_collider_law *law, size_t n,
-                                             const double *v, size_t i, const bool sphere,
-                                             const struct row *row) {
-    const double *normal = law->collider.axes[1], *u = law->collider.velocity;
-    struct cs_point_contact contact;
-    cs_posed_collider_law_set(law, &contact);
-    contact.d = row->d[i];
-    contact.g[0] = sphere ? row->x[i] : normal[0];
-    contact.g[1] = sphere ? row->y[i] : normal[1];
-    contact.g[2] = sphere ? row->z[i] : normal[2];
-    contact.v[0] = v[i] - u[0];
-    contact.v[1] = v[n + i] - u[1];
-    contact.v[2] = v[2 * n + i] - u[2];
-    return contact;
-}
-
 /* Adds the forces of one row to f at its first particle. rubs: friction or damping act; a
  * constant, so that the loop has no branch. */
 CS_INLINE void push(const struct cs_posed_collider_law *law, const struct pass *pass,
@@ -80,8 +63,17 @@ CS_INLINE void push(const struct cs_posed_collider_law *law, const struct pass *
     const struct cs_contact_force_parts parts = cs_force_parts_of(pass->query.eval.parts);
     const size_t n = pass->query.system->view.n;
     const double *v = pass->query.eval.v + row->start;
+    const double *normal = law->collider.axes[1], *u = law->collider.velocity;
     for (size_t i = 0; i < row->count; i++) {
-        const struct cs_point_contact contact = contact_of(law, n, v, i, sphere, row);
+        struct cs_point_contact contact;
+        cs_posed_collider_law_set(law, &contact);
+        contact.d = row->d[i];
+        contact.g[0] = sphere ? row->x[i] : normal[0];
+        contact.g[1] = sphere ? row->y[i] : normal[1];
+        contact.g[2] = sphere ? row->z[i] : normal[2];
+        contact.v[0] = v[i] - u[0];
+        contact.v[1] = v[n + i] - u[1];
+        contact.v[2] = v[2 * n + i] - u[2];
         double by[3];
         if (rubs)
             cs_point_contact_force_by(&contact, 1, parts, by);
@@ -93,23 +85,7 @@ CS_INLINE void push(const struct cs_posed_collider_law *law, const struct pass *
     }
 }
 
-/* Adds the bounds of one row. */
-CS_INLINE void bound(const struct cs_posed_collider_law *law, const struct pass *pass,
-                     const bool sphere, const struct row *row) {
-    const size_t n = pass->query.system->view.n;
-    const double *v = pass->query.eval.v + row->start;
-    double *restrict stiffness = pass->bounds->stiffness + row->start;
-    double *restrict damping = pass->bounds->damping + row->start;
-    for (size_t i = 0; i < row->count; i++) {
-        const struct cs_point_contact contact = contact_of(law, n, v, i, sphere, row);
-        double stiff, damped;
-        cs_point_contact_bound_by(&contact, 1, &stiff, &damped);
-        stiffness[i] += stiff;
-        damping[i] += damped;
-    }
-}
-
-/* Answers for all rows of particles, but tangled ones: cs_point_evaluate for |g| = 1. */
+/* The force of all rows of particles, but tangled ones: cs_point_evaluate for |g| = 1. */
 CS_INLINE void answer_rows(const struct cs_posed_collider_law *law, const struct pass *pass,
                            size_t begin, size_t end, const bool sphere) {
     const struct cs_eval *at = &pass->query.eval;
@@ -123,9 +99,7 @@ CS_INLINE void answer_rows(const struct cs_posed_collider_law *law, const struct
             continue;
         for (size_t i = 0; tangled && i < row.count; i++)
             row.d[i] = tangled[row.start + i] ? law->params.range : row.d[i];
-        if (pass->query.asked == CS_QUERY_BOUND)
-            bound(law, pass, sphere, &row);
-        else if (rubs)
+        if (rubs)
             push(law, pass, sphere, true, &row, pass->to + row.start);
         else
             push(law, pass, sphere, false, &row, pass->to + row.start);
@@ -225,8 +199,7 @@ static void run(void *arg, size_t begin, size_t end) {
         struct cs_posed_collider_law law;
         cs_posed_collider_law_at(query->system, k, query->eval.t, &law);
         const bool in_rows =
-            (query->asked == CS_QUERY_FORCE || query->asked == CS_QUERY_BOUND) &&
-            cs_posed_collider_law_is_plain(&law);
+            query->asked == CS_QUERY_FORCE && cs_posed_collider_law_is_plain(&law);
         if (in_rows)
             answer_in_rows(&law, pass, begin, end);
         if (!in_rows || (power && !cs_vec3_is_zero(law.collider.velocity)))
