@@ -175,8 +175,7 @@ static enum cs_status make(struct cs_solid *solid, struct cs_arena *arena,
     else if (!collider->shape->triangles(collider, &solid->mesh, arena, error))
         solid->n = 3 * solid->mesh.n_triangles;
     if (solid->mesh.vertex_triangles)
-        solid->normals =
-            cs_arena_alloc_array(arena, 3 * (size_t)solid->n, sizeof *solid->normals, error);
+        CS_ARENA_ARRAY(arena, solid->normals, 3 * (size_t)solid->n, error);
     fill_normals(solid);
     return error->status;
 }
@@ -197,8 +196,7 @@ enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *geometries
             extend(geometries->of + i, ground);
         most = geometries->of[i].n > most ? geometries->of[i].n : most;
     }
-    geometries->vertices =
-        cs_arena_alloc_array(arena, most, sizeof *geometries->vertices, error);
+    CS_ARENA_ARRAY(arena, geometries->vertices, most, error);
     return error->status;
 }
 

@@ -81,8 +81,7 @@ enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system
     mesh->first_triangle = marked ? system->surfaces->first_triangle[body] : 0;
     mesh->n_indices = 3 * cs_faces_count(range);
     mesh->n_vertices = mesh->split_vertices ? mesh->n_indices : range->count;
-    mesh->vertices =
-        cs_arena_alloc_array(arena, mesh->n_vertices, sizeof *mesh->vertices, error);
+    CS_ARENA_ARRAY(arena, mesh->vertices, mesh->n_vertices, error);
     mesh->indices = cs_arena_alloc_array(arena, mesh->n_indices, sizeof *mesh->indices, error);
     mesh->normals =
         cs_arena_alloc_array(arena, mesh->has_creases ? mesh->n_indices : range->count,

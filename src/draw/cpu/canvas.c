@@ -112,8 +112,7 @@ static enum cs_status init_surfaces(struct cs_canvas *canvas, struct cs_error *e
         return cs_fail(error, CS_ERR_MODULE,
                        "renderer cpu draws at most %d bodies and colliders, not %u", UINT16_MAX,
                        n + solids);
-    pass->materials =
-        cs_arena_alloc_array(&canvas->arena, n + solids, sizeof *pass->materials, error);
+    CS_ARENA_ARRAY(&canvas->arena, pass->materials, n + solids, error);
     canvas->bodies = cs_arena_alloc_array(&canvas->arena, n, sizeof *canvas->bodies, error);
     for (uint32_t b = 0; b < n && error->status == CS_OK; b++) {
         canvas->bodies[b].srgb = &canvas->srgb;

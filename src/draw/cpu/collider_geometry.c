@@ -95,8 +95,7 @@ enum cs_status cs_body_geometry_init(struct cs_body_geometry *body,
     const bool has_uv = cs_look_needs_uv(settings->scene->render->look, textured);
     if (cs_mesh_init(&body->mesh, settings->system, b, has_uv, arena, error))
         return error->status;
-    body->clip_vertices =
-        cs_arena_alloc_array(arena, body->mesh.n_vertices, sizeof *body->clip_vertices, error);
+    CS_ARENA_ARRAY(arena, body->clip_vertices, body->mesh.n_vertices, error);
     body->hidden = cs_overlay_hides(settings->scene, b);
     body->material = shading;
     body->textured = textured;

@@ -57,8 +57,7 @@ static enum cs_status gl_colliders_init(struct cs_gl_colliders *colliders,
     const struct cs_view_state *view = colliders->view;
     const uint32_t n = colliders->geometries.n;
     colliders->surfaces = cs_arena_alloc_array(arena, n, sizeof *colliders->surfaces, error);
-    colliders->shadows = cs_arena_alloc_array(arena, (size_t)n * view->n_lights,
-                                              sizeof *colliders->shadows, error);
+    CS_ARENA_ARRAY(arena, colliders->shadows, (size_t)n * view->n_lights, error);
     if (error->status)
         return error->status;
     for (uint32_t k = 0; k < n * view->n_lights; k++)

@@ -82,10 +82,8 @@ enum cs_status cs_body_pair_table_build(struct cs_system *system,
     const uint32_t n = system->surfaces->n_bodies;
     struct cs_body_pair_params params;
     *body_pairs = (struct cs_body_pair_table){.n_bodies = n, .range_min = HUGE_VAL};
-    body_pairs->params =
-        cs_arena_alloc_array(&system->arena, (size_t)n * n, sizeof *body_pairs->params, error);
-    body_pairs->has_partner =
-        cs_arena_alloc_array(&system->arena, n, sizeof *body_pairs->has_partner, error);
+    CS_ARENA_ARRAY(&system->arena, body_pairs->params, (size_t)n * n, error);
+    CS_ARENA_ARRAY(&system->arena, body_pairs->has_partner, n, error);
     if (error->status || cs_collider_params_softest(system, &body_pairs->softest, error))
         return error->status;
     for (uint32_t a = 0; a < n; a++)

@@ -218,12 +218,10 @@ enum cs_status cs_contact_samples_build(struct cs_system *system, struct cs_erro
     samples->system = system;
     samples->blocks = &samples->current_set;
     list_all(system, samples, error);
-    samples->colliders = cs_arena_alloc_array(arena, system->scene->colliders.n,
-                                              sizeof *samples->colliders, error);
+    CS_ARENA_ARRAY(arena, samples->colliders, system->scene->colliders.n, error);
     CS_ARENA_ARRAY(arena, samples->listed, system->scene->colliders.n, error);
     CS_ARENA_ARRAY(arena, samples->x_listed, 3 * (size_t)system->view.n, error);
-    samples->chunks =
-        cs_arena_alloc_array(arena, samples->n_chunks, sizeof *samples->chunks, error);
+    CS_ARENA_ARRAY(arena, samples->chunks, samples->n_chunks, error);
     if (!error->status)
         list_all(system, samples, error);
     cs_contact_set_init(&samples->current_set, system->view.n, samples->n_chunks, arena, error);

@@ -87,7 +87,7 @@ static void do_chunk(void *arg, uint32_t number) {
     }
 }
 
-/* Poses all colliders; returns whether lists of items need to be made anew. */
+/* Poses all colliders; returns whether the lists of items are to be made again. */
 static bool pose_colliders(const struct cs_point_query *query,
                            struct cs_contact_samples *samples) {
     const uint32_t n_colliders = query->system->scene->colliders.n;

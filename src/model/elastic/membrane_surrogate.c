@@ -94,10 +94,8 @@ enum cs_status cs_membrane_surrogate_build(struct cs_system *system, struct cs_e
         n_runs += mesh ? 1 : 3 * (size_t)membranes->bodies[b].rows;
         n_edges += mesh ? mesh->n_edges : 3 * (size_t)membranes->bodies[b].count;
     }
-    membranes->runs =
-        cs_arena_alloc_array(&system->arena, n_runs, sizeof *membranes->runs, error);
-    membranes->sides =
-        cs_arena_alloc_array(&system->arena, 2 * n_edges, sizeof *membranes->sides, error);
+    CS_ARENA_ARRAY(&system->arena, membranes->runs, n_runs, error);
+    CS_ARENA_ARRAY(&system->arena, membranes->sides, 2 * n_edges, error);
     for (uint32_t b = 0; b < membranes->n && !error->status; b++) {
         struct cs_membrane *membrane = membranes->bodies + b;
         const struct cs_trimesh *mesh = system->bodies[membrane->body].mesh;

@@ -19,8 +19,7 @@ enum cs_status cs_static_friction_init(struct cs_static_friction *friction,
     const size_t n = system->view.n;
     *friction = (struct cs_static_friction){.system = system};
     friction->resting_on = cs_arena_alloc_array(arena, n, sizeof *friction->resting_on, error);
-    friction->is_sticking =
-        cs_arena_alloc_array(arena, n, sizeof *friction->is_sticking, error);
+    CS_ARENA_ARRAY(arena, friction->is_sticking, n, error);
     friction->load = cs_arena_alloc_array(arena, 3 * n, sizeof *friction->load, error);
     return error->status ? error->status
                          : cs_temporary_pins_init(&friction->pins, system, arena, error);

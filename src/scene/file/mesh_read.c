@@ -39,8 +39,7 @@ static enum cs_status copy_mesh(const struct cs_obj *obj, const struct cs_mesh_s
     if (cs_trimesh_init(mesh, raw->n_vertices, raw->n_triangles, obj->is_textured, arena,
                         error))
         return error->status;
-    mesh->file_vertex =
-        cs_arena_alloc_array(arena, raw->n_vertices, sizeof *mesh->file_vertex, error);
+    CS_ARENA_ARRAY(arena, mesh->file_vertex, raw->n_vertices, error);
     if (!mesh->file_vertex)
         return error->status;
     for (size_t i = 0; i < raw->n_vertices; i++) {
@@ -70,8 +69,7 @@ static enum cs_status copy_labels(const struct cs_obj *obj, struct cs_trimesh *m
         return CS_OK;
     struct cs_mesh_label *labels =
         cs_arena_alloc_array(arena, obj->n_labels, sizeof *labels, error);
-    mesh->triangle_labels =
-        cs_arena_alloc_array(arena, mesh->n_triangles, sizeof *mesh->triangle_labels, error);
+    CS_ARENA_ARRAY(arena, mesh->triangle_labels, mesh->n_triangles, error);
     if (!labels || !mesh->triangle_labels)
         return error->status;
     memcpy(labels, obj->labels, obj->n_labels * sizeof *labels);
