@@ -67,7 +67,7 @@ struct cs_contact_samples {
 };
 
 /* Reach of a list of near items in ranges: until samples and collider have moved towards each
- * other by the rest, all samples in range are of these items. Chosen by trial on squeeze. */
+ * other by the rest, all samples in range are of these items. */
 #define CS_CONTACT_SAMPLE_MARGIN 4
 
 /* m, the most that a sample moves relative to a collider, of which the centre moves from c0 to
