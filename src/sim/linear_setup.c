@@ -69,8 +69,7 @@ static void subtract(size_t n, const double *y, double *b) {
         b[k] -= y[k];
 }
 
-/* Sets b for the A of the last set-up. f: all forces at the step's begin, not in q; the other
- * vectors of the solver are free until it starts. */
+/* Sets b for the A of the last set-up, by way of q. f: all forces at the step's begin. */
 static void build_rhs(struct cs_run_host *host, const double *f) {
     const struct cs_system *system = host->run->system;
     const struct cs_euler_step *step = &host->euler;
@@ -112,10 +111,10 @@ static void set_up(struct cs_run_host *host, const struct cs_matrix *matrix, boo
     const struct cs_euler_step *step = &host->euler;
     struct cs_matrix clamped = *matrix;
     struct cs_eval at = {.t = step->t, .x = step->x, .v = step->v, .parts = CS_PART_POTENTIAL};
-    double *f = host->linear.r, *contact = host->linear.z;
+    double *f = host->linear.r, *contact = host->linear.p;
     const struct cs_chord_forces chord = {
         .all = step->dv ? contact : f, .contact = contact, .is_end_known = step->dv};
-    // A leaves r and z alone, so that its friction may know the forces, and b follow it
+    // A and b leave r and p alone, so that their friction may know the forces, and b follow A
     host->table.force(host, at.t, at.x, at.v, CS_PART_ALL, f);
     const struct cs_stage_start begin = cs_stage_begin(host);
     if (has_chord(host)) {

@@ -35,7 +35,8 @@ def main():
         path.write_text(MESON)
         path.chmod(0o755)
         line = [root / "tests/progress.py", "build", "--suite", "cli"]
-        env = {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "PROGRESS_SECONDS": "0", "MESON_TESTTHREADS": "2"}
+        env = {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "PROGRESS_SECONDS": "0", "MESON_TESTTHREADS": "2",
+               "LATER": "0", "SLOWER": "1"}
         ran = subprocess.run(line, capture_output=True, text=True, env=env)
         reader, terminal = pty.openpty()
         in_terminal = subprocess.run(line, stdout=subprocess.PIPE, stderr=terminal, text=True, env=env)

@@ -22,8 +22,9 @@
  *   F1 = max(F - h K w1, 0),   w1 = (w + (h/m) f0) / (1 + (h/m) (r + h K))
  *
  * so that friction takes mu times the impulse of the normal, also in a landing, and b loses h
- * (L1 - L) T/s(T). By the F of the begin a sheet that landed stopped 2 cm early. Pairs and
- * round surfaces keep F: around these the clamped matrix already holds what slides.
+ * (L1 - L) T/s(T). By the F of the begin a sheet that landed stopped 2 cm early. Pairs keep
+ * F, and so do stacks, where others move the contact too, and round surfaces, around which the
+ * clamped matrix already holds what slides.
  *
  * c is L ev^2/s^3 where u and `along` agree. Several contacts of a point are taken as one with
  * the sum of their loads, of whose slope each has its fraction.
@@ -89,28 +90,27 @@ CS_INLINE double cs_friction_chord_fraction(const struct cs_contact_pull *pull,
     return own / cs_fmax(own, cs_vec3_dot(contacts->n, pull->push));
 }
 
-/* F1 in N along g, of a contact at a collider; F where that is round. */
+/* F1 in N along g, of a contact at a collider; F where that is round, or other contacts push
+ * the point too. */
 CS_INLINE double cs_friction_chord_end_force(const struct cs_point_contact *contact,
                                              const struct cs_contact_pull *pull) {
     const double h = pull->h, square = cs_point_contact_square(contact->g);
-    const double length = sqrt(square), approach = cs_vec3_dot(contact->g, contact->v);
+    const double approach = cs_vec3_dot(contact->g, contact->v);
     const struct cs_barrier barrier = cs_barrier_at(contact->d, contact->range, contact->k);
-    const struct cs_sliding_contact alone = {
-        .n = {contact->g[0] / length, contact->g[1] / length, contact->g[2] / length},
-        .force = barrier.force * length};
     const double drag = contact->damping * barrier.stiffness +
                         cs_point_contact_loss(contact, &barrier, approach);
-    const double inverse = square * pull->inverse;
+    const double inverse = square * pull->inverse, own = inverse * barrier.force;
+    const double others = cs_vec3_dot(contact->g, pull->push) - own;
     const double change = h * (cs_vec3_dot(contact->g, pull->motion) +
                                (pull->is_end_known ? 0 : inverse * drag * approach));
-    const double held =
-        h * (drag + h * barrier.stiffness) * inverse / cs_friction_chord_fraction(pull, &alone);
+    const double held = h * (drag + h * barrier.stiffness) * inverse;
     const double end = (approach + change) / (1 + (pull->is_end_known ? 0 : held));
     double curvature = 0;
     for (int e = 0; e < 6; e++)
         curvature += contact->h[e] * contact->h[e];
-    return curvature > 0 ? barrier.force
-                         : cs_fmax(0, barrier.force - h * barrier.stiffness * end);
+    return curvature > 0 || others > 1e-6 * own || others < -1e-6 * own
+               ? barrier.force
+               : cs_fmax(0, barrier.force - h * barrier.stiffness * end);
 }
 
 /* b (6) += h times the block p (P - e e^T) + c e e^T of a contact. */
