@@ -35,10 +35,8 @@ enum cs_status cs_rebounds_init(struct cs_system *system, struct cs_arena *arena
     if (!rebounds)
         return error->status;
     rebounds->list = cs_arena_alloc_array(arena, system->view.n, sizeof *rebounds->list, error);
-    rebounds->change =
-        cs_arena_alloc_array(arena, 3 * (size_t)system->view.n, sizeof(double), error);
-    rebounds->rows =
-        cs_arena_alloc_array(arena, system->view.n / CS_COLLIDER_ROW + (size_t)1, 1, error);
+    CS_ARENA_ARRAY(arena, rebounds->change, 3 * (size_t)system->view.n, error);
+    CS_ARENA_ARRAY(arena, rebounds->rows, system->view.n / CS_COLLIDER_ROW + (size_t)1, error);
     system->rebounds = rebounds;
     return error->status;
 }

@@ -282,8 +282,7 @@ enum cs_status cs_normal_curvature_build(struct cs_system *system, struct cs_err
     if (!any)
         return error->status;
     bendings->normal.x = cs_arena_alloc_array(&system->arena, 3 * n, sizeof(double), error);
-    bendings->normal.blocks =
-        cs_arena_alloc_array(&system->arena, 6 * n, sizeof(double), error);
+    CS_ARENA_ARRAY(&system->arena, bendings->normal.blocks, 6 * n, error);
     bendings->normal.kept = cs_arena_alloc_array(&system->arena, 6 * n, sizeof(double), error);
     return error->status;
 }

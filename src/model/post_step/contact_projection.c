@@ -75,17 +75,14 @@ static bool absorb(const struct cs_collider *collider, const double n[3], double
  * with T_v, T_x the tangential parts of v and of the displacement since `last`. A negative
  * absorption reflects the normal velocity, times |ka|. Position and velocity are corrected
  * alike, so that a particle that friction holds stays in its place. If it passes the collider,
- * n and d are those of the half-space at its entry. before: NULL if it moves too little to. */
+ * n and d are those of the half-space at its entry. */
 static enum cs_project_result project_particle(const struct cs_posed_collider *before,
                                                const struct cs_posed_collider *posed, double dt,
                                                const double last[3], double p[3], double v[3]) {
     const struct cs_collider *collider = posed->collider;
     double n[3], surface_v[3], from[3], move[3], gap;
-    // most particles are told by the bounding test alone
-    if (!before || !cs_tunnelling_find(before, posed, last, p, &gap, n))
-        gap = cs_posed_collider_is_near(posed, collider->thickness, p)
-                  ? cs_posed_collider_signed_distance(posed, p, n)
-                  : 0;
+    if (!cs_tunnelling_find(before, posed, last, p, &gap, n))
+        gap = cs_posed_collider_signed_distance(posed, p, n);
     if (!(gap < 0))
         return CS_PROJECT_NONE;
 
@@ -132,18 +129,29 @@ static void put(const double value[3], size_t n, size_t i, double *to) {
         to[c * n + i] = value[c];
 }
 
-/* Returns whether a particle moves far enough to pass a collider. Colliders that move are
- * asked one by one. */
-static bool may_pass(const struct cs_contact_projection *contact, const double from[3],
-                     const double to[3]) {
-    const double way[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+/* Returns whether particle i is near a collider, or moves far enough to pass one. Most do
+ * neither. Colliders that move are asked one by one. */
+static bool may_touch(const struct step *step, size_t i) {
+    const struct cs_contact_projection *contact = step->contact;
+    const size_t n = count_of(contact);
+    double p[3], last[3], squared = 0;
+    cs_point_read(step->x, n, i, p);
+    for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++)
+        if (cs_posed_collider_is_near(contact->colliders + k,
+                                      contact->colliders[k].collider->thickness, p))
+            return true;
+    if (contact->shortest_tunnel == HUGE_VAL)
+        return false;
+    cs_point_read(contact->state_before, n, i, last);
+    for (int c = 0; c < 3; c++)
+        squared += (p[c] - last[c]) * (p[c] - last[c]);
     return contact->colliders_before != contact->colliders ||
-           cs_vec3_dot(way, way) > contact->shortest_tunnel * contact->shortest_tunnel;
+           squared > contact->shortest_tunnel * contact->shortest_tunnel;
 }
 
-/* Projects particle i, if it is free, against all colliders, each after the one before, into
- * state_after. Returns how many pushed it. */
-static unsigned project_against_all(const struct step *step, size_t i, bool free) {
+/* Projects particle i against all colliders, each after the one before, into state_after if it
+ * is pushed. Returns how many pushed it. */
+static unsigned project_against_all(const struct step *step, size_t i) {
     struct cs_contact_projection *contact = step->contact;
     const size_t n = count_of(contact);
     double p[3], v[3], last[3];
@@ -151,17 +159,16 @@ static unsigned project_against_all(const struct step *step, size_t i, bool free
     cs_point_read(step->x, n, i, p);
     cs_point_read(step->v, n, i, v);
     cs_point_read(contact->state_before, n, i, last);
-    for (uint32_t k = 0; free && k < contact->system->scene->colliders.n; k++) {
-        const enum cs_project_result touch =
-            project_particle(may_pass(contact, last, p) ? contact->colliders_before + k : NULL,
-                             contact->colliders + k, step->dt, last, p, v);
+    for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
+        const enum cs_project_result touch = project_particle(
+            contact->colliders_before + k, contact->colliders + k, step->dt, last, p, v);
         if (touch == CS_PROJECT_NONE)
             continue;
         pushed++;
         contact->static_friction.resting_on[i] = touch == CS_PROJECT_STUCK ? k + 1 : 0;
     }
-    put(p, n, i, contact->state_after);
-    put(v, n, i, contact->state_after + 3 * n);
+    if (pushed)
+        put(p, n, i, contact->state_after), put(v, n, i, contact->state_after + 3 * n);
     return pushed;
 }
 
@@ -173,7 +180,7 @@ static void project_block(void *arg, size_t begin, size_t end) {
     uint64_t tested = 0, pushed = 0;
     for (size_t i = begin; i < end; i++) {
         const bool free = system->inv_mass[i] > 0 && !contact->static_friction.is_sticking[i];
-        const unsigned pushes = project_against_all(step, i, free);
+        const unsigned pushes = free && may_touch(step, i) ? project_against_all(step, i) : 0;
         tested += free;
         pushed += pushes;
         contact->is_pushed[i] = pushes > 0;
@@ -187,7 +194,7 @@ static void project_block(void *arg, size_t begin, size_t end) {
 /* Limits the energy of state_after and makes it the state. */
 static void push(const struct step *step) {
     struct cs_contact_projection *contact = step->contact;
-    const size_t n3 = 3 * count_of(contact);
+    const size_t n = count_of(contact), n3 = 3 * n;
     const struct cs_projection_step pushed = {.t = step->t,
                                               .dt = step->dt,
                                               .colliders = contact->colliders,
@@ -198,8 +205,13 @@ static void push(const struct step *step) {
                                               .corrected = contact->state_after,
                                               .is_pushed = contact->is_pushed};
     // sticking ones count as pushed: to the elastic response their positions are imposed too
-    for (size_t i = 0; i < count_of(contact); i++)
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = i; k < n3 && !contact->is_pushed[i]; k += n) {
+            contact->state_after[k] = step->x[k];
+            contact->state_after[n3 + k] = step->v[k];
+        }
         contact->is_pushed[i] |= contact->static_friction.is_sticking[i];
+    }
     // If the push was cut short, a particle may still be behind a surface and is not at rest.
     if (!cs_projection_energy_limit(&contact->energy_limit, &pushed))
         cs_static_friction_reject(&contact->static_friction);

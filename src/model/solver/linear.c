@@ -30,8 +30,7 @@ enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *
                               struct cs_arena *arena, struct cs_error *error) {
     const size_t n = system->view.n;
     *linear = (struct cs_linear){.system = system};
-    linear->factors =
-        cs_arena_alloc_array(arena, system->springs.n_factors, sizeof(double), error);
+    CS_ARENA_ARRAY(arena, linear->factors, system->springs.n_factors, error);
     linear->mass = cs_arena_alloc_array(arena, n, sizeof(double), error);
     linear->inverse = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
     if (cs_terms_have_blocks(system))

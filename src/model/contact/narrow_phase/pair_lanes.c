@@ -283,8 +283,8 @@ CS_INLINE void write_own(const double g[3], double along, double rub,
 }
 
 /* Diagonal blocks of all lanes, times find_growth if `alone` is true. */
-CS_INLINE void diagonal_blocks(enum cs_pair_kind kind, struct cs_pair_factors *restrict factors,
-                               bool alone, double own[restrict 4][6][CS_PAIR_LANES]) {
+CS_INLINE void diagonal(enum cs_pair_kind kind, struct cs_pair_factors *restrict factors,
+                        bool alone, double own[restrict 4][6][CS_PAIR_LANES]) {
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         double g[4][3], size[4], weight[4], along[4], rub[4];
         struct cs_pair_matrix_terms terms;
@@ -301,14 +301,6 @@ CS_INLINE void diagonal_blocks(enum cs_pair_kind kind, struct cs_pair_factors *r
             write_own(g[k], terms.gradient_weight * (alone ? along[k] : 1),
                       weight[k] * weight[k] * (alone ? rub[k] : 1), &terms, l, own[k]);
     }
-}
-
-CS_INLINE void diagonal(enum cs_pair_kind kind, struct cs_pair_factors *restrict factors,
-                        bool alone, double own[restrict 4][6][CS_PAIR_LANES]) {
-    if (alone)
-        diagonal_blocks(kind, factors, true, own);
-    else
-        diagonal_blocks(kind, factors, false, own);
 }
 
 CS_PAIR_KERNEL(extern, cs_pair_lanes_multiply, multiply,
