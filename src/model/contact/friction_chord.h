@@ -22,8 +22,8 @@
  *   F1 = max(F - h K w1, 0),   w1 = (w + (h/m) f0) / (1 + (h/m) (r + h K))
  *
  * so that friction takes mu times the impulse of the normal, also in a landing, and b loses h
- * (L1 - L) T/s(T). By the F of the begin a sheet that landed stopped 2 cm early. Pairs keep
- * F, and so do stacks, where others move the contact too, and round surfaces, around which the
+ * (L1 - L) T/s(T). By the F of the begin a sheet that landed stopped 2 cm early. F serves
+ * pairs, stacks, where others move the contact too, and round surfaces, around which the
  * clamped matrix already holds what slides.
  *
  * c is L ev^2/s^3 where u and `along` agree. Several contacts of a point are taken as one with
