@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""links.py ROOT - every link between documents, with the heading that it names, and every file of the
-tree that a document names in backquotes, is there; tables are those of Markdown; pages have at most
+"""links.py ROOT - every link between documents, with the heading that it names, every file of the
+tree that a document names in backquotes, and every file and name of the code in CONTRIBUTING is there; tables are those of Markdown; pages have at most
 so many words, outside of blocks of code and of clothsim(1)'s table of shared options; so has a version of
 the change log. Of all other pages of docs, words in tables do not count, which are looked up and not read; nor
 does the bibliography, a list of works."""
@@ -19,6 +19,8 @@ MAN_WORDS = 700
 VERSION_WORDS = 900
 PAGE_WORDS = {"man/clothsim-contact.7.scd": 1000, "man/clothsim-scene.5.scd": 1500}
 RESULT_WORDS, RESULT_ROWS = 600, 20
+# names that CONTRIBUTING makes up
+EXAMPLES = {"cs_noun_verb", "cs_term_resistance"}
 checked, wrong = 0, []
 
 
@@ -58,6 +60,12 @@ for document in [root / "README.md", root / "CONTRIBUTING.md", *sorted(root.glob
         checked += 1
         if not path.exists():
             wrong.append(f"{document.relative_to(root)}: no {path.relative_to(root)}")
+code = {path: path.read_text() for folder in ("src", "tools", "plugins", "include", "tests") for path in (root / folder).rglob("*.[ch]")}
+names = set(re.findall(r"\bcs_\w+", "\n".join(code.values())))
+for name in re.findall(r"\bcs_[a-z0-9_]+|[a-z]\w*/[\w/]+\.[ch]\b", (root / "CONTRIBUTING.md").read_text()):
+    checked += 1
+    if name not in names | EXAMPLES and "NAME" not in name and not any(f"/{path}".endswith(f"/{name}") for path in code):
+        wrong.append(f"CONTRIBUTING.md: no {name} in the code")
 for version in (root / "CHANGELOG.md").read_text().split("\n## ")[1:]:
     if len(version.split()) > VERSION_WORDS:
         wrong.append(f"CHANGELOG.md: {len(version.split())} words on {version.split()[0]}, at most {VERSION_WORDS}")
