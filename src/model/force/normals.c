@@ -10,6 +10,8 @@
 #include "base/vector.h"
 #include "mesh/trimesh.h"
 
+#include <clothsim/clones.h>
+
 #include <float.h>
 #include <math.h>
 
@@ -36,16 +38,6 @@ static void difference(const double *p, uint32_t n, uint32_t from, uint32_t to, 
         out[c] = p[c * n + to] - p[c * n + from];
 }
 
-/* N of particle i of a grid: (right - left) x (up - down). */
-static void grid_product(const struct cs_body_range *body, uint32_t i, size_t n,
-                         const double *x, double product[3]) {
-    const struct neighbours at = neighbours_of(body, i);
-    double across[3], upwards[3];
-    difference(x, (uint32_t)n, at.left, at.right, across);
-    difference(x, (uint32_t)n, at.down, at.up, upwards);
-    cs_vec3_cross(across, upwards, product);
-}
-
 /* N of particle i of a mesh: the sum of the normals of its triangles. */
 static void mesh_product(const struct cs_body_range *body, uint32_t i, size_t n,
                          const double *x, double product[3]) {
@@ -66,24 +58,45 @@ struct update {
     const double *x;
 };
 
-/* Normals of particles [begin, end) of a body. DBL_MIN makes 0 of a vector N = 0 instead of
- * dividing by 0. */
+/* n = N / |N| of particle i; DBL_MIN makes 0 of a vector N = 0 instead of dividing by 0. */
+CS_INLINE void set_normal(double *restrict normals, size_t n, size_t i,
+                          const double product[3]) {
+    const double inverse = 1 / sqrt(product[0] * product[0] + product[1] * product[1] +
+                                    product[2] * product[2] + DBL_MIN);
+    for (size_t c = 0; c < 3; c++)
+        normals[c * n + i] = product[c] * inverse;
+}
+
+/* Normals of particles i to i + count - 1 of a grid, whose neighbours lie as those of the
+ * first: N = (right - left) x (up - down). */
+CS_CLONES static void grid_normals(double *restrict normals, size_t n, size_t i, size_t count,
+                                   struct neighbours of_first, const double *restrict x) {
+    for (size_t k = 0; k < count; k++) {
+        double across[3], upwards[3], product[3];
+        for (size_t c = 0; c < 3; c++) {
+            across[c] = x[c * n + of_first.right + k] - x[c * n + of_first.left + k];
+            upwards[c] = x[c * n + of_first.up + k] - x[c * n + of_first.down + k];
+        }
+        cs_vec3_cross(across, upwards, product);
+        set_normal(normals, n, i + k, product);
+    }
+}
+
+/* Normals of particles [begin, end) of a body. */
 static void update_range(const struct update *update, const struct cs_body_range *body,
                          uint32_t begin, uint32_t end) {
     const size_t n = update->system->view.n;
-    double *nx = update->system->normals, *ny = nx + n, *nz = ny + n;
-    for (uint32_t i = begin; i < end; i++) {
-        double product[3];
-        if (body->mesh)
-            mesh_product(body, i, n, update->x, product);
-        else
-            grid_product(body, i, n, update->x, product);
-        const double squared =
-            product[0] * product[0] + product[1] * product[1] + product[2] * product[2];
-        const double inverse = 1 / sqrt(squared + DBL_MIN);
-        nx[i] = product[0] * inverse;
-        ny[i] = product[1] * inverse;
-        nz[i] = product[2] * inverse;
+    double *normals = update->system->normals, product[3];
+    for (uint32_t i = begin; i < end && body->mesh; i++) {
+        mesh_product(body, i, n, update->x, product);
+        set_normal(normals, n, i, product);
+    }
+    // the first and the last of a row, and those between, each have neighbours of their own
+    for (uint32_t i = begin, count; i < end && !body->mesh; i += count) {
+        const uint32_t column = (i - body->first) % body->columns, last = body->columns - 1;
+        count = column == 0 || column == last ? 1 : last - column;
+        count = count < end - i ? count : end - i;
+        grid_normals(normals, n, i, count, neighbours_of(body, i), update->x);
     }
 }
 
