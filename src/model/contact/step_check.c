@@ -12,13 +12,8 @@
 #include <clothsim/clones.h>
 #include <math.h>
 
-/* largest number of samples of one move, longer ones have coarser samples; particles of a row
- */
-enum { PARTS_MAX = 64, ROW = 64 };
-
-int cs_step_parts(double move, double range) {
-    return move < 0.5 * range * PARTS_MAX ? 1 + (int)(move / (0.5 * range)) : PARTS_MAX;
-}
+/* particles of a row */
+enum { ROW = 64 };
 
 /* m, distance at a fraction of the way; the rotation of the collider within the step is left
  * out */

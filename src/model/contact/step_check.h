@@ -70,8 +70,11 @@ bool cs_impacts_are_resolved(const struct cs_system *system);
 double cs_step_missed_max(const struct cs_system *system);
 
 /* Number of equal parts of a move in m, at whose ends it is sampled: at most half a range long,
- * so that no contact is passed over. */
-int cs_step_parts(double move, double range);
+ * so that no contact is passed over, but no more than 64. */
+CS_INLINE int cs_step_parts(double move, double range) {
+    const double along = move / (0.5 * range);
+    return 1 + (int)(along < 63 ? along : 63);
+}
 
 bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0,
                                        const double *x0, double t1, const double *x1);

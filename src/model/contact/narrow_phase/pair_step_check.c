@@ -26,77 +26,115 @@ struct job {
     uint32_t unseen;
 };
 
-/* A pair whose points move along straight lines during a step. */
-struct way {
-    enum cs_pair_kind kind;
-    double from[4][3], by[4][3]; /* m */
-    struct cs_barrier_model model;
+/* Pairs of one kind whose points move along straight lines during a step, one in a lane. Lanes
+ * without a pair hold unspecified numbers. */
+enum { LANES = 8 };
+
+struct ways {
+    double from[4][3][LANES], by[4][3][LANES]; /* m */
+    double inverse_mass[4][LANES];             /* 1/kg */
+    double range[LANES], k[LANES];             /* m, N/m */
+    /* struct cs_barrier_model at the start */
+    double held[LANES], force[LANES], stiffness[LANES];
     /* J, by which what is missed is judged: psi(d) at the start, the kinetic energy of the
      * relative motion of the contact points, and psi(D/2), which keeps pairs that barely touch
      * from being judged, unless psi itself is */
-    double energy;
-    double approach; /* m, first-order decrease -g.dx of the distance over the whole step */
-    int parts;
+    double energy[LANES];
+    double approach[LANES];    /* m, first-order decrease -g.dx of the distance over the step */
+    double parts[LANES];       /* cs_step_parts */
+    double missed[LANES];      /* J, by the model, at most among the samples */
+    uint32_t points[LANES], n; /* first of each pair */
 };
+
+/* m2, squared relative displacement of points i and j, or `most` if that is more */
+CS_INLINE double further_of(const struct ways *ways, int l, int i, int j, double most) {
+    double r[3];
+    CS_UNROLLED
+    for (int c = 0; c < 3; c++)
+        r[c] = ways->by[i][c][l] - ways->by[j][c][l];
+    return cs_fmax(cs_vec3_dot(r, r), most);
+}
 
 /* m, largest relative displacement of a point of one side and a point of the other. Contact
  * points are convex combinations of the points, so none moves further relative to the other
  * side. */
-static double longest_of(const struct way *way) {
-    const int first = way->kind == CS_PAIR_EDGE_EDGE ? 2 : 1;
-    double most = 0;
-    for (int i = 0; i < first; i++)
-        for (int j = first; j < 4; j++) {
-            double apart[3];
-            for (int c = 0; c < 3; c++)
-                apart[c] = way->by[i][c] - way->by[j][c];
-            most = fmax(most, cs_vec3_dot(apart, apart));
-        }
-    return sqrt(most);
+CS_INLINE double longest_of(enum cs_pair_kind kind, const struct ways *ways, int l) {
+    const int other = kind == CS_PAIR_EDGE_EDGE ? 1 : 0;
+    double most = other ? 0 : further_of(ways, l, 0, 1, 0);
+    most = further_of(ways, l, 0, 2, most);
+    most = further_of(ways, l, 0, 3, most);
+    most = further_of(ways, l, other, 2, most);
+    return sqrt(further_of(ways, l, other, 3, most));
 }
 
-/* Sets a way whose points are at[4]. The effective mass of the contact points is 1 / sum (w_k^2
- * / m_k), infinite if all are pinned. */
-static void set_way(const struct job *job, const uint32_t at[4], struct way *way) {
-    const struct cs_pairs *pairs = job->pairs;
-    const bool edges = way->kind == CS_PAIR_EDGE_EDGE;
-    const struct cs_body_pair_params *params = cs_body_pair_params_of(
-        &pairs->body_pairs, pairs->candidates.body[at[0]], pairs->candidates.body[at[2]]);
-    const double range = cs_pair_contact_range(params, edges);
-    const double k = cs_body_pair_params_stiffness(params, edges);
+/* m, distance of a lane after the fraction `share` of the step. */
+CS_INLINE double measure(enum cs_pair_kind kind, const struct ways *ways, int l, double share,
+                         struct cs_pair_contact *contact) {
+    double p[4][3];
+    CS_UNROLLED
+    for (int j = 0; j < 12; j++)
+        p[j / 3][j % 3] = ways->from[j / 3][j % 3][l] + share * ways->by[j / 3][j % 3][l];
+    return cs_pair_contact_measure_whole(contact, kind, ways->range[l], p);
+}
+
+/* Sets the model of a lane. The effective mass of the contact points is 1 / sum (w_k^2 / m_k),
+ * infinite if all are pinned. */
+CS_INLINE void begin(enum cs_pair_kind kind, struct ways *ways, int l, double h,
+                     double slopes) {
+    const double range = ways->range[l], k = ways->k[l];
     struct cs_pair_contact contact;
-    double v[3] = {0}, inverse = 0;
-    for (size_t j = 0; j < 12; j++) {
-        const double *move = pairs->point_motion[at[j / 3]].values;
-        way->from[j / 3][j % 3] = move[CS_POINT_MOVE_FROM + j % 3];
-        way->by[j / 3][j % 3] = move[CS_POINT_MOVE_BY + j % 3];
-    }
-    const double d = cs_pair_contact_measure_whole(&contact, way->kind, range, way->from);
-    way->approach = 0;
+    double v[3] = {0}, inverse = 0, approach = 0;
+    const double d = measure(kind, ways, l, 0, &contact);
     for (int j = 0; j < 4; j++) {
         const double w = contact.weight[j];
-        for (int c = 0; c < 3; c++)
-            v[c] += w * way->by[j][c] / job->h;
-        inverse += w * w * pairs->point_motion[at[j]].values[CS_POINT_MOVE_INVERSE_MASS];
-        way->approach -= cs_vec3_dot(contact.g[j], way->by[j]);
+        double by[3];
+        CS_UNROLLED
+        for (int c = 0; c < 3; c++) {
+            by[c] = ways->by[j][c][l];
+            v[c] += w * by[c] / h;
+        }
+        inverse += w * w * ways->inverse_mass[j][l];
+        approach -= cs_vec3_dot(contact.g[j], by);
     }
-    way->model = cs_barrier_model_at(d, range, k, !job->impacts);
-    way->energy = (inverse > 0 ? 0.5 * cs_vec3_dot(v, v) / inverse : HUGE_VAL) +
-                  way->model.held +
-                  (job->impacts ? 0 : cs_barrier_energy(0.5 * range, range, k));
-    way->parts = cs_step_parts(longest_of(way), range);
+    const struct cs_barrier_model model = cs_barrier_model_at(d, range, k, true);
+    const double kinetic = 0.5 * cs_vec3_dot(v, v) / inverse;
+    ways->held[l] = model.held;
+    ways->force[l] = model.force;
+    ways->stiffness[l] = model.stiffness;
+    ways->approach[l] = slopes * approach;
+    ways->energy[l] = (inverse > 0 ? kinetic : HUGE_VAL) + model.held +
+                      slopes * cs_barrier_energy(0.5 * range, range, k);
+    ways->parts[l] = cs_step_parts(longest_of(kind, ways, l), range);
+    ways->missed[l] = 0;
 }
 
-/* J, what the model misses after the fraction `share` of the way. */
-static double missed_at(const struct way *way, double share) {
+/* Samples a lane after part j of its step; one of fewer parts at its end again. */
+CS_INLINE void sample(enum cs_pair_kind kind, struct ways *ways, int l, double j) {
     struct cs_pair_contact contact;
-    double p[4][3];
-    for (int j = 0; j < 12; j++)
-        p[j / 3][j % 3] = way->from[j / 3][j % 3] + share * way->by[j / 3][j % 3];
-    return cs_barrier_missed(
-        &way->model, cs_pair_contact_measure_whole(&contact, way->kind, way->model.range, p),
-        share * way->approach);
+    const double part = j / ways->parts[l], share = part < 1 ? part : 1;
+    const struct cs_barrier_model model = {ways->range[l], ways->k[l], ways->held[l],
+                                           ways->force[l], ways->stiffness[l]};
+    const double missed = cs_barrier_missed(&model, measure(kind, ways, l, share, &contact),
+                                            share * ways->approach[l]);
+    ways->missed[l] = cs_fmax(missed, ways->missed[l]);
 }
+
+/* Sets all lanes from their motion in a step of h seconds; slopes: 1 if F and K are known, 0 if
+ * psi alone is. */
+CS_INLINE void sample_all(enum cs_pair_kind kind, struct ways *restrict ways, double h,
+                          double slopes) {
+    double parts = 1;
+    for (int l = 0; l < LANES; l++)
+        begin(kind, ways, l, h, slopes);
+    for (uint32_t l = 0; l < ways->n; l++)
+        parts = cs_fmax(ways->parts[l], parts);
+    for (double j = 1; j <= parts; j++)
+        for (int l = 0; l < LANES; l++)
+            sample(kind, ways, l, j);
+}
+
+CS_PAIR_KERNEL(static, sample_ways, sample_all,
+               (struct ways *restrict ways, double h, double slopes), (ways, h, slopes))
 
 /* pairs per call of the swept-box filter */
 enum { SOME = 256 };
@@ -107,16 +145,19 @@ enum { SOME = 256 };
 struct work {
     struct job *job;
     const struct cs_candidate_chunk *chunk;
+    struct ways ways;
     /* the last point whose sum is resolved, or NONE */
     uint32_t resolved_point;
     bool unseen;
 };
 
-/* Judges a point, a triangle of which is unresolved, by all its features: on its way from one
- * triangle to the next, what one loses the other gains. The kinetic energy is that against this
- * triangle. */
-static bool is_point_unresolved(struct work *work, const struct way *way, uint32_t point) {
+/* Judges the point of a lane, a triangle of which is unresolved, by all its features: on its
+ * way from one triangle to the next, what one loses the other gains. The kinetic energy is that
+ * against this triangle. */
+static bool is_point_unresolved(struct work *work, uint32_t l) {
     const struct job *job = work->job;
+    const struct ways *ways = &work->ways;
+    const uint32_t point = ways->points[l];
     struct cs_feature_positions x = {job->from, job->to, 0};
     bool unresolved = false;
     if (point == work->resolved_point)
@@ -124,9 +165,9 @@ static bool is_point_unresolved(struct work *work, const struct way *way, uint32
     const struct cs_point_energy energy = cs_point_energy_find(
         &job->pairs->feature_weights, &job->pairs->candidates, work->chunk, point, &x);
     const double most =
-        job->missed_max * (way->energy - way->model.held + fmax(energy.energy, 0));
-    for (int j = 1; j <= way->parts && !unresolved; j++) {
-        x.fraction = j / (double)way->parts;
+        job->missed_max * (ways->energy[l] - ways->held[l] + fmax(energy.energy, 0));
+    for (double j = 1; j <= ways->parts[l] && !unresolved; j++) {
+        x.fraction = j / ways->parts[l];
         const double seen =
             energy.energy +
             (job->impacts ? 0 : x.fraction * (energy.first + x.fraction * energy.second));
@@ -138,18 +179,43 @@ static bool is_point_unresolved(struct work *work, const struct way *way, uint32
     return unresolved;
 }
 
-/* Tells whether a pair is unresolved, with all features of its point if it is by this triangle
- * alone. */
-static bool is_unresolved(struct work *work, const uint32_t pair[2]) {
-    struct way way = {.kind = work->chunk->kind};
+/* Checks the collected pairs: a point and a triangle by all features of the point if the pair
+ * is unresolved by itself. */
+static void check_ways(struct work *work) {
+    struct ways *ways = &work->ways;
+    const struct job *job = work->job;
+    const enum cs_pair_kind kind = work->chunk->kind;
+    if (ways->n)
+        sample_ways(kind, ways, job->h, job->impacts ? 0 : 1);
+    for (uint32_t l = 0; l < ways->n && !work->unseen; l++)
+        work->unseen = ways->missed[l] > job->missed_max * ways->energy[l] &&
+                       (kind == CS_PAIR_EDGE_EDGE || is_point_unresolved(work, l));
+    ways->n = 0;
+}
+
+/* Collects a pair until all lanes have one. */
+static void add_way(struct work *work, const uint32_t pair[2]) {
+    const struct cs_pairs *pairs = work->job->pairs;
+    const bool edges = work->chunk->kind == CS_PAIR_EDGE_EDGE;
+    struct ways *ways = &work->ways;
+    const uint32_t l = ways->n;
     uint32_t at[4];
-    bool missed = false;
-    cs_candidate_vertices(work->job->pairs->system->surfaces, way.kind, pair, at);
-    set_way(work->job, at, &way);
-    for (int j = 1; j <= way.parts && !missed; j++)
-        missed = missed_at(&way, j / (double)way.parts) > work->job->missed_max * way.energy;
-    return missed &&
-           (way.kind == CS_PAIR_EDGE_EDGE || is_point_unresolved(work, &way, pair[0]));
+    cs_candidate_vertices(pairs->system->surfaces, work->chunk->kind, pair, at);
+    const struct cs_body_pair_params *params = cs_body_pair_params_of(
+        &pairs->body_pairs, pairs->candidates.body[at[0]], pairs->candidates.body[at[2]]);
+    ways->range[l] = cs_pair_contact_range(params, edges);
+    ways->k[l] = cs_body_pair_params_stiffness(params, edges);
+    ways->points[l] = pair[0];
+    for (size_t j = 0; j < 4; j++) {
+        const double *move = pairs->point_motion[at[j]].values;
+        ways->inverse_mass[j][l] = move[CS_POINT_MOVE_INVERSE_MASS];
+        for (size_t c = 0; c < 3; c++) {
+            ways->from[j][c][l] = move[CS_POINT_MOVE_FROM + c];
+            ways->by[j][c][l] = move[CS_POINT_MOVE_BY + c];
+        }
+    }
+    if (++ways->n == LANES)
+        check_ways(work);
 }
 
 /* Checks those candidates of a chunk whose swept boxes come within the range. */
@@ -168,8 +234,9 @@ static void check_chunk(struct work *work) {
         items.n = n_all - p < SOME ? n_all - p : SOME;
         const size_t n = cs_point_motion_filter(pairs->point_motion, &items, reach, some[0]);
         for (size_t k = 0; k < n && !work->unseen; k++)
-            work->unseen = is_unresolved(work, some[k]);
+            add_way(work, some[k]);
     }
+    check_ways(work);
 }
 
 /* Checks one chunk, unless another has been rejected already. The order of chunks affects the
