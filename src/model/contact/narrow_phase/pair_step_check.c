@@ -19,7 +19,7 @@ struct job {
     const double *from, *to; /* (3,n_points) m, both ends of the step */
     double h;                /* s */
     bool nearby;             /* the pairs nearby suffice */
-    bool impacts;            /* cs_impacts_are_resolved */
+    double slopes;           /* 1 if F and K are known, 0 if psi alone is */
     double missed_max;       /* of the energy of a pair */
     uint32_t n_checked;      /* chunks that are resolved, from the last rejected one on */
     /* a chunk with an unresolved pair; NONE */
@@ -46,25 +46,20 @@ struct ways {
     uint32_t points[LANES], n; /* first of each pair */
 };
 
-/* m2, squared relative displacement of points i and j, or `most` if that is more */
-CS_INLINE double further_of(const struct ways *ways, int l, int i, int j, double most) {
-    double r[3];
-    CS_UNROLLED
-    for (int c = 0; c < 3; c++)
-        r[c] = ways->by[i][c][l] - ways->by[j][c][l];
-    return cs_fmax(cs_vec3_dot(r, r), most);
-}
-
 /* m, largest relative displacement of a point of one side and a point of the other. Contact
  * points are convex combinations of the points, so none moves further relative to the other
  * side. */
 CS_INLINE double longest_of(enum cs_pair_kind kind, const struct ways *ways, int l) {
-    const int other = kind == CS_PAIR_EDGE_EDGE ? 1 : 0;
-    double most = other ? 0 : further_of(ways, l, 0, 1, 0);
-    most = further_of(ways, l, 0, 2, most);
-    most = further_of(ways, l, 0, 3, most);
-    most = further_of(ways, l, other, 2, most);
-    return sqrt(further_of(ways, l, other, 3, most));
+    const int first = kind == CS_PAIR_EDGE_EDGE ? 2 : 1;
+    double most = 0;
+    CS_UNROLLED
+    for (int k = 0; k < 2 + first; k++) {
+        const double(*a)[LANES] = ways->by[k % first],
+              (*b)[LANES] = ways->by[first + k / first];
+        const double r[3] = {a[0][l] - b[0][l], a[1][l] - b[1][l], a[2][l] - b[2][l]};
+        most = cs_fmax(cs_vec3_dot(r, r), most);
+    }
+    return sqrt(most);
 }
 
 /* m, distance of a lane after the fraction `share` of the step. */
@@ -86,13 +81,10 @@ CS_INLINE void begin(enum cs_pair_kind kind, struct ways *ways, int l, double h,
     double v[3] = {0}, inverse = 0, approach = 0;
     const double d = measure(kind, ways, l, 0, &contact);
     for (int j = 0; j < 4; j++) {
+        const double by[3] = {ways->by[j][0][l], ways->by[j][1][l], ways->by[j][2][l]};
         const double w = contact.weight[j];
-        double by[3];
-        CS_UNROLLED
-        for (int c = 0; c < 3; c++) {
-            by[c] = ways->by[j][c][l];
+        for (int c = 0; c < 3; c++)
             v[c] += w * by[c] / h;
-        }
         inverse += w * w * ways->inverse_mass[j][l];
         approach -= cs_vec3_dot(contact.g[j], by);
     }
@@ -119,8 +111,7 @@ CS_INLINE void sample(enum cs_pair_kind kind, struct ways *ways, int l, double j
     ways->missed[l] = cs_fmax(missed, ways->missed[l]);
 }
 
-/* Sets all lanes from their motion in a step of h seconds; slopes: 1 if F and K are known, 0 if
- * psi alone is. */
+/* Sets all lanes from their motion in a step of h seconds; slopes: as in struct job. */
 CS_INLINE void sample_all(enum cs_pair_kind kind, struct ways *restrict ways, double h,
                           double slopes) {
     double parts = 1;
@@ -168,12 +159,10 @@ static bool is_point_unresolved(struct work *work, uint32_t l) {
         job->missed_max * (ways->energy[l] - ways->held[l] + fmax(energy.energy, 0));
     for (double j = 1; j <= ways->parts[l] && !unresolved; j++) {
         x.fraction = j / ways->parts[l];
-        const double seen =
-            energy.energy +
-            (job->impacts ? 0 : x.fraction * (energy.first + x.fraction * energy.second));
+        const double change = x.fraction * (energy.first + x.fraction * energy.second);
         const struct cs_point_energy at = cs_point_energy_find(
             &job->pairs->feature_weights, &job->pairs->candidates, work->chunk, point, &x);
-        unresolved = fabs(at.energy - seen) > most;
+        unresolved = fabs(at.energy - (energy.energy + job->slopes * change)) > most;
     }
     work->resolved_point = unresolved ? NONE : point;
     return unresolved;
@@ -186,7 +175,7 @@ static void check_ways(struct work *work) {
     const struct job *job = work->job;
     const enum cs_pair_kind kind = work->chunk->kind;
     if (ways->n)
-        sample_ways(kind, ways, job->h, job->impacts ? 0 : 1);
+        sample_ways(kind, ways, job->h, job->slopes);
     for (uint32_t l = 0; l < ways->n && !work->unseen; l++)
         work->unseen = ways->missed[l] > job->missed_max * ways->energy[l] &&
                        (kind == CS_PAIR_EDGE_EDGE || is_point_unresolved(work, l));
@@ -247,9 +236,11 @@ static void find_unresolved(void *arg, uint32_t number) {
     // the one that was unseen before may well be so again
     const uint32_t l =
         (number + job->n_checked + job->pairs->unresolved_chunk) % search->n_chunks;
-    struct work work = {.job = job, .chunk = search->chunks + l, .resolved_point = NONE};
-    if (__atomic_load_n(&job->unseen, __ATOMIC_RELAXED) != NONE)
+    const struct cs_candidate_chunk *chunk = search->chunks + l;
+    if (__atomic_load_n(&job->unseen, __ATOMIC_RELAXED) != NONE ||
+        !(job->nearby ? chunk->n_nearby : chunk->n))
         return;
+    struct work work = {.job = job, .chunk = chunk, .resolved_point = NONE};
     check_chunk(&work);
     if (work.unseen)
         __atomic_store_n(&job->unseen, l, __ATOMIC_RELAXED);
@@ -271,7 +262,7 @@ bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const doub
     const double *to = cs_surface_points_positions(pairs->system, CS_POINTS_END, t1, x1);
     struct job job = {.pairs = pairs, .from = from, .to = to, .h = t1 - t0, .unseen = NONE};
     const uint64_t build = search->n_builds;
-    job.impacts = cs_impacts_are_resolved(pairs->system);
+    job.slopes = cs_impacts_are_resolved(pairs->system) ? 0 : 1;
     job.missed_max = cs_step_missed_max(pairs->system);
     cs_point_motion_set(pairs->system, from, to, pairs->point_motion);
     // Pairs in range anywhere on the way are nearby, because the motion from where these were
