@@ -72,8 +72,7 @@ void cs_pair_lanes_contact(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, 
 
 /* out = f_k of every lane: cs_pair_contact_force */
 CS_INLINE void force(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
-                     const struct cs_pair_lane_constants *constants) {
-    const struct cs_pair_lane_constants law = *constants;
+                     struct cs_pair_lane_constants law) {
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         struct cs_pair_contact contact;
         double to[4][3];
@@ -85,8 +84,7 @@ CS_INLINE void force(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lane
 
 /* out = df_k of every lane: cs_pair_contact_jvp */
 CS_INLINE void jvp(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
-                   const struct cs_pair_lane_constants *constants) {
-    const struct cs_pair_lane_constants law = *constants;
+                   struct cs_pair_lane_constants law) {
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         struct cs_pair_contact contact;
         struct cs_pair_contact_motion motion;
@@ -104,8 +102,7 @@ CS_INLINE void jvp(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
 /* out = row sums of block norms: stiffness K |g_k| sum |g_j| and damping |w_k| sum |w_j| times
  * the largest damping of the contact point. */
 CS_INLINE void find_bounds(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
-                           const struct cs_pair_lane_constants *constants) {
-    const struct cs_pair_lane_constants law = *constants;
+                           struct cs_pair_lane_constants law) {
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         struct cs_pair_contact contact;
         double stiffness[4], damping[4];
@@ -120,14 +117,26 @@ CS_INLINE void find_bounds(enum cs_pair_kind kind, struct cs_pair_lanes *restric
     }
 }
 
-/* the parameters of all three */
-#define LAW                                                                                    \
-    (struct cs_pair_lanes *restrict lanes, const struct cs_pair_lane_constants *constants),    \
-        (lanes, constants)
-#define KERNEL(...) CS_PAIR_KERNEL(__VA_ARGS__)
-KERNEL(extern, cs_pair_lanes_force, force, LAW)
-KERNEL(extern, cs_pair_lanes_jvp, jvp, LAW)
-KERNEL(extern, cs_pair_lanes_bound, find_bounds, LAW)
+/* Defines a kernel of all three. Roots and quotients of a loss are computed only if there is
+ * one: loops over lanes have no branches. */
+#define KERNEL(name, inlined)                                                                  \
+    CS_INLINE void inlined##_by_loss(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,      \
+                                     const struct cs_pair_lane_constants *constants) {         \
+        struct cs_pair_lane_constants lossless = *constants;                                   \
+        lossless.keys.loss = 0;                                                                \
+        if (constants->keys.loss > 0)                                                          \
+            inlined(kind, lanes, *constants);                                                  \
+        else                                                                                   \
+            inlined(kind, lanes, lossless);                                                    \
+    }                                                                                          \
+    CS_PAIR_KERNEL(extern, name, inlined##_by_loss,                                            \
+                   (struct cs_pair_lanes *restrict lanes,                                      \
+                    const struct cs_pair_lane_constants *constants),                           \
+                   (lanes, constants))
+
+KERNEL(cs_pair_lanes_force, force)
+KERNEL(cs_pair_lanes_jvp, jvp)
+KERNEL(cs_pair_lanes_bound, find_bounds)
 
 /* Stores the terms of one pair by the differences u, v, w; see struct cs_pair_factors. */
 CS_INLINE void write_factors(enum cs_pair_kind kind, double g[4][3],
@@ -175,11 +184,15 @@ CS_INLINE void share_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *restri
                             struct cs_pair_factors *restrict factors) {
     const struct cs_matrix definite = {.cd = matrix->cd, .ck = matrix->ck, .psd = true};
     struct cs_matrix bound = definite;
+    struct cs_contact_keys lossless = *keys;
     bound.bound = true;
+    lossless.loss = 0;
     if (matrix->bound)
         share_bound(kind, lanes, *keys, bound, factors);
-    else
+    else if (keys->loss > 0)
         share_bound(kind, lanes, *keys, definite, factors);
+    else
+        share_bound(kind, lanes, lossless, definite, factors);
 }
 
 CS_PAIR_KERNEL(extern, cs_pair_lanes_matrix, share_matrix,
@@ -303,11 +316,20 @@ CS_INLINE void diagonal(enum cs_pair_kind kind, struct cs_pair_factors *restrict
     }
 }
 
+/* The same with `alone` as a constant: roots and quotients of find_growth take most of it. */
+CS_INLINE void diagonal_by(enum cs_pair_kind kind, struct cs_pair_factors *restrict factors,
+                           bool alone, double own[restrict 4][6][CS_PAIR_LANES]) {
+    if (alone)
+        diagonal(kind, factors, true, own);
+    else
+        diagonal(kind, factors, false, own);
+}
+
 CS_PAIR_KERNEL(extern, cs_pair_lanes_multiply, multiply,
                (struct cs_pair_factors *restrict factors,
                 double p[restrict 4][3][CS_PAIR_LANES]),
                (factors, p))
-CS_PAIR_KERNEL(extern, cs_pair_lanes_diagonal, diagonal,
+CS_PAIR_KERNEL(extern, cs_pair_lanes_diagonal, diagonal_by,
                (struct cs_pair_factors *restrict factors, bool alone,
                 double own[restrict 4][6][CS_PAIR_LANES]),
                (factors, alone, own))
