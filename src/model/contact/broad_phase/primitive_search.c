@@ -180,12 +180,13 @@ static void hand_over(struct work *work) {
 
 /* Collects the pairs of an item with those of a leaf, whose first is given, by a mask. */
 static void collect(struct work *work, uint32_t item, uint32_t first, uint32_t bits) {
+    // only later ones; leaves are sought from that of the first of sixteen items on, so that an
+    // item is at most 30 after the first of a leaf
+    if (work->once && item >= first)
+        bits &= (uint32_t)(UINT64_MAX << (item - first + 1));
     for (; bits; bits &= bits - 1) {
-        const uint32_t other = first + (uint32_t)__builtin_ctz(bits);
-        if (work->once && other <= item)
-            continue;
         work->pairs[work->n][0] = item;
-        work->pairs[work->n][1] = other;
+        work->pairs[work->n][1] = first + (uint32_t)__builtin_ctz(bits);
         if (++work->n == CS_SEARCH_PAIRS)
             hand_over(work);
     }
