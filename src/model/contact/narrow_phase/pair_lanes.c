@@ -72,7 +72,8 @@ void cs_pair_lanes_contact(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, 
 
 /* out = f_k of every lane: cs_pair_contact_force */
 CS_INLINE void force(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
-                     struct cs_pair_lane_constants law) {
+                     const struct cs_pair_lane_constants *constants) {
+    const struct cs_pair_lane_constants law = *constants;
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         struct cs_pair_contact contact;
         double to[4][3];
@@ -84,7 +85,8 @@ CS_INLINE void force(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lane
 
 /* out = df_k of every lane: cs_pair_contact_jvp */
 CS_INLINE void jvp(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
-                   struct cs_pair_lane_constants law) {
+                   const struct cs_pair_lane_constants *constants) {
+    const struct cs_pair_lane_constants law = *constants;
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         struct cs_pair_contact contact;
         struct cs_pair_contact_motion motion;
@@ -102,7 +104,8 @@ CS_INLINE void jvp(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
 /* out = row sums of block norms: stiffness K |g_k| sum |g_j| and damping |w_k| sum |w_j| times
  * the largest damping of the contact point. */
 CS_INLINE void find_bounds(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
-                           struct cs_pair_lane_constants law) {
+                           const struct cs_pair_lane_constants *constants) {
+    const struct cs_pair_lane_constants law = *constants;
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         struct cs_pair_contact contact;
         double stiffness[4], damping[4];
@@ -117,26 +120,14 @@ CS_INLINE void find_bounds(enum cs_pair_kind kind, struct cs_pair_lanes *restric
     }
 }
 
-/* Defines a kernel of all three. Roots and quotients of a loss are computed only if there is
- * one: loops over lanes have no branches. */
-#define KERNEL(name, inlined)                                                                  \
-    CS_INLINE void inlined##_by_loss(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,      \
-                                     const struct cs_pair_lane_constants *constants) {         \
-        struct cs_pair_lane_constants lossless = *constants;                                   \
-        lossless.keys.loss = 0;                                                                \
-        if (constants->keys.loss > 0)                                                          \
-            inlined(kind, lanes, *constants);                                                  \
-        else                                                                                   \
-            inlined(kind, lanes, lossless);                                                    \
-    }                                                                                          \
-    CS_PAIR_KERNEL(extern, name, inlined##_by_loss,                                            \
-                   (struct cs_pair_lanes *restrict lanes,                                      \
-                    const struct cs_pair_lane_constants *constants),                           \
-                   (lanes, constants))
-
-KERNEL(cs_pair_lanes_force, force)
-KERNEL(cs_pair_lanes_jvp, jvp)
-KERNEL(cs_pair_lanes_bound, find_bounds)
+/* the parameters of all three */
+#define LAW                                                                                    \
+    (struct cs_pair_lanes *restrict lanes, const struct cs_pair_lane_constants *constants),    \
+        (lanes, constants)
+#define KERNEL(...) CS_PAIR_KERNEL(__VA_ARGS__)
+KERNEL(extern, cs_pair_lanes_force, force, LAW)
+KERNEL(extern, cs_pair_lanes_jvp, jvp, LAW)
+KERNEL(extern, cs_pair_lanes_bound, find_bounds, LAW)
 
 /* Stores the terms of one pair by the differences u, v, w; see struct cs_pair_factors. */
 CS_INLINE void write_factors(enum cs_pair_kind kind, double g[4][3],
