@@ -2,7 +2,6 @@
 #include "sheet.h"
 
 #include "base/file.h"
-#include "model/spring/springs.h"
 #include "session/perturb.h"
 
 #include <math.h>

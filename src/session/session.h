@@ -178,6 +178,9 @@ double cs_system_longest_spring(const struct cs_system *system);
 /* Sets f (3,n) in N to the forces of springs and elastic bodies at (x, v), without damping. */
 void cs_system_elastic_force(const struct cs_system *system, const double *x, const double *v,
                              double *f);
+/* Name of force k, as in a plan's row k; NULL after the last. *keys: those that ramps may
+ * change, closed by NULL; NULL: none. */
+const char *cs_system_force(uint32_t k, const char *const **keys);
 /* Adds how stiff elastic bodies are for a step of one frame, and the length over which they
  * bend by their own weight: a line per body. */
 void cs_system_print_elastic(const struct cs_system *system, struct cs_text *out);

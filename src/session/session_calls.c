@@ -99,6 +99,11 @@ void cs_system_elastic_force(const struct cs_system *system, const double *x, co
     cs_terms_force(system, &at, f);
 }
 
+const char *cs_system_force(uint32_t k, const char *const **keys) {
+    *keys = k < cs_n_terms ? cs_terms[k]->rampable_keys : NULL;
+    return k < cs_n_terms ? cs_terms[k]->name : NULL;
+}
+
 /* Mass of a body over its area, in kg/m2. */
 static double density_of(const struct cs_system *system, uint32_t body) {
     const struct cs_body_range *range = system->bodies + body;

@@ -1,7 +1,7 @@
 /* overhead.c - how much of a measured run is the harness: calls through the host's table, the
- * watch for a blow-up, and the clocks, against the force itself. Prints shares in percent. */
+ * watch for a blow-up, and the clocks, against the force of the springs itself. Prints shares
+ * in percent. */
 #include "base/clock.h"
-#include "model/force/terms.h"
 #include "session/recorded_run.h"
 
 #include <stdio.h>
@@ -21,14 +21,13 @@ struct bench {
 
 static void call_force(const struct bench *bench) {
     const struct cs_run *run = &bench->session->run;
-    cs_terms_force(run->system,
-                   &(struct cs_eval){.x = run->x, .v = run->v, .parts = CS_PART_ALL}, bench->f);
+    cs_system_elastic_force(run->system, run->x, run->v, bench->f);
 }
 
 static void call_table(const struct bench *bench) {
     const struct cs_run *run = &bench->session->run;
     const struct cs_host *host = cs_run_calls(run);
-    host->force(host->ctx, 0, run->x, run->v, CS_PART_ALL, bench->f);
+    host->force(host->ctx, 0, run->x, run->v, CS_PART_SPRINGS | CS_PART_ELASTIC, bench->f);
 }
 
 static void call_commit(const struct bench *bench) {

@@ -3,8 +3,6 @@
  * against is the closed form where there is one. */
 #include "../suite.h"
 #include "conform/conform_checks.h"
-#include "model/force/terms.h"
-#include "scene/force_keys.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,59 +18,58 @@ static void open_scene(struct cs_probe *probe, const struct cs_force_scene *scen
 /* A new force needs a line in conform_scenes.c, of a check force-NAME, in which no other force
  * acts. */
 TEST(every_force_has_a_scene_to_itself) {
-    for (uint32_t t = 0; t < cs_n_terms; t++) {
+    const char *const *keys;
+    const char *name;
+    for (uint32_t t = 0; (name = cs_system_force(t, &keys)); t++) {
         bool found = false;
         for (uint32_t k = 0; k < cs_n_force_scenes && !found; k++) {
             struct cs_probe probe;
             if (strncmp(cs_force_scenes[k].check, "force-", 6) != 0)
                 continue;
             open_scene(&probe, cs_force_scenes + k);
-            const struct cs_system *system = &probe.session.system;
             // what lies between particles has their contact beside it, out of its range, and
             // bending has a membrane
-            const uint32_t first =
-                cs_terms[t] == &cs_term_cover || cs_terms[t] == &cs_term_bending;
-            found = system->n_terms == first + 1 && system->terms[first] == cs_terms[t];
+            const uint32_t beside =
+                !strcmp(name, "contact samples") || !strcmp(name, "bending");
+            const struct cs_plan_row *forces = probe.session.system.plan.forces;
+            uint32_t acting = 0;
+            for (uint32_t f = 0; f < CS_TERMS_MAX; f++)
+                acting += forces[f].built;
+            found = forces[t].built && acting == 1 + beside;
             cs_probe_close(&probe);
         }
-        ck_assert_msg(found, "no scene of conform has the force \"%s\" and no other",
-                      cs_terms[t]->name);
+        ck_assert_msg(found, "no scene of conform has the force \"%s\" and no other", name);
     }
 }
 
-/* whether a scene has a ramp of the key: "bodies.springs.bend" for bodies[0].springs.bend */
-static bool has_ramp(const struct cs_scene *scene, const char *key) {
-    for (uint32_t e = 0; e < scene->events.n; e++) {
-        const struct cs_event *event = cs_scene_events(scene) + e;
-        char plain[CS_TEXT_MAX];
-        size_t length = 0;
-        bool inside = false;
-        for (const char *at = event->ramp.present ? event->ramp.key : ""; *at; at++) {
-            inside |= *at == '[';
-            if (!inside)
-                plain[length++] = *at;
-            inside &= *at != ']';
-        }
-        plain[length] = 0;
-        if (!strcmp(plain, key))
+/* whether a scene's text has a ramp of the key: "bodies.springs.bend" for
+ * bodies[0].springs.bend, or with an element behind it, [1] */
+static bool has_ramp(const char *json, const char *key) {
+    static const char before[] = "\"ramp\": {\"key\": \"";
+    while ((json = strstr(json, before))) {
+        const char *rest = key;
+        for (json += sizeof before - 1; *json != '"'; json++)
+            if (*json == '[')
+                json = strchr(json, ']');
+            else if (*rest != *json)
+                break;
+            else
+                rest++;
+        if (*json == '"' && !*rest)
             return true;
     }
     return false;
 }
 
 TEST(every_ramp_has_a_scene) {
-    for (uint32_t t = 0; t < cs_n_terms; t++)
-        for (const char *const *key = cs_terms[t]->rampable_keys; key && *key; key++) {
+    const char *const *keys;
+    for (uint32_t t = 0; cs_system_force(t, &keys); t++)
+        for (; keys && *keys; keys++) {
             bool found = false;
-            for (uint32_t k = 0; k < cs_n_force_scenes && !found; k++) {
-                struct cs_probe probe;
-                if (strcmp(cs_force_scenes[k].check, "time-dependence") != 0)
-                    continue;
-                open_scene(&probe, cs_force_scenes + k);
-                found = has_ramp(&probe.session.scene, *key);
-                cs_probe_close(&probe);
-            }
-            ck_assert_msg(found, "no scene of time-dependence has a ramp of %s", *key);
+            for (uint32_t k = 0; k < cs_n_force_scenes; k++)
+                found |= !strcmp(cs_force_scenes[k].check, "time-dependence") &&
+                         has_ramp(cs_force_scenes[k].json, *keys);
+            ck_assert_msg(found, "no scene of time-dependence has a ramp of %s", *keys);
         }
 }
 

@@ -6,9 +6,11 @@
 # includes another's header, or names what another's .c defines (a header may declare for several),
 # stands above it.
 # What opens a file to write it, renames or removes one, is base/file.c, which looks at the target.
-# Behind a wall, studies, commands and tools see session in place of the rooms below it.
+# Behind a wall, studies, commands, tools, bench and the tests of all these see session in place of
+# the rooms below it. The tests of units, of physics and of bytes from outside may look behind it.
 # The host is known to sim alone, only a session begins a run, and only session_calls.c steps one.
 cd "$1" || exit 1
+outside=$(ls -d bench tests/abi tests/bench tests/cli tests/compare tests/conform tests/faults tests/golden tests/model tests/stability 2>/dev/null)
 awk '
     BEGIN {
         n = split("base mesh scene model/spring model/system model/elastic model/force model/contact model/contact/broad_phase" \
@@ -27,11 +29,18 @@ awk '
             " io/export/export.h io/file_conflicts.h io/frame_writer.h io/npy.h io/png.h io/row_log.h" \
             " model/contact/barrier_law.h scene/file/json.h scene/file/mesh_read.h scene/mesh_keys.h", doors, " ")
         for (i in doors) door[doors[i]]
+        measures["bench/kernels.c"] # single forces and products, each by itself
+        measures["bench/pairs.c"]   # the passes over contact between surfaces, each by itself
     }
     function folder_of(path) { sub(/\/[^\/]*$/, "", path); return path }
     function unit_of(path) { sub(/^(src|tools)\//, "", path); sub(/\.[ch]$/, "", path); return path }
 
     # --- who may include whom, and how many there are ---
+    FILENAME ~ /^(bench|tests)/ {
+        if (/^#include "/ && split($0, quoted, "\"") && folder_of(quoted[2]) ~ inner && !(quoted[2] in door) && !(FILENAME in measures))
+            wrong(FILENAME " includes " quoted[2] ": behind the wall, see src/session")
+        next
+    }
     FNR == 1 { here = unit_of(FILENAME); in_comment = 0 }
     FNR == 1 && FILENAME ~ /^(src|tools)/ {
         from = folder_of(here)
@@ -136,4 +145,4 @@ awk '
         count += n_units
         print count - failures " passed, " failures + 0 " failed"
         exit failures > 0
-    }' $(find src tools -name '*.[ch]' | LC_ALL=C sort) plugins/*.[ch] include/clothsim/*.h
+    }' $(find src tools $outside -name '*.[ch]' | LC_ALL=C sort) plugins/*.[ch] include/clothsim/*.h
