@@ -1,7 +1,6 @@
 /* Status codes, the first message of a failure, and assertions. */
 #include "base/status.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -9,10 +8,7 @@ enum cs_status cs_fail(struct cs_error *error, enum cs_status status, const char
     if (error->status != CS_OK)
         return error->status;
     error->status = status;
-    va_list args;
-    va_start(args, format);
-    vsnprintf(error->message, sizeof error->message, format, args);
-    va_end(args);
+    CS_FORMAT(error->message, format);
     return status;
 }
 

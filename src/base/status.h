@@ -2,6 +2,9 @@
 #ifndef CS_STATUS_H
 #define CS_STATUS_H
 
+#include <stdarg.h>
+#include <stdio.h>
+
 /* name, exit code, sentence for the man page */
 #define CS_STATUS_LIST(X)                                                                      \
     X(CS_OK, 0, "done; an unstable run is a result too")                                       \
@@ -32,6 +35,16 @@ struct cs_error {
  * cs_fail(error, ...)`. */
 enum cs_status cs_fail(struct cs_error *error, enum cs_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* Prints the arguments of the function that it stands in, `(..., format, ...)`, into an array
+ * of characters, cut to its size. */
+#define CS_FORMAT(message, format)                                                             \
+    do {                                                                                       \
+        va_list args;                                                                          \
+        va_start(args, format);                                                                \
+        vsnprintf(message, sizeof(message), format, args);                                     \
+        va_end(args);                                                                          \
+    } while (0)
 
 /* Exit code of a status. */
 int cs_status_exit_code(enum cs_status status);

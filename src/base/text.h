@@ -2,7 +2,6 @@
 #ifndef CS_TEXT_H
 #define CS_TEXT_H
 
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 

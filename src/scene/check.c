@@ -4,16 +4,12 @@
 #include "scene/mesh_keys.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 
 enum cs_status cs_check_refuse(const struct cs_check *check, const char *path,
                                const char *format, ...) {
     char message[512];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(message, sizeof message, format, args);
-    va_end(args);
+    CS_FORMAT(message, format);
     snprintf(check->path, CS_TEXT_MAX, "%s", path);
     return cs_fail(check->error, CS_ERR_SCENE, "%s", message);
 }

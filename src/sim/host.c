@@ -13,8 +13,6 @@
 #include "sim/run_host.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Memory of the run, in create alone: no step allocates. */
@@ -31,10 +29,7 @@ static void *host_alloc(void *ctx, size_t bytes) {
 static enum cs_step host_fail(void *ctx, const char *format, ...) {
     struct cs_run_host *host = ctx;
     char message[512];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(message, sizeof message, format, args);
-    va_end(args);
+    CS_FORMAT(message, format);
     struct cs_text where = {0};
     if (host->blocked_step.is_set)
         cs_blocked_step_print(&host->blocked_step, host->run->system, &where);
@@ -47,10 +42,7 @@ static enum cs_step host_fail(void *ctx, const char *format, ...) {
 static void host_note(void *ctx, const char *format, ...) {
     struct cs_run *run = ((struct cs_run_host *)ctx)->run;
     char message[sizeof run->notes[0]];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(message, sizeof message, format, args);
-    va_end(args);
+    CS_FORMAT(message, format);
     for (uint32_t k = 0; k < run->n_notes; k++)
         if (!strcmp(run->notes[k], message))
             return;

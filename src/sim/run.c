@@ -7,7 +7,6 @@
 #include "sim/run_host.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -324,10 +323,7 @@ void cs_run_hash(const struct cs_run *run, char digits[CS_HASH_DIGITS]) {
 
 void cs_run_note(struct cs_run *run, const char *format, ...) {
     char message[sizeof run->notes[0]];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(message, sizeof message, format, args);
-    va_end(args);
+    CS_FORMAT(message, format);
     run->host->table.note(run->host, "%s", message);
 }
 

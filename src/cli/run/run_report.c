@@ -5,21 +5,15 @@
 #include "cli/line/print.h"
 #include "session/session.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <sys/resource.h>
 
 enum { VALUE_COLUMN = 16, STAGE_COLUMN = 24 };
 
-static void add_report_row(struct cs_text *out, const char *name, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static void add_report_row(struct cs_text *out, const char *name, const char *format, ...) {
+__attribute__((format(printf, 3, 4))) static void
+add_report_row(struct cs_text *out, const char *name, const char *format, ...) {
     char value[512];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(value, sizeof value, format, args);
-    va_end(args);
+    CS_FORMAT(value, format);
     cs_print_row(name, value, VALUE_COLUMN, out);
 }
 

@@ -5,9 +5,9 @@
  */
 #include "scene/file/json_check.h"
 
+#include "base/status.h"
+
 #include <ctype.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 static bool is_between(unsigned char c, unsigned char low, unsigned char high) {
@@ -49,11 +49,8 @@ struct check {
 /* Sets the fault; returns false. */
 __attribute__((format(printf, 3, 4))) static bool fail_at(struct check *check, size_t offset,
                                                           const char *format, ...) {
-    va_list args;
-    va_start(args, format);
     check->fault->offset = offset;
-    vsnprintf(check->fault->message, sizeof check->fault->message, format, args);
-    va_end(args);
+    CS_FORMAT(check->fault->message, format);
     return false;
 }
 

@@ -5,7 +5,6 @@
 #include "scene/file/json_check.h"
 
 #include <ctype.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -65,10 +64,7 @@ enum cs_status cs_json_context_fail(struct cs_json_context *context,
                                     const struct cs_json *value, bool of_key,
                                     const char *format, ...) {
     char message[512];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(message, sizeof message, format, args);
-    va_end(args);
+    CS_FORMAT(message, format);
 
     const char *colon = context->path_length ? ": " : "";
     size_t offset;

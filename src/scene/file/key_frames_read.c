@@ -8,7 +8,6 @@
 #include "scene/file/mesh_read.h"
 #include "scene/mesh_keys.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,14 +29,10 @@ struct input {
     struct cs_error *error;
 };
 
-static enum cs_status fail(const struct input *in, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-static enum cs_status fail(const struct input *in, const char *format, ...) {
+__attribute__((format(printf, 2, 3))) static enum cs_status fail(const struct input *in,
+                                                                 const char *format, ...) {
     char message[256];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(message, sizeof message, format, args);
-    va_end(args);
+    CS_FORMAT(message, format);
     return cs_fail(in->error, CS_ERR_FILE, "%s: %s", in->name, message);
 }
 

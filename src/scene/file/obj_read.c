@@ -4,7 +4,6 @@
 
 #include "base/text.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,14 +42,10 @@ struct reader {
 };
 
 /* Reports a fault of a line; returns false. */
-static bool fault_at(struct reader *in, uint32_t line, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-static bool fault_at(struct reader *in, uint32_t line, const char *format, ...) {
+__attribute__((format(printf, 3, 4))) static bool fault_at(struct reader *in, uint32_t line,
+                                                           const char *format, ...) {
     char message[160];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(message, sizeof message, format, args);
-    va_end(args);
+    CS_FORMAT(message, format);
     if (in->n_faults++ < FAULTS_SHOWN)
         cs_text_add(&in->faults, "%s%.128s:%u: %s", in->n_faults > 1 ? "; " : "", in->name,
                     line, message);
