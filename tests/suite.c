@@ -10,8 +10,22 @@
 
 char **suite_args;
 bool suite_all;
+const char *suite_test = "";
 static Suite *suite;
 static TCase *tcase;
+
+#ifdef CS_SANITIZED
+static const bool is_sanitized = true;
+#else
+static const bool is_sanitized = false;
+#endif
+
+bool suite_takes(size_t k, size_t n) {
+    size_t offset = 0;
+    for (const char *c = suite_test; *c; c++)
+        offset = 31 * offset + (unsigned char)*c;
+    return !is_sanitized || getenv("SANITIZE_ALL") || k % n == offset % n;
+}
 
 void suite_add(const TTest *test) {
     if (!suite) {

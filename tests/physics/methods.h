@@ -22,7 +22,7 @@ struct methods_query {
 enum { METHODS_MAX = 64 };
 
 struct methods {
-    size_t n;
+    size_t n, n_by_trait; /* in the list; chosen by their traits */
     struct method_asked {
         char text[120]; /* "NAME:key=value,..." */
         uint32_t order, order_damped, traits;
@@ -30,8 +30,12 @@ struct methods {
 };
 
 /* The methods in the order of their names, then the ones with other options, which have the
- * traits of their NAME. Fails the test if there is none. */
+ * traits of their NAME. Fails the test if there is none. A build with a sanitizer takes a part
+ * of those chosen by their traits (suite_takes), another one in each test. */
 struct methods methods_find(const struct methods_query *query);
+
+/* The same, and all of them in any build. */
+struct methods methods_find_all(const struct methods_query *query);
 
 /* A step in s at which the soft sheets of these tests show an order: small enough for the
  * slope, large enough to stay above rounding. */
