@@ -1,5 +1,5 @@
-/* vec3.h - products of 3-vectors and symmetric 3 x 3 matrices, whose sums run left to right;
- * the smaller and the larger of two numbers. */
+/* vec3.h - products and lengths of 3-vectors, and symmetric 3 x 3 matrices, whose sums run left
+ * to right; the smaller and the larger of two numbers. */
 #ifndef CS_VEC3_H
 #define CS_VEC3_H
 
@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stddef.h>
 
 /* By one comparison, for loops that vectorise: b if one of them is not a number. */
 CS_INLINE double cs_fmin(double a, double b) {
@@ -21,6 +22,30 @@ CS_INLINE double cs_vec3_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+CS_INLINE double cs_vec3_length(const double a[3]) {
+    return sqrt(cs_vec3_dot(a, a));
+}
+
+/* The length of a - b. */
+CS_INLINE double cs_vec3_distance(const double a[3], const double b[3]) {
+    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return cs_vec3_length(d);
+}
+
+/* The distance of vectors a and b of x (3,n). */
+CS_INLINE double cs_vec3_distance_at(const double *x, size_t n, size_t a, size_t b) {
+    const double d[3] = {x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]};
+    return cs_vec3_length(d);
+}
+
+/* Extends the box from low to high by a point with a margin. */
+CS_INLINE void cs_vec3_extend_box(double low[3], double high[3], const double p[3], double by) {
+    for (int c = 0; c < 3; c++) {
+        low[c] = fmin(low[c], p[c] - by);
+        high[c] = fmax(high[c], p[c] + by);
+    }
+}
+
 /* out = a x b; out must be neither a nor b. */
 CS_INLINE void cs_vec3_cross(const double a[3], const double b[3], double out[3]) {
     out[0] = a[1] * b[2] - a[2] * b[1];
@@ -30,7 +55,7 @@ CS_INLINE void cs_vec3_cross(const double a[3], const double b[3], double out[3]
 
 /* Scales a to length 1; a must not be 0. */
 CS_INLINE void cs_vec3_normalise(double a[3]) {
-    const double length = sqrt(cs_vec3_dot(a, a));
+    const double length = cs_vec3_length(a);
     for (int c = 0; c < 3; c++)
         a[c] /= length;
 }

@@ -155,6 +155,13 @@ double cs_vector_dot(size_t n, const double *x, const double *y) {
     return cs_vector_sum(n, dot_part, &arrays);
 }
 
+double cs_vector_dot_in_order(size_t n, const double *x, const double *y) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += x[i] * y[i];
+    return sum;
+}
+
 /* Sum of (x_i w_i)^2 over a block. */
 CS_CLONES static double weighted_part(const void *arg, size_t begin, size_t end) {
     const struct arrays *arrays = arg;

@@ -8,8 +8,9 @@
 /* The kernels of the module contract. */
 extern const struct cs_vector_kernels cs_vector_kernels;
 
-/* Dot product of two arrays of n numbers. */
+/* Dot product of two arrays of n numbers; and one that is summed in the order of the index. */
 double cs_vector_dot(size_t n, const double *x, const double *y);
+double cs_vector_dot_in_order(size_t n, const double *x, const double *y);
 
 /* Calls part(arg, begin, end) for blocks that cover 0..n-1, concurrently. A part must write
  * only what belongs to its own items. The size of blocks depends on the number of threads, so

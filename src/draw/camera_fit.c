@@ -1,6 +1,7 @@
 /* camera_fit.c - fits a camera to points, by the maxima that camera_fit.h derives. */
 #include "draw/camera_fit.h"
 
+#include "base/vec3.h"
 #include "draw/glyph.h"
 #include "draw/matrix.h"
 #include "scene/collider_keys.h"
@@ -260,7 +261,7 @@ static void grow_by_mesh(double low[3], double high[3],
         double own[3], place[3];
         cs_collider_mesh_vertex(collider, i, own);
         cs_collider_to_world(collider, own, place);
-        cs_box_grow(low, high, place);
+        cs_vec3_extend_box(low, high, place, 0);
     }
 }
 

@@ -52,14 +52,6 @@ enum { CS_CAMERA_FIT_STEPS = 8, CS_CAMERA_FIT_EXTREMES = 4 * (CS_CAMERA_FIT_STEP
 void cs_camera_fit_extremes(const struct cs_camera_fit *fit, size_t n, const double *x,
                             double *out);
 
-/* Extends the box from low to high by a point. */
-static inline void cs_box_grow(double low[3], double high[3], const double place[3]) {
-    for (int i = 0; i < 3; i++) {
-        low[i] = fmin(low[i], place[i]);
-        high[i] = fmax(high[i], place[i]);
-    }
-}
-
 /* Extends the box from low to high by a collider, if it is visible and no plane. */
 void cs_box_grow_by_collider(double low[3], double high[3],
                              const struct cs_posed_collider *collider);

@@ -4,6 +4,7 @@
 #include "draw/srgb.h"
 #include "mesh/trimesh.h"
 #include "scene/body_keys.h"
+#include "scene/event_key.h"
 #include "scene/force_keys.h"
 #include "scene/picture_keys.h"
 
@@ -13,13 +14,6 @@
 /* Lower bound of the height that the bodies of a scene can reach. */
 
 enum { MOST = 1024, MOST_PINS = 64 }; // particles and pins per body that are tested
-
-static bool is_released(const struct cs_scene *scene) {
-    bool released = false;
-    for (uint32_t e = 0; e < scene->events.n; e++)
-        released = released || cs_scene_events(scene)[e].release.present;
-    return released;
-}
 
 // position of particle i of a body at rest, before its placement: only distances matter
 static void rest_position(const struct cs_body *body, const struct cs_body_range *range,
@@ -92,7 +86,8 @@ static double lowest_point(const struct cs_system *system,
     double lowest = cs_scene_extent_solid(system, system->view.start, colliders).low[1];
     const bool falls = scene->forces->gravity[1] < 0;
     for (uint32_t b = 0; falls && b < scene->bodies.n; b++) {
-        const double own = is_released(scene) ? (double)NAN : lowest_of_body(system, b);
+        const double own =
+            cs_event_releases_any(scene) ? (double)NAN : lowest_of_body(system, b);
         if (!(own < lowest) && !isnan(own))
             continue;
         lowest = own;

@@ -1,7 +1,6 @@
 /* The table of looks, the colours of their values, and styles from the keys of a scene. */
 #include "draw/look.h"
 
-#include "draw/matrix.h"
 #include "scene/body_keys.h"
 #include "scene/collider_keys.h"
 #include "scene/picture_keys.h"

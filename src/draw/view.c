@@ -1,6 +1,7 @@
 /* Sets up the camera, light, background and colour map that all shaders share. */
 #include "draw/view.h"
 
+#include "base/vec3.h"
 #include "draw/glyph.h"
 #include "draw/matrix.h"
 #include "draw/mesh.h"
@@ -256,7 +257,7 @@ struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, 
     memcpy(high, low, sizeof high);
     for (uint32_t i = 0; i < system->view.n; i++) {
         cs_mesh_position(system->view.n, x, i, place);
-        cs_box_grow(low, high, place);
+        cs_vec3_extend_box(low, high, place, 0);
     }
     /* planes are left out: they have no end */
     for (uint32_t i = 0; i < scene->colliders.n; i++)

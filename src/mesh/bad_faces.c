@@ -73,13 +73,6 @@ static bool divide(struct work *work, uint32_t t, int k) {
     return false;
 }
 
-/* The vertex that stands for another in the end; halves the path. */
-static uint32_t end_of(uint32_t *becomes, uint32_t vertex) {
-    while (becomes[vertex] != vertex)
-        vertex = becomes[vertex] = becomes[becomes[vertex]];
-    return vertex;
-}
-
 /* Treats one flat triangle; returns true if something has changed. */
 static bool treat(struct work *work, uint32_t t) {
     const struct cs_raw_triangle *flat = work->raw->triangles + t;
@@ -90,8 +83,8 @@ static bool treat(struct work *work, uint32_t t) {
         longest = squared[k] > squared[longest] ? k : longest;
         shortest = squared[k] < squared[shortest] ? k : shortest;
     }
-    const uint32_t a = end_of(work->becomes, flat->corners[shortest].vertex),
-                   b = end_of(work->becomes, flat->corners[(shortest + 1) % 3].vertex);
+    const uint32_t a = cs_root_of(work->becomes, flat->corners[shortest].vertex),
+                   b = cs_root_of(work->becomes, flat->corners[(shortest + 1) % 3].vertex);
     if (squared[shortest] > SAME * SAME * squared[longest])
         return divide(work, t, longest);
     work->becomes[a > b ? a : b] = a < b ? a : b;
@@ -125,7 +118,7 @@ static bool treat_all(struct work *work) {
     for (uint32_t t = 0; t < raw->n_triangles; t++)
         for (int k = 0; k < 3; k++) {
             uint32_t *vertex = &raw->triangles[t].corners[k].vertex;
-            *vertex = end_of(work->becomes, *vertex);
+            *vertex = cs_root_of(work->becomes, *vertex);
         }
     return changed;
 }

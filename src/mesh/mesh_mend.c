@@ -27,17 +27,10 @@ struct work {
     bool *splits;      /* (n_vertices) its corners are joined one by one */
 };
 
-/* The set that a node is in, named by its lowest node; halves the path. */
-static uint32_t root_of(uint32_t *parents, uint32_t node) {
-    while (parents[node] != node)
-        node = parents[node] = parents[parents[node]];
-    return node;
-}
-
 /* Makes two sets one; returns 0 if they are one already. */
 static uint32_t join(uint32_t *parents, uint32_t a, uint32_t b) {
-    a = root_of(parents, a);
-    b = root_of(parents, b);
+    a = cs_root_of(parents, a);
+    b = cs_root_of(parents, b);
     parents[a > b ? a : b] = a < b ? a : b;
     return a != b;
 }
@@ -177,7 +170,7 @@ static enum cs_status number_vertices(struct work *work, struct cs_error *error)
     }
     for (size_t s = 0; s < 3 * (size_t)raw->n_triangles; s++) {
         const struct cs_raw_side *side = work->sides + s;
-        numbers[root_of(work->parents, node_of(work, side, side->falls))] = 1;
+        numbers[cs_root_of(work->parents, node_of(work, side, side->falls))] = 1;
     }
     for (size_t node = 0; node < nodes; node++) {
         if (!numbers[node])
@@ -193,7 +186,7 @@ static enum cs_status number_vertices(struct work *work, struct cs_error *error)
     for (size_t s = 0; s < 3 * (size_t)raw->n_triangles; s++) {
         const struct cs_raw_side *side = work->sides + s;
         raw->triangles[side->triangle].corners[side->k].vertex =
-            numbers[root_of(work->parents, node_of(work, side, side->falls))] - 1;
+            numbers[cs_root_of(work->parents, node_of(work, side, side->falls))] - 1;
     }
     free(numbers);
     free(raw->sources);

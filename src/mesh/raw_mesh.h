@@ -72,6 +72,13 @@ void cs_mesh_mends_print(const struct cs_mesh_mends *mends, struct cs_text *out)
 uint32_t cs_near_vertices_find(const double (*positions)[3], uint32_t n, const bool *among,
                                double fraction, uint32_t *places, struct cs_error *error);
 
+/* The set that a node is in, named by the node that stands for it; halves the path. */
+static inline uint32_t cs_root_of(uint32_t *parents, uint32_t node) {
+    while (parents[node] != node)
+        node = parents[node] = parents[parents[node]];
+    return node;
+}
+
 /* --- faces: bad_faces.c --- */
 
 /* Removes the faces without area, and counts them. A vertex within 1e-6 of its longest side of

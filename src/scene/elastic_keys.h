@@ -40,6 +40,13 @@ const struct cs_elastic *cs_scene_elastic(const struct cs_scene *scene, uint32_t
 struct cs_moduli {
     double warp, weft, coupling, shear;
 };
+/* out = D s of strains or curvatures s, or of one component of each. */
+static inline void cs_moduli_multiply(const struct cs_moduli *D, const double s[3],
+                                      double out[3]) {
+    out[0] = D->warp * s[0] + D->coupling * s[1];
+    out[1] = D->coupling * s[0] + D->weft * s[1];
+    out[2] = D->shear * s[2];
+}
 
 /* Moduli of a membrane in N/m; the XY strain is the change of the angle in rad. For Young's
  * modulus Y and Poisson's ratio p: Y/(1 - p^2) (1, 1, p, (1 - p)/2). All 0 without one. */

@@ -11,7 +11,6 @@
 #include "scene/shape.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -28,15 +27,10 @@ struct look {
 };
 
 /* Fails at a part of the event: ".impact.direction", or "" for the event itself. */
-static enum cs_status refuse_event(const struct look *at, const char *part, const char *format,
-                                   ...) __attribute__((format(printf, 3, 4)));
-static enum cs_status refuse_event(const struct look *at, const char *part, const char *format,
-                                   ...) {
+__attribute__((format(printf, 3, 4))) static enum cs_status
+refuse_event(const struct look *at, const char *part, const char *format, ...) {
     char message[512];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(message, sizeof message, format, args);
-    va_end(args);
+    CS_FORMAT(message, format);
     snprintf(at->path, CS_TEXT_MAX, "events[%u]%s", at->number, part);
     return cs_fail(at->error, CS_ERR_SCENE, "%s", message);
 }
@@ -46,14 +40,6 @@ static enum cs_status make_unit(const struct look *at, const char *part, double 
     char path[CS_TEXT_MAX];
     snprintf(path, sizeof path, "events[%u]%s", at->number, part);
     return cs_check_unit(&(struct cs_check){at->path, at->error}, path, v, 3);
-}
-
-/* First and last time of an event, in s. */
-static double begin_of(const struct cs_event *event) {
-    return isnan(event->at) ? event->from : event->at;
-}
-static double end_of(const struct cs_event *event) {
-    return isnan(event->at) ? event->to : event->at;
 }
 
 /* Checks that the event has `at`, or `from` before `to`. */
@@ -100,7 +86,7 @@ static bool has_direction(const struct look *at) {
     bool has = at->scene->forces->wind.present;
     for (uint32_t k = 0; k < at->scene->events.n; k++)
         has |= events[k].wind.present && !isnan(events[k].wind.direction[0]) &&
-               begin_of(events + k) < begin_of(events + at->number);
+               cs_event_begin(events + k) < cs_event_begin(events + at->number);
     return has;
 }
 
@@ -197,7 +183,7 @@ static enum cs_status check_path(const struct look *at, const char *key,
                                  const struct cs_list *list, bool relative) {
     const struct cs_event *event = cs_scene_events(at->scene) + at->number;
     const struct cs_path_point *path = list->items;
-    double before = begin_of(event);
+    double before = cs_event_begin(event);
     char place[64];
     const uint32_t first = cs_path_starts_at(list, before);
     snprintf(place, sizeof place, ".%s.path[0]", key);
@@ -283,8 +269,8 @@ static enum cs_status check_overlap(const struct look *at, const struct cs_event
     const char *key = moved_key(event);
     for (uint32_t k = 0; key && k < at->number; k++) {
         const char *other = moved_key(events + k);
-        if (other && !strcmp(key, other) && begin_of(event) < end_of(events + k) &&
-            begin_of(events + k) < end_of(event))
+        if (other && !strcmp(key, other) && cs_event_begin(event) < cs_event_end(events + k) &&
+            cs_event_begin(events + k) < cs_event_end(event))
             return refuse_event(at, "", "changes %s while events[%u] does", key, k);
     }
     return CS_OK;

@@ -2,6 +2,7 @@
 #include "scene/event_key.h"
 
 #include "base/options.h"
+#include "base/vec3.h"
 #include "scene/body_keys.h"
 #include "scene/contact_keys.h"
 #include "scene/force_keys.h"
@@ -281,6 +282,13 @@ bool cs_event_key_changes(const struct cs_scene *scene, const char *key) {
     return false;
 }
 
+bool cs_event_releases_any(const struct cs_scene *scene) {
+    for (uint32_t e = 0; e < scene->events.n; e++)
+        if (cs_scene_events(scene)[e].release.present)
+            return true;
+    return false;
+}
+
 bool cs_event_key_acts(const struct cs_scene *scene, double value, const char *key) {
     return value != 0 || cs_event_key_changes(scene, key);
 }
@@ -295,22 +303,17 @@ bool cs_event_changes_mass(const struct cs_event *event) {
 
 /* Finds views without a direction, or without a way up. */
 
-static double length_of(const double a[3]) {
-    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-}
-
 const char *cs_viewpoint_fault(const double eye[3], const double target[3], const double up[3],
                                const char **key) {
     const double view[3] = {target[0] - eye[0], target[1] - eye[1], target[2] - eye[2]};
-    const double side[3] = {view[1] * up[2] - view[2] * up[1],
-                            view[2] * up[0] - view[0] * up[2],
-                            view[0] * up[1] - view[1] * up[0]};
+    double side[3];
+    cs_vec3_cross(view, up, side);
     *key = "target";
-    if (length_of(view) < 1e-9)
+    if (cs_vec3_length(view) < 1e-9)
         return "is the same point as the eye";
     // parallel to the view up to rounding: no picture plane can be built
     *key = "up";
-    if (length_of(side) < 1e-9 * length_of(view))
+    if (cs_vec3_length(side) < 1e-9 * cs_vec3_length(view))
         return "is along the view or zero, expected another direction";
     return NULL;
 }

@@ -28,6 +28,9 @@ bool cs_event_key_changes(const struct cs_scene *scene, const char *key);
 /* Returns true if a number of the scene is ever other than 0: now, or after a ramp of `key`. */
 bool cs_event_key_acts(const struct cs_scene *scene, double value, const char *key);
 
+/* Returns true if an event releases pins. */
+bool cs_event_releases_any(const struct cs_scene *scene);
+
 /* Returns true if an event of a checked scene moves the surface of a collider by its radius or
  * thickness. */
 bool cs_event_grows(const struct cs_event *event);

@@ -5,6 +5,8 @@
 #include "scene/mesh_keys.h"
 #include "scene/scene.h"
 
+#include <math.h>
+
 enum cs_wind_unit { CS_WIND_PA, CS_WIND_N };
 /* Uniform wind; strength in Pa (times each particle's area) or in N per particle. */
 struct cs_wind {
@@ -133,5 +135,14 @@ struct cs_event {
     struct cs_move move;
     struct cs_unsew unsew;
 };
+
+/* First and last time of an event in s, as the scene gives them: the same with `at`. */
+static inline double cs_event_begin(const struct cs_event *event) {
+    return isnan(event->at) ? event->from : event->at;
+}
+
+static inline double cs_event_end(const struct cs_event *event) {
+    return isnan(event->at) ? event->to : event->at;
+}
 
 #endif

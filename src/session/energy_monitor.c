@@ -1,6 +1,7 @@
 /* Judges by the balance of energy whether a run is sound; the header derives the bounds. */
 #include "session/energy_monitor.h"
 
+#include "base/vec3.h"
 #include "model/contact/posed_collider.h"
 #include "model/event/event_state.h"
 #include "model/event/events.h"
@@ -58,11 +59,6 @@ uint32_t cs_stability_colour(enum cs_stability_verdict verdict) {
     return verdicts[verdict].colour;
 }
 
-/* Length of a vector. */
-static double length_of(const double a[3]) {
-    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-}
-
 /* Largest speed in m/s that the springs at one particle could give it: sqrt(2 E / m) with the
  * elastic energy E of all its springs. CS_ERR_MEMORY. */
 static enum cs_status spring_speed(const struct cs_run *run, double *speed,
@@ -76,9 +72,8 @@ static enum cs_status spring_speed(const struct cs_run *run, double *speed,
         const struct cs_spring_run *s = system->springs.runs + r;
         for (uint32_t i = 0; i < s->count; i++) {
             const uint32_t a = cs_spring_a(s, i), b = cs_spring_b(s, i);
-            const double d[3] = {run->x[b] - run->x[a], run->x[n + b] - run->x[n + a],
-                                 run->x[2 * n + b] - run->x[2 * n + a]};
-            const double stretch = length_of(d) - cs_spring_length(s, i);
+            const double stretch =
+                cs_vec3_distance_at(run->x, n, a, b) - cs_spring_length(s, i);
             const double energy = 0.5 * cs_spring_stiffness(s, i) * stretch * stretch;
             /* the whole energy at both ends: either particle may get all of it */
             stored[a] += energy;
@@ -154,7 +149,7 @@ enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
     start_speeds(monitor, run);
     monitor->start_speed += speed;
     const double *g = run->system->scene->forces->gravity, c = cs_run_calls(run)->speed_scale;
-    if (length_of(g) > 0 || monitor->start_speed > 0)
+    if (cs_vec3_length(g) > 0 || monitor->start_speed > 0)
         monitor->least = 0.5 * LEAST_FRACTION * c * c;
     monitor->last_sample = run->t;
     monitor->last_total = cs_energy_total(&energy);

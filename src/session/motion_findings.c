@@ -6,7 +6,6 @@
 #include "base/vec3.h"
 #include "model/contact/posed_collider.h"
 #include "model/event/events.h"
-#include "scene/body_pairs.h"
 #include "scene/force_keys.h"
 
 #include <math.h>
@@ -191,7 +190,7 @@ static bool propose(const struct cs_scene *scene, const struct entry *entry,
     const double *spin = event->move.present ? event->move.spin : event->grab.spin;
     const double *from = entry->leg_start;
     const uint32_t leg = entry->leg;
-    const double begin = leg ? path.points[leg - 1].at : cs_findings_begin(event);
+    const double begin = leg ? path.points[leg - 1].at : cs_event_begin(event);
     if (path.n ? leg >= path.n || !cs_vec3_is_zero(spin) : !(entry->clear > begin))
         return false;
     // a second try cuts the leg of the first

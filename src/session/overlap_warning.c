@@ -28,14 +28,6 @@ struct body {
 static const struct box nowhere = {{HUGE_VAL, HUGE_VAL, HUGE_VAL},
                                    {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
 
-/* Extends a box by a point with a margin. */
-static void extend_box(struct box *box, const double p[3], double by) {
-    for (int c = 0; c < 3; c++) {
-        box->low[c] = fmin(box->low[c], p[c] - by);
-        box->high[c] = fmax(box->high[c], p[c] + by);
-    }
-}
-
 static bool overlap(const struct box *a, const struct box *b) {
     bool apart = false;
     for (int c = 0; c < 3; c++)
@@ -45,35 +37,27 @@ static bool overlap(const struct box *a, const struct box *b) {
 
 /* Boxes of round bodies overlap at their corners, spheres do not. */
 static bool overlap_at_start(const struct body *a, const struct body *b) {
-    const double d[3] = {a->middle[0] - b->middle[0], a->middle[1] - b->middle[1],
-                         a->middle[2] - b->middle[2]};
-    return overlap(&a->start, &b->start) && sqrt(cs_vec3_dot(d, d)) <= a->radius + b->radius;
-}
-
-static void copy_point(const double *x, size_t n, size_t i, double p[3]) {
-    for (size_t c = 0; c < 3; c++)
-        p[c] = x[c * n + i];
+    return overlap(&a->start, &b->start) &&
+           cs_vec3_distance(a->middle, b->middle) <= a->radius + b->radius;
 }
 
 /* m, from a place to the particle farthest from it. */
 static double farthest(const double *x, size_t n, const double from[3]) {
-    double squared = 0;
+    double most = 0;
     for (size_t i = 0; i < n; i++) {
-        double p[3], sum = 0;
-        copy_point(x, n, i, p);
-        for (int c = 0; c < 3; c++)
-            sum += (p[c] - from[c]) * (p[c] - from[c]);
-        squared = fmax(squared, sum);
+        double p[3];
+        cs_point_read(x, n, i, p);
+        most = fmax(most, cs_vec3_distance(p, from));
     }
-    return sqrt(squared);
+    return most;
 }
 
 /* Box of a pinned body. Inextensible springs keep each particle within its initial distance of
  * the pin. */
 static void reach_from_pin(const double *x, size_t n, size_t pin, struct box *reach) {
     double from[3];
-    copy_point(x, n, pin, from);
-    extend_box(reach, from, farthest(x, n, from));
+    cs_point_read(x, n, pin, from);
+    cs_vec3_extend_box(reach->low, reach->high, from, farthest(x, n, from));
 }
 
 /* Box of all times in free fall: end of the fall, and the turning point v + g t = 0 if it is on
@@ -81,10 +65,7 @@ static void reach_from_pin(const double *x, size_t n, size_t pin, struct box *re
 static void free_fall_box(const struct cs_scene *scene, const struct cs_body *body,
                           double seconds, const struct box *start, struct box *reach) {
     const double *v = cs_shape_velocity(body), *g = scene->forces->gravity;
-    double diagonal = 0;
-    for (int c = 0; c < 3; c++)
-        diagonal += (start->high[c] - start->low[c]) * (start->high[c] - start->low[c]);
-    const double by = SPREAD * sqrt(diagonal);
+    const double by = SPREAD * cs_vec3_distance(start->high, start->low);
     for (int c = 0; c < 3; c++) {
         const double end = v[c] * seconds + g[c] * seconds * seconds / 2;
         // where it turns on the way
@@ -112,8 +93,8 @@ static enum cs_status measure_overlap(const struct cs_scene *scene, const struct
     cs_shape_pin(body, (uint32_t)n, 0, x, pinned);
     for (size_t i = 0; i < n; i++) {
         double p[3];
-        copy_point(x, n, i, p);
-        extend_box(&out->start, p, 0);
+        cs_point_read(x, n, i, p);
+        cs_vec3_extend_box(out->start.low, out->start.high, p, 0);
         pin = pinned[i] ? i : pin;
     }
     for (int c = 0; c < 3; c++)

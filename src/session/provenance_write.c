@@ -7,7 +7,6 @@
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"
 #include "scene/file/key_frames_read.h"
-#include "sim/module.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -28,35 +28,18 @@
 /* Distance from a plane over the size, below which a body is flat. */
 #define FLAT 1e-12
 
-static double length_of(const double a[3]) {
-    return sqrt(cs_vec3_dot(a, a));
-}
-
 /* --- stored energy --- */
 
 /* m, diagonal of the box of all particles and bounded colliders at the start. */
 static double size_of(const struct cs_system *system) {
-    const size_t n = system->view.n;
-    double low[3], high[3], squared = 0;
-    for (size_t c = 0; c < 3; c++) {
-        const double *x = system->state + c * n;
-        low[c] = high[c] = x[0];
-        for (size_t i = 0; i < n; i++) {
-            low[c] = fmin(low[c], x[i]);
-            high[c] = fmax(high[c], x[i]);
-        }
-    }
+    double low[3], high[3];
+    cs_findings_box_of(system->state, system->view.n, system->view.n, low, high);
     for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
         struct cs_posed_collider collider;
         cs_posed_collider_at(system, k, 0, &collider);
-        for (int c = 0; c < 3; c++) {
-            low[c] = fmin(low[c], collider.centre[c]);
-            high[c] = fmax(high[c], collider.centre[c]);
-        }
+        cs_vec3_extend_box(low, high, collider.centre, 0);
     }
-    for (int c = 0; c < 3; c++)
-        squared += (high[c] - low[c]) * (high[c] - low[c]);
-    return sqrt(squared);
+    return cs_vec3_distance(high, low);
 }
 
 /* J that impacts give the whole scene if it is at rest; HUGE_VAL where work has no bound. */
@@ -78,7 +61,8 @@ static double energy_to_come(const struct cs_system *system, const struct cs_ene
     double mass = 0;
     for (uint32_t i = 0; i < system->view.n; i++)
         mass += system->inv_mass[i] > 0 ? system->mass[i] : 0;
-    return start->kinetic + mass * length_of(system->scene->forces->gravity) * size_of(system) +
+    return start->kinetic +
+           mass * cs_vec3_length(system->scene->forces->gravity) * size_of(system) +
            event_energy(system, mass);
 }
 
@@ -94,7 +78,7 @@ static double released_energy(const struct cs_system *system) {
         for (uint32_t i = 0; i < s->count; i++) {
             const uint32_t a = cs_spring_a(s, i), b = cs_spring_b(s, i);
             const double d[3] = {x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]};
-            const double l = length_of(d), k = cs_spring_stiffness(s, i);
+            const double l = cs_vec3_length(d), k = cs_spring_stiffness(s, i);
             for (size_t c = 0; c < 3 && l > 0; c++) {
                 const double push = k * (l - cs_spring_length(s, i)) * d[c] / l;
                 f[c * n + a] += push;
@@ -167,7 +151,7 @@ static double load_of(const struct cs_system *system, const struct cs_body_range
         for (size_t c = 0; c < 3; c++)
             sum[c] += f[c * n + i];
     free(f);
-    return length_of(sum);
+    return cs_vec3_length(sum);
 }
 
 /* The least strain of the springs at pins under a load F: |F| <= strain * sum of k L. Where
@@ -223,7 +207,7 @@ static bool find_plane(const struct cs_system *system, const struct cs_body_rang
         }
         most = fmax(most, fmax(fabs(cs_vec3_dot(d, normal)), fabs(cs_vec3_dot(v, normal))));
     }
-    return most <= FLAT * (length_of(side[0]) + length_of(side[1]));
+    return most <= FLAT * (cs_vec3_length(side[0]) + cs_vec3_length(side[1]));
 }
 
 /* True if only pins, releases and ramps happen, and no obstacle or wind is there. */
@@ -253,7 +237,7 @@ static void check_symmetry(const struct cs_system *system, struct cs_text *out) 
             pinned && pinned < range->columns && pinned < range->rows && !cs_vec3_is_zero(g);
         const bool is_short = body->cloth.stretch[0] < 1 || body->cloth.stretch[1] < 1;
         if ((hangs || is_short) && pinned < range->count && find_plane(system, range, normal) &&
-            fabs(cs_vec3_dot(g, normal)) <= FLAT * length_of(g))
+            fabs(cs_vec3_dot(g, normal)) <= FLAT * cs_vec3_length(g))
             cs_text_add(
                 out,
                 "bodies[%u] lies in a plane that no force leaves: it cannot buckle out of "

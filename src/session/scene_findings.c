@@ -286,43 +286,38 @@ void cs_findings_print(const struct cs_system *system, uint32_t n, cs_finding *c
 
 double cs_findings_first_speed(const struct cs_event *event, const struct cs_path_point *to,
                                const double from[3]) {
-    double way[3];
-    for (int c = 0; c < 3; c++)
-        way[c] = to->point[c] - from[c];
-    return sqrt(cs_vec3_dot(way, way)) / (to->at - cs_findings_begin(event));
+    return cs_vec3_distance(to->point, from) / (to->at - cs_event_begin(event));
+}
+
+double cs_findings_box_of(const double *x, size_t n, size_t count, double low[3],
+                          double high[3]) {
+    for (size_t c = 0; c < 3; c++, x += n) {
+        low[c] = high[c] = x[0];
+        for (size_t i = 1; i < count; i++) {
+            low[c] = fmin(low[c], x[i]);
+            high[c] = fmax(high[c], x[i]);
+        }
+    }
+    return cs_vec3_distance(high, low);
 }
 
 double cs_findings_box(const struct cs_system *system, uint32_t b, double low[3],
                        double high[3]) {
     const struct cs_body_range *range = system->bodies + b;
-    double squared = 0;
-    for (size_t c = 0; c < 3; c++) {
-        const double *x = system->state + c * system->view.n + range->first;
-        low[c] = high[c] = x[0];
-        for (uint32_t i = 1; i < range->count; i++) {
-            low[c] = fmin(low[c], x[i]);
-            high[c] = fmax(high[c], x[i]);
-        }
-        squared += (high[c] - low[c]) * (high[c] - low[c]);
-    }
-    return sqrt(squared);
+    return cs_findings_box_of(system->state + range->first, system->view.n, range->count, low,
+                              high);
 }
 
 /* m, of a collider without a plane: the diagonal of its box. */
 static double size_of(const struct cs_posed_collider *collider) {
     const struct cs_trimesh *mesh =
         collider->collider->mesh.present ? collider->collider->mesh.geometry : NULL;
-    double sides[3], low, high;
-    for (size_t c = 0; c < 3; c++) {
-        sides[c] = 2 * collider->half_sizes[c];
-        low = high = mesh ? mesh->positions[c * mesh->n] : 0;
-        for (size_t i = 0; mesh && i < mesh->n; i++) {
-            low = fmin(low, mesh->positions[c * mesh->n + i]);
-            high = fmax(high, mesh->positions[c * mesh->n + i]);
-        }
-        sides[c] += high - low;
-    }
-    return 2 * collider->radius + sqrt(cs_vec3_dot(sides, sides));
+    double sides[3], low[3] = {0}, high[3] = {0};
+    if (mesh)
+        cs_findings_box_of(mesh->positions, mesh->n, mesh->n, low, high);
+    for (size_t c = 0; c < 3; c++)
+        sides[c] = 2 * collider->half_sizes[c] + (high[c] - low[c]);
+    return 2 * collider->radius + cs_vec3_length(sides);
 }
 
 /* A collider that is led by more than its size per frame. */
@@ -344,13 +339,13 @@ static void check_move(const struct cs_system *system, uint32_t e, const void *a
     const double size = size_of(&collider);
     const double fastest = size * system->scene->time.fps / JUMP_FRAMES;
     if (speed > fastest)
-        cs_text_add(
-            out,
-            "events[%u].move.path[0] is reached at %.3g m/s, by more than the size of "
-            "colliders[%u], %.3g m, per frame: expected at = %.3g s or later%s",
-            e, speed, (uint32_t)move->collider, size,
-            cs_findings_begin(event) + (to->at - cs_findings_begin(event)) * speed / fastest,
-            move->relative ? ", or \"relative\": false if its points are positions" : "");
+        cs_text_add(out,
+                    "events[%u].move.path[0] is reached at %.3g m/s, by more than the size of "
+                    "colliders[%u], %.3g m, per frame: expected at = %.3g s or later%s",
+                    e, speed, (uint32_t)move->collider, size,
+                    cs_event_begin(event) + (to->at - cs_event_begin(event)) * speed / fastest,
+                    move->relative ? ", or \"relative\": false if its points are positions"
+                                   : "");
 }
 
 void cs_path_findings_print(const struct cs_system *system, struct cs_text *out) {

@@ -6,8 +6,6 @@
 #include "scene/force_keys.h"
 #include "session/session.h"
 
-#include <math.h>
-
 /* Adds the keys that have another value than their default, but no effect, one per line:
  * "bodies[0].thickness has no effect: ...". */
 void cs_idle_keys_print(const struct cs_scene *scene, struct cs_text *out);
@@ -16,11 +14,6 @@ void cs_idle_keys_print(const struct cs_scene *scene, struct cs_text *out);
  * scene must have one, if only that it always acts. */
 int cs_idle_keys_rule(const char *key);
 
-/* s, at which an event begins. */
-static inline double cs_findings_begin(const struct cs_event *event) {
-    return isnan(event->at) ? event->from : event->at;
-}
-
 /* A check of body or event k, which adds a line without its end, or nothing. */
 typedef void cs_finding(const struct cs_system *system, uint32_t k, const void *arg,
                         struct cs_text *out);
@@ -28,7 +21,10 @@ typedef void cs_finding(const struct cs_system *system, uint32_t k, const void *
 void cs_findings_print(const struct cs_system *system, uint32_t n, cs_finding *check,
                        const void *arg, struct cs_text *out);
 
-/* m, diagonal of the box of a body at the start; low and high: its corners. */
+/* m, diagonal of the box of the first `count` vectors of x (3,n); low and high: its corners. */
+double cs_findings_box_of(const double *x, size_t n, size_t count, double low[3],
+                          double high[3]);
+/* The same of a body at the start. */
 double cs_findings_box(const struct cs_system *system, uint32_t b, double low[3],
                        double high[3]);
 

@@ -10,6 +10,7 @@
  * value has converged (Golub and Van Loan 2013, sec. 10.3). */
 #include "session/stiffest_modes.h"
 
+#include "base/vector.h"
 #include "model/force/terms.h"
 #include "scene/contact_keys.h"
 
@@ -47,17 +48,9 @@ void cs_stiffest_modes_finish(struct cs_stiffest_modes *modes) {
     *modes = (struct cs_stiffest_modes){0};
 }
 
-/* Sums in index order: one result on all machines. */
-static double dot(size_t n, const double *p, const double *q) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += p[i] * q[i];
-    return sum;
-}
-
 /* Scales p to unit length. Returns false, with p unchanged, if p is 0 or not finite. */
 static bool normalise(size_t n, double *p) {
-    const double length = sqrt(dot(n, p, p));
+    const double length = sqrt(cs_vector_dot_in_order(n, p, p));
     if (!(length > 0 && length < HUGE_VAL))
         return false;
     for (size_t i = 0; i < n; i++)
@@ -135,7 +128,7 @@ static void orthogonalise(const struct cs_stiffest_modes *modes, uint32_t count,
     for (int pass = 0; pass < 2; pass++)
         for (uint32_t k = 0; k < count; k++) {
             const double *q = modes->basis + k * length;
-            const double part = dot(length, p, q);
+            const double part = cs_vector_dot_in_order(length, p, q);
             parts[k] += part;
             for (size_t i = 0; i < length; i++)
                 p[i] -= part * q[i];
@@ -161,8 +154,9 @@ static uint32_t build_basis(struct cs_stiffest_modes *modes, const double *x, do
         apply(modes, x, a, b, modes->basis + count * length, next);
         count++;
         orthogonalise(modes, count, length, next, parts[count - 1]);
-        goes_on = dot(length, next, next) > 1e-24 * parts[0][0] * parts[0][0] &&
-                  normalise(length, next);
+        goes_on =
+            cs_vector_dot_in_order(length, next, next) > 1e-24 * parts[0][0] * parts[0][0] &&
+            normalise(length, next);
     }
     /* below its diagonal the projection is the image's length, by symmetry what stands above */
     memset(h, 0, sizeof(double) * CS_STIFFEST_MODES_BASIS * CS_STIFFEST_MODES_BASIS);
@@ -260,9 +254,9 @@ static struct cs_mode describe(struct cs_stiffest_modes *modes, const double *x)
     double *image = modes->basis;
     struct cs_mode mode = {0};
     apply(modes, x, 1, 0, p, image);
-    mode.omega_squared = dot(3 * n, p, image);
+    mode.omega_squared = cs_vector_dot_in_order(3 * n, p, image);
     apply(modes, x, 0, 1, p, image);
-    mode.damping_rate = dot(3 * n, p, image);
+    mode.damping_rate = cs_vector_dot_in_order(3 * n, p, image);
     for (size_t i = 0; i < n; i++) {
         const double share = p[i] * p[i] + p[n + i] * p[n + i] + p[2 * n + i] * p[2 * n + i];
         if (share > mode.participation) {

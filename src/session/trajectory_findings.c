@@ -103,7 +103,7 @@ static void check_release(const struct cs_system *system, uint32_t e, const void
     for (uint32_t other = 0; other < scene->events.n; other++) {
         const struct cs_event *earlier = cs_scene_events(scene) + other;
         holds = holds || ((earlier->grab.present || earlier->pin.present) &&
-                          cs_findings_begin(earlier) <= cs_findings_begin(event));
+                          cs_event_begin(earlier) <= cs_event_begin(event));
     }
     if (!holds)
         cs_event_mark(system, &event->release.target);
@@ -111,7 +111,7 @@ static void check_release(const struct cs_system *system, uint32_t e, const void
         holds = holds || system->events->work[system->pinned[p]];
     if (!holds)
         cs_text_add(out, "events[%u].release lets go what nothing holds at %.4g s", e,
-                    cs_findings_begin(event));
+                    cs_event_begin(event));
 }
 
 /* A grab or a pin that lets go what pins hold, or that undoes a seam to a collider. */
@@ -166,16 +166,14 @@ static void check_jump(const struct cs_system *system, uint32_t e, const void *a
     const size_t i = first_target(system, &event->grab);
     if (i == n)
         return;
-    const double *to = path.points->point, seconds = path.points->at - cs_findings_begin(event);
+    const double *to = path.points->point, seconds = path.points->at - cs_event_begin(event);
     for (size_t c = 0; c < 3; c++)
         way[c] = to[c] - system->state[c * n + i];
     const double jump = sqrt(cs_vec3_dot(way, way)), shift = sqrt(cs_vec3_dot(to, to));
     const double size =
         cs_findings_box(system, cs_system_body_of(system, (uint32_t)i), low, high);
     /* faster than a fall over the body, and not as shifts */
-    const double fastest =
-        sqrt(2 * size *
-             sqrt(cs_vec3_dot(system->scene->forces->gravity, system->scene->forces->gravity)));
+    const double fastest = sqrt(2 * size * cs_vec3_length(system->scene->forces->gravity));
     if (jump > JUMP_RATIO * shift && jump > JUMP_SIZE * size && jump > fastest * seconds)
         cs_text_add(out,
                     "events[%u].grab.path[0] is %.3g m from where its particle starts, reached "
@@ -262,8 +260,8 @@ static void check_waves(const struct cs_system *system, uint32_t e, const void *
                     "events[%u].grab.path[0] is reached at %.3g m/s, faster than waves in the "
                     "springs, %.3g m/s: expected at = %.3g s or later%s",
                     e, speed, waves,
-                    cs_findings_begin(event) +
-                        2 * (to->at - cs_findings_begin(event)) * speed / waves,
+                    cs_event_begin(event) +
+                        2 * (to->at - cs_event_begin(event)) * speed / waves,
                     grab->relative ? "" : ", or \"relative\": true if its points are shifts");
 }
 

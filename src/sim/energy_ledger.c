@@ -7,6 +7,7 @@
 #include "sim/energy_ledger.h"
 
 #include "base/table.h"
+#include "base/vector.h"
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
@@ -58,13 +59,6 @@ static uint32_t column_of(const struct columns *columns, uint32_t k) {
 /* Doubles in an array (3,n). */
 static size_t length_of(const struct cs_energy_ledger *ledger) {
     return 3 * (size_t)ledger->system->view.n;
-}
-
-static double dot(size_t n, const double *a, const double *b) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
 }
 
 /* Sets the values that ramps change to those at t; without events there are none. */
@@ -268,7 +262,7 @@ static void add_forces(struct cs_energy_ledger *ledger, double t, double time) {
         if (!some.n_terms)
             continue;
         cs_diagnostics_force(&some, t, x, v, CS_PART_WITHOUT_ENERGY, ledger->force);
-        ledger->work[c] += time * dot(n3, ledger->force, v);
+        ledger->work[c] += time * cs_vector_dot_in_order(n3, ledger->force, v);
     }
     if (!some.pairs)
         return;

@@ -12,7 +12,6 @@
 #include "sim/method.h"
 
 #include "base/options.h"
-#include "sim/module.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -195,7 +195,7 @@ void cs_blow_up_check_set(struct cs_blow_up_check *check, const struct cs_system
     *check = (struct cs_blow_up_check){
         .start_energy = energy.elastic + energy.other +
                         cs_springs_energy_at_twice(&system->springs) +
-                        cs_membranes_energy_at_twice(system) + cs_shape_clusters_energy(system),
+                        cs_membranes_energy(system, NULL) + cs_shape_clusters_energy(system),
         .speed = 2 * energy.kinetic,
         .force_rate = force_power_bound(system),
         .t_forces = t,

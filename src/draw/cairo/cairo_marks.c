@@ -5,7 +5,6 @@
 #include <cairo-svg.h>
 #include <math.h>
 #include <png.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

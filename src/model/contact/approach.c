@@ -5,6 +5,7 @@
 #include "scene/body_pairs.h"
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"
+#include "scene/event_key.h"
 #include "scene/force_keys.h"
 
 #include <math.h>
@@ -34,10 +35,6 @@ struct cs_approach {
     struct surface *surfaces;
 };
 
-static double length_of(const double a[3]) {
-    return sqrt(cs_vec3_dot(a, a));
-}
-
 /* --- boxes --- */
 
 static void clear(struct surface *surface) {
@@ -48,20 +45,6 @@ static void clear(struct surface *surface) {
     }
 }
 
-static void extend(struct surface *surface, const double p[3], double radius) {
-    for (int c = 0; c < 3; c++) {
-        surface->low[c] = fmin(surface->low[c], p[c] - radius);
-        surface->high[c] = fmax(surface->high[c], p[c] + radius);
-    }
-}
-
-static bool any_release(const struct cs_scene *scene) {
-    for (uint32_t e = 0; e < scene->events.n; e++)
-        if (cs_scene_events(scene)[e].release.present)
-            return true;
-    return false;
-}
-
 static void set_body(const struct cs_system *system, uint32_t body, struct surface *out) {
     const struct cs_body_range *range = system->bodies + body;
     const size_t n = system->view.n;
@@ -70,7 +53,7 @@ static void set_body(const struct cs_system *system, uint32_t body, struct surfa
     for (size_t i = range->first; i < (size_t)range->first + range->count; i++) {
         const double *x = system->state + i, *v = x + 3 * n;
         const double p[3] = {x[0], x[n], x[2 * n]};
-        extend(out, p, 0);
+        cs_vec3_extend_box(out->low, out->high, p, 0);
         out->mass = fmax(out->mass, system->mass[i]);
         pinned = pinned || system->inv_mass[i] == 0;
         for (size_t c = 0; c < 3; c++) {
@@ -78,7 +61,7 @@ static void set_body(const struct cs_system *system, uint32_t body, struct surfa
             out->fastest[c] = i == range->first ? v[c * n] : fmax(out->fastest[c], v[c * n]);
         }
     }
-    out->tethered = pinned && !any_release(system->scene);
+    out->tethered = pinned && !cs_event_releases_any(system->scene);
 }
 
 /* A mesh by its vertices, a core by its corners and its radius. */
@@ -102,7 +85,7 @@ static void set_collider(const struct cs_system *system, uint32_t collider,
         for (int c = 0; c < 3; c++)
             p[c] = at.centre[c] + own[0] * at.axes[0][c] + own[1] * at.axes[1][c] +
                    own[2] * at.axes[2][c];
-        extend(out, p, mesh ? 0 : at.radius);
+        cs_vec3_extend_box(out->low, out->high, p, mesh ? 0 : at.radius);
     }
 }
 
@@ -117,37 +100,28 @@ static double speed_along(const struct cs_list *path, int32_t motion, const doub
     for (uint32_t k = 0; k < path->n; k++) {
         const double *before = k ? points[k - 1].point : from;
         const double seconds = points[k].at - (k ? points[k - 1].at : begin);
-        double way[3];
-        for (int c = 0; c < 3; c++)
-            way[c] = points[k].point[c] - before[c];
         if (seconds > 0)
-            speed = fmax(speed, length_of(way) / seconds);
+            speed = fmax(speed, cs_vec3_distance(points[k].point, before) / seconds);
     }
     return speed * (motion == CS_MOTION_SMOOTH ? SMOOTH_PEAK : 1);
 }
 
 /* m, half the diagonal of a surface's box; 0 of an endless one */
 static double half_diagonal(const struct surface *surface) {
-    double sides[3];
-    for (int c = 0; c < 3; c++)
-        sides[c] = 0.5 * (surface->high[c] - surface->low[c]);
-    const double length = length_of(sides);
+    const double length = 0.5 * cs_vec3_distance(surface->high, surface->low);
     return isfinite(length) ? length : 0;
 }
 
 /* m, from the point that a move turns about to the centre at the start */
 static double lever_of(const struct cs_move *move, const double centre[3]) {
-    double arm[3] = {0};
-    for (int c = 0; c < 3 && !isnan(move->centre[0]); c++)
-        arm[c] = centre[c] - move->centre[c];
-    return length_of(arm);
+    return isnan(move->centre[0]) ? 0 : cs_vec3_distance(centre, move->centre);
 }
 
 /* Adds the events that move bodies and colliders along paths, and key frames. */
 static void add_paths(const struct cs_scene *scene, struct cs_approach *approach) {
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_event *event = cs_scene_events(scene) + e;
-        const double begin = isnan(event->at) ? event->from : event->at;
+        const double begin = cs_event_begin(event);
         if (event->move.present) {
             struct surface *at = approach->surfaces + approach->n_bodies + event->move.collider;
             double centre[3];
@@ -156,7 +130,7 @@ static void add_paths(const struct cs_scene *scene, struct cs_approach *approach
             at->path_speed =
                 fmax(at->path_speed,
                      speed_along(&event->move.path, event->move.motion, centre, begin) +
-                         length_of(event->move.spin) *
+                         cs_vec3_length(event->move.spin) *
                              (half_diagonal(at) + lever_of(&event->move, at->point)));
         }
         // a grab without a body acts on all
@@ -169,7 +143,7 @@ static void add_paths(const struct cs_scene *scene, struct cs_approach *approach
                 at->path_speed =
                     fmax(at->path_speed,
                          speed_along(&event->grab.path, event->grab.motion, middle, begin) +
-                             2 * length_of(event->grab.spin) * half_diagonal(at));
+                             2 * cs_vec3_length(event->grab.spin) * half_diagonal(at));
         }
     }
     for (uint32_t c = 0; c < scene->colliders.n; c++) {
@@ -202,7 +176,7 @@ static double relative_speed(const struct surface *a, const struct surface *b) {
     double apart[3];
     for (int c = 0; c < 3; c++)
         apart[c] = fmax(a->fastest[c] - b->slowest[c], b->fastest[c] - a->slowest[c]);
-    return length_of(apart);
+    return cs_vec3_length(apart);
 }
 
 /* m that a may fall onto b, which is no plane: the gap along gravity, if the box of a, on its
@@ -281,7 +255,7 @@ enum cs_status cs_approach_build(struct cs_system *system, struct cs_error *erro
         &system->arena, scene->bodies.n + scene->colliders.n, sizeof *surfaces, error);
     if (error->status)
         return error->status;
-    *approach = (struct cs_approach){.gravity = length_of(g),
+    *approach = (struct cs_approach){.gravity = cs_vec3_length(g),
                                      .n_bodies = scene->bodies.n,
                                      .n = scene->bodies.n + scene->colliders.n,
                                      .surfaces = surfaces};

@@ -2,6 +2,7 @@
  */
 #include "model/contact/body_pair_params.h"
 
+#include "base/vec3.h"
 #include "model/contact/approach.h"
 #include "model/contact/collider_params.h"
 #include "scene/body_keys.h"
@@ -13,18 +14,13 @@
 /* m, shortest edge of a body at the start; HUGE_VAL without edges */
 static double shortest_edge(const struct cs_system *system, uint32_t body) {
     const struct cs_surfaces *surfaces = system->surfaces;
-    const double *x = system->start;
-    const size_t n = system->view.n;
     double least = HUGE_VAL;
     for (uint32_t e = surfaces->first_edge[body]; e < surfaces->first_edge[body + 1]; e++) {
         const uint32_t a = surfaces->edges[2 * (size_t)e],
                        b = surfaces->edges[2 * (size_t)e + 1];
-        double squared = 0;
-        for (size_t c = 0; c < 3; c++)
-            squared += (x[c * n + b] - x[c * n + a]) * (x[c * n + b] - x[c * n + a]);
-        least = fmin(least, squared);
+        least = fmin(least, cs_vec3_distance_at(system->start, system->view.n, a, b));
     }
-    return sqrt(least);
+    return least;
 }
 
 /* m, thickness of a body: given, or a fraction of its shortest edge */

@@ -2,6 +2,7 @@
  * samples. */
 #include "model/contact/contact_samples.h"
 
+#include "base/vec3.h"
 #include "base/vector.h"
 #include "mesh/trimesh.h"
 #include "scene/contact_keys.h"
@@ -62,19 +63,11 @@ double cs_contact_sample_spacing(const struct cs_posed_collider *collider, doubl
 
 /* --- lengths --- */
 
-/* m, distance of two particles at x (3,n) */
-static double distance_at(const double *x, size_t n, uint32_t a, uint32_t b) {
-    double squared = 0;
-    for (size_t c = 0; c < 3; c++)
-        squared += (x[c * n + b] - x[c * n + a]) * (x[c * n + b] - x[c * n + a]);
-    return sqrt(squared);
-}
-
 /* m, up to which samples cover an edge: its length at the start, times contact.sample_stretch
  */
 static double length_of(const struct cs_system *system, uint32_t a, uint32_t b) {
     return system->scene->contact->sample_stretch *
-           distance_at(system->start, system->view.n, a, b);
+           cs_vec3_distance_at(system->start, system->view.n, a, b);
 }
 
 /* m, longest edge or cell diagonal of a grid at the start */
@@ -250,7 +243,7 @@ static bool is_outgrown(struct face *face) {
     face->longest = face->stretch = 0;
     for (int k = 0; k < 3; k++) {
         const uint32_t a = face->corners.particles[k], b = face->corners.particles[(k + 1) % 3];
-        const double now = distance_at(face->x, system->view.n, a, b);
+        const double now = cs_vec3_distance_at(face->x, system->view.n, a, b);
         const double planned = length_of(system, a, b);
         const double parts = fmin(ceil(planned / face->spacing), CS_CONTACT_SAMPLE_PARTS_MAX);
         any = any || (now > planned && now > parts * face->spacing &&

@@ -1,7 +1,6 @@
 /* Copies particles beside the vertices of mesh colliders, which are posed like any collider. */
 #include "model/contact/contact_samples.h"
 
-#include "mesh/trimesh.h"
 #include "model/contact/posed_collider.h"
 
 #include <string.h>

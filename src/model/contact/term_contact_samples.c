@@ -7,7 +7,6 @@
 #include "scene/body_pairs.h"
 #include "scene/collider_keys.h"
 
-#include <clothsim/clones.h>
 #include <math.h>
 #include <string.h>
 

@@ -228,9 +228,8 @@ void cs_membrane_job_add(const struct membrane_job *job, const struct cs_block *
 /* Energies and bounds of membranes, and their part of the solver's matrix.
  */
 
-/* Elastic energy in J; that of all triangles at twice their rest lengths. */
+/* Elastic energy in J; NULL: of all triangles at twice their rest lengths. 0 without any. */
 double cs_membranes_energy(const struct cs_system *system, const struct cs_eval *state);
-double cs_membranes_energy_at_twice(const struct cs_system *system);
 
 /* Adds a membrane's row sums (struct cs_gershgorin of term.h) to stiffness and damping (n), at
  * the state `at`, or for NULL at rest. Masses are divided among the triangles at a particle.

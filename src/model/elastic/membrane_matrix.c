@@ -67,30 +67,14 @@ static struct cs_moduli moduli_of(const struct cs_system *system,
 }
 
 /* W = 1/4 z.C z of q. */
-static double energy_of(const struct cs_moduli *moduli, const struct triangle *at,
-                        const double q[3]) {
+static double energy_of(const struct cs_moduli *moduli, const struct triangle *at) {
     double s[3], t[3];
-    membrane_stress(moduli, at->rest, at->stride, q, s);
+    membrane_stress(moduli, at->rest, at->stride, at->q, s);
     membrane_tension_of_stress(at->rest, at->stride, s, t);
-    return 0.25 * (t[0] * q[0] + t[1] * q[1] + t[2] * q[2]);
+    return 0.25 * cs_vec3_dot(t, at->q);
 }
 
 double cs_membranes_energy(const struct cs_system *system, const struct cs_eval *state) {
-    const struct cs_membranes *membranes = system->membranes;
-    double sum = 0;
-    for (uint32_t b = 0; b < membranes->n; b++) {
-        const struct cs_membrane *membrane = membranes->bodies + b;
-        const struct cs_moduli moduli = moduli_of(system, membrane);
-        for (uint32_t t = 0; t < membrane->n; t++) {
-            struct triangle at;
-            find_triangle(membrane, t, system->view.n, state->x, NULL, &at);
-            sum += energy_of(&moduli, &at, at.q);
-        }
-    }
-    return sum;
-}
-
-double cs_membranes_energy_at_twice(const struct cs_system *system) {
     const struct cs_membranes *membranes = system->membranes;
     double sum = 0;
     for (uint32_t b = 0; membranes && b < membranes->n; b++) {
@@ -98,11 +82,10 @@ double cs_membranes_energy_at_twice(const struct cs_system *system) {
         const struct cs_moduli moduli = moduli_of(system, membrane);
         for (uint32_t t = 0; t < membrane->n; t++) {
             struct triangle at;
-            double q[3];
-            find_triangle(membrane, t, system->view.n, NULL, NULL, &at);
-            for (size_t k = 0; k < 3; k++)
-                q[k] = 3 * at.rest[(CS_MEMBRANE_P + k) * at.stride];
-            sum += energy_of(&moduli, &at, q);
+            find_triangle(membrane, t, system->view.n, state ? state->x : NULL, NULL, &at);
+            for (size_t k = 0; !state && k < 3; k++)
+                at.q[k] = 3 * at.rest[(CS_MEMBRANE_P + k) * at.stride];
+            sum += energy_of(&moduli, &at);
         }
     }
     return sum;

@@ -2,7 +2,7 @@
 #include "model/elastic/membrane_forces.h"
 
 #include "base/pool.h"
-#include "mesh/trimesh.h"
+#include "model/system/surfaces.h"
 #include "scene/elastic_keys.h"
 
 #include <math.h>
@@ -53,21 +53,6 @@ static void list_grid(struct cs_membranes *membranes, struct cs_membrane *membra
     }
 }
 
-/* The number of an edge of a mesh: its edges are sorted. */
-static uint32_t find_edge(const struct cs_trimesh *mesh, uint32_t a, uint32_t b) {
-    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
-    uint32_t first = 0, end = mesh->n_edges;
-    while (end - first > 1) {
-        const uint32_t middle = first + (end - first) / 2;
-        const uint32_t *edge = mesh->edges + 2 * (size_t)middle;
-        if (edge[0] < low || (edge[0] == low && edge[1] <= high))
-            first = middle;
-        else
-            end = middle;
-    }
-    return first;
-}
-
 static void list_mesh(struct cs_membranes *membranes, struct cs_membrane *membrane,
                       const struct cs_trimesh *mesh) {
     uint32_t *sides = membranes->sides + 2 * (size_t)membranes->n_edges;
@@ -76,7 +61,8 @@ static void list_mesh(struct cs_membranes *membranes, struct cs_membrane *membra
     for (uint32_t t = 0; t < membrane->n; t++)
         for (uint32_t i = 0; i < 3; i++) {
             const uint32_t *corner = membrane->triangles + 3 * (size_t)t;
-            const uint32_t e = find_edge(mesh, corner[i], corner[(i + 1) % 3]);
+            const uint32_t e =
+                cs_edge_find(mesh->edges, 0, mesh->n_edges, corner[i], corner[(i + 1) % 3]);
             sides[2 * (size_t)e + (sides[2 * (size_t)e] != CS_NO_SIDE)] = 4 * t + i;
         }
     add_run(membranes, membrane, membrane->first, membrane->first, mesh->n_edges);

@@ -289,13 +289,6 @@ enum cs_status cs_normal_curvature_build(struct cs_system *system, struct cs_err
 
 /* Sums over the stencils of bending: their energy, and the rows of their matrix. */
 
-/* D k of a stencil for a weight each, or a component of k. */
-static void multiply(const struct cs_moduli *moduli, const double k[3], double out[3]) {
-    out[0] = moduli->warp * k[0] + moduli->coupling * k[1];
-    out[1] = moduli->coupling * k[0] + moduli->weft * k[1];
-    out[2] = moduli->shear * k[2];
-}
-
 static double stencil_energy(const struct cs_bending_stencil *stencil, size_t n,
                              const double *x) {
     double energy = 0;
@@ -305,7 +298,7 @@ static double stencil_energy(const struct cs_bending_stencil *stencil, size_t n,
         for (uint32_t j = 1; j < stencil->n; j++)
             for (int a = 0; a < 3; a++)
                 k[a] += stencil->weights[a][j] * (p[stencil->at[j]] - p[stencil->at[0]]);
-        multiply(&stencil->moduli, k, M);
+        cs_moduli_multiply(&stencil->moduli, k, M);
         energy += 0.5 * (k[0] * M[0] + k[1] * M[1] + k[2] * M[2]);
     }
     return energy;
@@ -332,7 +325,8 @@ static void add_rows(const struct cs_bending_stencil *stencil, bool diagonal, do
         for (uint32_t j = diagonal ? i : 0; j < (diagonal ? i + 1 : stencil->n); j++) {
             const double(*b)[CS_BENDING_POINTS] = stencil->weights;
             double M[3];
-            multiply(&stencil->moduli, (const double[3]){b[0][j], b[1][j], b[2][j]}, M);
+            cs_moduli_multiply(&stencil->moduli, (const double[3]){b[0][j], b[1][j], b[2][j]},
+                               M);
             sums[stencil->at[i]] += fabs(b[0][i] * M[0] + b[1][i] * M[1] + b[2][i] * M[2]);
         }
 }

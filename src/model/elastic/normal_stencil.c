@@ -68,20 +68,13 @@ void cs_normal_stencil_state(const struct cs_bending_stencil *of, size_t n, cons
     }
 }
 
-/* A D s. */
-static void multiply(const struct cs_moduli *D, const double s[3], double M[3]) {
-    M[0] = D->warp * s[0] + D->coupling * s[1];
-    M[1] = D->coupling * s[0] + D->weft * s[1];
-    M[2] = D->shear * s[2];
-}
-
 void cs_normal_stencil_moments(const struct cs_bending_stencil *of,
                                const struct cs_normal_state *state, struct cs_normal_factors by,
                                double M[3]) {
     double s[3];
     for (int a = 0; a < 3; a++)
         s[a] = by.kappa * (state->kappa[a] - of->rest[a]) + by.rate * state->kappa_rate[a];
-    multiply(&of->moduli, s, M);
+    cs_moduli_multiply(&of->moduli, s, M);
 }
 
 /* m of the header. */
@@ -211,7 +204,7 @@ void cs_normal_stencil_derivative(const struct cs_bending_stencil *of,
     cs_normal_stencil_moments(of, state, by, M);
     for (int a = 0; a < 3; a++)
         s[a] = by.change * change.kappa[a] + by.change_rate * change.kappa_rate[a];
-    multiply(&of->moduli, s, dM);
+    cs_moduli_multiply(&of->moduli, s, dM);
     change_reaction(state, dx, &change, M, dM, &reaction);
     spread(of, &reaction, out);
 }

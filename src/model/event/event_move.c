@@ -185,29 +185,23 @@ void cs_event_follow_growth(struct cs_system *system) {
  * its radius. Of a plane, which has none, to the farthest particle. */
 static double reach_of(const struct cs_system *system,
                        const struct cs_posed_collider *collider) {
-    const double *core = collider->half_sizes, *x = system->state;
     const size_t n = system->view.n;
     if (!cs_shape_is_endless(collider->shape))
-        return sqrt(core[0] * core[0] + core[1] * core[1] + core[2] * core[2]) +
-               collider->radius;
-    double squared = 0;
+        return cs_vec3_length(collider->half_sizes) + collider->radius;
+    double most = 0;
     for (size_t i = 0; i < n; i++) {
-        double sum = 0;
-        for (size_t c = 0; c < 3; c++) {
-            const double d = x[c * n + i] - collider->centre[c];
-            sum += d * d;
-        }
-        squared = fmax(squared, sum);
+        double p[3];
+        cs_point_read(system->state, n, i, p);
+        most = fmax(most, cs_vec3_distance(p, collider->centre));
     }
-    return sqrt(squared);
+    return most;
 }
 
 double cs_event_angular_speed(const struct cs_system *system) {
     double speed = 0;
     for (uint32_t k = 0; system->motions && k < system->scene->colliders.n; k++) {
         const struct cs_collider_motion *motion = system->motions + k;
-        const double *w = motion->spin;
-        const double rate = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+        const double rate = cs_vec3_length(motion->spin);
         struct cs_posed_collider collider;
         if (rate == 0)
             continue;

@@ -7,21 +7,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Begin and end in s as the scene gives them: the same for an event with `at`. */
-static double begin_of(const struct cs_event *event) {
-    return isnan(event->at) ? event->from : event->at;
-}
-
-static double end_of(const struct cs_event *event) {
-    return isnan(event->at) ? event->to : event->at;
-}
-
 struct cs_event_path cs_event_path_of(const struct cs_event *event) {
     const bool moves = event->move.present;
     const struct cs_list *list = moves ? &event->move.path : &event->grab.path;
     const int32_t motion = moves ? event->move.motion : event->grab.motion;
     /* the point where the event finds what it moves: no leg leads to it */
-    const uint32_t first = cs_path_starts_at(list, begin_of(event));
+    const uint32_t first = cs_path_starts_at(list, cs_event_begin(event));
     const struct cs_path_point *points = list->items; // NULL: no path
     return (struct cs_event_path){first ? points + first : points, list->n - first,
                                   motion == CS_MOTION_SMOOTH ? CS_EVENT_CHORDS : 1};
@@ -40,7 +31,7 @@ size_t cs_event_times_count(const struct cs_scene *scene) {
 /* The end of a chord in s: the leg's duration in equal parts, the last exactly at its point. */
 static double chord_end(const struct cs_event *event, uint32_t leg, uint32_t chord) {
     const struct cs_event_path path = cs_event_path_of(event);
-    const double begin = leg ? path.points[leg - 1].at : begin_of(event);
+    const double begin = leg ? path.points[leg - 1].at : cs_event_begin(event);
     const double end = path.points[leg].at;
     return chord + 1 == path.n_chords
                ? end
@@ -78,8 +69,8 @@ static uint32_t collect(const struct cs_scene *scene, double *times) {
     for (uint32_t e = 0; e < scene->events.n; e++) {
         if (cs_event_is_picture(list + e))
             continue;
-        times[n++] = cs_event_time_snap(scene, begin_of(list + e));
-        times[n++] = cs_event_time_snap(scene, end_of(list + e));
+        times[n++] = cs_event_time_snap(scene, cs_event_begin(list + e));
+        times[n++] = cs_event_time_snap(scene, cs_event_end(list + e));
         const struct cs_event_path path = cs_event_path_of(list + e);
         for (uint32_t leg = 0; leg < path.n; leg++)
             for (uint32_t c = 0; c < path.n_chords; c++)
@@ -102,8 +93,9 @@ void cs_event_times_fill(struct cs_events *events) {
             times[events->n_times++] = times[k];
     for (uint32_t e = 0; e < events->scene.events.n; e++) {
         const bool never = cs_event_is_picture(list + e);
-        events->states[e].begin = never ? (double)NAN : entry_of(events, begin_of(list + e));
-        events->states[e].end = never ? (double)NAN : entry_of(events, end_of(list + e));
+        events->states[e].begin =
+            never ? (double)NAN : entry_of(events, cs_event_begin(list + e));
+        events->states[e].end = never ? (double)NAN : entry_of(events, cs_event_end(list + e));
     }
 }
 

@@ -16,7 +16,6 @@
  *
  * contact.start "move-out" moves one of both bodies as a whole along the mean of its contact
  * forces, until the energy is at most W and their sum carries at most the body's weight. */
-#include "model/contact/ccd/crossings.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/contact_pairs.h"

@@ -47,10 +47,9 @@ static void list_edges(const struct cs_body_range *body, uint32_t *edges) {
         edges[e] = body->first + body->mesh->edges[e];
 }
 
-/* Finds the edge between two points, which must exist, among the edges [first, end): binary
- * search. */
-static uint32_t find_edge(const uint32_t *edges, uint32_t first, uint32_t end, uint32_t a,
-                          uint32_t b) {
+/* Binary search. */
+uint32_t cs_edge_find(const uint32_t *edges, uint32_t first, uint32_t end, uint32_t a,
+                      uint32_t b) {
     const uint32_t low = a < b ? a : b, high = a < b ? b : a;
     while (end - first > 1) {
         const uint32_t middle = first + (end - first) / 2;
@@ -71,8 +70,8 @@ static void own_edges(struct cs_surfaces *surfaces, uint32_t body) {
         for (size_t k = 0; k < 3; k++) {
             const uint32_t *corner = surfaces->triangles + 3 * (size_t)t;
             const uint32_t edge =
-                find_edge(surfaces->edges, surfaces->first_edge[body],
-                          surfaces->first_edge[body + 1], corner[k], corner[(k + 1) % 3]);
+                cs_edge_find(surfaces->edges, surfaces->first_edge[body],
+                             surfaces->first_edge[body + 1], corner[k], corner[(k + 1) % 3]);
             uint32_t *owners = surfaces->edge_triangles + 2 * (size_t)edge;
             owners[owners[0] == CS_NO_TRIANGLE ? 0 : 1] = t;
         }

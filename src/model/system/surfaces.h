@@ -29,6 +29,10 @@ struct cs_surfaces {
  */
 enum cs_status cs_surfaces_build(struct cs_system *system, struct cs_error *error);
 
+/* Finds the edge between two points, which must exist, among the sorted edges [first, end). */
+uint32_t cs_edge_find(const uint32_t *edges, uint32_t first, uint32_t end, uint32_t a,
+                      uint32_t b);
+
 /* Appends "particle 312 (body 0, column 24, row 4)", or "vertex 5 of colliders[1]". */
 void cs_surfaces_print_point(const struct cs_system *system, uint32_t point,
                              struct cs_text *out);

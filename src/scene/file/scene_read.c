@@ -5,8 +5,6 @@
 #include "scene/file/scene_read.h"
 
 #include "base/file.h"
-#include "base/options.h"
-#include "scene/body_pairs.h"
 #include "scene/contact_keys.h"
 #include "scene/file/json_context.h"
 #include "scene/picture_keys.h"

@@ -1,5 +1,4 @@
 /* Distances in single precision, one pair per lane. Error analysis: distance_filter.h. */
-#include "base/vector.h"
 
 #include "model/contact/broad_phase/distance_filter.h"
 

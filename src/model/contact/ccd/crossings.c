@@ -19,7 +19,6 @@
 #include "model/system/seams.h"
 #include "scene/body_pairs.h"
 
-#include <math.h>
 #include <string.h>
 
 /* Result of one chunk; results are combined in the order of chunks. */
