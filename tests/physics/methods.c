@@ -193,7 +193,8 @@ struct methods methods_find(const struct methods_query *query) {
     struct methods taken = all;
     taken.n = 0;
     for (size_t k = 0; k < all.n; k++)
-        if (k >= all.n_by_trait || suite_takes(k, stride))
+        if (k >= all.n_by_trait || suite_takes(k, stride) ||
+            (query->always && methods_is(all.list[k].text, query->always)))
             taken.list[taken.n++] = all.list[k];
     return taken;
 }

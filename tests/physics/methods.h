@@ -15,7 +15,8 @@ struct methods_query {
     double dt;              /* s: the step of methods without error control; 0: their own */
     uint32_t dt_for;        /* enum cs_trait: all others keep their own step; 0: none does */
     double rtol;            /* of methods with error control; 0: their own */
-    double residual; /* rtol of the solver in methods without error control; 0: their own */
+    double residual;    /* rtol of the solver in methods without error control; 0: their own */
+    const char *always; /* this one a part has too: no other test takes all its branches */
     const char *const *more; /* methods with other options, closed by NULL; or NULL */
 };
 

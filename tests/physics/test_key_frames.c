@@ -188,6 +188,7 @@ static void compare(const char *method, double stiffness, const double u[3]) {
 TEST(only_relative_motion_counts) {
     const struct methods methods = methods_find(
         &(struct methods_query){.test = "relative keys",
+                                .always = "ros2",
                                 .without = CS_NOT_GALILEAN | CS_ADAPTIVE | CS_EXPLICIT_OUTER,
                                 .residual = 1e-12});
     for (size_t m = 0; m < methods.n; m++) {
