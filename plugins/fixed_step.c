@@ -28,9 +28,10 @@
 
 /* Halvings of a step before the run fails: parts of 1/65536. Chosen by trial. */
 enum { MOST_CUTS = 16 };
-/* Halvings of an advance for the sake of the error alone: to a thousandth. A method whose
- * iteration leaves noise in its velocities is taken as it is then. */
+/* Halvings of an advance for the sake of the error alone: to a thousandth, of 1/60 s where it
+ * is longer. A method whose iteration leaves noise in its velocities is taken as it is then. */
 enum { ERROR_CUTS_MAX = 10 };
+#define ERROR_PART (1e-3 / 60)
 
 /* Finds 0.9 of the longest stable step at a state, in s: the margin of the automatic dt.
  * HUGE_VAL for a method that did not choose dt by its limit. */
@@ -70,8 +71,9 @@ static bool is_inaccurate(struct fixed_step *self, double h, const double *v) {
     const double *before = self->saved_state + 3 * (size_t)self->host->view->n;
     if (!(self->error.tolerance > 0))
         return false;
+    const uint32_t depth = self->subdivision.depth;
     if (!step_error_judge(&self->error, self->host, h, before, v) &&
-        self->subdivision.depth < ERROR_CUTS_MAX)
+        (depth < ERROR_CUTS_MAX || (h > ERROR_PART && depth < self->max_depth)))
         return true;
     step_error_accept(&self->error, h);
     return false;

@@ -66,17 +66,37 @@ enum cs_status cs_method_find(struct cs_method *method, struct cs_registry *regi
     return error->status;
 }
 
+/* The bit of a row in `given`. Rows from the 65th on have none, and never count as given. */
+static uint64_t bit_of(const struct cs_method *method, const struct cs_option *row) {
+    const ptrdiff_t k = row - method->table.rows;
+    return k < 64 ? UINT64_C(1) << k : 0;
+}
+
+/* Fails if the option was given already. */
+static enum cs_status refuse_twice(const struct cs_method *method, const char *key,
+                                   struct cs_error *error) {
+    const struct cs_option *row = cs_option_find(&method->table, key);
+    if (row && method->given & bit_of(method, row))
+        cs_fail(error, CS_ERR_USAGE, "integrator \"%s\": %.60s is given twice",
+                method->integrator->name, key);
+    return error->status;
+}
+
 enum cs_status cs_method_set_pairs(struct cs_method *method, const char *pairs,
                                    struct cs_error *error) {
     char *copy = pairs ? strdup(pairs) : NULL, *rest = copy;
     const char *key, *value;
+    const uint64_t given = method->given; // by the scene
     if (pairs && !copy)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the options of %s",
                        method->integrator->name);
+    method->given = 0;
     while (rest &&
            !cs_method_parse_pair(method->integrator->name, &rest, &key, &value, error) &&
+           !refuse_twice(method, key, error) &&
            !cs_method_set(method, key, value, NULL, CS_ERR_USAGE, error))
         ;
+    method->given |= given;
     free(copy);
     return error->status ? error->status : cs_method_check(method, NULL, CS_ERR_USAGE, error);
 }
@@ -93,12 +113,6 @@ static enum cs_status unknown_option(const struct cs_method *method, const char 
     return cs_fail(error, status, "%s: no such option%s%s%s (see: clothsim integrators %s)",
                    where, nearest ? "; did you mean \"" : "", nearest ? nearest : "",
                    nearest ? "\"?" : "", method->integrator->name);
-}
-
-/* The bit of a row in `given`. Rows from the 65th on have none, and never count as given. */
-static uint64_t bit_of(const struct cs_method *method, const struct cs_option *row) {
-    const ptrdiff_t k = row - method->table.rows;
-    return k < 64 ? UINT64_C(1) << k : 0;
 }
 
 /* Adds the place of an option for a message: place and key, or the integrator and key. */

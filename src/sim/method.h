@@ -35,7 +35,7 @@ size_t cs_method_name_length(const char *text);
 enum cs_status cs_method_find(struct cs_method *method, struct cs_registry *registry,
                               const char *text, const char **pairs, struct cs_error *error);
 
-/* Sets "key=value,key=value" and checks the result; pairs NULL sets nothing. */
+/* Sets "key=value,key=value", each key once, and checks the result; pairs NULL sets nothing. */
 enum cs_status cs_method_set_pairs(struct cs_method *method, const char *pairs,
                                    struct cs_error *error);
 

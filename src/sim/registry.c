@@ -318,10 +318,12 @@ static enum cs_status unknown_name(struct cs_registry *registry, const char *nam
     const char *const *names = cs_registry_names(registry, true, &n, error);
     if (!names)
         return error->status;
-    if (!strcmp(name, "all"))
+    const bool is_automatic = !strcmp(name, "automatic");
+    if (is_automatic || !strcmp(name, "all"))
         return cs_fail(error, CS_ERR_USAGE,
-                       "found integrator \"all\", expected the name of one (all is for advise, "
-                       "compare, stability and sweep)");
+                       "found integrator \"%s\", expected the name of one (%s)", name,
+                       is_automatic ? "automatic chooses by the scene, and takes no options"
+                                    : "all is for advise, compare, stability and sweep");
     const char *other = translate_name(name);
     const char *nearest = other ? other : cs_nearest_word(name, names);
     const char *library = find_left_out(registry, name, error);
