@@ -56,8 +56,10 @@ static void become_cell(const struct cs_isolate *isolate) {
         (void)!write(file, "1000", 4);
         close(file);
     }
-    if (isolate->is_cell)
+    if (isolate->is_cell) {
         dup2(STDERR_FILENO, STDOUT_FILENO);
+        clearerr(stdout); // a failure of the parent's
+    }
     const struct rlimit space = {(rlim_t)isolate->bytes, (rlim_t)isolate->bytes};
     if (isolate->bytes > 0)
         setrlimit(RLIMIT_AS, &space);
