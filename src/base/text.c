@@ -210,7 +210,7 @@ static size_t edit_distance(const char *a, const char *b) {
     size_t rows[3][LONGEST + 1];
     const size_t n = strlen(b);
     if (n > LONGEST || strlen(a) > LONGEST)
-        return LONGEST;
+        return SIZE_MAX;
     for (size_t j = 0; j <= n; j++)
         rows[0][j] = j;
     size_t *row = rows[0], *above = rows[1], *second = rows[2];

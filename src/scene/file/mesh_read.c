@@ -87,10 +87,11 @@ static enum cs_status copy_mends(const struct cs_obj *obj, struct cs_trimesh *me
     struct cs_text words = {0};
     cs_mesh_mends_print(&obj->mends, &words);
     if (obj->n_skipped)
-        cs_text_add(&words, "%s%u line%s of other programs passed over (%.*s)",
-                    words.length ? ", " : "", obj->n_skipped, obj->n_skipped == 1 ? "" : "s",
-                    obj->skipped.length > 3 ? (int)obj->skipped.length - 3 : 0,
-                    obj->skipped.length > 3 ? cs_text_get(&obj->skipped) + 2 : "");
+        cs_text_add(&words, "%s%u line%s of other programs passed over",
+                    words.length ? ", " : "", obj->n_skipped, obj->n_skipped == 1 ? "" : "s");
+    if (obj->skipped.length)
+        cs_text_add(&words, " (%.*s)", (int)obj->skipped.length - 3,
+                    cs_text_get(&obj->skipped) + 2);
     mesh->pieces = obj->mends.pieces;
     mesh->mends = words.failed ? NULL : cs_arena_copy_text(arena, cs_text_get(&words), error);
     if (words.failed)
