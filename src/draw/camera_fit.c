@@ -27,7 +27,7 @@ void cs_camera_fit_begin(struct cs_camera_fit *fit, const struct cs_camera *came
 static double along(const struct cs_camera_fit *fit, int axis, size_t n, const double *x,
                     size_t i) {
     const double place[3] = {x[i], x[n + i], x[2 * n + i]};
-    return cs_dot(fit->axes[axis], place);
+    return cs_vec3_dot(fit->axes[axis], place);
 }
 
 // direction side * axis + back * (view's back): a left side of the inequalities
@@ -117,12 +117,12 @@ void cs_camera_fit_rows(const struct cs_camera_fit *fit, const struct cs_camera 
     double eye[3], view[3];
     cs_subtract(camera->eye, camera->target, view);
     for (int axis = 0; axis < 3; axis++)
-        eye[axis] = cs_dot(fit->axes[axis], camera->eye);
+        eye[axis] = cs_vec3_dot(fit->axes[axis], camera->eye);
     rows[0] = HUGE_VAL;
     rows[1] = -HUGE_VAL;
     for (size_t i = 0; i < n; i++) {
         const double far = camera->projection == CS_PROJECTION_ORTHOGRAPHIC
-                               ? cs_length(view)
+                               ? cs_vec3_length(view)
                                : eye[2] - along(fit, 2, n, x, i);
         const double row = (along(fit, 1, n, x, i) - eye[1]) / (fit->slope * far);
         rows[0] = row < rows[0] ? row : rows[0];
@@ -155,7 +155,7 @@ static double depth_below(const struct cs_scene *scene, const double low[3],
                           const double high[3]) {
     const double *g = scene->forces->gravity;
     const double width = fmax(high[0] - low[0], high[2] - low[2]);
-    double depth = cs_dot(g, g) > 0 ? 0.5 * width : 0;
+    double depth = cs_vec3_dot(g, g) > 0 ? 0.5 * width : 0;
     for (uint32_t k = 0; k < scene->colliders.n; k++) {
         const struct cs_collider *collider = cs_scene_colliders(scene) + k;
         const double below = low[1] - collider->floor.height;
@@ -290,8 +290,8 @@ static uint32_t grow_by_moves(const struct cs_system *system,
             for (int i = 0; i < 3; i++)
                 moved.centre[i] = colliders[k].centre[i] + walk.shift[i];
             cs_box_grow_by_collider(low, high, &moved);
-            if (colliders[k].collider->visible && cs_length(walk.shift) > most) {
-                most = cs_length(walk.shift);
+            if (colliders[k].collider->visible && cs_vec3_length(walk.shift) > most) {
+                most = cs_vec3_length(walk.shift);
                 farthest = k + 1;
             }
         }
@@ -320,7 +320,7 @@ void cs_camera_fit_start(struct cs_camera_fit *fit, const struct cs_system *syst
     const struct cs_scene *scene = system->scene;
     struct cs_camera camera = *scene->camera;
     const bool is_free = !memcmp(camera.eye, eyes[0], sizeof camera.eye) &&
-                         !(cs_dot(camera.target, camera.target) > 0);
+                         !(cs_vec3_dot(camera.target, camera.target) > 0);
     uint32_t least = UINT32_MAX;
     double low[3], high[3];
     uint32_t follows = 0;

@@ -55,7 +55,7 @@ static void aim(struct ball *ball, const float eye[4]) {
     const double far = (double)eye[3];
     for (int i = 0; i < 3; i++)
         ball->along[i] = (double)eye[i] - far * ball->centre[i];
-    const double distance = cs_length(ball->along);
+    const double distance = cs_vec3_length(ball->along);
     cs_normalise(ball->along);
     cs_frame_from_direction(ball->along, ball->across, ball->third);
     // the outline is where sight touches the sphere
@@ -154,7 +154,8 @@ static void fill_normals(struct cs_solid *solid) {
             const uint32_t t = mesh->vertex_triangles[k];
             double other[3];
             cs_trimesh_normal(mesh, t, mesh->positions, mesh->n, 0, other);
-            const bool smooth = cs_dot(own, other) > crease * cs_length(own) * cs_length(other);
+            const bool smooth =
+                cs_vec3_dot(own, other) > crease * cs_vec3_length(own) * cs_vec3_length(other);
             for (int a = 0; a < 3 && smooth && t != c / 3; a++)
                 sum[a] += other[a];
         }

@@ -5,32 +5,20 @@
 #ifndef CS_DRAW_MATRIX_H
 #define CS_DRAW_MATRIX_H
 
+#include "base/vec3.h"
+
 #include <math.h>
 #include <string.h>
 
-/* Vector algebra; the result of a cross product may be neither operand. */
-static inline double cs_dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static inline void cs_cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
+/* out = a - b. */
 static inline void cs_subtract(const double a[3], const double b[3], double out[3]) {
     for (int i = 0; i < 3; i++)
         out[i] = a[i] - b[i];
 }
 
-static inline double cs_length(const double a[3]) {
-    return sqrt(cs_dot(a, a));
-}
-
 /* Makes a unit vector in place; the zero vector stays. */
 static inline void cs_normalise(double a[3]) {
-    const double length = cs_length(a);
+    const double length = cs_vec3_length(a);
     for (int i = 0; i < 3; i++)
         a[i] = length > 0 ? a[i] / length : 0;
 }
@@ -40,9 +28,9 @@ static inline void cs_normalise(double a[3]) {
 static inline void cs_frame_from_direction(const double along[3], double across[3],
                                            double third[3]) {
     const double axis[3] = {fabs(along[0]) < 0.6, fabs(along[0]) >= 0.6, 0};
-    cs_cross(axis, along, across);
+    cs_vec3_cross(axis, along, across);
     cs_normalise(across);
-    cs_cross(along, across, third);
+    cs_vec3_cross(along, across, third);
 }
 
 /* out = a b; out may be neither. */
@@ -63,17 +51,17 @@ static inline void cs_matrix_look(const double eye[3], const double target[3],
     double axes[3][3], unused[3];
     cs_subtract(eye, target, axes[2]);
     cs_normalise(axes[2]);
-    cs_cross(up, axes[2], axes[0]);
+    cs_vec3_cross(up, axes[2], axes[0]);
     // looking straight along up: any turn will do
-    if (cs_length(axes[0]) < 1e-9 * cs_length(up))
+    if (cs_vec3_length(axes[0]) < 1e-9 * cs_vec3_length(up))
         cs_frame_from_direction(axes[2], axes[0], unused);
     cs_normalise(axes[0]);
-    cs_cross(axes[2], axes[0], axes[1]);
+    cs_vec3_cross(axes[2], axes[0], axes[1]);
     memset(out, 0, 16 * sizeof *out);
     for (int row = 0; row < 3; row++) {
         for (int i = 0; i < 3; i++)
             out[4 * i + row] = axes[row][i];
-        out[12 + row] = -cs_dot(axes[row], eye);
+        out[12 + row] = -cs_vec3_dot(axes[row], eye);
     }
     out[15] = 1;
 }

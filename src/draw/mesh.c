@@ -100,7 +100,7 @@ static void triangle_normal(const struct cs_mesh *mesh, uint32_t n, const double
         cs_mesh_position(n, x, mesh->range.first + corner[i], p[i]);
     cs_subtract(p[1], p[0], along);
     cs_subtract(p[2], p[0], across);
-    cs_cross(along, across, normal);
+    cs_vec3_cross(along, across, normal);
 }
 
 /* Fills a vertex; the normal is made a unit vector. */
@@ -109,7 +109,7 @@ static void set_vertex(struct cs_vertex *vertex, const double place[3], const do
     double unit[3] = {normal[0], normal[1], normal[2]};
     cs_normalise(unit);
     // a collapsed triangle has no normal: any will do, but not zero
-    if (cs_dot(unit, unit) == 0)
+    if (cs_vec3_dot(unit, unit) == 0)
         unit[2] = 1;
     for (int i = 0; i < 3; i++) {
         vertex->position[i] = (float)place[i];
@@ -142,8 +142,8 @@ static void add_sides(const struct cs_mesh *mesh, const uint32_t *corner, double
 static double groove_slope(const struct cs_mesh *mesh, uint32_t i) {
     const double *normal = mesh->normals + 3 * (size_t)i,
                  *ways = mesh->neighbour_sums + 4 * (size_t)i;
-    const double length = cs_length(normal) * ways[3];
-    return length > 0 ? 2 * mesh->curvature_radius * cs_dot(normal, ways) / length : 0;
+    const double length = cs_vec3_length(normal) * ways[3];
+    return length > 0 ? 2 * mesh->curvature_radius * cs_vec3_dot(normal, ways) / length : 0;
 }
 
 /* A value as a fraction 0..1 of its range; 0 if there is none. */

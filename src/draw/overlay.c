@@ -270,9 +270,9 @@ static void find_corners(const struct cs_system *system,
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < 3; c++)
             corners[k][c] =
-                visibility->eye[c] +
-                cs_length(view) * (right[k] * visibility->axes[0][c] +
-                                   up[k] * visibility->axes[1][c] + visibility->axes[2][c]);
+                visibility->eye[c] + cs_vec3_length(view) * (right[k] * visibility->axes[0][c] +
+                                                             up[k] * visibility->axes[1][c] +
+                                                             visibility->axes[2][c]);
 }
 
 // dots, then lines from the eye, then the rectangle in front of all

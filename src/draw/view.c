@@ -45,12 +45,12 @@ static void set_depth(struct cs_view_state *view, const struct cs_bounding_spher
     double to_target[3], to_centre[3];
     cs_subtract(camera->target, camera->eye, to_target);
     cs_subtract(sphere->centre, camera->eye, to_centre);
-    const double distance = cs_length(to_target);
-    const double far = 4 * fmax(distance, cs_length(to_centre) + sphere->radius);
+    const double distance = cs_vec3_length(to_target);
+    const double far = 4 * fmax(distance, cs_vec3_length(to_centre) + sphere->radius);
     const bool parallel = camera->projection == CS_PROJECTION_ORTHOGRAPHIC;
     view->depth[0] = parallel ? -far : fmin(far / 1000, distance / 20);
     // haze hides the ground before the far plane cuts it
-    view->depth[1] = fmax(far, cs_length(to_centre) + sphere->radius + 1.1 * view->haze);
+    view->depth[1] = fmax(far, cs_vec3_length(to_centre) + sphere->radius + 1.1 * view->haze);
 }
 
 /* Fills matrix, eye and picture size from the camera. */
@@ -62,7 +62,7 @@ static void set_camera(struct cs_view_state *view, const struct cs_render *rende
     const bool parallel = camera->projection == CS_PROJECTION_ORTHOGRAPHIC;
     double back[3], look[16], lens[16], both[16];
     cs_subtract(camera->eye, camera->target, back);
-    const double distance = cs_length(back);
+    const double distance = cs_vec3_length(back);
     set_depth(view, sphere);
     cs_matrix_look(camera->eye, camera->target, camera->up, look);
     if (parallel)
@@ -224,7 +224,7 @@ static void fit_light_frustum(const struct cs_bounding_sphere *solid,
         eye[i] = is_lamp ? light : lit->centre[i] + 2 * lit->radius * light;
     }
     cs_subtract(eye, lit->centre, from);
-    const double distance = cs_length(from), r = lit->radius;
+    const double distance = cs_vec3_length(from), r = lit->radius;
     block->shadow_params[2] = distance > 1.05 * r;
     if (block->shadow_params[2] == 0)
         return;
@@ -268,7 +268,7 @@ struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, 
     memcpy(sphere.high, high, sizeof high);
     cs_subtract(high, low, diagonal);
     /* even a lone particle has some extent: what is drawn scales by the radius */
-    sphere.radius = fmax(cs_length(diagonal) / 2, 1e-3);
+    sphere.radius = fmax(cs_vec3_length(diagonal) / 2, 1e-3);
     return sphere;
 }
 

@@ -208,11 +208,21 @@ static enum cs_status begin_job(struct cs_job *job, struct cs_error *error) {
                : cs_run_outputs_at(job, CS_RUN_START, error);
 }
 
-/* Prints what the scene's start says about the run; quiet: warnings only. */
+/* Warns of options that this run never comes to. */
+static void warn_of_options(const struct cs_job *job, struct cs_text *out) {
+    const uint32_t last = job->frames, interval = job->settings->frame_interval;
+    if (job->trace.frame > last)
+        cs_text_add(out, "clothsim: warning: --trace: the last frame is %u\n", last);
+    if (job->settings->session.render && last && interval > last)
+        cs_text_add(out, "clothsim: warning: --every: no picture in %u frames\n", last);
+}
+
+/* Prints what the scene's start and the options say about the run; quiet: warnings only. */
 static enum cs_status warn(struct cs_job *job, struct cs_error *error) {
     const struct cs_session *session = &job->session;
     struct cs_scene_findings findings;
     struct cs_text out = {0};
+    warn_of_options(job, &out);
     if (!cs_scene_doctor_check(session, job->frames / session->scene.time.fps, &findings,
                                error)) {
         cs_print_lines("clothsim: warning: ", cs_text_get(&findings.warnings), &out);

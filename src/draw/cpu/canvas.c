@@ -52,7 +52,7 @@ static void aim_rays(struct cs_rays *rays, const struct cs_view_state *view,
     rays->parallel = camera->projection == CS_PROJECTION_ORTHOGRAPHIC;
     cs_subtract(camera->eye, camera->target, back);
     if (rays->parallel)
-        slope *= cs_length(back);
+        slope *= cs_vec3_length(back);
     rays->shift = (float)view->shift;
     rays->depth[0] = (float)view->depth[0];
     rays->depth[1] = (float)view->depth[1];
