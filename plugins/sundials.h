@@ -45,7 +45,8 @@ struct sundials {
     struct tolerance tolerance;
     double linear_rtol; /* relative residual of the linear solves; 0: what the library allows */
     double *b;          /* (3,n), right-hand side of the reduced system */
-    int64_t max_steps;  /* in an advance */
+    uint32_t failed_solves; /* in a row, up to FAILED_SOLVES_MAX */
+    int64_t max_steps;      /* in an advance */
     double
         *y_before; /* (6n) the state before the step; NULL: no step is refused for its move */
     bool equal_steps;    /* without error control: no step is cut but to meet a frame */

@@ -25,6 +25,9 @@ static SUNLinearSolver_Type solver_type(SUNLinearSolver solver) {
  * success. */
 #define SOLVE_FAILED SUNLS_PSOLVE_FAIL_UNREC
 
+/* Solves in a row that may fail: a shorter step, or one so short that it needs none, is tried. */
+enum { FAILED_SOLVES_MAX = 3 };
+
 /* solve of the library's interface: z from b at the state and g of the Newton iteration. The
  * library allows a residual of that length; the host's tolerance is relative to the right-hand
  * side. cvode-bdf takes 0.35 to 0.49 of the iterations of TIGHTEST_RTOL alone, ark-dirk 0.82 to
@@ -52,7 +55,7 @@ static int solve_reduced(SUNLinearSolver solver, SUNMatrix none, N_Vector z, N_V
                             ? self->linear_rtol
                             : fmax(fmin(allowed, LOOSEST_RTOL), TIGHTEST_RTOL);
     memset(zv, 0, 3 * n * sizeof *zv);
-    const bool may_fail = CS_HAS(host, lag_friction);
+    const bool may_fail = CS_HAS(host, lag_friction) && self->failed_solves < FAILED_SOLVES_MAX;
     self->status =
         host->solve_setup(host->ctx, t, x, v, 1, -g, -g * g, may_fail ? CS_SOLVE_MAY_FAIL : 0);
     if (self->status != CS_STEP_OK)
@@ -61,10 +64,12 @@ static int solve_reduced(SUNLinearSolver solver, SUNMatrix none, N_Vector z, N_V
     // a step too long for the solver: the library takes a shorter one
     if (may_fail && self->status == CS_STEP_FAIL) {
         self->status = CS_STEP_OK;
+        self->failed_solves++;
         return SUNLS_CONV_FAIL;
     }
     if (self->status != CS_STEP_OK)
         return SOLVE_FAILED;
+    self->failed_solves = 0;
 
     // no force acts on pinned particles, where z_v = b_v; b is not 0 there while the library's
     // history of them is not
