@@ -260,8 +260,9 @@ void cs_motion_findings_print(const struct cs_session *session, double seconds,
     struct cure cure = {0};
     struct cs_arena arena = {0};
     struct cs_error error = {0};
-    if (!n || !system->events || !system->n_pinned ||
-        !(system->motions || system->events->offsets))
+    // a grab may hold from the start on what no pin does
+    if (!n || !system->events ||
+        !(system->events->offsets || (system->motions && system->n_pinned)))
         return;
     CS_ARENA_ARRAY(&arena, rehearsal.before, n, &error);
     CS_ARENA_ARRAY(&arena, rehearsal.entries, n, &error);
