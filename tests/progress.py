@@ -17,7 +17,7 @@ import subprocess
 import sys
 import time
 
-LEAST = 0.5  # s of a test without a priority: the mean of those of fewer than 4 s
+LEAST = 1.5  # s of a test without a priority: about their mean
 LINE = re.compile(r"\s*(\d+)/(\d+) (?:.*? / )?(.+?)\s+([A-Z]{2,})\s+([\d.]+)s\b")
 PASSED = {"OK", "EXPECTEDFAIL", "SKIP"}
 
