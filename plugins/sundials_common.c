@@ -98,6 +98,7 @@ int sundials_weigh(N_Vector y, N_Vector weight, void *object) {
 enum cs_step sundials_restart(void *object, double t, const double *x, const double *v) {
     (void)v; // is x + 3n
     struct sundials *self = object;
+    self->failed_solves = 0;
     if (self->interpolated)
         sundials_overstep_restart(self, t, x);
     else

@@ -25,7 +25,7 @@ static SUNLinearSolver_Type solver_type(SUNLinearSolver solver) {
  * success. */
 #define SOLVE_FAILED SUNLS_PSOLVE_FAIL_UNREC
 
-/* Solves in a row that may fail: a shorter step, or one so short that it needs none, is tried. */
+/* Solves that may fail in a row: after each the library tries a shorter step. */
 enum { FAILED_SOLVES_MAX = 3 };
 
 /* solve of the library's interface: z from b at the state and g of the Newton iteration. The
