@@ -34,9 +34,9 @@ static const struct options defaults = {
 
 static const struct cs_arg rows[] = {
     {"integrators", 'i', "LIST",
-     "methods, NAME:KEY=VALUE,KEY=LOW..HIGH,NAME...; dt and rtol may be ranges (default: all "
-     "methods)",
-     CS_ARG_INTO(struct options, compare.methods)},
+     "methods, NAME:KEY=VALUE,KEY=LOW..HIGH,NAME...; dt and rtol may be ranges; may be repeated "
+     "(default: all methods)",
+     CS_ARG_INTO(struct options, compare.methods), .repeatable = true},
     {"time", 't', "SECONDS", "simulated time (default: 0.5)",
      CS_ARG_INTO(struct options, seconds)},
     {"frames", 'n', "N", "simulate frames 1 to N (default: by the time)",

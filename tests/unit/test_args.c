@@ -4,7 +4,7 @@
 
 struct options {
     bool off, on;
-    const char *text;
+    const char *text, *series;
     uint32_t whole, choice, set;
     double real;
     struct cs_shard shard;
@@ -24,6 +24,7 @@ static const struct cs_arg rows[] = {
     {"off", 0, NULL, "", CS_ARG_INTO(struct options, off)},
     {"no-on", 0, NULL, "", CS_ARG_INTO(struct options, on)},
     {"text", 't', "TEXT", "", CS_ARG_INTO(struct options, text)},
+    {"series", 0, "LIST", "", CS_ARG_INTO(struct options, series), .repeatable = true},
     {"whole", 'w', "N", "", CS_ARG_INTO(struct options, whole), .min = 3, .max = UINT32_MAX},
     {"choice", 0, "NAME", "", CS_ARG_INTO(struct options, choice), .names = names},
     {"kinds", 0, "NAME", "", CS_ARG_INTO(struct options, set), .names = names,
@@ -54,12 +55,14 @@ static const struct options *parse(char *line, struct cs_error *error) {
 
 TEST(fields_are_filled) {
     char line[] = "--off --no-on -t a=b --whole=4294967295 file --choice two --set a.b=1,2 "
+                  "--series rk4:dt=1,a=2 --series=bdf2 "
                   "--kind one --set=c=d=e --kinds two --real 1e9 --shard 2/3";
     struct cs_error error = {0};
     const struct options *found = parse(line, &error);
     UNIT_ASSERT_OK(&error);
     ck_assert(found->off && !found->on);
     ck_assert_str_eq(found->text, "a=b");
+    ck_assert_str_eq(found->series, "rk4:dt=1,a=2,bdf2");
     ck_assert_uint_eq(found->whole, UINT32_MAX);
     ck_assert_uint_eq(found->choice, 2);
     ck_assert_uint_eq(found->set, 6);

@@ -50,13 +50,10 @@ static enum cs_status unknown_option(const struct cs_command *command, const cha
             names[n++] = command->rows[r].name;
     names[n] = NULL;
     const char *nearest = word[1] == '-' ? cs_nearest_word(word + 2, names) : NULL;
-    if (nearest)
-        return cs_fail(
-            error, CS_ERR_USAGE,
-            "unknown option \"%.60s\"; did you mean \"--%s\"? (see: clothsim %s --help)", word,
-            nearest, command->name);
-    return cs_fail(error, CS_ERR_USAGE, "unknown option \"%.60s\" (see: clothsim %s --help)",
-                   word, command->name);
+    return cs_fail(error, CS_ERR_USAGE,
+                   "unknown option \"%.60s\"%s%s%s (see: clothsim %s --help)", word,
+                   nearest ? "; did you mean \"--" : "", nearest ? nearest : "",
+                   nearest ? "\"?" : "", command->name);
 }
 
 static bool is_old_name(const struct cs_arg *row, const char *word, size_t length) {
@@ -121,20 +118,14 @@ static enum cs_status store(struct cs_args *args, const struct cs_arg *row,
                             const char *attached, struct words *words, struct cs_error *error) {
     if (!row->repeatable && cs_args_is_given(args, row->name))
         return cs_fail(error, CS_ERR_USAGE, "--%s is given more than once", row->name);
-    const char *value = attached;
-    if (!row->value) {
-        if (attached)
-            return cs_fail(error, CS_ERR_USAGE, "--%s takes no value, found \"%.60s\"",
-                           row->name, attached);
-        value = "";
-    } else if (!attached) {
-        /* two dashes are the next option: its name is hardly meant as a value */
-        if (words->at + 1 >= words->n || !strncmp(words->argv[words->at + 1], "--", 2))
-            return cs_fail(error, CS_ERR_USAGE, "--%s needs a value: --%s %s", row->name,
-                           row->name, row->value);
+    if (!row->value && attached)
+        return cs_fail(error, CS_ERR_USAGE, "--%s takes no value, found \"%.60s\"", row->name,
+                       attached);
+    const char *value = row->value ? attached : "";
+    /* two dashes are the next option: its name is hardly meant as a value */
+    if (!value && words->at + 1 < words->n && strncmp(words->argv[words->at + 1], "--", 2) != 0)
         value = words->argv[++words->at];
-    }
-    if (row->value && !*value)
+    if (row->value && (!value || !*value))
         return cs_fail(error, CS_ERR_USAGE, "--%s needs a value: --%s %s", row->name, row->name,
                        row->value);
     args->given[args->n_given++] = (struct cs_arg_value){row, value};
@@ -370,6 +361,20 @@ static enum cs_status add_override(const struct list *list, const char *text,
     return CS_OK;
 }
 
+/* Sets a text, or adds to it after a comma where it may be repeated. */
+static enum cs_status read_text(const struct list *list, const char *text,
+                                struct cs_error *error) {
+    const char **field = (const char **)(list->options + list->row->offset), *before = *field;
+    char *both = NULL;
+    if (list->row->repeatable && before)
+        both = cs_arena_alloc(list->arena, strlen(before) + strlen(text) + 2, error);
+    *field = both ? strcat(strcat(strcpy(both, before), ","), text) : text;
+    // a command checks a list itself, such as CHECK[,...]
+    if (list->row->names && !strchr(list->row->value, ','))
+        return read_name(list->row, text, &(uint32_t){0}, error);
+    return error->status;
+}
+
 enum cs_status cs_arg_read(const struct cs_arg *row, const char *text, void *options,
                            struct cs_arena *arena, struct cs_error *error) {
     void *field = (char *)options + row->offset;
@@ -379,11 +384,7 @@ enum cs_status cs_arg_read(const struct cs_arg *row, const char *text, void *opt
         *(bool *)field = !*(bool *)field;
         break;
     case CS_ARG_TEXT:
-        *(const char **)field = text;
-        // a command checks a list itself, such as CHECK[,...]
-        if (row->names && !strchr(row->value, ','))
-            return read_name(row, text, &(uint32_t){0}, error);
-        break;
+        return read_text(&list, text, error);
     case CS_ARG_WHOLE:
         return (row->names ? read_name : read_whole)(row, text, field, error);
     case CS_ARG_REAL:

@@ -22,7 +22,8 @@
  * disagree with its struct. */
 enum cs_arg_kind {
     CS_ARG_SWITCH, /* bool: without a value; turns the default round */
-    CS_ARG_TEXT,   /* const char *: as it was typed, of argv */
+    /* const char *: as it was typed, of argv; repeated: with commas between, of the arena */
+    CS_ARG_TEXT,
     /* uint32_t or an enum: a whole number in min..max; with names, the number of the name;
      * where it may be repeated as well, a list of names, as the set of 1 << number */
     CS_ARG_WHOLE,

@@ -185,24 +185,23 @@ static void add_nearest_paths(const struct cs_table *table, const char *keys,
         add_paths(&cs_scene_table, "", keys, below, out);
 }
 
-/* Adds the name or the paths that an unknown key most probably stands for. */
-static void suggest_key(const struct cs_table *table, const char *place, const char *apart,
+/* Adds the name or the paths that an unknown key most probably stands for. Returns true where
+ * nothing but a key of the same name elsewhere says so. */
+static bool suggest_key(const struct cs_table *table, const char *place, const char *apart,
                         const char *key, struct cs_text *out) {
     const char *near = nearest_key(table, apart, key);
     const char *other = cs_foreign_key(place, key, table);
     // "pin" is "pins" of this object rather than "pin" of another one
     if (!other && near && !strncmp(near, key, strlen(key)))
         other = near;
-    if (!other || !cs_option_find(table, other)) {
-        if (other)
-            add_nearest_paths(table, other, out);
-        if (!other && !out->length)
-            add_nearest_paths(table, key, out);
-    }
-    other = other ? other : near;
+    if (!other || !cs_option_find(table, other))
+        add_nearest_paths(table, other ? other : key, out);
+    if (out->length)
+        return !other;
     // the keys of an integrator are in no table
-    if (other && !out->length)
-        cs_text_add(out, "%s", other);
+    if (other || near)
+        cs_text_add(out, "%s", other ? other : near);
+    return false;
 }
 
 /* The present name of a renamed key, if the table has it; or NULL. */
@@ -219,7 +218,7 @@ static const char *new_name(const struct cs_table *table, const char *key) {
 static void add_keys(const struct cs_table *table, struct cs_text *out) {
     enum { MOST = 12 };
     for (uint32_t r = 0; r < table->n && table->n <= MOST; r++)
-        cs_text_add(out, "%s%s", r ? ", " : "; expected one of ", table->rows[r].name);
+        cs_text_add(out, "%s%s", r ? ", " : ", expected one of ", table->rows[r].name);
 }
 
 /* Fails with what the key may stand for. */
@@ -227,19 +226,20 @@ static enum cs_status fail_unknown(struct cs_json_context *context,
                                    const struct cs_json *member, const struct cs_table *table,
                                    const char *apart) {
     const char *key = cs_json_key(member);
-    struct cs_text other = {0};
+    struct cs_text other = {0}, own = {0};
     char place[sizeof context->path];
     const size_t length = context->path_length - strlen(key);
     snprintf(place, sizeof place, "%.*s", (int)(length ? length - 1 : 0), context->path);
-    suggest_key(table, place, apart, key, &other);
+    const bool guessed = suggest_key(table, place, apart, key, &other);
     const bool any = other.length && !other.failed;
     /* a key that is right elsewhere, without a path: the scene's own */
     const bool top = any && !strcmp(cs_text_get(&other), key);
     const char *end = top ? "\" at the top of the scene?" : any ? "\"?" : "";
-    if (!any)
-        add_keys(table, &other);
-    cs_json_context_fail(context, member, true, "unknown key%s%s%s",
+    if (!any || (guessed && !top))
+        add_keys(table, &own);
+    cs_json_context_fail(context, member, true, "unknown key%s%s%s%s", cs_text_get(&own),
                          any ? "; did you mean \"" : "", cs_text_get(&other), end);
+    cs_text_finish(&own);
     cs_text_finish(&other);
     return context->error->status;
 }
