@@ -6,6 +6,7 @@
  */
 #include "draw/mipmap.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
 #include <string.h>
 
@@ -60,7 +61,8 @@ enum cs_status cs_mipmap_make(struct cs_mipmap *mips, const struct cs_image *ima
     for (mips->n = 0; mips->n < CS_MIPMAP_LEVELS_MAX; mips->n++) {
         const size_t n = 3 * (size_t)width * (size_t)height;
         const int last = mips->n - 1;
-        uint16_t *light = cs_arena_alloc_array(arena, n, sizeof *light, error);
+        // texels are read four numbers at a time
+        uint16_t *light = cs_arena_alloc_array(arena, n + 1, sizeof *light, error);
         if (!light)
             return error->status;
         for (size_t i = 0; mips->n == 0 && i < n; i++)
@@ -81,9 +83,19 @@ enum cs_status cs_mipmap_make(struct cs_mipmap *mips, const struct cs_image *ima
     return CS_OK;
 }
 
+/* red, green and blue of a texel, and a number that nobody reads */
+typedef float texel __attribute__((vector_size(16)));
+typedef uint16_t light __attribute__((vector_size(8)));
+
+CS_INLINE texel texel_at(const uint16_t *at) {
+    light read;
+    memcpy(&read, at, sizeof read);
+    return __builtin_convertvector(read, texel);
+}
+
 /* The two texels of a row of n beside coordinate `at`, and the weight of the second. Texel i
  * has its middle at (i + 1/2) / n; neighbours wrap around. */
-static void wrap_texel(float at, int n, int texels[2], float *share) {
+CS_INLINE void wrap_texel(float at, int n, int texels[2], float *share) {
     const float where = (at - floorf(at)) * (float)n - 0.5f;
     const float down = floorf(where);
     const int first = (int)down;
@@ -93,28 +105,25 @@ static void wrap_texel(float at, int n, int texels[2], float *share) {
 }
 
 // bilinear interpolation in one level
-static void bilinear(const struct cs_mipmap *mips, int copy, float u, float v, float rgb[3]) {
+CS_INLINE texel bilinear(const struct cs_mipmap *mips, int copy, float u, float v) {
     const int width = mips->levels[copy].width;
     int column[2], row[2];
     float across, down;
     wrap_texel(u, width, column, &across);
     wrap_texel(v, mips->levels[copy].height, row, &down);
-    for (int k = 0; k < 3; k++) {
-        float line[2];
-        for (int r = 0; r < 2; r++) {
-            const uint16_t *in =
-                mips->levels[copy].light + 3 * (size_t)row[r] * (size_t)width + k;
-            const float a = (float)in[3 * column[0]], b = (float)in[3 * column[1]];
-            line[r] = a + across * (b - a);
-        }
-        rgb[k] = (line[0] + down * (line[1] - line[0])) / 65535;
+    texel line[2];
+    for (int r = 0; r < 2; r++) {
+        const uint16_t *in = mips->levels[copy].light + 3 * (size_t)row[r] * (size_t)width;
+        const texel first = texel_at(in + 3 * column[0]);
+        line[r] = first + across * (texel_at(in + 3 * column[1]) - first);
     }
+    return (line[0] + down * (line[1] - line[0])) / 65535;
 }
 
 /* log2 of a positive number 2^e (1 + m), taken as e + m. The error log2(1 + m) - m is largest
  * at m = 1/ln 2 - 1, where it is 0.086: too little to be seen in a level. OpenGL renderers do
  * the same. */
-static float log_2(float value) {
+CS_INLINE float log_2(float value) {
     uint32_t bits;
     float mantissa;
     memcpy(&bits, &value, sizeof bits);
@@ -147,34 +156,31 @@ void cs_texel_footprint_make(const struct cs_mipmap *mips, float steps[2][2],
         footprint->side[k] = parts > 1 ? steps[longer][k] : 0;
 }
 
-static void trilinear(const struct cs_mipmap *mips, float u, float v, float square,
-                      float rgb[3]) {
-    // below 1 texel per pixel level 0 is magnified; NaN and huge numbers stay in range
-    const float level = square > 1 ? 0.5f * log_2(square < 1e30f ? square : 1e30f) : 0;
-    const int whole = (int)level;
-    float then[3];
-    if (whole >= mips->n - 1) {
-        bilinear(mips, mips->n - 1, u, v, rgb);
-        return;
-    }
-    bilinear(mips, whole, u, v, rgb);
-    if (!(level > (float)whole))
-        return;
-    bilinear(mips, whole + 1, u, v, then);
-    for (int k = 0; k < 3; k++)
-        rgb[k] += (level - (float)whole) * (then[k] - rgb[k]);
+/* Whole levels and a fraction of the next. Below 1 texel per pixel level 0 is magnified; NaN
+ * and huge numbers stay in range. */
+CS_INLINE float level_of(float square) {
+    return square > 1 ? 0.5f * log_2(square < 1e30f ? square : 1e30f) : 0;
 }
 
-void cs_mipmap_sample(const struct cs_mipmap *mips, float u, float v,
-                      const struct cs_texel_footprint *footprint, float rgb[3]) {
-    const float share = 1 / (float)footprint->parts;
-    rgb[0] = rgb[1] = rgb[2] = 0;
+CS_INLINE texel trilinear(const struct cs_mipmap *mips, float u, float v, float level) {
+    const int whole = (int)level;
+    if (whole >= mips->n - 1)
+        return bilinear(mips, mips->n - 1, u, v);
+    const texel near = bilinear(mips, whole, u, v);
+    if (!(level > (float)whole))
+        return near;
+    return near + (level - (float)whole) * (bilinear(mips, whole + 1, u, v) - near);
+}
+
+CS_CLONES void cs_mipmap_sample(const struct cs_mipmap *mips, float u, float v,
+                                const struct cs_texel_footprint *footprint, float rgb[3]) {
+    const float share = 1 / (float)footprint->parts, level = level_of(footprint->square);
+    texel sum = {0};
     for (int i = 0; i < footprint->parts; i++) {
         const float at = ((float)i + 0.5f) * share - 0.5f;
-        float part[3];
-        trilinear(mips, u + at * footprint->side[0], v + at * footprint->side[1],
-                  footprint->square, part);
-        for (int k = 0; k < 3; k++)
-            rgb[k] += share * part[k];
+        sum += share *
+               trilinear(mips, u + at * footprint->side[0], v + at * footprint->side[1], level);
     }
+    for (int k = 0; k < 3; k++)
+        rgb[k] = sum[k];
 }
