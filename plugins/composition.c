@@ -54,7 +54,6 @@ struct composition {
 
     /* with quadrature */
     bool quadrature;
-    uint64_t restarted;                 /* 1: the next step follows a restart */
     double h;                           /* s, of the last step */
     double *older[KICKS];               /* (3,n) in N of the step before */
     double *start[2], *trial[2];        /* (3,n) x and v before a step, and in a repetition */
@@ -171,8 +170,8 @@ static void copy_state(const struct composition *self, double *const to[2], cons
     memcpy(to[1], v, bytes);
 }
 
-/* The first step after a restart, repeated from the same state: each repetition makes the
- * velocities that kicks see right to one more order. */
+/* The first step, or one after a change of the state, repeated from the same state: each
+ * repetition makes the velocities that kicks see right to one more order. */
 static void take_first(struct composition *self, double t, double h, double *x, double *v) {
     copy_state(self, self->trial, x, v);
     take_predicted(self, t, h, self->trial[0], self->trial[1]);
@@ -209,11 +208,10 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
         copy_state(self, self->start, x, v);
     if (follows)
         take_by_quadrature(self, t, h, false, x, v);
-    else if (self->quadrature && self->restarted)
+    else if (self->quadrature && loop->history_void)
         take_first(self, t, h, x, v);
     else
         take_predicted(self, t, h, x, v);
-    self->restarted = 0;
     self->h = h;
     return CS_STEP_OK;
 }
@@ -315,20 +313,13 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
                              : CS_STEP_FAIL;
 }
 
-static enum cs_step restart(void *object, double t, const double *x, const double *v) {
-    ((struct composition *)object)->restarted = 1;
-    return fixed_step_restart(object, t, x, v);
-}
-
 static enum cs_step archive(void *object, const struct cs_archive *archive) {
     struct composition *self = object;
     const size_t n3 = 3 * (size_t)self->fixed.host->view->n;
     for (int k = 0; k < (self->quadrature ? self->of.kicks : 1); k++)
         archive->reals(archive->ctx, self->f[k], n3);
-    if (self->quadrature) {
-        archive->integers(archive->ctx, &self->restarted, 1);
+    if (self->quadrature)
         archive->reals(archive->ctx, &self->h, 1);
-    }
     return fixed_step_archive(object, archive);
 }
 
@@ -351,7 +342,7 @@ static const struct cs_integrator composition = {
     .n_options = sizeof rows / sizeof rows[0],
     .options_size = sizeof(struct composition_options),
     .create = create,
-    .restart = restart,
+    .restart = fixed_step_restart,
     .advance = fixed_step_advance,
     .stats = fixed_step_stats,
     .save = archive,
