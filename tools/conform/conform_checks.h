@@ -82,6 +82,11 @@ struct cs_conform {
     void *ctx;
 };
 
+/* The order that the method claims with these options. */
+static inline uint32_t cs_conform_order(const struct cs_conform *conform, bool damped) {
+    return cs_method_order(conform->method, conform->options, damped);
+}
+
 /* States a figure that must not exceed its bound; NAN fails. If a check states several, the row
  * keeps the first that fails, else the one that uses most of its bound. */
 void cs_row_state(struct cs_conform_row *row, double figure, double bound, const char *format,

@@ -178,7 +178,7 @@ void cs_check_contact_energy(const struct cs_conform *conform, struct cs_conform
     if (cs_probe_open(&sheet, conform, conform->method, BOUNCE))
         start = cs_probe_energy(&sheet);
     const double share = cs_probe_set_level(&sheet, 0.05 / BOUNCE_RATE, BOUNCE_RATE,
-                                            conform->method->order > 1 ? 2 : 1, 0);
+                                            cs_conform_order(conform, false) > 1 ? 2 : 1, 0);
     for (int k = 0; k < BOUNCE_FRAMES && cs_probe_run(&sheet, 1); k++) {
         worst = fmax(worst, (cs_probe_energy(&sheet) - start) / start);
         low = fmin(low, lowest(&sheet));

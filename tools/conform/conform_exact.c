@@ -95,7 +95,7 @@ struct claim {
 };
 
 static struct claim claim_of(const struct cs_conform *conform, bool damped) {
-    return (struct claim){cs_method_order(conform->method, conform->options, damped),
+    return (struct claim){cs_conform_order(conform, damped),
                           !(conform->method->traits & CS_MULTISTEP)};
 }
 

@@ -169,8 +169,7 @@ static struct trial trial_of(const struct cs_conform *conform, struct cs_conform
     return (struct trial){.conform = conform,
                           .row = row,
                           .scene = scene,
-                          .order = cs_method_order(conform->method, conform->options,
-                                                   scene->depends_on_velocity)};
+                          .order = cs_conform_order(conform, scene->depends_on_velocity)};
 }
 
 /* At fixed steps, or at tolerances. */
@@ -229,8 +228,7 @@ X(mixed_laws)
 
 /* True if the order is measured by fixed steps. */
 static bool has_stage_times(const struct cs_conform *conform) {
-    return cs_method_has(conform->method, "dt") &&
-           cs_method_order(conform->method, conform->options, false) > 1;
+    return cs_method_has(conform->method, "dt") && cs_conform_order(conform, false) > 1;
 }
 
 /* Tests whether forces are followed in time at all: at order 1, which also a method passes that

@@ -18,7 +18,7 @@ void cs_check_reversible(const struct cs_conform *conform, struct cs_conform_row
         cs_row_skip(row, "it does not claim to be symplectic");
         return;
     }
-    if (conform->method->order < 2) {
+    if (cs_conform_order(conform, false) < 2) {
         cs_row_skip(row, "a symplectic method of order 1 is not symmetric in time");
         return;
     }
@@ -76,8 +76,9 @@ void cs_check_energy(const struct cs_conform *conform, struct cs_conform_row *ro
         motion = start - rest_energy(conform);
     }
     const bool adaptive = method->traits & CS_ADAPTIVE;
-    const double share = cs_probe_set_level(&drum, cs_drum_step(), CS_DRUM_OMEGA,
-                                            method->order > 1 ? 2 : 1, adaptive);
+    const double share =
+        cs_probe_set_level(&drum, cs_drum_step(), CS_DRUM_OMEGA,
+                           cs_conform_order(conform, false) > 1 ? 2 : 1, adaptive);
     for (int k = 0; k < FRAMES && cs_probe_run(&drum, 1); k++) {
         const double gained = (cs_probe_energy(&drum) - start) / motion;
         worst = fmax(worst, both ? fabs(gained) : gained);
@@ -114,8 +115,10 @@ void cs_check_energy(const struct cs_conform *conform, struct cs_conform_row *ro
 #define SMALL 1e-9
 
 /* The lower of the claimed orders, for scenes that may or may not be damped. */
-static uint32_t lower_order(const struct cs_integrator *method) {
-    return method->order < method->order_damped ? method->order : method->order_damped;
+static uint32_t lower_order(const struct cs_conform *conform) {
+    const uint32_t free = cs_conform_order(conform, false);
+    const uint32_t damped = cs_conform_order(conform, true);
+    return free < damped ? free : damped;
 }
 
 /* Largest distance of a component from its start plus the same shift for all particles. */
@@ -141,7 +144,7 @@ static void check_free_fall(const struct cs_conform *conform, struct cs_conform_
                             int level) {
     struct cs_probe sheet;
     cs_probe_open(&sheet, conform, conform->method, SHEET, 0.0, 0.0, 0.0, -G);
-    const uint32_t order = lower_order(conform->method) > 1 ? 2 : 1;
+    const uint32_t order = lower_order(conform) > 1 ? 2 : 1;
     const double share = cs_probe_set_level(&sheet, 1.0 / 240, 1, order, level);
     if (!cs_probe_run(&sheet, 60))
         cs_row_fail(row, "%s", sheet.error.message);
@@ -204,8 +207,7 @@ static void check_rotation(const struct cs_conform *conform, struct cs_conform_r
             pair.v[2 + i] = w * side;
         }
     }
-    const double share =
-        cs_probe_set_level(&pair, 2e-3, 10, lower_order(conform->method), level);
+    const double share = cs_probe_set_level(&pair, 2e-3, 10, lower_order(conform), level);
     if (!cs_probe_run(&pair, 10))
         cs_row_fail(row, "%s", pair.error.message);
     else {
@@ -251,7 +253,7 @@ static void check_oscillator(const struct cs_conform *conform, struct cs_conform
         pair.x[1] += REACH / 2;
     }
     const double share =
-        cs_probe_set_level(&pair, 5e-3, w, conform->method->order_damped, level);
+        cs_probe_set_level(&pair, 5e-3, w, cs_conform_order(conform, true), level);
     if (!cs_probe_run(&pair, 20))
         cs_row_fail(row, "%s", pair.error.message);
     else {
@@ -286,7 +288,7 @@ static bool elongation_at(const struct cs_conform *conform, struct cs_conform_ro
  * more digits are left than in other scenes. */
 static void oscillator_limit(const struct cs_conform *conform, struct cs_conform_row *row,
                              const char *model) {
-    const uint32_t order = conform->method->order_damped;
+    const uint32_t order = cs_conform_order(conform, true);
     const int levels = order > 3 ? 5 : 7;
     double found[7];
     for (int k = 0; k < levels; k++)
@@ -351,8 +353,8 @@ static double drift(const struct cs_conform *conform, struct cs_conform_row *row
         cs_perturb_smooth(&sheet.session.system, 0.01, 0.2);
         momenta(&sheet, before[0], before[1], scale);
     }
-    double share = cs_probe_set_level(&sheet, 0.1 / FREE_OMEGA, FREE_OMEGA,
-                                      lower_order(conform->method), level);
+    double share =
+        cs_probe_set_level(&sheet, 0.1 / FREE_OMEGA, FREE_OMEGA, lower_order(conform), level);
     if (!cs_probe_run(&sheet, 5)) {
         cs_row_fail(row, "%s", sheet.error.message);
         share = (double)NAN;

@@ -145,8 +145,7 @@ static void order_on(const struct cs_conform *conform, struct cs_conform_row *ro
     const uint32_t traits = conform->method->traits;
     if (cs_method_has(conform->method, "dt") ||
         (traits & CS_ADAPTIVE && !(traits & CS_MULTISTEP)))
-        measure_order(conform, row,
-                      cs_method_order(conform->method, conform->options, damping > 0), &drum);
+        measure_order(conform, row, cs_conform_order(conform, damping > 0), &drum);
     else
         cs_row_skip(row, traits & CS_ADAPTIVE ? "it chooses its own steps: see tolerance"
                                               : "it has no option dt");
@@ -171,9 +170,9 @@ void cs_check_tolerance(const struct cs_conform *conform, struct cs_conform_row 
 /* On the drum whose velocities jump at the end of the first frame. A multistep method must
  * discard its history there. */
 void cs_check_event(const struct cs_conform *conform, struct cs_conform_row *row) {
-    const uint32_t order = cs_method_order(conform->method, conform->options, false);
+    const uint32_t order = cs_conform_order(conform, false);
     /* damped, where that keeps the order: a force that is kept is then another one */
-    const bool damped = cs_method_order(conform->method, conform->options, true) == order;
+    const bool damped = cs_conform_order(conform, true) == order;
     const struct cs_drum kicked = {.damping = damped ? 0.05 : 0, .has_velocity_jump = true};
     if (!cs_probe_can_be_set(conform, row))
         return;
@@ -192,8 +191,7 @@ void cs_check_contact_order(const struct cs_conform *conform, struct cs_conform_
     else if (cs_probe_can_be_set(conform, row) && conform->method->traits & CS_ADAPTIVE)
         measure_tolerance(conform, row, &drum);
     else if (cs_method_has(conform->method, "dt"))
-        measure_order(conform, row, cs_method_order(conform->method, conform->options, true),
-                      &drum);
+        measure_order(conform, row, cs_conform_order(conform, true), &drum);
 }
 
 enum { LEVELS = 6 };
@@ -221,10 +219,10 @@ void cs_check_solution(const struct cs_conform *conform, struct cs_conform_row *
             return;
     if (!adaptive)
         cs_extrapolate(states[0], LEVELS, 2 * CS_DRUM_VALUES, 2 * CS_DRUM_VALUES,
-                       method->order_damped);
+                       cs_conform_order(conform, true));
     cs_row_state(row,
                  cs_rms_difference(states[LEVELS - 1], reference, CS_DRUM_VALUES) / scale[0],
-                 adaptive || method->order_damped < 2 ? 1e-8 : 1e-10,
+                 adaptive || cs_conform_order(conform, true) < 2 ? 1e-8 : 1e-10,
                  "of the motion off the reference, %s",
                  !adaptive      ? "extrapolated from six steps to h = 0"
                  : rtol > 5e-11 ? "at rtol 1e-10"

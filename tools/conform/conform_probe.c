@@ -131,7 +131,7 @@ void cs_probe_set_frames(struct cs_probe *probe, double dt) {
 }
 
 double cs_probe_tightest_tolerance(const struct cs_conform *conform) {
-    return cs_method_order(conform->method, conform->options, true) > 2 ? 1e-11 : 1e-10;
+    return cs_conform_order(conform, true) > 2 ? 1e-11 : 1e-10;
 }
 
 bool cs_probe_can_be_set(const struct cs_conform *conform, struct cs_conform_row *row) {
