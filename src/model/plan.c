@@ -10,12 +10,12 @@
 #include "model/spring/springs.h"
 #include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/body_particles.h"
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"
 #include "scene/event_key.h"
 #include "scene/force_keys.h"
 #include "scene/picture_keys.h"
-#include "scene/shape.h"
 
 #include <math.h>
 
@@ -39,7 +39,7 @@ static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene) {
     plan->n_bodies = scene->bodies.n;
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
         const uint32_t before = plan->n_springs;
-        plan->n += (uint32_t)cs_shape_count(bodies + b);
+        plan->n += (uint32_t)cs_body_count(bodies + b);
         cs_springs_of_body(bodies + b, b, 0, NULL, NULL, &plan->n_springs);
         if (!bodies[b].mesh.present)
             continue;

@@ -19,7 +19,7 @@
 #include "model/system/shape_clusters.h"
 #include "scene/body_keys.h"
 #include "scene/body_pairs.h"
-#include "scene/shape.h"
+#include "scene/body_particles.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -153,7 +153,7 @@ static void fill_area(struct cs_system *system) {
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_body_range *range = system->bodies + b;
         for (uint32_t i = 0; i < range->count; i++)
-            system->area[range->first + i] = cs_shape_area(bodies + b, i);
+            system->area[range->first + i] = cs_body_area(bodies + b, i);
     }
 }
 
@@ -162,7 +162,7 @@ static void fill_area(struct cs_system *system) {
 static void spin_body(struct cs_system *system, const struct cs_body *body,
                       const struct cs_body_range *range, const bool *pinned) {
     const double *w = body->mesh.present ? body->mesh.spin : body->cloth.spin;
-    const double *centre = cs_shape_placement(body)->translate;
+    const double *centre = cs_body_placement(body)->translate;
     const size_t n = system->view.n;
     if (w[0] == 0 && w[1] == 0 && w[2] == 0)
         return;
@@ -180,9 +180,9 @@ static void fill_state(struct cs_system *system, bool *pinned) {
     const uint32_t n = system->view.n;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_body_range *range = system->bodies + b;
-        const double *velocity = cs_shape_velocity(bodies + b);
-        cs_shape_position(bodies + b, n, range->first, system->state);
-        cs_shape_pin(bodies + b, n, range->first, system->state, pinned + range->first);
+        const double *velocity = cs_body_velocity(bodies + b);
+        cs_body_position(bodies + b, n, range->first, system->state);
+        cs_body_pin(bodies + b, n, range->first, system->state, pinned + range->first);
         for (uint32_t i = range->first; i < range->first + range->count; i++)
             for (size_t c = 0; c < 3; c++)
                 system->state[(3 + c) * n + i] = pinned[i] ? 0 : velocity[c];
@@ -256,7 +256,7 @@ static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_body *body = cs_scene_bodies(system->scene) + b;
         system->bodies[b] = (struct cs_body_range){
-            first, (uint32_t)cs_shape_count(body), (uint32_t)body->cloth.grid[0],
+            first, (uint32_t)cs_body_count(body), (uint32_t)body->cloth.grid[0],
             (uint32_t)body->cloth.grid[1], body->mesh.geometry};
         first += system->bodies[b].count;
     }

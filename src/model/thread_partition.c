@@ -8,7 +8,7 @@
 
 #include "base/pool.h"
 #include "scene/body_keys.h"
-#include "scene/shape.h"
+#include "scene/body_particles.h"
 
 /* Blocks per thread, so that the others can take over the work of one that is held up; and the
  * least particles per block, because springs across borders are computed twice. Chosen by
@@ -33,7 +33,7 @@ static struct sizes sizes_of(const struct cs_scene *scene, uint32_t threads) {
     struct sizes sizes = {0};
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
         uint32_t springs = 0;
-        const size_t n = (size_t)cs_shape_count(bodies + b),
+        const size_t n = (size_t)cs_body_count(bodies + b),
                      runs = cs_springs_of_body(bodies + b, b, 0, NULL, NULL, &springs);
         sizes.particles += n;
         sizes.runs += runs;

@@ -1,9 +1,9 @@
 /* The rows of a body's membrane and bending (scene_tables.c), their moduli, and their checks.
  */
 #include "scene/body_keys.h"
+#include "scene/body_particles.h"
 #include "scene/check.h"
 #include "scene/collider_keys.h"
-#include "scene/shape.h"
 #include "scene/table_rows.h"
 
 #include <stdio.h>
@@ -265,7 +265,7 @@ enum cs_status cs_particles_check(const struct cs_check *check, const char *path
     char place[128], fault[160];
     for (uint32_t p = 0; p < particles->n; p++) {
         snprintf(place, sizeof place, "%s.particles[%u]", path, p);
-        if (cs_shape_pin_fault(owner, pins + p, fault, sizeof fault))
+        if (cs_body_pin_fault(owner, pins + p, fault, sizeof fault))
             return cs_check_refuse(check, place, "%s: %s", name, fault);
         if (pins[p].to.present)
             return cs_check_refuse(check, place,

@@ -4,11 +4,11 @@
 #include "base/options.h"
 #include "base/vec3.h"
 #include "scene/body_keys.h"
+#include "scene/body_particles.h"
 #include "scene/check.h"
 #include "scene/event_key.h"
 #include "scene/force_keys.h"
 #include "scene/picture_keys.h"
-#include "scene/shape.h"
 
 #include <math.h>
 #include <stdio.h>

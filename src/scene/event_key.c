@@ -4,9 +4,9 @@
 #include "base/options.h"
 #include "base/vec3.h"
 #include "scene/body_keys.h"
+#include "scene/body_particles.h"
 #include "scene/contact_keys.h"
 #include "scene/force_keys.h"
-#include "scene/shape.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -250,7 +250,7 @@ static enum cs_status check_there(const struct walk *walk, const struct cs_scene
     if (!strcmp(walk->plain, "forces.wind.strength") && !scene->forces->wind.present)
         return cs_fail(walk->error, CS_ERR_SCENE,
                        "%.120s cannot change: the scene has no forces.wind", walk->path);
-    if (!strcmp(walk->plain, "bodies.pressure") && !cs_shape_is_closed(body_of(walk, scene)))
+    if (!strcmp(walk->plain, "bodies.pressure") && !cs_body_is_closed(body_of(walk, scene)))
         return cs_fail(walk->error, CS_ERR_SCENE,
                        "%.120s cannot change: expected a closed mesh whose faces look outwards",
                        walk->path);

@@ -1,9 +1,9 @@
 /* The rows of what a scene says of its pictures, and the check of coloured faces. */
 #include "scene/picture_keys.h"
 #include "scene/body_keys.h"
+#include "scene/body_particles.h"
 #include "scene/check.h"
 #include "scene/force_keys.h"
-#include "scene/shape.h"
 #include "scene/table_rows.h"
 
 #include <stdio.h>
@@ -130,7 +130,7 @@ enum cs_status cs_check_faces(const struct cs_check *check, const char *body,
         return cs_check_refuse(check, path, "expected a texture or faces, found both");
     for (uint32_t k = 0; k < of->material.faces.n; k++) {
         snprintf(path, sizeof path, "%s.material.faces[%u].set", body, k);
-        if (cs_shape_set_fault(of, faces[k].set, fault, sizeof fault))
+        if (cs_body_set_fault(of, faces[k].set, fault, sizeof fault))
             return cs_check_refuse(check, path, "%s", fault);
     }
     return CS_OK;

@@ -2,6 +2,7 @@
 #include "base/options.h"
 #include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/body_particles.h"
 #include "scene/check.h"
 #include "scene/collider.h"
 #include "scene/collider_keys.h"
@@ -9,7 +10,6 @@
 #include "scene/event_key.h"
 #include "scene/force_keys.h"
 #include "scene/picture_keys.h"
-#include "scene/shape.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +22,7 @@ static enum cs_status check_pins(const struct cs_check *check, const struct cs_s
     const struct cs_pin *pins = of->pins.items;
     for (uint32_t p = 0; p < of->pins.n; p++) {
         snprintf(path, sizeof path, "%s.pins[%u]", body, p);
-        if (cs_shape_pin_fault(of, pins + p, fault, sizeof fault))
+        if (cs_body_pin_fault(of, pins + p, fault, sizeof fault))
             return cs_check_refuse(check, path, "%s", fault);
         snprintf(path, sizeof path, "%s.pins[%u].to", body, p);
         if (pins[p].to.present && cs_holder_fault(scene, &pins[p].to, fault, sizeof fault))
@@ -126,7 +126,7 @@ static enum cs_status check_pressure(const struct cs_check *check, const char *b
     char path[128];
     snprintf(path, sizeof path, "%s.%s", body,
              of->pressure > 0 ? "pressure" : "outer_pressure");
-    if ((of->pressure > 0 || of->outer_pressure >= 0) && !cs_shape_is_closed(of))
+    if ((of->pressure > 0 || of->outer_pressure >= 0) && !cs_body_is_closed(of))
         return cs_check_refuse(check, path, "expected a closed mesh whose faces look outwards");
     return CS_OK;
 }
@@ -158,7 +158,7 @@ static enum cs_status check_bodies(const struct cs_check *check, struct cs_scene
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
         if (check_body(check, scene, b, bodies + b))
             return check->error->status;
-        particles += (double)cs_shape_count(bodies + b);
+        particles += (double)cs_body_count(bodies + b);
     }
     if (particles > CS_PARTICLES_MAX)
         return cs_check_refuse(check, "bodies",
@@ -343,8 +343,8 @@ static enum cs_status check_marks(const struct cs_check *check, const struct cs_
                                (long long)marks->body, scene->bodies.n - 1);
     for (uint32_t k = 0; k < marks->particles.n; k++) {
         snprintf(path, sizeof path, "render.marks.particles[%u]", k);
-        if (cs_shape_pin_fault(cs_scene_bodies(scene) + marks->body, pins + k, fault,
-                               sizeof fault))
+        if (cs_body_pin_fault(cs_scene_bodies(scene) + marks->body, pins + k, fault,
+                              sizeof fault))
             return cs_check_refuse(check, path, "%s", fault);
     }
     return CS_OK;

@@ -8,9 +8,9 @@
  *
  * The keys of the mesh are with those of bodies, in scene_tables.c. */
 #include "base/vec3.h"
+#include "scene/body_particles.h"
 #include "scene/collider.h"
 #include "scene/collider_keys.h"
-#include "scene/shape.h"
 
 #include <math.h>
 #include <string.h>

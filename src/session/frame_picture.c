@@ -9,9 +9,9 @@
 #include "model/elastic/membrane_forces.h"
 #include "model/event/event_state.h"
 #include "scene/body_keys.h"
+#include "scene/body_particles.h"
 #include "scene/collider_keys.h"
 #include "scene/force_keys.h"
-#include "scene/shape.h"
 #include "sim/crash.h"
 
 #include <math.h>
@@ -146,7 +146,7 @@ static enum cs_status make_marks(struct cs_picture *picture, struct cs_error *er
     picture->marks = calloc(n, 1);
     body.pins = marks->particles;
     for (int pass = 0; pass < 2 && named && picture->marks; pass++) {
-        cs_shape_pin(&body, n, range->first, picture->system->start, named + range->first);
+        cs_body_pin(&body, n, range->first, picture->system->start, named + range->first);
         for (uint32_t i = 0; i < n; i++)
             picture->marks[i] = (uint8_t)(picture->marks[i] + named[i]);
         memset(named, 0, n * sizeof *named);

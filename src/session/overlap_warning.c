@@ -7,7 +7,7 @@
 #include "model/system/surfaces.h"
 #include "scene/body_keys.h"
 #include "scene/body_pairs.h"
-#include "scene/shape.h"
+#include "scene/body_particles.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -64,7 +64,7 @@ static void reach_from_pin(const double *x, size_t n, size_t pin, struct box *re
  * the way. */
 static void free_fall_box(const struct cs_scene *scene, const struct cs_body *body,
                           double seconds, const struct box *start, struct box *reach) {
-    const double *v = cs_shape_velocity(body), *g = scene->forces->gravity;
+    const double *v = cs_body_velocity(body), *g = scene->forces->gravity;
     const double by = SPREAD * cs_vec3_distance(start->high, start->low);
     for (int c = 0; c < 3; c++) {
         const double end = v[c] * seconds + g[c] * seconds * seconds / 2;
@@ -80,7 +80,7 @@ static void free_fall_box(const struct cs_scene *scene, const struct cs_body *bo
 static enum cs_status measure_overlap(const struct cs_scene *scene, const struct cs_body *body,
                                       double seconds, struct body *out,
                                       struct cs_error *error) {
-    const size_t n = (size_t)cs_shape_count(body);
+    const size_t n = (size_t)cs_body_count(body);
     double *x = calloc(n, 3 * sizeof *x);
     bool *pinned = calloc(n, sizeof *pinned);
     size_t pin = n; // the last
@@ -89,8 +89,8 @@ static enum cs_status measure_overlap(const struct cs_scene *scene, const struct
         cs_fail(error, CS_ERR_MEMORY, "out of memory for %zu particles", n);
         goto done;
     }
-    cs_shape_position(body, (uint32_t)n, 0, x);
-    cs_shape_pin(body, (uint32_t)n, 0, x, pinned);
+    cs_body_position(body, (uint32_t)n, 0, x);
+    cs_body_pin(body, (uint32_t)n, 0, x, pinned);
     for (size_t i = 0; i < n; i++) {
         double p[3];
         cs_point_read(x, n, i, p);

@@ -7,8 +7,8 @@
 #include "base/pool.h"
 #include "model/contact/collider_params.h"
 #include "scene/body_keys.h"
+#include "scene/body_particles.h"
 #include "scene/picture_keys.h"
-#include "scene/shape.h"
 #include "session/perturb.h"
 
 #include <math.h>
@@ -179,7 +179,7 @@ static uint32_t threads_of(const struct cs_scene *scene) {
                              : CS_THREADS_AUTO_PARTICLES_MIN;
     size_t n = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        n += (size_t)cs_shape_count(cs_scene_bodies(scene) + b);
+        n += (size_t)cs_body_count(cs_scene_bodies(scene) + b);
     return n < least ? 1 : cs_pool_processors(CS_THREADS_AUTO_MAX);
 }
 

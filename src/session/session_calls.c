@@ -4,10 +4,10 @@
 #include "base/clock.h"
 #include "model/elastic/membranes.h"
 #include "model/force/terms.h"
+#include "scene/body_particles.h"
 #include "scene/contact_keys.h"
 #include "scene/elastic_keys.h"
 #include "scene/force_keys.h"
-#include "scene/shape.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -110,7 +110,7 @@ static double density_of(const struct cs_system *system, uint32_t body) {
     double mass = 0, area = 0;
     for (uint32_t i = 0; i < range->count; i++) {
         mass += system->mass[range->first + i];
-        area += cs_shape_area(cs_scene_body(system->scene, body), i);
+        area += cs_body_area(cs_scene_body(system->scene, body), i);
     }
     return mass / area;
 }

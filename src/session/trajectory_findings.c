@@ -7,8 +7,8 @@
 #include "model/event/event_state.h"
 #include "model/system/seams.h"
 #include "scene/body_keys.h"
+#include "scene/body_particles.h"
 #include "scene/force_keys.h"
-#include "scene/shape.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -36,8 +36,8 @@ static void check_pins(const struct cs_system *system, uint32_t b, const void *a
     double low[3], high[3];
     for (uint32_t p = 0; p < body->pins.n; p++) {
         uint32_t i = 0;
-        while (i < range->count && !cs_shape_pin_selects(body, pins + p, system->view.n,
-                                                         range->first, i, system->start))
+        while (i < range->count && !cs_body_pin_selects(body, pins + p, system->view.n,
+                                                        range->first, i, system->start))
             i++;
         if (i < range->count)
             continue;

@@ -4,7 +4,7 @@
 #include "base/options.h"
 #include "made_scene.h"
 #include "model/plan.h"
-#include "scene/shape.h"
+#include "scene/body_particles.h"
 #include "session/session.h"
 #include "sim/crash.h"
 #include "sim/run_state.h"
@@ -89,7 +89,7 @@ static void choose_options(struct choices *choices, const struct cs_method *meth
 static int64_t count_particles(const struct cs_scene *scene) {
     int64_t n = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        n += cs_shape_count(cs_scene_body(scene, b));
+        n += cs_body_count(cs_scene_body(scene, b));
     return n;
 }
 

@@ -13,9 +13,9 @@
 #include "model/system/shape_clusters.h"
 #include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/body_particles.h"
 #include "scene/contact_keys.h"
 #include "scene/force_keys.h"
-#include "scene/shape.h"
 
 #include <math.h>
 #include <string.h>
@@ -33,7 +33,7 @@ void cs_event_mark(const struct cs_system *system, const struct cs_event_target 
         }
         struct cs_body body = cs_scene_bodies(system->scene)[b];
         body.pins = target->particles;
-        cs_shape_pin(&body, system->view.n, range->first, system->start, marks + range->first);
+        cs_body_pin(&body, system->view.n, range->first, system->start, marks + range->first);
     }
 }
 
@@ -260,8 +260,8 @@ static enum cs_status hold(struct cs_system *system, uint32_t b, uint32_t p, uin
     const struct cs_body_range *range = system->bodies + b;
     for (uint32_t k = 0; k < body->pins.n; k++) {
         const bool same = pins[k].to.present && pins[k].to.collider == pins[p].to.collider;
-        if (!same && cs_shape_pin_selects(body, pins + k, system->view.n, range->first,
-                                          i - range->first, system->start))
+        if (!same && cs_body_pin_selects(body, pins + k, system->view.n, range->first,
+                                         i - range->first, system->start))
             return cs_fail(
                 error, CS_ERR_SCENE,
                 "bodies[%u].pins[%u].to: pins[%u] holds particle %u of the body too, "
@@ -282,8 +282,8 @@ enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *e
         for (uint32_t p = 0; p < body->pins.n; p++)
             for (uint32_t i = range->first;
                  pins[p].to.present && i < range->first + range->count; i++)
-                if (cs_shape_pin_selects(body, pins + p, n, range->first, i - range->first,
-                                         system->start) &&
+                if (cs_body_pin_selects(body, pins + p, n, range->first, i - range->first,
+                                        system->start) &&
                     hold(system, b, p, i, error))
                     return error->status;
     }

@@ -14,8 +14,8 @@
 #include "model/force/terms.h"
 #include "model/solver/extra_springs.h"
 #include "scene/body_pairs.h"
+#include "scene/body_particles.h"
 #include "scene/elastic_keys.h"
-#include "scene/shape.h"
 
 #include <clothsim/clones.h>
 
@@ -25,7 +25,7 @@ enum { ROW = 4096 };
 
 static bool any_body_above(const struct cs_scene *scene, uint32_t particles) {
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        if (cs_shape_count(cs_scene_body(scene, b)) > particles)
+        if (cs_body_count(cs_scene_body(scene, b)) > particles)
             return true;
     return false;
 }

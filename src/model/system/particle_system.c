@@ -2,7 +2,7 @@
 #include "model/system/particle_system.h"
 
 #include "scene/body_keys.h"
-#include "scene/shape.h"
+#include "scene/body_particles.h"
 
 #include <math.h>
 #include <string.h>
@@ -37,7 +37,7 @@ void cs_system_set_masses(struct cs_system *system) {
             else if (!isnan(mass->degree))
                 *m *= mass->degree;
             else
-                *m = mass->areal_density * cs_shape_area(bodies + b, i);
+                *m = mass->areal_density * cs_body_area(bodies + b, i);
         }
     }
     for (uint32_t i = 0; i < system->view.n; i++)

@@ -2,7 +2,7 @@
 #include "model/system/seams.h"
 
 #include "scene/body_keys.h"
-#include "scene/shape.h"
+#include "scene/body_particles.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,7 +23,7 @@ uint32_t cs_seam_points_list(const struct cs_seam_points *points,
     for (uint32_t p = 0; p < particles->n; p++)
         for (uint32_t i = 0; i < points->count; i++) {
             if (marks[first + i] ||
-                !cs_shape_pin_selects(points->body, pins + p, points->n, first, i, points->x))
+                !cs_body_pin_selects(points->body, pins + p, points->n, first, i, points->x))
                 continue;
             // a corner may belong to two entries
             marks[first + i] = true;

@@ -5,7 +5,7 @@
 #include "mesh/trimesh.h"
 #include "model/system/particle_system.h"
 #include "scene/body_keys.h"
-#include "scene/shape.h"
+#include "scene/body_particles.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -133,7 +133,7 @@ static void fill(const struct cs_body *body, uint32_t count, const struct box *b
 enum cs_status cs_shape_clusters_make(const struct cs_body *body,
                                       struct cs_shape_clusters *clusters,
                                       struct cs_arena *arena, struct cs_error *error) {
-    const uint32_t count = (uint32_t)cs_shape_count(body);
+    const uint32_t count = (uint32_t)cs_body_count(body);
     const uint32_t parts = (uint32_t)body->shape_matching.clusters;
     struct key *keys = calloc(count, sizeof *keys);
     uint32_t *part_of = calloc(count, sizeof *part_of);

@@ -4,11 +4,11 @@
 #include "mesh/spring_network.h"
 #include "model/system/shape_clusters.h"
 #include "scene/body_keys.h"
+#include "scene/body_particles.h"
 #include "scene/collider_keys.h"
 #include "scene/file/json_context.h"
 #include "scene/file/key_frames_read.h"
 #include "scene/file/mesh_read.h"
-#include "scene/shape.h"
 
 #include <stdio.h>
 
@@ -117,9 +117,9 @@ static enum cs_status make_network(const struct item *item,
 static enum cs_status split_body(const struct item *item, struct cs_body *body) {
     struct cs_json_context *context = item->reader;
     struct cs_shape_matching *matching = &body->shape_matching;
-    const int64_t most = cs_shape_count(body) / CS_SHAPE_CLUSTER_SIZE_MIN;
+    const int64_t most = cs_body_count(body) / CS_SHAPE_CLUSTER_SIZE_MIN;
     /* a cloth beyond the memory is refused by the check */
-    if (!matching->present || (double)cs_shape_count(body) > CS_PARTICLES_MAX)
+    if (!matching->present || (double)cs_body_count(body) > CS_PARTICLES_MAX)
         return CS_OK;
     if (matching->clusters > 1 && matching->clusters > most) {
         char message[160];

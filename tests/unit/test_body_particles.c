@@ -1,6 +1,6 @@
 /* Grids made into particles: places, areas and pins. */
 #include "scene/body_keys.h"
-#include "scene/shape.h"
+#include "scene/body_particles.h"
 #include "sheet.h"
 
 #define BODY                                                                                   \
@@ -81,7 +81,7 @@ TEST(start_may_be_stretched_and_bumped) {
                                 flat ? -up : out, 1e-15);
             }
         ck_assert_double_eq_tol(sheet.system.springs.runs[0].length, 0.75, 1e-15);
-        ck_assert_double_eq_tol(cs_shape_area(cs_scene_bodies(&sheet.scene), 6), 0.75, 1e-15);
+        ck_assert_double_eq_tol(cs_body_area(cs_scene_bodies(&sheet.scene), 6), 0.75, 1e-15);
         sheet_close(&sheet);
     }
 }
@@ -104,18 +104,18 @@ TEST(area_shares_add_up_to_the_size) {
         double sum = 0;
         for (int i = 0; i < grids[k][1]; i++)
             for (int j = 0; j < grids[k][0]; j++)
-                sum += cs_shape_area(cs_scene_bodies(&sheet.scene),
-                                     (uint32_t)(i * grids[k][0] + j));
+                sum += cs_body_area(cs_scene_bodies(&sheet.scene),
+                                    (uint32_t)(i * grids[k][0] + j));
         ck_assert_double_eq_tol(sum, 6, 1e-12);
         sheet_close(&sheet);
     }
     struct sheet sheet;
     start(&sheet, 4, 3, "", "");
     const struct cs_body *body = cs_scene_bodies(&sheet.scene);
-    ck_assert_double_eq_tol(cs_shape_area(body, 0), 0.25, 1e-15);
-    ck_assert_double_eq_tol(cs_shape_area(body, 9), 0.5, 1e-15);
-    ck_assert_double_eq_tol(cs_shape_area(body, 7), 0.5, 1e-15);
-    ck_assert_double_eq_tol(cs_shape_area(body, 6), 1, 1e-15);
+    ck_assert_double_eq_tol(cs_body_area(body, 0), 0.25, 1e-15);
+    ck_assert_double_eq_tol(cs_body_area(body, 9), 0.5, 1e-15);
+    ck_assert_double_eq_tol(cs_body_area(body, 7), 0.5, 1e-15);
+    ck_assert_double_eq_tol(cs_body_area(body, 6), 1, 1e-15);
     sheet_close(&sheet);
 }
 

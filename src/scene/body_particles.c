@@ -1,5 +1,5 @@
 /* Makes particles of bodies: positions, areas, pins. */
-#include "scene/shape.h"
+#include "scene/body_particles.h"
 
 #include "base/portable_sine.h"
 #include "base/text.h"
@@ -11,16 +11,16 @@
 #include <stdio.h>
 #include <string.h>
 
-int64_t cs_shape_count(const struct cs_body *body) {
+int64_t cs_body_count(const struct cs_body *body) {
     return body->mesh.present ? body->mesh.geometry->n
                               : body->cloth.grid[0] * body->cloth.grid[1];
 }
 
-const struct cs_pose *cs_shape_placement(const struct cs_body *body) {
+const struct cs_pose *cs_body_placement(const struct cs_body *body) {
     return body->mesh.present ? &body->mesh.place : &body->cloth.place;
 }
 
-const double *cs_shape_velocity(const struct cs_body *body) {
+const double *cs_body_velocity(const struct cs_body *body) {
     return body->mesh.present ? body->mesh.velocity : body->cloth.velocity;
 }
 
@@ -85,14 +85,14 @@ static void place_grid(const struct cs_body *body, uint32_t n, uint32_t first, d
         }
 }
 
-void cs_shape_position(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
+void cs_body_position(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
     if (body->mesh.present)
         place_mesh(body, n, first, x);
     else
         place_grid(body, n, first, x);
 }
 
-double cs_shape_area(const struct cs_body *body, uint32_t i) {
+double cs_body_area(const struct cs_body *body, uint32_t i) {
     if (body->mesh.present)
         return body->mesh.geometry->area[i];
     const uint32_t columns = (uint32_t)body->cloth.grid[0],
@@ -154,8 +154,8 @@ static bool is_inside(const struct cs_box *box, uint32_t n, size_t at, const dou
     return true;
 }
 
-bool cs_shape_pin_selects(const struct cs_body *body, const struct cs_pin *pin, uint32_t n,
-                          uint32_t first, uint32_t i, const double *x) {
+bool cs_body_pin_selects(const struct cs_body *body, const struct cs_pin *pin, uint32_t n,
+                         uint32_t first, uint32_t i, const double *x) {
     const uint32_t columns = (uint32_t)body->cloth.grid[0],
                    rows = (uint32_t)body->cloth.grid[1];
     return (pin->at >= 0 &&
@@ -165,17 +165,17 @@ bool cs_shape_pin_selects(const struct cs_body *body, const struct cs_pin *pin, 
            (*pin->set && is_in_set(body->mesh.geometry, pin->set, i));
 }
 
-void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,
-                  bool *pinned) {
-    const uint32_t count = (uint32_t)cs_shape_count(body);
+void cs_body_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,
+                 bool *pinned) {
+    const uint32_t count = (uint32_t)cs_body_count(body);
     const struct cs_pin *pins = body->pins.items;
     for (uint32_t p = 0; p < body->pins.n; p++)
         for (uint32_t at = 0; at < count; at++)
-            if (cs_shape_pin_selects(body, pins + p, n, first, at, x))
+            if (cs_body_pin_selects(body, pins + p, n, first, at, x))
                 pinned[at] = true;
 }
 
-bool cs_shape_is_closed(const struct cs_body *body) {
+bool cs_body_is_closed(const struct cs_body *body) {
     const struct cs_trimesh *mesh = body->mesh.geometry;
     double volume = 0;
     for (uint32_t t = 0; body->mesh.present && t < mesh->n_triangles; t++) {
@@ -216,7 +216,7 @@ static void find_near(const struct cs_mesh_label *label, const char *word,
     *near = 0;
 }
 
-bool cs_shape_set_fault(const struct cs_body *body, const char *set, char *text, size_t size) {
+bool cs_body_set_fault(const struct cs_body *body, const char *set, char *text, size_t size) {
     const struct cs_trimesh *mesh = body->mesh.present ? body->mesh.geometry : NULL;
     char near[CS_TEXT_MAX] = "";
     if (!mesh || !mesh->triangle_labels)
@@ -234,9 +234,9 @@ bool cs_shape_set_fault(const struct cs_body *body, const char *set, char *text,
                     set, *near ? "; did you mean \"" : "", near, *near ? "\"?" : "");
 }
 
-bool cs_shape_pin_fault(const struct cs_body *body, const struct cs_pin *pin, char *text,
-                        size_t size) {
-    const long long count = (long long)cs_shape_count(body), index = (long long)pin->index;
+bool cs_body_pin_fault(const struct cs_body *body, const struct cs_pin *pin, char *text,
+                       size_t size) {
+    const long long count = (long long)cs_body_count(body), index = (long long)pin->index;
     if (index >= count)
         return snprintf(text, size, "particle %lld does not exist (0..%lld)", index, count - 1);
     if (body->mesh.present && pin->at >= 0)
@@ -246,7 +246,7 @@ bool cs_shape_pin_fault(const struct cs_body *body, const struct cs_pin *pin, ch
             "or edges",
             cs_pin_names[pin->at]);
     if (*pin->set)
-        return cs_shape_set_fault(body, pin->set, text, size);
+        return cs_body_set_fault(body, pin->set, text, size);
     for (int c = 0; c < 3 && pin->box.present; c++)
         if (pin->box.min[c] > pin->box.max[c])
             return snprintf(text, size, "box.min[%d] = %.9g lies above box.max[%d] = %.9g", c,
