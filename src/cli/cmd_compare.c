@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 #include "cli/show/screen.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
@@ -34,7 +34,8 @@ static const struct options defaults = {
 
 static const struct cs_arg rows[] = {
     {"integrators", 'i', "LIST",
-     "methods, NAME:KEY=VALUE,KEY=LOW..HIGH,NAME...; dt and rtol may be ranges; may be repeated "
+     "methods, NAME:KEY=VALUE,KEY=LOW..HIGH,NAME...; dt and rtol may be ranges; may be "
+     "repeated "
      "(default: all methods)",
      CS_ARG_INTO(struct options, compare.methods), .repeatable = true},
     {"time", 't', "SECONDS", "simulated time (default: 0.5)",

@@ -5,7 +5,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/table.h"
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -14,7 +14,7 @@
 
 #define CS_MANIFEST_NAME "manifest.txt"
 
-/* Writes the manifest of a folder, over the files that a run writes (run_output.h). It is
+/* Writes the manifest of a folder, over the files that a run writes (run_folder.h). It is
  * synced: the disk has it when the call returns. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_manifest_write(const char *folder, struct cs_error *error);
 

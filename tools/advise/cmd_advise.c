@@ -10,7 +10,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 #include "session/process_pool.h"
 #include "session/session.h"
 #include "study/compare/cell_list_parse.h"

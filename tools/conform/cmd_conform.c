@@ -8,7 +8,7 @@
 #include "base/json_writer.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 #include "conform/conform.h"
 #include "conform/conform_checks.h"
 #include "session/process_pool.h"

@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 #include "files/gltf_read.h"
 #include "io/file_conflicts.h"
 #include "scene/file/mesh_read.h"

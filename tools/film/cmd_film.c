@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 #include "film/film_sheet.h"
 #include "io/file_conflicts.h"
 #include "io/png.h"

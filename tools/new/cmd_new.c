@@ -6,7 +6,7 @@
 #include "base/install_paths.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 #include "soft/soft.h"
 
 #include <stdio.h>

@@ -10,7 +10,7 @@
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 #include "session/process_pool.h"
 #include "session/recorded_run.h"
 #include "stability/extreme.h"

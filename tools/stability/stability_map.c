@@ -6,7 +6,7 @@
 #include "borders/stability.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 #include "cli/show/screen.h"
 #include "shared/table_plot.h"
 

@@ -4,7 +4,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 #include "session/process_pool.h"
 #include "session/recorded_run.h"
 #include "session/session.h"

@@ -5,7 +5,7 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "cli/run/run_checkpoint.h"
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 #include "cli/show/screen.h"
 #include "io/export/export.h"
 #include "io/frame_writer.h"

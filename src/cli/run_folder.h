@@ -1,6 +1,6 @@
-/* run_output.h - folders of a run's numbered files: locks, earlier files, and states. */
-#ifndef CS_RUN_OUTPUT_H
-#define CS_RUN_OUTPUT_H
+/* run_folder.h - folders of a run's numbered files: locks, earlier files, and states. */
+#ifndef CS_RUN_FOLDER_H
+#define CS_RUN_FOLDER_H
 
 #include "base/status.h"
 #include "base/text.h"

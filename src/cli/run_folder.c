@@ -1,5 +1,5 @@
 /* Writes state files; owns folders, and finds or removes the files of an earlier run there. */
-#include "cli/run_output.h"
+#include "cli/run_folder.h"
 
 #include "base/file.h"
 #include "base/install_paths.h"
