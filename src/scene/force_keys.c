@@ -1,64 +1,47 @@
-/* The rows of the scene's events; see scene_tables.c. */
+/* The rows of `forces` and of `events`: keys, units, defaults, ranges, help. */
 #include "scene/force_keys.h"
-#include "scene/body_keys.h"
 #include "scene/table_rows.h"
 
-const char *const cs_pin_names[] = {"top-left", "top-right", "bottom-left", "bottom-right",
-                                    "top",      "bottom",    "left",        "right",
-                                    "edges",    NULL};
-
-static const struct cs_option box_rows[] = {
-    VECTOR(struct cs_box, min, 3, "m", NULL, -BIG, BIG, "corner with the smallest coordinates"),
-    VECTOR(struct cs_box, max, 3, "m", NULL, -BIG, BIG, "corner with the largest coordinates"),
-};
-
-static const struct cs_table box_table = {ROWS(box_rows), .size = sizeof(struct cs_box),
-                                          .optional = true};
-
-static const struct cs_option holder_rows[] = {
-    INT(struct cs_holder, collider, "", -1, 0, 4294967295.0,
-        "number of the collider from 0; must be given"),
-};
-
-static const struct cs_table holder_table = {
-    ROWS(holder_rows), .size = sizeof(struct cs_holder), .optional = true};
-
-static const struct cs_option pin_rows[] = {
-    TABLE(struct cs_pin, to, holder_table,
-          "of a body's pins: what carries the particles, wherever it moves and turns"),
-    CHOICE(struct cs_pin, at, cs_pin_names, -1,
-           "a corner or an edge of the grid; a plain string means this"),
-    INT(struct cs_pin, index, "", -1, 0, 4294967295.0,
-        "a particle of the body, row * columns + column, or a vertex from 0; a plain number "
-        "means "
-        "this"),
-    TABLE(struct cs_pin, box, box_table, "every particle that starts inside"),
-    TEXT(struct cs_pin, set,
-         "every vertex of the faces of a group, an object or a material of the mesh's file"),
-};
-
-const struct cs_table cs_pin_table = {ROWS(pin_rows),         .size = sizeof(struct cs_pin),
-                                      .one_of = true,         .n_always_optional = 1,
-                                      .shorthand_text = "at", .shorthand_number = "index"};
-
 static const double absent3[3] = {ABSENT, ABSENT, ABSENT}, zero3[3] = {0, 0, 0};
+static const char *const wind_units[] = {"Pa", "N", NULL};
+static const struct cs_option wind_rows[] = {
+    VECTOR(struct cs_wind, direction, 3, "", absent3, -BIG, BIG,
+           "direction of strength, of any non-zero length; required without velocity"),
+    REAL(struct cs_wind, strength, "Pa or N", 0, 0, BIG,
+         "pressure or force where the cloth faces it; times |direction . normal| elsewhere"),
+    CHOICE(struct cs_wind, strength_unit, wind_units, CS_WIND_PA,
+           "Pa: times the area of the particle, independent of the grid; N: on each particle"),
+    VECTOR(struct cs_wind, velocity, 3, "m/s", absent3, -BIG, BIG,
+           "of the air, which the cloth feels by its own velocity against it; 0, 0, 0: still "
+           "air; absent: none"),
+    REAL(struct cs_wind, density, "kg/m3", 1.2, 0, BIG, "of the air, with velocity"),
+    REAL(struct cs_wind, drag, "", 1.2, 0, 1000,
+         "with velocity: coefficient of the pressure density/2 u^2 by the velocity u across "
+         "the surface; drag and lift are its parts along the wind and across"),
+};
+static const struct cs_table wind_table = {ROWS(wind_rows), .size = sizeof(struct cs_wind),
+                                           .optional = true};
+static const double earth[3] = {0, -9.81, 0};
+static const char *const drag_units[] = {"N s/m", "Pa s/m", NULL};
+static const struct cs_option force_rows[] = {
+    VECTOR(struct cs_forces, gravity, 3, "m/s2", earth, -BIG, BIG, "acceleration of free fall"),
+#define X(key, unit_, help_) REAL(struct cs_forces, key, unit_, 0, 0, BIG, help_),
+    CS_FORCE_NUMBERS(X)
+#undef X
+        CHOICE(struct cs_forces, drag_unit, drag_units, CS_DRAG_PARTICLE,
+               "N s/m: on each particle; Pa s/m: times the area of the particle"),
+    REAL(struct cs_forces, velocity_loss, "", 0, 0, 1,
+         "fraction of the velocity removed after every internal step: it depends on the step "
+         "and is not a force"),
+    TABLE(struct cs_forces, wind, wind_table, "steady wind, by the particle normals"),
+};
+const struct cs_table cs_force_table = {ROWS(force_rows), .size = sizeof(struct cs_forces),
+                                        .apart = true};
 
 /* The two keys of every event that acts on particles. */
 #define AIM_ROWS(s)                                                                            \
-    {.name = "body",                                                                           \
-     .unit = "",                                                                               \
-     .help = "number of the body from 0; absent: every body",                                  \
-     .type = CS_INT,                                                                           \
-     .count = 1,                                                                               \
-     .offset = offsetof(s, target.body),                                                       \
-     .def = -1,                                                                                \
-     .min = 0,                                                                                 \
-     .max = 4294967295.0},                                                                     \
-    {                                                                                          \
-        .name = "particles", .unit = "",                                                       \
-        .help = "of the body, named as in its pins; absent: all of them", .type = CS_LIST,     \
-        .count = 1, .offset = offsetof(s, target.particles), .table = &cs_pin_table            \
-    }
+    SIDE_ROWS(s, target, "number of the body from 0; absent: every body",                      \
+              "of the body, named as in its pins; absent: all of them")
 
 static const struct cs_option impact_rows[] = {
     AIM_ROWS(struct cs_impact),
@@ -149,7 +132,7 @@ static const struct cs_option grab_rows[] = {
            "followed in 16 chords"),
     BOOL(struct cs_grab, relative, 0,
          "points are displacements from the position where each particle was grabbed"),
-    TABLE(struct cs_grab, to, holder_table,
+    TABLE(struct cs_grab, to, cs_holder_table,
           "instead of a path: what carries the particles from where it is then"),
     VECTOR(struct cs_grab, spin, 3, "rad/s", zero3, -BIG, BIG,
            "angular velocity of the particles about the centre, which follows the path"),

@@ -1,9 +1,9 @@
 /* scene.h - a scene as plain structs, every value present: the contents of the JSON file. Its
  * sections have headers of their own, so that a new key compiles what reads its section.
  *
- * The tables in scene_tables.c name, type, default and bound each field. The reader fills the
- * structs by them, and no other code knows the JSON. cs_scene_check adds conditions that ranges
- * cannot express.
+ * The tables in scene_tables.c and NAME_keys.c name, type, default and bound each field. The
+ * reader fills the structs by them, and no other code knows the JSON. cs_scene_check adds
+ * conditions that ranges cannot express.
  *
  * Absent: an optional table has `present` false, a number is NAN, a choice or an index is -1.
  */

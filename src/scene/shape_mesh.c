@@ -6,7 +6,7 @@
  * Cramer's rule gives a, b and s over one determinant. The code compares the numerators with it
  * instead of dividing, so a line in the plane of the triangle needs no special case.
  *
- * The keys of the mesh are with those of bodies, in scene_tables.c. */
+ * The keys of the mesh are with those of bodies, in mesh_keys.c. */
 #include "base/vec3.h"
 #include "scene/body_particles.h"
 #include "scene/collider.h"

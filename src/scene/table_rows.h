@@ -59,5 +59,25 @@
         .name = #f, .unit = "", .help = help_, .type = CS_LIST, .count = 1,                    \
         .offset = offsetof(s, f), .table = &table_                                             \
     }
+/* Tables that the rows of another file name. */
+extern const struct cs_table cs_body_table, cs_collider_table, cs_contact_table, cs_force_table;
+extern const struct cs_table cs_holder_table, cs_mesh_table, cs_mesh_keys, cs_pairs_table,
+    cs_pose_table;
+
+/* The two rows of particles of a body; f: the field that holds `body` and `particles`. */
+#define SIDE_ROWS(s, f, body_help, list_help)                                                  \
+    {.name = "body",                                                                           \
+     .unit = "",                                                                               \
+     .help = body_help,                                                                        \
+     .type = CS_INT,                                                                           \
+     .count = 1,                                                                               \
+     .offset = offsetof(s, f.body),                                                            \
+     .def = -1,                                                                                \
+     .min = 0,                                                                                 \
+     .max = 4294967295.0},                                                                     \
+    {                                                                                          \
+        .name = "particles", .unit = "", .help = list_help, .type = CS_LIST, .count = 1,       \
+        .offset = offsetof(s, f.particles), .table = &cs_pin_table                             \
+    }
 
 #endif

@@ -44,7 +44,7 @@ plant() {
 }
 
 cc="$* -std=c17 -D_GNU_SOURCE -Iinclude -Isrc -fsyntax-only -Wall -Wextra -Wswitch-enum -Werror"
-shapes='scene/scene_tables.c model/contact/posed_collider.c'
+shapes='scene/collider_keys.c model/contact/posed_collider.c'
 expect taken 'what is whole' $shapes draw/look.c io/export/export.c
 plant 'half a collider shape' scene/collider_keys.h 's/^    X(sphere, .*$/& X(torus, cs_torus, "a torus") \\/; s/\\ X(torus/X(torus/' $shapes
 plant 'half a look' scene/picture_keys.h 's/^    X(LIT, lit)/& X(DEPTH, depth)/' draw/look.c
