@@ -13,7 +13,6 @@
 #define CS_CONTACT_PROJECTION_H
 
 #include "base/serialise.h"
-#include "model/contact/posed_collider.h"
 #include "model/post_step/projection_energy.h"
 #include "model/post_step/static_friction.h"
 #include "model/system/particle_system.h"

@@ -6,7 +6,6 @@
 #include "base/vector.h"
 #include "model/force/diagnostics.h"
 #include "model/post_step/tunnelling.h"
-#include "scene/collider_keys.h"
 #include "scene/force_keys.h"
 
 #include <math.h>

@@ -17,7 +17,6 @@
 #ifndef CS_PROJECTION_ENERGY_H
 #define CS_PROJECTION_ENERGY_H
 
-#include "model/contact/posed_collider.h"
 #include "model/post_step/static_friction.h"
 #include "model/solver/linear.h"
 

@@ -3,6 +3,7 @@
 #include "model/post_step/static_friction.h"
 
 #include "base/vec3.h"
+#include "model/contact/posed_collider.h"
 #include "model/force/terms.h"
 #include "scene/collider_keys.h"
 

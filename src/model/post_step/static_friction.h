@@ -26,8 +26,9 @@
 
 #include "base/arena.h"
 #include "base/serialise.h"
-#include "model/contact/posed_collider.h"
 #include "model/system/particle_system.h"
+
+struct cs_posed_collider;
 
 /* Temporary pins, in addition to those of the scene and its events.
  *

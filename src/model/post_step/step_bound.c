@@ -1,6 +1,8 @@
-/* step_bound.c - time to a surface, and to the admissible depth behind it, in free fall. */
+/* step_bound.c - the longest step with contact by projection: the time to a surface, and to the
+ * admissible depth behind it, in free fall. With contact by force see ccd/step_limit.h. */
 #include "model/post_step/contact_projection.h"
 
+#include "model/contact/posed_collider.h"
 #include "model/force/diagnostics.h"
 #include "scene/force_keys.h"
 

@@ -1,8 +1,6 @@
 /* Adjacency of the triangles of surfaces, and the weights of their vertices. */
 #include "model/contact/narrow_phase/feature_weights.h"
 
-#include "base/vector.h"
-
 #include <math.h>
 #include <string.h>
 

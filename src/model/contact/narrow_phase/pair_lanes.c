@@ -17,7 +17,6 @@
  * factors that the matrix has stored. */
 #include "model/contact/narrow_phase/pair_lanes.h"
 
-#include "base/vector.h"
 #include "model/contact/friction_chord.h"
 #include "scene/contact_keys.h"
 

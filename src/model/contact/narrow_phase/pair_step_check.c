@@ -7,7 +7,6 @@
 #include "model/contact/narrow_phase/contact_pairs.h"
 
 #include "base/pool.h"
-#include "base/vector.h"
 #include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/pair_contact.h"
 #include "model/contact/step_check.h"
