@@ -66,5 +66,23 @@ sed -n '/^# EXIT STATUS/,/^# ENV/p' "$root/man/clothsim.1.scd" |
     >"$work/b"
 same "exit codes"
 
+# formats of exports, in the order of the program: --help, clothsim-run(1), clothsim-files(5)
+printf '{"bodies": [{"cloth": {"grid": [2, 2]}, "mass": {"total": 1}}]}' >"$work/scene.json"
+"$program" run "$work/scene.json" --export none 2>&1 |
+    sed -n 's/.*one or more of \(.*\), separated.*/\1/p' | tr -d ',' | tr ' ' '\n' >"$work/formats"
+for page in help run.1 files.5; do
+    if [ $page = help ]; then
+        "$program" run --help
+    else
+        cat "$root/man/clothsim-$page.scd"
+    fi >"$work/page"
+    sed 's/.*/& is named/' "$work/formats" >"$work/a"
+    while read -r format; do
+        ! grep -qw -- "$format" "$work/page" || echo "$format is named"
+    done <"$work/formats" >"$work/b"
+    [ -s "$work/a" ] || echo "no format" >"$work/a"
+    same "formats of --export in $page"
+done
+
 echo "1..$n"
 exit $failed

@@ -70,7 +70,7 @@ enum cs_status cs_export_open(struct cs_export *export,
         const struct cs_export_writer *writer = cs_export_writers[k];
         if (settings->formats & 1u << k)
             export->states[k] = cs_arena_alloc(&export->arena, writer->size, error);
-        CS_ASSERT(writer->add && writer->size);
+        CS_ASSERT(writer->add);
         if (export->states[k] && writer->open)
             writer->open(export->states[k], &export->source, &export->arena, error);
     }

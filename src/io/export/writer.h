@@ -85,7 +85,7 @@ enum cs_status cs_export_mesh_of_bodies(struct cs_export_mesh *mesh,
                                         struct cs_error *error);
 
 /* Makes the mesh of the visible colliders: meshes as they are, planes and floors as the square
- * that is drawn, spheres, boxes and capsules with points on their surface. Empty if no collider
+ * that is drawn, other shapes with points on their surface. Empty if no collider
  * is visible. */
 enum cs_status cs_export_mesh_of_colliders(struct cs_export_mesh *mesh,
                                            const struct cs_system *system,
@@ -151,7 +151,7 @@ struct cs_export_writer {
     const char *ending;       /* of the files BODIES_00012.ENDING of samples; NULL: none */
     const char *cache_ending; /* of the files BODIES.ENDING; NULL: none */
     const char *files[2];     /* others; NULL: none */
-    size_t size;              /* bytes of its state, which begins zeroed and closed */
+    size_t size;              /* bytes of its state, which begins zeroed and closed; 0: none */
 
     /* Allocates what it needs, and opens files that grow. */
     enum cs_status (*open)(void *state, const struct cs_export_source *source,
