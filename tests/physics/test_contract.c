@@ -1,10 +1,10 @@
 /* Every force of the list keeps what its bits and calls promise, whatever it is.
  *
  * The list is walked: a new force is tested here without a word more, if its number is a key of
- * `forces` that it names in its `ramps`; else the scene below must make it act. Each force is
- * put into a system alone, on a cloth that is pulled, sheared and perturbed. Central
- * differences with a step of 1e-6: truncation is near 1e-11 and rounding near 1e-9 of the
- * largest entry. */
+ * `forces` that it names in its `ramps`; else the scene of contract_fixture.h must make it act.
+ * Each force is put into a system alone, on a cloth that is pulled, sheared and perturbed.
+ * Central differences with a step of 1e-6: truncation is near 1e-11 and rounding near 1e-9 of
+ * the largest entry. */
 #include "contract_fixture.h"
 #include "scene/event_key.h"
 
@@ -62,8 +62,8 @@ TEST(every_force_acts_here) {
         uint32_t t = 0;
         while (t < cloth.system->n_terms && cloth.system->terms[t] != cs_terms[k])
             t++;
-        ck_assert_msg(t < cloth.system->n_terms, "%s is not in this test's scene",
-                      cs_terms[k]->name);
+        ck_assert_msg(t < cloth.system->n_terms,
+                      "%s does not act in the scene of contract_fixture.h", cs_terms[k]->name);
     }
     fixture_close(&cloth);
 }

@@ -21,6 +21,20 @@ static struct cs_collider colliders[] = {
 };
 enum { SPHERE, PLANE, FLOOR, BOX, CAPSULE, ROUND, N_COLLIDERS };
 
+/* Asserts that a collider of every shape stands above, but of meshes, which have no distance.
+ */
+static inline void check_shapes(void) {
+#define X(name, keys, text)                                                                    \
+    {                                                                                          \
+        bool found = cs_shape_##name.bounds == CS_BOUNDS_MESH;                                 \
+        for (int k = 0; k < N_COLLIDERS; k++)                                                  \
+            found |= colliders[k].name.present;                                                \
+        ck_assert_msg(found, "add a collider to shapes.h: " #name);                            \
+    }
+    CS_SHAPE_LIST(X)
+#undef X
+}
+
 static struct cs_scene scene = {.colliders = {colliders, N_COLLIDERS}};
 static struct cs_system at_rest = {.scene = &scene};
 

@@ -5,6 +5,10 @@
 
 #include <math.h>
 
+TEST(every_shape_is_in_shapes_h) {
+    check_shapes();
+}
+
 /* the smallest distance from points of the core on a grid of 61 x 61 x 61, less the radius */
 static double sampled(const struct cs_posed_collider *of, const double p[3]) {
     double least = HUGE_VAL;
@@ -240,10 +244,10 @@ TEST(hessian_has_no_jump) {
  * billionth from the reach. */
 TEST(what_is_near_is_told_from_the_rest) {
     static const double reaches[] = {0, 0.01, 0.2};
-    bool missed = false, idle = false;
     for (uint32_t k = 0; k < N_COLLIDERS; k++) {
         struct cs_posed_collider of;
         uint64_t seed = 17;
+        bool missed = false, idle = false;
         cs_posed_collider_at(&at_rest, k, 0, &of);
         for (int trial = 0; trial < 30000; trial++) {
             const double reach = reaches[trial % 3];
@@ -255,8 +259,9 @@ TEST(what_is_near_is_told_from_the_rest) {
                       (d <= reach || cs_posed_collider_smooth_distance(&of, p, n, h) <= reach);
             idle |= near && d > reach + 3e-9;
         }
+        ck_assert_msg(!missed, "collider %u of shapes.h: a point within reach is not near", k);
+        ck_assert_msg(!idle, "collider %u of shapes.h: a point out of reach is near", k);
     }
-    ck_assert(!missed && !idle);
 }
 
 /* Lines against the least distance of 4001 points on them: it lies within the spacing times the
