@@ -1,4 +1,5 @@
-/* frame_writer.h - writes numbered frames, on a worker thread if a core is free. */
+/* frame_writer.h - writes numbered frames, on a worker thread if a core is free. It owns the
+ * pixels of all pictures of a run: the caller borrows an image and submits it. */
 #ifndef CS_FRAME_WRITER_H
 #define CS_FRAME_WRITER_H
 

@@ -1,4 +1,5 @@
-/* mesh_mend.h - mends a mesh of a file to a surface: an oriented manifold with boundary. */
+/* mesh_mend.h - mends a mesh of a file to a surface, an oriented manifold with boundary: welds
+ * doubled vertices, turns and removes faces; and cuts polygons into triangles. */
 #ifndef CS_MESH_MEND_H
 #define CS_MESH_MEND_H
 

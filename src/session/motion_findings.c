@@ -1,6 +1,6 @@
-/* Finds colliders and held particles that go through each other: goes through all events of a
- * scene without forces. Passed over are colliders that are meshes, and particles that have been
- * free. */
+/* Finds colliders and held particles that go through each other, by going through all events of
+ * a scene without forces. Passed over are colliders that are meshes, and particles that have
+ * been free. */
 #include "session/scene_findings.h"
 
 #include "base/vec3.h"

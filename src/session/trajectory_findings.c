@@ -1,6 +1,6 @@
-/* Finds mistakes in what is prescribed, which is known before a run: particles that pins hold,
- * grabs and moves. Only what is certain is reported. Passed over are colliders that are
- * meshes, and particles that have been free. */
+/* Finds mistakes in pins, grabs, seams and moves, whose motion is known before a run; passages
+ * through colliders are in motion_findings.c. Only what is certain is reported. Passed over are
+ * colliders that are meshes, and particles that have been free. */
 #include "session/scene_findings.h"
 
 #include "base/vec3.h"

@@ -1,5 +1,5 @@
 /* stability_verdict.h - sampled runs and their verdicts: the energy monitor's, and for
- * sound runs a comparison with a trusted run of the same scene (stability_state.h). */
+ * sound runs a comparison with a trusted run of the same scene. */
 #ifndef CS_STABILITY_VERDICT_H
 #define CS_STABILITY_VERDICT_H
 

@@ -1,4 +1,5 @@
-/* The analytic derivatives of every force term are those of the force.
+/* The derivatives of cloth, by the parts that methods choose (stretch, shear, bend, damping,
+ * drag, wind) and with both kinds of dampers and units. Forces of the list: test_contract.c.
  *
  * Central differences with a step of 1e-6 on a cloth that is pulled, sheared and stirred, so
  * that no spring is at rest length, where a wrong transverse term would go unseen. Truncation

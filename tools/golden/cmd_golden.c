@@ -1,4 +1,5 @@
-/* clothsim golden: recomputes golden hashes and images, and reports differences.
+/* clothsim golden: recomputes golden hashes and images, and reports differences, or with
+ * --accept writes the new ones.
  *
  *   options -> cs_golden_check: per row a run, its hash or picture, a verdict -> counts */
 #include "base/install_paths.h"

@@ -1,4 +1,5 @@
-/* Holds the list of a run's outputs and walks it. */
+/* Holds the list of the outputs that --out, --export, --hash and others ask for, and walks it.
+ */
 #include "cli/run/job_state.h"
 
 #include "base/file.h"

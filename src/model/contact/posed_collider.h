@@ -105,10 +105,11 @@ static inline bool cs_posed_collider_is_shifted(const struct cs_posed_collider *
  * flat faces of boxes. At the ends of a capsule's axis and at the edges of a box the nearest
  * point of the core moves from one feature to the next, by the quintic of scene/shape_core.h.
  * It does so within a band of half the radius to both sides. The distance is there too large by
- * at most 0.005 of the radius on an edge and 0.01 on a corner. gradient  of that function; its
- * length is 1 where the distance is exact, never 0 hessian   1/m, of that function: xx, xy, xz,
- * yy, yz, zz; 0 where n points up by default Inside the core of a box it goes on as the
- * distance does, with the same bend where the nearest face changes. */
+ * at most 0.005 of the radius on an edge and 0.01 on a corner. Inside the core of a box it goes
+ * on as the distance does, with the same bend where the nearest face changes.
+ *
+ * gradient  of that function; its length is 1 where the distance is exact, never 0
+ * hessian   of that function in 1/m: xx, xy, xz, yy, yz, zz; 0 where n points up by default */
 static inline double cs_posed_collider_smooth_distance(const struct cs_posed_collider *collider,
                                                        const double p[3], double gradient[3],
                                                        double hessian[6]) {

@@ -2,7 +2,8 @@
  *
  * It is a struct cs_term in a file of its own, term_NAME.c, and a line in CS_TERM_LIST of
  * terms.h. The plan, the linear solver, the bounds, the energies and the ledger walk that list
- * and know no force by name. A unit test checks each term against its part bits. */
+ * and know no force by name. tests/physics/test_contract.c checks each against its part bits.
+ */
 #ifndef CS_TERM_H
 #define CS_TERM_H
 
@@ -75,8 +76,9 @@ struct cs_term {
      * df/dx, at the particles [begin, end). */
     void (*add_scalar)(const struct cs_system *system, const struct cs_matrix *matrix,
                        size_t begin, size_t end, double *diagonal);
-    /* A symmetric 3x3 block at each particle: blocks (6,n) likewise. With matrix->psd no block
-     * may have a negative eigenvalue. */
+    /* A symmetric 3x3 block at each particle: blocks (6,n) likewise, entries as cs_sym3_row of
+     * base/vec3.h has them. With matrix->psd no block may have a negative eigenvalue. Needs
+     * add_approach too. */
     void (*add_blocks)(const struct cs_system *system, const struct cs_matrix *matrix,
                        size_t begin, size_t end, double *blocks);
     /* For a force with entries between arbitrary particles, beside its diagonal blocks. Finds
@@ -89,8 +91,8 @@ struct cs_term {
                            bool kept);
     /* y += the stored entries times p, without the diagonal blocks. */
     void (*add_matrix_product)(const struct cs_system *system, const double *p, double *y);
-    /* With add_blocks, for methods that are linear in a step. y (3,n) += ck df/dx, just as the
-     * matrix kept last has it, times the velocities of the matrix's state relative to the
+    /* Set if add_blocks is, for methods that are linear in a step. y (3,n) += ck df/dx, just as
+     * the matrix kept last has it, times the velocities of the matrix's state relative to the
      * surfaces that the force comes from: those of obstacles that move. With all threads. */
     void (*add_approach)(const struct cs_system *system, const struct cs_matrix *matrix,
                          double *y);

@@ -1,5 +1,6 @@
-/* step_limit.h - admissible fraction of a step with respect to unresolved contact and to
- * surface crossings. */
+/* step_limit.h - where contact by force cuts the time step: the admissible fraction of a step
+ * with respect to unresolved contact and to surface crossings. With contact by projection see
+ * post_step/step_bound.c. */
 #ifndef CS_STEP_LIMIT_H
 #define CS_STEP_LIMIT_H
 
