@@ -191,13 +191,16 @@ int main(int argc, char **argv) {
     if (fault)
         cs_print_message(fault);
 #endif
-    /* a file that grew too long comes back from the write as an error, and is reported */
+    /* a file that grew too long, and a reader that went away, come back from the write as an
+     * error, and are reported; the programs started in place of this one inherit it */
     signal(SIGXFSZ, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
     if (!error.status && !dispatch(argc, argv, &error) && (fflush(stdout) || ferror(stdout)))
         cs_fail(&error, CS_ERR_FILE, "cannot write to standard output");
     /* what was printed before the failure stands before it */
     fflush(stdout);
-    if (error.status)
+    // none of a program that was started and has told it itself
+    if (*error.message)
         cs_print_message(error.message);
     return error.status == CS_ERR_INTERRUPT ? cs_interrupt_exit_code()
                                             : cs_status_exit_code(error.status);

@@ -31,6 +31,8 @@ struct process {
 
 /* Times for the hello and for the end of a program, which is looked at after each nap. */
 enum { HELLO_MS = 60000, NAP_NS = 5000000, NAPS = 200 };
+/* Of the hello, after which it is said what is waited for. */
+enum { SILENT_MS = 1500 };
 
 /* The child after fork: only calls that are safe there. Its standard output is our standard
  * error, since ours has results; the signals of a terminal reach us alone; it ends with us. */
@@ -123,7 +125,15 @@ static void end_process(struct process *process, struct cs_text *out) {
 static int receive_hello(const struct process *process, struct cs_program_message *message) {
     struct pollfd socket = {.fd = process->socket, .events = POLLIN};
     errno = 0;
-    const int ready = poll(&socket, 1, HELLO_MS);
+    int ready = poll(&socket, 1, SILENT_MS);
+    if (ready == 0) {
+        struct cs_text line = {0};
+        cs_text_add_plain(&line, process->program->key);
+        fprintf(stderr, "clothsim: \"%.200s\" is silent: waiting %d s for its description\n",
+                cs_text_get(&line), HELLO_MS / 1000);
+        cs_text_finish(&line);
+        ready = poll(&socket, 1, HELLO_MS - SILENT_MS);
+    }
     // a message of this size comes whole
     return ready <= 0 ? -1 : recv(socket.fd, message, sizeof *message, 0) == sizeof *message;
 }

@@ -280,6 +280,10 @@ def check_faults():
             f"program:{PYTHON} hangs.py")
     refused("one that is no client", 5, "ended with code 0 before it described itself", "run",
             "scene.json", "-i", "program:true")
+    silent = subprocess.run([program, "run", "scene.json", "-i", "program:sleep 3"], text=True,
+                            stderr=subprocess.PIPE)
+    told("a silent one is told", silent.returncode == 5 and silent.stderr.startswith(
+        'clothsim: "program:sleep 3" is silent: waiting 60 s for its description\n'), silent.stderr)
     refused("one that is not there", 5, "cannot be started: No such file or directory", "run",
             "scene.json", "-i", "program:./missing with words")
     wrong = "import os; os.write(3, bytes([86]) + bytes(7) + bytes([9]) + bytes(39)); os.read(3, 1)"

@@ -113,15 +113,14 @@ static void take_point(struct side *side, bool states, struct cs_error *error) {
         side->trail.record.step = 0;
 }
 
-/* The status of an end that is not the comparison's own: lack of memory, or of a file. */
-static enum cs_status status_of(int code, enum cs_status other) {
-    return code == cs_status_exit_code(CS_ERR_MEMORY) ? CS_ERR_MEMORY
-           : code == cs_status_exit_code(CS_ERR_FILE) ? CS_ERR_FILE
-                                                      : other;
+/* The status of an exit code of clothsim's failures, which it has told; else CS_OK. */
+static enum cs_status status_of(int code) {
+    const enum cs_status status = code < CS_ERR_USAGE ? CS_OK : (enum cs_status)code;
+    return cs_status_exit_code(status) == code ? status : CS_OK;
 }
 
-/* Closes a program. One that ended by itself has reported why; one that never wrote a trace is
- * no clothsim. */
+/* Closes a program. One that ended by itself has reported why: without a trace there is nothing
+ * to add, unless it is no clothsim. */
 static void end(struct side *side, struct cs_bisect_difference *found, int k,
                 struct cs_error *error) {
     const bool wrote = side->trail.values;
@@ -129,11 +128,13 @@ static void end(struct side *side, struct cs_bisect_difference *found, int k,
     if (!side->process.pid)
         return;
     const int code = cs_subprocess_close(&side->process);
-    if (!wrote && !error->status)
-        cs_fail(error, status_of(code, CS_ERR_FILE), "%s: %s wrote no trace, exit code %d",
-                side->asked->name, side->asked->arguments[0], code);
+    if (!wrote && !error->status && status_of(code))
+        cs_fail(error, status_of(code), "%s", "");
+    else if (!wrote && !error->status)
+        cs_fail(error, CS_ERR_FILE, "%s: %s wrote no trace, exit code %d", side->asked->name,
+                side->asked->arguments[0], code);
     else if (ended && code != 0 && !found->exists)
-        cs_fail(error, status_of(code, CS_ERR_MODULE),
+        cs_fail(error, status_of(code) ? status_of(code) : CS_ERR_MODULE,
                 "%s ended with exit code %d after frame %" PRIu32
                 ": both are equal up to there",
                 side->asked->name, code, side->trail.record.frame);
@@ -149,19 +150,21 @@ static enum cs_status run_both(const struct cs_bisect_settings *settings, const 
                                struct cs_error *error) {
     struct side sides[2] = {{0}};
     const bool states = found == &bisect->state_difference;
-    for (int k = 0; k < 2 && !error->status; k++)
-        start(sides + k, settings->sides + k, trace, error);
-    while (!error->status && !found->exists) {
-        take_point(&sides[0], states, error);
-        take_point(&sides[1], states, error);
-        if (error->status || (!sides[0].there && !sides[1].there))
-            break;
+    // B starts once A has begun: what both would refuse is said once
+    for (int k = 0; k < 2 && !error->status && (k == 0 || sides[0].there); k++)
+        if (!start(sides + k, settings->sides + k, trace, error))
+            take_point(sides + k, states, error);
+    while (!error->status && (sides[0].there || sides[1].there)) {
         compare(sides, settings->tolerance, found);
-        if (states && !found->exists)
+        if (found->exists)
+            break;
+        if (states)
             bisect->n_equal_frames = found->frame;
         if (settings->stop && *settings->stop)
             cs_fail(error, CS_ERR_INTERRUPT, "interrupted; equal up to frame %" PRIu32,
                     bisect->n_equal_frames);
+        take_point(&sides[0], states, error);
+        take_point(&sides[1], states, error);
     }
     end(&sides[0], found, 0, error);
     end(&sides[1], found, 1, error);

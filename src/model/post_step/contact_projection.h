@@ -172,7 +172,8 @@ struct cs_initial_penetration {
  * *inside reports it. With contact.untangle they stay, and the run moves them. contact.start
  * "allow" leaves all as it is, but for crossings.
  *
- * CS_ERR_SCENE, with particle, collider and depth, if contact.start refuses; if colliders leave
+ * CS_ERR_SCENE, with particle, collider and depth, if contact.start refuses; if contact would
+ * throw what "allow" leaves faster than sound; if colliders leave
  * no way out; if a contact sample (model/contact/contact_samples.h) is then still inside; if
  * edges of bodies with contact pierce triangles, unless crossings are ignored; or as
  * cs_initial_layer_resolve. The state may then have been changed in part. */

@@ -31,6 +31,8 @@ enum { PASSES = 16 };
 /* Times that the layer in front of colliders is made 1.5 times as thick where the surface
  * between particles would still be inside; by trial. */
 enum { LAYERS = 8 };
+/* m/s at which contact may throw what "allow" lets start inside: sound in air. */
+enum { SPEED_MAX = 340 };
 
 /* Moves out of colliders. With contact.untangle particles keep their place in `start` (3,n)
  * until they are led away, and keep `layer` times the distance at which a collider carries
@@ -339,15 +341,33 @@ static enum cs_status untangle(struct cs_system *system,
     return error->status;
 }
 
+/* Refuses what contact.start "allow" lets in, if no method can follow it: contact would throw
+ * the bodies apart faster than sound. */
+static enum cs_status check_thrown(const struct cs_system *system, struct cs_error *error) {
+    const size_t n = system->view.n;
+    double mass = 0;
+    for (size_t i = 0; i < n; i++)
+        mass += system->inv_mass[i] > 0 ? system->mass[i] : 0;
+    const double energy =
+        cs_diagnostics_energy(system, 0, system->state, system->state + 3 * n).other;
+    return energy > 0.5 * mass * SPEED_MAX * SPEED_MAX
+               ? cs_fail(error, CS_ERR_SCENE,
+                         "%s: contact.start \"allow\": contact stores %.3g J at the start and "
+                         "throws bodies apart at %.3g m/s, expected at most %d m/s; move them "
+                         "outside, or set contact.start to \"move-out\"",
+                         system->scene->path, energy, sqrt(2 * energy / mass), SPEED_MAX)
+               : CS_OK;
+}
+
 enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
                                               struct cs_initial_penetration *penetration,
                                               struct cs_error *error) {
     *penetration = (struct cs_initial_penetration){.seconds = system->scene->contact->untangle};
     if (penetration->seconds > 0 && untangle(system, penetration, error))
         return error->status;
-    return system->scene->contact->start == CS_CONTACT_START_ALLOW
-               ? check_crossings(system, error)
-               : resolve(system, penetration, error);
+    if (system->scene->contact->start != CS_CONTACT_START_ALLOW)
+        return resolve(system, penetration, error);
+    return check_crossings(system, error) ? error->status : check_thrown(system, error);
 }
 
 void cs_initial_penetration_print(const struct cs_initial_penetration *penetration,
