@@ -4,6 +4,7 @@
 #include "base/vec3.h"
 #include "draw/glyph.h"
 #include "draw/matrix.h"
+#include "scene/body_keys.h"
 #include "scene/collider_keys.h"
 #include "scene/force_keys.h"
 
@@ -299,15 +300,62 @@ static uint32_t grow_by_moves(const struct cs_system *system,
     return farthest;
 }
 
-/* Thinned particles of the start that visible colliders hide from the fit's camera. */
+/* Moves `point` by the largest part of `way`, to 1e-6, that meets no collider of the start.
+ * Returns false if nothing stops it. */
+static bool fall(const struct cs_system *system, const struct cs_posed_collider *colliders,
+                 const double way[3], double point[3]) {
+    double low = 0, high = 2;
+    // all of the way first, then halves of what is left
+    while (high - low > 1e-6 && low < 1) {
+        const double part = 0.5 * (low + high);
+        bool meets = false;
+        for (uint32_t k = 0; k < system->scene->colliders.n && !meets; k++)
+            meets = cs_posed_collider_hits_segment(colliders + k, point, way, part);
+        *(meets ? &high : &low) = part;
+    }
+    for (int i = 0; i < 3; i++)
+        point[i] += low * way[i];
+    return low < 1;
+}
+
+/* True if a body without pins falls to where visible colliders hide its middle from the eye. */
+static bool lands_hidden(const struct cs_system *system,
+                         const struct cs_posed_collider *colliders, uint32_t body,
+                         double height, const double eye[3]) {
+    static const double none[3] = {0};
+    const struct cs_body_range *range = system->bodies + body;
+    const double *g = system->scene->forces->gravity, length = cs_vec3_length(g);
+    double way[3], point[3] = {0};
+    for (uint32_t k = 0; k < range->count; k++)
+        for (size_t i = 0; i < 3; i++)
+            point[i] += system->view.start[i * system->view.n + range->first + k];
+    for (int i = 0; i < 3; i++) {
+        point[i] /= range->count;
+        way[i] = height / length * g[i];
+    }
+    if (!(length > 0) || cs_scene_bodies(system->scene)[body].pins.n > 0 ||
+        !fall(system, colliders, way, point))
+        return false;
+    for (uint32_t k = 0; k < system->scene->colliders.n; k++)
+        if (colliders[k].collider->visible && hides(colliders + k, none, eye, point))
+            return true;
+    return false;
+}
+
+/* Thinned particles that visible colliders hide from the fit's camera, at the start; all those
+ * of a body once more if it falls to where its middle is hidden. height: m that bodies fall. */
 static uint32_t count_hidden(const struct cs_camera_fit *fit, const struct cs_system *system,
-                             const struct cs_posed_collider *colliders) {
+                             const struct cs_posed_collider *colliders, double height) {
+    const uint32_t n = system->scene->bodies.n;
     struct cs_camera camera;
     uint32_t hidden = 0;
     cs_camera_fit_picture(fit, colliders, 0, NULL, &camera);
     for (uint32_t k = 0; k < system->scene->colliders.n; k++)
         if (colliders[k].collider->visible)
             hidden += most_behind(system, colliders + k, k, camera.eye);
+    for (uint32_t b = 0; b < n; b++)
+        if (lands_hidden(system, colliders, b, height, camera.eye))
+            hidden += MOST_POINTS / n + 1;
     return hidden;
 }
 
@@ -342,8 +390,10 @@ void cs_camera_fit_start(struct cs_camera_fit *fit, const struct cs_system *syst
         tried.follows = follows;
         if (follows > 0)
             memcpy(tried.follows_from, colliders[follows - 1].centre, sizeof low);
-        set_corners(&tried, depth_below(scene, low, high), low, high);
-        const uint32_t hidden = count_hidden(&tried, system, colliders);
+        const double depth = depth_below(scene, low, high);
+        set_corners(&tried, depth, low, high);
+        const uint32_t hidden =
+            count_hidden(&tried, system, colliders, 1.01 * (high[1] - low[1] + depth));
         // a direction further down the list must show clearly more
         if (k == 0 || hidden + MOST_POINTS / 50 < least) {
             least = hidden;

@@ -65,7 +65,8 @@ void cs_box_grow_by_collider(double low[3], double high[3],
  * scene alone: neither the number of frames nor where a run is resumed changes a picture.
  * Where the scene leaves eye and target at their defaults, five more directions are tried in
  * turn: one is taken if fewer of the start's particles, by 2 % at least, are hidden by
- * colliders (scene->colliders.n, at the start), there or moved to any point of their paths. */
+ * colliders (scene->colliders.n, at the start), there or moved to any point of their paths. A
+ * body counts once more where the middle of it, fallen onto colliders, is hidden: in a bowl. */
 void cs_camera_fit_start(struct cs_camera_fit *fit, const struct cs_system *system,
                          const struct cs_posed_collider *colliders, const double low[3],
                          const double high[3]);

@@ -74,7 +74,7 @@ TEST(a_camera_follows_its_path) {
 }
 
 /* Bodies that fall without end, slide off a table, are blown away, squeezed by plates that come
- * and go, or hang behind a wall; without a word of the camera. */
+ * and go, hang behind a wall, or fall behind one; without a word of the camera. */
 #define CLOTH    "\"bodies\": [{\"cloth\": {\"grid\": [8, 8], "
 #define PLATE(x) "{\"box\": {\"centre\": [" x ", 0, 0], \"size\": [0.1, 1, 1]}}"
 #define SQUEEZE(k, x)                                                                          \
@@ -95,7 +95,12 @@ static const char *const unframed[] = {
         "0.7") "], "
                "\"events\": [" SQUEEZE("0", "0.3") ", " SQUEEZE("1", "-0.3") "]}",
     "{" CLOTH "\"size\": [0.6, 0.6]}, \"mass\": {\"total\": 0.2}, \"pins\": [\"top\"]}], "
-    "\"colliders\": [{\"box\": {\"centre\": [0.2, 0, 0.8], \"size\": [1.4, 1.4, 0.1]}}]}"};
+    "\"colliders\": [{\"box\": {\"centre\": [0.2, 0, 0.8], \"size\": [1.4, 1.4, 0.1]}}]}",
+    "{" CLOTH
+    "\"size\": [0.6, 0.6], \"start\": \"flat\", \"place\": {\"translate\": [0, 1, 0]}}, "
+    "\"mass\": {\"total\": 0.2}}], \"colliders\": [{\"box\": {\"centre\": [0, 0.4, 0.6], "
+    "\"size\": [1.4, 0.8, 0.1]}}, {\"box\": {\"centre\": [0, 0, 0], \"size\": [1.2, 0.1, "
+    "1]}}]}"};
 enum { UNFRAMED = sizeof unframed / sizeof *unframed, SQUEEZED = 3, SECOND = 60 };
 
 /* True if the sides of a collider's box, without its turn, are met by the line from eye to p.
