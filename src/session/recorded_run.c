@@ -236,6 +236,11 @@ void cs_crossing_stats_print(const struct cs_crossing_stats *stats,
                 (unsigned long long)stats->last_count, (unsigned long long)stats->max_count,
                 stats->max_time, stats->first_time);
     cs_crossings_print(system, &stats->first, out);
+    const struct cs_surfaces *at = system->surfaces;
+    const uint32_t b = cs_surfaces_body(at->first_edge, at->n_bodies, stats->first.edge);
+    if (b < system->scene->bodies.n && !cs_scene_bodies(system->scene)[b].self_contact &&
+        b == cs_surfaces_body(at->first_triangle, at->n_bodies, stats->first.triangle))
+        cs_text_add(out, "; bodies[%u].self_contact true keeps the body off itself", b);
 }
 
 /* Measures the distance of one recorded run from another. */

@@ -104,10 +104,10 @@ static const struct {
     {"", "frame_time", "time.fps"}, {"", "frame_rate", "time.fps"},
     {"", "end_time", "clothsim run --time"}, {"", "duration", "clothsim run --time"},
     {"", "end_frame", "clothsim run --frames"}, {"", "frames", "clothsim run --frames"},
-    {"", "output", "clothsim run --out"}, {"", "position", "eye"}, {"", "position", "centre"},
+    {"", "output", "clothsim run --out"}, {"bodies", "position", "place.translate"}, {"", "position", "eye"}, {"", "position", "centre"},
     {"", "position", "place.translate"}, {"", "pos", "place.translate"}, {"", "translation", "translate"},
     {"", "rotation", "rotate"}, {"", "orientation", "rotate"}, {"", "quat", "place.rotate"},
-    {"", "transform", "mesh.place"}, {"", "euler", "place.rotate"}, {"", "look_at", "target"},
+    {"", "transform", "place"}, {"", "euler", "place.rotate"}, {"", "look_at", "target"},
     {"", "width", "size"}, {"", "height", "size"}, {"", "resolution", "size"}, {"", "color", "colour"},
     {"", "intensity", "strength"}, {"", "obj", "mesh.file"}, {"", "velocity", "velocity"},
     // clang-format on
