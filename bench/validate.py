@@ -375,6 +375,8 @@ ROWS = {
 
 
 def main():
+    if len(sys.argv) < 2 or not Path(sys.argv[1]).is_file():
+        sys.exit("usage: validate.py CLOTHSIM [ROW ...]")
     names = sys.argv[2:] or list(ROWS)
     unknown = [name for name in names if name not in ROWS]
     if unknown:

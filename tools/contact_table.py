@@ -159,6 +159,8 @@ def row(program, method):
 
 
 def main():
+    if len(sys.argv) < 2 or not Path(sys.argv[1]).is_file():
+        sys.exit("usage: contact_table.py PROGRAM [METHOD ...]")
     program, methods = sys.argv[1], sys.argv[2:]
     if not methods:
         listed = subprocess.run([program, "integrators"], capture_output=True, text=True, check=True)

@@ -113,6 +113,8 @@ def fitted(program, folder, scene, method, reference):
 
 
 def main():
+    if len(sys.argv) < 2 or not Path(sys.argv[1]).is_file():
+        sys.exit("usage: fitted_orders.py PROGRAM [METHOD ...]")
     program = sys.argv[1]
     methods = claims(program)
     print("| method | claimed | " + " | ".join(SCENES) + " |\n|" + " --- |" * (2 + len(SCENES)))

@@ -10,6 +10,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+from pathlib import Path
 
 import numpy as np
 
@@ -98,6 +99,8 @@ def pose(places, share, phase):
 
 
 def main():
+    if len(sys.argv) != 2 or not Path(sys.argv[1]).is_file():
+        sys.exit("usage: make_walk.py PROGRAM")
     places = bear(sys.argv[1])
     share = weights(places)
     with open("scenes/bear_walk.pc2", "wb") as out:

@@ -133,6 +133,9 @@ def is_beyond_horizon(program, folder, scene, size):
 
 
 def main():
+    if len(sys.argv) != 4 or not Path(sys.argv[1]).is_file() or \
+            not (sys.argv[2] + sys.argv[3]).isdigit():
+        sys.exit("usage: random_scenes.py PROGRAM SCENES EACH, a program and two counts")
     program, scenes, each = str(Path(sys.argv[1]).resolve()), int(sys.argv[2]), int(sys.argv[3])
     listed = subprocess.run([program, "integrators"], capture_output=True, text=True).stdout
     others = [line.split()[0] for line in listed.splitlines() if line[:1].strip()]

@@ -157,7 +157,7 @@ static enum cs_status print_counts(const struct options *options, struct cs_erro
     else if (!options->quiet)
         cs_text_add(&out, "%u of %u cells are in %s/sweep.csv, %u of them from earlier runs\n",
                     counts->done, counts->cells, sweep->folder, counts->reused);
-    if (counts->refused && !options->quiet)
+    if (counts->refused && counts->refused < counts->cells && !options->quiet)
         cs_text_add(&out, "warning: %u of them were refused; the first message: %s\n",
                     counts->refused, counts->first_refusal);
     cs_text_add(&out, "%s", cs_text_get(&sweep->failed));
@@ -192,6 +192,9 @@ static enum cs_status run_sweep(struct cs_args *args, struct cs_error *error) {
     if (counts->done || (options->status && !error->status))
         print_counts(options, error->status ? &unseen : error);
     cs_text_finish(&sweep->failed);
+    if (counts->refused && counts->refused == counts->cells)
+        cs_fail(error, CS_ERR_SCENE, "all %u cells were refused; the first message: %.800s",
+                counts->cells, counts->first_refusal);
     const uint32_t bad = counts->refused + counts->failed + counts->blown_up;
     if (options->strict && bad)
         cs_fail(error, CS_ERR_UNSTABLE, "%u of %u cells blew up, were refused or failed", bad,
