@@ -8,7 +8,9 @@
 #include "scene/collider_keys.h"
 #include "scene/force_keys.h"
 
-enum { MOST_POINTS = 200 }; // particles whose view is tested
+/* Particles whose view is tested, and by how many a direction is clearly worse; bodies whose
+ * fall is tested, in parts. */
+enum { MOST_POINTS = 200, MOST_HIDDEN = MOST_POINTS / 50, MOST_BODIES = 8, FALL_STEPS = 40 };
 
 void cs_camera_fit_begin(struct cs_camera_fit *fit, const struct cs_camera *camera,
                          const struct cs_render *render) {
@@ -181,25 +183,18 @@ static void set_corners(struct cs_camera_fit *fit, double depth, const double lo
     fit->has_corners = true;
 }
 
-/* True if the collider, moved by `shift`, hides a point from the eye. */
-static bool hides(const struct cs_posed_collider *collider, const double shift[3],
-                  const double eye[3], const double point[3]) {
-    double from[3], way[3];
-    cs_subtract(eye, shift, from);
-    cs_subtract(point, eye, way);
-    return cs_posed_collider_hits_segment(collider, from, way, 1 - 1e-3);
-}
-
 /* Number of thinned particles of the start that a collider hides with this shift. */
 static uint32_t count_behind(const struct cs_system *system,
                              const struct cs_posed_collider *collider, const double shift[3],
                              const double eye[3]) {
     const double *x = system->view.start;
     const size_t n = system->view.n;
+    double from[3], way[3];
     uint32_t hidden = 0;
+    cs_subtract(eye, shift, from);
     for (size_t i = 0; i < n; i += n / MOST_POINTS + 1) {
-        const double point[3] = {x[i], x[n + i], x[2 * n + i]};
-        hidden += hides(collider, shift, eye, point);
+        cs_subtract((double[3]){x[i], x[n + i], x[2 * n + i]}, eye, way);
+        hidden += cs_posed_collider_hits_segment(collider, from, way, 1 - 1e-3);
     }
     return hidden;
 }
@@ -300,52 +295,41 @@ static uint32_t grow_by_moves(const struct cs_system *system,
     return farthest;
 }
 
-/* Moves `point` by the largest part of `way`, to 1e-6, that meets no collider of the start.
- * Returns false if nothing stops it. */
-static bool fall(const struct cs_system *system, const struct cs_posed_collider *colliders,
-                 const double way[3], double point[3]) {
-    double low = 0, high = 2;
-    // all of the way first, then halves of what is left
-    while (high - low > 1e-6 && low < 1) {
-        const double part = 0.5 * (low + high);
-        bool meets = false;
-        for (uint32_t k = 0; k < system->scene->colliders.n && !meets; k++)
-            meets = cs_posed_collider_hits_segment(colliders + k, point, way, part);
-        *(meets ? &high : &low) = part;
-    }
-    for (int i = 0; i < 3; i++)
-        point[i] += low * way[i];
-    return low < 1;
+/* True if a collider, a visible one if so asked, is met on the way. */
+static bool meets(const struct cs_system *system, const struct cs_posed_collider *colliders,
+                  bool visible, const double from[3], const double way[3]) {
+    bool met = false;
+    for (uint32_t k = 0; k < system->scene->colliders.n && !met; k++)
+        met = (!visible || colliders[k].collider->visible) &&
+              cs_posed_collider_hits_segment(colliders + k, from, way, 1 - 1e-3);
+    return met;
 }
 
 /* True if a body without pins falls to where visible colliders hide its middle from the eye. */
-static bool lands_hidden(const struct cs_system *system,
+static bool lands_hidden(const struct cs_camera_fit *fit, const struct cs_system *system,
                          const struct cs_posed_collider *colliders, uint32_t body,
-                         double height, const double eye[3]) {
-    static const double none[3] = {0};
+                         const double eye[3]) {
     const struct cs_body_range *range = system->bodies + body;
-    const double *g = system->scene->forces->gravity, length = cs_vec3_length(g);
+    const double *y =
+        fit->corners + CS_CAMERA_FIT_CORNERS; // y[0]: the lowest, y[2]: the highest
+    const double fall[3] = {0, (y[0] - y[2]) / FALL_STEPS, 0};
     double way[3], point[3] = {0};
-    for (uint32_t k = 0; k < range->count; k++)
-        for (size_t i = 0; i < 3; i++)
-            point[i] += system->view.start[i * system->view.n + range->first + k];
-    for (int i = 0; i < 3; i++) {
-        point[i] /= range->count;
-        way[i] = height / length * g[i];
+    for (size_t k = 0; k < 3 * (size_t)range->count; k++)
+        point[k % 3] +=
+            system->view.start[k % 3 * system->view.n + range->first + k / 3] / range->count;
+    for (int k = 0; k <= FALL_STEPS && !cs_scene_bodies(system->scene)[body].pins.n; k++) {
+        cs_subtract(point, eye, way);
+        if (meets(system, colliders, false, point, fall))
+            return meets(system, colliders, true, eye, way);
+        point[1] += fall[1];
     }
-    if (!(length > 0) || cs_scene_bodies(system->scene)[body].pins.n > 0 ||
-        !fall(system, colliders, way, point))
-        return false;
-    for (uint32_t k = 0; k < system->scene->colliders.n; k++)
-        if (colliders[k].collider->visible && hides(colliders + k, none, eye, point))
-            return true;
     return false;
 }
 
-/* Thinned particles that visible colliders hide from the fit's camera, at the start; all those
- * of a body once more if it falls to where its middle is hidden. height: m that bodies fall. */
+/* Thinned particles of the start that visible colliders hide from the fit's camera; and, for
+ * each of some bodies that fall to where they are hidden, as many as decide. */
 static uint32_t count_hidden(const struct cs_camera_fit *fit, const struct cs_system *system,
-                             const struct cs_posed_collider *colliders, double height) {
+                             const struct cs_posed_collider *colliders) {
     const uint32_t n = system->scene->bodies.n;
     struct cs_camera camera;
     uint32_t hidden = 0;
@@ -353,9 +337,8 @@ static uint32_t count_hidden(const struct cs_camera_fit *fit, const struct cs_sy
     for (uint32_t k = 0; k < system->scene->colliders.n; k++)
         if (colliders[k].collider->visible)
             hidden += most_behind(system, colliders + k, k, camera.eye);
-    for (uint32_t b = 0; b < n; b++)
-        if (lands_hidden(system, colliders, b, height, camera.eye))
-            hidden += MOST_POINTS / n + 1;
+    for (uint32_t b = 0; b < n; b += n / MOST_BODIES + 1)
+        hidden += lands_hidden(fit, system, colliders, b, camera.eye) * (MOST_HIDDEN + 1);
     return hidden;
 }
 
@@ -390,12 +373,10 @@ void cs_camera_fit_start(struct cs_camera_fit *fit, const struct cs_system *syst
         tried.follows = follows;
         if (follows > 0)
             memcpy(tried.follows_from, colliders[follows - 1].centre, sizeof low);
-        const double depth = depth_below(scene, low, high);
-        set_corners(&tried, depth, low, high);
-        const uint32_t hidden =
-            count_hidden(&tried, system, colliders, 1.01 * (high[1] - low[1] + depth));
+        set_corners(&tried, depth_below(scene, low, high), low, high);
+        const uint32_t hidden = count_hidden(&tried, system, colliders);
         // a direction further down the list must show clearly more
-        if (k == 0 || hidden + MOST_POINTS / 50 < least) {
+        if (k == 0 || hidden + MOST_HIDDEN < least) {
             least = hidden;
             *fit = tried;
         }

@@ -27,6 +27,9 @@
 #define STRAIN_WANTED 0.1
 /* Distance from a plane over the size, below which a body is flat. */
 #define FLAT 1e-12
+/* kg/m2 below which a mesh of edges over 0.1 m is taken for one in other units. The lightest
+ * silk has 0.01 kg/m2. */
+#define DENSITY_MIN 1e-3
 
 /* --- stored energy --- */
 
@@ -309,6 +312,15 @@ static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings 
         if (!(mesh->edge > 1e-6 && mesh->edge < 1e4))
             cs_text_add(&out->hints, "bodies[%u].mesh: edges of %.3g m, see units\n", b,
                         mesh->edge);
+        // sqrt(3)/4 edge^2 is the mean triangle's area, about
+        const double density = cs_scene_bodies(scene)[b].mass.total /
+                               (0.433 * mesh->n_triangles * mesh->edge * mesh->edge);
+        if (density > 0 && density < DENSITY_MIN && mesh->edge > 0.1)
+            cs_text_add(
+                &out->hints,
+                "bodies[%u].mesh: edges of %.3g m at %.2g kg/m2, lighter than any cloth: "
+                "is it in centimetres? mesh.units \"cm\"\n",
+                b, mesh->edge, density);
         if (mesh->pieces > 1 && !scene->seams.n)
             cs_text_add(&out->hints,
                         "bodies[%u].mesh.file: %s is in %u pieces that nothing joins\n", b,

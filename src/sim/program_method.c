@@ -29,10 +29,9 @@ struct process {
     size_t bytes;                 /* of the mapping */
 };
 
-/* Times for the hello and for the end of a program, which is looked at after each nap. */
-enum { HELLO_MS = 60000, NAP_NS = 5000000, NAPS = 200 };
-/* Of the hello, after which it is said what is waited for. */
-enum { SILENT_MS = 1500 };
+/* Times for the hello, after the first of which the wait is told, and for the end of a program,
+ * which is looked at after each nap. */
+enum { SILENT_MS = 1500, HELLO_MS = 60000, NAP_NS = 5000000, NAPS = 200 };
 
 /* The child after fork: only calls that are safe there. Its standard output is our standard
  * error, since ours has results; the signals of a terminal reach us alone; it ends with us. */
@@ -127,11 +126,9 @@ static int receive_hello(const struct process *process, struct cs_program_messag
     errno = 0;
     int ready = poll(&socket, 1, SILENT_MS);
     if (ready == 0) {
-        struct cs_text line = {0};
-        cs_text_add_plain(&line, process->program->key);
-        fprintf(stderr, "clothsim: \"%.200s\" is silent: waiting %d s for its description\n",
-                cs_text_get(&line), HELLO_MS / 1000);
-        cs_text_finish(&line);
+        // the key comes from the command line alone
+        fprintf(stderr, "clothsim: \"%.200s\" is silent: it has a minute to describe itself\n",
+                process->program->key);
         ready = poll(&socket, 1, HELLO_MS - SILENT_MS);
     }
     // a message of this size comes whole

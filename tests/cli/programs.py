@@ -283,7 +283,7 @@ def check_faults():
     silent = subprocess.run([program, "run", "scene.json", "-i", "program:sleep 3"], text=True,
                             stderr=subprocess.PIPE)
     told("a silent one is told", silent.returncode == 5 and silent.stderr.startswith(
-        'clothsim: "program:sleep 3" is silent: waiting 60 s for its description\n'), silent.stderr)
+        'clothsim: "program:sleep 3" is silent: it has a minute to describe itself\n'), silent.stderr)
     refused("one that is not there", 5, "cannot be started: No such file or directory", "run",
             "scene.json", "-i", "program:./missing with words")
     wrong = "import os; os.write(3, bytes([86]) + bytes(7) + bytes([9]) + bytes(39)); os.read(3, 1)"

@@ -29,10 +29,9 @@
 /* passes after which a particle counts as caught between colliders; chosen by trial */
 enum { PASSES = 16 };
 /* Times that the layer in front of colliders is made 1.5 times as thick where the surface
- * between particles would still be inside; by trial. */
-enum { LAYERS = 8 };
-/* m/s at which contact may throw what "allow" lets start inside: sound in air. */
-enum { SPEED_MAX = 340 };
+ * between particles would still be inside, by trial; and m/s at which contact may throw what
+ * "allow" lets start inside, the speed of sound in air. */
+enum { LAYERS = 8, SPEED_MAX = 340 };
 
 /* Moves out of colliders. With contact.untangle particles keep their place in `start` (3,n)
  * until they are led away, and keep `layer` times the distance at which a collider carries
@@ -347,16 +346,17 @@ static enum cs_status check_thrown(const struct cs_system *system, struct cs_err
     const size_t n = system->view.n;
     double mass = 0;
     for (size_t i = 0; i < n; i++)
-        mass += system->inv_mass[i] > 0 ? system->mass[i] : 0;
-    const double energy =
-        cs_diagnostics_energy(system, 0, system->state, system->state + 3 * n).other;
-    return energy > 0.5 * mass * SPEED_MAX * SPEED_MAX
-               ? cs_fail(error, CS_ERR_SCENE,
-                         "%s: contact.start \"allow\": contact stores %.3g J at the start and "
-                         "throws bodies apart at %.3g m/s, expected at most %d m/s; move them "
-                         "outside, or set contact.start to \"move-out\"",
-                         system->scene->path, energy, sqrt(2 * energy / mass), SPEED_MAX)
-               : CS_OK;
+        mass += system->mass[i];
+    const double speed =
+        sqrt(2 / mass *
+             cs_diagnostics_energy(system, 0, system->state, system->state + 3 * n).other);
+    if (speed > SPEED_MAX)
+        cs_fail(
+            error, CS_ERR_SCENE,
+            "%s: contact.start \"allow\": contact throws bodies apart at %.3g m/s, expected at "
+            "most %d m/s; move them outside, or set contact.start to \"move-out\"",
+            system->scene->path, speed, SPEED_MAX);
+    return error->status;
 }
 
 enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
