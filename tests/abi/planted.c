@@ -77,7 +77,8 @@ struct planted {
     double *b, *u;   /* (3,n) of IGNORES_FAILURE, faulty_force and heun */
     double *xs, *vs; /* (3,n) of heun: the second stage */
     double *before;  /* (6,n): the state before a step */
-    uint32_t steps;  /* since the restart, of FORGETS_STEPS */
+    uint32_t steps;  /* since the restart, of FORGETS_STEPS and READS_CLOCK */
+    double second;   /* of READS_CLOCK: by the calendar, at the first step */
 };
 
 static const struct cs_option rows[] = {
@@ -241,8 +242,10 @@ static void step(struct planted *self, double t, double h, double *x, double *v)
         x[0] += 1e-12 * runs;
     if (PLANT == FORGETS_STEPS)
         x[n - 1] += 1e-12 * self->steps++;
+    if (PLANT == READS_CLOCK && self->steps++ == 0)
+        self->second = (double)(time(NULL) % 1000);
     if (PLANT == READS_CLOCK)
-        x[n - 1] += 1e-12 * (double)(time(NULL) % 2);
+        x[n - 1] += 1e-12 * self->second;
     if (PLANT == SUMS_PIECES)
         x[n - 1] += 1e-3 * sum_by_pieces(self, v);
 }
