@@ -27,6 +27,7 @@ and the sum of that and w D / w(a) is 0 at z = -l with the c2 taken: else it gro
 The error is a sum of the difference that the n stages make and of the slopes of W's stages, with weights
 whose order conditions vanish up to order 3: a vector, unique but for its length, which CONSTANT sets.
 With the slope at the new state in place of the difference it would grow as l in stiff modes."""
+from functools import cache
 from itertools import combinations_with_replacement
 from math import factorial
 
@@ -76,9 +77,9 @@ def stages(u, s):
     return rows, d, a, zeros
 
 
-def polynomial(u, s, z0):
-    """w P / (w(a) P(a)) at z0, and its derivatives divided by factorials, up to the fourth"""
-    rows, d, a, zeros = stages(u, s)
+def polynomial(parts, z0):
+    """w P / (w(a) P(a)) of parts from stages() at z0, and its derivatives divided by factorials, up to the fourth"""
+    rows, d, a, zeros = parts
     times = lambda p, value, slope: value * p + slope * np.append(LD(0), p[:-1])
     one = np.array([1, 0, 0, 0, 0], LD)
     old, p = 0 * one, one
@@ -91,8 +92,9 @@ def polynomial(u, s, z0):
 
 
 def equations(u, s):
-    r = polynomial(u, s, LD(0))[1:] * [1, 2, 6, 24] - 1
-    return np.array([*r, polynomial(u, s, -u[5])[0] * (-1) ** s - DAMPING, polynomial(u, s, -u[4])[1]])
+    parts = stages(u, s)
+    r = polynomial(parts, LD(0))[1:] * [1, 2, 6, 24] - 1
+    return np.array([*r, polynomial(parts, -u[5])[0] * (-1) ** s - DAMPING, polynomial(parts, -u[4])[1]])
 
 
 def newton(u, s):
@@ -223,14 +225,17 @@ class Method:
         return new, sum(e * k for e, k in zip(self.error, terms))
 
 
+@cache
 def degrees():
-    """(s, u) of each, from the polynomial of degree 5 with the longest interval"""
+    """list of (s, u), from the polynomial of degree 5 with the longest interval"""
     roots = np.roots([0.00411, 1 / 24, 1 / 6, 1 / 2, 1, 1])
     pairs = sorted((z for z in roots if z.imag > 0), key=lambda z: -z.real)
     u = np.array([pairs[0].real, pairs[0].imag, pairs[1].real, pairs[1].imag, 4.6, 6], LD)
+    found = []
     for before, s in zip([DEGREES[0], *DEGREES], DEGREES):
         u = newton(u * [1, 1, 1, 1, 1, LD(s) ** 2 / LD(before) ** 2], s)
-        yield s, u
+        found.append((s, u))
+    return found
 
 
 def main():
