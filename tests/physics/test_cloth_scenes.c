@@ -140,17 +140,24 @@ static double variation_of(const struct fixture *cylinder, const double *rest, d
 /* The load at which it buckles along the mode of theory, over that of theory. */
 static double buckling_load(int cells) {
     struct fixture cylinder;
-    double low = 0, high = 2;
+    double load[2] = {0.5, 1.5}, found[2];
     open_cylinder(&cylinder, cells);
     double *rest = malloc(3 * cylinder.n * sizeof *rest);
     memcpy(rest, cylinder.x, 3 * cylinder.n * sizeof *rest);
-    for (int k = 0; k < 30; k++) {
-        const double load = (low + high) / 2;
-        *(variation_of(&cylinder, rest, load * THEORY) > 0 ? &low : &high) = load;
+    for (int k = 0; k < 2; k++)
+        found[k] = variation_of(&cylinder, rest, load[k] * THEORY);
+    // nearly linear in the load: the rule of the secant needs three or four steps
+    for (int k = 0; k < 12 && fabs(load[1] - load[0]) > 1e-9; k++) {
+        const double next = load[1] - found[1] * (load[1] - load[0]) / (found[1] - found[0]);
+        load[0] = load[1];
+        found[0] = found[1];
+        load[1] = next;
+        found[1] = variation_of(&cylinder, rest, next * THEORY);
     }
+    ck_assert_double_le(fabs(load[1] - load[0]), 1e-9);
     free(rest);
     fixture_close(&cylinder);
-    return low;
+    return load[1];
 }
 
 /* A triangle on a cylinder sees shear where the slope along the axis changes its radius: the
@@ -262,6 +269,8 @@ TEST(measured_cloths_drape_by_their_bending_length) {
     } cloths[] = {
         {"interlock", 0.187, 0.379}, {"denim", 0.324, 0.576}, {"pants", 0.220, 0.796}};
     for (size_t k = 0; k < LENGTH(cloths); k++) {
+        if (!suite_takes(k, LENGTH(cloths)))
+            continue;
         const double found = drape_coefficient(cloths[k].cloth, cloths[k].density);
         ck_assert_msg(fabs(found - cloths[k].coefficient) < 0.02, "%s: %.3f", cloths[k].cloth,
                       found);
