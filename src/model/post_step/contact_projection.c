@@ -14,6 +14,7 @@
 #include "model/post_step/tunnelling.h"
 #include "scene/collider_keys.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -129,24 +130,30 @@ static void put(const double value[3], size_t n, size_t i, double *to) {
         to[c * n + i] = value[c];
 }
 
-/* Returns whether particle i is near a collider, or moves far enough to pass one. Most do
- * neither. Colliders that move are asked one by one. */
-static bool may_touch(const struct step *step, size_t i) {
+/* Tells which of `count` particles from `begin` on are near a collider, or move far enough to
+ * pass one. Most do neither. Colliders that move are asked one by one. */
+CS_CLONES static void find_near(const struct step *step, size_t begin, size_t count,
+                                bool near[CS_COLLIDER_ROW]) {
     const struct cs_contact_projection *contact = step->contact;
     const size_t n = count_of(contact);
-    double p[3], last[3], squared = 0;
-    cs_point_read(step->x, n, i, p);
-    for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++)
-        if (cs_posed_collider_is_near(contact->colliders + k,
-                                      contact->colliders[k].collider->thickness, p))
-            return true;
-    if (contact->shortest_tunnel == HUGE_VAL)
-        return false;
-    cs_point_read(contact->state_before, n, i, last);
-    for (int c = 0; c < 3; c++)
-        squared += (p[c] - last[c]) * (p[c] - last[c]);
-    return contact->colliders_before != contact->colliders ||
-           squared > contact->shortest_tunnel * contact->shortest_tunnel;
+    const double *x = step->x + begin, *last = contact->state_before + begin;
+    const double tunnel = contact->shortest_tunnel * contact->shortest_tunnel;
+    const bool all = tunnel < HUGE_VAL && contact->colliders_before != contact->colliders;
+    double reach[CS_COLLIDER_ROW];
+    uint8_t list[CS_COLLIDER_ROW];
+    for (size_t i = 0; i < count; i++) {
+        const double move[3] = {x[i] - last[i], x[n + i] - last[n + i],
+                                x[2 * n + i] - last[2 * n + i]};
+        near[i] = all | (cs_vec3_dot(move, move) > tunnel);
+    }
+    for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
+        const struct cs_posed_collider *collider = contact->colliders + k;
+        for (size_t i = 0; i < count; i++)
+            reach[i] = collider->collider->thickness;
+        const uint32_t n_near = cs_posed_collider_list_near(collider, reach, n, x, count, list);
+        for (uint32_t l = 0; l < n_near; l++)
+            near[list[l]] = true;
+    }
 }
 
 /* Projects particle i against all colliders, each after the one before, into state_after if it
@@ -178,9 +185,13 @@ static void project_block(void *arg, size_t begin, size_t end) {
     struct cs_contact_projection *contact = step->contact;
     const struct cs_system *system = contact->system;
     uint64_t tested = 0, pushed = 0;
+    bool near[CS_COLLIDER_ROW];
     for (size_t i = begin; i < end; i++) {
+        const size_t place = (i - begin) % CS_COLLIDER_ROW, left = end - i;
+        if (place == 0)
+            find_near(step, i, left < CS_COLLIDER_ROW ? left : CS_COLLIDER_ROW, near);
         const bool free = system->inv_mass[i] > 0 && !contact->static_friction.is_sticking[i];
-        const unsigned pushes = free && may_touch(step, i) ? project_against_all(step, i) : 0;
+        const unsigned pushes = free && near[place] ? project_against_all(step, i) : 0;
         tested += free;
         pushed += pushes;
         contact->is_pushed[i] = pushes > 0;

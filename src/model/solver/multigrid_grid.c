@@ -89,7 +89,7 @@ CS_CLONES static void load_runs(void *arg, uint32_t block) {
     const double root = loading->root;
     for (uint32_t r = RUNS * block; r < hierarchy->n_runs && r < RUNS * (block + 1); r++) {
         const struct cs_spring_run *run = hierarchy->runs + r;
-        const double *s = loading->factors + run->factors, *w = s + run->count;
+        const double *s = loading->factors + run->factors, *w = s + run->factor_stride;
         const double *a = loading->x + run->first_a, *b = loading->x + run->first_b;
         float *to = level->springs + 4 * (size_t)run_step(loading->hierarchy, run) * m +
                     cell_of(hierarchy, run->first_a);

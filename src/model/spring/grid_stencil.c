@@ -45,7 +45,7 @@ CS_INLINE struct stencil_direction direction_of(struct tile *tile, unsigned way)
         .length = run->length,
         .offset = run->first_b - run->first_a,
         .factors = job->factors ? job->factors + run->factors + before : NULL,
-        .count = run->count,
+        .stride = run->factor_stride,
         .out = rows_of(tile, way)};
 }
 
@@ -139,7 +139,10 @@ CS_INLINE void make_tile(struct tile *tile, const bool at[3]) {
     for (unsigned way = 0; way < CS_DIRECTIONS && alone; way++)
         if (tile->fan->directions[way])
             make_alone(tile, &in, way);
-    for (unsigned g = 0; g < GROUPS && !alone; g++) {
+    if (alone)
+        return;
+    CS_UNROLLED
+    for (unsigned g = 0; g < GROUPS; g++) {
         if (at[0] || (g > 0 && at[g]))
             make_directions(tile, &in, groups[g], groups[g + 1]);
         for (unsigned way = groups[g]; way < groups[g + 1]; way++)

@@ -38,8 +38,8 @@ enum {
 struct stencil_direction {
     double k, length;      /* N/m and m; the same for the whole run */
     size_t offset;         /* from a particle to the other end of its spring */
-    const double *factors; /* of the matrix, s and |w| / l in rows of `count`; NULL: not used */
-    size_t count;
+    const double *factors; /* of the matrix, in rows of `stride`; NULL: not used */
+    size_t stride;
     double *out; /* results, in rows of PADDED_TILE */
 };
 
@@ -79,16 +79,11 @@ void cs_grid_stencil_add(const struct spring_job *job, const struct cs_block *bl
                          const struct row_stencil *stencil,
                          const struct stencil_kernel *kernel);
 
-/* The same for all rows of a grid from the stencil's on, several of which a tile packs; for
- * kernels without factors of a matrix. A particle's sum has the same order. */
+/* The same for all rows of a grid from the stencil's on, several of which a tile packs. A
+ * particle's sum has the same order. */
 void cs_grid_stencil_add_packed(const struct spring_job *job, const struct cs_block *block,
                                 const struct row_stencil *stencil,
                                 const struct stencil_kernel *kernel);
-
-/* Returns whether tiles pack the rows of a grid. */
-CS_INLINE bool is_packed(const struct spring_job *job, const struct cs_spring_run *first) {
-    return first->columns <= PACKED_COLUMNS_MAX && !job->factors;
-}
 
 /* Collects the runs of a row, from its first on, and adds a kernel's results for those that
  * `asks` accepts. Returns the number of runs in the row, or in the grid if its rows are packed.
@@ -104,12 +99,13 @@ CS_INLINE uint32_t add_row_stencil(const struct spring_job *job, const struct cs
             stencil.directions[run->direction] = run;
             acts = true;
         }
-    if (acts && is_packed(job, first))
+    const bool packed = first->columns <= PACKED_COLUMNS_MAX;
+    if (acts && packed)
         cs_grid_stencil_add_packed(job, block, &stencil, kernel);
     else if (acts)
         cs_grid_stencil_add(job, block, &stencil, kernel);
     // rows of one grid have the same springs
-    while (is_packed(job, first) && run < end && run->columns && run->body == first->body)
+    while (packed && run < end && run->columns && run->body == first->body)
         run++;
     return (uint32_t)(run - first);
 }

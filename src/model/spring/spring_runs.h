@@ -38,8 +38,9 @@ struct cs_spring_run {
     uint32_t first_a, first_b, count; /* first particles at either end; springs */
     uint32_t kind;                    /* enum cs_spring_kind */
     uint32_t body;
-    uint32_t first;   /* number of the run's first spring */
-    size_t factors;   /* first of its numbers in the factors of the solver's matrix */
+    uint32_t first; /* number of the run's first spring */
+    size_t factors; /* first of its numbers in the factors of the solver's matrix */
+    uint32_t factor_rows, factor_stride; /* rows of numbers there, and from one to the next */
     double stiffness; /* N/m; with lists: the law's, N/m or N, that they were made of */
     double length;    /* rest length in m */
     double damping;   /* N s/m */

@@ -21,12 +21,11 @@ enum { LANES = 8 };
 
 _Static_assert(PIECE % LANES == 0, "a piece contains whole lanes");
 
-/* Twice the energy of each spring of a piece, k (l - L)^2. For a grid's run k is a common
+/* Twice the energy of `count` springs of a piece, k (l - L)^2. For a grid's run k is a common
  * factor and is left to run_energy. */
-CS_INLINE void square_stretches(const struct piece *piece, const struct ends e,
+CS_INLINE void square_stretches(const struct piece *piece, const struct ends e, size_t count,
                                 const bool listed, double *restrict squares) {
     const double length = piece->run->length;
-    const size_t count = piece->count;
     for (size_t i = 0; i < count; i++) {
         const struct difference d = across(e, i, listed);
         const double stretch =
@@ -35,28 +34,35 @@ CS_INLINE void square_stretches(const struct piece *piece, const struct ends e,
     }
 }
 
-/* Adds spring i to lane i modulo LANES, and then the lanes pair by pair. */
-CS_INLINE double sum_lanes(const double *squares, size_t count) {
+/* Adds spring i to lane i modulo LANES, and then the lanes pair by pair. Lanes without a last
+ * spring add 0, which changes no sum of squares. */
+CS_INLINE double sum_lanes(const double squares[PIECE], size_t count) {
+    const size_t whole = count - count % LANES;
     double s[LANES] = {0};
     for (size_t i = 0; i + LANES <= count; i += LANES)
         for (size_t l = 0; l < LANES; l++)
             s[l] += squares[i + l];
-    for (size_t i = count - count % LANES; i < count; i++)
-        s[i % LANES] += squares[i];
+    for (size_t l = 0; l < LANES && whole < count; l++)
+        s[l] += l < count - whole ? squares[whole + l] : 0;
     return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
 }
 
-/* Elastic energy of one run in J. */
-CS_CLONES static double run_energy(const struct cs_spring_run *run, size_t n, const double *x) {
+/* Elastic energy of one run in J. Lanes are filled up with springs that do not exist, which
+ * sum_lanes leaves out, unless these would end beyond the particles. */
+CS_INLINE double run_energy(const struct cs_spring_run *run, size_t n, const double *x,
+                            double squares[PIECE]) {
     struct gather_buffer places;
-    double squares[PIECE], sum = 0;
+    double sum = 0;
     for (uint32_t start = 0; start < run->count; start += PIECE) {
         const struct piece piece = piece_of(run, start);
         const struct ends e = ends_of(&piece, x, n, false, &places);
         if (run->ends)
-            square_stretches(&piece, e, true, squares);
+            square_stretches(&piece, e, piece.count, true, squares);
+        else if (run->first_b + start + (size_t)piece.count + LANES <= n)
+            square_stretches(&piece, e, (piece.count + LANES - 1) / LANES * LANES, false,
+                             squares);
         else
-            square_stretches(&piece, e, false, squares);
+            square_stretches(&piece, e, piece.count, false, squares);
         sum += sum_lanes(squares, piece.count);
     }
     return 0.5 * (run->ends ? 1 : run->stiffness) * sum;
@@ -113,26 +119,27 @@ static bool has_energy(const struct cs_spring_run *run, uint32_t parts) {
 }
 
 /* Energies of RUNS runs, each into its own entry. */
-static void energy_of_runs(void *arg, uint32_t block) {
+CS_CLONES static void energy_of_runs(void *arg, uint32_t block) {
     const struct spring_job *job = arg;
     const struct cs_springs *springs = job->springs;
+    double squares[PIECE] = {0};
     for (uint32_t r = RUNS * block; r < springs->n_runs && r < RUNS * (block + 1); r++)
         if (has_energy(springs->runs + r, job->at.parts))
-            springs->energies[r] = run_energy(springs->runs + r, job->n, job->at.x);
+            springs->energies[r] = run_energy(springs->runs + r, job->n, job->at.x, squares);
 }
 
 /* Runs are computed by all threads if there are several, and summed in their order in any case.
  */
-double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const double *x,
-                         uint32_t parts) {
+CS_CLONES double cs_springs_energy(const struct cs_springs *springs, uint32_t n,
+                                   const double *x, uint32_t parts) {
     struct spring_job job = {.springs = springs, .n = n, .at = {.x = x, .parts = parts}};
-    double energy = 0;
+    double energy = 0, squares[PIECE] = {0};
     if (springs->energies)
         cs_pool_run((springs->n_runs + RUNS - 1) / RUNS, energy_of_runs, &job);
     for (uint32_t r = 0; r < springs->n_runs; r++)
         if (has_energy(springs->runs + r, parts))
-            energy +=
-                springs->energies ? springs->energies[r] : run_energy(springs->runs + r, n, x);
+            energy += springs->energies ? springs->energies[r]
+                                        : run_energy(springs->runs + r, n, x, squares);
     return energy;
 }
 

@@ -135,7 +135,7 @@ CS_CLONES void cs_springs_finish_diagonal(const struct cs_springs *springs, uint
 CS_INLINE struct difference axis_of(const struct stencil_input *in,
                                     const struct stencil_direction *way, size_t i) {
     const struct difference d = fan_across(in->x, in->n, i, way->offset);
-    const double w = way->factors[way->count + i];
+    const double w = way->factors[way->stride + i];
     return (struct difference){w * d.x, w * d.y, w * d.z};
 }
 
@@ -182,16 +182,16 @@ CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint
 /* Computes the factors of one piece, in place in the run's rows. There is no branch in the
  * loop, so it vectorises. */
 CS_INLINE void factor_of(const struct piece *piece, struct ends e,
-                         const struct cs_matrix *matrix, const bool listed, double *base) {
+                         const struct cs_matrix *matrix, const unsigned rows, double *base) {
     const struct cs_spring_run *run = piece->run;
+    const bool listed = rows == 4;
     const double cd = matrix->cd, ck = matrix->ck;
     /* upper bound of L / l in the matrix */
     const double most = matrix->psd ? 1 : HUGE_VAL;
     const double gamma = run->axial ? 0 : -cd * run->damping;
     const double eta = run->axial ? -cd * run->damping : 0;
     double *restrict s = base + piece->start;
-    double *restrict wx = s + run->count;
-    const size_t y = run->count;
+    const size_t stride = run->factor_stride;
     const double L = run->length, k = run->stiffness;
     const size_t count = piece->count;
     CS_INDEPENDENT
@@ -205,10 +205,12 @@ CS_INLINE void factor_of(const struct piece *piece, struct ends e,
         const double clamped = ratio < most ? ratio : most;
         s[i] = gamma + stiffness * (1 - clamped);
         const double w = sqrt(stiffness * clamped + eta) * inverse;
-        wx[i] = listed ? w * d.x : w;
-        if (listed) {
-            wx[y + i] = w * d.y;
-            wx[2 * y + i] = w * d.z;
+        if (!listed)
+            s[stride + i] = w;
+        if (rows > 2) {
+            s[(rows - 3) * stride + i] = w * d.x;
+            s[(rows - 2) * stride + i] = w * d.y;
+            s[(rows - 1) * stride + i] = w * d.z;
         }
     }
 }
@@ -230,9 +232,11 @@ CS_INLINE void factor_springs(const struct factoring *made, const struct cs_spri
         const struct piece piece = piece_of(run, start);
         const struct ends e = ends_of(&piece, made->matrix->x, made->n, false, &places);
         if (run->ends)
-            factor_of(&piece, e, made->matrix, true, base);
+            factor_of(&piece, e, made->matrix, 4, base);
+        else if (run->factor_rows == 5)
+            factor_of(&piece, e, made->matrix, 5, base);
         else
-            factor_of(&piece, e, made->matrix, false, base);
+            factor_of(&piece, e, made->matrix, 2, base);
     }
 }
 
@@ -270,21 +274,34 @@ CS_INLINE struct difference mul_of(double s, const struct difference w,
 }
 
 /* The product of one spring of a grid, for the particle where it begins. */
-CS_INLINE void mul(const struct stencil_input *in, const struct stencil_direction *way,
-                   size_t i, double *out) {
+CS_INLINE void mul_along(const struct stencil_input *in, const struct stencil_direction *way,
+                         size_t i, const struct difference w, double *out) {
     const double *p = in->dx;
     const size_t n = in->n, b = i + way->offset;
     const struct difference d = {p[i] - p[b], p[n + i] - p[n + b], p[2 * n + i] - p[2 * n + b]};
-    fan_put(mul_of(way->factors[i], axis_of(in, way, i), d), out);
+    fan_put(mul_of(way->factors[i], w, d), out);
+}
+
+CS_INLINE void mul(const struct stencil_input *in, const struct stencil_direction *way,
+                   size_t i, double *out) {
+    mul_along(in, way, i, axis_of(in, way, i), out);
+}
+
+/* The same with the stored w. */
+CS_INLINE void mul_stored(const struct stencil_input *in, const struct stencil_direction *way,
+                          size_t i, double *out) {
+    const double *wx = way->factors + 2 * way->stride, *wy = wx + way->stride;
+    mul_along(in, way, i, (struct difference){wx[i], wy[i], wy[way->stride + i]}, out);
 }
 
 CS_STENCIL_KERNEL(product, mul, 3, 0, 0);
+CS_STENCIL_KERNEL(stored_product, mul_stored, 3, 0, 0);
 
-/* One kernel for all runs: the factors hide the law. */
+/* The factors hide the law. */
 static const struct stencil_kernel *choose_mul(const struct spring_job *job,
                                                const struct cs_spring_run *first) {
-    (void)job, (void)first;
-    return &product;
+    (void)job;
+    return first->factor_rows == 5 ? &stored_product : &product;
 }
 
 /* Products of a piece of a mesh. `reversed` makes the differences p_a - p_b. */
