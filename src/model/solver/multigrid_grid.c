@@ -90,13 +90,16 @@ CS_CLONES static void load_runs(void *arg, uint32_t block) {
     for (uint32_t r = RUNS * block; r < hierarchy->n_runs && r < RUNS * (block + 1); r++) {
         const struct cs_spring_run *run = hierarchy->runs + r;
         const double *s = loading->factors + run->factors, *w = s + run->factor_stride;
+        const bool stored = run->factor_rows == 4;
         const double *a = loading->x + run->first_a, *b = loading->x + run->first_b;
         float *to = level->springs + 4 * (size_t)run_step(loading->hierarchy, run) * m +
                     cell_of(hierarchy, run->first_a);
         CS_INDEPENDENT
         for (size_t i = 0; i < run->count; i++) {
-            const double sw[4] = {s[i], w[i] * (b[i] - a[i]), w[i] * (b[n + i] - a[n + i]),
-                                  w[i] * (b[2 * n + i] - a[2 * n + i])};
+            double sw[4] = {s[i]};
+            for (size_t c = 0; c < 3; c++)
+                sw[1 + c] = stored ? w[c * run->factor_stride + i]
+                                   : w[i] * (b[c * n + i] - a[c * n + i]);
             float spring[4];
             cs_hierarchy_spring(sw, root, true, spring);
             for (size_t c = 0; c < 4; c++)

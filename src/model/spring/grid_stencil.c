@@ -239,8 +239,10 @@ CS_INLINE double *array_of(const struct tile *tile, size_t k) {
 /* Adds all components: forces with the opposite sign at the other ends, blocks with the same
  * sign. */
 CS_INLINE void add_tile(struct tile *tile, const bool at[3]) {
-    for (size_t k = 0; k < tile->parts; k++)
-        add_part(tile, at, k, k < tile->kernel->n_force ? -1 : 1, array_of(tile, k));
+    for (size_t k = 0; k < tile->kernel->n_force; k++)
+        add_part(tile, at, k, -1, array_of(tile, k));
+    for (size_t k = tile->kernel->n_force; k < tile->parts; k++)
+        add_part(tile, at, k, 1, array_of(tile, k));
 }
 
 /* Finds the rows of each direction, the same for all tiles of a row. */

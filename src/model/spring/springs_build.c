@@ -48,7 +48,7 @@ size_t cs_springs_order_factors(struct cs_spring_run *runs, uint32_t n_runs, siz
         if (run->body != first->body)
             first = run, first_factor = begin;
         const uint32_t all = first->columns * (first->rows_below + 1);
-        run->factor_rows = run->ends ? 4 : run->columns && all <= STORED_MAX ? 5 : 2;
+        run->factor_rows = run->ends || (run->columns && all <= STORED_MAX) ? 4 : 2;
         run->factor_stride = run->count;
         run->factors = begin;
         if (run->columns && run->columns <= PACKED_COLUMNS_MAX) {

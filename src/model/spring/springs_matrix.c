@@ -131,21 +131,30 @@ CS_CLONES void cs_springs_finish_diagonal(const struct cs_springs *springs, uint
     }
 }
 
-/* w of spring i of a direction of a grid. */
+/* w of spring i of a direction of a grid, found from x or stored. */
 CS_INLINE struct difference axis_of(const struct stencil_input *in,
-                                    const struct stencil_direction *way, size_t i) {
+                                    const struct stencil_direction *way, size_t i,
+                                    const bool stored) {
+    const double *w = way->factors + way->stride + i;
+    if (stored)
+        return (struct difference){w[0], w[way->stride], w[2 * way->stride]};
     const struct difference d = fan_across(in->x, in->n, i, way->offset);
-    const double w = way->factors[way->stride + i];
-    return (struct difference){w * d.x, w * d.y, w * d.z};
+    return (struct difference){w[0] * d.x, w[0] * d.y, w[0] * d.z};
 }
 
 /* The block of one spring of a grid in the matrix. */
 CS_INLINE void diagonal_block(const struct stencil_input *in,
                               const struct stencil_direction *way, size_t i, double *out) {
-    set_block(way->factors[i], 1, axis_of(in, way, i), out);
+    set_block(way->factors[i], 1, axis_of(in, way, i, false), out);
+}
+
+CS_INLINE void stored_block(const struct stencil_input *in, const struct stencil_direction *way,
+                            size_t i, double *out) {
+    set_block(way->factors[i], 1, axis_of(in, way, i, true), out);
 }
 
 CS_STENCIL_KERNEL(own_blocks, diagonal_block, 0, SYM, 0);
+CS_STENCIL_KERNEL(stored_blocks, stored_block, 0, SYM, 0);
 
 /* Row by row for grids, spring by spring for meshes; serial, so the order of the sums is fixed.
  */
@@ -161,7 +170,8 @@ CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint
         const struct cs_spring_run *run = springs->runs + r;
         n_runs = 1;
         if (run->columns) {
-            n_runs = add_row_stencil(&job, &all, run, has_anything, &own_blocks);
+            n_runs = add_row_stencil(&job, &all, run, has_anything,
+                                     run->factor_rows == 4 ? &stored_blocks : &own_blocks);
             continue;
         }
         const double *s = factors + run->factors, *w = s + run->count;
@@ -182,9 +192,9 @@ CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint
 /* Computes the factors of one piece, in place in the run's rows. There is no branch in the
  * loop, so it vectorises. */
 CS_INLINE void factor_of(const struct piece *piece, struct ends e,
-                         const struct cs_matrix *matrix, const unsigned rows, double *base) {
+                         const struct cs_matrix *matrix, const bool listed, const bool stored,
+                         double *base) {
     const struct cs_spring_run *run = piece->run;
-    const bool listed = rows == 4;
     const double cd = matrix->cd, ck = matrix->ck;
     /* upper bound of L / l in the matrix */
     const double most = matrix->psd ? 1 : HUGE_VAL;
@@ -205,12 +215,10 @@ CS_INLINE void factor_of(const struct piece *piece, struct ends e,
         const double clamped = ratio < most ? ratio : most;
         s[i] = gamma + stiffness * (1 - clamped);
         const double w = sqrt(stiffness * clamped + eta) * inverse;
-        if (!listed)
-            s[stride + i] = w;
-        if (rows > 2) {
-            s[(rows - 3) * stride + i] = w * d.x;
-            s[(rows - 2) * stride + i] = w * d.y;
-            s[(rows - 1) * stride + i] = w * d.z;
+        s[stride + i] = stored ? w * d.x : w;
+        if (stored) {
+            s[2 * stride + i] = w * d.y;
+            s[3 * stride + i] = w * d.z;
         }
     }
 }
@@ -232,11 +240,11 @@ CS_INLINE void factor_springs(const struct factoring *made, const struct cs_spri
         const struct piece piece = piece_of(run, start);
         const struct ends e = ends_of(&piece, made->matrix->x, made->n, false, &places);
         if (run->ends)
-            factor_of(&piece, e, made->matrix, 4, base);
-        else if (run->factor_rows == 5)
-            factor_of(&piece, e, made->matrix, 5, base);
+            factor_of(&piece, e, made->matrix, true, true, base);
+        else if (run->factor_rows == 4)
+            factor_of(&piece, e, made->matrix, false, true, base);
         else
-            factor_of(&piece, e, made->matrix, 2, base);
+            factor_of(&piece, e, made->matrix, false, false, base);
     }
 }
 
@@ -284,14 +292,12 @@ CS_INLINE void mul_along(const struct stencil_input *in, const struct stencil_di
 
 CS_INLINE void mul(const struct stencil_input *in, const struct stencil_direction *way,
                    size_t i, double *out) {
-    mul_along(in, way, i, axis_of(in, way, i), out);
+    mul_along(in, way, i, axis_of(in, way, i, false), out);
 }
 
-/* The same with the stored w. */
 CS_INLINE void mul_stored(const struct stencil_input *in, const struct stencil_direction *way,
                           size_t i, double *out) {
-    const double *wx = way->factors + 2 * way->stride, *wy = wx + way->stride;
-    mul_along(in, way, i, (struct difference){wx[i], wy[i], wy[way->stride + i]}, out);
+    mul_along(in, way, i, axis_of(in, way, i, true), out);
 }
 
 CS_STENCIL_KERNEL(product, mul, 3, 0, 0);
@@ -301,7 +307,7 @@ CS_STENCIL_KERNEL(stored_product, mul_stored, 3, 0, 0);
 static const struct stencil_kernel *choose_mul(const struct spring_job *job,
                                                const struct cs_spring_run *first) {
     (void)job;
-    return first->factor_rows == 5 ? &stored_product : &product;
+    return first->factor_rows == 4 ? &stored_product : &product;
 }
 
 /* Products of a piece of a mesh. `reversed` makes the differences p_a - p_b. */
