@@ -191,10 +191,8 @@ int main(int argc, char **argv) {
     if (fault)
         cs_print_message(fault);
 #endif
-    /* a file that grew too long, and a reader that went away, come back from the write as an
-     * error, and are reported; the programs started in place of this one inherit it */
+    /* a file that grew too long comes back from the write as an error, and is reported */
     signal(SIGXFSZ, SIG_IGN);
-    signal(SIGPIPE, SIG_IGN);
     if (!error.status && !dispatch(argc, argv, &error) && (fflush(stdout) || ferror(stdout)))
         cs_fail(&error, CS_ERR_FILE, "cannot write to standard output");
     /* what was printed before the failure stands before it */

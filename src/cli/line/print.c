@@ -231,6 +231,8 @@ const volatile sig_atomic_t *cs_interrupt_catch(void) {
         if (cs_interrupts[k] != SIGHUP || before.sa_handler != SIG_IGN)
             sigaction(cs_interrupts[k], &action, NULL);
     }
+    /* a reader that went away must not cut a picture short: the write fails, and is reported */
+    signal(SIGPIPE, SIG_IGN);
     return &stop;
 }
 

@@ -74,7 +74,7 @@ void cs_progress_end(struct cs_progress *progress);
 
 /* Catches cs_interrupts from now on, but SIGHUP where it is ignored. Returns a flag that
  * becomes the number of the first one. A second one after two seconds or more ends the program
- * at once. */
+ * at once. Writing to a closed pipe becomes an error of the write (SIGPIPE is ignored). */
 const volatile sig_atomic_t *cs_interrupt_catch(void);
 /* Exit code of a program that a caught signal has ended, as shells count it: 128 + its number.
  */
