@@ -40,8 +40,10 @@ TEST(momentum_is_kept) {
         const double bound = !(traits & CS_IMPLICIT) ? 1e-12
                              : traits & CS_ADAPTIVE  ? 1e-9
                                                      : 1e-11;
-        for (int m = 0; m < 2; m++) {
+        for (size_t m = 0; m < 2; m++) {
             double moved[2];
+            if (!suite_takes(i + m, 2))
+                continue;
             drift(methods.list[i].text, m ? "axial" : "relative", moved);
             ck_assert_msg(moved[0] < bound, "%s: momentum moved by %.3g", methods.list[i].text,
                           moved[0]);
