@@ -244,7 +244,7 @@ TEST(own_blocks_of_the_factors_are_those_of_the_product) {
         sheet_stir(&sheet, 0.1, 0);
         const struct cs_springs *springs = &sheet.system.springs;
         const size_t n = sheet.n;
-        double *blocks = calloc(12 * n + 4 * (size_t)springs->n, sizeof *blocks);
+        double *blocks = calloc(12 * n + springs->n_factors, sizeof *blocks);
         ck_assert_ptr_nonnull(blocks);
         double *unit = blocks + 6 * n, *y = unit + 3 * n, *factors = y + 3 * n;
         cs_springs_factor(
@@ -260,6 +260,31 @@ TEST(own_blocks_of_the_factors_are_those_of_the_product) {
                 unit[(size_t)column[e] * n + i] = 0;
             }
         free(blocks);
+        sheet_close(&sheet);
+    }
+}
+
+/* w stored, or found from x as in large grids: products and diagonals are equal to the bit */
+TEST(products_with_w_stored_and_found_are_equal) {
+    for (size_t g = 0; g < N_GRIDS; g++) {
+        struct sheet sheet;
+        sheet_open(&sheet, 0, SCENE, grids[g][0], grids[g][1], "0.7");
+        sheet_stir(&sheet, 0.1, 1);
+        const struct cs_springs *springs = &sheet.system.springs;
+        const struct cs_matrix matrix = {.x = sheet.x, .cd = -0.02, .ck = -4e-4, .psd = true};
+        const uint32_t n = (uint32_t)sheet.n;
+        double *made[2], *factors = calloc(springs->n_factors + 1, sizeof *factors);
+        for (uint32_t k = 0; k < 2; k++) {
+            made[k] = calloc(n, 9 * sizeof *made[k]);
+            for (uint32_t r = 0; r < springs->n_runs; r++)
+                ((struct cs_spring_run *)springs->runs)[r].factor_rows = k ? 2 : 4;
+            cs_springs_factor(springs, n, &matrix, factors);
+            cs_springs_mul_add(springs, n, factors, sheet.x, sheet.v, made[k]);
+            cs_springs_factor_diagonal(springs, n, factors, sheet.x, made[k] + 3 * sheet.n);
+        }
+        ck_assert_mem_eq(made[0], made[1], 9 * sheet.n * sizeof *made[0]);
+        ck_assert(n < 3 || made[0][3 * sheet.n] > 0);
+        free(made[0]), free(made[1]), free(factors);
         sheet_close(&sheet);
     }
 }

@@ -206,21 +206,16 @@ struct share {
 
 /* Applies fractions of the correction to the state after the step, and returns its energy.
  * Pushed particles have their new velocity in any case. */
-CS_CLONES static struct cs_energy_with_scale try_share(struct cs_projection_energy *energy,
-                                                       const struct cs_projection_step *step,
-                                                       struct share share) {
+static struct cs_energy_with_scale try_share(struct cs_projection_energy *energy,
+                                             const struct cs_projection_step *step,
+                                             struct share share) {
     const size_t n = energy->system->view.n;
     const double *way = energy->work, speed = share.speed * energy->velocity_per_push;
     cs_vector_kernels.linear_sum(3 * n, 1, step->x, share.way, way, step->corrected);
-    for (size_t c = 0; c < 3 * n; c += n) {
-        const double *v = step->v + c;
-        double *corrected = step->corrected + 3 * n + c;
-        CS_INDEPENDENT
-        for (size_t i = 0; i < n; i++) {
-            const double moved = v[i] + speed * way[c + i];
-            corrected[i] = step->is_pushed[i] ? corrected[i] : moved;
-        }
-    }
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            if (!step->is_pushed[i])
+                step->corrected[(3 + c) * n + i] = step->v[c * n + i] + speed * way[c * n + i];
     return energy_after(energy, step);
 }
 

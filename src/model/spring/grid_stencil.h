@@ -203,4 +203,12 @@ CS_INLINE void stencil_springs(const struct stencil_input in, const struct stenc
     CS_STENCIL_PASS(name##_1, spring, forces_ + stiff_ + damped_, 1, 0, 0)                     \
     static const struct stencil_kernel name = {{name##_1}, forces_, stiff_, damped_}
 
+/* Defines the kernel `name` by one of these two, from a call that computes one spring. */
+#define CS_STENCIL_VARIANT(define, name, call, forces, stiff, damped)                          \
+    CS_INLINE void name##_spring(const struct stencil_input *in,                               \
+                                 const struct stencil_direction *way, size_t i, double *out) { \
+        call;                                                                                  \
+    }                                                                                          \
+    define(name, name##_spring, forces, stiff, damped)
+
 #endif

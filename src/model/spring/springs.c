@@ -56,13 +56,12 @@ CS_INLINE double run_energy(const struct cs_spring_run *run, size_t n, const dou
     for (uint32_t start = 0; start < run->count; start += PIECE) {
         const struct piece piece = piece_of(run, start);
         const struct ends e = ends_of(&piece, x, n, false, &places);
+        const size_t whole = (piece.count + LANES - 1) / LANES * LANES;
         if (run->ends)
             square_stretches(&piece, e, piece.count, true, squares);
-        else if (run->first_b + start + (size_t)piece.count + LANES <= n)
-            square_stretches(&piece, e, (piece.count + LANES - 1) / LANES * LANES, false,
-                             squares);
         else
-            square_stretches(&piece, e, piece.count, false, squares);
+            square_stretches(&piece, e, run->first_b + start + whole <= n ? whole : piece.count,
+                             false, squares);
         sum += sum_lanes(squares, piece.count);
     }
     return 0.5 * (run->ends ? 1 : run->stiffness) * sum;
@@ -182,11 +181,7 @@ CS_INLINE void make_spring(const struct stencil_input *in, const struct stencil_
 
 /* A kernel for one set of results, with how many numbers it makes of force, df/dx and df/dv. */
 #define KERNEL(define, name, what, forces, stiff, damped)                                      \
-    CS_INLINE void name##_spring(const struct stencil_input *in,                               \
-                                 const struct stencil_direction *way, size_t i, double *out) { \
-        make_spring(in, way, i, what, out);                                                    \
-    }                                                                                          \
-    define(name, name##_spring, forces, stiff, damped)
+    CS_STENCIL_VARIANT(define, name, make_spring(in, way, i, what, out), forces, stiff, damped)
 
 KERNEL(CS_STENCIL_KERNEL, undamped_force, FORCE, 3, 0, 0);
 KERNEL(CS_STENCIL_KERNEL, axial_force, FORCE | AXIAL, 3, 0, 0);

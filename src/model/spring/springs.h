@@ -87,8 +87,8 @@ void cs_springs_finish_diagonal(const struct cs_springs *springs, uint32_t n,
  *
  *   A p = sum over the springs of (s I + w w^T) (p_a - p_b), added at a and subtracted at b
  *
- * factors has rows by run, each (count): of a grid s and |w| / l, because w is parallel to the
- * spring and x gives it again; of a mesh, whose ends lie anywhere, s, wx, wy and wz. With psd
+ * factors has rows by run: s, wx, wy and wz; of a large grid s and |w| / l, because w is
+ * parallel to the spring and x gives it again, to the bit. With psd
  * the transverse part of a compressed spring is dropped (Choi, Ko 2002; Teran et al. 2005);
  * else s may be negative. The position derivative of axial damping, which is not symmetric, is
  * left out. Derivation: springs_matrix.c. */

@@ -43,22 +43,19 @@ enum { STORED_MAX = 8192 };
 /* Packed grids have all rows of a direction one after another, as their particles lie. */
 size_t cs_springs_order_factors(struct cs_spring_run *runs, uint32_t n_runs, size_t begin) {
     const struct cs_spring_run *first = runs;
-    size_t first_factor = begin;
+    size_t grid = begin;
     for (struct cs_spring_run *run = runs; run < runs + n_runs; run++) {
         if (run->body != first->body)
-            first = run, first_factor = begin;
+            first = run, grid = begin;
         const uint32_t all = first->columns * (first->rows_below + 1);
+        const bool packed = run->columns && run->columns <= PACKED_COLUMNS_MAX;
         run->factor_rows = run->ends || (run->columns && all <= STORED_MAX) ? 4 : 2;
-        run->factor_stride = run->count;
-        run->factors = begin;
-        if (run->columns && run->columns <= PACKED_COLUMNS_MAX) {
-            run->factor_stride = all + MARGIN; // strides of 4 KiB would meet in the cache
-            begin = first_factor;
-            run->factors = begin + run->first_a - first->row +
-                           (size_t)run->direction * run->factor_rows * run->factor_stride;
-            begin += (CS_DIRECTIONS - 1) * (size_t)run->factor_rows * run->factor_stride;
-        }
-        begin += (size_t)run->factor_rows * run->factor_stride;
+        // strides of 4 KiB would meet in the cache
+        run->factor_stride = packed ? all + MARGIN : run->count;
+        const size_t numbers = (size_t)run->factor_rows * run->factor_stride;
+        run->factors =
+            packed ? grid + run->direction * numbers + run->first_a - first->row : begin;
+        begin = packed ? grid + CS_DIRECTIONS * numbers : begin + numbers;
     }
     return begin;
 }

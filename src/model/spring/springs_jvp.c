@@ -76,25 +76,13 @@ CS_INLINE void jvp_from(const struct stencil_input *in, const struct stencil_dir
 }
 
 /* Kernels for dx alone, for dv alone, and for both. */
-CS_INLINE void moved(const struct stencil_input *in, const struct stencil_direction *way,
-                     size_t i, double *out) {
-    jvp_from(in, way, i, MOVED, out);
-}
+#define KERNEL(define, name, how)                                                              \
+    CS_STENCIL_VARIANT(define, name, jvp_from(in, way, i, how, out), 3, 0, 0)
 
-CS_INLINE void rotated(const struct stencil_input *in, const struct stencil_direction *way,
-                       size_t i, double *out) {
-    jvp_from(in, way, i, TURNED, out);
-}
-
-CS_INLINE void elastic_and_damping(const struct stencil_input *in,
-                                   const struct stencil_direction *way, size_t i, double *out) {
-    jvp_from(in, way, i, MOVED | TURNED, out);
-}
-
-CS_STENCIL_KERNEL(moved_jvp, moved, 3, 0, 0);
-CS_STENCIL_KERNEL(turned_jvp, rotated, 3, 0, 0);
+KERNEL(CS_STENCIL_KERNEL, moved_jvp, MOVED);
+KERNEL(CS_STENCIL_KERNEL, turned_jvp, TURNED);
 /* no method of ours asks for both at once */
-CS_STENCIL_KERNEL_ALONE(both_jvp, elastic_and_damping, 3, 0, 0);
+KERNEL(CS_STENCIL_KERNEL_ALONE, both_jvp, MOVED | TURNED);
 
 /* The kernel for the given directions. */
 static const struct stencil_kernel *choose_jvp(const struct spring_job *job,

@@ -17,8 +17,8 @@
  * L/l <- min(L/l, 1) (Choi, Ko 2002; Teran et al. 2005). That gives s = 0 and |w|^2 = -ck k;
  * the axial eigenvalue -ck k is exact in either case.
  *
- * Two numbers per spring of a grid instead of six for a block: the product is bound by memory,
- * and its factors are most of what it reads. */
+ * Four numbers per spring instead of six for a block, and two of a large grid: there the
+ * product is bound by memory, and its factors are most of what it reads. */
 #include "base/pool.h"
 #include "model/spring/grid_stencil.h"
 #include "model/spring/run_pieces.h"
@@ -142,19 +142,19 @@ CS_INLINE struct difference axis_of(const struct stencil_input *in,
     return (struct difference){w[0] * d.x, w[0] * d.y, w[0] * d.z};
 }
 
+/* Defines a kernel of one of the two functions below. */
+#define KERNEL(name, spring, stored, forces, stiff)                                            \
+    CS_STENCIL_VARIANT(CS_STENCIL_KERNEL, name, spring(in, way, i, stored, out), forces,       \
+                       stiff, 0)
+
 /* The block of one spring of a grid in the matrix. */
-CS_INLINE void diagonal_block(const struct stencil_input *in,
-                              const struct stencil_direction *way, size_t i, double *out) {
-    set_block(way->factors[i], 1, axis_of(in, way, i, false), out);
+CS_INLINE void block_of(const struct stencil_input *in, const struct stencil_direction *way,
+                        size_t i, const bool stored, double *out) {
+    set_block(way->factors[i], 1, axis_of(in, way, i, stored), out);
 }
 
-CS_INLINE void stored_block(const struct stencil_input *in, const struct stencil_direction *way,
-                            size_t i, double *out) {
-    set_block(way->factors[i], 1, axis_of(in, way, i, true), out);
-}
-
-CS_STENCIL_KERNEL(own_blocks, diagonal_block, 0, SYM, 0);
-CS_STENCIL_KERNEL(stored_blocks, stored_block, 0, SYM, 0);
+KERNEL(found_blocks, block_of, false, 0, SYM);
+KERNEL(stored_blocks, block_of, true, 0, SYM);
 
 /* Row by row for grids, spring by spring for meshes; serial, so the order of the sums is fixed.
  */
@@ -171,7 +171,7 @@ CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint
         n_runs = 1;
         if (run->columns) {
             n_runs = add_row_stencil(&job, &all, run, has_anything,
-                                     run->factor_rows == 4 ? &stored_blocks : &own_blocks);
+                                     run->factor_rows == 4 ? &stored_blocks : &found_blocks);
             continue;
         }
         const double *s = factors + run->factors, *w = s + run->count;
@@ -241,10 +241,8 @@ CS_INLINE void factor_springs(const struct factoring *made, const struct cs_spri
         const struct ends e = ends_of(&piece, made->matrix->x, made->n, false, &places);
         if (run->ends)
             factor_of(&piece, e, made->matrix, true, true, base);
-        else if (run->factor_rows == 4)
-            factor_of(&piece, e, made->matrix, false, true, base);
         else
-            factor_of(&piece, e, made->matrix, false, false, base);
+            factor_of(&piece, e, made->matrix, false, run->factor_rows == 4, base);
     }
 }
 
@@ -282,32 +280,22 @@ CS_INLINE struct difference mul_of(double s, const struct difference w,
 }
 
 /* The product of one spring of a grid, for the particle where it begins. */
-CS_INLINE void mul_along(const struct stencil_input *in, const struct stencil_direction *way,
-                         size_t i, const struct difference w, double *out) {
+CS_INLINE void mul(const struct stencil_input *in, const struct stencil_direction *way,
+                   size_t i, const bool stored, double *out) {
     const double *p = in->dx;
     const size_t n = in->n, b = i + way->offset;
     const struct difference d = {p[i] - p[b], p[n + i] - p[n + b], p[2 * n + i] - p[2 * n + b]};
-    fan_put(mul_of(way->factors[i], w, d), out);
+    fan_put(mul_of(way->factors[i], axis_of(in, way, i, stored), d), out);
 }
 
-CS_INLINE void mul(const struct stencil_input *in, const struct stencil_direction *way,
-                   size_t i, double *out) {
-    mul_along(in, way, i, axis_of(in, way, i, false), out);
-}
-
-CS_INLINE void mul_stored(const struct stencil_input *in, const struct stencil_direction *way,
-                          size_t i, double *out) {
-    mul_along(in, way, i, axis_of(in, way, i, true), out);
-}
-
-CS_STENCIL_KERNEL(product, mul, 3, 0, 0);
-CS_STENCIL_KERNEL(stored_product, mul_stored, 3, 0, 0);
+KERNEL(found_product, mul, false, 3, 0);
+KERNEL(stored_product, mul, true, 3, 0);
 
 /* The factors hide the law. */
 static const struct stencil_kernel *choose_mul(const struct spring_job *job,
                                                const struct cs_spring_run *first) {
     (void)job;
-    return first->factor_rows == 4 ? &stored_product : &product;
+    return first->factor_rows == 4 ? &stored_product : &found_product;
 }
 
 /* Products of a piece of a mesh. `reversed` makes the differences p_a - p_b. */
