@@ -49,8 +49,6 @@ static const struct cs_option_use uses[] = {
     {"alpha_f", "variant", OWN},
 };
 
-static const struct cs_option_rename renames[] = {{"set", "variant"}};
-
 struct method {
     struct newton_method base;
     double beta, gamma, am, af;
@@ -156,8 +154,6 @@ const struct cs_integrator newmark = {
     STEP_HALVING_METHOD(struct newmark_options, rows, archive),
     .uses = uses,
     .n_uses = sizeof uses / sizeof *uses,
-    .renames = renames,
-    .n_renames = sizeof renames / sizeof *renames,
     .name = "newmark",
     .summary =
         "Newmark's average acceleration, HHT or generalised-alpha, by Newton; makes energy at "

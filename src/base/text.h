@@ -68,10 +68,4 @@ const char *cs_nearest_word(const char *word, const char *const *candidates);
 bool cs_names_program(const char *text);
 bool cs_names_code(const char *text);
 
-/* Prints "clothsim: PLACEold is now PLACEname; the old name goes in the next release" on
- * standard error, once per process and old name. old is a text of a table: old names
- * are compared by their addresses. place stands before both ("--", "newmark:"). Main thread
- * only. */
-void cs_old_name_report(const char *place, const char *old, const char *name);
-
 #endif

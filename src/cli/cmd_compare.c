@@ -54,8 +54,7 @@ static const struct cs_arg rows[] = {
     {"error-norm", 0, "NAME",
      "error norm used for the ranking: error, path, largest, velocity or energy (default: "
      "error)",
-     CS_ARG_INTO(struct options, compare.ranking_norm), .names = cs_norm_names,
-     .old_name = "rank"},
+     CS_ARG_INTO(struct options, compare.ranking_norm), .names = cs_norm_names},
     {"budget", 0, "SECONDS",
      "maximum work of one run in nominal seconds; a series ends at its first row above it "
      "(default: 6 divided among the series, at most 4)",
@@ -76,7 +75,7 @@ static const struct cs_arg rows[] = {
     {"cache", 0, "DIR", "folder of stored references (default: DIR of -o)",
      CS_ARG_INTO(struct options, compare.cache)},
     {"overwrite", 'y', NULL, "replace an existing compare.csv",
-     CS_ARG_INTO(struct options, compare.overwrite), .old_name = "fresh"},
+     CS_ARG_INTO(struct options, compare.overwrite)},
     {"pictures", 0, NULL,
      "draw the last frames at equal step and at equal cost, coloured by their error",
      CS_ARG_INTO(struct options, compare.pictures)},

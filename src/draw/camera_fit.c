@@ -295,12 +295,12 @@ static uint32_t grow_by_moves(const struct cs_system *system,
     return farthest;
 }
 
-/* True if a collider, a visible one if so asked, is met on the way. */
+/* True if a visible collider is met on the way. */
 static bool meets(const struct cs_system *system, const struct cs_posed_collider *colliders,
-                  bool visible, const double from[3], const double way[3]) {
+                  const double from[3], const double way[3]) {
     bool met = false;
     for (uint32_t k = 0; k < system->scene->colliders.n && !met; k++)
-        met = (!visible || colliders[k].collider->visible) &&
+        met = colliders[k].collider->visible &&
               cs_posed_collider_hits_segment(colliders + k, from, way, 1 - 1e-3);
     return met;
 }
@@ -310,17 +310,16 @@ static bool lands_hidden(const struct cs_camera_fit *fit, const struct cs_system
                          const struct cs_posed_collider *colliders, uint32_t body,
                          const double eye[3]) {
     const struct cs_body_range *range = system->bodies + body;
-    const double *y =
-        fit->corners + CS_CAMERA_FIT_CORNERS; // y[0]: the lowest, y[2]: the highest
+    // the lowest of the corners, and the highest
+    const double *y = fit->corners + CS_CAMERA_FIT_CORNERS, *x = system->view.start;
     const double fall[3] = {0, (y[0] - y[2]) / FALL_STEPS, 0};
     double way[3], point[3] = {0};
     for (size_t k = 0; k < 3 * (size_t)range->count; k++)
-        point[k % 3] +=
-            system->view.start[k % 3 * system->view.n + range->first + k / 3] / range->count;
+        point[k % 3] += x[k % 3 * system->view.n + range->first + k / 3] / range->count;
     for (int k = 0; k <= FALL_STEPS && !cs_scene_bodies(system->scene)[body].pins.n; k++) {
         cs_subtract(point, eye, way);
-        if (meets(system, colliders, false, point, fall))
-            return meets(system, colliders, true, eye, way);
+        if (meets(system, colliders, point, fall))
+            return meets(system, colliders, eye, way);
         point[1] += fall[1];
     }
     return false;

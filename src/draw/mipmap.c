@@ -114,8 +114,8 @@ CS_INLINE texel bilinear(const struct cs_mipmap *mips, int copy, float u, float 
     texel line[2];
     for (int r = 0; r < 2; r++) {
         const uint16_t *in = mips->levels[copy].light + 3 * (size_t)row[r] * (size_t)width;
-        const texel first = texel_at(in + 3 * column[0]);
-        line[r] = first + across * (texel_at(in + 3 * column[1]) - first);
+        const texel a = texel_at(in + 3 * column[0]), b = texel_at(in + 3 * column[1]);
+        line[r] = a + across * (b - a);
     }
     return (line[0] + down * (line[1] - line[0])) / 65535;
 }
@@ -156,12 +156,7 @@ void cs_texel_footprint_make(const struct cs_mipmap *mips, float steps[2][2],
         footprint->side[k] = parts > 1 ? steps[longer][k] : 0;
 }
 
-/* Whole levels and a fraction of the next. Below 1 texel per pixel level 0 is magnified; NaN
- * and huge numbers stay in range. */
-CS_INLINE float level_of(float square) {
-    return square > 1 ? 0.5f * log_2(square < 1e30f ? square : 1e30f) : 0;
-}
-
+/* level: whole ones, and a fraction of the next. */
 CS_INLINE texel trilinear(const struct cs_mipmap *mips, float u, float v, float level) {
     const int whole = (int)level;
     if (whole >= mips->n - 1)
@@ -174,13 +169,14 @@ CS_INLINE texel trilinear(const struct cs_mipmap *mips, float u, float v, float 
 
 CS_CLONES void cs_mipmap_sample(const struct cs_mipmap *mips, float u, float v,
                                 const struct cs_texel_footprint *footprint, float rgb[3]) {
-    const float share = 1 / (float)footprint->parts, level = level_of(footprint->square);
+    const float share = 1 / (float)footprint->parts, square = footprint->square;
+    // below 1 texel per pixel level 0 is magnified; NaN and huge numbers stay in range
+    const float level = square > 1 ? 0.5f * log_2(square < 1e30f ? square : 1e30f) : 0;
     texel sum = {0};
     for (int i = 0; i < footprint->parts; i++) {
         const float at = ((float)i + 0.5f) * share - 0.5f;
         sum += share *
                trilinear(mips, u + at * footprint->side[0], v + at * footprint->side[1], level);
     }
-    for (int k = 0; k < 3; k++)
-        rgb[k] = sum[k];
+    memcpy(rgb, &sum, 3 * sizeof *rgb);
 }

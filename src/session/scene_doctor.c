@@ -316,11 +316,10 @@ static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings 
         const double density = cs_scene_bodies(scene)[b].mass.total /
                                (0.433 * mesh->n_triangles * mesh->edge * mesh->edge);
         if (density > 0 && density < DENSITY_MIN && mesh->edge > 0.1)
-            cs_text_add(
-                &out->hints,
-                "bodies[%u].mesh: edges of %.3g m at %.2g kg/m2, lighter than any cloth: "
-                "is it in centimetres? mesh.units \"cm\"\n",
-                b, mesh->edge, density);
+            cs_text_add(&out->hints,
+                        "bodies[%u].mesh: edges of %.3g m at %.2g kg/m2, lighter than any "
+                        "cloth: is it in centimetres? mesh.units \"cm\"\n",
+                        b, mesh->edge, density);
         if (mesh->pieces > 1 && !scene->seams.n)
             cs_text_add(&out->hints,
                         "bodies[%u].mesh.file: %s is in %u pieces that nothing joins\n", b,

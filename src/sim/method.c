@@ -124,6 +124,20 @@ static void add_place(const struct cs_method *method, const char *place, const c
         cs_text_add(out, "integrator \"%s\": %.60s", method->integrator->name, key);
 }
 
+/* Says what an option is called now, on standard error, once for each text of a table. */
+static void report_old_name(const char *name, const struct cs_option_rename *rename) {
+    static const char *reported[16];
+    static uint32_t n;
+    for (uint32_t k = 0; k < n; k++)
+        if (reported[k] == rename->old_name)
+            return;
+    if (n < sizeof reported / sizeof *reported)
+        reported[n++] = rename->old_name;
+    fprintf(stderr,
+            "clothsim: %.60s:%s is now %.60s:%s; the old name goes in the next release\n", name,
+            rename->old_name, name, rename->option);
+}
+
 /* The row of a name, or of the name that the last release had for it. */
 static const struct cs_option *find_row(const struct cs_method *method, const char *key) {
     const struct cs_integrator *integrator = method->integrator;
@@ -132,9 +146,7 @@ static const struct cs_option *find_row(const struct cs_method *method, const ch
         const struct cs_option_rename *rename = integrator->renames + k;
         if (strcmp(rename->old_name, key))
             continue;
-        char place[80];
-        snprintf(place, sizeof place, "%.60s:", integrator->name);
-        cs_old_name_report(place, rename->old_name, rename->option);
+        report_old_name(integrator->name, rename);
         return cs_option_find(&method->table, rename->option);
     }
     return cs_option_find(&method->table, key);

@@ -17,11 +17,6 @@ enum { LEDGER_PASSES = 10 };
 const char *const cs_stage_names[] = {"force", "setup",   "solve", "contact",
                                       "limit", "normals", NULL};
 
-const char *cs_outcome_current(const char *text) {
-    return strcmp(text, "blew up: energy beyond all bound") ? text
-                                                            : cs_outcome_text(CS_UNBOUNDED);
-}
-
 const char *cs_outcome_text(enum cs_outcome outcome) {
     switch (outcome) {
 #define X(name, text)                                                                          \

@@ -175,8 +175,6 @@ struct cs_run_settings {
 
 /* The text of an outcome, a constant: "finished", "blew up: not finite". */
 const char *cs_outcome_text(enum cs_outcome outcome);
-/* The present text of an outcome read from a file, which the last release may have written. */
-const char *cs_outcome_current(const char *text);
 extern const char *const cs_stage_names[]; /* closed by NULL */
 
 /* Creates the method on the system with filled options (integrator->options_size bytes), and

@@ -128,9 +128,6 @@ value "another option, or the next method" compare --integrators rk4:dt=1e-3,d \
     rk4:dt=1e-3,dt= $(echo "$methods" | grep '^d' | sed 's/^/rk4:dt=1e-3,/')
 value "renderers" run --renderer "" auto cpu osmesa
 value "norms" compare --error-norm "" error path largest velocity energy
-"$program" --complete compare --rank p >"$work/offered"
-echo path >"$work/expected"
-told "norms by the old name of their option"
 "$program" --complete compare --integrator tr >"$work/offered"
 echo tr-bdf2 >"$work/expected"
 told "methods by the singular of their option"

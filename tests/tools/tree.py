@@ -18,7 +18,7 @@ LIMITS = (
     ("units", "most", 293, "units in src (NAME.c, NAME.h or both)"),
     ("headers", "most", 176, "headers in src"),
     ("arrows", "most", 38, "arrows between rooms"),
-    ("code", "most", 61461, "lines of code in src"),
+    ("code", "most", 61401, "lines of code in src"),
     ("comments", "least", 15.0, "% of the lines of code and comment in src are comment"),
 )
 # a type that one header declares, and that alternatives define: no program sees two of them

@@ -54,6 +54,9 @@ const struct cs_cell *cs_cheapest_find_next(struct cs_cheapest *cheapest,
  * it at the first call, with the limits of theory. Errors: those of stability/theory.h. */
 cs_compare_next cs_cheapest_choose;
 
+/* Adds a line: the cheapest way to an error of at most bound. */
+void cs_cheapest_print(const struct cs_compare *compare, double bound, struct cs_text *out);
+
 /* Frees the candidates; a zeroed search is allowed. */
 void cs_cheapest_finish(struct cs_cheapest *cheapest);
 

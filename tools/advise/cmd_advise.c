@@ -296,7 +296,7 @@ static enum cs_status advise_for_error(struct cs_args *args, struct cs_error *er
              !cs_session_fit_frames(&study->session, &settings.run.frames, &seconds, error))
         cs_compare_run(&compare, &settings, error);
     if (!cs_manifest_write_study(options->folder, error)) {
-        cs_verdict_print_at(&compare, bound, &out);
+        cs_cheapest_print(&compare, bound, &out);
         cs_compare_warn(&compare, "warning: ", &out);
         cs_print_out(stdout, &out, error);
     }

@@ -143,11 +143,10 @@ static void complete_path(struct word *word) {
     offer_keys(word, table);
 }
 
-/* True for the long name, its singular (--integrator for --integrators) and its old name. */
+/* True for the long name and its singular (--integrator for --integrators). */
 static bool is_name(const struct cs_arg *row, const char *name) {
     const size_t n = strlen(name);
-    return (row->old_name && !strcmp(row->old_name, name)) ||
-           (!strncmp(row->name, name, n) && (!row->name[n] || !strcmp(row->name + n, "s")));
+    return !strncmp(row->name, name, n) && (!row->name[n] || !strcmp(row->name + n, "s"));
 }
 
 /* The row of "--name" or "-n" that takes a value, or NULL. */

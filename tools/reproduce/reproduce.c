@@ -89,7 +89,7 @@ static void compare_state(struct work *work, const char *then) {
  * hence one more step. An interrupted run has no outcome to compare. */
 static enum cs_status compare_end(struct work *work, uint32_t total, struct cs_error *error) {
     const struct cs_json *root = work->carried.json;
-    const char *then = cs_outcome_current(cs_provenance_text(root, "outcome"));
+    const char *then = cs_provenance_text(root, "outcome");
     const char *detail = cs_provenance_text(root, "outcome_detail");
     struct cs_run_result now;
     if (!strcmp(then, cs_outcome_text(CS_INTERRUPTED)))

@@ -21,9 +21,8 @@ static const struct options defaults = {.soft = {.seconds = 0.5, .draw = true},
 
 static const struct cs_arg rows[] = {
     {"budget", 0, "SECONDS", "processor time of the measurement of a body (default: 0.5)",
-     CS_ARG_INTO(struct options, soft.seconds), .old_name = "time"},
-    {"no-render", 0, NULL, "do not time pictures", CS_ARG_INTO(struct options, soft.draw),
-     .old_name = "no-draw"},
+     CS_ARG_INTO(struct options, soft.seconds)},
+    {"no-render", 0, NULL, "do not time pictures", CS_ARG_INTO(struct options, soft.draw)},
     CS_ARG_SET(struct options, soft.session),
     CS_ARG_PLUGIN(struct options, soft.session),
     {"out", 'o', "DIR", "folder for soft.csv and soft.txt (default: soft); see: clothsim plot",

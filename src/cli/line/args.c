@@ -56,11 +56,6 @@ static enum cs_status unknown_option(const struct cs_command *command, const cha
                    nearest ? "\"?" : "", command->name);
 }
 
-static bool is_old_name(const struct cs_arg *row, const char *word, size_t length) {
-    return row->old_name && strlen(row->old_name) == length &&
-           !strncmp(row->old_name, word, length);
-}
-
 /* Compares with the long name. An option that may be repeated can also be given in the singular
  * (--integrator for --integrators). */
 static bool is_called(const struct cs_arg *row, const char *word, size_t length) {
@@ -75,11 +70,8 @@ static const struct cs_arg *find_long(const struct cs_command *command, const ch
     const size_t length = strcspn(word + 2, "=");
     for (uint32_t r = 0; r < command->n_rows; r++) {
         const struct cs_arg *row = command->rows + r;
-        const bool old = is_old_name(row, word + 2, length);
-        if (!old && !is_called(row, word + 2, length))
+        if (!is_called(row, word + 2, length))
             continue;
-        if (old)
-            cs_old_name_report("--", row->old_name, row->name);
         *attached = word[2 + length] ? word + 3 + length : NULL;
         return row;
     }

@@ -47,7 +47,6 @@ struct cs_arg {
     uint32_t min, max;        /* of a whole number */
     const char *const *names; /* closed by NULL; of a text: those it may be, or list */
     const char *prefix;       /* put before each item of a list; or NULL */
-    const char *old_name;     /* long name of the release before, still taken; or NULL */
 };
 
 /* The part of a row that binds the option to a field, of a type named above. */

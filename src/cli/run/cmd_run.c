@@ -87,7 +87,7 @@ static const struct cs_arg rows[] = {
     {"monitor", 0, "FILE",
      "write energy, largest strain and largest velocity of each frame as CSV; -: to standard "
      "output",
-     CS_ARG_INTO(struct options, job.monitor_file), .old_name = "watch"},
+     CS_ARG_INTO(struct options, job.monitor_file)},
     {"ledger", 0, "FILE",
      "write the energy balance of each frame as CSV; -: to standard output",
      CS_ARG_INTO(struct options, job.ledger)},

@@ -204,16 +204,6 @@ static bool suggest_key(const struct cs_table *table, const char *place, const c
     return false;
 }
 
-/* The present name of a renamed key, if the table has it; or NULL. */
-static const char *new_name(const struct cs_table *table, const char *key) {
-    static const char *const names[][2] = {{"prod", "viewpoint_force"},
-                                           {"prods", "viewpoint_forces"}};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (!strcmp(key, names[i][0]) && cs_option_find(table, names[i][1]))
-            return names[i][1];
-    return NULL;
-}
-
 /* Adds the keys of a table, if they are few. */
 static void add_keys(const struct cs_table *table, struct cs_text *out) {
     enum { MOST = 12 };
@@ -254,13 +244,8 @@ static enum cs_status read_member(struct cs_json_context *context, const struct 
         return CS_OK;
     const size_t outside = cs_json_context_enter(context, key);
     const struct cs_option *row = cs_option_find(table, key);
-    if (!row) {
-        const char *renamed = new_name(table, key);
-        if (renamed)
-            return cs_json_context_fail(context, member, true, "this key is now called \"%s\"",
-                                        renamed);
+    if (!row)
         return fail_unknown(context, member, table, apart);
-    }
     const enum cs_status status = read_row(context, member, row, object);
     if (!status)
         cs_json_context_leave(context, outside);

@@ -215,22 +215,12 @@ bool cs_cell_has_failed(const struct cs_cell *cell) {
            !strcmp(cell->outcome, cs_outcome_text(CS_GAVE_UP));
 }
 
-/* Finds a column by its name or by that of the last release; NULL if unknown. */
-static const struct cs_column *find_column(const char *name) {
-    static const char *const renamed[][2] = {{"ledger_push", "ledger_events_force"},
-                                             {"ledger_values", "ledger_parameters"}};
-    for (size_t k = 0; k < sizeof renamed / sizeof *renamed; k++)
-        if (!strcmp(renamed[k][0], name))
-            return cs_column_find(renamed[k][1]);
-    return cs_column_find(name);
-}
-
 /* Assigns a column to each field of the first line; NULL for unknown names. */
 static uint32_t find_columns(char *names, const struct cs_column *columns[FIELDS_MAX]) {
     char *fields[FIELDS_MAX];
     const uint32_t n = names ? cs_csv_cut(names, ',', fields, FIELDS_MAX) : 0;
     for (uint32_t c = 0; c < n; c++)
-        columns[c] = find_column(fields[c]);
+        columns[c] = cs_column_find(fields[c]);
     return n;
 }
 
@@ -240,17 +230,11 @@ static void read_cells(struct cs_rows *rows, const struct cs_column *const *colu
     char *fields[FIELDS_MAX];
     for (char *line; (line = cs_rows_next(rows));) {
         struct cs_cell *cell = cells + *n;
-        char outcome[sizeof cell->outcome];
         const uint32_t n_fields = cs_csv_cut(line, ',', fields, FIELDS_MAX);
         cs_cell_init(cell, "");
         for (uint32_t c = 0; c < n_fields && c < n_columns; c++)
             if (columns[c])
                 cs_column_parse(columns[c], cell, fields[c]);
-        snprintf(outcome, sizeof outcome, "%s", cs_outcome_current(cell->outcome));
-        memcpy(cell->outcome, outcome, sizeof outcome);
-        // files of before there were series
-        if (!*cell->series)
-            memcpy(cell->series, cell->method, sizeof cell->method);
         // what follows an @ is a machine, before it is the name
         *n += n_fields == n_columns && *cell->series && *cell->series != '@';
     }

@@ -156,8 +156,11 @@ void cs_verdict_print(const struct cs_ranking *ranking, const char *bullet,
 enum cs_status cs_verdict_print_preliminary(const struct cs_compare *compare,
                                             struct cs_text *out, struct cs_error *error);
 
-/* Adds a line: the cheapest way to an error of at most bound. */
-void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct cs_text *out);
+/* Adds time and work of a cell; by_work: without the time. */
+void cs_verdict_add_cost(const struct cs_cell *cell, bool by_work, struct cs_text *out);
+/* Adds the margin of the best over the runner-up and a line's end: the text `none`, with its
+ * interval, or roughly from single times; and that by work. */
+void cs_verdict_add_factor(const struct cs_rank *rank, const char *none, struct cs_text *out);
 
 /* Adds the warnings that apply, one per line after `bullet`, each with advice. */
 void cs_compare_warn(const struct cs_compare *compare, const char *bullet, struct cs_text *out);

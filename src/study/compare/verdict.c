@@ -16,17 +16,14 @@ static void add_cell(const struct cs_cell *cell, struct cs_text *out) {
         cs_text_add(out, "%s", cell->series);
 }
 
-/* Time and work of a cell; by_work: without the time. */
-static void add_cost(const struct cs_cell *cell, bool by_work, struct cs_text *out) {
+void cs_verdict_add_cost(const struct cs_cell *cell, bool by_work, struct cs_text *out) {
     if (!by_work)
         cs_text_add(out, ", %.3g ms", 1e3 * cell->cpu);
     if (isfinite(cell->work))
         cs_text_add(out, ", work %.0f", cell->work);
 }
 
-/* Margin of the best over the runner-up: none, with its interval, or roughly from single times;
- * and that by work. */
-static void add_factor(const struct cs_rank *rank, const char *none, struct cs_text *out) {
+void cs_verdict_add_factor(const struct cs_rank *rank, const char *none, struct cs_text *out) {
     const struct cs_ratio *ratio = &rank->ratio;
     if (!rank->runner_up) {
         cs_text_add(out, "; %s\n", none);
@@ -100,8 +97,8 @@ static void add_rank(const struct cs_ranking *ranking, const struct cs_rank *ran
     add_cell(rank->best, out);
     if (rank->of[0].relation == CS_BOUND_LIMIT)
         cs_text_add(out, " at its limit");
-    add_cost(rank->best, rank->by_work, out);
-    add_factor(rank, "no other series was run to that error", out);
+    cs_verdict_add_cost(rank->best, rank->by_work, out);
+    cs_verdict_add_factor(rank, "no other series was run to that error", out);
     add_frugal(rank, bullet, out);
     add_others(rank, bullet, out);
 }
@@ -127,14 +124,14 @@ static void add_frame(const struct cs_ranking *ranking, const char *bullet,
         cs_text_add(out, "\n");
     } else {
         add_cell(best, out);
-        add_cost(best, compare->by_work, out);
+        cs_verdict_add_cost(best, compare->by_work, out);
         if (isfinite(best->error))
             cs_text_add(out, ", error %.1e m", best->error);
         if (isfinite(best->energy_error))
             cs_text_add(out, ", energy error %.2g %%", 100 * best->energy_error);
         else
             cs_text_add(out, ", energy error not known");
-        add_factor(&ranking->frame, "no other series is known to do as well", out);
+        cs_verdict_add_factor(&ranking->frame, "no other series is known to do as well", out);
     }
 }
 
@@ -165,52 +162,6 @@ enum cs_status cs_verdict_print_preliminary(const struct cs_compare *compare,
     cs_verdict_print(&ranking, "  ", compare, out);
     cs_ranking_finish(&ranking);
     return CS_OK;
-}
-
-/* The cell with the smallest error of the norm, of all that are ranked; NULL: none. */
-static const struct cs_cell *most_accurate(const struct cs_compare *compare) {
-    const enum cs_norm norm = compare->settings->ranking_norm;
-    const struct cs_cell *found = NULL;
-    double least = HUGE_VAL;
-    for (uint32_t k = 0; k < compare->cells.n; k++) {
-        const struct cs_cell *cell = compare->cells.cells + k;
-        const double error = cs_norm_of(norm, cell, &compare->reference);
-        if (cs_cell_is_finished(cell) && error < least) {
-            least = error;
-            found = cell;
-        }
-    }
-    return found;
-}
-
-void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct cs_text *out) {
-    const enum cs_norm norm = compare->settings->ranking_norm;
-    char integrator[CS_CELL_INTEGRATOR];
-    struct cs_rank rank;
-    if (!cs_norm_is_known(norm, &compare->reference)) {
-        cs_text_add(out, "no errors are known: %s\n", compare->reference.reason);
-        return;
-    }
-    cs_ranking_at(compare, bound, &rank);
-    const struct cs_cell *nearest = most_accurate(compare);
-    if (rank.best) {
-        cs_cell_integrator(rank.best, integrator, sizeof integrator);
-        cs_text_add(out, "%s of at most %.3g %s after %.4g s: -i %s", cs_norm_words(norm),
-                    bound, cs_norm_unit(norm), compare->time, integrator);
-        if (rank.by_work)
-            add_cost(rank.best, true, out);
-        else
-            cs_text_add(out, ", %.3g ms per frame",
-                        1e3 * rank.best->cpu / compare->settings->run.frames);
-        add_factor(&rank, "no other series was run to that error", out);
-    } else if (nearest) {
-        cs_cell_integrator(nearest, integrator, sizeof integrator);
-        cs_text_add(out,
-                    "no row has an %s of at most %.3g %s; the smallest is %.2g, of -i %s\n",
-                    cs_norm_words(norm), bound, cs_norm_unit(norm),
-                    cs_norm_of(norm, nearest, &compare->reference), integrator);
-    } else
-        cs_text_add(out, "no row finished\n");
 }
 
 /* Names the first failed cells, with their notes. */
