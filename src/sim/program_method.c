@@ -31,7 +31,7 @@ struct process {
 
 /* Times for the hello, after the first of which the wait is told, and for the end of a program,
  * which is looked at after each nap. */
-enum { SILENT_MS = 1500, HELLO_MS = 60000, NAP_NS = 5000000, NAPS = 200 };
+enum { SILENT_MS = 5000, HELLO_MS = 60000, NAP_NS = 5000000, NAPS = 200 };
 
 /* The child after fork: only calls that are safe there. Its standard output is our standard
  * error, since ours has results; the signals of a terminal reach us alone; it ends with us. */
